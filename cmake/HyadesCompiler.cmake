@@ -1,0 +1,34 @@
+# How every file is compiled. The floating-point flags are part of the promise of equal bits:
+# no contraction, no fast-math, one -march for the whole build.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
+
+add_compile_options(-march=${HYADES_ARCH} -ffp-contract=off -fno-math-errno
+                    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
+if(HYADES_WERROR)
+  add_compile_options(-Werror)
+endif()
+
+if(HYADES_SANITIZE)
+  add_compile_options(-fsanitize=${HYADES_SANITIZE} -fno-omit-frame-pointer
+                      -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${HYADES_SANITIZE})
+endif()
+
+find_program(HYADES_CCACHE ccache)
+if(HYADES_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${HYADES_CCACHE})
+endif()
+find_program(HYADES_MOLD mold)
+if(HYADES_MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()

@@ -1,0 +1,17 @@
+# hyades_room(NAME [USES rooms or libraries...]): one static library per room, made of all .cpp
+# files of the current folder. A room sees only the rooms that it names.
+function(hyades_room name)
+  cmake_parse_arguments(ROOM "" "" "USES" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  if(sources)
+    add_library(hyades_${name} STATIC ${sources})
+    set(scope PUBLIC)
+  else()
+    add_library(hyades_${name} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  target_include_directories(hyades_${name} ${scope} ${CMAKE_SOURCE_DIR})
+  foreach(used ${ROOM_USES})
+    target_link_libraries(hyades_${name} ${scope} ${used})
+  endforeach()
+endfunction()

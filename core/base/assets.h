@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/bytes.h"
+#include "core/base/result.h"
+
+namespace hyades::core {
+
+/// The one door through which every loader opens files, so that a dry run finds all assets of a job
+/// and a worker can serve them by hash without a file system. Thread-safe.
+class AssetResolver {
+ public:
+  virtual ~AssetResolver() = default;
+
+  /// The bytes behind `reference`. A relative reference is relative to the folder of the job, or,
+  /// where `from` is not empty, to the folder of asset `from` (an .mtl beside its .obj, say).
+  /// Errors name the reference and what was wrong with it.
+  virtual Result<Bytes> open(const std::string& reference, const std::string& from = {}) = 0;
+};
+
+/// Resolver over the file system: references are relative to `folder`; files are mapped, not read.
+/// Absolute references and references that leave `folder` through ".." are allowed (this is the
+/// user's own machine); devices, sockets and folders are refused.
+std::unique_ptr<AssetResolver> make_file_resolver(const std::string& folder);
+
+/// One asset as a dry run saw it.
+struct AssetRecord {
+  std::string reference;  ///< as the job or a parent asset names it, resolved to its path
+  std::string sha256;     ///< hex, of the bytes
+  uint64_t size = 0;      ///< bytes
+};
+
+/// Wraps a resolver and records each distinct asset that is opened, in order of first opening.
+class RecordingResolver : public AssetResolver {
+ public:
+  explicit RecordingResolver(AssetResolver& inner);
+  ~RecordingResolver() override;
+  Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
+  std::vector<AssetRecord> records() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/vec.h"
+
+namespace hyades::core {
+
+/// An axis-aligned box; empty (lower > upper) by default.
+struct Bounds {
+  Vec3 lower{3.0e38F};
+  Vec3 upper{-3.0e38F};
+  bool empty() const { return lower.x > upper.x; }
+  void include(const Vec3& p) {
+    lower = glm::min(lower, p);
+    upper = glm::max(upper, p);
+  }
+  void include(const Bounds& b) {
+    lower = glm::min(lower, b.lower);
+    upper = glm::max(upper, b.upper);
+  }
+  Vec3 center() const { return 0.5F * (lower + upper); }
+  Vec3 size() const { return upper - lower; }
+};
+
+/// Triangles in object space. Indices are in range and positions finite: loaders make sure.
+/// Degenerate triangles may be present; rays miss them.
+struct TriangleMesh {
+  std::string name;  ///< file or description, for messages
+  std::vector<Vec3>
+      positions;  ///< allocated with room for one more element: Embree reads 16 bytes at the last
+  std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<Vec3> normals;  ///< per vertex, unit; or empty: flat
+  std::vector<Vec2> uvs;      ///< per vertex; or empty
+  Bounds bounds;
+
+  size_t memory() const;  ///< bytes of vertex and index data
+};
+
+/// Reads `bounds` off the positions and reserves Embree's padding. Call after filling in.
+void finish_mesh(TriangleMesh& mesh);
+
+/// Angle-weighted vertex normals (Thuermer & Wuethrich 1998), for meshes that have none.
+void compute_smooth_normals(TriangleMesh& mesh);
+
+}  // namespace hyades::core

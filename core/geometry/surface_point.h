@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/ray.h"
+#include "core/base/vec.h"
+
+namespace hyades::core {
+
+/// A point on a surface, in world space.
+struct SurfacePoint {
+  Vec3 position{0.0F};
+  Vec3 ng{0.0F, 0.0F, 1.0F};  ///< geometric normal, unit, outward (the shape's own orientation)
+  Vec3 ns{0.0F, 0.0F, 1.0F};  ///< shading normal, unit, same side as ng
+  Vec3 dpdu{1.0F, 0.0F, 0.0F};
+  Vec3 dpdv{0.0F, 1.0F, 0.0F};
+  Vec2 uv{0.0F};
+  float t = 0.0F;     ///< distance along the ray that found it
+  float time = 0.0F;  ///< shutter time 0..1
+  float clearance =
+      0.0F;  ///< distance along +-ng beyond which rays no longer meet this surface [length]
+  uint32_t object = 0;                    ///< index of the placement
+  uint32_t primitive = 0;                 ///< triangle index; 0 for quadrics
+  const Mat4* world_to_object = nullptr;  ///< never null for points that World returns
+};
+
+/// A ray that starts at `p`, on the side of it that `direction` (unit) points to, without meeting
+/// p's own surface again.
+Ray spawn_ray(const SurfacePoint& p, const Vec3& direction, float t_max = kInfinity);
+
+/// A ray from `p` to just before `target`: what a shadow test between two points needs.
+Ray spawn_ray_to(const SurfacePoint& p, const Vec3& target, float target_clearance);
+
+}  // namespace hyades::core

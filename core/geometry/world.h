@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/base/ray.h"
+#include "core/base/result.h"
+#include "core/geometry/shape.h"
+#include "core/geometry/surface_point.h"
+
+namespace hyades::core {
+
+/// Which rays a placement is seen by.
+enum class RayKind : uint32_t { camera = 1, other = 2 };
+
+/// A shape put into the world.
+struct Placement {
+  Shape shape;
+  /// One matrix: still. More: object to world at equal steps over the shutter interval,
+  /// interpolated linearly, element by element, between neighbours.
+  std::vector<Mat4> to_world{Mat4(1.0F)};
+  bool visible_to_camera = true;
+};
+
+/// What a ray met: enough to find the surface point again.
+struct Hit {
+  uint32_t object = 0;  ///< index of the placement
+  uint32_t primitive = 0;
+  float t = 0.0F;  ///< recomputed with exact divisions: the same bits on every CPU
+  float u = 0.0F;  ///< barycentric of vertex 1 (meshes)
+  float v = 0.0F;  ///< barycentric of vertex 2 (meshes)
+};
+
+/// Acceleration structures that outlive a frame: one per distinct mesh that is instanced or moves,
+/// keyed by the mesh's address, kept while somebody uses them. Thread-safe.
+class GeometryCache {
+ public:
+  GeometryCache();
+  ~GeometryCache();
+  struct State;
+  State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+/// All surfaces of one frame. Immutable and thread-safe; rays must be finite (NaN and infinity are
+/// counted and miss). Embree at one pinned ISA, build quality and flag set lies beneath: see
+/// docs/architecture.md.
+class World {
+ public:
+  virtual ~World() = default;
+
+  /// The nearest surface on the ray, or nothing.
+  virtual std::optional<Hit> intersect(const Ray& ray, RayKind kind) const = 0;
+
+  /// Whether anything lies on the ray.
+  virtual bool occluded(const Ray& ray) const = 0;
+
+  /// Everything about the point that `ray` hit.
+  virtual SurfacePoint surface(const Ray& ray, const Hit& hit) const = 0;
+
+  /// The surface point of placement `object` at triangle `primitive`, barycentrics (u, v), shutter
+  /// time `time`: what light sampling on a mesh needs.
+  virtual SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
+                                      float time) const = 0;
+
+  /// Object-to-world matrix of placement `object` at shutter time `time`.
+  virtual Mat4 transform_at(uint32_t object, float time) const = 0;
+
+  virtual const Placement& placement(uint32_t object) const = 0;
+  virtual uint32_t placement_count() const = 0;
+  virtual Bounds bounds() const = 0;  ///< over the whole shutter interval
+  virtual size_t memory() const = 0;  ///< bytes that Embree holds for it
+};
+
+/// Builds the world. Single still placements become direct geometry with world-space vertices;
+/// meshes that are placed several times or move become instances of a scene in `cache`. Errors: a
+/// transform that is singular or not finite, Embree out of memory or without the pinned ISA.
+Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
+                                                 GeometryCache& cache);
+
+}  // namespace hyades::core

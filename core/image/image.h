@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/base/vec.h"
+
+namespace hyades::core {
+
+/// Pixels in memory: interleaved float channels, row 0 on top.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::string> channels;  ///< "R", "G", "B", "A", "Y", "albedo.R", ... in order
+  std::vector<float> data;            ///< width * height * channels.size()
+
+  int channel_count() const { return static_cast<int>(channels.size()); }
+  size_t index(int x, int y, int c) const {
+    return (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) *
+               channels.size() +
+           static_cast<size_t>(c);
+  }
+  float at(int x, int y, int c) const { return data[index(x, y, c)]; }
+  float& at(int x, int y, int c) { return data[index(x, y, c)]; }
+
+  /// Index of channel `name`, or -1.
+  int find_channel(const std::string& name) const;
+};
+
+/// A black image.
+Image make_image(int width, int height, std::vector<std::string> channels);
+
+}  // namespace hyades::core

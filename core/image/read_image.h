@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/bytes.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+
+namespace hyades::core {
+
+/// How the numbers of an 8- or 16-bit file become linear.
+enum class ColorSpace {
+  automatic,  ///< PNG and JPEG as sRGB; EXR and HDR are linear already
+  srgb,
+  linear,
+};
+
+/// Limits against hostile files, checked before memory is taken.
+struct ImageLimits {
+  int max_side = 65536;             ///< pixels
+  size_t max_pixels = 400'000'000;  ///< width * height
+};
+
+/// Decodes PNG (1-16 bits), JPEG, Radiance HDR (flat and RLE) or OpenEXR (any compression, half or
+/// float, scanline or tiled), told apart by their first bytes. Colour is linear Rec.709 on return;
+/// alpha stays straight. Grey files have channel "Y", colour ones "R","G","B"[,"A"]; an EXR keeps
+/// its own channel names (first part; subsampled channels are refused). `name` is used in errors
+/// only.
+Result<Image> read_image(const Bytes& bytes, const std::string& name,
+                         ColorSpace space = ColorSpace::automatic, const ImageLimits& limits = {});
+
+/// read_image of a file on disk.
+Result<Image> read_image_file(const std::string& path, ColorSpace space = ColorSpace::automatic);
+
+}  // namespace hyades::core

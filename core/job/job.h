@@ -1,0 +1,222 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/rect.h"
+#include "core/job/animated.h"
+#include "core/job/source.h"
+
+/// A job as plain structs: what the YAML says, validated, with defaults filled in and names still
+/// names. The in-class defaults are the documented ones (docs/job.md). Lengths are in metres after
+/// `units` has been applied by the scene builder; angles in degrees.
+namespace hyades::core {
+
+/// A colour that is a value or comes from a named texture.
+struct ColorInput {
+  Animated<Rgb> value{Rgb(1.0F)};
+  std::string texture;  ///< name in Job::textures; empty = use value
+};
+
+/// A number that is a value or comes from a named texture (its scalar).
+struct ScalarInput {
+  Animated<float> value{0.0F};
+  std::string texture;
+};
+
+/// One step of a transform list; steps apply top to bottom.
+struct TransformStep {
+  enum class Kind { translate, scale, rotate_x, rotate_y, rotate_z, rotate, matrix };
+  Kind kind = Kind::translate;
+  Animated<Vec3> vector{Vec3(0.0F)};  ///< translate [length]; scale [factor per axis]; rotate: axis
+  Animated<float> angle{0.0F};        ///< degrees
+  Mat4 matrix{1.0F};                  ///< matrix only
+};
+using TransformList = std::vector<TransformStep>;
+
+struct FramesDesc {
+  int32_t first = 1;
+  int32_t last = 1;
+  int32_t step = 1;
+  float fps = 24.0F;
+  float shutter = 0.0F;  ///< fraction of the frame time that the shutter stays open, 0..1
+};
+
+enum class FilterKind { box, triangle, gaussian, mitchell, blackman_harris, center };
+
+struct FilmDesc {
+  int32_t width = 640;
+  int32_t height = 360;
+  std::optional<PixelRect> crop;  ///< pixels to render; all where absent
+  FilterKind filter = FilterKind::blackman_harris;
+  float filter_radius = 1.5F;  ///< pixels; half the filter's width
+};
+
+enum class SamplerName { sobol, independent };
+
+struct SamplingDesc {
+  uint32_t samples = 64;  ///< per pixel
+  uint64_t seed = 0;
+  SamplerName sampler = SamplerName::sobol;
+};
+
+struct IntegratorDesc {
+  std::string type = "path";
+  int max_depth = 32;      ///< most scattering events between light and camera
+  int roulette_depth = 4;  ///< Russian roulette may end a path after this many
+  float clamp = 0.0F;      ///< biased: largest radiance of one indirect sample; 0 = off
+};
+
+struct CameraDesc {
+  std::string type = "perspective";
+  Animated<Vec3> look_from{Vec3(0.0F, 1.0F, 5.0F)};
+  Animated<Vec3> look_at{Vec3(0.0F)};
+  Animated<Vec3> up{Vec3(0.0F, 1.0F, 0.0F)};
+  Animated<float> fov{40.0F};             ///< vertical, degrees, (0, 180)
+  Animated<float> aperture_radius{0.0F};  ///< length; 0 = pinhole
+  std::optional<Animated<float>>
+      f_stop;                      ///< radius = focal length / (2 f_stop), on a 24 mm high sensor
+  int aperture_blades = 0;         ///< 0 = round, else >= 3
+  float aperture_rotation = 0.0F;  ///< degrees
+  std::optional<Animated<float>> focus_distance;  ///< along the view axis; absent: to look_at
+  std::string focus_object;                       ///< focus on this object's centre
+};
+
+struct TextureDesc {
+  std::string name;
+  SourceLocation where;
+  std::string type;  ///< constant | image | checker | scale | perlin3d | perlin4d | fbm3d | fbm4d
+  ColorInput a{};    ///< checker, noise: first colour; constant: its value; scale: input
+  ColorInput b{};    ///< checker, noise: second colour; scale: factor
+  // image
+  std::string file;
+  std::string color_space = "auto";  ///< auto | srgb | linear
+  std::string wrap = "repeat";       ///< repeat | clamp | mirror | black
+  std::string filter = "bilinear";   ///< bilinear | nearest
+  // checker, noise
+  Animated<Vec3> scale{Vec3(1.0F)};  ///< cells (or repeats of the image) per unit of the mapping
+  Animated<Vec3> offset{Vec3(0.0F)};
+  std::string mapping = "default";  ///< default | uv | object | world
+  int octaves = 1;
+  float lacunarity = 2.0F;
+  float gain = 0.5F;
+  Animated<float> time{0.0F};  ///< fourth coordinate of perlin4d and fbm4d
+};
+
+struct BumpDesc {
+  std::string texture;
+  Animated<float> height{0.01F};  ///< length that the texture's value 1 stands for
+};
+
+struct MaterialDesc {
+  std::string name;
+  SourceLocation where;
+  std::string type;  ///< lambert | dielectric | thin-dielectric | conductor | glossy | mirror | mix
+                     ///< | null | emissive (black)
+  ColorInput color{Animated<Rgb>(Rgb(0.5F)), {}};
+  std::string metal = "gold";  ///< conductor: a name of the table, or "custom" with eta and k
+  std::optional<Animated<Rgb>> eta, k;               ///< conductor: measured index
+  ScalarInput roughness{Animated<float>(0.0F), {}};  ///< perceptual, alpha = roughness^2
+  Animated<float> ior{1.5F};
+  Animated<Rgb> transmission{Rgb(1.0F)};                  ///< dielectric: tint per crossing
+  Animated<Rgb> reflection{Rgb(1.0F)};                    ///< dielectric, conductor, mirror: tint
+  ScalarInput reflectiveness{Animated<float>(0.5F), {}};  ///< glossy: 0 = Lambert, 1 = lobe only
+  ScalarInput glossiness{Animated<float>(0.8F), {}};      ///< glossy: sharpness of the lobe, 0..1
+  std::string first, second;                              ///< mix: material names
+  ScalarInput amount{Animated<float>(0.5F), {}};          ///< mix: share of `second`
+  std::optional<BumpDesc> bump;
+};
+
+/// Light that a shape gives off.
+struct EmitDesc {
+  Animated<Rgb> color{Rgb(1.0F)};
+  enum class Unit { radiance, power } unit = Unit::radiance;
+  Animated<float> amount{1.0F};  ///< W/(m^2 sr), or W over the whole shape; multiplied with color
+  bool two_sided = false;        ///< open shapes: give light from the back too
+};
+
+struct ObjectDesc {
+  std::string name;
+  SourceLocation where;
+  std::string shape;  ///< mesh | sphere | rectangle | disk | box | cylinder | instance | group
+  std::string mesh;   ///< file
+  std::string instance_of;           ///< name in Job::groups
+  std::vector<ObjectDesc> children;  ///< group written in place
+  float radius = 1.0F;
+  Vec3 size{1.0F};              ///< rectangle: x, z extent; box: all three
+  float height = 1.0F;          ///< cylinder, along y
+  bool caps = true;             ///< cylinder
+  std::string smooth = "file";  ///< mesh normals: file | flat | smooth
+  std::string material;         ///< empty: inherited from the group, else grey lambert
+  TransformList transform;
+  Animated<Vec3> at{Vec3(0.0F)};  ///< translation after `transform`
+  std::optional<EmitDesc> emit;
+  bool visible_to_camera = true;
+};
+
+struct GroupDesc {
+  std::string name;
+  SourceLocation where;
+  std::vector<ObjectDesc> objects;
+};
+
+struct LightDesc {
+  std::string name;
+  SourceLocation where;
+  std::string type;                                   ///< point | spot | sun
+  Animated<Vec3> at{Vec3(0.0F)};                      ///< point, spot
+  Animated<Vec3> look_at{Vec3(0.0F, -1.0F, 0.0F)};    ///< spot
+  Animated<Vec3> direction{Vec3(0.0F, -1.0F, 0.0F)};  ///< sun: the way its light travels
+  Animated<Rgb> color{Rgb(1.0F)};
+  Animated<float> power{10.0F};      ///< point, spot: W (spot: as if it shone all round)
+  Animated<float> irradiance{1.0F};  ///< sun: W/m^2 on a surface facing it
+  Animated<float> angle{0.53F};      ///< sun: diameter, degrees; spot: half angle of the cone
+  Animated<float> blend{0.2F};       ///< spot: share of the cone that fades, 0..1
+};
+
+struct EnvironmentDesc {
+  std::string image;               ///< lat-long map; empty = constant colour
+  Animated<Rgb> color{Rgb(1.0F)};  ///< constant colour, or a tint of the image
+  Animated<float> rotate_y{0.0F};  ///< degrees
+  Animated<float> strength{1.0F};
+  bool visible_to_camera = true;
+};
+
+struct OutputDesc {
+  SourceLocation where;
+  std::string file;                 ///< #### stands for the frame number
+  std::vector<std::string> layers;  ///< beauty alpha depth albedo normal variance samples; EXR only
+  std::string tone_map = "srgb";    ///< srgb | filmic | aces | linear; PNG and JPEG
+  float exposure = 0.0F;            ///< stops
+  bool half = false;                ///< EXR: 16 bits
+  bool transparent = false;         ///< PNG: alpha channel
+};
+
+struct Job {
+  std::string file;  ///< path of the YAML; relative references start at its folder
+  std::string name;
+  float units = 1.0F;  ///< metres per unit of length in the job
+  FramesDesc frames;
+  FilmDesc film;
+  SamplingDesc sampling;
+  IntegratorDesc integrator;
+  CameraDesc camera;
+  std::vector<TextureDesc> textures;
+  std::vector<MaterialDesc> materials;
+  std::vector<GroupDesc> groups;
+  std::vector<ObjectDesc> objects;
+  std::vector<LightDesc> lights;
+  std::optional<EnvironmentDesc> environment;
+  std::vector<OutputDesc> outputs;
+
+  /// The moment at which frame `frame`'s shutter is open for fraction `shutter_time` (0..1).
+  JobTime time_of(int32_t frame, float shutter_time = 0.0F) const {
+    const double at = frame + double{shutter_time} * double{frames.shutter};
+    return {(at - 1.0) / double{frames.fps}, at};
+  }
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hyades::core {
+
+/// Where something stands in a job's text.
+struct SourceLocation {
+  std::string file;
+  int line = 0;    ///< from 1; 0 = unknown
+  int column = 0;  ///< from 1
+};
+
+/// One complaint: "file:line:column: what, and what was expected".
+struct Diagnostic {
+  SourceLocation where;
+  std::string message;
+  std::string to_string() const;
+};
+
+/// Collects every complaint of a run, so that a person sees all of them at once. Stops collecting
+/// (and says so) after 100.
+class Diagnostics {
+ public:
+  void add(const SourceLocation& where, std::string message);
+  bool empty() const { return list_.empty(); }
+  const std::vector<Diagnostic>& list() const { return list_; }
+  std::string to_string() const;  ///< one per line, in order of file and line
+
+ private:
+  std::vector<Diagnostic> list_;
+};
+
+}  // namespace hyades::core

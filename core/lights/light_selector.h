@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/lights/make_light.h"
+
+namespace hyades::core {
+
+struct SelectedLight {
+  uint32_t index = 0;
+  float probability = 0.0F;
+};
+
+/// Chooses one light among many. The interface takes the reference point so that a light tree can
+/// stand behind it later. Probabilities sum to 1 over the lights for every reference point.
+class LightSelector {
+ public:
+  virtual ~LightSelector() = default;
+
+  /// A light for the point `from` with normal `normal` (zero: none, in a medium); nothing where no
+  /// light has power.
+  virtual std::optional<SelectedLight> select(const Vec3& from, const Vec3& normal,
+                                              float u) const = 0;
+
+  /// The probability with which select returns `light`.
+  virtual float probability(const Vec3& from, const Vec3& normal, uint32_t light) const = 0;
+};
+
+/// In proportion to power; lights of unknown (zero) power are never chosen.
+std::unique_ptr<LightSelector> make_power_selector(const std::vector<LightPtr>& lights);
+
+}  // namespace hyades::core

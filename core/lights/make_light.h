@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+
+#include "core/geometry/world.h"
+#include "core/image/image.h"
+#include "core/lights/light.h"
+
+/// One maker per kind of light.
+namespace hyades::core {
+
+using LightPtr = std::shared_ptr<const Light>;
+
+/// Light given off by placement `object` of `world` with constant radiance on its outer side (both
+/// sides where `two_sided`). Spheres (uniformly scaled) are sampled by solid angle from outside, by
+/// area from inside; everything else by area. Surfaces of zero area give no light. `world` must
+/// outlive the light.
+LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided);
+
+/// Area of placement `object` when the shutter opens [length^2].
+double surface_area(const World& world, uint32_t object);
+
+/// Isotropic point of total flux `power` [W] per channel.
+LightPtr make_point_light(const Vec3& position, const Rgb& power);
+
+/// As a point light, but only within `cos_outer` of unit `direction`, fading smoothly from
+/// `cos_inner`.
+LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
+                         float cos_inner, float cos_outer);
+
+/// Sun: light travelling along unit `direction`, irradiance [W/m^2] on a facing surface, from a
+/// disc of angular diameter `angle` [radians]; 0 makes it a delta light. `world_radius` only serves
+/// power().
+LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle,
+                        float world_radius);
+
+/// Lat-long environment: direction (x, y, z) -> u = atan2(z, x) / 2pi + 0.5, v = acos(y) / pi from
+/// the top, after the map has been turned by `rotate_y` [radians, counter-clockwise seen from +y];
+/// values times `scale`. Bilinear; sampled in proportion to luminance x solid angle of what
+/// bilinear look-up really returns (no zero pdf where there is light). A null image is constant
+/// radiance `scale`.
+LightPtr make_environment_light(std::shared_ptr<const Image> image, float rotate_y,
+                                const Rgb& scale, float world_radius);
+
+}  // namespace hyades::core

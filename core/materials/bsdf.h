@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <optional>
+#include <utility>
+
+#include "core/base/vec.h"
+
+namespace hyades::core {
+
+/// What travels along the path being built. Where the adjoint differs (refraction scales radiance
+/// by the squared ratio of indices, importance not) it decides; never defaulted.
+enum class TransportMode { radiance, importance };
+
+struct BsdfSample {
+  Rgb weight{0.0F};           ///< f |cos theta_i| / pdf
+  float pdf = 0.0F;           ///< per solid angle; of a delta lobe: its discrete probability
+  Vec3 wi{0.0F, 0.0F, 1.0F};  ///< local, unit
+  bool delta = false;         ///< from a delta lobe: evaluate() and pdf() know nothing of it
+  bool transmitted = false;   ///< wi is on the other side of the surface than wo
+  float eta = 1.0F;           ///< index of the side of wi over that of wo (1 unless refracted)
+};
+
+/// What light does at a surface point. Local coordinates: z is the shading normal on the shape's
+/// outer side; wo points towards where the path came from, wi towards where it goes on; both unit
+/// and both away from the surface; either may lie below (z < 0) on two-sided and transmitting
+/// surfaces. Immutable.
+class Bsdf {
+ public:
+  virtual ~Bsdf() = default;
+
+  /// f(wo, wi) |cos theta_i|, delta lobes excluded.
+  virtual Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
+
+  /// Density of sample() returning wi, per solid angle, delta lobes excluded.
+  virtual float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
+
+  /// Picks wi. `lobe` chooses among lobes, `u` within one; all in [0, 1). Nothing: absorbed.
+  virtual std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2& u,
+                                           TransportMode mode) const = 0;
+
+  /// Directional reflectance plus transmittance, approximate, for the albedo layer and for guiding
+  /// choices.
+  virtual Rgb albedo(const Vec3& wo) const = 0;
+
+  /// Whether evaluate() can be anything but 0 (else next-event estimation is pointless).
+  virtual bool has_smooth() const { return true; }
+
+  /// Whether light passes as if nothing were there (null material): no scattering event.
+  virtual bool is_null() const { return false; }
+};
+
+/// Memory for the BSDFs of one surface point: no allocation, no destructors. A BSDF lives until
+/// reset().
+class BsdfArena {
+ public:
+  static constexpr size_t kSize = 4096;
+
+  void reset() { used_ = 0; }
+
+  template <class T, class... Args>
+  const T* make(Args&&... args) {
+    const size_t begin = (used_ + alignof(T) - 1) / alignof(T) * alignof(T);
+    if (begin + sizeof(T) > kSize) return nullptr;
+    used_ = begin + sizeof(T);
+    return ::new (memory_ + begin) T(std::forward<Args>(args)...);
+  }
+
+ private:
+  alignas(16) std::byte memory_[kSize];
+  size_t used_ = 0;
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/materials/material.h"
+#include "core/textures/make_texture.h"
+
+/// One maker per kind of material.
+namespace hyades::core {
+
+using MaterialPtr = std::shared_ptr<const Material>;
+
+/// A colour or number of a material: a texture, or a value where the texture is null (the fast
+/// case).
+struct ColorParam {
+  Rgb value{0.5F};
+  TexturePtr texture;
+};
+struct ScalarParam {
+  float value = 0.0F;
+  TexturePtr texture;
+};
+
+/// Two-sided Lambert of reflectance `color` (0..1).
+MaterialPtr make_lambert(const ColorParam& color);
+
+/// Smooth dielectric of index `ior` inside against 1 outside; `transmission` and `reflection` tint
+/// each event. ior = 1 passes light unchanged.
+MaterialPtr make_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
+
+/// A sheet of that glass so thin that light leaves where it entered, all inner bounces summed
+/// (R' = 2R / (1 + R) without absorption).
+MaterialPtr make_thin_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
+
+/// Metal of complex index eta + i k per channel, relative to vacuum; roughness 0 is a mirror, else
+/// GGX with visible-normal sampling (Heitz 2018), alpha = roughness^2.
+MaterialPtr make_conductor(const Rgb& eta, const Rgb& k, const ScalarParam& roughness,
+                           const Rgb& tint);
+
+/// Ideal mirror of reflectance `color`, no Fresnel.
+MaterialPtr make_mirror(const ColorParam& color);
+
+/// Atlas's glossy: (1 - reflectiveness) Lambert + reflectiveness * a lobe about the mirror
+/// direction whose sharpness grows with glossiness (0..1); energy never above `color`. docs/job.md
+/// has the formula.
+MaterialPtr make_glossy(const ColorParam& color, const ScalarParam& reflectiveness,
+                        const ScalarParam& glossiness);
+
+/// (1 - amount) first + amount second.
+MaterialPtr make_mix(MaterialPtr first, MaterialPtr second, const ScalarParam& amount);
+
+MaterialPtr make_null();
+
+/// Absorbs everything (surfaces that only emit).
+MaterialPtr make_black();
+
+/// `base` with its shading normal turned by the gradient of `height` [length] times `scale`.
+MaterialPtr make_bump(MaterialPtr base, TexturePtr height, float scale);
+
+/// Complex index of a metal at red, green, blue.
+struct MetalIndex {
+  std::string name;
+  Rgb eta;
+  Rgb k;
+};
+
+/// The table (sources in the file): gold, silver, copper, aluminium, ... ; nothing for other names.
+std::optional<MetalIndex> find_metal(const std::string& name);
+std::vector<std::string> metal_names();
+
+}  // namespace hyades::core
