@@ -21,6 +21,15 @@ class AssetResolver {
   virtual Result<Bytes> open(const std::string& reference, const std::string& from = {}) = 0;
 };
 
+/// What `reference` means when asset `from` names it: a path relative to the job's folder (or an
+/// absolute one), "." and ".." folded away. The names of AssetRecord, and what to pass as `from`
+/// for assets that the asset names in its turn.
+std::string resolve_reference(const std::string& reference, const std::string& from = {});
+
+/// The bytes of a regular file, mapped. Folders, pipes, sockets and devices are refused without
+/// blocking; errors do not repeat the name. The file must not shrink while it is in use.
+Result<Bytes> map_file(const std::string& path);
+
 /// Resolver over the file system: references are relative to `folder`; files are mapped, not read.
 /// Absolute references and references that leave `folder` through ".." are allowed (this is the
 /// user's own machine); devices, sockets and folders are refused.

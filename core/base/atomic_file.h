@@ -15,6 +15,10 @@ namespace hyades::core {
 Status replace_file(const std::string& path,
                     const std::function<Status(const std::string&)>& write);
 
+/// Writes `bytes` to `path` in place: for the `write` of replace_file. A full disk, a missing
+/// folder and the like are named.
+Status write_in_place(const std::string& path, std::span<const std::byte> bytes);
+
 /// replace_file with ready bytes.
 Status write_file(const std::string& path, std::span<const std::byte> bytes);
 

@@ -1,0 +1,149 @@
+#include "core/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace hyades::core {
+namespace {
+
+constexpr const char* kDiskFull = "the disk is full";
+
+std::string reason(int error) {
+  switch (error) {
+    case ENOSPC:
+      return kDiskFull;
+    case EDQUOT:
+      return "the disk quota is used up";
+    case EROFS:
+      return "the file system is read-only";
+    case EACCES:
+    case EPERM:
+      return "permission denied";
+    case ENOENT:
+      return "the folder does not exist";
+    case ENOTDIR:
+      return "a part of the path is not a folder";
+    case ENAMETOOLONG:
+      return "the name is too long";
+    default:
+      return std::generic_category().message(error);
+  }
+}
+
+Error failure(const std::string& path, int error) {
+  return {"cannot write " + path + ": " + reason(error)};
+}
+
+bool disk_is_full(const std::string& folder) {
+  struct statvfs info {};
+  return ::statvfs(folder.c_str(), &info) == 0 && info.f_bavail == 0;
+}
+
+/// Closes a descriptor at the end of its scope.
+struct Descriptor {
+  int fd = -1;
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+};
+
+/// Removes a file at the end of its scope unless `keep`.
+struct Temporary {
+  std::string path;
+  bool keep = false;
+  ~Temporary() {
+    if (!keep) ::unlink(path.c_str());
+  }
+};
+
+/// A name beside `target` that no other thread or living process uses.
+std::string temporary_name(const std::filesystem::path& target) {
+  static std::atomic<uint64_t> counter{0};
+  // Names may have 255 bytes; the part that makes this one unique needs some of them.
+  const std::string base = target.filename().string().substr(0, 200);
+  const std::string name =
+      "." + base + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
+  return (target.parent_path() / name).string();
+}
+
+Status sync_folder(const std::string& folder) {
+  const Descriptor handle{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  // A folder that one may write to but not list cannot be synced by us: the rename still happened.
+  if (handle.fd < 0) return {};
+  if (::fsync(handle.fd) != 0 && errno != EINVAL && errno != ENOTSUP) {
+    return failure(folder, errno);
+  }
+  return {};
+}
+
+}  // namespace
+
+Status replace_file(const std::string& path,
+                    const std::function<Status(const std::string&)>& write) {
+  if (path.empty() || path.find('\0') != std::string::npos || path.back() == '/') {
+    return Error{"cannot write \"" + path + "\": not a file name"};
+  }
+  std::filesystem::path target = path;
+  std::error_code ignored;
+  // A link stays a link: what it points to is replaced.
+  if (std::filesystem::is_symlink(target, ignored)) {
+    const auto resolved = std::filesystem::weakly_canonical(target, ignored);
+    if (!ignored) target = resolved;
+  }
+  struct stat old {};
+  const bool exists = ::stat(target.c_str(), &old) == 0;
+  if (exists && !S_ISREG(old.st_mode)) {
+    return Error{"cannot write " + path + ": it exists and is not a regular file"};
+  }
+  const std::string folder =
+      target.has_parent_path() ? target.parent_path().string() : std::string(".");
+  struct stat folder_info {};
+  if (::stat(folder.c_str(), &folder_info) != 0) return failure(path, errno);
+
+  Temporary temporary{temporary_name(target)};
+  if (const Status written = write(temporary.path); !written) {
+    const std::string& message = written.error().message;
+    // Encoders often report a failed write without its cause.
+    const bool add_cause = disk_is_full(folder) && message.find(kDiskFull) == std::string::npos;
+    return add_cause ? Error{message + " (" + kDiskFull + ")"} : written.error();
+  }
+  {
+    const Descriptor handle{::open(temporary.path.c_str(), O_RDWR | O_CLOEXEC)};
+    if (handle.fd < 0) return failure(path, errno);
+    // Best effort: the new file keeps the old one's permissions.
+    if (exists && ::fchmod(handle.fd, old.st_mode & 07777) != 0) errno = 0;
+    if (::fsync(handle.fd) != 0) return failure(path, errno);
+  }
+  if (::rename(temporary.path.c_str(), target.c_str()) != 0) return failure(path, errno);
+  temporary.keep = true;
+  return sync_folder(folder);
+}
+
+Status write_in_place(const std::string& path, std::span<const std::byte> bytes) {
+  const Descriptor handle{::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+  if (handle.fd < 0) return failure(path, errno);
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(handle.fd, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      return failure(path, errno);
+    }
+    bytes = bytes.subspan(static_cast<size_t>(written));
+  }
+  return {};
+}
+
+Status write_file(const std::string& path, std::span<const std::byte> bytes) {
+  return replace_file(
+      path, [&](const std::string& temporary) { return write_in_place(temporary, bytes); });
+}
+
+}  // namespace hyades::core

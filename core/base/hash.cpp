@@ -1,0 +1,49 @@
+#include "core/base/hash.h"
+
+#include <nmmintrin.h>
+#include <openssl/evp.h>
+
+#include <cstring>
+#include <new>
+
+namespace hyades::core {
+
+Sha256 sha256(std::span<const std::byte> bytes) {
+  Sha256 digest{};
+  unsigned length = 0;
+  // EVP_Digest fails only where OpenSSL cannot allocate its context.
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1 ||
+      length != digest.size()) {
+    throw std::bad_alloc();
+  }
+  return digest;
+}
+
+Sha256 sha256(std::string_view text) { return sha256(std::as_bytes(std::span(text))); }
+
+std::string to_hex(std::span<const uint8_t> bytes) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  text.reserve(2 * bytes.size());
+  for (const uint8_t byte : bytes) {
+    text.push_back(kDigits[byte >> 4]);
+    text.push_back(kDigits[byte & 15]);
+  }
+  return text;
+}
+
+uint32_t crc32c(std::span<const std::byte> bytes, uint32_t previous) {
+  uint64_t crc = ~previous;
+  const std::byte* at = bytes.data();
+  size_t left = bytes.size();
+  for (; left >= 8; left -= 8, at += 8) {
+    uint64_t word;
+    std::memcpy(&word, at, 8);
+    crc = _mm_crc32_u64(crc, word);
+  }
+  auto narrow = static_cast<uint32_t>(crc);
+  for (; left > 0; --left, ++at) narrow = _mm_crc32_u8(narrow, std::to_integer<uint8_t>(*at));
+  return ~narrow;
+}
+
+}  // namespace hyades::core

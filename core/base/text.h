@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace hyades::core {
+
+/// Least number of insertions, deletions, replacements and swaps of neighbouring letters that turn
+/// `a` into `b` (optimal string alignment), ASCII case and '-' against '_' ignored.
+size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate that `name` is most likely a misspelling of (the first of equals), for 'did you
+/// mean'; nothing where none is near: more than a third of the letters would have to change.
+std::optional<std::string> closest_name(std::string_view name,
+                                        std::span<const std::string> candidates);
+
+/// ", did you mean 'x'?" or, where nothing is near, "": what errors append to an unknown name.
+std::string did_you_mean(std::string_view name, std::span<const std::string> candidates);
+
+/// "a, b or c".
+std::string join_names(std::span<const std::string> names);
+
+/// A length of time in words, two units at most: "0.42 s", "12.3 s", "4 min 05 s", "1 h 02 min",
+/// "3 d 04 h". Negative and non-finite: "?".
+std::string format_duration(double seconds);
+
+/// "512 B", "1.5 KiB", "12.3 MiB", "1.0 GiB", ...
+std::string format_bytes(uint64_t bytes);
+
+/// Thousands in groups: "1,234,567".
+std::string format_count(uint64_t count);
+
+}  // namespace hyades::core

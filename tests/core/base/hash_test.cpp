@@ -1,0 +1,40 @@
+#include "core/base/hash.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace hyades::core {
+namespace {
+
+TEST(Hash, Sha256KnownAnswers) {  // FIPS 180-4 examples
+  EXPECT_EQ(to_hex(sha256(std::string_view("abc"))),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(to_hex(sha256(std::string_view())),
+            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST(Hash, Crc32cKnownAnswers) {  // RFC 3720, B.4
+  std::vector<std::byte> bytes(32, std::byte{0});
+  EXPECT_EQ(crc32c(bytes), 0x8A9136AAU);
+  for (auto& b : bytes) b = std::byte{0xFF};
+  EXPECT_EQ(crc32c(bytes), 0x62A8AB43U);
+  for (size_t i = 0; i < 32; ++i) bytes[i] = static_cast<std::byte>(i);
+  EXPECT_EQ(crc32c(bytes), 0x46DD794EU);
+  EXPECT_EQ(crc32c(std::as_bytes(std::span(std::string_view("123456789")))), 0xE3069283U);
+  EXPECT_EQ(crc32c({}), 0U);
+}
+
+TEST(Hash, Crc32cContinues) {
+  std::vector<std::byte> bytes(101);
+  for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * 37 + 5);
+  const std::span<const std::byte> all(bytes);
+  const uint32_t whole = crc32c(all);
+  for (size_t cut = 0; cut <= bytes.size(); ++cut) {
+    EXPECT_EQ(crc32c(all.subspan(cut), crc32c(all.first(cut))), whole);
+  }
+}
+
+}  // namespace
+}  // namespace hyades::core

@@ -1,0 +1,72 @@
+#include "core/base/text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace hyades::core {
+namespace {
+
+TEST(Text, EditDistance) {
+  EXPECT_EQ(edit_distance("", ""), 0U);
+  EXPECT_EQ(edit_distance("", "abc"), 3U);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
+  EXPECT_EQ(edit_distance("lambret", "lambert"), 1U);  // a swap
+  EXPECT_EQ(edit_distance("Max_Depth", "max-depth"), 0U);
+}
+
+TEST(Text, ClosestName) {
+  const std::vector<std::string> names{
+      "lambert", "dielectric", "thin-dielectric", "conductor", "glossy", "mirror", "mix", "null"};
+  EXPECT_EQ(closest_name("lambertian", names), "lambert");
+  EXPECT_EQ(closest_name("dielctric", names), "dielectric");
+  EXPECT_EQ(closest_name("Conductor", names), "conductor");
+  EXPECT_EQ(closest_name("mox", names), "mix");
+  EXPECT_EQ(closest_name("velvet", names), std::nullopt);
+  EXPECT_EQ(closest_name("", names), std::nullopt);
+  EXPECT_EQ(closest_name(std::string(100000, 'l'), names), std::nullopt);
+  EXPECT_EQ(closest_name("x", {}), std::nullopt);
+  const std::vector<std::string> letters{"a", "b"};
+  EXPECT_EQ(closest_name("c", letters), std::nullopt);
+  EXPECT_EQ(did_you_mean("mirro", names), ", did you mean 'mirror'?");
+  EXPECT_EQ(did_you_mean("velvet", names), "");
+}
+
+TEST(Text, JoinNames) {
+  EXPECT_EQ(join_names({}), "");
+  EXPECT_EQ(join_names(std::vector<std::string>{"a"}), "a");
+  EXPECT_EQ(join_names(std::vector<std::string>{"a", "b"}), "a or b");
+  EXPECT_EQ(join_names(std::vector<std::string>{"a", "b", "c"}), "a, b or c");
+}
+
+TEST(Text, Durations) {
+  EXPECT_EQ(format_duration(0.0), "0.00 s");
+  EXPECT_EQ(format_duration(0.421), "0.42 s");
+  EXPECT_EQ(format_duration(9.999), "10.0 s");
+  EXPECT_EQ(format_duration(59.96), "1 min 00 s");
+  EXPECT_EQ(format_duration(245.0), "4 min 05 s");
+  EXPECT_EQ(format_duration(3599.6), "1 h 00 min");
+  EXPECT_EQ(format_duration(3720.0), "1 h 02 min");
+  EXPECT_EQ(format_duration(86399.0), "1 d 00 h");
+  EXPECT_EQ(format_duration(3 * 86400.0 + 4 * 3600.0), "3 d 04 h");
+  EXPECT_EQ(format_duration(-1.0), "?");
+  EXPECT_EQ(format_duration(std::numeric_limits<double>::infinity()), "?");
+  EXPECT_EQ(format_duration(std::numeric_limits<double>::quiet_NaN()), "?");
+}
+
+TEST(Text, SizesAndCounts) {
+  EXPECT_EQ(format_bytes(0), "0 B");
+  EXPECT_EQ(format_bytes(1023), "1023 B");
+  EXPECT_EQ(format_bytes(1536), "1.5 KiB");
+  EXPECT_EQ(format_bytes(1024ULL * 1024 - 1), "1.0 MiB");
+  EXPECT_EQ(format_bytes(UINT64_MAX), "16.0 EiB");
+  EXPECT_EQ(format_count(0), "0");
+  EXPECT_EQ(format_count(999), "999");
+  EXPECT_EQ(format_count(1000), "1,000");
+  EXPECT_EQ(format_count(1234567), "1,234,567");
+}
+
+}  // namespace
+}  // namespace hyades::core
