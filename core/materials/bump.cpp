@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include "core/materials/params.h"
+
+namespace hyades::core {
+namespace {
+
+/// `n` turned towards unit `ng` until the two are less than a right angle apart: a normal below the
+/// geometric horizon would reflect light into the surface.
+Vec3 above_horizon(const Vec3& n, const Vec3& ng) {
+  constexpr float kLeastCosine = 0.01F;
+  const float cosine = glm::dot(n, ng);
+  if (cosine >= kLeastCosine) return n;
+  const Vec3 along = n - cosine * ng;
+  const float length2 = glm::dot(along, along);
+  if (!(length2 > 0.0F)) return ng;
+  const float sine = std::sqrt(1.0F - kLeastCosine * kLeastCosine);
+  return kLeastCosine * ng + along * (sine / std::sqrt(length2));
+}
+
+/// Blinn 1978, "Simulation of Wrinkled Surfaces": the point moves to p + h ns, so its tangents
+/// become dpdu + h_u ns and dpdv + h_v ns (the terms in h are dropped: h is small against the
+/// radius of curvature), and their cross product is the new normal.
+class Bump final : public Material {
+ public:
+  Bump(MaterialPtr base, TexturePtr height, float scale)
+      : base_(std::move(base)), height_(std::move(height)), scale_(scale) {}
+
+  const Bsdf* bsdf_at(const SurfacePoint& point, Frame& frame, BsdfArena& arena) const override {
+    const ScalarGradient h = height_->scalar_gradient(texture_point(point));
+    const float h_u = scale_ * (h.d_uv.x + along(h, point, point.dpdu));
+    const float h_v = scale_ * (h.d_uv.y + along(h, point, point.dpdv));
+    turn(point, h_u, h_v, frame);
+    return base_->bsdf_at(point, frame, arena);
+  }
+
+  bool is_null() const override { return base_->is_null(); }
+
+ private:
+  /// Change of height per unit of the parameter whose tangent is `tangent`, through space.
+  static float along(const ScalarGradient& h, const SurfacePoint& point, const Vec3& tangent) {
+    const Vec3 object = point.world_to_object != nullptr
+                            ? transform_vector(*point.world_to_object, tangent)
+                            : tangent;
+    return glm::dot(h.d_object, object) + glm::dot(h.d_world, tangent);
+  }
+
+  static void turn(const SurfacePoint& point, float h_u, float h_v, Frame& frame) {
+    const Vec3 ns = frame.n;
+    // Tangents of an interpolated normal's surface are perpendicular to it.
+    const Vec3 tangent_u = point.dpdu - glm::dot(point.dpdu, ns) * ns;
+    const Vec3 tangent_v = point.dpdv - glm::dot(point.dpdv, ns) * ns;
+    Vec3 n = glm::cross(tangent_u + h_u * ns, tangent_v + h_v * ns);
+    const float length2 = glm::dot(n, n);
+    if (!(length2 > 0.0F) || !(length2 < kInfinity)) return;
+    n /= std::sqrt(length2);
+    if (glm::dot(n, ns) < 0.0F) n = -n;
+    frame = Frame::around(above_horizon(n, point.ng), point.dpdu);
+  }
+
+  MaterialPtr base_;
+  TexturePtr height_;
+  float scale_;
+};
+
+}  // namespace
+
+MaterialPtr make_bump(MaterialPtr base, TexturePtr height, float scale) {
+  return std::make_shared<Bump>(std::move(base), std::move(height), scale);
+}
+
+}  // namespace hyades::core

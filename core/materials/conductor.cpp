@@ -1,0 +1,99 @@
+#include <cmath>
+
+#include "core/materials/delta_bsdf.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/ggx.h"
+#include "core/materials/local.h"
+#include "core/materials/params.h"
+
+namespace hyades::core {
+namespace {
+
+struct Metal {
+  Rgb eta{1.0F};
+  Rgb k{0.0F};
+  Rgb tint{1.0F};
+
+  Rgb reflectance(float cosine) const { return tint * fresnel_conductor(cosine, eta, k); }
+};
+
+class SmoothConductorBsdf final : public DeltaBsdf {
+ public:
+  explicit SmoothConductorBsdf(const Metal& metal) : metal_(metal) {}
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float, const Vec2&,
+                                   TransportMode) const override {
+    return BsdfSample{.weight = metal_.reflectance(std::abs(wo.z)),
+                      .pdf = 1.0F,
+                      .wi = mirrored(wo),
+                      .delta = true};
+  }
+
+  Rgb albedo(const Vec3& wo) const override { return metal_.reflectance(std::abs(wo.z)); }
+
+ private:
+  const Metal& metal_;
+};
+
+class RoughConductorBsdf final : public Bsdf {
+ public:
+  RoughConductorBsdf(const Metal& metal, float alpha) : metal_(metal), facets_{alpha} {}
+
+  Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const override {
+    if (!same_side(wo, wi)) return Rgb(0.0F);
+    const Vec3 o = above(wo);
+    const Vec3 i = above(wi);
+    const Vec3 h = o + i;
+    const float cosine = std::fmin(1.0F, glm::dot(o, h) / glm::length(h));
+    return metal_.reflectance(cosine) * facets_.reflect(o, i);
+  }
+
+  float pdf(const Vec3& wo, const Vec3& wi, TransportMode) const override {
+    return same_side(wo, wi) ? facets_.reflect_pdf(above(wo), above(wi)) : 0.0F;
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float, const Vec2& u,
+                                   TransportMode) const override {
+    const Vec3 o = above(wo);
+    if (!(o.z > 0.0F)) return std::nullopt;
+    const Vec3 m = facets_.sample_normal(o, u);
+    const Vec3 i = reflected(o, m);
+    if (!(i.z > 0.0F)) return std::nullopt;
+    const float cosine = std::fmin(1.0F, std::fabs(glm::dot(o, m)));
+    return BsdfSample{.weight = metal_.reflectance(cosine) * facets_.reflect_weight(o, i),
+                      .pdf = facets_.reflect_pdf(o, i),
+                      .wi = {i.x, i.y, i.z * side(wo)}};
+  }
+
+  Rgb albedo(const Vec3& wo) const override { return metal_.reflectance(std::abs(wo.z)); }
+
+ private:
+  const Metal& metal_;
+  Ggx facets_;
+};
+
+class Conductor final : public Material {
+ public:
+  Conductor(const Metal& metal, ScalarParam roughness)
+      : metal_(metal), roughness_(std::move(roughness)) {}
+
+  const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
+    const float roughness = fraction_at(roughness_, point);
+    const float alpha = roughness * roughness;
+    if (alpha < Ggx::kLeastAlpha) return arena.make<SmoothConductorBsdf>(metal_);
+    return arena.make<RoughConductorBsdf>(metal_, alpha);
+  }
+
+ private:
+  Metal metal_;
+  ScalarParam roughness_;
+};
+
+}  // namespace
+
+MaterialPtr make_conductor(const Rgb& eta, const Rgb& k, const ScalarParam& roughness,
+                           const Rgb& tint) {
+  return std::make_shared<Conductor>(Metal{eta, k, unit_clamp(tint)}, roughness);
+}
+
+}  // namespace hyades::core

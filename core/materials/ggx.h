@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/base/elementary.h"
+#include "core/base/vec.h"
+
+namespace hyades::core {
+
+/// Isotropic GGX microfacets (Walter et al. 2007, "Microfacet Models for Refraction through Rough
+/// Surfaces") with height-correlated Smith masking (Heitz 2014, "Understanding the
+/// Masking-Shadowing Function", equation 99). Directions are local, above the surface (z > 0) unless
+/// said otherwise. Single scattering only: light that would hit a second facet is lost.
+struct Ggx {
+  /// Below this the lobe is narrower than what float directions resolve: use a delta lobe.
+  static constexpr float kLeastAlpha = 1e-4F;
+
+  float alpha = 1.0F;  ///< width, kLeastAlpha .. 1
+
+  /// Density of facets with normal along `h`, which need not be of unit length.
+  float density(const Vec3& h) const {
+    const float a2 = alpha * alpha;
+    const float across = h.x * h.x + h.y * h.y;
+    const float length2 = across + h.z * h.z;
+    const float stretched = across + a2 * h.z * h.z;
+    return a2 * (length2 * length2) / (kPi * stretched * stretched);
+  }
+
+  /// sqrt(z^2 + alpha^2 sin^2) = z (1 + 2 Lambda(w)), without its pole at grazing angles.
+  float spread(const Vec3& w) const {
+    return std::sqrt(w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y));
+  }
+
+  /// f cos(theta_i) of facets that reflect everything: D G2 / (4 cos theta_o).
+  float reflect(const Vec3& wo, const Vec3& wi) const {
+    return density(wo + wi) * 0.5F * wi.z / (wo.z * spread(wi) + wi.z * spread(wo));
+  }
+
+  /// Density of wi where a facet visible from wo is drawn by sample_normal() and reflects:
+  /// G1 D / (4 cos theta_o) (Heitz 2018, "Sampling the GGX Distribution of Visible Normals").
+  float reflect_pdf(const Vec3& wo, const Vec3& wi) const {
+    return density(wo + wi) * 0.5F / (wo.z + spread(wo));
+  }
+
+  /// reflect() / reflect_pdf() = G2 / G1, free of the density's rounding; at most 1.
+  float reflect_weight(const Vec3& wo, const Vec3& wi) const {
+    const float o = spread(wo);
+    return wi.z * (wo.z + o) / (wo.z * spread(wi) + wi.z * o);
+  }
+
+  /// A unit facet normal, drawn in proportion to its area as seen from wo (Dupuy and Benyoub 2023,
+  /// "Sampling Visible GGX Normals with Spherical Caps", listing 3). u in [0, 1)^2.
+  Vec3 sample_normal(const Vec3& wo, const Vec2& u) const {
+    const Vec3 w = glm::normalize(Vec3(alpha * wo.x, alpha * wo.y, wo.z));
+    // A direction of the cap that a smooth hemisphere reflects w into; one_plus_z = 1 + its z.
+    const float one_plus_z = (1.0F - u.y) * (1.0F + w.z) + (1.0F - w.z);
+    const float z = (1.0F - u.y) * (1.0F + w.z) - w.z;
+    const float r = std::sqrt(std::fmax(0.0F, one_plus_z * (1.0F - z)));
+    const SinCos phi = sin_cos(2.0F * kPi * u.x);
+    const Vec3 m(alpha * (r * phi.cos + w.x), alpha * (r * phi.sin + w.y), z + w.z);
+    const float length2 = glm::dot(m, m);
+    return length2 > 0.0F ? m / std::sqrt(length2) : Vec3(0.0F, 0.0F, 1.0F);
+  }
+};
+
+/// `w` reflected by a facet of unit normal `m`.
+inline Vec3 reflected(const Vec3& w, const Vec3& m) { return 2.0F * glm::dot(w, m) * m - w; }
+
+}  // namespace hyades::core
