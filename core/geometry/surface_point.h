@@ -19,9 +19,9 @@ struct SurfacePoint {
   float time = 0.0F;  ///< shutter time 0..1
   float clearance =
       0.0F;  ///< distance along +-ng beyond which rays no longer meet this surface [length]
-  uint32_t object = 0;                    ///< index of the placement
-  uint32_t primitive = 0;                 ///< triangle index; 0 for quadrics
-  const Mat4* world_to_object = nullptr;  ///< never null for points that World returns
+  uint32_t object = 0;         ///< index of the placement
+  uint32_t primitive = 0;      ///< triangle index; 0 for quadrics
+  Mat4 world_to_object{1.0F};  ///< at `time`
 };
 
 /// A ray that starts at `p`, on the side of it that `direction` (unit) points to, without meeting
