@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/elementary.h"
+#include "core/cameras/aperture.h"
+#include "core/cameras/camera.h"
+
+namespace hyades::core {
+
+namespace {
+
+/// A pose made ready for rays: orthonormal axes and the size of half the picture at distance 1.
+struct View {
+  Vec3 from{0.0F};
+  Vec3 right{1.0F, 0.0F, 0.0F};
+  Vec3 up{0.0F, 1.0F, 0.0F};
+  Vec3 forward{0.0F, 0.0F, -1.0F};
+  float half_height = 1.0F;
+  float lens_radius = 0.0F;
+  float inverse_focus = 0.0F;
+};
+
+/// `v` scaled to unit length, or zero where it has no direction. Works for any finite length.
+Vec3 unit_or_zero(const Vec3& v) {
+  const float largest = max_component(glm::abs(v));
+  if (!(largest > 0.0F) || !std::isfinite(largest)) return Vec3(0.0F);
+  const Vec3 scaled = v / largest;
+  return scaled / std::sqrt(glm::dot(scaled, scaled));
+}
+
+/// The horizontal axis of a view along unit `forward`; zero where `up` is parallel to it.
+Vec3 right_axis(const Vec3& forward, const Vec3& up) {
+  const Vec3 right = glm::cross(forward, unit_or_zero(up));
+  // Within 0.06 degrees of the view `up` says too little about what is up.
+  if (!(glm::dot(right, right) > 1e-6F)) return Vec3(0.0F);
+  return unit_or_zero(right);
+}
+
+/// A camera that looks nowhere looks along -z. Where `up` says nothing, straight down has -z on
+/// top and straight up has +z, so that +x stays on the right as for a camera that looks ahead.
+View make_view(const CameraPose& pose) {
+  View view;
+  view.from = pose.from;
+  const Vec3 forward = unit_or_zero(pose.at - pose.from);
+  if (glm::dot(forward, forward) > 0.0F) view.forward = forward;
+  const Vec3 candidates[] = {pose.up, Vec3(0.0F, 0.0F, view.forward.y > 0.0F ? 1.0F : -1.0F),
+                             Vec3(0.0F, 1.0F, 0.0F)};
+  for (const Vec3& up : candidates) {
+    const Vec3 right = right_axis(view.forward, up);
+    if (glm::dot(right, right) > 0.0F) {
+      view.right = right;
+      break;
+    }
+  }
+  view.up = glm::cross(view.right, view.forward);
+  view.half_height = tan(0.5F * std::clamp(pose.fov, 1e-4F, 0.999F * kPi));
+  view.lens_radius = std::max(pose.lens_radius, 0.0F);
+  // A focus distance that is not positive means nothing: everything is sharp.
+  if (pose.focus_distance > 0.0F) {
+    view.inverse_focus = 1.0F / pose.focus_distance;
+  } else {
+    view.lens_radius = 0.0F;
+  }
+  return view;
+}
+
+CameraPose mix(const CameraPose& a, const CameraPose& b, float t) {
+  const auto blend = [t](const auto& x, const auto& y) { return (1.0F - t) * x + t * y; };
+  return {blend(a.from, b.from),
+          blend(a.at, b.at),
+          blend(a.up, b.up),
+          blend(a.fov, b.fov),
+          blend(a.lens_radius, b.lens_radius),
+          blend(a.focus_distance, b.focus_distance)};
+}
+
+class PerspectiveCamera : public Camera {
+ public:
+  PerspectiveCamera(std::vector<CameraPose> poses, Vec2i resolution, Aperture aperture)
+      : poses_(std::move(poses)),
+        first_(make_view(poses_.front())),
+        resolution_(glm::max(resolution, Vec2i(1))),
+        aperture_(std::move(aperture)) {}
+
+  Ray generate(const Vec2& film, const Vec2& lens, float time) const override {
+    const View view = view_at(time);
+    // Both axes are measured in half heights, so pixels are square.
+    const float to_plane = view.half_height / resolution_.y;
+    const float x = (2.0F * film.x - resolution_.x) * to_plane;
+    const float y = (resolution_.y - 2.0F * film.y) * to_plane;
+    Ray ray;
+    ray.time = time;
+    ray.origin = view.from;
+    // The ray meets the pinhole's ray in the plane of focus; divided by the focus distance, so
+    // that a focus at infinity needs no special case.
+    Vec2 slope(x, y);
+    if (view.lens_radius > 0.0F) {
+      const Vec2 on_lens = view.lens_radius * aperture_.sample(lens);
+      ray.origin += on_lens.x * view.right + on_lens.y * view.up;
+      slope -= on_lens * view.inverse_focus;
+    }
+    ray.direction = glm::normalize(view.forward + slope.x * view.right + slope.y * view.up);
+    return ray;
+  }
+
+  float depth_of(const Vec3& point, float time) const override {
+    const View view = view_at(time);
+    return glm::dot(point - view.from, view.forward);
+  }
+
+ private:
+  View view_at(float time) const {
+    if (poses_.size() == 1) return first_;
+    const size_t last = poses_.size() - 1;
+    const float place = std::clamp(time, 0.0F, 1.0F) * static_cast<float>(last);
+    const size_t i = std::min(static_cast<size_t>(place), last - 1);
+    return make_view(mix(poses_[i], poses_[i + 1], place - static_cast<float>(i)));
+  }
+
+  std::vector<CameraPose> poses_;
+  View first_;
+  Vec2i resolution_;
+  Aperture aperture_;
+};
+
+}  // namespace
+
+std::unique_ptr<Camera> make_perspective_camera(std::vector<CameraPose> poses, Vec2i resolution,
+                                                int blades, float blade_rotation) {
+  if (poses.empty()) poses.emplace_back();
+  return std::make_unique<PerspectiveCamera>(std::move(poses), resolution,
+                                             Aperture(blades, blade_rotation));
+}
+
+}  // namespace hyades::core
