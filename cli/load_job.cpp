@@ -1,0 +1,81 @@
+#include "cli/load_job.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/mesh_job.h"
+#include "core/job/parse.h"
+
+namespace hyades::cli {
+
+using core::Diagnostics;
+
+namespace {
+
+bool is_mesh(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".obj" || extension == ".ply" || extension == ".OBJ" || extension == ".PLY";
+}
+
+}  // namespace
+
+std::optional<LoadedJob> load_job(const std::string& path) {
+  const std::filesystem::path file(path);
+  LoadedJob loaded;
+  loaded.files = core::make_file_resolver(file.has_parent_path() ? file.parent_path().string() : ".");
+  loaded.assets = std::make_unique<core::RecordingResolver>(*loaded.files);
+  if (is_mesh(path)) {
+    auto made = make_mesh_job(file.filename().string(), *loaded.assets);
+    if (!made) {
+      std::fprintf(stderr, "%s\n", made.error().message.c_str());
+      return std::nullopt;
+    }
+    loaded.job = std::move(*made);
+    return loaded;
+  }
+  auto text = loaded.files->open(file.filename().string());
+  if (!text) {
+    std::fprintf(stderr, "%s\n", text.error().message.c_str());
+    return std::nullopt;
+  }
+  Diagnostics diagnostics;
+  loaded.job = core::parse_job(std::string(text->chars(), text->size()), path, *loaded.assets, diagnostics);
+  if (!diagnostics.empty()) {
+    std::fprintf(stderr, "%s\n", diagnostics.to_string().c_str());
+    return std::nullopt;
+  }
+  return loaded;
+}
+
+std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const std::string& text) {
+  const core::FramesDesc& range = job.frames;
+  int first = range.first;
+  int last = range.last;
+  int step = range.step;
+  if (!text.empty()) {
+    int used = 0;
+    step = 1;
+    const auto whole = [&] { return used == static_cast<int>(text.size()); };
+    if (std::sscanf(text.c_str(), "%d-%dx%d%n", &first, &last, &step, &used) < 3 || !whole()) {
+      step = 1;
+      if (std::sscanf(text.c_str(), "%d-%d%n", &first, &last, &used) < 2 || !whole()) {
+        if (std::sscanf(text.c_str(), "%d%n", &first, &used) < 1 || !whole()) {
+          std::fprintf(stderr, "--frames %s: expected a frame (7), a range (1-10) or a range with a step (1-10x2)\n",
+                       text.c_str());
+          return std::nullopt;
+        }
+        last = first;
+      }
+    }
+    if (step < 1 || first > last || first < range.first || last > range.last) {
+      std::fprintf(stderr, "--frames %s: expected frames within the job's range %d-%d\n", text.c_str(),
+                   range.first, range.last);
+      return std::nullopt;
+    }
+  }
+  std::vector<int32_t> frames;
+  for (int64_t f = first; f <= last; f += step) frames.push_back(static_cast<int32_t>(f));
+  return frames;
+}
+
+}  // namespace hyades::cli

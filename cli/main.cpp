@@ -1,0 +1,81 @@
+// `hyades COMMAND ...` starts the program that knows the command, as git does, so that a coordinator never
+// loads a renderer and --help answers at once.
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "core/base/text.h"
+#include "core/base/version.h"
+
+namespace {
+
+struct Command {
+  const char* name;
+  const char* program;
+  const char* help;
+};
+
+constexpr Command kCommands[] = {
+    {"render", "hyades-render", "render a job (or a mesh file) on this machine"},
+    {"check", "hyades-render", "read a job, report every mistake in it, and what it would cost"},
+    {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
+    {"bench", "hyades-render", "measure this machine: 'bench scaling' renders a job with 1..N threads"},
+    {"merge", "hyades-film", "join films of the same frame"},
+    {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
+};
+
+void print_help() {
+  std::printf("hyades %s: a path-tracing render farm\n\nusage: hyades COMMAND [ARGUMENTS]\n\ncommands:\n",
+              hyades::core::kVersion);
+  for (const Command& command : kCommands) std::printf("  %-10s %s\n", command.name, command.help);
+  std::printf(
+      "\nexamples:\n"
+      "  hyades render jobs/quickstart/job.yaml\n"
+      "  hyades render dragon.ply --samples 64\n"
+      "  hyades check jobs/cornell/job.yaml\n"
+      "\n'hyades COMMAND --help' tells more about a command. docs/job.md describes jobs.\n");
+}
+
+/// The folder of this program; its fellow programs lie beside it.
+std::string own_folder() {
+  char path[PATH_MAX];
+  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+  if (length <= 0) return {};
+  const std::string self(path, static_cast<size_t>(length));
+  return self.substr(0, self.rfind('/') + 1);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string name = argc > 1 ? argv[1] : "--help";
+  if (name == "--help" || name == "-h" || name == "help") {
+    print_help();
+    return 0;
+  }
+  if (name == "--version") {
+    std::printf("hyades %s\n", hyades::core::kVersion);
+    return 0;
+  }
+  std::vector<std::string> names;
+  for (const Command& command : kCommands) {
+    if (name == command.name) {
+      const std::string program = own_folder() + command.program;
+      execv(program.c_str(), argv);
+      std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(), std::strerror(errno));
+      return 1;
+    }
+    names.emplace_back(command.name);
+  }
+  std::fprintf(stderr, "hyades: there is no command '%s'", name.c_str());
+  if (const auto close = hyades::core::closest_name(name, names)) {
+    std::fprintf(stderr, "; did you mean '%s'?", close->c_str());
+  }
+  std::fprintf(stderr, "\n'hyades --help' lists the commands\n");
+  return 2;
+}

@@ -1,0 +1,32 @@
+#include "core/integrators/integrator.h"
+
+#include "core/integrators/path.h"
+
+namespace hyades::core {
+namespace {
+
+struct Maker {
+  const char* name;
+  std::unique_ptr<Integrator> (*make)(const IntegratorDesc&);
+};
+
+constexpr Maker kMakers[] = {
+    {"path", make_path_integrator},
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_integrator(const IntegratorDesc& desc) {
+  for (const Maker& maker : kMakers) {
+    if (desc.type == maker.name) return maker.make(desc);
+  }
+  return nullptr;
+}
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const Maker& maker : kMakers) names.emplace_back(maker.name);
+  return names;
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/ray.h"
+#include "core/job/job.h"
+#include "core/materials/bsdf.h"
+#include "core/samplers/sampler.h"
+#include "core/scene/scene.h"
+
+namespace hyades::core {
+
+/// What one sample of a pixel yields.
+struct PixelSample {
+  Rgb radiance{0.0F};
+  float alpha = 0.0F;        ///< 1 where the camera ray met a surface
+  float depth = kInfinity;   ///< along the view axis, of the first surface
+  Rgb albedo{0.0F};          ///< of the first surface that is not a mirror, through the mirrors before it
+  Vec3 normal{0.0F};         ///< shading normal of the first surface
+};
+
+/// A path in words, for `hyades replay`.
+struct PathLog {
+  std::vector<std::string> lines;
+};
+
+/// Scratch memory and counters of one rendering thread.
+struct Workspace {
+  BsdfArena arena;
+  uint64_t rays = 0;         ///< closest-hit and occlusion queries
+  uint64_t bounces = 0;      ///< scattering events
+  PathLog* log = nullptr;    ///< where to tell the path; null while rendering
+};
+
+/// How paths are found and weighed. Immutable and thread-safe. Integrators that work sample by sample
+/// and pixel by pixel implement this; the sampler's dimensions before kCameraDimensions belong to the camera.
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+
+  /// The radiance that arrives along `ray`, an unbiased estimate. `sampler` has been started for this sample.
+  virtual PixelSample sample(const Scene& scene, const Ray& ray, Sampler& sampler,
+                             Workspace& work) const = 0;
+};
+
+/// Film position (2), lens (2), time (1), and up to the next group of the Sobol sampler.
+inline constexpr uint32_t kCameraDimensions = 8;
+
+/// The integrator that `desc.type` names.
+std::unique_ptr<Integrator> make_integrator(const IntegratorDesc& desc);
+
+/// The names that make_integrator knows.
+std::vector<std::string> integrator_names();
+
+}  // namespace hyades::core

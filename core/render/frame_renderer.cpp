@@ -1,0 +1,142 @@
+#include "core/render/frame_renderer.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/base/fp_mode.h"
+
+namespace hyades::core {
+namespace {
+
+constexpr size_t kBadExamples = 8;
+constexpr int kMaxDeposited = 16;
+
+FilterShape filter_shape(FilterKind kind) {
+  switch (kind) {
+    case FilterKind::box: return FilterShape::box;
+    case FilterKind::triangle: return FilterShape::triangle;
+    case FilterKind::gaussian: return FilterShape::gaussian;
+    case FilterKind::mitchell: return FilterShape::mitchell;
+    case FilterKind::blackman_harris: return FilterShape::blackman_harris;
+    case FilterKind::center: return FilterShape::center;
+  }
+  return FilterShape::box;
+}
+
+bool is_usable(const PixelSample& s) {
+  // Every comparison is false for NaN. The bound keeps a batch's sum within what a film can hold.
+  constexpr float kLimit = kMaxDeposit / static_cast<float>(2 * kBatchSamples);
+  const auto usable = [](const Vec3& v) {
+    return std::abs(v.x) <= kLimit && std::abs(v.y) <= kLimit && std::abs(v.z) <= kLimit;
+  };
+  return usable(s.radiance) && usable(s.albedo) && usable(s.normal);
+}
+
+}  // namespace
+
+void RenderCounters::add(const RenderCounters& other) {
+  samples += other.samples;
+  rays += other.rays;
+  bounces += other.bounces;
+  bad_samples += other.bad_samples;
+  for (const BadSample& bad : other.examples) {
+    if (examples.size() < kBadExamples) examples.push_back(bad);
+  }
+}
+
+FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
+                             const LayerSet& layers)
+    : scene_(std::move(scene)),
+      integrator_(make_integrator(job.integrator)),
+      filter_(make_pixel_filter(filter_shape(job.film.filter), job.film.filter_radius)),
+      layout_(make_film_layout(layers)),
+      sampling_(job.sampling),
+      frame_(static_cast<uint32_t>(frame)),
+      needs_time_(job.frames.shutter > 0.0F) {}
+
+PixelSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
+                                        Workspace& work) const {
+  sampler.start({sampling_.seed, frame_, pixel, sample});
+  const FilterSample place = filter_->sample(sampler.next_2d());
+  const Vec2 lens = sampler.next_2d();
+  const float time = needs_time_ ? sampler.next_1d() : 0.0F;
+  const Vec2 film = Vec2(pixel) + Vec2(0.5F) + place.offset;
+  PixelSample out = integrator_->sample(*scene_, scene_->camera->generate(film, lens, time), sampler, work);
+  out.radiance *= place.weight;
+  out.alpha *= place.weight;
+  out.albedo *= place.weight;
+  out.normal *= place.weight;
+  return out;
+}
+
+bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& sampler, Workspace& work,
+                                 std::vector<float>& sums, RenderCounters& counters,
+                                 const std::atomic<bool>* stop) const {
+  const uint32_t first = batch * kBatchSamples;
+  const uint32_t count = samples_in_batch(batch, sampling_.samples);
+  float* out = sums.data();
+  for (int y = unit.tile.y0; y < unit.tile.y1; ++y) {
+    if (stop != nullptr && stop->load(std::memory_order_relaxed)) return false;
+    for (int x = unit.tile.x0; x < unit.tile.x1; ++x) {
+      std::array<double, kMaxDeposited> sum{};
+      float depth = kInfinity;
+      for (uint32_t s = first; s < first + count; ++s) {
+        const PixelSample sample = sample_pixel({x, y}, s, sampler, work);
+        if (!is_usable(sample)) {
+          ++counters.bad_samples;
+          if (counters.examples.size() < kBadExamples) counters.examples.push_back({{x, y}, s});
+          continue;
+        }
+        for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(c)] += double{sample.radiance[c]};
+        sum[3] += double{sample.alpha};
+        depth = sample.depth < depth ? sample.depth : depth;
+        if (layout_.albedo >= 0) {
+          for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(layout_.albedo + c)] += double{sample.albedo[c]};
+        }
+        if (layout_.normal >= 0) {
+          for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(layout_.normal + c)] += double{sample.normal[c]};
+        }
+      }
+      for (int c = 0; c < layout_.deposited; ++c) {
+        *out++ = c == layout_.depth ? depth : static_cast<float>(sum[static_cast<size_t>(c)]);
+      }
+    }
+  }
+  counters.samples += uint64_t{count} * static_cast<uint64_t>(unit.tile.area());
+  return true;
+}
+
+RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* stop) const {
+  const FpMode fp_mode;
+  RenderedUnit result{Film(layout_, unit.tile), {}, false};
+  const auto sampler = make_sampler(sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol
+                                                                            : SamplerKind::independent);
+  Workspace work;
+  std::vector<float> sums(static_cast<size_t>(unit.tile.area()) * static_cast<size_t>(layout_.deposited));
+  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
+    if (!render_batch(unit, b, *sampler, work, sums, result.counters, stop)) {
+      result.stopped = true;
+      break;
+    }
+    result.film.deposit(unit.tile, b, samples_in_batch(b, sampling_.samples), sums);
+  }
+  result.counters.rays = work.rays;
+  result.counters.bounces = work.bounces;
+  return result;
+}
+
+PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& log) const {
+  const FpMode fp_mode;
+  const auto sampler = make_sampler(sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol
+                                                                            : SamplerKind::independent);
+  Workspace work;
+  work.log = &log;
+  return sample_pixel(pixel, sample, *sampler, work);
+}
+
+PixelRect render_window(const FilmDesc& film) {
+  const PixelRect frame{0, 0, film.width, film.height};
+  return film.crop ? intersection(frame, *film.crop) : frame;
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/film/film.h"
+#include "core/integrators/integrator.h"
+#include "core/job/job.h"
+#include "core/samplers/filter.h"
+#include "core/scene/scene.h"
+
+namespace hyades::core {
+
+/// A sample that did not give a finite colour: left out of the film, reported so that it can be replayed.
+struct BadSample {
+  Vec2i pixel{0, 0};
+  uint32_t sample = 0;
+};
+
+/// What rendering a unit took.
+struct RenderCounters {
+  uint64_t samples = 0;
+  uint64_t rays = 0;
+  uint64_t bounces = 0;
+  uint64_t bad_samples = 0;
+  std::vector<BadSample> examples;  ///< the first few bad ones
+
+  void add(const RenderCounters& other);
+};
+
+struct RenderedUnit {
+  Film film;
+  RenderCounters counters;
+  bool stopped = false;  ///< the stop flag was seen: the film is incomplete and must be thrown away
+};
+
+/// The front door of the renderer: a frame's scene and settings in, films out. render() is a pure function of
+/// the unit (invariant 1), so any thread may call it in any order.
+class FrameRenderer {
+ public:
+  FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
+                const LayerSet& layers);
+
+  /// Renders `unit` on the calling thread. `stop` is looked at after every row of pixels.
+  RenderedUnit render(const Unit& unit, const std::atomic<bool>* stop = nullptr) const;
+
+  /// One sample of one pixel; `log` gets the path in words.
+  PixelSample replay(const Vec2i& pixel, uint32_t sample, PathLog& log) const;
+
+  const Scene& scene() const { return *scene_; }
+  const FilmLayout& layout() const { return layout_; }
+
+ private:
+  PixelSample sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler, Workspace& work) const;
+  bool render_batch(const Unit& unit, uint32_t batch, Sampler& sampler, Workspace& work,
+                    std::vector<float>& sums, RenderCounters& counters,
+                    const std::atomic<bool>* stop) const;
+
+  std::shared_ptr<const Scene> scene_;
+  std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<PixelFilter> filter_;
+  FilmLayout layout_;
+  SamplingDesc sampling_;
+  uint32_t frame_ = 0;
+  bool needs_time_ = false;
+};
+
+/// The part of the frame that a job renders: its crop, or everything.
+PixelRect render_window(const FilmDesc& film);
+
+}  // namespace hyades::core

@@ -1,0 +1,192 @@
+#include "core/scene/build_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/elementary.h"
+#include "core/scene/appearance.h"
+#include "core/scene/flatten.h"
+
+namespace hyades::core {
+namespace {
+
+constexpr float kRadians = kPi / 180.0F;
+constexpr float kSensorHeight = 0.024F;  // m, the short side of a 35 mm frame: what f-stops refer to
+
+/// How far the world reaches from the middle of its bounds: infinite lights weigh their power by it.
+float world_radius(const World& world) {
+  const Bounds bounds = world.bounds();
+  return bounds.empty() ? 1.0F : 0.5F * std::sqrt(glm::dot(bounds.size(), bounds.size()));
+}
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const Job& job, int32_t frame, SceneCache& cache)
+      : job_(job), frame_(frame), time_(job.time_of(frame)), cache_(cache), looks_(job, time_, cache) {}
+
+  Result<std::shared_ptr<const Scene>> build() {
+    if (auto done = add_objects(); !done) return done.error();
+    if (auto done = add_lights(); !done) return done.error();
+    if (auto done = add_environment(); !done) return done.error();
+    add_camera();
+    scene_->selector = make_power_selector(scene_->lights);
+    scene_->resolution = {job_.film.width, job_.film.height};
+    scene_->texture_memory = cache_.image_memory();
+    return std::shared_ptr<const Scene>(std::move(scene_));
+  }
+
+ private:
+  Status add_objects() {
+    auto flat = flatten_objects(job_, frame_, cache_);
+    if (!flat) return flat.error();
+    std::vector<Placement> placements;
+    placements.reserve(flat->size());
+    for (const FlatObject& object : *flat) placements.push_back(object.placement);
+    auto world = cache_.world(std::move(placements));
+    if (!world) return world.error();
+    scene_->world = *world;
+    for (uint32_t i = 0; i < flat->size(); ++i) {
+      const FlatObject& object = (*flat)[i];
+      auto material = looks_.material(object.material);
+      if (!material) return material.error().in("object '" + object.name + "'");
+      SceneObject entry{*material, SceneObject::kNoLight, object.name};
+      if (object.emit) entry.light = add_emitter(i, *object.emit);
+      scene_->objects.push_back(std::move(entry));
+      if (object.placement.shape.mesh) scene_->triangles += object.placement.shape.mesh->triangles.size();
+    }
+    return {};
+  }
+
+  uint32_t add_emitter(uint32_t object, const EmitDesc& emit) {
+    Rgb radiance = emit.color.at(time_) * emit.amount.at(time_);
+    if (emit.unit == EmitDesc::Unit::power) {
+      const double area = surface_area(*scene_->world, object) * (emit.two_sided ? 2.0 : 1.0);
+      radiance = area > 0.0 ? radiance * static_cast<float>(1.0 / (double{kPi} * area)) : Rgb(0.0F);
+    }
+    return add_light(make_area_light(*scene_->world, object, radiance, emit.two_sided));
+  }
+
+  uint32_t add_light(LightPtr light) {
+    const auto index = static_cast<uint32_t>(scene_->lights.size());
+    if (light->is_infinite()) scene_->infinite_lights.push_back(index);
+    scene_->lights.push_back(std::move(light));
+    return index;
+  }
+
+  Status add_lights() {
+    for (const LightDesc& light : job_.lights) {
+      const Rgb color = light.color.at(time_);
+      if (light.type == "sun") {
+        add_light(make_sun_light(unit(light.direction.at(time_), {0.0F, -1.0F, 0.0F}),
+                                 color * light.irradiance.at(time_), light.angle.at(time_) * kRadians,
+                                 world_radius(*scene_->world)));
+        continue;
+      }
+      const Vec3 at = light.at.at(time_) * job_.units;
+      const Rgb power = color * light.power.at(time_);
+      if (light.type == "point") {
+        add_light(make_point_light(at, power));
+      } else if (light.type == "spot") {
+        const Vec3 towards = light.look_at.at(time_) * job_.units - at;
+        const float outer = light.angle.at(time_) * kRadians;
+        const float inner = outer * (1.0F - light.blend.at(time_));
+        add_light(make_spot_light(at, unit(towards, {0.0F, -1.0F, 0.0F}), power, cos(inner), cos(outer)));
+      } else {
+        return Error{"light '" + light.name + "': there is no kind of light called '" + light.type + "'"};
+      }
+    }
+    return {};
+  }
+
+  Status add_environment() {
+    if (!job_.environment) return {};
+    const EnvironmentDesc& sky = *job_.environment;
+    std::shared_ptr<const Image> image;
+    if (!sky.image.empty()) {
+      auto loaded = cache_.image(sky.image, ColorSpace::automatic);
+      if (!loaded) return loaded.error().in("environment");
+      image = *loaded;
+    }
+    add_light(make_environment_light(image, sky.rotate_y.at(time_) * kRadians,
+                                     sky.color.at(time_) * sky.strength.at(time_),
+                                     world_radius(*scene_->world)));
+    scene_->environment_visible = sky.visible_to_camera;
+    return {};
+  }
+
+  void add_camera() {
+    const bool moves = job_.frames.shutter > 0.0F;
+    const int steps = moves ? 16 : 0;
+    std::vector<CameraPose> poses;
+    for (int i = 0; i <= steps; ++i) {
+      const float shutter_time = moves ? static_cast<float>(i) / static_cast<float>(steps) : 0.0F;
+      poses.push_back(pose_at(shutter_time));
+    }
+    scene_->camera = make_perspective_camera(std::move(poses), {job_.film.width, job_.film.height},
+                                             job_.camera.aperture_blades,
+                                             job_.camera.aperture_rotation * kRadians);
+  }
+
+  CameraPose pose_at(float shutter_time) const {
+    const CameraDesc& camera = job_.camera;
+    const JobTime time = job_.time_of(frame_, shutter_time);
+    CameraPose pose;
+    pose.from = camera.look_from.at(time) * job_.units;
+    pose.at = camera.look_at.at(time) * job_.units;
+    pose.up = camera.up.at(time);
+    pose.fov = camera.fov.at(time) * kRadians;
+    const Vec3 axis = unit(pose.at - pose.from, {0.0F, 0.0F, -1.0F});
+    if (!camera.focus_object.empty()) {
+      pose.focus_distance = glm::dot(center_of(camera.focus_object, shutter_time) - pose.from, axis);
+    } else if (camera.focus_distance) {
+      pose.focus_distance = camera.focus_distance->at(time) * job_.units;
+    } else {
+      pose.focus_distance = glm::dot(pose.at - pose.from, axis);
+    }
+    pose.focus_distance = std::max(pose.focus_distance, 1e-6F * job_.units);
+    if (camera.f_stop) {
+      const float focal_length = 0.5F * kSensorHeight / tan(0.5F * pose.fov);
+      pose.lens_radius = focal_length / (2.0F * camera.f_stop->at(time));
+    } else {
+      pose.lens_radius = camera.aperture_radius.at(time) * job_.units;
+    }
+    return pose;
+  }
+
+  /// The middle of the bounds of object `name` (groups: of all within).
+  Vec3 center_of(const std::string& name, float shutter_time) const {
+    Bounds bounds;
+    for (uint32_t i = 0; i < scene_->objects.size(); ++i) {
+      const std::string& path = scene_->objects[i].name;
+      if (path != name && !path.starts_with(name + "/")) continue;
+      const Bounds local = bounds_of(scene_->world->placement(i).shape);
+      const Mat4 to_world = scene_->world->transform_at(i, shutter_time);
+      for (int corner = 0; corner < 8; ++corner) {
+        bounds.include(transform_point(to_world, {(corner & 1) != 0 ? local.upper.x : local.lower.x,
+                                                  (corner & 2) != 0 ? local.upper.y : local.lower.y,
+                                                  (corner & 4) != 0 ? local.upper.z : local.lower.z}));
+      }
+    }
+    return bounds.empty() ? Vec3(0.0F) : bounds.center();
+  }
+
+  static Vec3 unit(const Vec3& v, const Vec3& fallback) {
+    const float length = std::sqrt(glm::dot(v, v));
+    return length > 0.0F ? v / length : fallback;
+  }
+
+  const Job& job_;
+  int32_t frame_;
+  JobTime time_;
+  SceneCache& cache_;
+  Appearance looks_;
+  std::unique_ptr<Scene> scene_ = std::make_unique<Scene>();
+};
+
+}  // namespace
+
+Result<std::shared_ptr<const Scene>> build_scene(const Job& job, int32_t frame, SceneCache& cache) {
+  return SceneBuilder(job, frame, cache).build();
+}
+
+}  // namespace hyades::core

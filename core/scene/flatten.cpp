@@ -1,0 +1,142 @@
+#include "core/scene/flatten.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/scene/transforms.h"
+
+namespace hyades::core {
+namespace {
+
+class Flattener {
+ public:
+  Flattener(const Job& job, int32_t frame, SceneCache& cache)
+      : job_(job), frame_(frame), cache_(cache) {}
+
+  Status add_all(const std::vector<ObjectDesc>& objects, const std::string& prefix,
+                 const std::string& material, bool visible) {
+    if (chain_.size() > kMaxDepth) return Error{"group '" + prefix + "' contains itself"};
+    for (const ObjectDesc& object : objects) {
+      chain_.push_back(&object);
+      auto added = add(object, prefix + object.name, material, visible);
+      chain_.pop_back();
+      if (!added) return added;
+    }
+    return {};
+  }
+
+  std::vector<FlatObject> take() { return std::move(flat_); }
+
+ private:
+  static constexpr size_t kMaxDepth = 64;
+
+  Status add(const ObjectDesc& object, const std::string& name, const std::string& inherited,
+             bool parent_visible) {
+    const std::string& material = object.material.empty() ? inherited : object.material;
+    const bool visible = parent_visible && object.visible_to_camera;
+    if (object.shape == "group") return add_all(object.children, name + "/", material, visible);
+    if (object.shape == "instance") {
+      const auto group = std::find_if(job_.groups.begin(), job_.groups.end(), [&](const GroupDesc& g) {
+        return g.name == object.instance_of;
+      });
+      if (group == job_.groups.end()) return Error{"there is no group '" + object.instance_of + "'"};
+      return add_all(group->objects, name + "/", material, visible);
+    }
+    if (flat_.size() >= kMaxPlacements) {
+      return Error{"groups and instances make more than " + std::to_string(kMaxPlacements) + " objects"};
+    }
+    auto shape = make_shape(object);
+    if (!shape) return shape.error().in("object '" + name + "'");
+    FlatObject flat;
+    flat.name = name;
+    flat.material = material;
+    flat.emit = object.emit;
+    flat.placement.shape = *shape;
+    flat.placement.visible_to_camera = visible;
+    flat.placement.to_world = shutter_matrices(
+        job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
+    flat_.push_back(std::move(flat));
+    if (object.shape == "cylinder" && object.caps) add_caps(object, name, material, visible);
+    return {};
+  }
+
+  /// The two discs that close a cylinder.
+  void add_caps(const ObjectDesc& object, const std::string& name, const std::string& material,
+                bool visible) {
+    for (const bool top : {false, true}) {
+      FlatObject cap;
+      cap.name = name + (top ? "/top" : "/bottom");
+      cap.material = material;
+      cap.emit = object.emit;
+      cap.placement.shape.kind = Shape::Kind::disk;
+      cap.placement.shape.radius = object.radius;
+      cap.placement.visible_to_camera = visible;
+      Mat4 place(1.0F);
+      if (top) {
+        place[3].y = object.height;
+      } else {  // turned over around x: the normal points down, away from the tube
+        place[1].y = -1.0F;
+        place[2].z = -1.0F;
+      }
+      cap.placement.to_world = shutter_matrices(
+          job_, frame_, [&](const JobTime& time) { return chain_matrix(time) * place; });
+      flat_.push_back(std::move(cap));
+    }
+  }
+
+  /// Object to world, through all enclosing groups, scaled to metres.
+  Mat4 chain_matrix(const JobTime& time) const {
+    Mat4 m(1.0F);
+    for (int i = 0; i < 3; ++i) m[i][i] = job_.units;
+    for (const ObjectDesc* object : chain_) m = m * transform_at(object->transform, object->at, time);
+    return m;
+  }
+
+  Result<Shape> make_shape(const ObjectDesc& object) {
+    Shape shape;
+    shape.radius = object.radius;
+    shape.height = object.height;
+    if (object.shape == "sphere") {
+      shape.kind = Shape::Kind::sphere;
+    } else if (object.shape == "disk") {
+      shape.kind = Shape::Kind::disk;
+    } else if (object.shape == "cylinder") {
+      shape.kind = Shape::Kind::cylinder;
+    } else if (object.shape == "rectangle") {
+      shape.mesh = cache_.made_mesh(
+          size_key("rectangle", object.size), [](const Vec3& s) { return make_rectangle({s.x, s.y}); },
+          object.size);
+    } else if (object.shape == "box") {
+      shape.mesh = cache_.made_mesh(
+          size_key("box", object.size), [](const Vec3& s) { return make_box(s); }, object.size);
+    } else if (object.shape == "mesh") {
+      auto mesh = cache_.mesh(object.mesh, object.smooth);
+      if (!mesh) return mesh.error();
+      shape.mesh = *mesh;
+    } else {
+      return Error{"there is no shape called '" + object.shape + "'"};
+    }
+    return shape;
+  }
+
+  static std::string size_key(const char* kind, const Vec3& size) {
+    return fmt::format("{} {} {} {}", kind, size.x, size.y, size.z);
+  }
+
+  const Job& job_;
+  int32_t frame_;
+  SceneCache& cache_;
+  std::vector<const ObjectDesc*> chain_;  ///< from the outermost group to the object in hand
+  std::vector<FlatObject> flat_;
+};
+
+}  // namespace
+
+Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache) {
+  Flattener flattener(job, frame, cache);
+  if (auto done = flattener.add_all(job.objects, "", "", true); !done) return done.error();
+  return flattener.take();
+}
+
+}  // namespace hyades::core
