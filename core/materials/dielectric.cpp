@@ -11,8 +11,8 @@ namespace {
 /// Smooth interface; the side z > 0 has index 1, the other `ior`. One lobe is picked by its energy.
 ///
 /// Refraction squeezes a beam's solid angle: radiance over the squared index is what stays constant
-/// along a ray (Veach 1997, section 5.2). Radiance that arrives along wi in index eta_i leaves along
-/// wo in eta_o as (1 - F) (eta_o / eta_i)^2 L; importance is carried without that factor.
+/// along a ray (Veach 1997, section 5.2). Radiance that arrives along wi in index eta_i leaves
+/// along wo in eta_o as (1 - F) (eta_o / eta_i)^2 L; importance is carried without that factor.
 class DielectricBsdf final : public DeltaBsdf {
  public:
   DielectricBsdf(float ior, const Rgb& transmission, const Rgb& reflection)
@@ -76,9 +76,7 @@ class MatchedBsdf final : public DeltaBsdf {
 class Dielectric final : public Material {
  public:
   Dielectric(float ior, const Rgb& transmission, const Rgb& reflection)
-      : ior_(ior),
-        transmission_(unit_clamp(transmission)),
-        reflection_(unit_clamp(reflection)) {}
+      : ior_(ior), transmission_(unit_clamp(transmission)), reflection_(unit_clamp(reflection)) {}
 
   const Bsdf* bsdf_at(const SurfacePoint&, Frame&, BsdfArena& arena) const override {
     if (ior_ == 1.0F) return arena.make<MatchedBsdf>(transmission_);

@@ -9,8 +9,8 @@ namespace hyades::core {
 
 /// Isotropic GGX microfacets (Walter et al. 2007, "Microfacet Models for Refraction through Rough
 /// Surfaces") with height-correlated Smith masking (Heitz 2014, "Understanding the
-/// Masking-Shadowing Function", equation 99). Directions are local, above the surface (z > 0) unless
-/// said otherwise. Single scattering only: light that would hit a second facet is lost.
+/// Masking-Shadowing Function", equation 99). Directions are local, above the surface (z > 0)
+/// unless said otherwise. Single scattering only: light that would hit a second facet is lost.
 struct Ggx {
   /// Below this the lobe is narrower than what float directions resolve: use a delta lobe.
   static constexpr float kLeastAlpha = 1e-4F;

@@ -7,17 +7,14 @@
 namespace hyades::core {
 namespace {
 
-/// f = color ((1 - r) / pi + r D G2 / (4 cos theta_o cos theta_i)), with r the reflectiveness and D,
-/// G2 those of GGX with alpha = (1 - glossiness)^2 and no Fresnel: reciprocal, and as D G2 / (4 ..)
-/// reflects at most everything, never more than `color` in all. At glossiness 1 the second term is
-/// a perfect mirror.
+/// f = color ((1 - r) / pi + r D G2 / (4 cos theta_o cos theta_i)), with r the reflectiveness and
+/// D, G2 those of GGX with alpha = (1 - glossiness)^2 and no Fresnel: reciprocal, and as D G2 / (4
+/// ..) reflects at most everything, never more than `color` in all. At glossiness 1 the second term
+/// is a perfect mirror.
 class GlossyBsdf final : public Bsdf {
  public:
   GlossyBsdf(const Rgb& color, float reflectiveness, float alpha)
-      : color_(color),
-        r_(reflectiveness),
-        facets_{alpha},
-        mirror_(alpha < Ggx::kLeastAlpha) {}
+      : color_(color), r_(reflectiveness), facets_{alpha}, mirror_(alpha < Ggx::kLeastAlpha) {}
 
   Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const override {
     return same_side(wo, wi) ? color_ * value(above(wo), above(wi)) : Rgb(0.0F);

@@ -15,9 +15,7 @@ inline TexturePoint texture_point(const SurfacePoint& p) {
 /// A number held within [0, 1]; NaN becomes 0.
 inline float unit_clamp(float x) { return x > 0.0F ? (x < 1.0F ? x : 1.0F) : 0.0F; }
 
-inline Rgb unit_clamp(const Rgb& c) {
-  return {unit_clamp(c.x), unit_clamp(c.y), unit_clamp(c.z)};
-}
+inline Rgb unit_clamp(const Rgb& c) { return {unit_clamp(c.x), unit_clamp(c.y), unit_clamp(c.z)}; }
 
 /// A reflectance: clamped, since a texture may hold anything and a surface must not create energy.
 inline Rgb reflectance_at(const ColorParam& param, const SurfacePoint& p) {

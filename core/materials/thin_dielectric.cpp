@@ -57,9 +57,7 @@ class ThinDielectricBsdf final : public DeltaBsdf {
 class ThinDielectric final : public Material {
  public:
   ThinDielectric(float ior, const Rgb& transmission, const Rgb& reflection)
-      : ior_(ior),
-        transmission_(unit_clamp(transmission)),
-        reflection_(unit_clamp(reflection)) {}
+      : ior_(ior), transmission_(unit_clamp(transmission)), reflection_(unit_clamp(reflection)) {}
 
   const Bsdf* bsdf_at(const SurfacePoint&, Frame&, BsdfArena& arena) const override {
     return arena.make<ThinDielectricBsdf>(ior_, transmission_, reflection_);
