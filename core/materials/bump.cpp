@@ -39,9 +39,7 @@ class Bump final : public Material {
  private:
   /// Change of height per unit of the parameter whose tangent is `tangent`, through space.
   static float along(const ScalarGradient& h, const SurfacePoint& point, const Vec3& tangent) {
-    const Vec3 object = point.world_to_object != nullptr
-                            ? transform_vector(*point.world_to_object, tangent)
-                            : tangent;
+    const Vec3 object = transform_vector(point.world_to_object, tangent);
     return glm::dot(h.d_object, object) + glm::dot(h.d_world, tangent);
   }
 

@@ -7,9 +7,7 @@
 namespace hyades::core {
 
 inline TexturePoint texture_point(const SurfacePoint& p) {
-  const Vec3 object =
-      p.world_to_object != nullptr ? transform_point(*p.world_to_object, p.position) : p.position;
-  return {p.uv, object, p.position};
+  return {p.uv, transform_point(p.world_to_object, p.position), p.position};
 }
 
 /// A number held within [0, 1]; NaN becomes 0.
