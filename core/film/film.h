@@ -28,8 +28,9 @@ class Film {
 
   /// Adds one batch of all pixels of `tile` (inside the window). `values` holds layout().deposited
   /// floats per pixel, row by row: for sum channels the batch's sum over `samples` samples, rounded
-  /// once to float32; for min channels the minimum. All values are finite (the renderer has
-  /// counted and dropped others). It is a bug to deposit a batch twice.
+  /// once to float32; for min channels the minimum (+inf where nothing was hit). All sums are
+  /// finite (the renderer has counted and dropped others); beyond +-kMaxDeposit they are clamped,
+  /// as is moment2. 1 <= samples <= kBatchSamples. It is a bug to deposit a batch twice.
   void deposit(const PixelRect& tile, uint32_t batch, uint32_t samples,
                std::span<const float> values);
 
@@ -44,8 +45,8 @@ class Film {
   /// The picture so far: sums divided by the pixel's sample count, as float. Channels: "R","G","B",
   /// "A", then those of the chosen layers under their names, then "variance.R","G","B": the
   /// variance of the pixel's mean, estimated over batches (0 where fewer than two are there), and
-  /// "samples.N". Pixels without samples are 0. depth is the minimum; normal is the mean vector,
-  /// not normalised.
+  /// "samples.N". Pixels without samples are 0. depth is the minimum (+inf where samples hit
+  /// nothing); normal is the mean vector, not normalised.
   Image normalised() const;
 
   /// SHA-256 over layout, window, coverage (in canonical form) and sums: equal films, equal
@@ -58,11 +59,20 @@ class Film {
   std::span<Fixed128> mutable_plane(int channel);
   Coverage& mutable_coverage() { return coverage_; }
 
+  /// Whether the parts agree, for films that were read: boxes lie inside the window, and every
+  /// pixel holds a whole number of samples that its batches can hold, zeros where it has none.
+  Status check() const;
+
+  /// How many batches each pixel of the window holds, row by row.
+  std::vector<uint32_t> batch_counts() const;
+
  private:
   FilmLayout layout_;
   PixelRect window_;
   Coverage coverage_;
   std::vector<std::vector<Fixed128>> planes_;
+
+  size_t offset(int x, int y) const;
 };
 
 }  // namespace hyades::core

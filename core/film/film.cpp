@@ -1,0 +1,186 @@
+#include "core/film/film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <limits>
+#include <utility>
+
+namespace hyades::core {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Minima are compared as integers that order like the floats, so that neither DAZ nor signed
+/// zeros can make the result depend on the order of merging.
+uint32_t order_key(uint32_t bits) { return (bits >> 31U) != 0 ? ~bits : bits | 0x80000000U; }
+
+Fixed128 min_bits(float value) { return {std::bit_cast<uint32_t>(value), 0}; }
+
+void take_minimum(Fixed128& into, const Fixed128& from) {
+  if (order_key(static_cast<uint32_t>(from.low)) < order_key(static_cast<uint32_t>(into.low))) {
+    into = from;
+  }
+}
+
+float clamp_deposit(float value) { return std::clamp(value, -kMaxDeposit, kMaxDeposit); }
+
+std::string describe(const CoverageBox& box) {
+  return fmt::format("batches {} to {} of pixels x {} to {}, y {} to {}", box.batches.first,
+                     box.batches.end() - 1, box.tile.x0, box.tile.x1 - 1, box.tile.y0,
+                     box.tile.y1 - 1);
+}
+
+}  // namespace
+
+Film::Film(FilmLayout layout, PixelRect window) : layout_(std::move(layout)), window_(window) {
+  const auto pixels = static_cast<size_t>(window_.area());
+  planes_.reserve(layout_.channels.size());
+  for (const FilmChannel& channel : layout_.channels) {
+    planes_.emplace_back(pixels, channel.rule == MergeRule::min ? min_bits(kInfinity) : Fixed128{});
+  }
+}
+
+size_t Film::offset(int x, int y) const {
+  return static_cast<size_t>(y - window_.y0) * static_cast<size_t>(window_.width()) +
+         static_cast<size_t>(x - window_.x0);
+}
+
+void Film::deposit(const PixelRect& tile, uint32_t batch, uint32_t samples,
+                   std::span<const float> values) {
+  const auto stride = static_cast<size_t>(layout_.deposited);
+  const auto width = static_cast<size_t>(tile.width());
+  assert(window_.contains(tile) && samples >= 1 && samples <= kBatchSamples);
+  assert(values.size() == static_cast<size_t>(tile.area()) * stride);
+  coverage_.add({tile, {batch, 1}});
+
+  const double count = samples;
+  const Fixed128 fixed_count = {0, samples};
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    const float* const row = values.data() + static_cast<size_t>(y - tile.y0) * width * stride;
+    const size_t begin = offset(tile.x0, y);
+    for (size_t c = 0; c < stride; ++c) {
+      Fixed128* const plane = planes_[c].data() + begin;
+      if (layout_.channels[c].rule == MergeRule::sum) {
+        for (size_t x = 0; x < width; ++x) {
+          plane[x] += to_fixed(clamp_deposit(row[x * stride + c]));
+        }
+      } else {
+        for (size_t x = 0; x < width; ++x) take_minimum(plane[x], min_bits(row[x * stride + c]));
+      }
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      Fixed128* const plane = planes_[static_cast<size_t>(layout_.moment2) + c].data() + begin;
+      for (size_t x = 0; x < width; ++x) {
+        const double s = clamp_deposit(row[x * stride + c]);  // its square is exact
+        plane[x] += to_fixed(clamp_deposit(static_cast<float>(s * s / count)));
+      }
+    }
+    Fixed128* const plane = planes_[static_cast<size_t>(layout_.samples)].data() + begin;
+    for (size_t x = 0; x < width; ++x) plane[x] += fixed_count;
+  }
+}
+
+Status Film::merge(const Film& other) {
+  if (layout_ != other.layout_) return Error{"the films have different layers"};
+  if (other.window_.empty()) return {};
+  if (!window_.contains(other.window_)) return Error{"the film reaches beyond the other's window"};
+  for (const CoverageBox& box : other.coverage_.boxes()) {
+    if (const auto both = coverage_.overlap(box)) {
+      return Error{fmt::format("both films hold {}", describe(*both))};
+    }
+  }
+
+  const auto width = static_cast<size_t>(other.window_.width());
+  for (size_t c = 0; c < planes_.size(); ++c) {
+    const bool sums = layout_.channels[c].rule == MergeRule::sum;
+    for (int y = other.window_.y0; y < other.window_.y1; ++y) {
+      Fixed128* const into = planes_[c].data() + offset(other.window_.x0, y);
+      const Fixed128* const from = other.planes_[c].data() + other.offset(other.window_.x0, y);
+      if (sums) {
+        for (size_t x = 0; x < width; ++x) into[x] += from[x];
+      } else {
+        for (size_t x = 0; x < width; ++x) take_minimum(into[x], from[x]);
+      }
+    }
+  }
+  for (const CoverageBox& box : other.coverage_.boxes()) coverage_.add(box);
+  return {};
+}
+
+Fixed128 Film::sum(int x, int y, int channel) const {
+  return planes_[static_cast<size_t>(channel)][offset(x, y)];
+}
+
+float Film::minimum(int x, int y, int channel) const {
+  return std::bit_cast<float>(static_cast<uint32_t>(sum(x, y, channel).low));
+}
+
+std::span<const Fixed128> Film::plane(int channel) const {
+  return planes_[static_cast<size_t>(channel)];
+}
+
+std::span<Fixed128> Film::mutable_plane(int channel) {
+  return planes_[static_cast<size_t>(channel)];
+}
+
+std::vector<uint32_t> Film::batch_counts() const {
+  // Each box adds its count at four corners of a table of differences, whose prefix sums in both
+  // directions are the counts. Unsigned arithmetic wraps back.
+  const auto width = static_cast<size_t>(std::max(window_.width(), 0));
+  const auto height = static_cast<size_t>(std::max(window_.height(), 0));
+  std::vector<uint32_t> differences((width + 1) * (height + 1), 0);
+  const auto at = [&](int x, int y) -> uint32_t& {
+    return differences[static_cast<size_t>(y - window_.y0) * (width + 1) +
+                       static_cast<size_t>(x - window_.x0)];
+  };
+  for (const CoverageBox& box : coverage_.boxes()) {
+    at(box.tile.x0, box.tile.y0) += box.batches.count;
+    at(box.tile.x1, box.tile.y0) -= box.batches.count;
+    at(box.tile.x0, box.tile.y1) -= box.batches.count;
+    at(box.tile.x1, box.tile.y1) += box.batches.count;
+  }
+  std::vector<uint32_t> counts(width * height);
+  for (size_t y = 0; y < height; ++y) {
+    uint32_t along_row = 0;
+    for (size_t x = 0; x < width; ++x) {
+      along_row += differences[y * (width + 1) + x];
+      counts[y * width + x] = along_row + (y > 0 ? counts[(y - 1) * width + x] : 0);
+    }
+  }
+  return counts;
+}
+
+Status Film::check() const {
+  for (const CoverageBox& box : coverage_.boxes()) {
+    if (box.tile.empty() || box.batches.count == 0 || !window_.contains(box.tile)) {
+      return Error{
+          fmt::format("the film claims {}, which is not inside its window", describe(box))};
+    }
+  }
+  const std::vector<uint32_t> batches = batch_counts();
+  const std::span<const Fixed128> samples = plane(layout_.samples);
+  for (size_t i = 0; i < batches.size(); ++i) {
+    const int64_t n = samples[i].high;
+    const bool fits =
+        samples[i].low == 0 && n >= int64_t{batches[i]} && n <= int64_t{kBatchSamples} * batches[i];
+    if (fits) continue;
+    return Error{
+        fmt::format("a pixel holds {} samples in {} batches", to_double(samples[i]), batches[i])};
+  }
+  for (size_t c = 0; c < planes_.size(); ++c) {
+    const Fixed128 zero =
+        layout_.channels[c].rule == MergeRule::min ? min_bits(kInfinity) : Fixed128{};
+    for (size_t i = 0; i < batches.size(); ++i) {
+      if (batches[i] == 0 && planes_[c][i] != zero) {
+        return Error{
+            fmt::format("channel {} has a value where no batch is held", layout_.channels[c].name)};
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace hyades::core

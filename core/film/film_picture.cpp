@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/film/film.h"
+
+namespace hyades::core {
+namespace {
+
+/// Nearest float; what would be denormal becomes 0 by rule instead of by the thread's FTZ mode.
+float to_float(double value) {
+  constexpr double kSmallest = std::numeric_limits<float>::min();
+  return std::abs(value) < kSmallest ? 0.0F : static_cast<float>(value);
+}
+
+/// Variance of a pixel's mean, estimated over its batches. With s_b the sum over the n_b samples
+/// of batch b, S and N their totals and q = sum of s_b^2 / n_b: E[q] = B sigma^2 + N mu^2 and
+/// E[S^2 / N] = sigma^2 + N mu^2, so (q - S^2 / N) / (B - 1) estimates the variance sigma^2 of one
+/// sample without bias where batches are independent, and sigma^2 / N that of the mean.
+double variance_of_mean(double q, double sum, double samples, uint32_t batches) {
+  if (batches < 2) return 0.0;
+  const double excess = q - sum * sum / samples;
+  return std::max(excess, 0.0) / (static_cast<double>(batches - 1) * samples);
+}
+
+}  // namespace
+
+Image Film::normalised() const {
+  std::vector<std::string> names;
+  for (int c = 0; c < layout_.deposited; ++c) {
+    names.push_back(layout_.channels[static_cast<size_t>(c)].name);
+  }
+  const auto variance = static_cast<size_t>(layout_.deposited);
+  const size_t count = variance + 3;
+  for (const char* name : {"variance.R", "variance.G", "variance.B", "samples.N"}) {
+    names.emplace_back(name);
+  }
+
+  Image image;
+  image.width = std::max(window_.width(), 0);
+  image.height = std::max(window_.height(), 0);
+  image.channels = std::move(names);
+  const size_t stride = image.channels.size();
+  const std::vector<uint32_t> batches = batch_counts();
+  image.data.assign(batches.size() * stride, 0.0F);
+
+  const std::vector<Fixed128>& samples = planes_[static_cast<size_t>(layout_.samples)];
+  for (size_t i = 0; i < batches.size(); ++i) {
+    if (samples[i] == Fixed128{}) continue;
+    const double n = to_double(samples[i]);
+    float* const pixel = image.data.data() + i * stride;
+    for (size_t c = 0; c < variance; ++c) {
+      pixel[c] = layout_.channels[c].rule == MergeRule::min
+                     ? std::bit_cast<float>(static_cast<uint32_t>(planes_[c][i].low))
+                     : to_float(to_double(planes_[c][i]) / n);
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      const double q = to_double(planes_[static_cast<size_t>(layout_.moment2) + c][i]);
+      pixel[variance + c] = to_float(variance_of_mean(q, to_double(planes_[c][i]), n, batches[i]));
+    }
+    pixel[count] = to_float(n);
+  }
+  return image;
+}
+
+}  // namespace hyades::core

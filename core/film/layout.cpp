@@ -1,0 +1,25 @@
+#include "core/film/layout.h"
+
+namespace hyades::core {
+
+FilmLayout make_film_layout(const LayerSet& layers) {
+  FilmLayout layout;
+  layout.layers = layers;
+  const auto append = [&layout](const char* layer, std::initializer_list<const char*> names,
+                                MergeRule rule) {
+    const int first = static_cast<int>(layout.channels.size());
+    for (const char* name : names) layout.channels.push_back({std::string(layer) + name, rule});
+    return first;
+  };
+
+  append("", {"R", "G", "B", "A"}, MergeRule::sum);
+  if (layers.depth) layout.depth = append("depth.", {"Z"}, MergeRule::min);
+  if (layers.albedo) layout.albedo = append("albedo.", {"R", "G", "B"}, MergeRule::sum);
+  if (layers.normal) layout.normal = append("normal.", {"X", "Y", "Z"}, MergeRule::sum);
+  layout.deposited = static_cast<int>(layout.channels.size());
+  layout.moment2 = append("moment2.", {"R", "G", "B"}, MergeRule::sum);
+  layout.samples = append("samples.", {"N"}, MergeRule::sum);
+  return layout;
+}
+
+}  // namespace hyades::core
