@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/base/elementary.h"
-#include "core/cameras/aperture.h"
+#include "core/base/warp.h"
 #include "core/cameras/camera.h"
 
 namespace hyades::core {
@@ -77,11 +77,12 @@ CameraPose mix(const CameraPose& a, const CameraPose& b, float t) {
 
 class PerspectiveCamera : public Camera {
  public:
-  PerspectiveCamera(std::vector<CameraPose> poses, Vec2i resolution, Aperture aperture)
+  PerspectiveCamera(std::vector<CameraPose> poses, Vec2i resolution, int blades, float rotation)
       : poses_(std::move(poses)),
         first_(make_view(poses_.front())),
         resolution_(glm::max(resolution, Vec2i(1))),
-        aperture_(std::move(aperture)) {}
+        blades_(blades),
+        rotation_(rotation) {}
 
   Ray generate(const Vec2& film, const Vec2& lens, float time) const override {
     const View view = view_at(time);
@@ -96,7 +97,7 @@ class PerspectiveCamera : public Camera {
     // that a focus at infinity needs no special case.
     Vec2 slope(x, y);
     if (view.lens_radius > 0.0F) {
-      const Vec2 on_lens = view.lens_radius * aperture_.sample(lens);
+      const Vec2 on_lens = view.lens_radius * place_in_aperture(lens);
       ray.origin += on_lens.x * view.right + on_lens.y * view.up;
       slope -= on_lens * view.inverse_focus;
     }
@@ -110,6 +111,10 @@ class PerspectiveCamera : public Camera {
   }
 
  private:
+  Vec2 place_in_aperture(const Vec2& u) const {
+    return blades_ < 3 ? square_to_disk(u) : square_to_polygon(u, blades_, rotation_);
+  }
+
   View view_at(float time) const {
     if (poses_.size() == 1) return first_;
     const size_t last = poses_.size() - 1;
@@ -121,7 +126,8 @@ class PerspectiveCamera : public Camera {
   std::vector<CameraPose> poses_;
   View first_;
   Vec2i resolution_;
-  Aperture aperture_;
+  int blades_;
+  float rotation_;
 };
 
 }  // namespace
@@ -129,8 +135,7 @@ class PerspectiveCamera : public Camera {
 std::unique_ptr<Camera> make_perspective_camera(std::vector<CameraPose> poses, Vec2i resolution,
                                                 int blades, float blade_rotation) {
   if (poses.empty()) poses.emplace_back();
-  return std::make_unique<PerspectiveCamera>(std::move(poses), resolution,
-                                             Aperture(blades, blade_rotation));
+  return std::make_unique<PerspectiveCamera>(std::move(poses), resolution, blades, blade_rotation);
 }
 
 }  // namespace hyades::core

@@ -4,6 +4,7 @@
 
 #include "core/geometry/world.h"
 #include "core/image/image.h"
+#include "core/lights/environment_map.h"
 #include "core/lights/light.h"
 
 /// One maker per kind of light.
@@ -17,20 +18,22 @@ using LightPtr = std::shared_ptr<const Light>;
 /// outlive the light.
 LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided);
 
-/// Area of placement `object` when the shutter opens [length^2].
+/// Area of placement `object` when the shutter opens [length^2]. A surface of total flux P [W] per
+/// channel has the radiance P / (pi area), half of that where it is two-sided.
 double surface_area(const World& world, uint32_t object);
 
-/// Isotropic point of total flux `power` [W] per channel.
+/// Isotropic point of total flux `power` [W] per channel: intensity power / (4 pi) [W/sr].
 LightPtr make_point_light(const Vec3& position, const Rgb& power);
 
-/// As a point light, but only within `cos_outer` of unit `direction`, fading smoothly from
-/// `cos_inner`.
+/// As a point light of that power (the cone takes light away, it does not gather it), but only
+/// within the cosine `cos_outer` of unit `direction`: full inside `cos_inner`, with the smooth step
+/// 3 t^2 - 2 t^3 of the cosine in between.
 LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
                          float cos_inner, float cos_outer);
 
 /// Sun: light travelling along unit `direction`, irradiance [W/m^2] on a facing surface, from a
-/// disc of angular diameter `angle` [radians]; 0 makes it a delta light. `world_radius` only serves
-/// power().
+/// disc of angular diameter `angle` [radians, at most pi] and uniform radiance; less than 1e-4
+/// makes it a delta light. `world_radius` only serves power().
 LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle,
                         float world_radius);
 
@@ -41,5 +44,9 @@ LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angl
 /// radiance `scale`.
 LightPtr make_environment_light(std::shared_ptr<const Image> image, float rotate_y,
                                 const Rgb& scale, float world_radius);
+
+/// The same with a map that is ready: maps take time to make and can be shared between frames.
+LightPtr make_environment_map_light(std::shared_ptr<const EnvironmentMap> map, float rotate_y,
+                                    const Rgb& scale, float world_radius);
 
 }  // namespace hyades::core

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "core/lights/light.h"
+
+namespace hyades::core {
+
+/// What all lights on surfaces have in common: constant radiance on the outer side of a surface, or
+/// on both, and densities per area turned into densities per solid angle.
+class AreaLight : public Light {
+ public:
+  /// `area` when the shutter opens [length^2], only for power().
+  AreaLight(const Rgb& radiance, bool two_sided, double area);
+
+  Rgb radiance(const SurfacePoint& on, const Vec3& outward) const override;
+  float power() const override { return power_; }
+
+ protected:
+  /// The radiance that leaves a place with unit outer normal `ng` towards `outward`.
+  Rgb emitted(const Vec3& ng, const Vec3& outward) const;
+
+  /// What `from` gets from the place `position`, chosen with `pdf_area` per area. Nothing where
+  /// that place sends no light to `from`.
+  std::optional<LightSample> seen_from(const Vec3& from, const Vec3& position, const Vec3& ng,
+                                       float clearance, float pdf_area) const;
+
+  const Rgb& outer_radiance() const { return radiance_; }
+  bool is_dark() const { return power_ == 0.0F; }
+
+ private:
+  Rgb radiance_;
+  bool two_sided_;
+  float power_;
+};
+
+/// Density per solid angle at `from` of a place that is chosen with `pdf_area` per area: multiplied
+/// by distance^2 / cos; 0 where the place is seen edge-on.
+float area_to_solid_angle(float pdf_area, const Vec3& from, const Vec3& position, const Vec3& ng);
+
+}  // namespace hyades::core

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "core/base/distribution.h"
+#include "core/base/vec.h"
+#include "core/image/image.h"
+
+namespace hyades::core {
+
+/// A lat-long picture of the whole sphere of directions, looked up bilinearly, with what it takes
+/// to choose directions in proportion to luminance. Direction (x, y, z), of any length but zero, is
+/// at u = atan2(z, x) / 2pi + 0.5 from the left and v = acos(y) / pi from the top; columns wrap
+/// around, the outermost half rows keep their value up to the poles. Negative values and NaN count
+/// as black, at most 1e15 is seen. Immutable and thread-safe; takes 4 bytes per pixel on top of the
+/// image.
+///
+/// Bilinear look-up is linear along both sides of each cell between four pixel centres. Directions
+/// are chosen with a density bilinear in u and cos(theta) over the same cells, so the density per
+/// solid angle follows the picture's luminance (up to the bend of cos(theta) within one row), and
+/// is 0 only where all of a cell's corners that matter are black.
+class EnvironmentMap {
+ public:
+  /// `image` has channels R, G, B or Y and at least one pixel.
+  explicit EnvironmentMap(std::shared_ptr<const Image> image);
+
+  /// The picture's value in `direction`; `turn` is added to u.
+  Rgb look_up(const Vec3& direction, float turn) const;
+
+  /// A direction for `u` in [0, 1)^2. Only where integral() is not black.
+  Vec3 sample(const Vec2& u, float turn) const;
+
+  /// The density per solid angle of sample().
+  float pdf(const Vec3& direction, float turn) const;
+
+  /// The integral of the values over all directions, as sampling sees it [sr].
+  Rgb integral() const { return integral_; }
+
+ private:
+  /// A place in the grid of cells between pixel centres. Row 0 is the half row at the upper pole,
+  /// row `height` the one at the lower.
+  struct Place {
+    int column = 0;
+    int row = 0;
+    float across = 0.0F;  ///< within the cell, 0..1, in u
+    float down = 0.0F;    ///< in v, for look-up
+    float lower = 0.0F;   ///< in cos(theta), for density
+  };
+
+  Place locate(const Vec3& direction, float turn) const;
+  Rgb pixel(int x, int y) const;
+  Rgb blend(int column, int row, float across, float down) const;
+
+  /// Luminance at the corners of a cell.
+  struct Corners {
+    float top_left, top_right, bottom_left, bottom_right;
+    float mean() const { return 0.25F * (top_left + top_right + bottom_left + bottom_right); }
+  };
+  Corners corners_of(int column, int row) const;
+  /// The density per solid angle at a place, of a cell that Distribution2D gives `cell_pdf`.
+  float density(const Place& place, float cell_pdf) const;
+  double cell_angle(int row) const;
+
+  std::shared_ptr<const Image> image_;
+  int width_;
+  int height_;
+  int channels_[3];              ///< of the image: red, green, blue
+  std::vector<double> cosines_;  ///< of theta at the rows' edges, from the upper pole down
+  Distribution2D cells_;
+  Rgb integral_{0.0F};
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,91 @@
+#include "core/lights/quadric_light.h"
+
+#include <cmath>
+
+#include <glm/gtc/matrix_inverse.hpp>
+
+#include "core/base/elementary.h"
+#include "core/base/warp.h"
+
+namespace hyades::core {
+
+namespace {
+
+struct ShapePlace {
+  Vec3 position;
+  Vec3 normal;
+};
+
+/// A place of the untransformed shape, uniformly by area.
+ShapePlace place_on(const Shape& shape, const Vec2& u) {
+  switch (shape.kind) {
+    case Shape::Kind::disk: {
+      const Vec2 disc = shape.radius * square_to_disk(u);
+      return {{disc.x, 0.0F, disc.y}, {0.0F, 1.0F, 0.0F}};
+    }
+    case Shape::Kind::cylinder: {
+      const SinCos angle = sin_cos(2.0F * kPi * u.x);
+      const Vec3 normal(angle.cos, 0.0F, angle.sin);
+      return {shape.radius * normal + Vec3(0.0F, u.y * shape.height, 0.0F), normal};
+    }
+    default: {
+      const Vec3 normal = square_to_uniform_sphere(u);
+      return {shape.radius * normal, normal};
+    }
+  }
+}
+
+float shape_area(const Shape& shape) {
+  switch (shape.kind) {
+    case Shape::Kind::disk:
+      return kPi * shape.radius * shape.radius;
+    case Shape::Kind::cylinder:
+      return 2.0F * kPi * shape.radius * shape.height;
+    default:
+      return 4.0F * kPi * shape.radius * shape.radius;
+  }
+}
+
+/// How much `linear` stretches area around a place whose transformed unit normal is `ng`: the
+/// cofactor matrix takes normals to normals, scaled by just that, so it is |det| / |M^T ng|.
+float stretch(const Mat3& linear, const Vec3& ng) {
+  const Vec3 back = glm::transpose(linear) * ng;
+  return std::abs(glm::determinant(linear)) / std::sqrt(glm::dot(back, back));
+}
+
+}  // namespace
+
+float quadric_clearance(const Vec3& position, const Vec3& ng) {
+  const Vec3 size = glm::abs(position);
+  return 0x1p-24F * (2.0F * glm::dot(glm::abs(ng), size) + max_component(size));
+}
+
+QuadricLight::QuadricLight(const World& world, uint32_t object, const Rgb& radiance, bool two_sided,
+                           double area)
+    : AreaLight(radiance, two_sided, area),
+      world_(world),
+      object_(object),
+      shape_(world.placement(object).shape),
+      moves_(world.placement(object).to_world.size() > 1),
+      first_(world.transform_at(object, 0.0F)) {}
+
+std::optional<LightSample> QuadricLight::sample_direct(const Vec3& from, float time, float /*pick*/,
+                                                       const Vec2& u) const {
+  if (is_dark()) return std::nullopt;
+  const Mat4 matrix = to_world(time);
+  const Mat3 linear(matrix);
+  const ShapePlace place = place_on(shape_, u);
+  const Vec3 position = transform_point(matrix, place.position);
+  const Vec3 ng = glm::normalize(glm::inverseTranspose(linear) * place.normal);
+  const float pdf_area = 1.0F / (shape_area(shape_) * stretch(linear, ng));
+  return seen_from(from, position, ng, quadric_clearance(position, ng), pdf_area);
+}
+
+float QuadricLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
+                               const SurfacePoint& on) const {
+  if (is_dark()) return 0.0F;
+  const float pdf_area = 1.0F / (shape_area(shape_) * stretch(Mat3(to_world(on.time)), on.ng));
+  return area_to_solid_angle(pdf_area, from, on.position, on.ng);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/frame.h"
+#include "core/base/warp.h"
+#include "core/lights/quadric_light.h"
+
+namespace hyades::core {
+
+namespace {
+
+/// What a point outside sees of a ball.
+struct Cap {
+  Vec3d center{0.0};
+  double radius = 0.0;
+  Vec3d axis{0.0};             ///< unit, from the point to the centre
+  double sin_max = 0.0;        ///< of the angle between the axis and the rim
+  double one_minus_cos = 0.0;  ///< of the same angle; the solid angle is 2 pi times this
+
+  float pdf() const {
+    return static_cast<float>(1.0 / (2.0 * static_cast<double>(kPi) * one_minus_cos));
+  }
+};
+
+/// The cap of the sphere around the origin with `radius`, under `matrix`, as seen from `from`.
+/// Nothing where the matrix makes an ellipsoid of it, or where `from` is inside or so near the
+/// surface that rounding decides on which side it is. All in double: the difference of distance and
+/// radius counts near the surface, the smallness of the cap far away.
+std::optional<Cap> cap_from(const Mat4& matrix, float radius, const Vec3& from) {
+  const Vec3 a(matrix[0]);
+  const Vec3 b(matrix[1]);
+  const Vec3 c(matrix[2]);
+  const float scale2 = glm::dot(a, a);
+  constexpr float kRound = 1e-5F;  // unevenness that is still a sphere
+  const Vec3 lengths2(scale2, glm::dot(b, b), glm::dot(c, c));
+  const Vec3 angles(glm::dot(a, b), glm::dot(b, c), glm::dot(c, a));
+  if (!(max_component(glm::abs(lengths2 - scale2)) <= kRound * scale2) ||
+      !(max_component(glm::abs(angles)) <= kRound * scale2)) {
+    return std::nullopt;
+  }
+  Cap cap;
+  cap.center = Vec3d(matrix[3]);
+  cap.radius = std::sqrt(static_cast<double>(scale2)) * static_cast<double>(radius);
+  const Vec3d to_center = cap.center - Vec3d(from);
+  const double distance = std::sqrt(glm::dot(to_center, to_center));
+  const Vec3 reach = glm::abs(Vec3(matrix[3]));
+  const double rounding =
+      2e-6 * (static_cast<double>(max_component(reach)) + cap.radius + distance);
+  if (!(distance > cap.radius + rounding)) return std::nullopt;
+  cap.axis = to_center / distance;
+  cap.sin_max = cap.radius / distance;
+  const double cos_max = std::sqrt((distance - cap.radius) * (distance + cap.radius)) / distance;
+  cap.one_minus_cos = cap.sin_max * cap.sin_max / (1.0 + cos_max);
+  if (!(cap.one_minus_cos > 0.0)) return std::nullopt;
+  return cap;
+}
+
+}  // namespace
+
+std::optional<LightSample> SphereLight::sample_direct(const Vec3& from, float time, float pick,
+                                                      const Vec2& u) const {
+  const Mat4 matrix = to_world(time);
+  const std::optional<Cap> cap = cap_from(matrix, shape().radius, from);
+  if (!cap) return QuadricLight::sample_direct(from, time, pick, u);
+  if (is_dark()) return std::nullopt;
+
+  // A direction in the cap by the equal-area map of a disc (1 - cos grows with the square of the
+  // disc's radius), at angle theta from the axis. On the sphere it meets the place at angle alpha
+  // from the axis, seen from the centre: with sin(beta) = sin(theta) / sin_max (law of sines),
+  // alpha = beta - theta.
+  const Vec2 disc = square_to_disk(u);
+  const double r2 = std::min(static_cast<double>(glm::dot(disc, disc)), 1.0);
+  const double drop = r2 * cap->one_minus_cos;
+  const double sin_beta_over_r = std::sqrt((2.0 - drop) / (2.0 - cap->one_minus_cos));
+  const double sin_beta2 = std::min(r2 * sin_beta_over_r * sin_beta_over_r, 1.0);
+  const double cos_beta = std::sqrt(1.0 - sin_beta2);
+  const double cos_theta = 1.0 - drop;
+  const double cos_alpha = cos_beta * cos_theta + sin_beta2 * cap->sin_max;
+  const double sin_alpha_over_r = sin_beta_over_r * (cos_theta - cos_beta * cap->sin_max);
+
+  const Frame frame = Frame::around(Vec3(cap->axis));
+  const Vec3d across(frame.s * disc.x + frame.t * disc.y);
+  const Vec3d normal = glm::normalize(sin_alpha_over_r * across - cos_alpha * cap->axis);
+  LightSample sample;
+  const Vec3d position = cap->center + cap->radius * normal;
+  const Vec3d to_light = position - Vec3d(from);
+  const double distance = std::sqrt(glm::dot(to_light, to_light));
+  if (!(distance > 0.0)) return std::nullopt;
+  sample.direction = Vec3(to_light / distance);
+  sample.radiance = outer_radiance();
+  sample.pdf = cap->pdf();
+  sample.distance = static_cast<float>(distance);
+  sample.position = Vec3(position);
+  sample.clearance = quadric_clearance(sample.position, Vec3(normal));
+  return sample;
+}
+
+float SphereLight::pdf_direct(const Vec3& from, const Vec3& direction,
+                              const SurfacePoint& on) const {
+  const std::optional<Cap> cap = cap_from(to_world(on.time), shape().radius, from);
+  if (!cap) return QuadricLight::pdf_direct(from, direction, on);
+  return is_dark() ? 0.0F : cap->pdf();
+}
+
+}  // namespace hyades::core

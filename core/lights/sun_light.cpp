@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/elementary.h"
+#include "core/base/frame.h"
+#include "core/base/warp.h"
+#include "core/lights/make_light.h"
+
+namespace hyades::core {
+
+namespace {
+
+/// Below this angular radius [rad] a direction's rounding to float would show in the disc's solid
+/// angle; the light is a delta light then.
+constexpr float kSmallestRadius = 5e-5F;
+
+/// A disc of uniform radiance infinitely far away, or (radius 0) a single direction.
+class SunLight : public Light {
+ public:
+  SunLight(const Vec3& direction, const Rgb& irradiance, float angle, float world_radius)
+      : axis_(Frame::around(-direction)), irradiance_(irradiance) {
+    power_ = luminance(irradiance) * kPi * world_radius * world_radius;
+    const float radius = std::min(0.5F * angle, 0.5F * kPi);
+    if (!(radius >= kSmallestRadius)) return;
+    sin_radius_ = sin(radius);
+    const float sin_half = sin(0.5F * radius);
+    one_minus_cos_ = 2.0F * sin_half * sin_half;
+    pdf_ = cone_pdf(one_minus_cos_);
+    // A facing surface receives the integral of L cos over the disc: pi L sin^2(radius).
+    radiance_ = irradiance / (kPi * sin_radius_ * sin_radius_);
+  }
+
+  std::optional<LightSample> sample_direct(const Vec3& /*from*/, float /*time*/, float /*pick*/,
+                                           const Vec2& u) const override {
+    if (is_black(irradiance_)) return std::nullopt;
+    LightSample sample;
+    sample.distance = kInfinity;
+    if (is_delta()) {
+      sample.radiance = irradiance_;
+      sample.direction = axis_.n;
+      sample.pdf = 1.0F;
+      sample.delta = true;
+      return sample;
+    }
+    sample.radiance = radiance_;
+    sample.pdf = pdf_;
+    sample.direction = glm::normalize(axis_.to_world(square_to_cone(u, one_minus_cos_)));
+    return sample;
+  }
+
+  float pdf_direct(const Vec3& /*from*/, const Vec3& direction,
+                   const SurfacePoint& /*on*/) const override {
+    return covers(direction) ? pdf_ : 0.0F;
+  }
+
+  Rgb radiance(const SurfacePoint& /*on*/, const Vec3& outward) const override {
+    return covers(-outward) ? radiance_ : Rgb(0.0F);
+  }
+
+  float power() const override { return power_; }
+  bool is_infinite() const override { return true; }
+
+ private:
+  bool is_delta() const { return pdf_ == 0.0F; }
+
+  /// Compared by the sine: the cosine of a small disc's edge is too near 1 for float.
+  bool covers(const Vec3& direction) const {
+    if (is_delta() || !(glm::dot(direction, axis_.n) > 0.0F)) return false;
+    const Vec3 across = glm::cross(direction, axis_.n);
+    return glm::dot(across, across) <= sin_radius_ * sin_radius_;
+  }
+
+  Frame axis_;  ///< n points to the middle of the disc
+  Rgb irradiance_;
+  Rgb radiance_{0.0F};
+  float sin_radius_ = 0.0F;
+  float one_minus_cos_ = 0.0F;
+  float pdf_ = 0.0F;  ///< per solid angle; 0: delta light
+  float power_ = 0.0F;
+};
+
+}  // namespace
+
+LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle,
+                        float world_radius) {
+  return std::make_shared<SunLight>(direction, irradiance, angle, world_radius);
+}
+
+}  // namespace hyades::core
