@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/scheduler/ids.h"
+#include "coordinator/scheduler/job_plan.h"
+
+namespace hyades::coordinator {
+
+// What the scheduler wants done, in this order. Its driver does it and reports back with events.
+
+/// Make room for the frame's film; answered by FrameOpened or FrameRefused.
+struct OpenFrame {
+  JobId job{};
+  int32_t frame = 0;
+};
+
+/// These units, all of one frame, are the worker's until the deadline.
+struct Lease {
+  WorkerId worker{};
+  LeaseId lease;
+  JobId job{};
+  std::vector<core::Unit> units;
+  TimePoint deadline;
+  bool adopted = false;  ///< the worker holds them already, under an older lease
+};
+
+/// The worker shall stop rendering the unit: nobody waits for it any more.
+struct Revoke {
+  WorkerId worker{};
+  LeaseId lease;
+  JobId job{};
+  core::Unit unit;
+};
+
+// Records: what is to be durable.
+struct UnitRecord {
+  JobId job{};
+  AcceptedUnit accepted;
+};
+struct FrameFinishedRecord {
+  JobId job{};
+  int32_t frame = 0;
+};
+struct FrameFailedRecord {
+  JobId job{};
+  FailedFrame failed;
+};
+using Record = std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord>;
+
+/// Make this durable; answered by Persisted or PersistFailed. For a unit that means the film that
+/// came with the result now being handled.
+struct Persist {
+  RecordId id{};
+  Record record;
+};
+
+/// The film that was persisted under `record` counts: add it to its frame's film.
+struct Merge {
+  RecordId record{};
+  JobId job{};
+  core::Unit unit;
+};
+
+/// The film is durable: the worker may forget it.
+struct Acknowledge {
+  WorkerId worker{};
+  LeaseId lease;
+  JobId job{};
+  core::Unit unit;
+};
+
+enum class RejectReason : uint8_t {
+  unknown,    ///< no such job or frame, or the frame is over; the worker drops the film
+  malformed,  ///< not a unit of this job; dropped
+  overlap,    ///< some of its batches are there already in other extents; dropped
+  conflict,   ///< the same extents are there with other bits; dropped (see Conflict)
+  not_now,    ///< not made durable, or the frame is not open yet; may be sent again later
+};
+
+/// The result does not count.
+struct Reject {
+  WorkerId worker{};
+  LeaseId lease;
+  JobId job{};
+  core::Unit unit;
+  RejectReason reason{};
+};
+
+/// Two renderings of one unit differ: a machine is broken, or a unit is not a pure function.
+struct Conflict {
+  JobId job{};
+  core::Unit unit;
+  WorkerId first{};
+  WorkerId second{};
+};
+
+/// Every batch of the frame is merged: make its outputs; answered by FinishDone or FinishFailed.
+struct FinishFrame {
+  JobId job{};
+  int32_t frame = 0;
+};
+
+/// The frame is over, and that is durable: its films may be dropped.
+struct FrameDone {
+  JobId job{};
+  int32_t frame = 0;
+};
+struct FrameFailed {
+  JobId job{};
+  int32_t frame = 0;
+  std::string reason;
+};
+
+/// All frames of the job are over; the scheduler has forgotten it.
+struct JobEnded {
+  JobId job{};
+  uint32_t done = 0;
+  uint32_t failed = 0;
+  bool cancelled = false;
+};
+
+using Action = std::variant<OpenFrame, Lease, Revoke, Persist, Merge, Acknowledge, Reject, Conflict,
+                            FinishFrame, FrameDone, FrameFailed, JobEnded>;
+
+}  // namespace hyades::coordinator

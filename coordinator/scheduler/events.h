@@ -1,0 +1,140 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/scheduler/ids.h"
+#include "coordinator/scheduler/job_plan.h"
+
+namespace hyades::coordinator {
+
+// What happens to the scheduler. Events may come late, twice, or from workers and jobs that are
+// gone: every one of them is answered or ignored, none is trusted.
+
+// Jobs.
+
+/// A new job, or after a restart one that was there before. The id has not been used.
+struct JobAdded {
+  JobId job{};
+  JobPlan plan;
+  RestoredJob restored;
+};
+struct JobPaused {
+  JobId job{};
+};
+struct JobResumed {
+  JobId job{};
+};
+struct JobCancelled {
+  JobId job{};
+};
+
+// Frames: answers to OpenFrame and FinishFrame.
+
+/// There is room for the frame's film (and, on a single machine, its scene is loaded).
+struct FrameOpened {
+  JobId job{};
+  int32_t frame = 0;
+};
+/// The frame cannot be rendered at all.
+struct FrameRefused {
+  JobId job{};
+  int32_t frame = 0;
+  std::string reason;
+};
+/// The frame's outputs are written and durable.
+struct FinishDone {
+  JobId job{};
+  int32_t frame = 0;
+};
+struct FinishFailed {
+  JobId job{};
+  int32_t frame = 0;
+  std::string reason;
+};
+
+// Workers.
+
+/// A unit that a worker holds from a lease, rendered or not.
+struct UnitInHand {
+  LeaseId lease;
+  JobId job{};
+  core::Unit unit;
+};
+
+/// A worker connects. One that was known under this id is taken for lost first. What it declares in
+/// hand is adopted under a new lease where nobody else has it, and revoked otherwise.
+struct WorkerJoined {
+  WorkerId worker{};
+  uint32_t threads = 1;
+  std::string worker_class;
+  std::vector<UnitInHand> in_hand;
+};
+
+/// The worker can take `units` more. The wish stands until it is fulfilled.
+struct WorkRequested {
+  WorkerId worker{};
+  uint32_t units = 1;
+};
+
+/// The worker is alive and still works on these leases: they are renewed. One that it does not
+/// name runs out, whatever became of it.
+struct WorkerAlive {
+  WorkerId worker{};
+  std::vector<LeaseId> leases;
+};
+
+/// A film arrived and waits to be made durable. `unit` may be a part of the leased one (a worker
+/// that drains); that ends the lease of this unit, and what is missing is leased again.
+struct ResultArrived {
+  WorkerId worker{};
+  LeaseId lease;
+  JobId job{};
+  core::Unit unit;
+  Digest digest{};
+  Duration render_time{0};  ///< of one thread; 0 where it was not measured
+};
+
+/// Rendering the unit failed for a reason that lies in the unit.
+struct UnitFailed {
+  WorkerId worker{};
+  LeaseId lease;
+  JobId job{};
+  core::Unit unit;
+  std::string reason;
+};
+
+/// The worker gives a unit back unrendered. No blame.
+struct UnitReturned {
+  WorkerId worker{};
+  LeaseId lease;
+  JobId job{};
+  core::Unit unit;
+};
+
+/// The worker is gone. No blame.
+struct WorkerLost {
+  WorkerId worker{};
+};
+
+// The store: answers to Persist.
+
+struct Persisted {
+  RecordId record{};
+};
+struct PersistFailed {
+  RecordId record{};
+  std::string reason;
+};
+
+/// Nothing but time has passed.
+struct Tick {};
+
+using Event =
+    std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, FrameOpened, FrameRefused,
+                 FinishDone, FinishFailed, WorkerJoined, WorkRequested, WorkerAlive, ResultArrived,
+                 UnitFailed, UnitReturned, WorkerLost, Persisted, PersistFailed, Tick>;
+
+}  // namespace hyades::coordinator

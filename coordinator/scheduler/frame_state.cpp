@@ -1,0 +1,220 @@
+#include "coordinator/scheduler/frame_state.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace hyades::coordinator {
+
+FrameState::FrameState(const std::vector<uint32_t>& tile_order, uint32_t batches)
+    : batches_(batches),
+      total_(uint64_t{tile_order.size()} * batches),
+      free_(total_),
+      held_(static_cast<uint32_t>(tile_order.size()), batches),
+      leased_(static_cast<uint32_t>(tile_order.size()), batches) {
+  for (const uint32_t tile : tile_order) open_.push_back({tile, {0, batches}});
+}
+
+void FrameState::hold(const Extent& e, const HeldRecord& record) {
+  free_ -= BatchMap::count_free(held_, leased_, e.tile, e.batches);
+  held_.set(e.tile, e.batches);
+  records_[e.tile].push_back(record);
+  if (record.pending == RecordId{}) durable_ += e.batches.count;
+}
+
+const HeldRecord* FrameState::find_held(const Extent& e) const {
+  const auto tile = records_.find(e.tile);
+  if (tile == records_.end()) return nullptr;
+  for (const HeldRecord& record : tile->second) {
+    if (record.batches == e.batches) return &record;
+  }
+  return nullptr;
+}
+
+void FrameState::made_durable(const Extent& e) {
+  for (HeldRecord& record : records_[e.tile]) {
+    if (record.batches == e.batches && record.pending != RecordId{}) {
+      record.pending = RecordId{};
+      durable_ += e.batches.count;
+    }
+  }
+}
+
+void FrameState::unhold(const Extent& e) {
+  std::erase_if(records_[e.tile], [&](const HeldRecord& r) { return r.batches == e.batches; });
+  held_.clear(e.tile, e.batches);
+  free_ += BatchMap::count_free(held_, leased_, e.tile, e.batches);
+  open_.push_front(e);
+}
+
+size_t FrameState::holders() const {
+  size_t n = 0;
+  for (const auto& [k, assignment] : assignments_) n += assignment.holders.size();
+  return n;
+}
+
+bool FrameState::all_free(const Extent& e) const {
+  return BatchMap::count_free(held_, leased_, e.tile, e.batches) == e.batches.count;
+}
+
+void FrameState::lease_bits(const Extent& e) {
+  free_ -= BatchMap::count_free(held_, leased_, e.tile, e.batches);
+  leased_.set(e.tile, e.batches);
+}
+
+void FrameState::unlease_bits(const Extent& e) {
+  leased_.clear(e.tile, e.batches);
+  free_ += BatchMap::count_free(held_, leased_, e.tile, e.batches);
+}
+
+std::optional<Extent> FrameState::next_suspect(const MayTry& may_try) {
+  for (size_t i = 0; i < suspects_.size();) {
+    const Extent e = suspects_[i];
+    if (!all_free(e)) {
+      // A late film has brought a part of it: the rest is ordinary work.
+      open_.push_front(e);
+      suspects_.erase(suspects_.begin() + static_cast<ptrdiff_t>(i));
+      continue;
+    }
+    if (may_try(find_blame(e)->workers)) {
+      suspects_.erase(suspects_.begin() + static_cast<ptrdiff_t>(i));
+      return e;
+    }
+    ++i;
+  }
+  return std::nullopt;
+}
+
+std::optional<Extent> FrameState::cut_open(const Extent& front, uint32_t run) {
+  const auto free = BatchMap::first_free(held_, leased_, front.tile, front.batches);
+  if (!free) return std::nullopt;
+  const Extent cut{front.tile, {free->first, std::clamp(run, 1U, free->count)}};
+  const uint32_t rest = cut.batches.end();
+  if (rest < front.batches.end()) {
+    // To the back: all tiles come on together, so that the picture grows evenly.
+    open_.push_back({front.tile, {rest, front.batches.end() - rest}});
+  }
+  return cut;
+}
+
+bool FrameState::has_work(const MayTry& may_try) const {
+  uint64_t barred = 0;
+  for (const Extent& e : suspects_) {
+    if (all_free(e) && !may_try(find_blame(e)->workers)) barred += e.batches.count;
+  }
+  return free_ > barred;
+}
+
+Assignment& FrameState::assign(const Extent& e, const Holder& holder, uint64_t serial) {
+  lease_bits(e);
+  Assignment& assignment = assignments_[key(e)];
+  assignment.extent = e;
+  assignment.serial = serial;
+  assignment.copied = false;
+  assignment.holders.assign(1, holder);
+  return assignment;
+}
+
+Assignment* FrameState::find_assignment(const Extent& e) {
+  const auto it = assignments_.find(key(e));
+  return it != assignments_.end() && it->second.extent == e ? &it->second : nullptr;
+}
+
+Assignment* FrameState::find_covering(const Extent& part, const LeaseId& lease) {
+  // Assignments never overlap, so that the one that begins nearest before `part` is the only one.
+  for (uint32_t first = part.batches.first + 1; first-- > 0;) {
+    const auto it = assignments_.find(key({part.tile, {first, 1}}));
+    if (it == assignments_.end()) continue;
+    if (it->second.extent.batches.end() < part.batches.end()) return nullptr;
+    for (const Holder& holder : it->second.holders) {
+      if (holder.lease == lease) return &it->second;
+    }
+    return nullptr;
+  }
+  return nullptr;
+}
+
+void FrameState::release(const Extent& e, const LeaseId& lease) {
+  Assignment* assignment = find_assignment(e);
+  if (assignment == nullptr) return;
+  std::erase_if(assignment->holders, [&](const Holder& h) { return h.lease == lease; });
+  if (!assignment->holders.empty()) return;
+  assignments_.erase(key(e));
+  unlease_bits(e);
+  if (find_blame(e) != nullptr && all_free(e)) {
+    if (std::find(suspects_.begin(), suspects_.end(), e) == suspects_.end()) suspects_.push_back(e);
+  } else {
+    open_.push_front(e);
+  }
+}
+
+std::vector<Holder> FrameState::end_assignment(const Extent& e) {
+  Assignment* assignment = find_assignment(e);
+  if (assignment == nullptr) return {};
+  std::vector<Holder> holders = std::move(assignment->holders);
+  assignments_.erase(key(e));
+  unlease_bits(e);
+  return holders;
+}
+
+const FrameState::Blame* FrameState::find_blame(const Extent& e) const {
+  for (const Blame& b : blamed_) {
+    if (b.extent == e) return &b;
+  }
+  return nullptr;
+}
+
+uint32_t FrameState::blame(const Extent& e, WorkerId worker) {
+  for (Blame& b : blamed_) {
+    if (b.extent != e) continue;
+    b.workers.push_back(worker);
+    return static_cast<uint32_t>(b.workers.size());
+  }
+  blamed_.push_back({e, {worker}});
+  return 1;
+}
+
+std::string FrameState::audit() const {
+  const auto tiles = static_cast<uint32_t>(total_ / std::max(batches_, 1U));
+  BatchMap reachable(tiles, batches_);
+  for (const Extent& e : open_) reachable.set(e.tile, e.batches);
+  for (const Extent& e : suspects_) reachable.set(e.tile, e.batches);
+  uint64_t free = 0;
+  uint64_t held = 0;
+  uint64_t recorded = 0;
+  uint64_t durable = 0;
+  for (uint32_t tile = 0; tile < tiles; ++tile) {
+    for (uint32_t b = 0; b < batches_; ++b) {
+      const core::BatchRange one{b, 1};
+      const bool is_free = BatchMap::count_free(held_, leased_, tile, one) == 1;
+      free += is_free;
+      held += held_.count(tile, one);
+      if (is_free && reachable.count(tile, one) == 0) {
+        return fmt::format("tile {} batch {} is free but can never be leased", tile, b);
+      }
+    }
+    BatchMap seen(1, batches_);
+    const auto records = records_.find(tile);
+    if (records == records_.end()) continue;
+    for (const HeldRecord& r : records->second) {
+      if (seen.count(0, r.batches) != 0) return fmt::format("tile {} holds a batch twice", tile);
+      seen.set(0, r.batches);
+      recorded += r.batches.count;
+      if (r.pending == RecordId{}) durable += r.batches.count;
+    }
+  }
+  uint64_t leased = 0;
+  uint64_t leased_bits = 0;
+  for (uint32_t tile = 0; tile < tiles; ++tile) leased_bits += leased_.count(tile, {0, batches_});
+  for (const auto& [k, a] : assignments_) {
+    leased += a.extent.batches.count;
+    if (a.holders.empty()) return "an assignment without a holder";
+  }
+  if (free != free_) return fmt::format("{} batches are free, {} counted", free, free_);
+  if (held != recorded) return fmt::format("{} batches are held, {} recorded", held, recorded);
+  if (durable != durable_) return fmt::format("{} are durable, {} counted", durable, durable_);
+  if (leased != leased_bits) return fmt::format("{} are leased, {} marked", leased, leased_bits);
+  return {};
+}
+
+}  // namespace hyades::coordinator

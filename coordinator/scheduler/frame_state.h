@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scheduler/batch_map.h"
+#include "coordinator/scheduler/ids.h"
+#include "core/film/unit.h"
+
+namespace hyades::coordinator {
+
+/// A unit within its frame: a tile by its index in the grid.
+struct Extent {
+  uint32_t tile = 0;
+  core::BatchRange batches;
+  friend bool operator==(const Extent&, const Extent&) = default;
+};
+
+/// Who renders a unit now.
+struct Holder {
+  WorkerId worker{};
+  LeaseId lease;
+};
+
+/// A unit that is being rendered by one worker, or by two when it has been copied.
+struct Assignment {
+  Extent extent;
+  uint64_t serial = 0;  ///< tells this assignment from later ones of the same unit
+  bool copied = false;
+  std::vector<Holder> holders;
+};
+
+/// Whether a worker may try a unit that has failed with these workers.
+using MayTry = std::function<bool(const std::vector<WorkerId>&)>;
+
+/// A film that counts, or will once it is durable.
+struct HeldRecord {
+  core::BatchRange batches;
+  Digest digest{};
+  WorkerId worker{};
+  RecordId pending{};  ///< 0 once durable
+};
+
+/// The books of one frame (invariant 3). Every batch of every tile is free, leased, or held, and
+/// is counted once; held means that its film has arrived, durable or about to be.
+class FrameState {
+ public:
+  FrameState(const std::vector<uint32_t>& tile_order, uint32_t batches);
+
+  uint64_t total() const { return total_; }
+  uint64_t free() const { return free_; }  ///< tile-batches neither leased nor held
+  uint64_t durable() const { return durable_; }
+  bool complete() const { return durable_ == total_; }
+  size_t holders() const;  ///< of all assignments together
+
+  // Held batches.
+
+  bool any_held(const Extent& e) const { return held_.count(e.tile, e.batches) != 0; }
+  void hold(const Extent& e, const HeldRecord& record);
+  /// The record of exactly this extent, if there is one.
+  const HeldRecord* find_held(const Extent& e) const;
+  void made_durable(const Extent& e);
+  /// The film was lost before it was durable: its batches are free again.
+  void unhold(const Extent& e);
+
+  // Leased batches.
+
+  /// A unit that nobody has: a failed one that may be tried, else the next `run(tile)` batches or
+  /// fewer.
+  template <class RunLength>
+  std::optional<Extent> next(const MayTry& may_try, RunLength run) {
+    if (auto suspect = next_suspect(may_try)) return suspect;
+    while (!open_.empty()) {
+      const Extent front = open_.front();
+      open_.pop_front();
+      if (auto cut = cut_open(front, run(front.tile))) return cut;
+    }
+    return std::nullopt;
+  }
+
+  /// Whether next() would find something.
+  bool has_work(const MayTry& may_try) const;
+
+  /// Whether all batches are free, so that the extent can be assigned to a worker that has it.
+  bool all_free(const Extent& e) const;
+  Assignment& assign(const Extent& e, const Holder& holder, uint64_t serial);
+  Assignment* find_assignment(const Extent& e);
+  /// The assignment that `lease` holds and that covers `part`.
+  Assignment* find_covering(const Extent& part, const LeaseId& lease);
+  /// This lease no longer renders the unit; without another holder its batches are free again.
+  void release(const Extent& e, const LeaseId& lease);
+  /// Ends the assignment whoever holds it, and returns the holders.
+  std::vector<Holder> end_assignment(const Extent& e);
+
+  // Blame.
+
+  /// Notes the failure and returns how often this unit has failed.
+  uint32_t blame(const Extent& e, WorkerId worker);
+
+  /// What is wrong with the books, or nothing. Slow; for tests and audits.
+  std::string audit() const;
+
+ private:
+  struct Blame {
+    Extent extent;
+    std::vector<WorkerId> workers;
+  };
+
+  static uint64_t key(const Extent& e) { return (uint64_t{e.tile} << 32) | e.batches.first; }
+  std::optional<Extent> next_suspect(const MayTry& may_try);
+  std::optional<Extent> cut_open(const Extent& front, uint32_t run);
+  void lease_bits(const Extent& e);
+  void unlease_bits(const Extent& e);
+  const Blame* find_blame(const Extent& e) const;
+
+  uint32_t batches_;
+  uint64_t total_;
+  uint64_t free_;
+  uint64_t durable_ = 0;
+  BatchMap held_;
+  BatchMap leased_;
+  /// Runs that may hold free batches, in the order of leasing. Every free batch is in here or in a
+  /// suspect; what is not free any more is left out when it is taken.
+  std::deque<Extent> open_;
+  std::vector<Extent> suspects_;  ///< failed units that wait for another try
+  std::vector<Blame> blamed_;
+  std::unordered_map<uint64_t, Assignment> assignments_;           ///< looked up, never walked
+  std::unordered_map<uint32_t, std::vector<HeldRecord>> records_;  ///< by tile; never walked
+};
+
+}  // namespace hyades::coordinator

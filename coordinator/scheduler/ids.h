@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <compare>
+#include <cstdint>
+
+#include "core/base/hash.h"
+
+namespace hyades::coordinator {
+
+using Duration = std::chrono::nanoseconds;
+/// Only differences mean anything: the driver feeds a steady clock, the simulator its own.
+using TimePoint = std::chrono::time_point<std::chrono::steady_clock, Duration>;
+
+enum class JobId : uint64_t {};
+enum class WorkerId : uint64_t {};
+/// A thing to be made durable; unique within one incarnation.
+enum class RecordId : uint64_t {};
+
+/// A lease's name. The incarnation is that of the coordinator that granted it, so that a lease from
+/// before a restart is never taken for one of today.
+struct LeaseId {
+  uint64_t incarnation = 0;
+  uint64_t number = 0;
+  friend auto operator<=>(const LeaseId&, const LeaseId&) = default;
+};
+
+/// SHA-256 over a unit's film: two renderings of a unit by one class have the same.
+using Digest = core::Sha256;
+
+}  // namespace hyades::coordinator

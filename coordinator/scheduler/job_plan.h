@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/ids.h"
+#include "core/base/rect.h"
+#include "core/film/unit.h"
+
+namespace hyades::coordinator {
+
+/// What the scheduler knows of a job: no light, only how much there is to do and in which order.
+struct JobPlan {
+  std::vector<int32_t> frames;  ///< in the order in which they are rendered; no number twice
+  core::PixelRect region;       ///< the pixels of every frame (the crop window)
+  int32_t tile_size = 32;       ///< pixels; fixed for the life of a job
+  uint32_t batches = 1;         ///< of every pixel of every frame
+  uint64_t shuffle = 0;         ///< not 0: lease tiles in a random order (tests)
+
+  int priority = 0;   ///< higher goes first
+  std::string owner;  ///< owners of one priority share the farm alike
+
+  /// Frames that may be opened, rendered or finished at once: each costs its film's memory.
+  uint32_t frames_in_flight = 3;
+  uint32_t max_attempts = 3;  ///< failures of one unit that fail its frame
+};
+
+/// A unit whose film is durable.
+struct AcceptedUnit {
+  core::Unit unit;
+  Digest digest{};
+  std::string worker_class;
+};
+
+/// A frame that will not be rendered, and why.
+struct FailedFrame {
+  int32_t frame = 0;
+  std::string reason;
+};
+
+/// What is known of a job from before a restart.
+struct RestoredJob {
+  std::vector<int32_t> finished;  ///< frames whose outputs are there
+  std::vector<FailedFrame> failed;
+  std::vector<AcceptedUnit> accepted;  ///< of the other frames
+};
+
+}  // namespace hyades::coordinator

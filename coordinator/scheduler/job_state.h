@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "coordinator/scheduler/frame_state.h"
+#include "coordinator/scheduler/job_plan.h"
+#include "coordinator/scheduler/tile_grid.h"
+
+namespace hyades::coordinator {
+
+enum class FramePhase : uint8_t {
+  waiting,    ///< not opened yet
+  opening,    ///< OpenFrame was said
+  rendering,  ///< its units are leased
+  finishing,  ///< complete; FinishFrame was said
+  closing,    ///< finished or failed; waits for that to be durable
+  done,
+  failed,
+};
+
+/// A frame's place in its job. The books exist from opening (or restoring) until the frame is over.
+struct FrameSlot {
+  int32_t frame = 0;
+  FramePhase phase = FramePhase::waiting;
+  uint32_t finish_attempts = 0;
+  uint32_t worker_class = 0;  ///< interned; 0 until the first unit is leased
+  std::unique_ptr<FrameState> books;
+  std::string reason;  ///< why it failed
+
+  bool in_flight() const {
+    return phase != FramePhase::waiting && phase != FramePhase::done && phase != FramePhase::failed;
+  }
+  bool over() const {
+    return phase == FramePhase::closing || phase == FramePhase::done || phase == FramePhase::failed;
+  }
+};
+
+struct JobState {
+  JobId id{};
+  uint64_t serial = 0;  ///< order of arrival
+  uint32_t share = 0;   ///< index of its (priority, owner)
+  JobPlan plan;
+  TileGrid grid;
+  std::vector<FrameSlot> slots;                     ///< in the order of plan.frames
+  std::unordered_map<int32_t, uint32_t> by_number;  ///< frame number -> slot; never walked
+  std::vector<uint32_t> in_flight;                  ///< slots, in order
+  size_t next_slot = 0;                             ///< before it nothing waits
+  bool paused = false;
+  bool ready = false;  ///< listed among those that have work
+
+  uint32_t frames_done = 0;
+  uint32_t frames_failed = 0;
+
+  /// Measured seconds of one thread for one batch of a tile, taken over from frame to frame; 0
+  /// where nothing is known.
+  std::vector<float> tile_cost;
+  double mean_cost = 0;
+
+  FrameSlot* slot(int32_t frame) {
+    const auto it = by_number.find(frame);
+    return it == by_number.end() ? nullptr : &slots[it->second];
+  }
+};
+
+}  // namespace hyades::coordinator

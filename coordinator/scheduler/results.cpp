@@ -1,0 +1,166 @@
+// Films that arrive, and what has become durable.
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/scheduler/scheduler.h"
+
+namespace hyades::coordinator {
+
+void Scheduler::on(const ResultArrived& e) {
+  const auto reject = [&](RejectReason reason) {
+    say(Reject{e.worker, e.lease, e.job, e.unit, reason});
+  };
+  JobState* job = find_job(e.job);
+  FrameSlot* slot = job ? job->slot(e.unit.frame) : nullptr;
+  if (slot == nullptr || slot->over()) return reject(RejectReason::unknown);
+  const auto extent = extent_of(*job, e.unit);
+  if (!extent) return reject(RejectReason::malformed);
+  const Worker* worker = find_worker(e.worker);
+  if (worker == nullptr || slot->phase == FramePhase::waiting ||
+      slot->phase == FramePhase::opening) {
+    return reject(RejectReason::not_now);
+  }
+  FrameState& books = *slot->books;
+  if (const HeldRecord* held = books.find_held(*extent)) {
+    if (held->digest != e.digest) {
+      say(Conflict{e.job, e.unit, held->worker, e.worker});
+      reject(RejectReason::conflict);
+    } else if (held->pending == RecordId{}) {
+      say(Acknowledge{e.worker, e.lease, e.job, e.unit});
+    } else {
+      pending_.at(held->pending).waiters.push_back({e.worker, e.lease});
+    }
+  } else if (books.any_held(*extent)) {
+    reject(RejectReason::overlap);
+  } else if (slot->worker_class != 0 && slot->worker_class != worker->worker_class) {
+    reject(RejectReason::unknown);
+  } else {
+    slot->worker_class = worker->worker_class;
+    accept(*job, *slot, *extent, e);
+    learn_cost(*job, *extent, e.render_time);
+  }
+  end_unit(*job, *slot, *extent, e.lease);
+  update_ready(*job);
+  open_frames(*job);
+}
+
+/// The film counts once it is durable. Whoever else renders the unit can stop.
+void Scheduler::accept(JobState& job, FrameSlot& slot, const Extent& extent,
+                       const ResultArrived& e) {
+  slot.books->hold(extent, {extent.batches, e.digest, e.worker, RecordId{next_record_}});
+  for (const Holder& holder : slot.books->end_assignment(extent)) {
+    drop_from_lease(holder.lease, extent);
+    if (holder.lease != e.lease) say(Revoke{holder.worker, holder.lease, job.id, e.unit});
+  }
+  persist(UnitRecord{job.id, {e.unit, e.digest, class_names_[slot.worker_class]}},
+          {{}, extent, {{e.worker, e.lease}}});
+}
+
+/// The lease no longer holds the unit that `part` is of, if it did.
+void Scheduler::end_unit(JobState& job, FrameSlot& slot, const Extent& part, const LeaseId& lease) {
+  if (!slot.books) return;
+  const Assignment* assignment = slot.books->find_covering(part, lease);
+  if (assignment == nullptr) return;
+  const Extent whole = assignment->extent;
+  slot.books->release(whole, lease);
+  drop_from_lease(lease, whole);
+  update_ready(job);
+}
+
+void Scheduler::learn_cost(JobState& job, const Extent& extent, Duration render_time) {
+  if (render_time <= Duration{0}) return;
+  const double cost = std::chrono::duration<double>(render_time).count() / extent.batches.count;
+  float& known = job.tile_cost[extent.tile];
+  known = static_cast<float>(known > 0 ? 0.5 * (known + cost) : cost);
+  job.mean_cost = job.mean_cost > 0 ? 0.9 * job.mean_cost + 0.1 * cost : cost;
+}
+
+void Scheduler::on(const UnitReturned& e) {
+  JobState* job = find_job(e.job);
+  FrameSlot* slot = job ? job->slot(e.unit.frame) : nullptr;
+  const auto extent = job ? extent_of(*job, e.unit) : std::nullopt;
+  if (slot != nullptr && extent) end_unit(*job, *slot, *extent, e.lease);
+}
+
+void Scheduler::on(const UnitFailed& e) {
+  JobState* job = find_job(e.job);
+  FrameSlot* slot = job ? job->slot(e.unit.frame) : nullptr;
+  const auto extent = job ? extent_of(*job, e.unit) : std::nullopt;
+  // A failure under a lease that has ended proves nothing that its successor would not show.
+  if (slot == nullptr || !slot->books || !extent) return;
+  const Assignment* assignment = slot->books->find_covering(*extent, e.lease);
+  if (assignment == nullptr) return;
+  const uint32_t failures = slot->books->blame(assignment->extent, e.worker);
+  end_unit(*job, *slot, *extent, e.lease);
+  if (failures >= job->plan.max_attempts) fail_frame(*job, *slot, e.reason);
+}
+
+void Scheduler::persist(Record record, Pending pending) {
+  const RecordId id{next_record_++};
+  say(Persist{id, record});
+  pending.record = std::move(record);
+  pending_.emplace(id, std::move(pending));
+}
+
+void Scheduler::on(const Persisted& e) {
+  const auto it = pending_.find(e.record);
+  if (it == pending_.end()) return;
+  const Pending pending = std::move(it->second);
+  pending_.erase(it);
+  if (const auto* unit = std::get_if<UnitRecord>(&pending.record)) {
+    return unit_persisted(*unit, pending, e.record);
+  }
+  const auto* finished = std::get_if<FrameFinishedRecord>(&pending.record);
+  const auto* failed = std::get_if<FrameFailedRecord>(&pending.record);
+  JobState* job = find_job(finished ? finished->job : failed->job);
+  if (job == nullptr) return;
+  FrameSlot& slot = *job->slot(finished ? finished->frame : failed->failed.frame);
+  frame_over(*job, slot, finished ? FramePhase::done : FramePhase::failed);
+}
+
+void Scheduler::unit_persisted(const UnitRecord& record, const Pending& pending, RecordId id) {
+  const core::Unit& unit = record.accepted.unit;
+  JobState* job = find_job(record.job);
+  FrameSlot* slot = job ? job->slot(unit.frame) : nullptr;
+  const bool counts = slot != nullptr && slot->phase == FramePhase::rendering;
+  if (counts) {
+    slot->books->made_durable(pending.extent);
+    say(Merge{id, record.job, unit});
+  }
+  for (const Waiter& waiter : pending.waiters) {
+    say(Acknowledge{waiter.worker, waiter.lease, record.job, unit});
+  }
+  if (counts) complete_if_so(*job, *slot);
+}
+
+void Scheduler::on(const PersistFailed& e) {
+  const auto it = pending_.find(e.record);
+  if (it == pending_.end()) return;
+  storage_blocked_until_ = now_ + options_.storage_retry;
+  if (!std::holds_alternative<UnitRecord>(it->second.record)) {
+    to_persist_again_.push_back(e.record);
+    return;
+  }
+  const Pending pending = std::move(it->second);
+  pending_.erase(it);
+  const auto& record = std::get<UnitRecord>(pending.record);
+  JobState* job = find_job(record.job);
+  FrameSlot* slot = job ? job->slot(record.accepted.unit.frame) : nullptr;
+  if (slot != nullptr && slot->phase == FramePhase::rendering) {
+    slot->books->unhold(pending.extent);
+    update_ready(*job);
+  }
+  for (const Waiter& waiter : pending.waiters) {
+    say(Reject{waiter.worker, waiter.lease, record.job, record.accepted.unit,
+               RejectReason::not_now});
+  }
+}
+
+void Scheduler::retry_persisting() {
+  if (now_ < storage_blocked_until_) return;
+  for (const RecordId id : std::exchange(to_persist_again_, {})) {
+    say(Persist{id, pending_.at(id).record});
+  }
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,195 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <queue>
+#include <set>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+#include "coordinator/scheduler/actions.h"
+#include "coordinator/scheduler/events.h"
+#include "coordinator/scheduler/job_state.h"
+
+namespace hyades::coordinator {
+
+/// How the scheduler behaves towards every job.
+struct SchedulerOptions {
+  uint64_t incarnation = 1;  ///< greater after every restart
+  /// A lease that is not renewed for this long is taken back.
+  Duration lease_time = std::chrono::seconds(60);
+  /// What rendering one unit shall take one thread: runs of batches are as long as that needs.
+  Duration unit_time = std::chrono::milliseconds(500);
+  /// Idle workers get a copy of a unit that has been out for this long; 0: no copies.
+  Duration copy_after = std::chrono::seconds(5);
+  /// Nothing is leased for this long after something could not be made durable.
+  Duration storage_retry = std::chrono::seconds(1);
+};
+
+/// Who renders what (invariants 3 and 5): a deterministic state machine. Events and a clock in,
+/// actions out; no input or output, no threads, no clock of its own. The same machine serves the
+/// coordinator, the single machine and the simulator. Not thread-safe.
+class Scheduler {
+ public:
+  explicit Scheduler(SchedulerOptions options);
+
+  /// What follows from `event` at time `now` (which never goes back). The caller carries the
+  /// actions out in order.
+  std::vector<Action> handle(const Event& event, TimePoint now);
+
+  /// When a Tick is needed at the latest, if nothing else happens before.
+  std::optional<TimePoint> next_wake() const;
+
+  /// What is wrong with the books, or nothing. Slow; for tests and audits.
+  std::string audit() const;
+
+ private:
+  struct Worker {
+    uint32_t threads = 1;
+    uint32_t worker_class = 0;
+    uint32_t wanted = 0;   ///< units it asked for and did not get yet
+    uint64_t waiting = 0;  ///< its key in waiting_, or 0
+    std::vector<uint64_t> leases;
+  };
+  struct LeaseState {
+    WorkerId worker{};
+    JobId job{};
+    uint32_t slot = 0;
+    std::vector<Extent> units;  ///< still out
+    TimePoint deadline;
+  };
+  struct Waiter {
+    WorkerId worker{};
+    LeaseId lease;
+  };
+  struct Pending {
+    Record record;
+    Extent extent;                ///< of a unit record
+    std::vector<Waiter> waiters;  ///< who waits for its acknowledgement
+  };
+  /// All jobs of one owner at one priority.
+  struct Share {
+    int priority = 0;
+    std::string owner;
+    uint64_t running = 0;                 ///< leased units
+    std::map<uint64_t, JobState*> ready;  ///< jobs that have work, by serial
+  };
+  struct CopyCandidate {
+    TimePoint since;
+    uint64_t serial = 0;
+    JobId job{};
+    uint32_t slot = 0;
+    Extent extent;
+  };
+  /// Highest priority first, then who has least, then by age.
+  using ShareOrder = std::tuple<int, uint64_t, uint32_t>;
+
+  // scheduler.cpp: jobs and frames.
+  void on(const JobAdded& e);
+  void on(const JobPaused& e);
+  void on(const JobResumed& e);
+  void on(const JobCancelled& e);
+  void on(const FrameOpened& e);
+  void on(const FrameRefused& e);
+  void on(const FinishDone& e);
+  void on(const FinishFailed& e);
+  void restore(JobState& job, const RestoredJob& restored);
+  void open_frames(JobState& job);
+  void complete_if_so(JobState& job, FrameSlot& slot);
+  void finish(JobState& job, FrameSlot& slot);
+  void fail_frame(JobState& job, FrameSlot& slot, std::string reason);
+  void take_back_frame(JobState& job, FrameSlot& slot);
+  void frame_over(JobState& job, FrameSlot& slot, FramePhase phase);
+  void end_job_if_over(JobState& job);
+
+  // leasing.cpp: workers and leases.
+  void on(const WorkerJoined& e);
+  void on(const WorkRequested& e);
+  void on(const WorkerAlive& e);
+  void on(const WorkerLost& e);
+  void on(const Tick& e);
+  void adopt(WorkerId id, Worker& worker, const UnitInHand& held);
+  void expire_leases();
+  void dispatch();
+  bool grant(WorkerId id, Worker& worker);
+  bool grant_from(JobState& job, WorkerId id, Worker& worker);
+  bool grant_copy(WorkerId id, Worker& worker);
+  uint32_t run_length(const JobState& job, const FrameState& books, uint32_t tile) const;
+  bool may_try(WorkerId id, const Worker& worker, const std::vector<WorkerId>& blamed) const;
+  void new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t slot, bool adopted,
+                 std::vector<Extent> extents);
+  void note_copy_candidate(const JobState& job, uint32_t slot, const Assignment& assignment);
+  Assignment* live_copy_candidate(const CopyCandidate& c);
+  void release_lease(uint64_t number, bool revoke);
+  void drop_from_lease(const LeaseId& id, const Extent& e);
+  void set_waiting(WorkerId id, Worker& worker);
+  void serve(WorkerId id, Worker& worker, bool copies);
+
+  // results.cpp: films, and what is durable.
+  void on(const ResultArrived& e);
+  void on(const UnitReturned& e);
+  void on(const UnitFailed& e);
+  void on(const Persisted& e);
+  void on(const PersistFailed& e);
+  void unit_persisted(const UnitRecord& record, const Pending& pending, RecordId id);
+  void accept(JobState& job, FrameSlot& slot, const Extent& extent, const ResultArrived& e);
+  void end_unit(JobState& job, FrameSlot& slot, const Extent& part, const LeaseId& lease);
+  void learn_cost(JobState& job, const Extent& extent, Duration render_time);
+  void persist(Record record, Pending pending);
+  void retry_persisting();
+
+  // Shared.
+  JobState* find_job(JobId id);
+  Worker* find_worker(WorkerId id);
+  std::optional<Extent> extent_of(const JobState& job, const core::Unit& unit) const;
+  core::Unit unit_of(const JobState& job, const FrameSlot& slot, const Extent& extent) const;
+  uint32_t share_of(int priority, const std::string& owner);
+  void set_running(uint32_t share, int64_t change);
+  void update_ready(JobState& job);
+  uint32_t intern_class(const std::string& name);
+  LeaseState* find_lease(const LeaseId& id);
+  void say(Action action) { actions_.push_back(std::move(action)); }
+
+  const SchedulerOptions options_;
+  TimePoint now_;
+  std::vector<Action> actions_;
+
+  std::map<JobId, std::unique_ptr<JobState>> jobs_;
+  uint64_t next_job_serial_ = 1;
+  std::vector<Share> shares_;
+  std::map<std::pair<int, std::string>, uint32_t> share_index_;
+  std::set<ShareOrder> ready_shares_;
+
+  std::unordered_map<WorkerId, Worker> workers_;  ///< looked up, never walked
+  std::map<uint64_t, WorkerId> waiting_;          ///< those with a wish, longest waiting first
+  uint64_t next_waiting_ = 1;
+  bool work_appeared_ = false;           ///< since the waiting were last served
+  uint64_t threads_ = 0;                 ///< of all workers
+  std::vector<uint32_t> class_workers_;  ///< how many workers there are of each class
+  std::map<std::string, uint32_t, std::less<>> class_index_;
+  std::vector<std::string> class_names_;
+
+  std::unordered_map<uint64_t, LeaseState> leases_;  ///< by number; looked up, never walked
+  uint64_t next_lease_ = 1;
+  uint64_t next_assignment_ = 1;
+  /// When to look at which lease; renewed ones are put back when their turn comes.
+  std::priority_queue<std::pair<TimePoint, uint64_t>, std::vector<std::pair<TimePoint, uint64_t>>,
+                      std::greater<>>
+      deadlines_;
+  std::deque<CopyCandidate> copy_candidates_;  ///< oldest first
+  size_t copy_candidates_checked_ = 64;        ///< length at which stale ones are swept out
+  TimePoint next_copy_round_;                  ///< when the waiting are offered copies again
+
+  std::map<RecordId, Pending> pending_;
+  uint64_t next_record_ = 1;
+  std::vector<RecordId> to_persist_again_;
+  TimePoint storage_blocked_until_;
+};
+
+}  // namespace hyades::coordinator

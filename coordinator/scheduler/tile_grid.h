@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/base/rect.h"
+
+namespace hyades::coordinator {
+
+/// How a frame's pixels are cut into tiles, and in which order the tiles are leased: along a
+/// Hilbert curve, so that what is rendered together lies together; or shuffled, which must not
+/// change any picture and exists so that tests can show it.
+class TileGrid {
+ public:
+  TileGrid() = default;
+  /// `region` must not be empty, `tile_size` is in pixels and at least 1. A `shuffle` other than 0
+  /// is the seed of a random order.
+  TileGrid(core::PixelRect region, int32_t tile_size, uint64_t shuffle = 0);
+
+  uint32_t size() const { return columns_ * rows_; }
+  core::PixelRect tile(uint32_t index) const;
+  /// The index of exactly this rectangle, if it is a tile of the grid.
+  std::optional<uint32_t> index_of(const core::PixelRect& tile) const;
+  /// All indices, in the order in which they are leased.
+  const std::vector<uint32_t>& order() const { return order_; }
+
+ private:
+  core::PixelRect region_;
+  int32_t tile_size_ = 1;
+  uint32_t columns_ = 0;
+  uint32_t rows_ = 0;
+  std::vector<uint32_t> order_;
+};
+
+}  // namespace hyades::coordinator
