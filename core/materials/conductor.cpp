@@ -43,9 +43,11 @@ class RoughConductorBsdf final : public Bsdf {
     if (!same_side(wo, wi)) return Rgb(0.0F);
     const Vec3 o = above(wo);
     const Vec3 i = above(wi);
+    const float value = facets_.reflect(o, i);
+    if (!(value > 0.0F)) return Rgb(0.0F);
     const Vec3 h = o + i;
     const float cosine = std::fmin(1.0F, glm::dot(o, h) / glm::length(h));
-    return metal_.reflectance(cosine) * facets_.reflect(o, i);
+    return metal_.reflectance(cosine) * value;
   }
 
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode) const override {
@@ -59,9 +61,11 @@ class RoughConductorBsdf final : public Bsdf {
     const Vec3 m = facets_.sample_normal(o, u);
     const Vec3 i = reflected(o, m);
     if (!(i.z > 0.0F)) return std::nullopt;
+    const float density = facets_.reflect_pdf(o, i);
+    if (!(density > 0.0F)) return std::nullopt;
     const float cosine = std::fmin(1.0F, std::fabs(glm::dot(o, m)));
     return BsdfSample{.weight = metal_.reflectance(cosine) * facets_.reflect_weight(o, i),
-                      .pdf = facets_.reflect_pdf(o, i),
+                      .pdf = density,
                       .wi = {i.x, i.y, i.z * side(wo)}};
   }
 

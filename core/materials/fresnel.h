@@ -16,15 +16,14 @@ struct DielectricInterface {
 /// Fresnel's equations for a dielectric (Born and Wolf 1999, section 1.5.2). `cos_i` in [0, 1] on
 /// the side where light arrives; `eta` > 0: index of the other side over that of the arriving side.
 inline DielectricInterface fresnel_dielectric(float cos_i, float eta) {
-  const float sin2_t = (1.0F - cos_i) * (1.0F + cos_i) / (eta * eta);
-  if (!(sin2_t < 1.0F)) return {};
-  const float cos_t = std::sqrt(1.0F - sin2_t);
-  const float across = eta * cos_i + cos_t;
-  const float along = cos_i + eta * cos_t;
-  if (!(across > 0.0F) || !(along > 0.0F)) return {};
-  const float r_p = (eta * cos_i - cos_t) / across;
-  const float r_s = (cos_i - eta * cos_t) / along;
-  return {0.5F * (r_p * r_p + r_s * r_s), cos_t};
+  // (eta cos_t)^2, in a form that leaves cos_i as it is where eta is 1.
+  const float inner = (eta - 1.0F) * (eta + 1.0F) + cos_i * cos_i;
+  if (!(inner > 0.0F)) return {};
+  const float eta_cos_t = std::sqrt(inner);
+  const float r_s = (cos_i - eta_cos_t) / (cos_i + eta_cos_t);
+  const float eta2_cos_i = eta * eta * cos_i;
+  const float r_p = (eta2_cos_i - eta_cos_t) / (eta2_cos_i + eta_cos_t);
+  return {0.5F * (r_p * r_p + r_s * r_s), eta_cos_t / eta};
 }
 
 /// Fresnel's equations for light that arrives from vacuum on a metal of index eta + i k, at cosine

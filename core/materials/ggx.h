@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "core/base/elementary.h"
 #include "core/base/vec.h"
+#include "core/base/warp.h"
 
 namespace hyades::core {
 
@@ -21,9 +21,11 @@ struct Ggx {
   float density(const Vec3& h) const {
     const float a2 = alpha * alpha;
     const float across = h.x * h.x + h.y * h.y;
-    const float length2 = across + h.z * h.z;
     const float stretched = across + a2 * h.z * h.z;
-    return a2 * (length2 * length2) / (kPi * stretched * stretched);
+    // Opposite horizontal directions have no half vector.
+    if (!(stretched > 0.0F)) return 0.0F;
+    const float ratio = (across + h.z * h.z) / stretched;
+    return a2 * kInvPi * (ratio * ratio);
   }
 
   /// sqrt(z^2 + alpha^2 sin^2) = z (1 + 2 Lambda(w)), without its pole at grazing angles.
@@ -48,16 +50,14 @@ struct Ggx {
     return wi.z * (wo.z + o) / (wo.z * spread(wi) + wi.z * o);
   }
 
-  /// A unit facet normal, drawn in proportion to its area as seen from wo (Dupuy and Benyoub 2023,
-  /// "Sampling Visible GGX Normals with Spherical Caps", listing 3). u in [0, 1)^2.
+  /// A unit facet normal, drawn in proportion to its area as seen from wo. u in [0, 1)^2.
+  /// Where facets are scaled to a hemisphere, that hemisphere reflects wo uniformly into a
+  /// spherical cap (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps",
+  /// listing 3).
   Vec3 sample_normal(const Vec3& wo, const Vec2& u) const {
     const Vec3 w = glm::normalize(Vec3(alpha * wo.x, alpha * wo.y, wo.z));
-    // A direction of the cap that a smooth hemisphere reflects w into; one_plus_z = 1 + its z.
-    const float one_plus_z = (1.0F - u.y) * (1.0F + w.z) + (1.0F - w.z);
-    const float z = (1.0F - u.y) * (1.0F + w.z) - w.z;
-    const float r = std::sqrt(std::fmax(0.0F, one_plus_z * (1.0F - z)));
-    const SinCos phi = sin_cos(2.0F * kPi * u.x);
-    const Vec3 m(alpha * (r * phi.cos + w.x), alpha * (r * phi.sin + w.y), z + w.z);
+    const Vec3 h = square_to_cone(u, 1.0F + w.z) + w;
+    const Vec3 m(alpha * h.x, alpha * h.y, h.z);
     const float length2 = glm::dot(m, m);
     return length2 > 0.0F ? m / std::sqrt(length2) : Vec3(0.0F, 0.0F, 1.0F);
   }

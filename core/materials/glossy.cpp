@@ -1,5 +1,4 @@
-#include <cmath>
-
+#include "core/base/warp.h"
 #include "core/materials/ggx.h"
 #include "core/materials/local.h"
 #include "core/materials/params.h"
@@ -35,7 +34,7 @@ class GlossyBsdf final : public Bsdf {
       }
       i = reflected(o, facets_.sample_normal(o, u));
     } else {
-      i = cosine_hemisphere(u);
+      i = square_to_cosine_hemisphere(u);
     }
     if (!(i.z > 0.0F)) return std::nullopt;
     const float d = density(o, i);

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/base/warp.h"
 #include "core/materials/local.h"
 #include "core/materials/params.h"
 
@@ -20,11 +21,9 @@ class LambertBsdf final : public Bsdf {
 
   std::optional<BsdfSample> sample(const Vec3& wo, float, const Vec2& u,
                                    TransportMode) const override {
-    Vec3 wi = cosine_hemisphere(u);
-    const float density = kInvPi * wi.z;
-    if (!(density > 0.0F)) return std::nullopt;
-    wi.z *= side(wo);
-    return BsdfSample{.weight = color_, .pdf = density, .wi = wi};
+    const Vec3 i = square_to_cosine_hemisphere(u);
+    return BsdfSample{
+        .weight = color_, .pdf = cosine_hemisphere_pdf(i.z), .wi = {i.x, i.y, i.z * side(wo)}};
   }
 
   Rgb albedo(const Vec3&) const override { return color_; }

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cmath>
-
-#include "core/base/elementary.h"
 #include "core/base/vec.h"
 
 /// Small geometry in the local frame of a BSDF, where z is the shading normal.
@@ -18,13 +15,6 @@ inline float side(const Vec3& w) { return w.z < 0.0F ? -1.0F : 1.0F; }
 
 /// `w` on the upper side.
 inline Vec3 above(const Vec3& w) { return {w.x, w.y, w.z < 0.0F ? -w.z : w.z}; }
-
-/// A unit direction above, with density z / pi.
-inline Vec3 cosine_hemisphere(const Vec2& u) {
-  const float r = std::sqrt(u.x);
-  const SinCos phi = sin_cos(2.0F * kPi * u.y);
-  return {r * phi.cos, r * phi.sin, std::sqrt(1.0F - u.x)};
-}
 
 /// Stretches what is left of a random number after it fell into [begin, begin + width) to [0, 1).
 inline float rest_of(float u, float begin, float width) {

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/base/vec.h"
-#include "tests/support/mean_test.h"
+#include "tests/support/means.h"
 #include "tests/support/random.h"
 
 /// Pearson's chi-squared test: do samples fall where a density says?

@@ -1,4 +1,4 @@
-#include "tests/support/mean_test.h"
+#include "tests/support/means.h"
 
 #include <cmath>
 

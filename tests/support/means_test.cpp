@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tests/support/mean_test.h"
+#include "tests/support/means.h"
 #include "tests/support/random.h"
 
 namespace hyades::test {
