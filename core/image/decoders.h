@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/read_image.h"
+
+/// The decoders behind read_image, one per format. Each takes the whole file and trusts nothing in
+/// it: sizes are checked before memory is taken, damage is an error. Errors do not name the file.
+namespace hyades::core {
+
+Result<Image> decode_png(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+Result<Image> decode_jpeg(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+Result<Image> decode_hdr(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+Result<Image> decode_exr(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+
+/// Refuses sizes that are empty or above the limits. Several channels count as several pixels
+/// from the fifth on, so that memory stays within 16 bytes per allowed pixel.
+Status check_image_size(int64_t width, int64_t height, int64_t channels, const ImageLimits& limits);
+
+/// Linear value of 8-bit code `code`, read as sRGB or as linear. 0..255 -> 0..1.
+const float* linear_of_8_bits(bool srgb);
+
+/// The same for 16-bit codes, 65536 entries.
+const float* linear_of_16_bits(bool srgb);
+
+}  // namespace hyades::core

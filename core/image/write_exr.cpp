@@ -1,0 +1,93 @@
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <vector>
+
+#include "core/base/atomic_file.h"
+#include "core/image/exr_support.h"
+#include "core/image/write_image.h"
+
+namespace hyades::core {
+namespace {
+
+constexpr float kLargestHalf = 65504.0F;
+
+Status check(const Image& image, const ImageMetadata& metadata) {
+  if (image.width <= 0 || image.height <= 0 || image.channels.empty()) {
+    return Error{"the picture is empty"};
+  }
+  for (const auto& name : image.channels) {
+    if (name.empty() || name.size() > 255) return Error{"a channel name is empty or too long"};
+    if (std::count(image.channels.begin(), image.channels.end(), name) > 1) {
+      return Error{fmt::format("two channels are named '{}'", name)};
+    }
+  }
+  for (const auto& [name, value] : metadata) {
+    if (name.empty() || name.size() > 255) {
+      return Error{fmt::format("metadata name '{}' is empty or too long", name.substr(0, 40))};
+    }
+  }
+  return {};
+}
+
+/// Infinity stays; what is finite stays finite.
+half to_half(float value) {
+  if (std::isfinite(value)) value = std::clamp(value, -kLargestHalf, kLargestHalf);
+  return half(value);
+}
+
+void write(const std::string& path, const Image& image, const ImageMetadata& metadata,
+           bool as_half) {
+  prepare_openexr();
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const auto& [name, value] : metadata) header.insert(name, Imf::StringAttribute(value));
+  const Imf::PixelType type = as_half ? Imf::HALF : Imf::FLOAT;
+  for (const auto& name : image.channels) header.channels().insert(name, Imf::Channel(type));
+
+  std::vector<half> halves;
+  if (as_half) {
+    halves.resize(image.data.size());
+    std::transform(image.data.begin(), image.data.end(), halves.begin(), to_half);
+  }
+  const size_t value_bytes = as_half ? sizeof(half) : sizeof(float);
+  const size_t pixel_bytes = image.channels.size() * value_bytes;
+  const char* base = as_half ? reinterpret_cast<const char*>(halves.data())
+                             : reinterpret_cast<const char*>(image.data.data());
+  Imf::FrameBuffer buffer;
+  for (size_t c = 0; c < image.channels.size(); ++c) {
+    buffer.insert(image.channels[c],
+                  Imf::Slice(type, const_cast<char*>(base + c * value_bytes), pixel_bytes,
+                             pixel_bytes * static_cast<size_t>(image.width)));
+  }
+  Imf::OutputFile file(path.c_str(), header, 0);
+  file.setFrameBuffer(buffer);
+  file.writePixels(image.height);
+}
+
+}  // namespace
+
+Status write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
+                 bool half) {
+  if (const Status status = check(image, metadata); !status) {
+    return status.error().in("cannot write " + path);
+  }
+  return replace_file(path, [&](const std::string& temporary) -> Status {
+    try {
+      write(temporary, image, metadata, half);
+      return {};
+    } catch (const std::exception& e) {
+      return Error{"cannot write " + path + ": " + e.what()};
+    }
+  });
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+#include <vector>
+
+#include "core/base/atomic_file.h"
+#include "core/image/encode_8_bits.h"
+#include "core/image/write_image.h"
+
+namespace hyades::core {
+namespace {
+
+/// All state of one encoding: libpng's longjmp must not pass over living C++ objects.
+struct Writer {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  char message[256] = "";
+  std::vector<png_byte> file;
+  std::vector<png_text> texts;
+
+  ~Writer() { png_destroy_write_struct(&png, &info); }
+};
+
+void on_error(png_structp png, png_const_charp message) {
+  auto* writer = static_cast<Writer*>(png_get_error_ptr(png));
+  std::strncpy(writer->message, message, sizeof(writer->message) - 1);
+  png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+/// Appends; false where there is no memory (an exception must not enter libpng).
+bool append(std::vector<png_byte>& file, const png_byte* bytes, size_t count) noexcept {
+  try {
+    file.insert(file.end(), bytes, bytes + count);
+    return true;
+  } catch (...) {
+    return false;
+  }
+}
+
+void on_write(png_structp png, png_bytep bytes, size_t count) {
+  auto* writer = static_cast<Writer*>(png_get_io_ptr(png));
+  if (!append(writer->file, bytes, count)) png_error(png, "not enough memory");
+}
+
+void on_flush(png_structp) {}
+
+bool encode(Writer& writer, const Codes& codes, png_uint_32 width, png_uint_32 height) {
+  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
+  png_set_write_fn(writer.png, &writer, on_write, on_flush);
+  const int color = codes.channels == 1   ? PNG_COLOR_TYPE_GRAY
+                    : codes.channels == 3 ? PNG_COLOR_TYPE_RGB
+                                          : PNG_COLOR_TYPE_RGB_ALPHA;
+  png_set_IHDR(writer.png, writer.info, width, height, 8, color, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (!writer.texts.empty()) {
+    png_set_text(writer.png, writer.info, writer.texts.data(),
+                 static_cast<int>(writer.texts.size()));
+  }
+  png_write_info(writer.png, writer.info);
+  const size_t row_bytes = size_t{width} * static_cast<size_t>(codes.channels);
+  for (png_uint_32 y = 0; y < height; ++y) {
+    png_write_row(writer.png, codes.data.data() + y * row_bytes);
+  }
+  png_write_end(writer.png, writer.info);
+  return true;
+}
+
+bool is_ascii(const std::string& text) {
+  return std::all_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<signed char>(c) > 0; });
+}
+
+/// tEXt; iTXt (UTF-8) where the value is not ASCII.
+Status add_texts(Writer& writer, const ImageMetadata& metadata) {
+  for (const auto& [name, value] : metadata) {
+    const bool spaced = !name.empty() && (name.front() == ' ' || name.back() == ' ');
+    if (name.empty() || name.size() > 79 || spaced || !is_ascii(name)) {
+      return Error{
+          fmt::format("metadata name '{}': expected 1 to 79 ASCII letters", name.substr(0, 40))};
+    }
+    png_text text{};
+    text.compression = is_ascii(value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+    text.key = const_cast<char*>(name.c_str());
+    text.text = const_cast<char*>(value.c_str());
+    writer.texts.push_back(text);
+  }
+  return {};
+}
+
+}  // namespace
+
+Status write_png(const std::string& path, const Image& image, const ImageMetadata& metadata) {
+  const std::string context = "cannot write " + path;
+  const Result<Codes> codes = encode_8_bits(image, true);
+  if (!codes) return codes.error().in(context);
+  Writer writer;
+  if (const Status status = add_texts(writer, metadata); !status) return status.error().in(context);
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
+  if (writer.png != nullptr) writer.info = png_create_info_struct(writer.png);
+  if (writer.info == nullptr) return Error{context + ": not enough memory"};
+  if (!encode(writer, *codes, static_cast<png_uint_32>(image.width),
+              static_cast<png_uint_32>(image.height))) {
+    return Error{context + ": " + writer.message};
+  }
+  return write_file(path, std::as_bytes(std::span(writer.file)));
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/bytes.h"
+#include "core/base/hash.h"
+#include "core/image/image.h"
+
+namespace hyades::test {
+
+/// `data` in a heap block of exactly its size, so that a sanitizer sees every read past its end.
+inline core::Bytes exact_bytes(std::string_view data) {
+  std::shared_ptr<char[]> copy(new char[data.size()]);
+  std::copy(data.begin(), data.end(), copy.get());
+  const auto* first = reinterpret_cast<const std::byte*>(copy.get());
+  return {copy, {first, data.size()}};
+}
+
+inline std::string file_contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A picture of hashed values in [0, 1).
+inline core::Image hashed_image(int width, int height, std::vector<std::string> channels) {
+  core::Image image = core::make_image(width, height, std::move(channels));
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] = static_cast<float>(core::mix64(i + 1) >> 40) * 0x1p-24F;
+  }
+  return image;
+}
+
+inline float largest_difference(const core::Image& a, const core::Image& b) {
+  if (a.width != b.width || a.height != b.height || a.channels != b.channels) return 1e30F;
+  float largest = 0.0F;
+  for (size_t i = 0; i < a.data.size(); ++i) {
+    largest = std::max(largest, std::abs(a.data[i] - b.data[i]));
+  }
+  return largest;
+}
+
+}  // namespace hyades::test
