@@ -24,11 +24,19 @@ struct SurfacePoint {
   Mat4 world_to_object{1.0F};  ///< at `time`
 };
 
+/// `p` moved off its surface by its clearance, to the side that `direction` points to.
+Vec3 offset_position(const SurfacePoint& p, const Vec3& direction);
+
 /// A ray that starts at `p`, on the side of it that `direction` (unit) points to, without meeting
 /// p's own surface again.
 Ray spawn_ray(const SurfacePoint& p, const Vec3& direction, float t_max = kInfinity);
 
-/// A ray from `p` to just before `target`: what a shadow test between two points needs.
+/// A ray from `p` to just before `target`: what a shadow test between two points needs. It ends
+/// eight times `target_clearance` early (and a millionth of its length). Where the target was
+/// already moved off its surface (offset_position), pass 0.
 Ray spawn_ray_to(const SurfacePoint& p, const Vec3& target, float target_clearance);
+
+/// A ray from `p` to `target`, both moved off their surfaces: exact at grazing angles too.
+Ray spawn_ray_to(const SurfacePoint& p, const SurfacePoint& target);
 
 }  // namespace hyades::core

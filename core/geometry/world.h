@@ -22,6 +22,10 @@ struct Placement {
   /// interpolated linearly, element by element, between neighbours.
   std::vector<Mat4> to_world{Mat4(1.0F)};
   bool visible_to_camera = true;
+  /// Whether neighbouring frames place it elsewhere or shape it otherwise: such placements are kept
+  /// apart from the geometry that frames share. Decided by the job alone, never by which frames
+  /// were built before, so that a frame's bits do not depend on them.
+  bool changes_between_frames = false;
 };
 
 /// What a ray met: enough to find the surface point again.
@@ -34,7 +38,8 @@ struct Hit {
 };
 
 /// Acceleration structures that outlive a frame: one per distinct mesh that is instanced or moves,
-/// keyed by the mesh's address, kept while somebody uses them. Thread-safe.
+/// keyed by the mesh's address, and one of the still geometry that frames share. Kept while a world
+/// uses them, and those of the last world built until the next one is built. Thread-safe.
 class GeometryCache {
  public:
   GeometryCache();
@@ -73,7 +78,10 @@ class World {
   virtual const Placement& placement(uint32_t object) const = 0;
   virtual uint32_t placement_count() const = 0;
   virtual Bounds bounds() const = 0;  ///< over the whole shutter interval
-  virtual size_t memory() const = 0;  ///< bytes that Embree holds for it
+  virtual size_t memory() const = 0;  ///< bytes that Embree holds for it, and copies of vertices
+
+  /// How many rays were refused since the world was built: not finite, or out of any scene's reach.
+  virtual uint64_t invalid_rays() const { return 0; }
 };
 
 /// Builds the world. Single still placements become direct geometry with world-space vertices;

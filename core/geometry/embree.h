@@ -1,0 +1,99 @@
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "core/base/result.h"
+
+/// What differs between Embree 3 (Debian 12) and 4 (Debian 13), and the one device of the process.
+/// Only .cpp files of this room include this header.
+namespace hyades::core {
+
+/// The build quality of every acceleration structure: never LOW, which is not deterministic where
+/// surfaces coincide. HIGH (spatial splits) traces no faster on scanned meshes and takes twice the
+/// memory.
+inline constexpr RTCBuildQuality kBuildQuality = RTC_BUILD_QUALITY_MEDIUM;
+
+/// The flags of every scene. ROBUST: rays that aim at an edge or a vertex do not slip through.
+inline constexpr RTCSceneFlags kSceneFlags = RTC_SCENE_FLAG_ROBUST;
+
+#if RTC_VERSION_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+inline void trace_nearest(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, nullptr); }
+inline void trace_any(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, nullptr); }
+#else
+using EmbreeContext = RTCIntersectContext;
+inline void trace_nearest(RTCScene scene, RTCRayHit& ray) {
+  EmbreeContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &ray);
+}
+inline void trace_any(RTCScene scene, RTCRay& ray) {
+  EmbreeContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+}
+#endif
+
+/// The device, made at the first call and never released. Embree is pinned to AVX2, or, on a
+/// processor without it, to SSE 4.2 (other bits: another class of worker). The error says what
+/// Embree lacks.
+Result<RTCDevice> embree_device();
+
+/// Bytes that Embree holds now, over all scenes.
+size_t embree_memory();
+
+/// Embree may hold at most `bytes`; builds beyond fail as if memory had run out. 0: no limit.
+void limit_embree_memory(size_t bytes);
+
+/// A scene and the bytes that its geometries and hierarchy take.
+class EmbreeScene {
+ public:
+  ~EmbreeScene();
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+  RTCScene handle() const { return scene_; }
+  size_t memory() const { return memory_; }
+
+ private:
+  friend class SceneBuilder;
+  EmbreeScene() = default;
+  RTCScene scene_ = nullptr;
+  size_t memory_ = 0;
+};
+
+/// Fills a scene and commits it. Scenes are built one at a time in the process (each with all
+/// threads), so that the bytes counted are its own.
+class SceneBuilder {
+ public:
+  SceneBuilder();
+  ~SceneBuilder();
+  SceneBuilder(const SceneBuilder&) = delete;
+  SceneBuilder& operator=(const SceneBuilder&) = delete;
+
+  RTCDevice device() const { return device_; }
+
+  /// Commits `geometry`, attaches it as number `id` and releases the caller's hold on it.
+  void attach(RTCGeometry geometry, unsigned id);
+
+  /// The finished scene, or what Embree objected to on the way.
+  Result<std::shared_ptr<const EmbreeScene>> commit();
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  size_t before_ = 0;
+  Status status_;
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,86 @@
+#include "core/geometry/embree_geometry.h"
+
+#include <limits>
+
+namespace hyades::core {
+namespace {
+
+void quadric_bounds_callback(const RTCBoundsFunctionArguments* args) {
+  const auto& object = *static_cast<const PlacedObject*>(args->geometryUserPtr);
+  const Bounds b =
+      quadric_bounds(object.motion().steps()[args->timeStep], object.placement().shape);
+  RTCBounds& out = *args->bounds_o;
+  out = {b.lower.x, b.lower.y, b.lower.z, 0.0F, b.upper.x, b.upper.y, b.upper.z, 0.0F};
+}
+
+/// The nearest distance at which `ray` meets the quadric within its interval, as Embree wants it.
+std::optional<double> meet(const PlacedObject& object, const RTCRay& ray) {
+  const Affine m = object.to_object_at(ray.time);
+  const Vec3d origin = m.point(Vec3d(ray.org_x, ray.org_y, ray.org_z));
+  const Vec3d direction = m.vector(Vec3d(ray.dir_x, ray.dir_y, ray.dir_z));
+  return meet_quadric(object.quadric(), origin, direction, static_cast<double>(ray.tnear),
+                      static_cast<double>(ray.tfar));
+}
+
+// Rays come one at a time here (rtcIntersect1, rtcOccluded1), so N is 1.
+void intersect_quadric(const RTCIntersectFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  auto& ray_hit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+  const auto t = meet(*static_cast<const PlacedObject*>(args->geometryUserPtr), ray_hit.ray);
+  if (!t) return;
+  ray_hit.ray.tfar = static_cast<float>(*t);
+  ray_hit.hit.u = 0.0F;
+  ray_hit.hit.v = 0.0F;
+  ray_hit.hit.primID = args->primID;
+  ray_hit.hit.geomID = args->geomID;
+  ray_hit.hit.instID[0] = args->context->instID[0];
+}
+
+void occlude_quadric(const RTCOccludedFunctionNArguments* args) {
+  if (args->valid[0] == 0) return;
+  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+  if (meet(*static_cast<const PlacedObject*>(args->geometryUserPtr), ray)) {
+    ray.tfar = -std::numeric_limits<float>::infinity();
+  }
+}
+
+}  // namespace
+
+RTCGeometry new_mesh_geometry(RTCDevice device, const MeshBuffers& buffers, unsigned mask) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                             buffers.positions, 0, sizeof(Vec3), buffers.mesh->positions.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                             buffers.triangles, 0, sizeof(buffers.triangles[0]),
+                             buffers.mesh->triangles.size());
+  rtcSetGeometryMask(geometry, mask);
+  return geometry;
+}
+
+RTCGeometry new_quadric_geometry(RTCDevice device, const PlacedObject& object, unsigned mask) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(object.motion().steps().size()));
+  rtcSetGeometryUserData(geometry, const_cast<PlacedObject*>(&object));
+  rtcSetGeometryBoundsFunction(geometry, quadric_bounds_callback, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_quadric);
+  rtcSetGeometryOccludedFunction(geometry, occlude_quadric);
+  rtcSetGeometryMask(geometry, mask);
+  return geometry;
+}
+
+RTCGeometry new_instance_geometry(RTCDevice device, RTCScene scene, const Motion& motion,
+                                  unsigned mask) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, scene);
+  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(motion.steps().size()));
+  for (size_t i = 0; i < motion.steps().size(); ++i) {
+    const Mat4 m = motion.steps()[i].to_mat4();
+    rtcSetGeometryTransform(geometry, static_cast<unsigned>(i), RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR,
+                            &m[0][0]);
+  }
+  rtcSetGeometryMask(geometry, mask);
+  return geometry;
+}
+
+}  // namespace hyades::core

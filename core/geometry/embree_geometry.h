@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/geometry/embree.h"
+#include "core/geometry/placed_object.h"
+
+namespace hyades::core {
+
+/// Triangles that share the memory of `buffers`, which must outlive the scene.
+RTCGeometry new_mesh_geometry(RTCDevice device, const MeshBuffers& buffers, unsigned mask);
+
+/// A quadric (perhaps moving) as user geometry; `object` must outlive the scene at its address.
+RTCGeometry new_quadric_geometry(RTCDevice device, const PlacedObject& object, unsigned mask);
+
+/// An instance of `scene` under the matrices of `motion`.
+RTCGeometry new_instance_geometry(RTCDevice device, RTCScene scene, const Motion& motion,
+                                  unsigned mask);
+
+}  // namespace hyades::core

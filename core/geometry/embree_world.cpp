@@ -1,0 +1,126 @@
+#include "core/geometry/embree_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace hyades::core {
+namespace {
+
+/// Rays farther out than this overflow inside Embree.
+constexpr float kReach = 1e18F;
+
+/// Embree counts hits at tnear itself; those at 0 are not wanted.
+constexpr float kNearest = std::numeric_limits<float>::min();
+
+/// How often a hit that exact arithmetic denies is skipped before the ray counts as a miss.
+constexpr int kMaxRetries = 16;
+
+bool within_reach(const Vec3& v) {
+  return std::abs(v.x) <= kReach && std::abs(v.y) <= kReach && std::abs(v.z) <= kReach;
+}
+
+RTCRay to_embree(const Ray& ray, RayKind kind) {
+  RTCRay r;
+  r.org_x = ray.origin.x;
+  r.org_y = ray.origin.y;
+  r.org_z = ray.origin.z;
+  r.tnear = kNearest;
+  r.dir_x = ray.direction.x;
+  r.dir_y = ray.direction.y;
+  r.dir_z = ray.direction.z;
+  r.time = std::clamp(ray.time, 0.0F, 1.0F);
+  r.tfar = ray.t_max;
+  r.mask = static_cast<unsigned>(kind);
+  r.id = 0;
+  r.flags = 0;
+  return r;
+}
+
+}  // namespace
+
+EmbreeWorld::EmbreeWorld(WorldParts parts)
+    : parts_(std::move(parts)),
+      scene_(parts_.top->handle()),
+      still_number_(static_cast<uint32_t>(parts_.objects.size())) {
+  std::set<const MeshBuffers*> copies;
+  for (const auto& object : parts_.objects) {
+    bounds_.include(object->bounds());
+    const MeshBuffers* buffers = object->buffers();
+    if (buffers != nullptr && copies.insert(buffers).second) memory_ += buffers->own_memory();
+  }
+  memory_ += parts_.top->memory();
+  if (parts_.still != nullptr) memory_ += parts_.still->scene->memory();
+  for (const auto& mesh : parts_.mesh_scenes) memory_ += mesh->scene->memory();
+}
+
+bool EmbreeWorld::usable(const Ray& ray) const {
+  const Vec3& d = ray.direction;
+  const bool good = within_reach(ray.origin) && within_reach(d) && glm::dot(d, d) > 0.0F &&
+                    std::abs(ray.time) <= kReach && !std::isnan(ray.t_max);
+  if (!good) invalid_rays_.fetch_add(1, std::memory_order_relaxed);
+  return good && ray.t_max > kNearest;
+}
+
+std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
+  if (!usable(ray)) return std::nullopt;
+  RTCRayHit query;
+  query.ray = to_embree(ray, kind);
+  for (int i = 0; i < kMaxRetries; ++i) {
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    trace_nearest(scene_, query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    const uint32_t instance = query.hit.instID[0];
+    const uint32_t number = instance == RTC_INVALID_GEOMETRY_ID || instance == still_number_
+                                ? query.hit.geomID
+                                : instance;
+    if (auto hit = parts_.objects[number]->meet(ray, query.hit.primID)) {
+      hit->object = number;
+      return hit;
+    }
+    // The primitive lies behind the origin, beyond the end or edge-on, by less than float can tell.
+    query.ray.tnear = std::nextafter(query.ray.tfar, kInfinity);
+    query.ray.tfar = ray.t_max;
+    if (!(query.ray.tnear < query.ray.tfar)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+bool EmbreeWorld::occluded(const Ray& ray) const {
+  if (!usable(ray)) return false;
+  RTCRay query = to_embree(ray, RayKind::other);
+  trace_any(scene_, query);
+  return query.tfar < 0.0F;
+}
+
+SurfacePoint EmbreeWorld::surface(const Ray& ray, const Hit& hit) const {
+  SurfacePoint p = parts_.objects[hit.object]->point(ray, hit);
+  p.object = hit.object;
+  return p;
+}
+
+SurfacePoint EmbreeWorld::triangle_point(uint32_t object, uint32_t primitive, float u, float v,
+                                         float time) const {
+  SurfacePoint p = parts_.objects[object]->mesh_point(primitive, u, v, time);
+  p.object = object;
+  return p;
+}
+
+Mat4 EmbreeWorld::transform_at(uint32_t object, float time) const {
+  const PlacedObject& placed = *parts_.objects[object];
+  return placed.motion().still() ? placed.placement().to_world[0]
+                                 : placed.motion().at(time).to_mat4();
+}
+
+const Placement& EmbreeWorld::placement(uint32_t object) const {
+  return parts_.objects[object]->placement();
+}
+
+uint32_t EmbreeWorld::placement_count() const {
+  return static_cast<uint32_t>(parts_.objects.size());
+}
+
+}  // namespace hyades::core

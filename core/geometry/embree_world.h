@@ -1,0 +1,51 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/geometry_cache.h"
+#include "core/geometry/world.h"
+
+namespace hyades::core {
+
+/// What a world is put together from; build_world fills it in.
+struct WorldParts {
+  std::vector<std::shared_ptr<const PlacedObject>> objects;
+  std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;  ///< distinct, in use
+  std::shared_ptr<const StillScene> still;                    ///< null: all is in `top`
+  std::shared_ptr<const EmbreeScene> top;
+};
+
+/// The world over one Embree scene. Geometry numbers in `top` are numbers of placements, but for
+/// the still scene, an instance with the number after the last.
+class EmbreeWorld final : public World {
+ public:
+  explicit EmbreeWorld(WorldParts parts);
+
+  std::optional<Hit> intersect(const Ray& ray, RayKind kind) const override;
+  bool occluded(const Ray& ray) const override;
+  SurfacePoint surface(const Ray& ray, const Hit& hit) const override;
+  SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
+                              float time) const override;
+  Mat4 transform_at(uint32_t object, float time) const override;
+  const Placement& placement(uint32_t object) const override;
+  uint32_t placement_count() const override;
+  Bounds bounds() const override { return bounds_; }
+  size_t memory() const override { return memory_; }
+  uint64_t invalid_rays() const override { return invalid_rays_.load(); }
+
+ private:
+  bool usable(const Ray& ray) const;
+
+  WorldParts parts_;
+  RTCScene scene_;
+  uint32_t still_number_;
+  Bounds bounds_;
+  size_t memory_ = 0;
+  mutable std::atomic<uint64_t> invalid_rays_{0};
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/geometry/embree.h"
+#include "core/geometry/placed_object.h"
+#include "core/geometry/world.h"
+
+namespace hyades::core {
+
+/// A mesh in its object space: what instances refer to.
+struct MeshScene {
+  std::shared_ptr<const MeshBuffers> buffers;
+  std::shared_ptr<const EmbreeScene> scene;
+};
+
+/// A placement made ready, under its number in the world.
+struct NumberedObject {
+  uint32_t number = 0;
+  std::shared_ptr<const PlacedObject> object;
+};
+
+/// Still geometry in world space that frames share.
+struct StillScene {
+  std::vector<NumberedObject> objects;
+  std::shared_ptr<const EmbreeScene> scene;
+};
+
+struct GeometryCache::State {
+  std::mutex mutex;  // guards all that follows
+  std::map<const TriangleMesh*, std::weak_ptr<const MeshScene>> meshes;
+  std::weak_ptr<const StillScene> still;
+  /// What the last world used, so that it outlives that world.
+  std::vector<std::shared_ptr<const void>> recent;
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+
+namespace hyades::core {
+
+/// The instruction set that Embree is pinned to on this machine: "avx2", or "sse4.2" where the
+/// processor has no AVX2. Bits of hits differ between the two, so it is part of a worker's class.
+/// Errors: Embree supports neither here.
+Result<std::string> embree_isa();
+
+/// "3.13.5", of the library that was compiled against.
+std::string embree_version();
+
+}  // namespace hyades::core

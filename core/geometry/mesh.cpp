@@ -1,0 +1,88 @@
+#include "core/geometry/mesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/elementary.h"
+#include "core/base/parallel.h"
+
+namespace hyades::core {
+namespace {
+
+constexpr size_t kChunk = size_t{1} << 16;
+
+size_t chunk_count(size_t n) { return (n + kChunk - 1) / kChunk; }
+
+/// Interior angle between two edges, in radians.
+float angle_between(const Vec3d& a, const Vec3d& b) {
+  const double lengths = std::sqrt(glm::dot(a, a) * glm::dot(b, b));
+  return lengths > 0.0 ? acos(static_cast<float>(glm::dot(a, b) / lengths)) : 0.0F;
+}
+
+/// Unit normal of one triangle and its angles at the three corners.
+struct Corners {
+  Vec3d normal{0.0};
+  Vec3 angles{0.0F};
+};
+
+Corners corners_of(const TriangleMesh& mesh, size_t triangle) {
+  const auto& t = mesh.triangles[triangle];
+  const Vec3d p0(mesh.positions[t[0]]);
+  const Vec3d p1(mesh.positions[t[1]]);
+  const Vec3d p2(mesh.positions[t[2]]);
+  const Vec3d n = glm::cross(p1 - p0, p2 - p0);
+  const double length = std::sqrt(glm::dot(n, n));
+  if (!(length > 0.0)) return {};
+  return {n / length,
+          {angle_between(p1 - p0, p2 - p0), angle_between(p2 - p1, p0 - p1),
+           angle_between(p0 - p2, p1 - p2)}};
+}
+
+}  // namespace
+
+size_t TriangleMesh::memory() const {
+  return positions.size() * sizeof(Vec3) + triangles.size() * sizeof(triangles[0]) +
+         normals.size() * sizeof(Vec3) + uvs.size() * sizeof(Vec2);
+}
+
+void finish_mesh(TriangleMesh& mesh) {
+  mesh.positions.reserve(mesh.positions.size() + 1);
+  const size_t n = mesh.positions.size();
+  std::vector<Bounds> parts(chunk_count(n));
+  (void)parallel_for(parts.size(), 0, [&](size_t chunk) {
+    Bounds b;
+    const size_t end = std::min(n, (chunk + 1) * kChunk);
+    for (size_t i = chunk * kChunk; i < end; ++i) b.include(mesh.positions[i]);
+    parts[chunk] = b;
+  });
+  mesh.bounds = Bounds();
+  for (const Bounds& b : parts) mesh.bounds.include(b);
+}
+
+void compute_smooth_normals(TriangleMesh& mesh) {
+  const size_t n = mesh.triangles.size();
+  std::vector<Vec3d> sums(mesh.positions.size(), Vec3d(0.0));
+  std::vector<Corners> corners(std::min(n, 16 * kChunk));
+  // Angles and face normals in parallel, sums in the order of the triangles: the same bits for any
+  // number of threads.
+  for (size_t begin = 0; begin < n; begin += corners.size()) {
+    const size_t count = std::min(corners.size(), n - begin);
+    (void)parallel_for(chunk_count(count), 0, [&](size_t chunk) {
+      const size_t end = std::min(count, (chunk + 1) * kChunk);
+      for (size_t i = chunk * kChunk; i < end; ++i) corners[i] = corners_of(mesh, begin + i);
+    });
+    for (size_t i = 0; i < count; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        sums[mesh.triangles[begin + i][k]] +=
+            corners[i].normal * static_cast<double>(corners[i].angles[k]);
+      }
+    }
+  }
+  mesh.normals.resize(mesh.positions.size());
+  for (size_t i = 0; i < sums.size(); ++i) {
+    const double length = std::sqrt(glm::dot(sums[i], sums[i]));
+    mesh.normals[i] = length > 0.0 ? Vec3(sums[i] / length) : Vec3(0.0F, 0.0F, 0.0F);
+  }
+}
+
+}  // namespace hyades::core

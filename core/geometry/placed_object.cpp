@@ -1,0 +1,119 @@
+#include "core/geometry/placed_object.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/geometry/triangle.h"
+
+namespace hyades::core {
+namespace {
+
+/// A box in double precision, widened so that rounding it to float keeps everything inside.
+Bounds round_outwards(const Vec3d& lower, const Vec3d& upper) {
+  Bounds b;
+  for (int i = 0; i < 3; ++i) {
+    b.lower[i] =
+        std::nextafter(static_cast<float>(lower[i]), -std::numeric_limits<float>::infinity());
+    b.upper[i] =
+        std::nextafter(static_cast<float>(upper[i]), std::numeric_limits<float>::infinity());
+  }
+  return b;
+}
+
+/// Half extents of the image of a disk of radius r around the y axis.
+Vec3d disk_extent(const Affine& m, double r) {
+  Vec3d e;
+  for (int i = 0; i < 3; ++i) {
+    const double x = m.linear[0][i];
+    const double z = m.linear[2][i];
+    e[i] = r * std::sqrt(x * x + z * z);
+  }
+  return e;
+}
+
+}  // namespace
+
+Bounds transform_bounds(const Affine& m, const Bounds& box) {
+  if (box.empty()) return box;
+  const Vec3d center = 0.5 * (Vec3d(box.lower) + Vec3d(box.upper));
+  const Vec3d half = 0.5 * (Vec3d(box.upper) - Vec3d(box.lower));
+  const Vec3d c = m.point(center);
+  const Vec3d e = glm::abs(m.linear[0]) * half.x + glm::abs(m.linear[1]) * half.y +
+                  glm::abs(m.linear[2]) * half.z;
+  return round_outwards(c - e, c + e);
+}
+
+Bounds quadric_bounds(const Affine& m, const Shape& shape) {
+  const double r = static_cast<double>(shape.radius);
+  if (shape.kind == Shape::Kind::sphere) {
+    Vec3d e;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3d row(m.linear[0][i], m.linear[1][i], m.linear[2][i]);
+      e[i] = r * std::sqrt(glm::dot(row, row));
+    }
+    return round_outwards(m.offset - e, m.offset + e);
+  }
+  const Vec3d e = disk_extent(m, r);
+  Bounds b = round_outwards(m.offset - e, m.offset + e);
+  if (shape.kind == Shape::Kind::cylinder) {
+    const Vec3d top = m.point({0.0, static_cast<double>(shape.height), 0.0});
+    b.include(round_outwards(top - e, top + e));
+  }
+  return b;
+}
+
+PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffers> buffers,
+                           bool in_world)
+    : placement_(std::move(placement)),
+      buffers_(std::move(buffers)),
+      in_world_(in_world),
+      motion_(placement_.to_world) {
+  to_world_ = motion_.steps()[0];
+  to_object_ = to_world_.inverse();
+  world_to_object_ = to_object_.to_mat4();
+  handedness_ = to_world_.determinant() < 0.0 ? -1.0 : 1.0;
+  quadric_ = {placement_.shape.kind, static_cast<double>(placement_.shape.radius),
+              static_cast<double>(placement_.shape.height)};
+  if (in_world_) {
+    bounds_ = buffers_->bounds;
+    return;
+  }
+  for (const Affine& step : motion_.steps()) {
+    bounds_.include(is_quadric() ? quadric_bounds(step, placement_.shape)
+                                 : transform_bounds(step, buffers_->bounds));
+  }
+}
+
+std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const {
+  Vec3d origin(ray.origin);
+  Vec3d direction(ray.direction);
+  if (!in_world_) {
+    const Affine m = to_object_at(ray.time);
+    origin = m.point(origin);
+    direction = m.vector(direction);
+  }
+  Hit hit;
+  hit.primitive = primitive;
+  double t = 0.0;
+  const double t_max = static_cast<double>(ray.t_max);
+  if (is_quadric()) {
+    const auto met = meet_quadric(quadric_, origin, direction, 0.0, t_max);
+    if (!met) return std::nullopt;
+    t = *met;
+  } else {
+    const auto& corners = buffers_->triangles[primitive];
+    const auto met =
+        meet_triangle(origin, direction, buffers_->positions[corners[0]],
+                      buffers_->positions[corners[1]], buffers_->positions[corners[2]]);
+    if (!met) return std::nullopt;
+    t = met->t;
+    hit.u = static_cast<float>(met->u);
+    hit.v = static_cast<float>(met->v);
+  }
+  if (!(t > 0.0 && t < t_max)) return std::nullopt;
+  hit.t = std::max(static_cast<float>(t), std::numeric_limits<float>::min());
+  return hit;
+}
+
+}  // namespace hyades::core
