@@ -1,0 +1,203 @@
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include "coordinator/store/log_files.h"
+
+namespace hyades::coordinator {
+namespace {
+
+namespace fs = std::filesystem;
+using core::Error;
+using core::Result;
+using core::Status;
+
+Error failed(const std::string& doing, const std::string& path, int error) {
+  return {"cannot " + doing + " " + path + ": " + std::generic_category().message(error)};
+}
+
+/// An open descriptor.
+class Handle {
+ public:
+  explicit Handle(int fd) : fd_(fd) {}
+  ~Handle() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  int fd() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+int open_retrying(const std::string& path, int flags) {
+  int fd = -1;
+  do {
+    fd = ::open(path.c_str(), flags | O_CLOEXEC, 0644);
+  } while (fd < 0 && errno == EINTR);
+  return fd;
+}
+
+class DiskWriter final : public LogWriter {
+ public:
+  DiskWriter(std::string path, int fd) : path_(std::move(path)), handle_(fd) {}
+
+  Status write(std::span<const std::byte> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t done = ::write(handle_.fd(), bytes.data(), bytes.size());
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) return failed("write", path_, errno);
+      bytes = bytes.subspan(static_cast<size_t>(done));
+    }
+    return {};
+  }
+
+  Status sync() override {
+    // Not repeated after EINTR or anything else: the kernel may have dropped the pages by then.
+    if (::fdatasync(handle_.fd()) != 0) return failed("sync", path_, errno);
+    return {};
+  }
+
+ private:
+  std::string path_;
+  Handle handle_;
+};
+
+class DiskReader final : public LogReader {
+ public:
+  DiskReader(std::string path, int fd, uint64_t size)
+      : path_(std::move(path)), handle_(fd), size_(size) {}
+
+  uint64_t size() const override { return size_; }
+
+  Status read(uint64_t offset, std::span<std::byte> into) override {
+    while (!into.empty()) {
+      const ssize_t done =
+          ::pread(handle_.fd(), into.data(), into.size(), static_cast<off_t>(offset));
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) return failed("read", path_, errno);
+      if (done == 0) return Error{"cannot read " + path_ + ": it ends too early"};
+      into = into.subspan(static_cast<size_t>(done));
+      offset += static_cast<uint64_t>(done);
+    }
+    return {};
+  }
+
+ private:
+  std::string path_;
+  Handle handle_;
+  uint64_t size_;
+};
+
+class DiskLock final : public LogLock {
+ public:
+  explicit DiskLock(int fd) : handle_(fd) {}
+  int fd() const { return handle_.fd(); }
+
+ private:
+  Handle handle_;  // closing it gives the flock back
+};
+
+class DiskFiles final : public LogFiles {
+ public:
+  Status make_folder(const std::string& folder) override {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) return Error{"cannot create folder " + folder + ": " + error.message()};
+    // The folder's own name has to last too.
+    const fs::path parent = fs::absolute(folder).lexically_normal().parent_path();
+    return sync_folder(parent.string());
+  }
+
+  Status sync_folder(const std::string& folder) override {
+    const Handle handle(open_retrying(folder, O_RDONLY | O_DIRECTORY));
+    if (handle.fd() < 0) return failed("open", folder, errno);
+    // Some network file systems do not know how and say EINVAL; they keep names on their own.
+    if (::fsync(handle.fd()) != 0 && errno != EINVAL) return failed("sync", folder, errno);
+    return {};
+  }
+
+  Result<std::vector<std::string>> list(const std::string& folder) override {
+    std::vector<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+      names.push_back(at->path().filename().string());
+    }
+    if (error) return Error{"cannot list folder " + folder + ": " + error.message()};
+    return names;
+  }
+
+  Result<std::unique_ptr<LogWriter>> create(const std::string& path) override {
+    const int fd = open_retrying(path, O_WRONLY | O_CREAT | O_EXCL);
+    if (fd < 0) return failed("create", path, errno);
+    return std::unique_ptr<LogWriter>(std::make_unique<DiskWriter>(path, fd));
+  }
+
+  Result<std::unique_ptr<LogReader>> open(const std::string& path) override {
+    const int fd = open_retrying(path, O_RDONLY);
+    if (fd < 0) return failed("open", path, errno);
+    struct stat info {};
+    if (::fstat(fd, &info) != 0) {
+      const int error = errno;
+      ::close(fd);
+      return failed("read", path, error);
+    }
+    return std::unique_ptr<LogReader>(
+        std::make_unique<DiskReader>(path, fd, static_cast<uint64_t>(info.st_size)));
+  }
+
+  Status rename(const std::string& from, const std::string& to) override {
+    if (::rename(from.c_str(), to.c_str()) != 0) return failed("rename to", to, errno);
+    return {};
+  }
+
+  Status remove(const std::string& path) override {
+    if (::unlink(path.c_str()) != 0) return failed("remove", path, errno);
+    return {};
+  }
+
+  Status truncate(const std::string& path, uint64_t size) override {
+    const Handle handle(open_retrying(path, O_WRONLY));
+    if (handle.fd() < 0) return failed("open", path, errno);
+    if (::ftruncate(handle.fd(), static_cast<off_t>(size)) != 0 || ::fsync(handle.fd()) != 0) {
+      return failed("shorten", path, errno);
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<LogLock>> lock(const std::string& path) override {
+    auto held = std::make_unique<DiskLock>(open_retrying(path, O_RDWR | O_CREAT));
+    if (held->fd() < 0) return failed("open", path, errno);
+    if (::flock(held->fd(), LOCK_EX | LOCK_NB) != 0) {
+      if (errno != EWOULDBLOCK) return failed("lock", path, errno);
+      char holder[32] = {};
+      const ssize_t got = ::pread(held->fd(), holder, sizeof holder - 1, 0);
+      std::string text(holder, static_cast<size_t>(std::max<ssize_t>(got, 0)));
+      text.erase(std::find(text.begin(), text.end(), '\n'), text.end());
+      return Error{path + " is held by another process" +
+                   (text.empty() ? std::string() : " (number " + text + ")")};
+    }
+    // Who holds it, for the message above; the lock works without.
+    const std::string self = std::to_string(::getpid()) + "\n";
+    if (::ftruncate(held->fd(), 0) == 0) {
+      [[maybe_unused]] const ssize_t put = ::pwrite(held->fd(), self.data(), self.size(), 0);
+    }
+    return std::unique_ptr<LogLock>(std::move(held));
+  }
+};
+
+}  // namespace
+
+LogFiles& disk_log_files() {
+  static DiskFiles files;
+  return files;
+}
+
+}  // namespace hyades::coordinator

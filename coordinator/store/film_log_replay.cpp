@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <unordered_set>
+#include <utility>
+
+#include "coordinator/store/film_log.h"
+#include "coordinator/store/log_names.h"
+#include "coordinator/store/segment.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using core::Error;
+using core::Result;
+using core::Status;
+
+constexpr size_t kMaxProblems = 100;
+
+void note(ReplayReport& report, std::string problem) {
+  if (report.problems.size() < kMaxProblems) report.problems.push_back(std::move(problem));
+}
+
+}  // namespace
+
+/// What of the folder has been found so far.
+struct FilmLog::Replay {
+  const Visitor& visitor;
+  ReplayReport report;
+  uint64_t covered = 0;  ///< records up to this number stand in the snapshot
+  uint64_t last_sequence = 0;
+  std::unordered_set<uint64_t> seen;  ///< a group whose sync failed was written twice
+};
+
+Result<ReplayReport> FilmLog::replay(const Visitor& visitor) {
+  const std::lock_guard<std::mutex> hold(files_mutex_);
+  if (next_index_ != 1 || !segments_.empty()) return Error{"the film log was replayed already"};
+  Result<std::vector<std::string>> names = files_.list(folder_);
+  if (!names) return names.error();
+  std::vector<Segment> found;
+  for (const std::string& name : *names) {
+    if (const std::optional<SegmentName> parsed = parse_segment_name(name)) {
+      found.push_back({name, parsed->index, 0, parsed->snapshot});
+    } else if (is_log_file(name) && name.ends_with(kUnfinishedSuffix)) {
+      [[maybe_unused]] const Status removed = files_.remove(path(name));  // tried again next time
+    }
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Segment& a, const Segment& b) { return a.index < b.index; });
+
+  // The newest snapshot stands for everything before it, older snapshots included.
+  Replay state{visitor, {}, 0, 0, {}};
+  std::optional<size_t> newest;
+  for (size_t i = 0; i < found.size(); ++i) {
+    Result<std::optional<SegmentHeader>> header = read_header(found[i]);
+    if (!header) return header.error();
+    if (found[i].snapshot && *header) {
+      newest = i;
+      state.covered = (*header)->covered_through;
+    }
+  }
+  state.last_sequence = state.covered;
+
+  std::vector<Segment> kept;
+  const auto keep = [&](Segment segment, bool last) {
+    replay_segment(segment, last, state);
+    kept.push_back(std::move(segment));
+  };
+  if (newest) keep(found[*newest], false);
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (i == newest) continue;
+    if (newest && found[i].snapshot && i < *newest) {
+      kept.push_back(found[i]);
+      continue;
+    }
+    keep(found[i], i + 1 == found.size());
+  }
+  next_index_ = found.empty() ? 1 : found.back().index + 1;
+  segments_ = std::move(kept);
+  // A compaction may have been interrupted before it removed what it replaced.
+  if (newest) {
+    const uint64_t index = found[*newest].index;
+    const Status removed = remove_segments([&](const Segment& s) {
+      return s.snapshot ? s.index < index : s.last_sequence <= state.covered;
+    });
+    if (!removed) note(state.report, removed.error().message);
+  }
+
+  const std::lock_guard<std::mutex> hold_numbers(mutex_);
+  next_sequence_ = state.last_sequence + 1;
+  durable_ = state.last_sequence;
+  replayed_ = true;
+  return std::move(state.report);
+}
+
+/// The segment's header, nothing where it is damaged; an error for newer versions.
+Result<std::optional<SegmentHeader>> FilmLog::read_header(const Segment& segment) {
+  Result<std::unique_ptr<LogReader>> reader = files_.open(path(segment.name));
+  if (!reader) return reader.error();
+  std::array<std::byte, kSegmentHeaderBytes> bytes{};
+  std::optional<SegmentHeader> header;
+  if ((*reader)->size() >= bytes.size() && (*reader)->read(0, bytes)) {
+    header = decode_segment_header(bytes);
+  }
+  if (header && header->version > kSegmentVersion) {
+    return Error{fmt::format("{} was written by a newer version of Hyades (format {}, known: {})",
+                             path(segment.name), header->version, kSegmentVersion)};
+  }
+  if (header && (header->salt != salt_ || header->index != segment.index ||
+                 header->snapshot != segment.snapshot)) {
+    header.reset();  // of another log, or renamed
+  }
+  return header;
+}
+
+void FilmLog::replay_segment(Segment& segment, bool last, Replay& state) {
+  const std::string file = path(segment.name);
+  Result<std::unique_ptr<LogReader>> reader = files_.open(file);
+  if (!reader) return note(state.report, reader.error().message);
+
+  SegmentScanner scanner(**reader, salt_);
+  while (scanner.next()) {
+    if (!segment.snapshot) {
+      segment.last_sequence = std::max(segment.last_sequence, scanner.sequence());
+      state.last_sequence = std::max(state.last_sequence, scanner.sequence());
+      if (scanner.sequence() <= state.covered || !state.seen.insert(scanner.sequence()).second) {
+        continue;
+      }
+    }
+    if (const Status taken = state.visitor(scanner.payload()); !taken) {
+      note(state.report, fmt::format("{}: record {} was refused: {}", file, scanner.sequence(),
+                                     taken.error().message));
+      continue;
+    }
+    ++state.report.records;
+    state.report.bytes += scanner.payload().size();
+  }
+
+  for (const SegmentScanner::Gap& gap : scanner.gaps()) {
+    state.report.damaged_bytes += gap.end - gap.begin;
+    note(state.report, fmt::format("{}: bytes {} to {} are damaged; what they held has to be "
+                                   "rendered again",
+                                   file, gap.begin, gap.end - 1));
+  }
+  const uint64_t size = (*reader)->size();
+  if (size <= scanner.good_end()) return;
+  const uint64_t tail = size - scanner.good_end();
+  if (!last) {
+    state.report.damaged_bytes += tail;
+    note(state.report, fmt::format("{}: the last {} bytes are damaged", file, tail));
+    return;
+  }
+  // The end of the last file: a crash interrupted writing it.
+  state.report.torn_bytes += tail;
+  reader->reset();
+  if (const Status cut = files_.truncate(file, scanner.good_end()); !cut) {
+    note(state.report, cut.error().message);
+  }
+}
+
+}  // namespace hyades::coordinator
