@@ -108,12 +108,18 @@ class DiskLock final : public LogLock {
 class DiskFiles final : public LogFiles {
  public:
   Status make_folder(const std::string& folder) override {
+    std::vector<fs::path> parents;  // of what is missing: the new names have to last, too
     std::error_code error;
+    for (fs::path at = fs::absolute(folder + "/.").lexically_normal().parent_path();
+         !fs::exists(at, error) && at.has_relative_path(); at = at.parent_path()) {
+      parents.push_back(at.parent_path());
+    }
     fs::create_directories(folder, error);
     if (error) return Error{"cannot create folder " + folder + ": " + error.message()};
-    // The folder's own name has to last too.
-    const fs::path parent = fs::absolute(folder).lexically_normal().parent_path();
-    return sync_folder(parent.string());
+    for (const fs::path& parent : parents) {
+      if (Status s = sync_folder(parent.string()); !s) return s;
+    }
+    return {};
   }
 
   Status sync_folder(const std::string& folder) override {

@@ -113,7 +113,7 @@ class FilmLog {
   core::Status open_guard(const std::string& key);
   std::string path(const std::string& name) const { return folder_ + "/" + name; }
   core::Result<std::optional<SegmentHeader>> read_header(const Segment& segment);
-  void replay_segment(Segment& segment, bool last, Replay& state);
+  bool replay_segment(Segment& segment, bool last, Replay& state);
   core::Status write_snapshot(const std::string& file, uint64_t index, uint64_t through,
                               const std::function<core::Status(const Sink&)>& write);
   core::Status remove_segments(const std::function<bool(const Segment&)>& superseded);

@@ -42,15 +42,13 @@ Status FilmLog::compact(uint64_t through, const std::function<Status(const Sink&
   const std::lock_guard<std::mutex> hold(files_mutex_);
   if (Status s = files_.rename(unfinished, file); !s) return s;
   if (Status s = files_.sync_folder(folder_); !s) return s;
-  // Put in its place by index: what follows the snapshot may be the file that is being written.
+  // The file being written ends here, so that it can go once its records are covered, too.
+  active_.reset();
   const auto at = std::find_if(segments_.begin(), segments_.end(),
                                [&](const Segment& s) { return s.index > name.index; });
   segments_.insert(at, {segment_name(name), name.index, 0, true});
-  if (active_ && segments_.back().last_sequence <= through) active_.reset();
   return remove_segments([&](const Segment& s) {
-    if (s.snapshot) return s.index < name.index;
-    const bool in_use = active_ && &s == &segments_.back();
-    return !in_use && s.last_sequence <= through;
+    return s.snapshot ? s.index < name.index : s.last_sequence <= through;
   });
 }
 

@@ -35,7 +35,10 @@ struct FilmLog::Replay {
 
 Result<ReplayReport> FilmLog::replay(const Visitor& visitor) {
   const std::lock_guard<std::mutex> hold(files_mutex_);
-  if (next_index_ != 1 || !segments_.empty()) return Error{"the film log was replayed already"};
+  {
+    const std::lock_guard<std::mutex> hold_state(mutex_);
+    if (replayed_) return Error{"the film log was replayed already"};
+  }
   Result<std::vector<std::string>> names = files_.list(folder_);
   if (!names) return names.error();
   std::vector<Segment> found;
@@ -63,8 +66,9 @@ Result<ReplayReport> FilmLog::replay(const Visitor& visitor) {
   state.last_sequence = state.covered;
 
   std::vector<Segment> kept;
+  std::vector<size_t> damaged;
   const auto keep = [&](Segment segment, bool last) {
-    replay_segment(segment, last, state);
+    if (!replay_segment(segment, last, state)) damaged.push_back(kept.size());
     kept.push_back(std::move(segment));
   };
   if (newest) keep(found[*newest], false);
@@ -78,6 +82,9 @@ Result<ReplayReport> FilmLog::replay(const Visitor& visitor) {
   }
   next_index_ = found.empty() ? 1 : found.back().index + 1;
   segments_ = std::move(kept);
+  // What cannot be read now may yet be read after a repair: it goes only with a snapshot that
+  // stands for all that has been appended by now.
+  for (const size_t i : damaged) segments_[i].last_sequence = state.last_sequence;
   // A compaction may have been interrupted before it removed what it replaced.
   if (newest) {
     const uint64_t index = found[*newest].index;
@@ -114,10 +121,14 @@ Result<std::optional<SegmentHeader>> FilmLog::read_header(const Segment& segment
   return header;
 }
 
-void FilmLog::replay_segment(Segment& segment, bool last, Replay& state) {
+/// Returns whether all of it could be read.
+bool FilmLog::replay_segment(Segment& segment, bool last, Replay& state) {
   const std::string file = path(segment.name);
   Result<std::unique_ptr<LogReader>> reader = files_.open(file);
-  if (!reader) return note(state.report, reader.error().message);
+  if (!reader) {
+    note(state.report, reader.error().message);
+    return false;
+  }
 
   SegmentScanner scanner(**reader, salt_);
   while (scanner.next()) {
@@ -144,12 +155,12 @@ void FilmLog::replay_segment(Segment& segment, bool last, Replay& state) {
                                    file, gap.begin, gap.end - 1));
   }
   const uint64_t size = (*reader)->size();
-  if (size <= scanner.good_end()) return;
+  if (size <= scanner.good_end()) return scanner.gaps().empty();
   const uint64_t tail = size - scanner.good_end();
-  if (!last) {
+  if (!last || segment.snapshot) {
     state.report.damaged_bytes += tail;
     note(state.report, fmt::format("{}: the last {} bytes are damaged", file, tail));
-    return;
+    return false;
   }
   // The end of the last file: a crash interrupted writing it.
   state.report.torn_bytes += tail;
@@ -157,6 +168,7 @@ void FilmLog::replay_segment(Segment& segment, bool last, Replay& state) {
   if (const Status cut = files_.truncate(file, scanner.good_end()); !cut) {
     note(state.report, cut.error().message);
   }
+  return scanner.gaps().empty();
 }
 
 }  // namespace hyades::coordinator
