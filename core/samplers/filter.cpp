@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/base/elementary.h"
@@ -129,7 +130,7 @@ float blackman_harris(float x) {
 }
 
 Profile tabulate(float (*f)(float), float radius) {
-  constexpr int kCells = 512;
+  constexpr int kCells = 1024;
   std::vector<float> x(kCells + 1);
   std::vector<float> values(kCells + 1);
   for (int i = 0; i <= kCells; ++i) {
