@@ -63,9 +63,12 @@ class SunLight : public Light {
  private:
   bool is_delta() const { return pdf_ == 0.0F; }
 
-  /// Compared by the sine: the cosine of a small disc's edge is too near 1 for float.
+  /// Compared by the sine where that is the surer measure: the cosine of a small disc's edge is too
+  /// near 1 for float, the sine of a wide one's.
   bool covers(const Vec3& direction) const {
-    if (is_delta() || !(glm::dot(direction, axis_.n) > 0.0F)) return false;
+    const float cosine = glm::dot(direction, axis_.n);
+    if (is_delta() || !(cosine > 0.0F)) return false;
+    if (one_minus_cos_ > 0.3F) return cosine >= 1.0F - one_minus_cos_;
     const Vec3 across = glm::cross(direction, axis_.n);
     return glm::dot(across, across) <= sin_radius_ * sin_radius_;
   }
