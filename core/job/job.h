@@ -115,7 +115,7 @@ struct MaterialDesc {
   std::string name;
   SourceLocation where;
   std::string type;  ///< lambert | dielectric | thin-dielectric | conductor | glossy | mirror | mix
-                     ///< | null | emissive (black)
+                     ///< | null | black
   ColorInput color{Animated<Rgb>(Rgb(0.5F)), {}};
   std::string metal = "gold";  ///< conductor: a name of the table, or "custom" with eta and k
   std::optional<Animated<Rgb>> eta, k;               ///< conductor: measured index
@@ -196,7 +196,8 @@ struct OutputDesc {
 };
 
 struct Job {
-  std::string file;  ///< path of the YAML; relative references start at its folder
+  std::string file;                   ///< path of the YAML; relative references start at its folder
+  std::vector<std::string> includes;  ///< files of `include:`, relative to the job's folder
   std::string name;
   float units = 1.0F;  ///< metres per unit of length in the job
   FramesDesc frames;

@@ -15,7 +15,8 @@ struct FilterSample {
 
 /// Filter importance sampling (Ernst, Stamminger, Greiner 2006): a sample counts for its own pixel
 /// only, its place drawn in proportion to |filter|. `center` puts every sample on the centre (no
-/// antialiasing).
+/// antialiasing). Filters are products of one-dimensional profiles; those other than box and
+/// triangle are linear between 1025 points of their formula.
 class PixelFilter {
  public:
   virtual ~PixelFilter() = default;
@@ -23,6 +24,7 @@ class PixelFilter {
   virtual float evaluate(const Vec2& offset) const = 0;  ///< normalised to integral 1 (center: 0)
 };
 
+/// `radius` in pixels (half the support): mitchell usually 2, triangle 1, box 0.5; 0 is `center`.
 std::unique_ptr<PixelFilter> make_pixel_filter(FilterShape shape, float radius);
 
 }  // namespace hyades::core

@@ -1,0 +1,163 @@
+#include "core/job/check_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "core/base/text.h"
+#include "core/job/reference_graph.h"
+
+namespace hyades::core {
+
+namespace {
+
+constexpr uint64_t kMostObjects = uint64_t{1} << 22;  ///< once all groups are unfolded
+constexpr int kMostMoments = 1000;                    ///< at which expressions are tried
+
+template <class Desc>
+std::vector<std::string> names_of(const std::vector<Desc>& list) {
+  std::vector<std::string> names;
+  for (const Desc& desc : list) names.push_back(desc.name);
+  return names;
+}
+
+void check_names(ReadContext& context) {
+  const Job& job = context.job;
+  const std::array<std::vector<std::string>, 4> known = {
+      names_of(job.textures), names_of(job.materials), names_of(job.groups), names_of(job.objects)};
+  static const char* const kNouns[] = {"texture", "material", "group", "object"};
+  std::array<std::set<std::string>, 4> sets;
+  for (size_t i = 0; i < 4; ++i) sets[i] = {known[i].begin(), known[i].end()};
+  for (const NameUse& use : context.names) {
+    const auto kind = static_cast<size_t>(use.kind);
+    if (sets[kind].contains(use.name)) continue;
+    std::string hint = did_you_mean(use.name, known[kind]);
+    if (hint.empty() && known[kind].empty()) hint = "; the job defines none";
+    if (hint.empty() && known[kind].size() <= 12) hint = "; there are " + join_names(known[kind]);
+    context.complain(use.where, fmt::format("{} names the {} '{}', which does not exist{}",
+                                            use.label, kNouns[kind], use.name, hint));
+  }
+}
+
+void check_texture_cycles(ReadContext& context) {
+  const Job& job = context.job;
+  ReferenceGraph graph(names_of(job.textures));
+  for (size_t i = 0; i < job.textures.size(); ++i) {
+    graph.add(i, job.textures[i].a.texture);
+    graph.add(i, job.textures[i].b.texture);
+  }
+  for (const size_t i : graph.in_cycles()) {
+    context.complain(job.textures[i].where,
+                     fmt::format("texture '{}' is made of itself", job.textures[i].name));
+  }
+}
+
+void check_material_cycles(ReadContext& context) {
+  const Job& job = context.job;
+  ReferenceGraph graph(names_of(job.materials));
+  for (size_t i = 0; i < job.materials.size(); ++i) {
+    graph.add(i, job.materials[i].first);
+    graph.add(i, job.materials[i].second);
+  }
+  for (const size_t i : graph.in_cycles()) {
+    context.complain(job.materials[i].where,
+                     fmt::format("material '{}' is mixed of itself", job.materials[i].name));
+  }
+}
+
+/// Calls `visit` with the name of every group that `objects` place, and returns how many objects
+/// they are without those.
+template <class Visit>
+uint64_t visit_instances(const std::vector<ObjectDesc>& objects, const Visit& visit) {
+  uint64_t count = 0;
+  for (const ObjectDesc& object : objects) {
+    if (object.shape == "instance") {
+      visit(object.instance_of);
+    } else if (object.shape == "group") {
+      count += visit_instances(object.children, visit);
+    } else {
+      ++count;
+    }
+  }
+  return count;
+}
+
+void check_groups(ReadContext& context) {
+  const Job& job = context.job;
+  ReferenceGraph graph(names_of(job.groups));
+  for (size_t i = 0; i < job.groups.size(); ++i) {
+    const auto add = [&](const std::string& name) { graph.add(i, name); };
+    graph.weigh(i, visit_instances(job.groups[i].objects, add));
+  }
+  const std::vector<size_t> cycles = graph.in_cycles();
+  for (const size_t i : cycles) {
+    context.complain(job.groups[i].where,
+                     fmt::format("group '{}' contains itself", job.groups[i].name));
+  }
+  if (!cycles.empty()) return;
+  uint64_t total = 0;
+  total += visit_instances(job.objects, [&](const std::string& name) {
+    total = std::min(total + graph.unfolded(name), uint64_t{1} << 40);
+  });
+  if (total > kMostObjects) {
+    context.complain({job.file, 0, 0},
+                     fmt::format("the groups unfold to more than {} objects", kMostObjects));
+  }
+}
+
+void check_files(ReadContext& context, AssetResolver& assets) {
+  std::set<std::string> good;
+  for (const FileUse& use : context.files) {
+    if (good.contains(use.reference)) continue;
+    const auto bytes = assets.open(use.reference);
+    if (bytes) {
+      good.insert(use.reference);
+    } else {
+      context.complain(use.where, fmt::format("{}: {}", use.label, bytes.error().message));
+    }
+  }
+}
+
+/// Up to kMostMoments of the job's frames, evenly spread, first and last included.
+std::vector<int32_t> sample_frames(const FramesDesc& frames) {
+  const int64_t count = (int64_t{frames.last} - frames.first) / frames.step + 1;
+  const int64_t tried = std::min<int64_t>(count, kMostMoments);
+  std::vector<int32_t> result;
+  for (int64_t i = 0; i < tried; ++i) {
+    const int64_t index = tried > 1 ? i * (count - 1) / (tried - 1) : 0;
+    result.push_back(static_cast<int32_t>(frames.first + index * frames.step));
+  }
+  return result;
+}
+
+void check_expressions(ReadContext& context) {
+  if (context.expressions.empty()) return;
+  const std::vector<int32_t> frames = sample_frames(context.job.frames);
+  // Bounded in all: very many expressions are tried at fewer frames each.
+  const size_t budget = 2'000'000;
+  const size_t stride = 1 + context.expressions.size() * frames.size() / budget;
+  for (const ExpressionUse& use : context.expressions) {
+    for (size_t i = 0; i < frames.size(); i += stride) {
+      const double value = use.expression->evaluate(context.job.time_of(frames[i]));
+      if (use.range.contains(static_cast<double>(static_cast<float>(value)))) continue;
+      context.complain(use.where, fmt::format("{} is {:.6g} at frame {}, expected {}", use.label,
+                                              value, frames[i], use.range.describe()));
+      break;
+    }
+  }
+}
+
+}  // namespace
+
+void check_job(ReadContext& context, AssetResolver& assets) {
+  check_names(context);
+  check_texture_cycles(context);
+  check_material_cycles(context);
+  check_groups(context);
+  check_files(context, assets);
+  check_expressions(context);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,118 @@
+#include "core/job/field_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace hyades::core {
+
+namespace {
+
+std::string bits(float value) { return fmt::format("{:08x}", std::bit_cast<uint32_t>(value)); }
+
+std::string bits(const Vec3& value) {
+  return bits(value.x) + "," + bits(value.y) + "," + bits(value.z);
+}
+
+/// One value where it does not change over the moments, else all of them.
+template <class T>
+std::string bits(const Animated<T>& value, const std::vector<JobTime>& moments) {
+  if (value.is_constant()) return bits(value.constant);
+  std::string all;
+  std::string first;
+  bool changes = false;
+  for (const JobTime& moment : moments) {
+    const std::string now = bits(value.at(moment));
+    if (first.empty()) first = now;
+    changes |= now != first;
+    all += (all.empty() ? "" : ";") + now;
+  }
+  return changes ? all : first;
+}
+
+}  // namespace
+
+FieldWriter::FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRecord>& assets)
+    : moments_(std::move(moments)) {
+  for (const AssetRecord& asset : assets) hashes_[asset.reference] = asset.sha256;
+}
+
+void FieldWriter::line(std::string_view key, std::string_view value) {
+  text_ += path_;
+  text_ += key;
+  text_ += '=';
+  text_ += value;
+  text_ += '\n';
+}
+
+void FieldWriter::put(std::string_view key, const std::string& text) {
+  // The length keeps a text with line breaks from passing for other fields.
+  line(key, fmt::format("{}:{}", text.size(), text));
+}
+void FieldWriter::put(std::string_view key, int64_t value) { line(key, std::to_string(value)); }
+void FieldWriter::put(std::string_view key, uint64_t value) { line(key, std::to_string(value)); }
+void FieldWriter::put(std::string_view key, float value) { line(key, bits(value)); }
+void FieldWriter::put(std::string_view key, const Vec3& value) { line(key, bits(value)); }
+
+void FieldWriter::put(std::string_view key, const Mat4& value) {
+  std::string all;
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) all += bits(value[c][r]) + ",";
+  }
+  line(key, all);
+}
+
+void FieldWriter::put(std::string_view key, const Animated<float>& value) {
+  line(key, bits(value, moments_));
+}
+void FieldWriter::put(std::string_view key, const Animated<Vec3>& value) {
+  line(key, bits(value, moments_));
+}
+
+void FieldWriter::put(std::string_view key, const ColorInput& value) {
+  if (value.texture.empty()) {
+    put(key, value.value);
+  } else {
+    line(key, "texture " + value.texture);
+  }
+}
+
+void FieldWriter::put(std::string_view key, const ScalarInput& value) {
+  if (value.texture.empty()) {
+    put(key, value.value);
+  } else {
+    line(key, "texture " + value.texture);
+  }
+}
+
+void FieldWriter::put_file(std::string_view key, const std::string& reference) {
+  const auto found = hashes_.find(reference);
+  if (found == hashes_.end()) {
+    put(key, reference);
+  } else {
+    named_.insert(reference);
+    line(key, "sha256 " + found->second);
+  }
+}
+
+void FieldWriter::put_other_files(const std::vector<std::string>& except) {
+  for (const auto& [reference, hash] : hashes_) {
+    if (named_.contains(reference)) continue;
+    if (std::find(except.begin(), except.end(), reference) != except.end()) continue;
+    put("asset", fmt::format("{} {}", reference, hash));
+  }
+}
+
+void FieldWriter::enter(std::string_view name) {
+  starts_.push_back(path_.size());
+  path_ += name;
+  path_ += '.';
+}
+
+void FieldWriter::leave() {
+  path_.resize(starts_.back());
+  starts_.pop_back();
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/assets.h"
+#include "core/job/animated.h"
+#include "core/job/job.h"
+
+namespace hyades::core {
+
+/// Writes "path=value" lines for resolved_job_text.
+class FieldWriter {
+ public:
+  FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRecord>& assets);
+
+  void put(std::string_view key, const std::string& text);
+  void put(std::string_view key, const char* text) { put(key, std::string(text)); }
+  void put(std::string_view key, int64_t value);
+  void put(std::string_view key, int32_t value) { put(key, int64_t{value}); }
+  void put(std::string_view key, uint32_t value) { put(key, int64_t{value}); }
+  void put(std::string_view key, uint64_t value);
+  void put(std::string_view key, bool value) { put(key, int64_t{value ? 1 : 0}); }
+  void put(std::string_view key, float value);
+  void put(std::string_view key, const Vec3& value);
+  void put(std::string_view key, const Mat4& value);
+  void put(std::string_view key, const Animated<float>& value);
+  void put(std::string_view key, const Animated<Vec3>& value);
+  void put(std::string_view key, const ColorInput& value);
+  void put(std::string_view key, const ScalarInput& value);
+
+  /// A file by the hash of its content, or by its name where the hash is not known.
+  void put_file(std::string_view key, const std::string& reference);
+  /// Assets that no put_file has named, but for those in `except`.
+  void put_other_files(const std::vector<std::string>& except);
+
+  /// Keys until the matching leave() stand below `name`.
+  void enter(std::string_view name);
+  void leave();
+
+  std::string take() { return std::move(text_); }
+
+ private:
+  void line(std::string_view key, std::string_view value);
+
+  std::vector<JobTime> moments_;
+  std::map<std::string, std::string> hashes_;
+  std::set<std::string> named_;
+  std::string path_;
+  std::vector<size_t> starts_;
+  std::string text_;
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,50 @@
+#include "core/job/job_needs.h"
+
+#include <set>
+
+namespace hyades::core {
+
+namespace {
+
+class FileList {
+ public:
+  void add(const std::string& file) {
+    if (!file.empty() && seen_.insert(file).second) files.push_back(file);
+  }
+  void add_meshes(const std::vector<ObjectDesc>& objects) {
+    for (const ObjectDesc& object : objects) {
+      add(object.mesh);
+      add_meshes(object.children);
+    }
+  }
+
+  std::vector<std::string> files;
+
+ private:
+  std::set<std::string> seen_;
+};
+
+}  // namespace
+
+LayerSet needed_layers(const Job& job) {
+  LayerSet layers;
+  for (const OutputDesc& output : job.outputs) {
+    for (const std::string& layer : output.layers) {
+      if (layer == "depth") layers.depth = true;
+      if (layer == "albedo") layers.albedo = true;
+      if (layer == "normal") layers.normal = true;
+    }
+  }
+  return layers;
+}
+
+std::vector<std::string> referenced_files(const Job& job) {
+  FileList list;
+  for (const TextureDesc& texture : job.textures) list.add(texture.file);
+  for (const GroupDesc& group : job.groups) list.add_meshes(group.objects);
+  list.add_meshes(job.objects);
+  if (job.environment) list.add(job.environment->image);
+  return list.files;
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,277 @@
+#include "core/job/map_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/base/text.h"
+#include "core/job/read_color.h"
+#include "core/job/read_textures.h"
+#include "core/job/read_values.h"
+
+namespace hyades::core {
+
+namespace {
+
+/// Sections in which a key means something, where it means nothing here: "materials.conductor"
+/// for `roughness` in a lambert.
+std::string belongs_elsewhere(const std::string& section, const std::string& key) {
+  static const std::set<JobKey> known = known_job_keys();
+  const std::string family = section.substr(0, section.find('.')) + ".";
+  std::vector<std::string> types;
+  for (const JobKey& k : known) {
+    if (k.key == key && k.section.starts_with(family) && k.section != section) {
+      types.push_back(k.section.substr(family.size()));
+    }
+  }
+  return types.empty() ? "" : "; it belongs to " + join_names(types);
+}
+
+}  // namespace
+
+MapReader::MapReader(ReadContext& context, const YamlNode& map, std::string what, std::string path,
+                     std::string section)
+    : context_(context),
+      map_(map),
+      what_(std::move(what)),
+      path_(std::move(path)),
+      section_(std::move(section)),
+      where_(map.where) {
+  if (map.kind != YamlNode::Kind::map) {
+    complain(where_, (what_.empty() ? "the job" : what_) + " is " + describe(map) +
+                         ", expected a map of keys and values");
+  }
+  context_.spend(map.map.size() + 1, where_);
+}
+
+std::string MapReader::label(std::string_view key) const { return std::string(key); }
+
+const YamlNode* MapReader::find(std::string_view key) {
+  asked_.emplace_back(key);
+  if (listing()) context_.listing->insert({section_, std::string(key)});
+  const YamlEntry* entry = map_.find(key);
+  if (entry == nullptr) return nullptr;
+  if (entry->value->kind == YamlNode::Kind::null) {
+    complain(entry->key_where,
+             fmt::format("{} is empty, expected a value (a colour such as \"#d8c8a8\" needs its "
+                         "quotes: an unquoted # starts a comment)",
+                         label(key)));
+    return nullptr;
+  }
+  return entry->value.get();
+}
+
+void MapReader::require(std::string_view key, std::string_view expected) {
+  if (has(key) || listing() || map_.kind != YamlNode::Kind::map) return;
+  complain(where_, fmt::format("{} has no '{}', expected {}", what_.empty() ? "the job" : what_,
+                               key, expected));
+}
+
+void MapReader::number(std::string_view key, float& target, const Range& range) {
+  if (const YamlNode* node = find(key)) read_number({context_, label(key), range}, *node, target);
+}
+
+void MapReader::integer(std::string_view key, int32_t& target, int64_t low, int64_t high) {
+  int64_t value = 0;
+  const YamlNode* node = find(key);
+  if (node != nullptr && read_integer({context_, label(key), {}}, *node, low, high, value)) {
+    target = static_cast<int32_t>(value);
+  }
+}
+
+void MapReader::integer(std::string_view key, uint32_t& target, int64_t low, int64_t high) {
+  int64_t value = 0;
+  const YamlNode* node = find(key);
+  if (node != nullptr && read_integer({context_, label(key), {}}, *node, low, high, value)) {
+    target = static_cast<uint32_t>(value);
+  }
+}
+
+void MapReader::integer(std::string_view key, uint64_t& target) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  uint64_t value = 0;
+  const std::string& text = node->scalar;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (node->kind == YamlNode::Kind::scalar && !node->quoted && result.ec == std::errc{} &&
+      result.ptr == text.data() + text.size()) {
+    target = value;
+  } else {
+    mismatch(key, *node, "a whole number from 0 to 18446744073709551615");
+  }
+}
+
+void MapReader::flag(std::string_view key, bool& target) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  if (node->kind == YamlNode::Kind::scalar && !node->quoted &&
+      (node->scalar == "true" || node->scalar == "false")) {
+    target = node->scalar == "true";
+  } else {
+    mismatch(key, *node, "true or false");
+  }
+}
+
+void MapReader::text(std::string_view key, std::string& target, std::string_view expected) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  if (node->kind == YamlNode::Kind::scalar && !node->scalar.empty()) {
+    target = node->scalar;
+  } else {
+    mismatch(key, *node, std::string(expected));
+  }
+}
+
+void MapReader::choice(std::string_view key, std::string& target,
+                       std::span<const std::string> names) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  const bool known = node->kind == YamlNode::Kind::scalar &&
+                     std::find(names.begin(), names.end(), node->scalar) != names.end();
+  if (known) {
+    target = node->scalar;
+  } else {
+    mismatch(key, *node, join_names(names) + did_you_mean(node->scalar, names));
+  }
+}
+
+void MapReader::name_of(std::string_view key, std::string& target, NameKind kind) {
+  static const char* const kNouns[] = {"a texture's name", "a material's name", "a group's name",
+                                       "an object's name"};
+  std::string name;
+  text(key, name, kNouns[static_cast<int>(kind)]);
+  if (name.empty()) return;
+  target = name;
+  context_.names.push_back(
+      {kind, name, map_.find(key)->value->where, fmt::format("{} of {}", key, what_)});
+}
+
+void MapReader::file(std::string_view key, std::string& target) {
+  std::string name;
+  text(key, name, "a file name");
+  if (name.empty()) return;
+  const SourceLocation where = map_.find(key)->value->where;
+  target = context_.job_relative(name, where);
+  context_.files.push_back({target, where, fmt::format("{} of {}", key, what_)});
+}
+
+bool MapReader::numbers(std::string_view key, std::span<float> target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return false;
+  if (node->kind != YamlNode::Kind::list || node->list.size() != target.size()) {
+    mismatch(key, *node, fmt::format("a list of {} numbers", target.size()));
+    return false;
+  }
+  bool good = true;
+  for (size_t i = 0; i < target.size(); ++i) {
+    const ValueSite item{context_, fmt::format("{}[{}]", key, i), range};
+    good &= read_number(item, *node->list[i], target[i]);
+  }
+  return good;
+}
+
+bool MapReader::integers(std::string_view key, std::span<int32_t> target, int64_t low,
+                         int64_t high) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return false;
+  if (node->kind != YamlNode::Kind::list || node->list.size() != target.size()) {
+    mismatch(key, *node, fmt::format("a list of {} whole numbers", target.size()));
+    return false;
+  }
+  bool good = true;
+  for (size_t i = 0; i < target.size(); ++i) {
+    const ValueSite item{context_, fmt::format("{}[{}]", key, i), {}};
+    int64_t value = 0;
+    if (read_integer(item, *node->list[i], low, high, value)) {
+      target[i] = static_cast<int32_t>(value);
+    } else {
+      good = false;
+    }
+  }
+  return good;
+}
+
+void MapReader::animated(std::string_view key, Animated<float>& target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node != nullptr) read_animated_number({context_, label(key), range}, *node, target);
+}
+
+void MapReader::animated(std::string_view key, Animated<Vec3>& target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node != nullptr) read_animated_vector({context_, label(key), range}, *node, target);
+}
+
+void MapReader::animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node != nullptr) read_animated_scale({context_, label(key), range}, *node, target);
+}
+
+void MapReader::color(std::string_view key, Animated<Rgb>& target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node != nullptr) read_animated_color({context_, label(key), range}, *node, target);
+}
+
+void MapReader::color_input(std::string_view key, ColorInput& target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  if (read_texture_input(*this, key, *node, target.texture)) return;
+  if (read_animated_color({context_, label(key), range}, *node, target.value)) {
+    target.texture.clear();
+  }
+}
+
+void MapReader::scalar_input(std::string_view key, ScalarInput& target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  if (read_texture_input(*this, key, *node, target.texture)) return;
+  if (read_animated_number({context_, label(key), range}, *node, target.value)) {
+    target.texture.clear();
+  }
+}
+
+void MapReader::map(std::string_view key, const std::string& section,
+                    const std::function<void(MapReader&)>& read) {
+  const YamlNode* node = find(key);
+  if (node == nullptr && !listing()) return;
+  const std::string name = what_.empty() ? std::string(key) : fmt::format("{} of {}", key, what_);
+  const std::string path = path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+  MapReader reader(context_, node != nullptr ? *node : empty_map(), name, path, section);
+  if (node != nullptr && node->kind != YamlNode::Kind::map) return;
+  read(reader);
+  reader.finish();
+}
+
+void MapReader::mismatch(std::string_view key, const YamlNode& found, const std::string& expected) {
+  complain_mismatch({context_, label(key), {}}, found, expected);
+}
+
+void MapReader::finish() {
+  if (listing()) return;
+  std::sort(asked_.begin(), asked_.end());
+  asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
+  for (const YamlEntry& entry : map_.map) {
+    if (std::binary_search(asked_.begin(), asked_.end(), entry.key)) continue;
+    std::string hint = belongs_elsewhere(section_, entry.key);
+    if (hint.empty()) hint = did_you_mean(entry.key, asked_);
+    if (hint.empty()) hint = "; expected " + join_names(asked_);
+    complain(entry.key_where, fmt::format("unknown key '{}' in {}{}", entry.key.substr(0, 60),
+                                          what_.empty() ? "the job" : what_, hint));
+  }
+}
+
+bool check_type(MapReader& reader, const SourceLocation& where, std::string_view key,
+                const std::string& type, std::span<const std::string> valid,
+                std::span<const std::string> later) {
+  if (std::find(valid.begin(), valid.end(), type) != valid.end()) return true;
+  if (std::find(later.begin(), later.end(), type) != later.end()) {
+    reader.complain(where, fmt::format("{} '{}' is not available in this version; available: {}",
+                                       key, type, join_names(valid)));
+    return false;
+  }
+  reader.complain(where, fmt::format("{} is '{}', expected {}{}", key, type.substr(0, 60),
+                                     join_names(valid), did_you_mean(type, valid)));
+  return false;
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/text.h"
+#include "core/job/read_context.h"
+
+namespace hyades::core {
+
+/// Reads a map key by key. Each reader asks for the keys that it understands, with type, range and
+/// a target that already holds the default; finish() then complains about keys that nobody asked
+/// for. Complaints name the key, what was found and what was expected; a bad value leaves its
+/// target as it was.
+class MapReader {
+ public:
+  /// `map` must outlive the reader. `what` names it in complaints ("the camera", "material
+  /// 'glass'"); `path` is where it stands ("materials.glass"); `section` is its place in the
+  /// reference (JobKey). Complains where `map` is no map.
+  MapReader(ReadContext& context, const YamlNode& map, std::string what, std::string path,
+            std::string section);
+
+  ReadContext& context() { return context_; }
+  bool listing() const { return context_.listing != nullptr; }
+  const std::string& what() const { return what_; }
+  const std::string& path() const { return path_; }
+  const SourceLocation& where() const { return where_; }
+
+  /// From here on, keys asked for belong to this section of the reference.
+  void enter_section(std::string section) { section_ = std::move(section); }
+
+  /// The value of `key`, or null where it is absent (or empty, which is a complaint).
+  const YamlNode* find(std::string_view key);
+  bool has(std::string_view key) const { return map_.find(key) != nullptr; }
+  /// Complains unless `key` is there.
+  void require(std::string_view key, std::string_view expected);
+
+  void number(std::string_view key, float& target, const Range& range);
+  void integer(std::string_view key, int32_t& target, int64_t low, int64_t high);
+  void integer(std::string_view key, uint32_t& target, int64_t low, int64_t high);
+  void integer(std::string_view key, uint64_t& target);
+  void flag(std::string_view key, bool& target);
+  void text(std::string_view key, std::string& target, std::string_view expected);
+  void choice(std::string_view key, std::string& target, std::span<const std::string> names);
+  /// The name of something that the job defines; that it exists is checked at the end.
+  void name_of(std::string_view key, std::string& target, NameKind kind);
+  /// A file, relative to where it is written; that it opens is checked at the end.
+  void file(std::string_view key, std::string& target);
+  /// A list of exactly as many numbers as `target` has.
+  bool numbers(std::string_view key, std::span<float> target, const Range& range);
+  bool integers(std::string_view key, std::span<int32_t> target, int64_t low, int64_t high);
+
+  void animated(std::string_view key, Animated<float>& target, const Range& range);
+  void animated(std::string_view key, Animated<Vec3>& target, const Range& range);
+  /// As above; a single number stands for all three, and [x, y] leaves z as it is.
+  void animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range);
+  void color(std::string_view key, Animated<Rgb>& target, const Range& range);
+  void color_input(std::string_view key, ColorInput& target, const Range& range);
+  void scalar_input(std::string_view key, ScalarInput& target, const Range& range);
+
+  /// A map below this one. In listing mode the reader runs even where the key is absent.
+  void map(std::string_view key, const std::string& section,
+           const std::function<void(MapReader&)>& read);
+
+  /// Complains about the value of `key`: "fov is 'wide', expected ...".
+  void mismatch(std::string_view key, const YamlNode& found, const std::string& expected);
+  void complain(const SourceLocation& where, const std::string& message) {
+    context_.complain(where, message);
+  }
+
+  /// Complains about every key that nobody asked for.
+  void finish();
+
+ private:
+  std::string label(std::string_view key) const;
+
+  ReadContext& context_;
+  const YamlNode& map_;
+  std::string what_;
+  std::string path_;
+  std::string section_;
+  SourceLocation where_;
+  std::vector<std::string> asked_;
+};
+
+/// One row of a table "type name -> who reads its keys". No reader: the type is known but not in
+/// this version.
+template <class Desc>
+struct TypeRow {
+  const char* name;
+  void (*read)(MapReader& reader, Desc& desc);
+};
+
+/// Names of a table's rows that can be read.
+template <class Desc>
+std::vector<std::string> type_names(std::span<const TypeRow<Desc>> table) {
+  std::vector<std::string> names;
+  for (const auto& row : table) {
+    if (row.read != nullptr) names.emplace_back(row.name);
+  }
+  return names;
+}
+
+/// Checks `type` (standing at `where`) against the names of a table; complains with the valid ones.
+bool check_type(MapReader& reader, const SourceLocation& where, std::string_view key,
+                const std::string& type, std::span<const std::string> valid,
+                std::span<const std::string> later);
+
+/// Reads `key` as a row's name into desc.type (which holds the default, "" = required) and lets
+/// that row read the rest, in section "section.row". False where the type is unknown.
+template <class Desc>
+bool read_by_type(MapReader& reader, std::string_view key, const std::string& section, Desc& desc,
+                  std::span<const TypeRow<Desc>> table) {
+  const std::vector<std::string> valid = type_names(table);
+  std::vector<std::string> later;
+  for (const auto& row : table) {
+    if (row.read == nullptr) later.emplace_back(row.name);
+  }
+  if (desc.type.empty()) reader.require(key, "one of " + join_names(valid));
+  const YamlNode* node = reader.find(key);
+  if (reader.listing()) {
+    for (const auto& row : table) {
+      reader.enter_section(section + "." + row.name);
+      if (row.read != nullptr) row.read(reader, desc);
+    }
+    return true;
+  }
+  if (node != nullptr) reader.text(key, desc.type, "one of " + join_names(valid));
+  if (desc.type.empty()) return false;
+  const SourceLocation where = node != nullptr ? SourceLocation(node->where) : reader.where();
+  if (!check_type(reader, where, key, desc.type, valid, later)) return false;
+  for (const auto& row : table) {
+    if (row.name != desc.type) continue;
+    reader.enter_section(section + "." + row.name);
+    row.read(reader, desc);
+  }
+  return true;
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,49 @@
+#include "core/job/read_context.h"
+
+#include <fmt/format.h>
+
+namespace hyades::core {
+
+namespace {
+
+constexpr uint64_t kMaxVisits = uint64_t{1} << 22;
+
+}  // namespace
+
+std::string Range::describe(const std::string& noun) const {
+  const bool bounded_low = low > -1e18;
+  const bool bounded_high = high < 1e18;
+  if (!bounded_low && !bounded_high) return noun;
+  if (!bounded_high) {
+    return low_open ? fmt::format("{} above {}", noun, low) : fmt::format("{} >= {}", noun, low);
+  }
+  if (low_open && high_open) return fmt::format("{} above {} and below {}", noun, low, high);
+  if (low_open) return fmt::format("{} above {}, at most {}", noun, low, high);
+  return fmt::format("{} from {} to {}", noun, low, high);
+}
+
+void ReadContext::complain(const SourceLocation& where, const std::string& message) {
+  const Diagnostic complaint{where, message};
+  if (complaints_.size() > 1000) return;  // only 100 are ever kept
+  if (!complaints_.insert(complaint.to_string()).second) return;
+  diagnostics.add(where, message);
+}
+
+bool ReadContext::spend(uint64_t nodes, const SourceLocation& where) {
+  if (exhausted_) return false;
+  spent_ += nodes;
+  if (spent_ <= kMaxVisits) return true;
+  exhausted_ = true;
+  complain(where, fmt::format("the job unfolds to more than {} values (through `like`, `include` "
+                              "and aliases); write large scenes as meshes or instances",
+                              kMaxVisits));
+  return false;
+}
+
+std::string ReadContext::job_relative(const std::string& reference,
+                                      const SourceLocation& where) const {
+  const auto found = included.find(where.file);
+  return resolve_reference(reference, found == included.end() ? std::string() : found->second);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/base/text.h"
+#include "core/job/job_keys.h"
+#include "core/job/read_sections.h"
+#include "core/job/read_values.h"
+
+/// The top level of a job.
+namespace hyades::core {
+
+namespace {
+
+struct UnitRow {
+  const char* name;
+  float metres;
+};
+
+constexpr std::array<UnitRow, 6> kUnits = {{
+    {"mm", 0.001F},
+    {"cm", 0.01F},
+    {"m", 1.0F},
+    {"km", 1000.0F},
+    {"in", 0.0254F},
+    {"ft", 0.3048F},
+}};
+
+/// Keys that later versions will know.
+constexpr std::array<const char*, 2> kLater = {"media", "atmosphere"};
+
+void read_version(MapReader& top) {
+  top.require("hyades", "the version of the job language: hyades: 1");
+  const YamlNode* node = top.find("hyades");
+  if (node != nullptr && node->scalar != "1") {
+    top.mismatch("hyades", *node, "1, the only version of the job language so far");
+  }
+}
+
+void read_name(MapReader& top, Job& job) {
+  const YamlNode* node = top.find("name");
+  if (node == nullptr) return;
+  if (node->kind == YamlNode::Kind::scalar && is_valid_name(node->scalar)) {
+    job.name = node->scalar;
+  } else {
+    top.mismatch("name", *node, "letters, digits, '_', '-', '.' and inner spaces, at most 100");
+  }
+}
+
+void read_units(MapReader& top, Job& job) {
+  const YamlNode* node = top.find("units");
+  if (node == nullptr) return;
+  for (const UnitRow& unit : kUnits) {
+    if (node->kind == YamlNode::Kind::scalar && node->scalar == unit.name) {
+      job.units = unit.metres;
+      return;
+    }
+  }
+  double number = 0.0;
+  const Range range{1e-12, 1e12};
+  if (node->kind == YamlNode::Kind::scalar && !node->quoted && parse_number(node->scalar, number) &&
+      range.contains(number)) {
+    job.units = static_cast<float>(number);
+    return;
+  }
+  top.mismatch("units", *node, "mm, cm, m, km, in, ft or metres per unit (1e-12 to 1e12)");
+}
+
+}  // namespace
+
+void read_job(MapReader& top, Job& job) {
+  read_version(top);
+  top.find("include");  // already merged, see load_job_tree
+  read_name(top, job);
+  read_units(top, job);
+  read_frames(top, job.frames);
+  read_film(top, job.film);
+  read_sampling(top, job.sampling);
+  read_integrator(top, job.integrator);
+  read_camera(top, job.camera);
+  read_textures(top);
+  read_materials(top);
+  read_groups(top);
+  read_objects(top);
+  read_lights(top);
+  read_environment(top, job);
+  read_outputs(top, job);
+  for (const char* key : kLater) {
+    if (top.listing() || !top.has(key)) continue;
+    if (const YamlNode* node = top.find(key)) {
+      top.complain(node->where, fmt::format("'{}' is not available in this version", key));
+    }
+  }
+  top.finish();
+}
+
+std::set<JobKey> known_job_keys() {
+  Job job;
+  Diagnostics ignored;
+  ReadContext context(job, ignored);
+  std::set<JobKey> keys;
+  context.listing = &keys;
+  MapReader top(context, empty_map(), "", "", "job");
+  read_job(top, job);
+  keys.insert({"animation", "keys"});
+  keys.insert({"animation", "ease"});
+  return keys;
+}
+
+}  // namespace hyades::core

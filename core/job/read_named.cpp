@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include "core/job/like.h"
+#include "core/job/read_sections.h"
+#include "core/job/read_textures.h"
+#include "core/job/read_values.h"
+
+namespace hyades::core {
+
+void read_named(MapReader& parent, std::string_view key, const std::string& noun,
+                const std::function<void(const YamlNode& node, const std::string& name,
+                                         const std::string& what, const std::string& path)>& read) {
+  const std::string path =
+      parent.path().empty() ? std::string(key) : fmt::format("{}.{}", parent.path(), key);
+  if (parent.listing()) {
+    parent.find(key);
+    read(empty_map(), noun, noun, path);
+    return;
+  }
+  const YamlNode* section = parent.find(key);
+  if (section == nullptr) return;
+  if (section->kind != YamlNode::Kind::map) {
+    parent.mismatch(key, *section, "a map of names, such as {name: {...}}");
+    return;
+  }
+  ReadContext& context = parent.context();
+  for (const YamlEntry& entry : resolve_likes(context, *section)) {
+    if (!context.spend(1, entry.key_where)) return;
+    const bool reads_as_color = noun == "texture" && looks_like_color(entry.key);
+    if (!is_valid_name(entry.key) || reads_as_color) {
+      context.complain(
+          entry.key_where,
+          fmt::format("'{}' cannot be the name of a {}: expected letters, digits, '_', '-', '.'"
+                      " and inner spaces, at most 100{}",
+                      entry.key.substr(0, 60), noun,
+                      reads_as_color ? ", that do not read as a colour or number" : ""));
+      continue;
+    }
+    if (entry.value->kind == YamlNode::Kind::null) {
+      context.complain(entry.key_where,
+                       fmt::format("{} '{}' is empty, expected a map", noun, entry.key));
+      continue;
+    }
+    read(*entry.value, entry.key, fmt::format("{} '{}'", noun, entry.key),
+         fmt::format("{}.{}", path, entry.key));
+  }
+}
+
+void read_textures(MapReader& top) {
+  read_named(top, "textures", "texture",
+             [&](const YamlNode& node, const std::string& name, const std::string& what,
+                 const std::string& path) { read_texture(top.context(), node, name, what, path); });
+}
+
+}  // namespace hyades::core

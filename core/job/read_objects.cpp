@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/base/text.h"
+#include "core/job/read_sections.h"
+
+namespace hyades::core {
+
+namespace {
+
+void read_emit(MapReader& reader, ObjectDesc& object) {
+  reader.enter_section("objects.shapes");
+  if (!reader.has("emit") && !reader.listing()) {
+    reader.find("emit");
+    return;
+  }
+  EmitDesc emit;
+  reader.map("emit", "objects.emit", [&](MapReader& map) {
+    map.color("color", emit.color, kNotNegative);
+    map.animated("radiance", emit.amount, kNotNegative);
+    map.animated("power", emit.amount, kNotNegative);
+    if (map.has("power")) emit.unit = EmitDesc::Unit::power;
+    if (map.has("power") && map.has("radiance")) {
+      map.complain(map.find("power")->where,
+                   "emit has both radiance and power, expected one of them");
+    }
+    map.flag("two_sided", emit.two_sided);
+  });
+  object.emit = emit;
+}
+
+void read_sphere(MapReader& reader, ObjectDesc& object) {
+  reader.number("radius", object.radius, kPositive);
+}
+
+void read_rectangle(MapReader& reader, ObjectDesc& object) {
+  std::array<float, 2> size = {object.size.x, object.size.y};
+  reader.numbers("size", size, kPositive);
+  object.size = Vec3(size[0], size[1], 1.0F);
+}
+
+void read_box(MapReader& reader, ObjectDesc& object) {
+  std::array<float, 3> size = {object.size.x, object.size.y, object.size.z};
+  reader.numbers("size", size, kPositive);
+  object.size = Vec3(size[0], size[1], size[2]);
+}
+
+void read_cylinder(MapReader& reader, ObjectDesc& object) {
+  reader.number("radius", object.radius, kPositive);
+  reader.number("height", object.height, kPositive);
+  reader.flag("caps", object.caps);
+}
+
+struct ShapeRow {
+  const char* name;
+  void (*read)(MapReader& reader, ObjectDesc& object);
+};
+
+constexpr std::array<ShapeRow, 5> kShapes = {{
+    {"sphere", read_sphere},
+    {"rectangle", read_rectangle},
+    {"disk", read_sphere},
+    {"box", read_box},
+    {"cylinder", read_cylinder},
+}};
+
+void read_shape(MapReader& reader, ObjectDesc& object) {
+  std::vector<std::string> names;
+  for (const ShapeRow& row : kShapes) names.emplace_back(row.name);
+  std::string shape;
+  reader.choice("shape", shape, names);
+  read_emit(reader, object);
+  for (const ShapeRow& row : kShapes) {
+    if (shape != row.name && !reader.listing()) continue;
+    object.shape = row.name;
+    reader.enter_section(std::string("objects.") + row.name);
+    row.read(reader, object);
+  }
+}
+
+void read_mesh(MapReader& reader, ObjectDesc& object) {
+  static const std::array<std::string, 3> kNormals = {"file", "flat", "smooth"};
+  object.shape = "mesh";
+  reader.file("mesh", object.mesh);
+  read_emit(reader, object);
+  reader.enter_section("objects.mesh");
+  reader.choice("normals", object.smooth, kNormals);
+}
+
+void read_instance(MapReader& reader, ObjectDesc& object) {
+  object.shape = "instance";
+  reader.name_of("instance", object.instance_of, NameKind::group);
+}
+
+void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects);
+
+void read_group(MapReader& reader, ObjectDesc& object) {
+  object.shape = "group";
+  reader.map("group", "objects.group",
+             [&](MapReader& map) { read_object_list(map, object.children); });
+}
+
+struct KindRow {
+  const char* key;
+  void (*read)(MapReader& reader, ObjectDesc& object);
+};
+
+const std::array<KindRow, 4> kKinds = {{
+    {"shape", read_shape},
+    {"mesh", read_mesh},
+    {"instance", read_instance},
+    {"group", read_group},
+}};
+
+/// An object is what its one key of kKinds says.
+const KindRow* find_kind(MapReader& reader) {
+  const KindRow* kind = nullptr;
+  for (const KindRow& row : kKinds) {
+    const YamlNode* node = reader.find(row.key);
+    if (node == nullptr) continue;
+    if (kind != nullptr) {
+      reader.complain(node->where, fmt::format("{} has both '{}' and '{}', expected one of them",
+                                               reader.what(), kind->key, row.key));
+      return nullptr;
+    }
+    kind = &row;
+  }
+  if (kind == nullptr) {
+    reader.complain(
+        reader.where(),
+        fmt::format("{} has none of shape, mesh, instance and group, expected one", reader.what()));
+  }
+  return kind;
+}
+
+void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std::string& name) {
+  ObjectDesc object;
+  object.name = name;
+  object.where = reader.where();
+  reader.find("like");
+  reader.name_of("material", object.material, NameKind::material);
+  read_transform(reader, object.transform, object.at);
+  reader.flag("visible_to_camera", object.visible_to_camera);
+  if (reader.listing()) {
+    for (const KindRow& row : kKinds) {
+      reader.enter_section("objects");
+      if (std::string_view(row.key) != "group") row.read(reader, object);
+    }
+    reader.enter_section("objects");
+    reader.find("group");
+    reader.context().listing->insert({"objects.group", "objects"});
+    return;
+  }
+  const KindRow* kind = find_kind(reader);
+  if (kind == nullptr) return;
+  kind->read(reader, object);
+  if (object.shape.empty()) return;  // an unknown shape, which has been complained about
+  reader.enter_section("objects." + object.shape);
+  reader.finish();
+  objects.push_back(std::move(object));
+}
+
+void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects) {
+  read_named(reader, "objects", "object",
+             [&](const YamlNode& node, const std::string& name, const std::string& what,
+                 const std::string& path) {
+               MapReader object(reader.context(), node, what, path, "objects");
+               if (node.kind == YamlNode::Kind::map) read_object(object, objects, name);
+             });
+}
+
+}  // namespace
+
+void read_objects(MapReader& top) { read_object_list(top, top.context().job.objects); }
+
+void read_groups(MapReader& top) {
+  read_named(top, "groups", "group",
+             [&](const YamlNode& node, const std::string& name, const std::string& what,
+                 const std::string& path) {
+               MapReader reader(top.context(), node, what, path, "groups");
+               if (node.kind != YamlNode::Kind::map) return;
+               GroupDesc group;
+               group.name = name;
+               group.where = node.where;
+               reader.find("like");
+               reader.require("objects", "a map of objects");
+               if (reader.listing()) {
+                 reader.find("objects");
+                 return;
+               }
+               read_object_list(reader, group.objects);
+               reader.finish();
+               top.context().job.groups.push_back(std::move(group));
+             });
+}
+
+}  // namespace hyades::core

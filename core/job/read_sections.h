@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/job/map_reader.h"
+
+/// One reader per section of a job; each takes its key from the top-level reader.
+namespace hyades::core {
+
+/// The whole job, section by section.
+void read_job(MapReader& top, Job& job);
+
+void read_frames(MapReader& top, FramesDesc& frames);
+void read_film(MapReader& top, FilmDesc& film);
+void read_sampling(MapReader& top, SamplingDesc& sampling);
+void read_integrator(MapReader& top, IntegratorDesc& integrator);
+void read_camera(MapReader& top, CameraDesc& camera);
+void read_textures(MapReader& top);
+void read_materials(MapReader& top);
+void read_groups(MapReader& top);
+void read_objects(MapReader& top);
+void read_lights(MapReader& top);
+void read_environment(MapReader& top, Job& job);
+void read_outputs(MapReader& top, Job& job);
+
+/// The `transform` and `at` of an object.
+void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at);
+
+/// Reads every `name: {...}` of section `key`, with `like` resolved, in the order of the text.
+/// `noun` is what one of them is called ("material").
+void read_named(MapReader& parent, std::string_view key, const std::string& noun,
+                const std::function<void(const YamlNode& node, const std::string& name,
+                                         const std::string& what, const std::string& path)>& read);
+
+}  // namespace hyades::core

@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/text.h"
+#include "core/job/read_sections.h"
+#include "core/job/read_values.h"
+
+namespace hyades::core {
+
+namespace {
+
+void read_matrix(MapReader& reader, std::string_view key, Mat4& matrix) {
+  std::array<float, 16> rows{};
+  for (size_t i = 0; i < 16; i += 5) rows[i] = 1.0F;
+  const YamlNode* node = reader.find(key);
+  if (node == nullptr || !reader.numbers(key, rows, kAnyNumber)) return;
+  if (rows[12] != 0.0F || rows[13] != 0.0F || rows[14] != 0.0F || rows[15] != 1.0F) {
+    reader.complain(node->where,
+                    "matrix has another last row than 0, 0, 0, 1 (16 numbers, row by row)");
+    return;
+  }
+  for (int r = 0; r < 4; ++r) {
+    for (int c = 0; c < 4; ++c) matrix[c][r] = rows[static_cast<size_t>(4 * r + c)];
+  }
+}
+
+/// rotate: {axis: [x, y, z], angle: degrees}
+void read_rotation(MapReader& reader, TransformStep& step) {
+  reader.map("rotate", "transform.rotate", [&](MapReader& map) {
+    map.require("axis", "[x, y, z]");
+    map.require("angle", "degrees");
+    map.animated("axis", step.vector, kAnyNumber);
+    map.animated("angle", step.angle, kAnyNumber);
+    const bool zero = step.vector.is_constant() && step.vector.constant == Vec3(0.0F);
+    if (zero && map.has("axis")) {
+      map.mismatch("axis", *map.find("axis"), "a direction, not [0, 0, 0]");
+    }
+  });
+}
+
+const std::array<std::string, 7> kSteps = {"translate", "scale",  "rotate_x", "rotate_y",
+                                           "rotate_z",  "rotate", "matrix"};
+
+void read_step(MapReader& reader, const std::string& name, TransformStep& step) {
+  using Kind = TransformStep::Kind;
+  if (name == "translate") {
+    step.kind = Kind::translate;
+    reader.animated(name, step.vector, kAnyNumber);
+  } else if (name == "scale") {
+    step.kind = Kind::scale;
+    step.vector = Animated<Vec3>(Vec3(1.0F));
+    reader.animated_scale(name, step.vector, kAnyNumber);
+  } else if (name == "rotate") {
+    step.kind = Kind::rotate;
+    read_rotation(reader, step);
+  } else if (name == "matrix") {
+    step.kind = Kind::matrix;
+    read_matrix(reader, name, step.matrix);
+  } else {
+    step.kind = name == "rotate_x"   ? Kind::rotate_x
+                : name == "rotate_y" ? Kind::rotate_y
+                                     : Kind::rotate_z;
+    reader.animated(name, step.angle, kAnyNumber);
+  }
+}
+
+void read_list(MapReader& reader, const YamlNode& list, TransformList& steps) {
+  if (!reader.context().spend(list.list.size(), list.where)) return;
+  for (const YamlPtr& item : list.list) {
+    const bool one_key = item->kind == YamlNode::Kind::map && item->map.size() == 1;
+    if (!one_key) {
+      reader.complain(item->where, fmt::format("a transform step is {}, expected one key of {}",
+                                               describe(*item), join_names(kSteps)));
+      continue;
+    }
+    MapReader step_reader(reader.context(), *item, "a transform step",
+                          fmt::format("{}.transform", reader.path()), "transform");
+    const std::string& name = item->map.front().key;
+    for (const std::string& known : kSteps) {
+      if (known != name) step_reader.find(known);
+    }
+    if (std::find(kSteps.begin(), kSteps.end(), name) != kSteps.end()) {
+      TransformStep step;
+      read_step(step_reader, name, step);
+      steps.push_back(std::move(step));
+    }
+    step_reader.finish();
+  }
+}
+
+}  // namespace
+
+void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
+  reader.animated("at", at, kAnyNumber);
+  const YamlNode* node = reader.find("transform");
+  if (reader.listing()) {
+    MapReader step_reader(reader.context(), empty_map(), "", "", "transform");
+    TransformStep step;
+    for (const std::string& name : kSteps) read_step(step_reader, name, step);
+    return;
+  }
+  if (node == nullptr) return;
+  if (node->kind == YamlNode::Kind::list) {
+    read_list(reader, *node, steps);
+  } else {
+    reader.mismatch("transform", *node, "a list of steps, such as [{scale: 2}, {rotate_y: 45}]");
+  }
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,168 @@
+#include "core/job/read_values.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "core/job/read_color.h"
+#include "core/job/read_components.h"
+
+namespace hyades::core {
+
+namespace {
+
+/// Also refuses what leaves an open range by being rounded to float (1e-60 is above 0, its float
+/// is not).
+bool fits(const Range& range, double value) {
+  const auto rounded = static_cast<float>(value);
+  if (!range.contains(value)) return false;
+  if (range.low_open && !(rounded > static_cast<float>(range.low))) return false;
+  return !range.high_open || rounded < static_cast<float>(range.high);
+}
+
+bool is_expression(const YamlNode& node) {
+  return node.kind == YamlNode::Kind::scalar && node.scalar.starts_with('=');
+}
+
+std::string expected_list(const ValueSite& site, const char* shape) {
+  return std::string(shape) + " (each " + site.range.describe() + " or an expression)";
+}
+
+/// Reads [x, y, z], or as many of its components as the list has when that is allowed.
+bool read_list(const ValueSite& site, const YamlNode& node, size_t least, Animated<Vec3>& target) {
+  Animated<Vec3> result = target;
+  result.keys.clear();
+  if (!site.context.spend(node.list.size(), node.where)) return false;
+  if (node.list.size() < least || node.list.size() > 3) {
+    complain_mismatch(site, node,
+                      expected_list(site, least == 2 ? "[x, y] or [x, y, z]" : "[x, y, z]"));
+    return false;
+  }
+  bool good = true;
+  for (size_t i = 0; i < node.list.size(); ++i) {
+    const ValueSite item{site.context, fmt::format("{}[{}]", site.label, i), site.range};
+    good &= read_component(item, *node.list[i], result.constant[static_cast<int>(i)],
+                           result.expressions[i]);
+  }
+  if (good) target = result;
+  return good;
+}
+
+bool read_vector(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target) {
+  if (node.kind == YamlNode::Kind::list) return read_list(site, node, 3, target);
+  complain_mismatch(site, node, expected_list(site, "[x, y, z]"));
+  return false;
+}
+
+bool read_scale(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target) {
+  if (node.kind == YamlNode::Kind::list) return read_list(site, node, 2, target);
+  Animated<float> all;
+  if (node.kind != YamlNode::Kind::scalar) {
+    complain_mismatch(site, node, site.range.describe() + ", or a list of them");
+    return false;
+  }
+  if (!read_component(site, node, all.constant, all.expressions[0])) return false;
+  target = Animated<Vec3>(Vec3(all.constant));
+  target.expressions.fill(all.expressions[0]);
+  return true;
+}
+
+bool read_single(const ValueSite& site, const YamlNode& node, Animated<float>& target) {
+  Animated<float> result;
+  if (!read_component(site, node, result.constant, result.expressions[0])) return false;
+  target = result;
+  return true;
+}
+
+}  // namespace
+
+void complain_mismatch(const ValueSite& site, const YamlNode& found, const std::string& expected) {
+  std::string hint;
+  double number = 0.0;
+  if (found.quoted && parse_number(found.scalar, number)) hint = " (without quotes)";
+  site.context.complain(found.where,
+                        site.label + " is " + describe(found) + ", expected " + expected + hint);
+}
+
+bool parse_number(std::string_view text, double& value) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  if (text.starts_with('+')) return false;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  return result.ec == std::errc{} && result.ptr == text.data() + text.size() &&
+         std::isfinite(value);
+}
+
+bool is_valid_name(std::string_view name) {
+  if (name.empty() || name.size() > 100 || name.back() == ' ') return false;
+  const auto letter = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' ||
+           byte >= 0x80;
+  };
+  for (const char c : name) {
+    if (!letter(c) && c != '-' && c != '.' && c != ' ') return false;
+  }
+  return letter(name.front());
+}
+
+bool read_component(const ValueSite& site, const YamlNode& node, float& constant,
+                    std::shared_ptr<const Expression>& expression) {
+  if (is_expression(node)) {
+    auto compiled = compile_expression(node.scalar.substr(1));
+    if (!compiled) {
+      site.context.complain(node.where, site.label + ": " + compiled.error().message);
+      return false;
+    }
+    expression = *compiled;
+    site.context.expressions.push_back({expression, site.range, node.where, site.label});
+    return true;
+  }
+  if (!read_number(site, node, constant)) return false;
+  expression = nullptr;
+  return true;
+}
+
+bool read_number(const ValueSite& site, const YamlNode& node, float& target) {
+  double value = 0.0;
+  if (node.kind != YamlNode::Kind::scalar || node.quoted || !parse_number(node.scalar, value) ||
+      !fits(site.range, value)) {
+    complain_mismatch(site, node, site.range.describe());
+    return false;
+  }
+  target = static_cast<float>(value);
+  return true;
+}
+
+bool read_integer(const ValueSite& site, const YamlNode& node, int64_t low, int64_t high,
+                  int64_t& target) {
+  int64_t value = 0;
+  const std::string& text = node.scalar;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool number = node.kind == YamlNode::Kind::scalar && !node.quoted &&
+                      result.ec == std::errc{} && result.ptr == text.data() + text.size();
+  if (!number || value < low || value > high) {
+    complain_mismatch(site, node, fmt::format("a whole number from {} to {}", low, high));
+    return false;
+  }
+  target = value;
+  return true;
+}
+
+bool read_animated_number(const ValueSite& site, const YamlNode& node, Animated<float>& target) {
+  return read_animated<float>(site, node, target, read_single);
+}
+
+bool read_animated_vector(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target) {
+  return read_animated<Vec3>(site, node, target, read_vector);
+}
+
+bool read_animated_scale(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target) {
+  return read_animated<Vec3>(site, node, target, read_scale);
+}
+
+bool read_animated_color(const ValueSite& site, const YamlNode& node, Animated<Rgb>& target) {
+  return read_animated<Rgb>(site, node, target, read_color);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,206 @@
+#include "core/job/resolved_text.h"
+
+#include "core/base/version.h"
+#include "core/job/field_writer.h"
+
+namespace hyades::core {
+
+namespace {
+
+void write(FieldWriter& out, const FilmDesc& film) {
+  out.enter("film");
+  out.put("width", film.width);
+  out.put("height", film.height);
+  const PixelRect all{0, 0, film.width, film.height};
+  const PixelRect crop = film.crop.value_or(all);
+  out.put("crop.x0", crop.x0);
+  out.put("crop.y0", crop.y0);
+  out.put("crop.x1", crop.x1);
+  out.put("crop.y1", crop.y1);
+  out.put("filter", static_cast<int32_t>(film.filter));
+  out.put("filter_radius", film.filter_radius);
+  out.leave();
+}
+
+void write(FieldWriter& out, const SamplingDesc& sampling) {
+  out.enter("sampling");
+  out.put("samples", sampling.samples);
+  out.put("seed", sampling.seed);
+  out.put("sampler", static_cast<int32_t>(sampling.sampler));
+  out.leave();
+}
+
+void write(FieldWriter& out, const IntegratorDesc& integrator) {
+  out.enter("integrator");
+  out.put("type", integrator.type);
+  out.put("max_depth", integrator.max_depth);
+  out.put("roulette_depth", integrator.roulette_depth);
+  out.put("clamp", integrator.clamp);
+  out.leave();
+}
+
+void write(FieldWriter& out, const CameraDesc& camera) {
+  out.enter("camera");
+  out.put("type", camera.type);
+  out.put("look_from", camera.look_from);
+  out.put("look_at", camera.look_at);
+  out.put("up", camera.up);
+  out.put("fov", camera.fov);
+  out.put("aperture_radius", camera.aperture_radius);
+  if (camera.f_stop) out.put("f_stop", *camera.f_stop);
+  out.put("aperture_blades", camera.aperture_blades);
+  out.put("aperture_rotation", camera.aperture_rotation);
+  if (camera.focus_distance) out.put("focus_distance", *camera.focus_distance);
+  out.put("focus_object", camera.focus_object);
+  out.leave();
+}
+
+void write(FieldWriter& out, const TextureDesc& texture) {
+  out.enter("texture");
+  out.put("name", texture.name);
+  out.put("type", texture.type);
+  out.put("a", texture.a);
+  out.put("b", texture.b);
+  out.put_file("file", texture.file);
+  out.put("color_space", texture.color_space);
+  out.put("wrap", texture.wrap);
+  out.put("filter", texture.filter);
+  out.put("scale", texture.scale);
+  out.put("offset", texture.offset);
+  out.put("mapping", texture.mapping);
+  out.put("octaves", texture.octaves);
+  out.put("lacunarity", texture.lacunarity);
+  out.put("gain", texture.gain);
+  out.put("time", texture.time);
+  out.leave();
+}
+
+void write(FieldWriter& out, const MaterialDesc& material) {
+  out.enter("material");
+  out.put("name", material.name);
+  out.put("type", material.type);
+  out.put("color", material.color);
+  out.put("metal", material.metal);
+  if (material.eta) out.put("eta", *material.eta);
+  if (material.k) out.put("k", *material.k);
+  out.put("roughness", material.roughness);
+  out.put("ior", material.ior);
+  out.put("transmission", material.transmission);
+  out.put("reflection", material.reflection);
+  out.put("reflectiveness", material.reflectiveness);
+  out.put("glossiness", material.glossiness);
+  out.put("first", material.first);
+  out.put("second", material.second);
+  out.put("amount", material.amount);
+  if (material.bump) {
+    out.put("bump.texture", material.bump->texture);
+    out.put("bump.height", material.bump->height);
+  }
+  out.leave();
+}
+
+void write(FieldWriter& out, const TransformList& steps) {
+  for (const TransformStep& step : steps) {
+    out.enter("step");
+    out.put("kind", static_cast<int32_t>(step.kind));
+    out.put("vector", step.vector);
+    out.put("angle", step.angle);
+    out.put("matrix", step.matrix);
+    out.leave();
+  }
+}
+
+void write(FieldWriter& out, const EmitDesc& emit) {
+  out.enter("emit");
+  out.put("color", emit.color);
+  out.put("unit", static_cast<int32_t>(emit.unit));
+  out.put("amount", emit.amount);
+  out.put("two_sided", emit.two_sided);
+  out.leave();
+}
+
+void write(FieldWriter& out, const ObjectDesc& object) {
+  out.enter("object");
+  out.put("name", object.name);
+  out.put("shape", object.shape);
+  out.put_file("mesh", object.mesh);
+  out.put("instance_of", object.instance_of);
+  out.put("radius", object.radius);
+  out.put("size", object.size);
+  out.put("height", object.height);
+  out.put("caps", object.caps);
+  out.put("smooth", object.smooth);
+  out.put("material", object.material);
+  write(out, object.transform);
+  out.put("at", object.at);
+  if (object.emit) write(out, *object.emit);
+  out.put("visible_to_camera", object.visible_to_camera);
+  for (const ObjectDesc& child : object.children) write(out, child);
+  out.leave();
+}
+
+void write(FieldWriter& out, const GroupDesc& group) {
+  out.enter("group");
+  out.put("name", group.name);
+  for (const ObjectDesc& object : group.objects) write(out, object);
+  out.leave();
+}
+
+void write(FieldWriter& out, const LightDesc& light) {
+  out.enter("light");
+  out.put("name", light.name);
+  out.put("type", light.type);
+  out.put("at", light.at);
+  out.put("look_at", light.look_at);
+  out.put("direction", light.direction);
+  out.put("color", light.color);
+  out.put("power", light.power);
+  out.put("irradiance", light.irradiance);
+  out.put("angle", light.angle);
+  out.put("blend", light.blend);
+  out.leave();
+}
+
+void write(FieldWriter& out, const EnvironmentDesc& environment) {
+  out.enter("environment");
+  out.put_file("image", environment.image);
+  out.put("color", environment.color);
+  out.put("rotate_y", environment.rotate_y);
+  out.put("strength", environment.strength);
+  out.put("visible_to_camera", environment.visible_to_camera);
+  out.leave();
+}
+
+std::vector<JobTime> shutter_moments(const Job& job, int32_t frame) {
+  std::vector<JobTime> moments = {job.time_of(frame)};
+  if (job.frames.shutter <= 0.0F) return moments;
+  for (int i = 1; i < kShutterMoments; ++i) {
+    moments.push_back(job.time_of(frame, static_cast<float>(i) / (kShutterMoments - 1)));
+  }
+  return moments;
+}
+
+}  // namespace
+
+std::string resolved_job_text(const Job& job, int32_t frame,
+                              const std::vector<AssetRecord>& assets) {
+  FieldWriter out(shutter_moments(job, frame), assets);
+  out.put("renderer", kRendererRevision);
+  out.put("frame", frame);
+  out.put("shutter", job.frames.shutter);
+  out.put("units", job.units);
+  write(out, job.film);
+  write(out, job.sampling);
+  write(out, job.integrator);
+  write(out, job.camera);
+  for (const TextureDesc& texture : job.textures) write(out, texture);
+  for (const MaterialDesc& material : job.materials) write(out, material);
+  for (const GroupDesc& group : job.groups) write(out, group);
+  for (const ObjectDesc& object : job.objects) write(out, object);
+  for (const LightDesc& light : job.lights) write(out, light);
+  if (job.environment) write(out, *job.environment);
+  out.put_other_files(job.includes);
+  return out.take();
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,48 @@
+#include "core/job/source.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace hyades::core {
+
+namespace {
+
+constexpr size_t kMaxDiagnostics = 100;
+
+}  // namespace
+
+std::string Diagnostic::to_string() const {
+  std::string text = where.file;
+  if (where.line > 0) {
+    text += ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
+  }
+  return text.empty() ? message : text + ": " + message;
+}
+
+void Diagnostics::add(const SourceLocation& where, std::string message) {
+  if (list_.size() > kMaxDiagnostics) return;
+  if (list_.size() == kMaxDiagnostics) {
+    message = "too many complaints: only the first " + std::to_string(kMaxDiagnostics) +
+              " are listed, mend those and look again";
+    list_.push_back({SourceLocation{where.file, 0, 0}, std::move(message)});
+    return;
+  }
+  list_.push_back({where, std::move(message)});
+}
+
+std::string Diagnostics::to_string() const {
+  std::vector<const Diagnostic*> order;
+  for (const Diagnostic& d : list_) order.push_back(&d);
+  // The closing "too many" carries no line and stays last.
+  const bool cut = list_.size() > kMaxDiagnostics;
+  std::stable_sort(order.begin(), order.end() - (cut ? 1 : 0), [](const auto* a, const auto* b) {
+    return std::tie(a->where.file, a->where.line, a->where.column) <
+           std::tie(b->where.file, b->where.line, b->where.column);
+  });
+  std::string text;
+  for (const Diagnostic* d : order) text += d->to_string() + "\n";
+  return text;
+}
+
+}  // namespace hyades::core
