@@ -36,15 +36,19 @@ int hex_digit(char c) {
 
 }  // namespace
 
+// The sums are in double so that 1 stays exactly 1.
 float srgb_decode(float encoded) {
   const float x = std::fabs(encoded);
-  const float y = x <= 0.04045F ? x / 12.92F : core::pow((x + 0.055F) / 1.055F, 2.4F);
+  const float y =
+      x <= 0.04045F ? x / 12.92F : core::pow(static_cast<float>((double{x} + 0.055) / 1.055), 2.4F);
   return std::copysign(y, encoded);
 }
 
 float srgb_encode(float linear) {
   const float x = std::fabs(linear);
-  const float y = x <= 0.0031308F ? x * 12.92F : 1.055F * core::pow(x, 1.0F / 2.4F) - 0.055F;
+  const float y = x <= 0.0031308F
+                      ? x * 12.92F
+                      : static_cast<float>(1.055 * double{core::pow(x, 1.0F / 2.4F)} - 0.055);
   return std::copysign(y, linear);
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 TEST(Color, SrgbKnownValues) {
   EXPECT_EQ(srgb_decode(0.0F), 0.0F);
-  EXPECT_NEAR(srgb_decode(1.0F), 1.0F, 1e-6F);
+  EXPECT_EQ(srgb_decode(1.0F), 1.0F);
+  EXPECT_EQ(srgb_encode(1.0F), 1.0F);
   EXPECT_NEAR(srgb_decode(128.0F / 255.0F), 0.2158605F, 1e-6F);
   EXPECT_NEAR(srgb_decode(10.0F / 255.0F), 0.0030353F, 1e-6F);
   EXPECT_NEAR(srgb_encode(0.18F), 0.4613561F, 1e-6F);

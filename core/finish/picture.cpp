@@ -1,0 +1,152 @@
+#include "core/finish/picture.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include "core/base/text.h"
+
+namespace hyades::core {
+namespace {
+
+const std::array<std::string, 7> kLayers{"beauty", "alpha",    "depth",  "albedo",
+                                         "normal", "variance", "samples"};
+
+std::vector<std::string> channels_of(std::string_view layer) {
+  if (layer == "beauty") return {"R", "G", "B"};
+  if (layer == "alpha") return {"A"};
+  if (layer == "depth") return {"depth.Z"};
+  if (layer == "albedo") return {"albedo.R", "albedo.G", "albedo.B"};
+  if (layer == "normal") return {"normal.X", "normal.Y", "normal.Z"};
+  if (layer == "variance") return {"variance.R", "variance.G", "variance.B"};
+  if (layer == "samples") return {"samples.N"};
+  return {};
+}
+
+std::string frame_digits(int32_t frame, size_t length) {
+  // The sign counts as a digit, as in printf's %0*d.
+  return fmt::format("{:0{}d}", frame, length);
+}
+
+Status write_encoded(PictureFormat format, const OutputDesc& output, const Image& normalised,
+                     const std::string& path, const ImageMetadata& metadata) {
+  if (format == PictureFormat::exr) {
+    const Result<Image> layers = select_layers(normalised, output.layers);
+    if (!layers) return layers.error().in("cannot write " + path);
+    return write_exr(path, *layers, metadata, output.half);
+  }
+  const auto curve = find_tone_curve(output.tone_map);
+  if (!curve) {
+    return Error{fmt::format("cannot write {}: there is no tone_map '{}'; expected {}{}", path,
+                             output.tone_map, join_names(tone_curve_names()),
+                             did_you_mean(output.tone_map, tone_curve_names()))};
+  }
+  const bool transparent = output.transparent && format == PictureFormat::png;
+  const Result<Image> picture = display_picture(normalised, *curve, output.exposure, transparent);
+  if (!picture) return picture.error().in("cannot write " + path);
+  return format == PictureFormat::png ? write_png(path, *picture, metadata)
+                                      : write_jpeg(path, *picture);
+}
+
+}  // namespace
+
+Result<PictureFormat> picture_format(std::string_view file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  if (ending == ".exr") return PictureFormat::exr;
+  if (ending == ".png") return PictureFormat::png;
+  if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::jpeg;
+  return Error{fmt::format("'{}' has no known ending; expected .exr, .png or .jpg", file)};
+}
+
+std::span<const std::string> layer_names() { return kLayers; }
+
+std::string output_path(const OutputDesc& output, const std::string& folder, int32_t frame) {
+  std::string file;
+  for (size_t i = 0; i < output.file.size();) {
+    size_t run = 0;
+    while (i + run < output.file.size() && output.file[i + run] == '#') ++run;
+    if (run > 0) {
+      file += frame_digits(frame, run);
+      i += run;
+    } else {
+      file += output.file[i++];
+    }
+  }
+  return (std::filesystem::path(folder) / file).string();
+}
+
+bool has_frame_number(std::string_view file) { return file.find('#') != std::string_view::npos; }
+
+Result<Image> select_layers(const Image& normalised, std::span<const std::string> layers) {
+  std::vector<std::string> names;
+  std::vector<size_t> sources;
+  const auto take = [&](const std::string& name) {
+    const int source = normalised.find_channel(name);
+    if (source < 0) return false;
+    names.push_back(name);
+    sources.push_back(static_cast<size_t>(source));
+    return true;
+  };
+  if (layers.empty()) {
+    for (const char* name : {"R", "G", "B"}) {
+      if (!take(name)) return Error{"the film holds no beauty"};
+    }
+    take("A");
+  }
+  for (const std::string& layer : layers) {
+    const std::vector<std::string> channels = channels_of(layer);
+    if (channels.empty()) {
+      return Error{fmt::format("there is no layer '{}'; expected {}{}", layer, join_names(kLayers),
+                               did_you_mean(layer, kLayers))};
+    }
+    for (const std::string& channel : channels) {
+      if (!take(channel)) return Error{fmt::format("the film holds no layer '{}'", layer)};
+    }
+  }
+  Image image = make_image(normalised.width, normalised.height, std::move(names));
+  const size_t stride = normalised.channels.size();
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] = normalised.data[i / sources.size() * stride + sources[i % sources.size()]];
+  }
+  return image;
+}
+
+Result<Image> display_picture(const Image& normalised, ToneCurve curve, float exposure,
+                              bool transparent) {
+  const std::vector<std::string> wanted = transparent ? std::vector<std::string>{"beauty", "alpha"}
+                                                      : std::vector<std::string>{"beauty"};
+  Result<Image> selected = select_layers(normalised, wanted);
+  if (!selected) return selected.error();
+  Image image = std::move(selected).value();
+  const size_t stride = image.channels.size();
+  for (size_t i = 0; i < image.data.size(); i += stride) {
+    float* pixel = &image.data[i];
+    Rgb color(pixel[0], pixel[1], pixel[2]);
+    if (transparent) color = pixel[3] > 0.0F ? color / pixel[3] : Rgb(0.0F);
+    const Rgb shown = tone_map(color, curve, exposure);
+    for (int c = 0; c < 3; ++c) pixel[c] = shown[c];
+  }
+  return image;
+}
+
+Status write_output(const OutputDesc& output, const Image& normalised, const std::string& path,
+                    const ImageMetadata& metadata) {
+  const Result<PictureFormat> format = picture_format(path);
+  if (!format) return format.error();
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) {
+    return Error{fmt::format("cannot make the folder {}: {}", folder.string(), error.message())};
+  }
+  return write_encoded(*format, output, normalised, path, metadata);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/base/result.h"
+#include "core/finish/tone_map.h"
+#include "core/image/image.h"
+#include "core/image/write_image.h"
+#include "core/job/job.h"
+
+namespace hyades::core {
+
+enum class PictureFormat { exr, png, jpeg };
+
+/// The format that `file`'s ending means (.exr, .png, .jpg, .jpeg; upper case too). The error lists
+/// the endings.
+Result<PictureFormat> picture_format(std::string_view file);
+
+/// The names of all layers that an EXR output may list.
+std::span<const std::string> layer_names();
+
+/// Where `output` goes for `frame`: its file below `folder` (unless absolute), each run of '#'
+/// replaced by the frame number, filled with zeros to the run's length ("a.####.exr", 7 ->
+/// "a.0007.exr"; a longer number keeps its digits; "-007" for a negative one).
+std::string output_path(const OutputDesc& output, const std::string& folder, int32_t frame);
+
+/// Whether `file` has a place for the frame number.
+bool has_frame_number(std::string_view file);
+
+/// The channels of `layers` (names of layer_names()) out of a normalised film, under standard
+/// names, in the order of the list: beauty R G B, alpha A, depth "depth.Z", albedo "albedo.R", ...,
+/// normal "normal.X", ..., variance "variance.R", ..., samples "samples.N". No layers: beauty
+/// and, where there, alpha. The error names a layer that the film does not hold.
+Result<Image> select_layers(const Image& normalised, std::span<const std::string> layers);
+
+/// Beauty as display values R, G, B: tone-mapped over black, or, where `transparent`, with straight
+/// alpha "A" and colour divided by it before the curve. Film colour is premultiplied by alpha where
+/// the environment is invisible to the camera; where it is visible its light is in the colour and
+/// is lost with alpha 0.
+Result<Image> display_picture(const Image& normalised, ToneCurve curve, float exposure,
+                              bool transparent);
+
+/// Writes one output of a job from a normalised film (Film::normalised()) to `path`, in the format
+/// of output.file. Folders that miss are made; the file is complete or absent. Metadata go into EXR
+/// and PNG headers.
+Status write_output(const OutputDesc& output, const Image& normalised, const std::string& path,
+                    const ImageMetadata& metadata = {});
+
+}  // namespace hyades::core

@@ -1,0 +1,154 @@
+#include "core/finish/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/base/hash.h"
+#include "core/image/read_image.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::core {
+namespace {
+
+using test::TempFolder;
+
+/// A picture like Film::normalised() returns.
+Image normalised_film() {
+  Image image =
+      make_image(8, 6,
+                 {"R", "G", "B", "A", "depth.Z", "albedo.R", "albedo.G", "albedo.B", "normal.X",
+                  "normal.Y", "normal.Z", "variance.R", "variance.G", "variance.B", "samples.N"});
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] = static_cast<float>(mix64(i) >> 40) * 0x1p-24F;
+  }
+  return image;
+}
+
+OutputDesc output(const std::string& file) {
+  OutputDesc desc;
+  desc.file = file;
+  return desc;
+}
+
+TEST(Picture, OutputPaths) {
+  const auto path = [](const std::string& file, int32_t frame) {
+    return output_path(output(file), "out", frame);
+  };
+  EXPECT_EQ(path("a.####.exr", 7), "out/a.0007.exr");
+  EXPECT_EQ(path("a.##.exr", 12345), "out/a.12345.exr");
+  EXPECT_EQ(path("##/a.###.png", 4), "out/04/a.004.png");
+  EXPECT_EQ(path("a.####.exr", -7), "out/a.-007.exr");
+  EXPECT_EQ(path("a.exr", 3), "out/a.exr");
+  EXPECT_EQ(path("/abs/a#.exr", 3), "/abs/a3.exr");
+  EXPECT_EQ(output_path(output("a.#.exr"), "", 3), "a.3.exr");
+  EXPECT_EQ(output_path(output("a.exr"), "shot#1", 3), "shot#1/a.exr");
+  EXPECT_TRUE(has_frame_number("a.#.exr"));
+  EXPECT_FALSE(has_frame_number("a.exr"));
+}
+
+TEST(Picture, FormatsByEnding) {
+  EXPECT_EQ(*picture_format("a.exr"), PictureFormat::exr);
+  EXPECT_EQ(*picture_format("b/A.PNG"), PictureFormat::png);
+  EXPECT_EQ(*picture_format("a.jpeg"), PictureFormat::jpeg);
+  EXPECT_FALSE(picture_format("a.tiff"));
+  EXPECT_FALSE(picture_format("a"));
+  EXPECT_FALSE(picture_format("png"));
+}
+
+TEST(Picture, ExrHoldsTheChosenLayers) {
+  const TempFolder folder;
+  const Image film = normalised_film();
+  OutputDesc desc = output("sub/deeper/a.exr");
+  desc.layers = {"normal", "beauty", "depth", "samples"};
+  const std::string path = output_path(desc, folder.path().string(), 1);
+  const Status status = write_output(desc, film, path, {{"hyades.frame", "1"}});
+  ASSERT_TRUE(status) << status.error().message;
+  const Result<Image> back = read_image_file(path);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->channels, (std::vector<std::string>{"R", "G", "B", "depth.Z", "normal.X",
+                                                      "normal.Y", "normal.Z", "samples.N"}));
+  for (int i = 0; i < back->channel_count(); ++i) {
+    const int source = film.find_channel(back->channels[static_cast<size_t>(i)]);
+    for (int y = 0; y < 6; ++y) {
+      for (int x = 0; x < 8; ++x) EXPECT_EQ(back->at(x, y, i), film.at(x, y, source));
+    }
+  }
+}
+
+TEST(Picture, EveryLayerCanBeWrittenAndMissingOnesAreNamed) {
+  const Image film = normalised_film();
+  for (const std::string& layer : layer_names()) {
+    EXPECT_TRUE(select_layers(film, std::vector<std::string>{layer})) << layer;
+  }
+  const Result<Image> all = select_layers(film, layer_names());
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->channels.size(), film.channels.size());
+  const Result<Image> plain = select_layers(film, {});
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+
+  const Image bare = make_image(2, 2, {"R", "G", "B"});
+  const Result<Image> missing = select_layers(bare, std::vector<std::string>{"depth"});
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().message, "the film holds no layer 'depth'");
+  const Result<Image> typo = select_layers(bare, std::vector<std::string>{"albdo"});
+  ASSERT_FALSE(typo);
+  EXPECT_NE(typo.error().message.find("did you mean 'albedo'?"), std::string::npos);
+}
+
+TEST(Picture, PngAndJpegAreToneMapped) {
+  const TempFolder folder;
+  Image film = make_image(16, 16, {"R", "G", "B", "A"});
+  for (size_t i = 0; i < film.data.size(); ++i) film.data[i] = i % 4 == 3 ? 1.0F : 0.09F;
+  for (const char* name : {"a.png", "a.jpg"}) {
+    OutputDesc desc = output(name);
+    desc.tone_map = "aces";
+    desc.exposure = 1.0F;
+    const Status status = write_output(desc, film, folder.file(name));
+    ASSERT_TRUE(status) << status.error().message;
+    const Result<Image> back = read_image_file(folder.file(name), ColorSpace::linear);
+    ASSERT_TRUE(back);
+    EXPECT_EQ(back->channels.size(), 3U);
+    EXPECT_NEAR(back->at(5, 5, 0), tone_map(Rgb(0.18F), ToneCurve::aces, 0.0F).x, 0.004F);
+  }
+}
+
+TEST(Picture, TransparentPngHasStraightAlpha) {
+  const TempFolder folder;
+  Image film = make_image(2, 1, {"R", "G", "B", "A"});
+  film.data = {0.1F, 0.2F, 0.05F, 0.5F, 0.0F, 0.0F, 0.0F, 0.0F};
+  OutputDesc desc = output("a.png");
+  desc.transparent = true;
+  desc.tone_map = "linear";
+  ASSERT_TRUE(write_output(desc, film, folder.file("a.png")));
+  const Result<Image> back = read_image_file(folder.file("a.png"), ColorSpace::linear);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->channels, (std::vector<std::string>{"R", "G", "B", "A"}));
+  EXPECT_NEAR(back->at(0, 0, 0), 0.2F, 0.002F);
+  EXPECT_NEAR(back->at(0, 0, 1), 0.4F, 0.002F);
+  EXPECT_NEAR(back->at(0, 0, 3), 0.5F, 0.002F);
+  EXPECT_EQ(back->at(1, 0, 3), 0.0F);
+}
+
+TEST(Picture, ErrorsSayWhatAndWhere) {
+  const TempFolder folder;
+  const Image film = normalised_film();
+  const Status ending = write_output(output("a.tga"), film, folder.file("a.tga"));
+  ASSERT_FALSE(ending);
+  EXPECT_NE(ending.error().message.find("expected .exr, .png or .jpg"), std::string::npos);
+  OutputDesc desc = output("a.png");
+  desc.tone_map = "filmc";
+  const Status curve = write_output(desc, film, folder.file("a.png"));
+  ASSERT_FALSE(curve);
+  EXPECT_NE(curve.error().message.find("did you mean 'filmic'?"), std::string::npos);
+  ASSERT_TRUE(write_output(output("file.png"), film, folder.file("file.png")));
+  const Status blocked = write_output(output("x.png"), film, folder.file("file.png/x.png"));
+  ASSERT_FALSE(blocked);
+  EXPECT_NE(blocked.error().message.find("cannot make the folder"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hyades::core
