@@ -3,13 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/film/layout.h"
 #include "core/job/job.h"
 
 namespace hyades::core {
-
-/// The layers that a film must hold so that all of the job's outputs can be made from it.
-LayerSet needed_layers(const Job& job);
 
 /// Every file that the job names (meshes, images), once each, in order of first mention; relative
 /// to the job's folder. Files that those files name in turn are found by loading them.

@@ -1,4 +1,4 @@
-#include "core/job/job_needs.h"
+#include "core/job/referenced_files.h"
 
 #include <set>
 
@@ -25,18 +25,6 @@ class FileList {
 };
 
 }  // namespace
-
-LayerSet needed_layers(const Job& job) {
-  LayerSet layers;
-  for (const OutputDesc& output : job.outputs) {
-    for (const std::string& layer : output.layers) {
-      if (layer == "depth") layers.depth = true;
-      if (layer == "albedo") layers.albedo = true;
-      if (layer == "normal") layers.normal = true;
-    }
-  }
-  return layers;
-}
 
 std::vector<std::string> referenced_files(const Job& job) {
   FileList list;
