@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/vec.h"
+
+namespace hyades::core {
+
+/// A face corner: indices from 0 into the file's positions, UVs and normals; -1 where not given.
+struct ObjCorner {
+  int32_t v = -1;
+  int32_t vt = -1;
+  int32_t vn = -1;
+};
+
+/// What an OBJ file (Wavefront, "Advanced Visualizer Manual", appendix B1) holds of polygons.
+struct ObjData {
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Vec3> normals;
+  std::vector<ObjCorner> corners;
+  std::vector<uint32_t> sizes;  ///< corners of each face
+};
+
+/// Parses the lines v, vt, vn and f, in parallel; other lines (groups, materials, curves) are
+/// passed over. Indices are in range. Errors name the line: that of the first one.
+Result<ObjData> parse_obj(std::span<const char> bytes);
+
+}  // namespace hyades::core
