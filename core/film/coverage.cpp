@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cassert>
-#include <tuple>
-#include <utility>
+#include <limits>
+
+#include "core/film/coverage_cut.h"
 
 namespace hyades::core {
 namespace {
 
 constexpr int32_t kBucketRows = 32;
-constexpr int32_t kTallBuckets = 256;   // boxes over more buckets than this are listed apart
+constexpr int32_t kTallBuckets = 64;    // boxes over more buckets than this are listed apart
 constexpr size_t kIndexFromBoxes = 32;  // below, scanning all boxes is faster
 constexpr uint64_t kMaxPiecesPerBox = 64;
 constexpr uint64_t kMinAddsToTidy = 256;  // tidying costs about as much as adding what is there
@@ -50,98 +51,6 @@ std::optional<CoverageBox> joined(const CoverageBox& a, const CoverageBox& b) {
         a.batches};
   }
   return std::nullopt;
-}
-
-/// The distinct top and bottom rows of the boxes, sorted.
-std::vector<int32_t> row_cuts(const std::vector<CoverageBox>& boxes) {
-  std::vector<int32_t> cuts;
-  cuts.reserve(2 * boxes.size());
-  for (const CoverageBox& box : boxes) {
-    cuts.push_back(box.tile.y0);
-    cuts.push_back(box.tile.y1);
-  }
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  return cuts;
-}
-
-/// Columns [x0, x1) that hold the same batches: runs[begin, end) of a shared vector.
-struct Column {
-  int32_t x0 = 0;
-  int32_t x1 = 0;
-  size_t begin = 0;
-  size_t end = 0;
-};
-
-/// Rows [y0, y1) with the same content.
-struct Slab {
-  int32_t y0 = 0;
-  int32_t y1 = 0;
-  std::vector<Column> columns;
-  std::vector<BatchRange> runs;
-
-  bool same_runs(const Column& a, const Slab& other, const Column& b) const {
-    return std::equal(runs.begin() + static_cast<ptrdiff_t>(a.begin),
-                      runs.begin() + static_cast<ptrdiff_t>(a.end),
-                      other.runs.begin() + static_cast<ptrdiff_t>(b.begin),
-                      other.runs.begin() + static_cast<ptrdiff_t>(b.end));
-  }
-
-  bool same_content(const Slab& other) const {
-    return columns.size() == other.columns.size() && runs == other.runs &&
-           std::equal(columns.begin(), columns.end(), other.columns.begin(),
-                      [](const Column& a, const Column& b) {
-                        return a.x0 == b.x0 && a.x1 == b.x1 && a.begin == b.begin && a.end == b.end;
-                      });
-  }
-};
-
-/// Cuts the boxes that cross one run of rows at all their left and right sides and joins columns
-/// that hold the same.
-void cut_columns(const std::vector<CoverageBox>& crossing, Slab& slab) {
-  std::vector<int32_t> sides;
-  sides.reserve(2 * crossing.size());
-  for (const CoverageBox& box : crossing) {
-    sides.push_back(box.tile.x0);
-    sides.push_back(box.tile.x1);
-  }
-  std::sort(sides.begin(), sides.end());
-  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-
-  std::vector<CoverageBox> by_left = crossing;
-  std::sort(by_left.begin(), by_left.end(),
-            [](const CoverageBox& a, const CoverageBox& b) { return a.tile.x0 < b.tile.x0; });
-  std::vector<std::pair<BatchRange, int32_t>> active;  // runs and where they stop
-  size_t next = 0;
-  for (size_t i = 0; i + 1 < sides.size(); ++i) {
-    const int32_t x0 = sides[i];
-    std::erase_if(active, [x0](const auto& run) { return run.second <= x0; });
-    for (; next < by_left.size() && by_left[next].tile.x0 == x0; ++next) {
-      const std::pair<BatchRange, int32_t> run = {by_left[next].batches, by_left[next].tile.x1};
-      const auto before = [](const auto& a, const auto& b) {
-        return a.first.first < b.first.first;
-      };
-      active.insert(std::upper_bound(active.begin(), active.end(), run, before), run);
-    }
-    if (active.empty()) continue;
-
-    Column column{x0, sides[i + 1], slab.runs.size(), 0};
-    for (const auto& [run, right] : active) {
-      if (slab.runs.size() > column.begin && slab.runs.back().end() == run.first) {
-        slab.runs.back().count += run.count;
-      } else {
-        slab.runs.push_back(run);
-      }
-    }
-    column.end = slab.runs.size();
-    if (!slab.columns.empty() && slab.columns.back().x1 == x0 &&
-        slab.same_runs(slab.columns.back(), slab, column)) {
-      slab.columns.back().x1 = column.x1;
-      slab.runs.resize(column.begin);
-    } else {
-      slab.columns.push_back(column);
-    }
-  }
 }
 
 }  // namespace
@@ -256,7 +165,7 @@ void Coverage::link(uint32_t id) {
   const int64_t low = buckets_.empty() ? first : std::min(first, first_bucket_);
   const int64_t high =
       buckets_.empty() ? end : std::max(int64_t{end}, first_bucket_ + int64_t(buckets_.size()));
-  if (int64_t{end} - first > kTallBuckets || high - low > 16 * kTallBuckets) {
+  if (int64_t{end} - first > kTallBuckets || high - low > 64 * kTallBuckets) {
     tall_.push_back(id);
     return;
   }
@@ -296,63 +205,35 @@ void Coverage::unlink(uint32_t id) {
 
 void Coverage::tidy() {
   adds_since_tidy_ = 0;
-  if (cutting_cost() > kMaxPiecesPerBox * boxes_.size()) return;
-  std::vector<CoverageBox> fresh = canonical();
-  if (fresh.size() >= boxes_.size()) return;
+  const auto fresh = cut_and_join(boxes_, kMaxPiecesPerBox * boxes_.size());
+  if (!fresh || fresh->size() >= boxes_.size()) return;
   boxes_.clear();
   buckets_.clear();
   tall_.clear();
   indexed_ = false;
-  for (const CoverageBox& box : fresh) insert(box);
-}
-
-uint64_t Coverage::cutting_cost() const {
-  const std::vector<int32_t> cuts = row_cuts(boxes_);
-  uint64_t pieces = 0;
-  for (const CoverageBox& box : boxes_) {
-    const auto top = std::lower_bound(cuts.begin(), cuts.end(), box.tile.y0);
-    const auto bottom = std::lower_bound(top, cuts.end(), box.tile.y1);
-    pieces += static_cast<uint64_t>(bottom - top);
-  }
-  return pieces;
+  for (const CoverageBox& box : *fresh) insert(box);
 }
 
 std::vector<CoverageBox> Coverage::canonical() const {
-  const std::vector<int32_t> cuts = row_cuts(boxes_);
-  std::vector<CoverageBox> by_top = boxes_;
-  std::sort(by_top.begin(), by_top.end(), [](const CoverageBox& a, const CoverageBox& b) {
-    return std::tie(a.tile.y0, a.tile.x0, a.batches.first) <
-           std::tie(b.tile.y0, b.tile.x0, b.batches.first);
-  });
+  return *cut_and_join(boxes_, std::numeric_limits<uint64_t>::max());
+}
 
-  std::vector<Slab> slabs;
-  std::vector<CoverageBox> crossing;
-  size_t next = 0;
-  for (size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const int32_t y0 = cuts[i];
-    std::erase_if(crossing, [y0](const CoverageBox& box) { return box.tile.y1 <= y0; });
-    for (; next < by_top.size() && by_top[next].tile.y0 == y0; ++next) {
-      crossing.push_back(by_top[next]);
-    }
-    if (crossing.empty()) continue;
-    Slab slab{y0, cuts[i + 1], {}, {}};
-    cut_columns(crossing, slab);
-    if (!slabs.empty() && slabs.back().y1 == y0 && slabs.back().same_content(slab)) {
-      slabs.back().y1 = slab.y1;
-    } else {
-      slabs.push_back(std::move(slab));
+Result<Coverage> Coverage::from_canonical(const std::vector<CoverageBox>& boxes) {
+  for (const CoverageBox& box : boxes) {
+    if (box.batches.first > kMaxBatches || box.batches.count > kMaxBatches - box.batches.first) {
+      return Error{"it has batches beyond any job's"};
     }
   }
-
-  std::vector<CoverageBox> result;
-  for (const Slab& slab : slabs) {
-    for (const Column& column : slab.columns) {
-      for (size_t run = column.begin; run < column.end; ++run) {
-        result.push_back({{column.x0, slab.y0, column.x1, slab.y1}, slab.runs[run]});
-      }
-    }
+  // Boxes in canonical form are cut no further, so that hostile ones cannot make this slow.
+  if (cut_and_join(boxes, boxes.size()) != boxes) {
+    return Error{"its boxes overlap, are empty or are not in canonical form"};
   }
-  return result;
+  Coverage coverage;
+  for (const CoverageBox& box : boxes) {
+    coverage.insert(box);
+    coverage.volume_ += box_volume(box);
+  }
+  return coverage;
 }
 
 }  // namespace hyades::core

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/rect.h"
+#include "core/base/result.h"
 #include "core/film/unit.h"
 
 namespace hyades::core {
@@ -41,9 +42,9 @@ class Coverage {
   /// in those the runs of batches, each as long as possible.
   std::vector<CoverageBox> canonical() const;
 
-  /// How many pieces canonical() cuts the boxes into before it joins them: its cost, small for
-  /// what renderers make, quadratic for boxes chosen by an enemy.
-  uint64_t cutting_cost() const;
+  /// The inverse, for readers of files: refuses boxes that are not a canonical form, in time
+  /// proportional to their number (but for sorting).
+  static Result<Coverage> from_canonical(const std::vector<CoverageBox>& boxes);
 
  private:
   template <class Visit>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,12 +10,19 @@
 
 namespace hyades::core {
 
+/// What decode_film accepts, checked before memory is taken.
+struct FilmLimits {
+  uint64_t max_bytes = uint64_t{16} << 30U;  ///< of the film in memory
+};
+
 /// A film as compact bytes for the log and the wire: versioned, checksummed (CRC-32C), byte planes
 /// that are zero left out, the rest zstd-compressed at its fastest level. A film of one batch takes
-/// about 4 bytes per pixel and channel. docs/film.md describes it.
+/// about 4 bytes per pixel and channel. Equal films give equal bytes (with the same zstd library).
+/// docs/film.md describes the format.
 std::vector<std::byte> encode_film(const Film& film);
 
-/// The inverse; refuses anything damaged, truncated or absurd with a reason, memory bounded.
-Result<Film> decode_film(std::span<const std::byte> bytes);
+/// The inverse; refuses anything damaged, truncated or absurd with a reason. Takes memory for at
+/// most 64 MiB + 4096 times the bytes given, and never more than the limits say.
+Result<Film> decode_film(std::span<const std::byte> bytes, const FilmLimits& limits = {});
 
 }  // namespace hyades::core

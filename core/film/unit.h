@@ -10,6 +10,9 @@ namespace hyades::core {
 /// Batch b of a pixel holds samples [16 b, 16 b + 16); the last batch of a job may hold fewer.
 inline constexpr uint32_t kBatchSamples = 16;
 
+/// No job has more batches per pixel (samples are counted in 32 bits).
+inline constexpr uint32_t kMaxBatches = uint32_t{1} << 28U;
+
 /// Batches [first, first + count).
 struct BatchRange {
   uint32_t first = 0;

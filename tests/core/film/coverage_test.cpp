@@ -156,6 +156,49 @@ TEST(Coverage, AnswersAsASetOfCellsDoes) {
   }
 }
 
+TEST(Coverage, ReadsCanonicalFormsOnly) {
+  std::mt19937 random(9);
+  for (int round = 0; round < 30; ++round) {
+    std::vector<CoverageBox> pieces = cut(box(-30, -2, 170, 150, 3, 9), 200, random);
+    pieces.resize(pieces.size() / 2);
+    Coverage c;
+    for (const CoverageBox& b : pieces) c.add(b);
+    const std::vector<CoverageBox> form = c.canonical();
+    const auto read = Coverage::from_canonical(form);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(read->boxes(), form);
+    EXPECT_EQ(read->volume(), c.volume());
+    EXPECT_EQ(read->overlap(pieces[7]).has_value(), true);
+    std::vector<CoverageBox> wrong = form;
+    std::swap(wrong[0], wrong[1]);
+    EXPECT_FALSE(Coverage::from_canonical(wrong).ok()) << "another order";
+    wrong = form;
+    wrong[1] = wrong[0];
+    EXPECT_FALSE(Coverage::from_canonical(wrong).ok()) << "overlap";
+    wrong = form;
+    wrong[0].batches.count = 0;
+    EXPECT_FALSE(Coverage::from_canonical(wrong).ok()) << "empty";
+    wrong = form;
+    wrong.back().batches.count = ~0U;
+    EXPECT_FALSE(Coverage::from_canonical(wrong).ok()) << "batch numbers wrap around";
+  }
+  EXPECT_TRUE(Coverage::from_canonical({})->boxes().empty());
+}
+
+/// Boxes that cut each other into n^2 or n^3 pieces.
+TEST(Coverage, HostileBoxesAreRefusedAtOnce) {
+  std::vector<CoverageBox> columns;
+  std::vector<CoverageBox> stairs;
+  for (int i = 0; i < 50000; ++i) {
+    columns.push_back(box(i, 0, 100000, 1, static_cast<uint32_t>(i) * 2, 1));
+    stairs.push_back(box(i, i, i + 1, 100000, 0, 1));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_FALSE(Coverage::from_canonical(columns).ok());
+  EXPECT_FALSE(Coverage::from_canonical(stairs).ok());
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+}
+
 /// A 1080p frame in tiles of 32 x 32 whose batches arrive one by one in random order. It takes
 /// some 50 ms; quadratic joining took a hundred times longer.
 TEST(Coverage, ThirtyThousandBoxesInRandomOrderAreCheap) {

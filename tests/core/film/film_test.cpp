@@ -7,39 +7,12 @@
 #include <limits>
 #include <random>
 
+#include "tests/core/film/film_testing.h"
+
 namespace hyades::core {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-const LayerSet kAllLayers{true, true, true};
-
-/// What a renderer would give: a pure function of pixel, batch and channel.
-float rendered(int x, int y, uint32_t batch, int channel, const FilmLayout& layout) {
-  std::mt19937 random(static_cast<uint32_t>(x * 7919 + y * 104729) + batch * 31U +
-                      static_cast<uint32_t>(channel) * 999983U);
-  const float u = static_cast<float>(random() % 0x1000000) * 0x1p-24F;
-  if (channel == layout.depth) return u < 0.2F ? kInfinity : 10.0F * u;
-  const float sign = channel >= 5 && u < 0.3F ? -1.0F : 1.0F;
-  return sign * std::ldexp(0.5F + u, static_cast<int>(random() % 30) - 20);
-}
-
-Film render(const FilmLayout& layout, const PixelRect& tile, BatchRange batches,
-            uint32_t samples = 1000000) {
-  Film film(layout, tile);
-  std::vector<float> values(static_cast<size_t>(tile.area()) *
-                            static_cast<size_t>(layout.deposited));
-  for (uint32_t b = batches.first; b < batches.end(); ++b) {
-    size_t i = 0;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      for (int x = tile.x0; x < tile.x1; ++x) {
-        for (int c = 0; c < layout.deposited; ++c) values[i++] = rendered(x, y, b, c, layout);
-      }
-    }
-    film.deposit(tile, b, samples_in_batch(b, samples), values);
-  }
-  return film;
-}
-
 TEST(FilmLayout, HasTheChannelsInFixedOrder) {
   const FilmLayout all = make_film_layout(kAllLayers);
   std::vector<std::string> names;

@@ -1,0 +1,207 @@
+#include "core/film/film_codec.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+#include <utility>
+
+#include "core/base/hash.h"
+#include "core/film/byte_planes.h"
+
+namespace hyades::core {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the format is little-endian");
+
+constexpr uint32_t kMagic = 0x4D465948;  // "HYFM"
+constexpr uint16_t kVersion = 1;
+constexpr uint64_t kFreeBytes = uint64_t{64} << 20U;
+constexpr uint64_t kMaxExpansion = 4096;
+constexpr int32_t kMaxCoordinate = 1 << 24;
+constexpr size_t kBoxBytes = 24;
+constexpr size_t kHeaderBytes = 28;
+
+/// How a channel is stored.
+enum class ChannelForm : uint8_t {
+  constant = 0,  ///< one number follows, that of all pixels
+  floats = 1,    ///< all are 32-bit floats (one batch): 4 byte planes; minima always so
+  fixed = 2,     ///< 16 byte planes
+};
+
+uint64_t film_bytes(const FilmLayout& layout, const PixelRect& window) {
+  return static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
+}
+
+uint16_t layer_bits(const LayerSet& layers) {
+  return static_cast<uint16_t>((layers.depth ? 1 : 0) | (layers.albedo ? 2 : 0) |
+                               (layers.normal ? 4 : 0));
+}
+
+bool float_of(const Fixed128& value, float& result) {
+  result = static_cast<float>(to_double(value));
+  return to_fixed(result) == value;
+}
+
+void append_channel(std::vector<std::byte>& out, std::span<const Fixed128> plane, MergeRule rule) {
+  if (std::all_of(plane.begin(), plane.end(), [&](const Fixed128& v) { return v == plane[0]; })) {
+    append_number(out, ChannelForm::constant);
+    append_number(out, plane.empty() ? Fixed128{} : plane[0]);
+    return;
+  }
+  std::vector<float> floats(plane.size());
+  bool exact = true;
+  for (size_t i = 0; i < plane.size() && exact; ++i) {
+    if (rule == MergeRule::min) {
+      floats[i] = std::bit_cast<float>(static_cast<uint32_t>(plane[i].low));
+    } else {
+      exact = float_of(plane[i], floats[i]);
+    }
+  }
+  if (exact) {
+    append_number(out, ChannelForm::floats);
+    append_planes(out, std::as_bytes(std::span(floats)), sizeof(float));
+  } else {
+    append_number(out, ChannelForm::fixed);
+    append_planes(out, std::as_bytes(plane), sizeof(Fixed128));
+  }
+}
+
+bool is_minimum(const Fixed128& value) {
+  const auto bits = static_cast<uint32_t>(value.low);
+  return value.high == 0 && value.low == bits && (bits & 0x7FFFFFFFU) <= 0x7F800000U;  // no NaN
+}
+
+/// Infinities and NaN would not be sums, nor would values beyond the range of Fixed128.
+bool is_sum(float value) { return value > -0x1p63F && value < 0x1p63F; }
+
+Status read_channel(ByteReader& in, std::span<Fixed128> plane, const FilmChannel& channel) {
+  const Error damaged{"channel " + channel.name + " is damaged"};
+  const bool minima = channel.rule == MergeRule::min;
+  switch (in.number<ChannelForm>()) {
+    case ChannelForm::constant: {
+      const auto value = in.number<Fixed128>();
+      if (in.failed() || (minima && !is_minimum(value))) return damaged;
+      std::fill(plane.begin(), plane.end(), value);
+      return {};
+    }
+    case ChannelForm::floats: {
+      std::vector<float> floats(plane.size());
+      const auto bytes = std::as_writable_bytes(std::span(floats));
+      if (!read_planes(in, bytes, sizeof(float))) return damaged;
+      for (size_t i = 0; i < plane.size(); ++i) {
+        const Fixed128 bits{std::bit_cast<uint32_t>(floats[i]), 0};
+        if (minima ? !is_minimum(bits) : !is_sum(floats[i])) return damaged;
+        plane[i] = minima ? bits : to_fixed(floats[i]);
+      }
+      return {};
+    }
+    case ChannelForm::fixed:
+      if (minima || !read_planes(in, std::as_writable_bytes(plane), sizeof(Fixed128))) {
+        return damaged;
+      }
+      return {};
+  }
+  return damaged;
+}
+
+Result<PixelRect> read_window(ByteReader& in) {
+  PixelRect window;
+  for (int32_t* side : {&window.x0, &window.y0, &window.x1, &window.y1}) {
+    *side = in.number<int32_t>();
+    if (*side < -kMaxCoordinate || *side > kMaxCoordinate) return Error{"its window is absurd"};
+  }
+  if (window.x1 < window.x0 || window.y1 < window.y0) return Error{"its window is absurd"};
+  return window;
+}
+
+Result<Coverage> read_coverage(ByteReader& in) {
+  const auto count = in.number<uint32_t>();
+  if (count > in.left() / kBoxBytes) return Error{"it is truncated"};
+  std::vector<CoverageBox> boxes(count);
+  for (CoverageBox& box : boxes) {
+    for (int32_t* side : {&box.tile.x0, &box.tile.y0, &box.tile.x1, &box.tile.y1}) {
+      *side = in.number<int32_t>();
+    }
+    box.batches.first = in.number<uint32_t>();
+    box.batches.count = in.number<uint32_t>();
+  }
+  return Coverage::from_canonical(boxes);
+}
+
+Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) {
+  ByteReader in(bytes);
+  if (in.number<uint32_t>() != kMagic) return Error{"these bytes are no film"};
+  const auto version = in.number<uint16_t>();
+  if (version > kVersion) {
+    return Error{fmt::format("it has format version {}; this build knows {}", version, kVersion)};
+  }
+  if (bytes.size() < kHeaderBytes + sizeof(uint32_t)) return Error{"it is truncated"};
+  const std::span<const std::byte> body = bytes.first(bytes.size() - sizeof(uint32_t));
+  if (crc32c(body) != ByteReader(bytes.subspan(body.size())).number<uint32_t>()) {
+    return Error{"its checksum does not match: it is damaged or truncated"};
+  }
+  const auto bits = in.number<uint16_t>();
+  if (version == 0 || bits > 7) return Error{"it has unknown layers"};
+  FilmLayout layout = make_film_layout({(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0});
+
+  const Result<PixelRect> window = read_window(in);
+  if (!window) return window.error();
+  const uint64_t memory = film_bytes(layout, *window);
+  if (memory > limits.max_bytes) {
+    return Error{fmt::format("it is {} x {} pixels and would take {} MB; the limit is {} MB",
+                             window->width(), window->height(), memory >> 20U,
+                             limits.max_bytes >> 20U)};
+  }
+  if (memory > kFreeBytes + kMaxExpansion * bytes.size()) {
+    return Error{fmt::format("it claims {} x {} pixels, which {} bytes cannot hold",
+                             window->width(), window->height(), bytes.size())};
+  }
+  Result<Coverage> coverage = read_coverage(in);
+  if (!coverage) return coverage.error().in("its coverage is damaged");
+
+  Film film(std::move(layout), *window);
+  film.mutable_coverage() = std::move(*coverage);
+  for (size_t c = 0; c < film.layout().channels.size(); ++c) {
+    const Status read =
+        read_channel(in, film.mutable_plane(static_cast<int>(c)), film.layout().channels[c]);
+    if (!read) return read.error();
+  }
+  const Status agrees = film.check();
+  if (!agrees) return agrees.error();
+  return film;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_film(const Film& film) {
+  std::vector<std::byte> out;
+  append_number(out, kMagic);
+  append_number(out, kVersion);
+  append_number(out, layer_bits(film.layout().layers));
+  append_number(out, film.window());
+  const std::vector<CoverageBox> boxes = film.coverage().canonical();
+  append_number(out, static_cast<uint32_t>(boxes.size()));
+  for (const CoverageBox& box : boxes) append_number(out, box);
+  for (size_t c = 0; c < film.layout().channels.size(); ++c) {
+    append_channel(out, film.plane(static_cast<int>(c)), film.layout().channels[c].rule);
+  }
+  // Large and nearly empty films are padded, so that a reader can tell them from bytes that claim
+  // more than they hold.
+  const uint64_t memory = film_bytes(film.layout(), film.window());
+  if (memory > kFreeBytes) {
+    const uint64_t least = (memory - kFreeBytes) / kMaxExpansion + 1;
+    if (out.size() < least) out.resize(static_cast<size_t>(least));
+  }
+  append_number(out, crc32c(out));
+  return out;
+}
+
+Result<Film> decode_film(std::span<const std::byte> bytes, const FilmLimits& limits) {
+  Result<Film> film = decode(bytes, limits);
+  if (!film) return film.error().in("film of " + std::to_string(bytes.size()) + " bytes");
+  return film;
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "core/film/film.h"
+
+namespace hyades::core {
+
+inline const LayerSet kAllLayers{true, true, true};
+
+/// What a renderer would give: a pure function of pixel, batch and channel.
+inline float rendered(int x, int y, uint32_t batch, int channel, const FilmLayout& layout) {
+  std::mt19937 random(static_cast<uint32_t>(x * 7919 + y * 104729) + batch * 31U +
+                      static_cast<uint32_t>(channel) * 999983U);
+  const float u = static_cast<float>(random() % 0x1000000) * 0x1p-24F;
+  if (channel == layout.depth) {
+    return u < 0.2F ? std::numeric_limits<float>::infinity() : 10.0F * u;
+  }
+  const float sign = channel >= 5 && u < 0.3F ? -1.0F : 1.0F;
+  return sign * std::ldexp(0.5F + u, static_cast<int>(random() % 30) - 20);
+}
+
+/// A film of one tile with some of its batches, of a job of `samples` samples per pixel.
+inline Film render(const FilmLayout& layout, const PixelRect& tile, BatchRange batches,
+                   uint32_t samples = 1000000) {
+  Film film(layout, tile);
+  std::vector<float> values(static_cast<size_t>(tile.area()) *
+                            static_cast<size_t>(layout.deposited));
+  for (uint32_t b = batches.first; b < batches.end(); ++b) {
+    size_t i = 0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        for (int c = 0; c < layout.deposited; ++c) values[i++] = rendered(x, y, b, c, layout);
+      }
+    }
+    film.deposit(tile, b, samples_in_batch(b, samples), values);
+  }
+  return film;
+}
+
+}  // namespace hyades::core
