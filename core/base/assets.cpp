@@ -31,8 +31,12 @@ class FileResolver : public AssetResolver {
   Result<Bytes> open(const std::string& reference, const std::string& from) override {
     if (reference.empty()) return Error{"empty file name"};
     const std::string resolved = resolve_reference(reference, from);
-    Result<Bytes> bytes = map_file((std::filesystem::path(folder_) / resolved).string());
-    if (!bytes) return bytes.error().in(reference);
+    const std::string path = (std::filesystem::path(folder_) / resolved).string();
+    Result<Bytes> bytes = map_file(path);
+    if (!bytes) {
+      const std::string where = path == reference ? "" : " (looked for " + path + ")";
+      return Error{reference + ": " + bytes.error().message + where};
+    }
     return bytes;
   }
 
@@ -53,7 +57,7 @@ Result<Bytes> map_file(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (fd < 0) {
     const int error = errno;
-    if (error == ENOENT) return Error{"no such file (looked for " + path + ")"};
+    if (error == ENOENT) return Error{"no such file"};
     if (error == ENXIO) return Error{"cannot be opened: it is a socket or device, not a file"};
     return Error{"cannot be opened: " + std::generic_category().message(error)};
   }
