@@ -33,6 +33,14 @@ struct Ggx {
     return std::sqrt(w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y));
   }
 
+  /// G1: the part of the facets' projected area that `w` sees.
+  float visible(const Vec3& w) const { return 2.0F * w.z / (w.z + spread(w)); }
+
+  /// G2: what both directions see (equation 99).
+  float both_visible(const Vec3& a, const Vec3& b) const {
+    return 2.0F * a.z * b.z / (a.z * spread(b) + b.z * spread(a));
+  }
+
   /// f cos(theta_i) of facets that reflect everything: D G2 / (4 cos theta_o).
   float reflect(const Vec3& wo, const Vec3& wi) const {
     return density(wo + wi) * 0.5F * wi.z / (wo.z * spread(wi) + wi.z * spread(wo));

@@ -31,6 +31,10 @@ MaterialPtr make_lambert(const ColorParam& color);
 /// each event. ior = 1 passes light unchanged.
 MaterialPtr make_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
 
+/// The same with facets of GGX, alpha = roughness^2 (roughness 0: make_dielectric).
+MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
+                                  const ScalarParam& roughness);
+
 /// A sheet of that glass so thin that light leaves where it entered, all inner bounces summed
 /// (R' = 2R / (1 + R) without absorption).
 MaterialPtr make_thin_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);

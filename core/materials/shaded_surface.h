@@ -19,7 +19,7 @@ class ShadedSurface {
 
   const SurfacePoint& point() const { return point_; }
   const Frame& frame() const { return frame_; }
-  const Bsdf* bsdf() const { return bsdf_; }  ///< null: black
+  const Bsdf* bsdf() const { return bsdf_; }  ///< null: black, and not to be asked anything
   bool has_smooth() const { return bsdf_ != nullptr && bsdf_->has_smooth(); }
 
   /// f |cos theta_i|, with wo and wi in world space.

@@ -84,7 +84,7 @@ int SphereGrid::cell_of(const core::Vec3& direction) const {
           integrate2([&](double z, double phi) { return pdf(spherical(z, phi)); },
                      -1.0 + 2.0 * row / grid.rows, -1.0 + 2.0 * (row + 1) / grid.rows,
                      2.0 * M_PI * column / grid.columns, 2.0 * M_PI * (column + 1) / grid.columns,
-                     test.tolerance / cells);
+                     test.tolerance / std::sqrt(cells), 4, 9);
       expected[row * grid.columns + column] = part;
       integral += part;
     }

@@ -7,13 +7,14 @@
 /// Integrals to compare estimators with: adaptive, deterministic, in double.
 namespace hyades::test {
 
-/// Integral of f over [a, b]: Gauss-Legendre of 7 points against two halves, split until they agree
-/// to `tolerance` (absolute, of the whole) or `depth` halvings. The interval is first cut into
+/// Integral of f over [a, b]: Gauss-Legendre of 7 points against two parts, split until they agree
+/// to `tolerance` (absolute, of the whole) or `depth` times. The interval is first cut into
 /// `pieces`, so that narrow peaks are not overlooked.
 double integrate(const std::function<double(double)>& f, double a, double b,
                  double tolerance = 1e-8, int pieces = 8, int depth = 24);
 
-/// Integral of f over [ax, bx] x [ay, by] in the same way (4 x 4 points against four quarters).
+/// Integral of f over [ax, bx] x [ay, by] in the same way (Gauss-Lobatto, 5 x 5 points, against
+/// four parts); steps along curves are followed too.
 double integrate2(const std::function<double(double, double)>& f, double ax, double bx, double ay,
                   double by, double tolerance = 1e-7, int pieces = 4, int depth = 10);
 

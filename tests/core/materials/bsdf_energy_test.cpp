@@ -17,22 +17,29 @@ TEST(BsdfReciprocity, SmoothValuesAreSymmetric) {
   test::Random random(21);
   for (const BsdfCase& c : smooth_cases()) {
     const BsdfUnderTest bsdf(c.material);
+    int seen = 0;
     for (int n = 0; n < 10000; ++n) {
       const Vec3 a = random.direction();
       const Vec3 b = random.direction();
       if (std::abs(a.z) < 1e-3F || std::abs(b.z) < 1e-3F) continue;
-      for (const TransportMode mode : kBothModes) {
-        // f / eta^2 of the side that light comes from is symmetric; every smooth lobe here stays
-        // on one side, so that the factors cancel.
-        const Rgb forth = bsdf->evaluate(a, b, mode) / std::abs(b.z);
-        const Rgb back = bsdf->evaluate(b, a, mode) / std::abs(a.z);
-        for (int k = 0; k < 3; ++k) {
-          ASSERT_NEAR(forth[k], back[k], 1e-3F * std::fmax(forth[k], back[k]) + 1e-12F)
-              << c.name << " from " << a.x << " " << a.y << " " << a.z << " to " << b.x << " "
-              << b.y << " " << b.z;
-        }
+      // Radiance: f / eta^2 of the side where it leaves is symmetric (Veach 1997, section 5.2).
+      const auto eta2 = [&](const Vec3& w) { return w.z > 0.0F ? 1.0F : c.ior * c.ior; };
+      const Rgb forth = bsdf->evaluate(a, b, TransportMode::radiance) / (std::abs(b.z) * eta2(a));
+      const Rgb back = bsdf->evaluate(b, a, TransportMode::radiance) / (std::abs(a.z) * eta2(b));
+      // Importance: the same BSDF with its arguments exchanged.
+      const Rgb adjoint =
+          bsdf->evaluate(b, a, TransportMode::importance) / (std::abs(a.z) * eta2(a));
+      for (int k = 0; k < 3; ++k) {
+        // The absolute part is for facets seen edge-on, whose cosines are all rounding.
+        const float tolerance = 1e-3F * std::fmax(forth[k], back[k]) + 3e-6F;
+        ASSERT_NEAR(forth[k], back[k], tolerance)
+            << c.name << " from " << a.x << " " << a.y << " " << a.z << " to " << b.x << " " << b.y
+            << " " << b.z;
+        ASSERT_NEAR(forth[k], adjoint[k], tolerance) << c.name;
+        seen += forth[k] > 0.0F ? 1 : 0;
       }
     }
+    EXPECT_GT(seen, 1000) << c.name;
   }
 }
 
@@ -64,7 +71,7 @@ TEST(BsdfFurnace, SampledReflectanceIsThatOfQuadratureAndAtMostOne) {
       const double low = d.wo.z > 0.0F ? 0.0 : -1.0;
       const double exact = test::integrate_sphere(
           [&](const Vec3& wi) { return bsdf->evaluate(d.wo, wi, TransportMode::radiance).x; }, low,
-          low + 1.0, 1e-5, 24, 12);
+          low + 1.0, 2e-5, 8, 10);
       EXPECT_LE(exact, 1.0 + 1e-4) << roughness << ", " << d.name;
       EXPECT_TRUE(test::mean_is(furnace(*bsdf.get(), d.wo, 600000, ++seed), exact, promise))
           << roughness << ", " << d.name;
@@ -101,10 +108,10 @@ TEST(BsdfFurnace, SmoothFacetsLoseNothing) {
 // The density of normals is normalised as projected area (Walter et al. 2007, equation 4), and
 // visible normals carry the area seen: integral of D G1 max(0, wo.m) / wo.z = 1.
 TEST(Ggx, NormalsAreNormalised) {
-  for (const float alpha : {0.05F, 0.3F, 1.0F}) {
+  for (const float alpha : {0.1F, 0.3F, 1.0F}) {
     const Ggx facets{alpha};
     EXPECT_NEAR(test::integrate_sphere([&](const Vec3& m) { return facets.density(m) * m.z; }, 0.0,
-                                       1.0, 1e-6, 32, 12),
+                                       1.0, 1e-5, 12, 10),
                 1.0, 1e-4)
         << alpha;
     for (const float z : {1.0F, 0.6F, 0.05F}) {
@@ -114,7 +121,7 @@ TEST(Ggx, NormalsAreNormalised) {
             const float g1 = 2.0F * wo.z / (wo.z + facets.spread(wo));
             return g1 * std::fmax(0.0F, glm::dot(wo, m)) * facets.density(m) / wo.z;
           },
-          0.0, 1.0, 1e-6, 32, 12);
+          0.0, 1.0, 1e-5, 12, 10);
       EXPECT_NEAR(seen, 1.0, 1e-4) << alpha << " " << z;
     }
   }

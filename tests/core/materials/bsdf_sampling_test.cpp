@@ -17,7 +17,7 @@ TEST(BsdfSampling, DirectionsFollowThePdf) {
   const auto cases = smooth_cases();
   const auto directions = five_directions();
   test::SphereTest settings;
-  settings.grid = {8, 10};
+  settings.grid = {6, 8};
   settings.tolerance = 3e-5;
   settings.promise.tests = static_cast<int>(cases.size() * directions.size());
   for (const BsdfCase& c : cases) {

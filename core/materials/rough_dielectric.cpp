@@ -1,0 +1,164 @@
+#include <cmath>
+
+#include "core/materials/fresnel.h"
+#include "core/materials/ggx.h"
+#include "core/materials/local.h"
+#include "core/materials/params.h"
+
+namespace hyades::core {
+namespace {
+
+/// Rough interface between index 1 (z > 0) and `ior` (Walter et al. 2007, "Microfacet Models for
+/// Refraction through Rough Surfaces", equations 16, 20 and 21): smooth facets, GGX distributed, of
+/// which one that is visible from wo is drawn; it then reflects or refracts by its energy. Radiance
+/// gains (eta_o / eta_i)^2 in refraction as at a smooth interface (see dielectric.cpp).
+class RoughDielectricBsdf final : public Bsdf {
+ public:
+  RoughDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection)
+      : ior_(ior), facets_{alpha}, transmission_(transmission), reflection_(reflection) {}
+
+  Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
+    const auto event = find_event(wo, wi);
+    if (!event) return Rgb(0.0F);
+    const float reflectance = event->reflectance;
+    if (!event->refraction)
+      return reflection_ * (reflectance * facets_.reflect(event->o, event->i));
+    const float radiance = (1.0F - reflectance) * facets_.density(event->m) *
+                           facets_.both_visible(event->o, above(event->i)) * event->o_m *
+                           event->jacobian / (event->o.z * event->eta * event->eta);
+    return transmission_ *
+           (mode == TransportMode::radiance ? radiance : radiance * event->eta * event->eta);
+  }
+
+  float pdf(const Vec3& wo, const Vec3& wi, TransportMode) const override {
+    const auto event = find_event(wo, wi);
+    return event ? density_of(*event) : 0.0F;
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2& u,
+                                   TransportMode mode) const override {
+    const Vec3 o = above(wo);
+    if (!(o.z > 0.0F)) return std::nullopt;
+    const float eta = eta_from(wo);
+    const Vec3 m = facets_.sample_normal(o, u);
+    const float o_m = glm::dot(o, m);
+    if (!(o_m > 0.0F)) return std::nullopt;
+    const auto [reflectance, cos_t] = fresnel_dielectric(std::fmin(o_m, 1.0F), eta);
+    const float p_reflect = reflect_probability(reflectance);
+    const bool reflects = lobe < p_reflect;
+    if (!reflects && !(p_reflect < 1.0F)) return std::nullopt;
+
+    // Snell's law in vectors: the part of o along the facet shrinks by eta.
+    const Vec3 i = reflects ? reflected(o, m) : (o_m / eta - cos_t) * m - o / eta;
+    if (reflects ? !(i.z > 0.0F) : !(i.z < 0.0F)) return std::nullopt;
+    const Vec3 wi = glm::normalize(Vec3(i.x, i.y, i.z * side(wo)));
+    const auto event = find_event(wo, wi);
+    if (!event) return std::nullopt;
+    const float density = density_of(*event);
+    if (!(density > 0.0F)) return std::nullopt;
+
+    BsdfSample s{.pdf = density, .wi = wi};
+    if (reflects) {
+      s.weight = reflection_ * (reflectance / p_reflect * facets_.reflect_weight(o, i));
+      return s;
+    }
+    s.transmitted = true;
+    s.eta = eta;
+    const float seen = facets_.both_visible(o, above(i)) / facets_.visible(o);
+    s.weight = transmission_ * ((1.0F - reflectance) / (1.0F - p_reflect) * seen);
+    if (mode == TransportMode::radiance) s.weight *= 1.0F / (eta * eta);
+    return s;
+  }
+
+  Rgb albedo(const Vec3& wo) const override {
+    const float r = fresnel_dielectric(std::abs(wo.z), eta_from(wo)).reflectance;
+    return reflection_ * r + transmission_ * (1.0F - r);
+  }
+
+ private:
+  /// How light gets from wi to wo, seen with wo above.
+  struct Event {
+    Vec3 o, i, m;  ///< m: the facet's unit normal, on the side of o
+    float eta = 1.0F;
+    float o_m = 0.0F;
+    float reflectance = 0.0F;  ///< Fresnel's
+    bool refraction = false;
+    float jacobian = 0.0F;  ///< of refraction: solid angle of m over that of wi
+  };
+
+  float eta_from(const Vec3& wo) const { return wo.z >= 0.0F ? ior_ : 1.0F / ior_; }
+
+  float reflect_probability(float reflectance) const {
+    const float reflect = reflectance * max_component(reflection_);
+    const float transmit = (1.0F - reflectance) * max_component(transmission_);
+    return reflect + transmit > 0.0F ? reflect / (reflect + transmit) : 1.0F;
+  }
+
+  std::optional<Event> find_event(const Vec3& wo, const Vec3& wi) const {
+    if (wo.z == 0.0F || wi.z == 0.0F) return std::nullopt;
+    Event e;
+    e.o = above(wo);
+    e.i = {wi.x, wi.y, wi.z * side(wo)};
+    e.eta = eta_from(wo);
+    e.refraction = e.i.z < 0.0F;
+    const Vec3 h = e.refraction ? e.o + e.eta * e.i : e.o + e.i;
+    const float length2 = glm::dot(h, h);
+    if (!(length2 > 0.0F)) return std::nullopt;
+    e.m = h / std::copysign(std::sqrt(length2), h.z);
+    e.o_m = glm::dot(e.o, e.m);
+    const float i_m = glm::dot(e.i, e.m);
+    // A facet shows each direction the face that the surface shows it.
+    if (!(e.o_m > 0.0F) || !(e.refraction ? i_m < 0.0F : i_m > 0.0F)) return std::nullopt;
+    e.reflectance = fresnel_dielectric(std::fmin(e.o_m, 1.0F), e.eta).reflectance;
+    if (e.refraction) {
+      const float sum = e.o_m + e.eta * i_m;
+      e.jacobian = e.eta * e.eta * -i_m / (sum * sum);
+    }
+    return e;
+  }
+
+  float density_of(const Event& e) const {
+    const float p_reflect = reflect_probability(e.reflectance);
+    if (!e.refraction) return p_reflect * facets_.reflect_pdf(e.o, e.i);
+    return (1.0F - p_reflect) * facets_.visible(e.o) * facets_.density(e.m) * e.o_m * e.jacobian /
+           e.o.z;
+  }
+
+  float ior_;
+  Ggx facets_;
+  Rgb transmission_;
+  Rgb reflection_;
+};
+
+class RoughDielectric final : public Material {
+ public:
+  RoughDielectric(float ior, const Rgb& transmission, const Rgb& reflection, ScalarParam roughness)
+      : ior_(ior),
+        transmission_(unit_clamp(transmission)),
+        reflection_(unit_clamp(reflection)),
+        roughness_(std::move(roughness)),
+        smooth_(make_dielectric(ior, transmission, reflection)) {}
+
+  const Bsdf* bsdf_at(const SurfacePoint& point, Frame& frame, BsdfArena& arena) const override {
+    const float roughness = fraction_at(roughness_, point);
+    const float alpha = roughness * roughness;
+    if (alpha < Ggx::kLeastAlpha || ior_ == 1.0F) return smooth_->bsdf_at(point, frame, arena);
+    return arena.make<RoughDielectricBsdf>(ior_, alpha, transmission_, reflection_);
+  }
+
+ private:
+  float ior_;
+  Rgb transmission_;
+  Rgb reflection_;
+  ScalarParam roughness_;
+  MaterialPtr smooth_;
+};
+
+}  // namespace
+
+MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
+                                  const ScalarParam& roughness) {
+  return std::make_shared<RoughDielectric>(ior, transmission, reflection, roughness);
+}
+
+}  // namespace hyades::core
