@@ -16,7 +16,9 @@ TexturePtr make_constant_texture(const Rgb& value);
 enum class WrapMode { repeat, clamp, mirror, black };
 enum class TextureFilter { bilinear, nearest };
 
-/// uv (0, 0) is the lower left corner of the image, (1, 1) the upper right.
+/// uv (0, 0) is the lower left corner of the image, (1, 1) the upper right; looked up at
+/// uv * scale + offset. Texel centres lie half a texel inside. Colour from channels R, G, B, else
+/// grey from Y, else from the first channel. An image without pixels is black.
 TexturePtr make_image_texture(std::shared_ptr<const Image> image, WrapMode wrap,
                               TextureFilter filter, const Vec2& scale = Vec2(1.0F),
                               const Vec2& offset = Vec2(0.0F));
@@ -35,7 +37,7 @@ struct MappingDesc {
 /// 0).
 TexturePtr make_checker_texture(TexturePtr a, TexturePtr b, const MappingDesc& mapping);
 
-/// input times factor, per channel.
+/// input times factor, per channel; scalar() is the product of their scalar().
 TexturePtr make_scale_texture(TexturePtr input, TexturePtr factor);
 
 struct NoiseDesc {
