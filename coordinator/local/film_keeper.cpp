@@ -1,0 +1,272 @@
+#include "coordinator/local/film_keeper.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace hyades::coordinator {
+namespace {
+
+/// After something could not be taken: when the scheduler hands out work again.
+constexpr Duration kTryAgain = std::chrono::milliseconds(1100);
+
+TimePoint now() { return std::chrono::steady_clock::now(); }
+
+uint64_t memory_of(const core::Film& film) {
+  return static_cast<uint64_t>(film.window().area()) * film.layout().channels.size() *
+         sizeof(core::Fixed128);
+}
+
+}  // namespace
+
+FilmKeeper::FilmKeeper(const LocalPlan& plan, const LocalLog& log, Owner& owner)
+    : plan_(plan), options_(log), owner_(owner) {}
+
+FilmKeeper::~FilmKeeper() {
+  drain();
+  join();
+  log_.reset();
+}
+
+void FilmKeeper::join() {
+  if (thread_.joinable()) thread_.join();
+}
+
+core::Result<LogContents> FilmKeeper::open() {
+  if (options_.folder.empty()) return LogContents{};
+  FilmLogOptions options;
+  options.files = options_.files;
+  options.on_durable = [this](uint64_t through) {
+    const std::lock_guard lock(mutex_);
+    durable_ = std::max(durable_, through);
+    trouble_.clear();
+    wake_.notify_one();
+  };
+  options.on_trouble = [this](const core::Error& error) {
+    const std::lock_guard lock(mutex_);
+    if (trouble_.empty()) trouble_since_ = now();
+    trouble_ = error.message;
+    wake_.notify_one();
+  };
+  if (!options_.resume) {
+    if (auto erased = erase_film_log(options_.folder, options_.files); !erased) {
+      return erased.error();
+    }
+  }
+  auto log = FilmLog::open(options_.folder, options_.key, options);
+  if (!log) return log.error();
+  log_ = std::move(*log);
+  const std::set<int32_t> frames(plan_.frames.begin(), plan_.frames.end());
+  auto contents = read_log(*log_, plan_.region, plan_.samples, frames);
+  if (!contents) return contents;
+  finished_ = contents->finished;
+  films_ = contents->films;
+  return contents;
+}
+
+void FilmKeeper::start(int32_t tile_size) {
+  tile_size_ = tile_size;
+  thread_ = std::thread([this] { run(); });
+}
+
+void FilmKeeper::push(Item item, bool may_wait) {
+  std::unique_lock lock(mutex_);
+  if (may_wait) {
+    room_.wait(lock, [&] { return hurrying_ || waiting_bytes_ < plan_.max_waiting_bytes; });
+  }
+  waiting_bytes_ += item.memory;
+  queue_.push_back(std::move(item));
+  wake_.notify_one();
+}
+
+void FilmKeeper::keep(RecordId record, int32_t frame, core::Film film) {
+  Item item;
+  item.record = record;
+  item.frame = frame;
+  // Packing takes longer than anything else here and so is done by the thread that hands over.
+  if (log_) item.bytes = encode_unit(frame, film);
+  item.memory = memory_of(film) + item.bytes.size();
+  item.film = std::move(film);
+  push(std::move(item), true);
+}
+
+void FilmKeeper::keep_finished(RecordId record, int32_t frame) {
+  Item item;
+  item.record = record;
+  item.kind = Item::Kind::finished;
+  item.frame = frame;
+  if (log_) item.bytes = encode_finished(frame);
+  push(std::move(item), false);
+}
+
+void FilmKeeper::keep_failed(RecordId record) {
+  Item item;
+  item.record = record;
+  item.kind = Item::Kind::failed;
+  push(std::move(item), false);
+}
+
+void FilmKeeper::hurry() {
+  const std::lock_guard lock(mutex_);
+  hurrying_ = true;
+  room_.notify_all();
+}
+
+void FilmKeeper::drain() {
+  const std::lock_guard lock(mutex_);
+  hurrying_ = true;
+  draining_ = true;
+  wake_.notify_one();
+  room_.notify_all();
+}
+
+std::string FilmKeeper::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
+}
+
+void FilmKeeper::run() {
+  for (;;) {
+    std::unique_lock lock(mutex_);
+    const auto something = [&] {
+      return !queue_.empty() || draining_ ||
+             (!appended_.empty() && appended_.front().sequence <= durable_);
+    };
+    std::optional<TimePoint> until = try_again_at_;
+    if (!trouble_.empty() && !gave_up_) {
+      const TimePoint end = trouble_since_ + options_.patience;
+      until = until ? std::min(*until, end) : end;
+    }
+    if (until) {
+      wake_.wait_until(lock, *until, something);
+    } else {
+      wake_.wait(lock, [&] { return something() || (!trouble_.empty() && !gave_up_); });
+    }
+    std::deque<Item> items = std::exchange(queue_, {});
+    const uint64_t durable = durable_;
+    const bool last = draining_ && items.empty();
+    const bool patient = trouble_.empty() || now() < trouble_since_ + options_.patience;
+    const std::string hopeless = patient || gave_up_ ? "" : trouble_;
+    lock.unlock();
+
+    append(std::move(items));
+    settle(durable);
+    if (try_again_at_ && now() >= *try_again_at_) {
+      try_again_at_.reset();
+      owner_.try_again();
+    }
+    if (!hopeless.empty()) {
+      gave_up_ = true;
+      owner_.storage_failed(hopeless);
+    }
+    if (last) break;
+    compact_if_worthwhile();
+  }
+  if (log_) {
+    const core::Status synced = log_->sync();
+    if (!synced) owner_.storage_failed(synced.error().message);
+    settle(log_->durable());
+  }
+  owner_.keeper_done();
+}
+
+void FilmKeeper::append(std::deque<Item> items) {
+  for (Item& item : items) {
+    if (log_ && item.kind != Item::Kind::failed) {
+      const uint64_t bytes = item.bytes.size();
+      auto sequence = log_->append(std::move(item.bytes));
+      if (!sequence) {
+        release(item.memory);
+        owner_.not_persisted(item.record, sequence.error().message);
+        try_again_at_ = now() + kTryAgain;
+        continue;
+      }
+      item.sequence = *sequence;
+      log_bytes_ += bytes;
+    } else {
+      item.sequence = appended_.empty() ? 0 : appended_.back().sequence;
+    }
+    appended_.push_back(std::move(item));
+  }
+}
+
+void FilmKeeper::settle(uint64_t durable) {
+  while (!appended_.empty() && appended_.front().sequence <= durable) {
+    Item item = std::move(appended_.front());
+    appended_.pop_front();
+    settling_ = &item;
+    settled_sequence_ = std::max(settled_sequence_, item.sequence);
+    if (item.kind == Item::Kind::finished) finished_.insert(item.frame);
+    owner_.persisted(item.record);
+    settling_ = nullptr;
+    release(item.memory);
+  }
+}
+
+void FilmKeeper::release(uint64_t memory) {
+  const std::lock_guard lock(mutex_);
+  waiting_bytes_ -= memory;
+  room_.notify_all();
+}
+
+core::Status FilmKeeper::merge(RecordId record) {
+  if (settling_ == nullptr || settling_->record != record) {
+    return core::Error{"a film is to be merged that is not at hand"};
+  }
+  auto& whole = films_[settling_->frame];
+  if (!whole) whole = std::make_shared<core::Film>(settling_->film.layout(), plan_.region);
+  return whole->merge(settling_->film);
+}
+
+std::shared_ptr<const core::Film> FilmKeeper::film(int32_t frame) const {
+  const auto it = films_.find(frame);
+  return it == films_.end() ? nullptr : it->second;
+}
+
+void FilmKeeper::forget(int32_t frame, bool finished) {
+  films_.erase(frame);
+  failed_frames_ = failed_frames_ || !finished;
+}
+
+/// Rewrites the log when films of finished frames, and units that could lie in it merged, fill it.
+/// Never after a frame has failed: what was rendered of it is then only in the log.
+void FilmKeeper::compact_if_worthwhile() {
+  if (!log_ || failed_frames_ || settled_sequence_ == 0) return;
+  if (log_bytes_ < std::max(options_.compact_bytes, 2 * snapshot_bytes_)) return;
+  snapshot_bytes_ = 0;
+  const core::Status done = log_->compact(
+      settled_sequence_, [this](const FilmLog::Sink& sink) { return write_snapshot(sink); });
+  log_bytes_ = 0;
+  if (done) return;
+  // The log is as good as before, only longer; it is tried again when it has grown as much again.
+  const std::lock_guard lock(mutex_);
+  if (draining_) return;
+  if (trouble_.empty()) trouble_since_ = now();
+  trouble_ = done.error().message;
+}
+
+core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
+  const auto put = [&](const std::vector<std::byte>& bytes) {
+    snapshot_bytes_ += bytes.size();
+    return sink(bytes);
+  };
+  core::Status status = put(encode_cut({plan_.region, tile_size_, plan_.samples}));
+  for (const int32_t frame : finished_) {
+    if (status) status = put(encode_finished(frame));
+  }
+  for (const auto& [frame, film] : films_) {
+    const std::vector<core::Unit> units = units_of(frame, *film, plan_.region, tile_size_);
+    for (size_t first = 0; status && first < units.size();) {
+      size_t end = first;
+      while (end < units.size() && units[end].tile == units[first].tile) ++end;
+      status = put(encode_unit(frame, cut_film(*film, {units.data() + first, end - first})));
+      first = end;
+      const std::lock_guard lock(mutex_);
+      if (draining_) return core::Error{"the run ends"};
+    }
+  }
+  return status;
+}
+
+}  // namespace hyades::coordinator

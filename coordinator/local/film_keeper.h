@@ -1,0 +1,128 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "coordinator/local/local_log.h"
+#include "coordinator/local/local_plan.h"
+#include "coordinator/scheduler/ids.h"
+#include "coordinator/store/film_log.h"
+#include "core/base/result.h"
+#include "core/film/film.h"
+
+namespace hyades::coordinator {
+
+/// Makes films durable and merges them, on a thread of its own, so that render threads never wait
+/// for the disk: they hand films over and go on. Films are merged in memory only once they are
+/// durable (invariant 4).
+class FilmKeeper {
+ public:
+  /// Whom the keeper's thread reports to.
+  class Owner {
+   public:
+    virtual ~Owner() = default;
+    virtual void persisted(RecordId record) = 0;
+    virtual void not_persisted(RecordId record, const std::string& reason) = 0;
+    /// Some time after not_persisted: it may be tried again.
+    virtual void try_again() = 0;
+    /// Nothing could be stored for too long.
+    virtual void storage_failed(const std::string& reason) = 0;
+    /// All that was handed over is durable or lost, and the thread ends.
+    virtual void keeper_done() = 0;
+  };
+
+  FilmKeeper(const LocalPlan& plan, const LocalLog& log, Owner& owner);
+  ~FilmKeeper();
+
+  /// Opens the log, if there is to be one, and returns what it holds of plan.frames.
+  core::Result<LogContents> open();
+  /// The frame's outputs are gone: it will be rendered again. Before start().
+  void reopen(int32_t frame) { finished_.erase(frame); }
+  void start(int32_t tile_size);
+  /// Waits for the end of the thread; somebody has called drain().
+  void join();
+
+  // Any thread.
+
+  /// Takes a unit's film. Waits while too much waits for the disk already.
+  void keep(RecordId record, int32_t frame, core::Film film);
+  void keep_finished(RecordId record, int32_t frame);
+  void keep_failed(RecordId record);
+  /// From now on keep() does not wait any more.
+  void hurry();
+  /// No more will come: the thread makes durable what it has, and ends.
+  void drain();
+  std::string trouble() const;
+
+  // The keeper's thread (from within Owner's functions), or before start().
+
+  /// Adds the film that was handed over as `record` and is durable now.
+  core::Status merge(RecordId record);
+  std::shared_ptr<const core::Film> film(int32_t frame) const;
+  /// The frame is over: `finished`, or failed, and then its films stay for another run.
+  void forget(int32_t frame, bool finished);
+
+ private:
+  struct Item {
+    enum class Kind : uint8_t { film, finished, failed };
+    RecordId record{};
+    Kind kind = Kind::film;
+    int32_t frame = 0;
+    core::Film film;
+    std::vector<std::byte> bytes;
+    uint64_t memory = 0;
+    uint64_t sequence = 0;
+  };
+
+  void push(Item item, bool may_wait);
+  void run();
+  void append(std::deque<Item> items);
+  void settle(uint64_t durable);
+  void compact_if_worthwhile();
+  core::Status write_snapshot(const FilmLog::Sink& sink);
+  void release(uint64_t memory);
+
+  const LocalPlan plan_;
+  const LocalLog options_;
+  Owner& owner_;
+
+  /// Shared with those who hand over and with the log's commit thread.
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;  ///< for the keeper
+  std::condition_variable room_;  ///< for those who hand over
+  std::deque<Item> queue_;
+  uint64_t waiting_bytes_ = 0;
+  uint64_t durable_ = 0;
+  bool hurrying_ = false;
+  bool draining_ = false;
+  std::string trouble_;
+  TimePoint trouble_since_;
+
+  /// Of the keeper's thread.
+  std::deque<Item> appended_;  ///< not durable yet, or not settled
+  Item* settling_ = nullptr;
+  std::map<int32_t, std::shared_ptr<core::Film>> films_;
+  std::set<int32_t> finished_;
+  bool failed_frames_ = false;
+  int32_t tile_size_ = 0;
+  uint64_t settled_sequence_ = 0;
+  uint64_t log_bytes_ = 0;       ///< since the last snapshot
+  uint64_t snapshot_bytes_ = 0;  ///< of the last snapshot
+  std::optional<TimePoint> try_again_at_;
+  bool gave_up_ = false;
+
+  std::unique_ptr<FilmLog> log_;
+  std::thread thread_;
+};
+
+}  // namespace hyades::coordinator

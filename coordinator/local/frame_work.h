@@ -1,0 +1,53 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "core/base/result.h"
+#include "core/film/film.h"
+#include "core/film/unit.h"
+
+namespace hyades::coordinator {
+
+/// One frame, ready to be rendered. The room below this knows no light: whoever owns the renderer
+/// implements it.
+class FrameWork {
+ public:
+  virtual ~FrameWork() = default;
+
+  /// The film of exactly this unit: window = its tile, coverage = its batches. A pure function of
+  /// the unit, called by many threads at once. `thread` is in [0, threads) and tells the callers
+  /// apart. When `stop` becomes true it returns soon (within a row of pixels) with anything; an
+  /// error otherwise is the unit's fault and counts as a failed attempt.
+  virtual core::Result<core::Film> render(const core::Unit& unit, int thread,
+                                          const std::atomic<bool>& stop) const = 0;
+};
+
+/// Where frames come from.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  /// Loads the frame's scene. Called by one thread, for one frame after the other, while others
+  /// render; may look at `stop` to return early with an error.
+  virtual core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t frame,
+                                                                 const std::atomic<bool>& stop) = 0;
+};
+
+/// Where frames go to.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+
+  /// Writes the outputs of a complete frame, atomically and durably. Called by one thread, for one
+  /// frame after the other, while others render; after a resume also for frames that were never
+  /// prepared. An error is tried again twice.
+  virtual core::Status finish(int32_t frame, const core::Film& film) = 0;
+
+  /// Whether the outputs of a frame are there that an earlier run finished; if not, it is rendered
+  /// again. Called before anything else.
+  virtual bool outputs_exist(int32_t frame) = 0;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/ids.h"
+#include "coordinator/store/log_files.h"
+#include "core/base/rect.h"
+
+namespace hyades::coordinator {
+
+/// What a run on this machine renders. No field but `frames`, `region` and `samples` can change a
+/// bit of a film.
+struct LocalPlan {
+  std::vector<int32_t> frames;  ///< in this order; no number twice
+  core::PixelRect region;       ///< of every frame
+  uint32_t samples = 1;         ///< per pixel
+  int threads = 1;
+  int32_t tile_size = 32;  ///< pixels; a resumed run keeps what it began with
+  uint64_t shuffle = 0;    ///< not 0: take tiles in a random order (tests)
+
+  uint32_t frames_in_flight = 3;  ///< films and scenes that may be in memory at once
+  Duration unit_time = std::chrono::milliseconds(500);  ///< what one unit shall take one thread
+  /// Films that may wait for the disk before the threads wait too.
+  uint64_t max_waiting_bytes = uint64_t{512} << 20U;
+};
+
+/// Where the run keeps its films.
+struct LocalLog {
+  std::string folder;  ///< empty: nothing is kept, the run cannot be resumed
+  /// What decides the pixels of all frames (one line): films of another key are never mixed in.
+  std::string key;
+  /// Continue with what the folder holds; otherwise it is emptied first.
+  bool resume = false;
+  /// The log is rewritten when it has grown by this much, and by as much as the films take.
+  uint64_t compact_bytes = uint64_t{256} << 20U;
+  /// The run ends with an error when nothing could be stored for this long.
+  Duration patience = std::chrono::seconds(30);
+  LogFiles* files = nullptr;  ///< the disk where null
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,275 @@
+#include "coordinator/local/local_run.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/local/noise.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr JobId kJob{1};
+constexpr Duration kNoiseEvery = std::chrono::seconds(1);
+
+SchedulerOptions scheduler_options(const LocalPlan& plan) {
+  SchedulerOptions options;
+  options.unit_time = plan.unit_time;
+  // Threads neither vanish nor fall behind each other for long.
+  options.lease_time = std::chrono::hours(24 * 365);
+  options.copy_after = Duration{0};
+  return options;
+}
+
+double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
+
+uint64_t samples_of(const core::Unit& unit, uint32_t samples_per_pixel) {
+  uint64_t samples = 0;
+  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
+    samples += core::samples_in_batch(b, samples_per_pixel);
+  }
+  return samples * static_cast<uint64_t>(unit.tile.area());
+}
+
+}  // namespace
+
+LocalRun::LocalRun(LocalPlan plan, LocalLog log, FrameSource& source, FrameSink& sink)
+    : plan_(std::move(plan)),
+      log_(std::move(log)),
+      source_(source),
+      sink_(sink),
+      scheduler_(scheduler_options(plan_)),
+      keeper_(plan_, log_, *this) {
+  plan_.threads = std::max(plan_.threads, 1);
+}
+
+LocalRun::~LocalRun() {
+  stop();
+  for (std::thread& thread : threads_) thread.join();
+  keeper_.join();
+}
+
+core::Status LocalRun::start() {
+  if (plan_.region.empty() || plan_.samples == 0 || plan_.tile_size < 1) {
+    return core::Error{"there is nothing to render"};
+  }
+  auto contents = keeper_.open();
+  if (!contents) return contents.error();
+  log_problems_ = contents->problems;
+  if (contents->cut.tile_size > 0) plan_.tile_size = contents->cut.tile_size;
+
+  JobAdded job;
+  job.job = kJob;
+  job.plan.frames = plan_.frames;
+  job.plan.region = plan_.region;
+  job.plan.tile_size = plan_.tile_size;
+  job.plan.batches = core::batch_count(plan_.samples);
+  job.plan.shuffle = plan_.shuffle;
+  job.plan.frames_in_flight = plan_.frames_in_flight;
+  const uint64_t samples_per_frame =
+      static_cast<uint64_t>(plan_.region.area()) * uint64_t{plan_.samples};
+  for (const int32_t frame : plan_.frames) {
+    if (contents->finished.contains(frame)) {
+      if (!sink_.outputs_exist(frame)) {
+        keeper_.reopen(frame);
+        continue;
+      }
+      job.restored.finished.push_back(frame);
+      progress_.samples_done += samples_per_frame;
+    } else if (const auto film = contents->films.find(frame); film != contents->films.end()) {
+      for (const core::Unit& unit : units_of(frame, *film->second, plan_.region, plan_.tile_size)) {
+        job.restored.accepted.push_back({unit, Digest{}, {}});
+        frame_samples_[frame] += samples_of(unit, plan_.samples);
+      }
+      progress_.samples_done += frame_samples_[frame];
+    }
+  }
+  progress_.frames = static_cast<uint32_t>(plan_.frames.size());
+  progress_.frames_done = static_cast<uint32_t>(job.restored.finished.size());
+  progress_.samples = samples_per_frame * plan_.frames.size();
+  samples_before_ = progress_.samples_done;
+  started_ = std::chrono::steady_clock::now();
+
+  for (int i = 0; i < plan_.threads; ++i) {
+    seats_.push_back(std::make_unique<Seat>());
+    tell(WorkerJoined{WorkerId{static_cast<uint64_t>(i)}, 1, {}, {}});
+  }
+  rendering_ = plan_.threads;
+  keeper_.start(plan_.tile_size);
+  carry_out(tell(job));
+  for (int i = 0; i < plan_.threads; ++i) threads_.emplace_back([this, i] { render_loop(i); });
+  threads_.emplace_back([this] { load_loop(); });
+  threads_.emplace_back([this] { finish_loop(); });
+  return {};
+}
+
+void LocalRun::stop() {
+  const std::lock_guard lock(mutex_);
+  end_locked({});
+}
+
+void LocalRun::end_locked(const std::string& error) {
+  if (!error.empty() && outcome_.error.empty()) outcome_.error = error;
+  stop_ = true;
+  ending_ = true;
+  for (const auto& seat : seats_) seat->wake.notify_all();
+  load_wake_.notify_all();
+  finish_wake_.notify_all();
+  keeper_.hurry();
+}
+
+bool LocalRun::wait_for(Duration duration) {
+  std::unique_lock lock(mutex_);
+  return over_wake_.wait_for(lock, duration, [&] { return over_; });
+}
+
+Progress LocalRun::progress() const {
+  Progress p;
+  {
+    const std::lock_guard lock(mutex_);
+    p = progress_;
+    p.frames_in_flight.assign(in_flight_.begin(), in_flight_.end());
+    const TimePoint now = std::chrono::steady_clock::now();
+    p.elapsed = seconds(now - started_);
+    if (first_lease_) {
+      const double rendered = seconds(now - *first_lease_);
+      const uint64_t done = p.samples_done - std::min(samples_before_, p.samples_done);
+      if (rendered > 0 && done > 0) {
+        p.samples_per_second = static_cast<double>(done) / rendered;
+        p.seconds_left = static_cast<double>(p.samples - p.samples_done) / p.samples_per_second;
+      }
+    }
+  }
+  p.trouble = keeper_.trouble();
+  return p;
+}
+
+LocalOutcome LocalRun::outcome() const {
+  const std::lock_guard lock(mutex_);
+  LocalOutcome outcome = outcome_;
+  outcome.frames_done = progress_.frames_done;
+  return outcome;
+}
+
+std::vector<Action> LocalRun::tell(const Event& event) {
+  const std::lock_guard lock(mutex_);
+  return tell_locked(event);
+}
+
+/// Feeds the scheduler, puts leases and frames to load into their queues, and returns the other
+/// actions, which carry_out() does without the lock.
+std::vector<Action> LocalRun::tell_locked(const Event& event) {
+  const TimePoint now = std::chrono::steady_clock::now();
+  std::vector<Action> others;
+  for (Action& action : scheduler_.handle(event, now)) {
+    if (const auto* lease = std::get_if<Lease>(&action)) {
+      if (!first_lease_) first_lease_ = now;
+      Seat& seat = *seats_[static_cast<size_t>(lease->worker)];
+      for (const core::Unit& unit : lease->units) {
+        seat.tasks.push_back({unit, lease->lease, works_.at(unit.frame)});
+      }
+      seat.wake.notify_one();
+    } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
+      in_flight_.insert(open->frame);
+      to_load_.push_back(open->frame);
+      load_wake_.notify_one();
+    } else {
+      others.push_back(std::move(action));
+    }
+  }
+  return others;
+}
+
+void LocalRun::carry_out(const std::vector<Action>& actions) {
+  for (const Action& action : actions) {
+    if (const auto* persist = std::get_if<Persist>(&action)) {
+      if (const auto* done = std::get_if<FrameFinishedRecord>(&persist->record)) {
+        keeper_.keep_finished(persist->id, done->frame);
+      } else if (std::holds_alternative<FrameFailedRecord>(persist->record)) {
+        keeper_.keep_failed(persist->id);
+      }
+    } else if (const auto* merge = std::get_if<Merge>(&action)) {
+      if (const core::Status merged = keeper_.merge(merge->record); !merged) {
+        const std::lock_guard lock(mutex_);
+        end_locked("a film cannot be merged: " + merged.error().message);
+      } else {
+        note_film(merge->unit.frame, *keeper_.film(merge->unit.frame));
+      }
+    } else if (const auto* finish = std::get_if<FinishFrame>(&action)) {
+      const std::lock_guard lock(mutex_);
+      works_.erase(finish->frame);
+      in_flight_.insert(finish->frame);
+      // The keeper's films are its thread's; a second attempt comes from the finishing thread.
+      auto& film = complete_[finish->frame];
+      if (!film) film = keeper_.film(finish->frame);
+      to_finish_.push_back({finish->frame, film});
+      finish_wake_.notify_one();
+    } else if (const auto* done = std::get_if<FrameDone>(&action)) {
+      keeper_.forget(done->frame, true);
+      const std::lock_guard lock(mutex_);
+      in_flight_.erase(done->frame);
+      complete_.erase(done->frame);
+      frame_samples_.erase(done->frame);
+      ++progress_.frames_done;
+    } else if (const auto* failed = std::get_if<FrameFailed>(&action)) {
+      keeper_.forget(failed->frame, false);
+      const std::lock_guard lock(mutex_);
+      works_.erase(failed->frame);
+      in_flight_.erase(failed->frame);
+      complete_.erase(failed->frame);
+      progress_.samples -= static_cast<uint64_t>(plan_.region.area()) * plan_.samples;
+      progress_.samples_done -= frame_samples_[failed->frame];
+      frame_samples_.erase(failed->frame);
+      ++progress_.frames_failed;
+      outcome_.failures.push_back({failed->frame, failed->reason});
+    } else if (const auto* reject = std::get_if<Reject>(&action)) {
+      // A film that was lost on its way to the disk: its unit will be rendered again.
+      const std::lock_guard lock(mutex_);
+      count_locked(reject->unit, false);
+    } else if (std::holds_alternative<JobEnded>(action)) {
+      const std::lock_guard lock(mutex_);
+      outcome_.complete = true;
+      end_locked({});
+    }
+  }
+}
+
+void LocalRun::count_locked(const core::Unit& unit, bool done) {
+  if (!in_flight_.contains(unit.frame)) return;
+  const uint64_t samples = samples_of(unit, plan_.samples);
+  progress_.units_done += done ? 1 : 0;
+  progress_.samples_done += done ? samples : -samples;
+  frame_samples_[unit.frame] += done ? samples : -samples;
+}
+
+void LocalRun::note_film(int32_t frame, const core::Film& film) {
+  const TimePoint now = std::chrono::steady_clock::now();
+  if (now - last_noise_ < kNoiseEvery) return;
+  last_noise_ = now;
+  const double noise = estimate_noise(film);
+  const std::lock_guard lock(mutex_);
+  progress_.noise = noise;
+  progress_.noise_frame = frame;
+}
+
+void LocalRun::persisted(RecordId record) { carry_out(tell(Persisted{record})); }
+
+void LocalRun::not_persisted(RecordId record, const std::string& reason) {
+  carry_out(tell(PersistFailed{record, reason}));
+}
+
+void LocalRun::try_again() { carry_out(tell(Tick{})); }
+
+void LocalRun::storage_failed(const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  end_locked("films cannot be stored: " + reason);
+}
+
+void LocalRun::keeper_done() {
+  const std::lock_guard lock(mutex_);
+  over_ = true;
+  over_wake_.notify_all();
+}
+
+}  // namespace hyades::coordinator

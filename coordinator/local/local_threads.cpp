@@ -1,0 +1,141 @@
+// What the threads of a run do.
+#include <exception>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/local/local_run.h"
+#include "core/base/fp_mode.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr JobId kJob{1};
+
+/// Renders a unit and makes sure that the film is that unit's. What is thrown is its failure.
+core::Result<core::Film> render_unit(const FrameWork& work, const core::Unit& unit, int thread,
+                                     const std::atomic<bool>& stop) {
+  try {
+    auto film = work.render(unit, thread, stop);
+    if (!film || stop) return film;
+    const core::CoverageBox box{unit.tile, unit.batches};
+    const uint64_t volume = static_cast<uint64_t>(unit.tile.area()) * unit.batches.count;
+    if (film->window() != unit.tile || film->coverage().volume() != volume ||
+        !film->coverage().contains(box)) {
+      return core::Error{"the renderer gave a film of something else"};
+    }
+    return film;
+  } catch (const std::exception& e) {
+    return core::Error{e.what()};
+  }
+}
+
+std::string describe(const core::Unit& unit) {
+  return fmt::format("pixels x {} to {}, y {} to {}, batches {} to {}", unit.tile.x0,
+                     unit.tile.x1 - 1, unit.tile.y0, unit.tile.y1 - 1, unit.batches.first,
+                     unit.batches.end() - 1);
+}
+
+}  // namespace
+
+void LocalRun::render_loop(int thread) {
+  const core::FpMode mode;
+  while (const std::optional<Task> task = next_task(thread)) {
+    const TimePoint begin = std::chrono::steady_clock::now();
+    auto film = render_unit(*task->work, task->unit, thread, stop_);
+    if (stop_) break;
+    if (film) {
+      deliver(thread, *task, std::move(*film), std::chrono::steady_clock::now() - begin);
+    } else {
+      carry_out(
+          tell(UnitFailed{WorkerId{static_cast<uint64_t>(thread)}, task->lease, kJob, task->unit,
+                          film.error().message + " (" + describe(task->unit) + ")"}));
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  if (--rendering_ == 0) keeper_.drain();
+}
+
+std::optional<LocalRun::Task> LocalRun::next_task(int thread) {
+  Seat& seat = *seats_[static_cast<size_t>(thread)];
+  std::unique_lock lock(mutex_);
+  if (!ending_ && seat.tasks.empty()) {
+    // Asking can only lead to leases and frames to load, which tell_locked() deals with.
+    tell_locked(WorkRequested{WorkerId{static_cast<uint64_t>(thread)}, 1});
+    seat.wake.wait(lock, [&] { return ending_ || !seat.tasks.empty(); });
+  }
+  if (ending_) return std::nullopt;
+  Task task = std::move(seat.tasks.front());
+  seat.tasks.pop_front();
+  return task;
+}
+
+void LocalRun::deliver(int thread, const Task& task, core::Film film, Duration render_time) {
+  std::optional<RecordId> record;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const Action& action :
+         tell_locked(ResultArrived{WorkerId{static_cast<uint64_t>(thread)}, task.lease, kJob,
+                                   task.unit, Digest{}, render_time})) {
+      // Or it is rejected, because the frame has failed meanwhile.
+      if (const auto* persist = std::get_if<Persist>(&action)) record = persist->id;
+    }
+    if (record) count_locked(task.unit, true);
+  }
+  if (record) keeper_.keep(*record, task.unit.frame, std::move(film));
+}
+
+void LocalRun::load_loop() {
+  const core::FpMode mode;
+  for (;;) {
+    int32_t frame = 0;
+    {
+      std::unique_lock lock(mutex_);
+      load_wake_.wait(lock, [&] { return ending_ || !to_load_.empty(); });
+      if (ending_) return;
+      frame = to_load_.front();
+      to_load_.pop_front();
+    }
+    core::Result<std::shared_ptr<const FrameWork>> work = core::Error{};
+    try {
+      work = source_.prepare(frame, stop_);
+    } catch (const std::exception& e) {
+      work = core::Error{e.what()};
+    }
+    if (stop_) return;
+    if (work) {
+      const std::lock_guard lock(mutex_);
+      works_[frame] = std::move(*work);
+      tell_locked(FrameOpened{kJob, frame});
+    } else {
+      carry_out(tell(FrameRefused{kJob, frame, work.error().message}));
+    }
+  }
+}
+
+void LocalRun::finish_loop() {
+  const core::FpMode mode;
+  for (;;) {
+    Completed completed;
+    {
+      std::unique_lock lock(mutex_);
+      finish_wake_.wait(lock, [&] { return ending_ || !to_finish_.empty(); });
+      if (ending_) return;
+      completed = std::move(to_finish_.front());
+      to_finish_.pop_front();
+    }
+    core::Status finished;
+    try {
+      finished = sink_.finish(completed.frame, *completed.film);
+    } catch (const std::exception& e) {
+      finished = core::Error{e.what()};
+    }
+    if (finished) {
+      carry_out(tell(FinishDone{kJob, completed.frame}));
+    } else {
+      carry_out(tell(FinishFailed{kJob, completed.frame, finished.error().message}));
+    }
+  }
+}
+
+}  // namespace hyades::coordinator
