@@ -1,0 +1,162 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "coordinator/local/frame_work.h"
+#include "coordinator/local/local_run.h"
+#include "core/base/hash.h"
+
+namespace hyades::coordinator {
+
+/// The value of a sample's channel: noise that depends on nothing but its arguments.
+inline double fake_sample(int32_t frame, int x, int y, uint32_t sample, int channel) {
+  uint64_t h = core::hash_combine(static_cast<uint64_t>(frame), static_cast<uint64_t>(x));
+  h = core::hash_combine(h, static_cast<uint64_t>(y));
+  h = core::hash_combine(h, (uint64_t{sample} << 8U) | static_cast<uint64_t>(channel));
+  return static_cast<double>(h >> 11U) * 0x1p-53;
+}
+
+/// The film of a unit, without light: what the real renderer does with its samples.
+inline core::Film fake_film(const core::Unit& unit, uint32_t samples) {
+  core::LayerSet layers;
+  layers.depth = true;
+  core::Film film(core::make_film_layout(layers), unit.tile);
+  const auto channels = static_cast<size_t>(film.layout().deposited);
+  std::vector<float> values(static_cast<size_t>(unit.tile.area()) * channels);
+  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
+    const uint32_t n = core::samples_in_batch(b, samples);
+    size_t i = 0;
+    for (int y = unit.tile.y0; y < unit.tile.y1; ++y) {
+      for (int x = unit.tile.x0; x < unit.tile.x1; ++x) {
+        for (int c = 0; c < film.layout().deposited; ++c) {
+          double sum = 0;
+          double least = 2;
+          for (uint32_t s = 0; s < n; ++s) {
+            const double v = fake_sample(unit.frame, x, y, b * core::kBatchSamples + s, c);
+            sum += v;
+            least = std::min(least, v);
+          }
+          values[i++] = static_cast<float>(c == film.layout().depth ? least : sum);
+        }
+      }
+    }
+    film.deposit(unit.tile, b, n, values);
+  }
+  return film;
+}
+
+/// What every way of rendering must give.
+inline std::string oracle_digest(int32_t frame, const core::PixelRect& region, uint32_t samples) {
+  return fake_film({frame, region, {0, core::batch_count(samples)}}, samples).digest();
+}
+
+/// A renderer without light, and where its films go.
+class FakeRender final : public FrameSource, public FrameSink {
+ public:
+  explicit FakeRender(uint32_t samples) : samples_(samples) {}
+
+  // What shall happen; to be set before the run.
+  std::chrono::microseconds unit_delay{0};  ///< given up at once on stop
+  std::chrono::milliseconds finish_delay{0};
+  std::function<core::Status(const core::Unit&, int thread)> unit_fault;
+  std::function<core::Status(int32_t frame)> prepare_fault;
+  std::function<core::Status(int32_t frame)> finish_fault;
+
+  // What happened.
+  std::map<int32_t, std::string> digests() const {
+    const std::lock_guard lock(mutex_);
+    return digests_;
+  }
+  void lose_output(int32_t frame) { digests_.erase(frame); }
+  std::vector<int32_t> prepared() const {
+    const std::lock_guard lock(mutex_);
+    return prepared_;
+  }
+  int most_alive() const { return most_alive_; }
+  uint64_t units() const { return units_; }
+  bool prepared_while_rendering() const { return prepared_while_rendering_; }
+
+  core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t frame,
+                                                         const std::atomic<bool>&) override {
+    if (prepare_fault) {
+      if (auto fault = prepare_fault(frame); !fault) return fault.error();
+    }
+    const std::lock_guard lock(mutex_);
+    prepared_.push_back(frame);
+    prepared_while_rendering_ = prepared_while_rendering_ || rendering_ > 0;
+    return std::shared_ptr<const FrameWork>(std::make_shared<Work>(*this));
+  }
+
+  core::Status finish(int32_t frame, const core::Film& film) override {
+    std::this_thread::sleep_for(finish_delay);
+    if (finish_fault) {
+      if (auto fault = finish_fault(frame); !fault) return fault;
+    }
+    const std::lock_guard lock(mutex_);
+    digests_[frame] = film.digest();
+    return {};
+  }
+
+  bool outputs_exist(int32_t frame) override {
+    const std::lock_guard lock(mutex_);
+    return digests_.contains(frame);
+  }
+
+ private:
+  class Work final : public FrameWork {
+   public:
+    explicit Work(FakeRender& owner) : owner_(owner) {
+      const int alive = ++owner_.alive_;
+      owner_.most_alive_ = std::max(owner_.most_alive_.load(), alive);
+    }
+    ~Work() override { --owner_.alive_; }
+
+    core::Result<core::Film> render(const core::Unit& unit, int thread,
+                                    const std::atomic<bool>& stop) const override {
+      ++owner_.rendering_;
+      auto film = render_slowly(unit, thread, stop);
+      --owner_.rendering_;
+      return film;
+    }
+
+   private:
+    core::Result<core::Film> render_slowly(const core::Unit& unit, int thread,
+                                           const std::atomic<bool>& stop) const {
+      if (owner_.unit_fault) {
+        if (auto fault = owner_.unit_fault(unit, thread); !fault) return fault.error();
+      }
+      const auto end = std::chrono::steady_clock::now() + owner_.unit_delay;
+      while (!stop && std::chrono::steady_clock::now() < end) {
+        std::this_thread::sleep_for(std::min(owner_.unit_delay, std::chrono::microseconds(2000)));
+      }
+      if (stop) return core::Error{"stopped"};
+      ++owner_.units_;
+      return fake_film(unit, owner_.samples_);
+    }
+
+    FakeRender& owner_;
+  };
+
+  const uint32_t samples_;
+  mutable std::mutex mutex_;
+  std::map<int32_t, std::string> digests_;
+  std::vector<int32_t> prepared_;
+  std::atomic<bool> prepared_while_rendering_{false};
+  std::atomic<int> alive_{0};
+  std::atomic<int> most_alive_{0};
+  std::atomic<int> rendering_{0};
+  std::atomic<uint64_t> units_{0};
+};
+
+}  // namespace hyades::coordinator
