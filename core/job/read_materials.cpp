@@ -32,11 +32,16 @@ void read_lambert(MapReader& reader, MaterialDesc& material) {
   read_bump(reader, material);
 }
 
-void read_dielectric(MapReader& reader, MaterialDesc& material) {
+void read_thin_dielectric(MapReader& reader, MaterialDesc& material) {
   reader.animated("ior", material.ior, {0.01, 100.0});
   reader.color("transmission", material.transmission, kUnitInterval);
   reader.color("reflection", material.reflection, kUnitInterval);
   read_bump(reader, material);
+}
+
+void read_dielectric(MapReader& reader, MaterialDesc& material) {
+  reader.scalar_input("roughness", material.roughness, kUnitInterval);
+  read_thin_dielectric(reader, material);
 }
 
 void read_measured(MapReader& reader, std::string_view key, std::optional<Animated<Rgb>>& target,
@@ -91,7 +96,7 @@ void read_nothing(MapReader&, MaterialDesc&) {}
 const std::array<TypeRow<MaterialDesc>, 9> kTypes = {{
     {"lambert", read_lambert},
     {"dielectric", read_dielectric},
-    {"thin-dielectric", read_dielectric},
+    {"thin-dielectric", read_thin_dielectric},
     {"conductor", read_conductor},
     {"glossy", read_glossy},
     {"mirror", read_mirror},

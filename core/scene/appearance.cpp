@@ -118,9 +118,15 @@ Result<MaterialPtr> Appearance::make_material(const MaterialDesc& desc) {
   const std::string& type = desc.type;
   if (type == "null") return make_null();
   if (type == "black") return make_black();
-  if (type == "dielectric" || type == "thin-dielectric") {
-    const auto make = type == "dielectric" ? make_dielectric : make_thin_dielectric;
-    return make(desc.ior.at(time_), desc.transmission.at(time_), desc.reflection.at(time_));
+  if (type == "dielectric") {
+    auto roughness = scalar(desc.roughness);
+    if (!roughness) return roughness.error();
+    return make_rough_dielectric(desc.ior.at(time_), desc.transmission.at(time_),
+                                 desc.reflection.at(time_), *roughness);
+  }
+  if (type == "thin-dielectric") {
+    return make_thin_dielectric(desc.ior.at(time_), desc.transmission.at(time_),
+                                desc.reflection.at(time_));
   }
   if (type == "conductor") {
     MetalIndex index;
