@@ -49,8 +49,14 @@ double accumulate(const Weights& weights, std::span<uint32_t> cumulative) {
 Distribution1D::Choice choose(std::span<const uint32_t> cumulative, float u) {
   const float scaled = std::clamp(u, 0.0F, 0x1.fffffep-1F) * 0x1p24F;
   const auto step = static_cast<uint32_t>(scaled);
-  const auto above = std::upper_bound(cumulative.begin() + 1, cumulative.end() - 1, step);
-  const auto index = static_cast<uint32_t>(above - cumulative.begin()) - 1;
+  // Binary search for the last entry that starts at or before `step`, without branches: which half
+  // is right cannot be predicted.
+  uint32_t index = 0;
+  for (auto left = static_cast<uint32_t>(cumulative.size() - 1); left > 1;) {
+    const uint32_t half = left / 2;
+    index += half * static_cast<uint32_t>(cumulative[index + half] <= step);
+    left -= half;
+  }
   const uint32_t low = cumulative[index];
   const auto width = static_cast<float>(cumulative[index + 1] - low);
   const float offset = static_cast<float>(step - low) + (scaled - static_cast<float>(step));

@@ -18,11 +18,12 @@ struct Taps {
 
 /// Texel `i` of an endless row of n, as the wrap mode has it; -1 for black.
 int wrap_index(int64_t i, int n, WrapMode wrap) {
+  if (i >= 0 && i < n) return static_cast<int>(i);
   switch (wrap) {
     case WrapMode::clamp:
-      return static_cast<int>(i < 0 ? 0 : i >= n ? n - 1 : i);
+      return i < 0 ? 0 : n - 1;
     case WrapMode::black:
-      return i < 0 || i >= n ? -1 : static_cast<int>(i);
+      return -1;
     case WrapMode::mirror: {
       const int64_t period = ((i % (2 * int64_t{n})) + 2 * int64_t{n}) % (2 * int64_t{n});
       return static_cast<int>(period < n ? period : 2 * int64_t{n} - 1 - period);
