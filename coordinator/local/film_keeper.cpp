@@ -33,10 +33,15 @@ void FilmKeeper::join() {
   if (thread_.joinable()) thread_.join();
 }
 
-core::Result<LogContents> FilmKeeper::open() {
-  if (options_.folder.empty()) return LogContents{};
+core::Status FilmKeeper::open_log(bool erase) {
+  log_.reset();
+  LogFiles& files = options_.files != nullptr ? *options_.files : disk_log_files();
+  if (core::Status made = files.make_folder(options_.folder); !made) return made;
+  if (erase) {
+    if (core::Status erased = erase_film_log(options_.folder, &files); !erased) return erased;
+  }
   FilmLogOptions options;
-  options.files = options_.files;
+  options.files = &files;
   options.on_durable = [this](uint64_t through) {
     const std::lock_guard lock(mutex_);
     durable_ = std::max(durable_, through);
@@ -49,25 +54,40 @@ core::Result<LogContents> FilmKeeper::open() {
     trouble_ = error.message;
     wake_.notify_one();
   };
-  if (!options_.resume) {
-    if (auto erased = erase_film_log(options_.folder, options_.files); !erased) {
-      return erased.error();
-    }
-  }
   auto log = FilmLog::open(options_.folder, options_.key, options);
   if (!log) return log.error();
   log_ = std::move(*log);
+  return {};
+}
+
+core::Result<LogContents> FilmKeeper::open() {
+  if (options_.folder.empty()) return LogContents{};
+  if (core::Status opened = open_log(!options_.resume); !opened) return opened.error();
   const std::set<int32_t> frames(plan_.frames.begin(), plan_.frames.end());
   auto contents = read_log(*log_, plan_.region, plan_.samples, frames);
+  if (contents && !contents->empty && contents->cut.tile_size == 0) {
+    // Its beginning is damaged: without the cut the films cannot be told apart into units.
+    if (core::Status opened = open_log(true); !opened) return opened.error();
+    auto problems = std::move(contents->problems);
+    contents = read_log(*log_, plan_.region, plan_.samples, frames);
+    problems.emplace_back("how the frames were cut is lost: it begins afresh");
+    if (contents) contents->problems = std::move(problems);
+  }
   if (!contents) return contents;
   finished_ = contents->finished;
   films_ = contents->films;
+  write_cut_ = contents->empty;
   return contents;
 }
 
-void FilmKeeper::start(int32_t tile_size) {
+core::Status FilmKeeper::start(int32_t tile_size) {
   tile_size_ = tile_size;
+  if (log_ && write_cut_) {
+    auto written = log_->append(encode_cut({plan_.region, tile_size, plan_.samples}));
+    if (!written) return written.error();
+  }
   thread_ = std::thread([this] { run(); });
+  return {};
 }
 
 void FilmKeeper::push(Item item, bool may_wait) {

@@ -48,7 +48,7 @@ class FilmKeeper {
   core::Result<LogContents> open();
   /// The frame's outputs are gone: it will be rendered again. Before start().
   void reopen(int32_t frame) { finished_.erase(frame); }
-  void start(int32_t tile_size);
+  core::Status start(int32_t tile_size);
   /// Waits for the end of the thread; somebody has called drain().
   void join();
 
@@ -84,6 +84,7 @@ class FilmKeeper {
     uint64_t sequence = 0;
   };
 
+  core::Status open_log(bool erase);
   void push(Item item, bool may_wait);
   void run();
   void append(std::deque<Item> items);
@@ -115,6 +116,7 @@ class FilmKeeper {
   std::set<int32_t> finished_;
   bool failed_frames_ = false;
   int32_t tile_size_ = 0;
+  bool write_cut_ = false;  ///< the log is new
   uint64_t settled_sequence_ = 0;
   uint64_t log_bytes_ = 0;       ///< since the last snapshot
   uint64_t snapshot_bytes_ = 0;  ///< of the last snapshot

@@ -117,14 +117,7 @@ core::Result<LogContents> read_log(FilmLog& log, const core::PixelRect& region, 
   auto report = log.replay([&](std::span<const std::byte> record) { return reader.read(record); });
   if (!report) return report.error();
   contents.problems = std::move(report->problems);
-  if (contents.empty) return contents;
-  if (contents.cut.tile_size == 0) {
-    // Its beginning is damaged: without the cut the films cannot be told apart into units.
-    contents.problems.emplace_back("how the frames were cut is lost: starting afresh");
-    contents.films.clear();
-    contents.cut = {};
-    return contents;
-  }
+  if (contents.cut.tile_size == 0) return contents;
   if (contents.cut.region != region || contents.cut.samples != samples) {
     return core::Error{
         fmt::format("the kept films are of {}x{} pixels and {} samples, the job has {}x{} and {}",

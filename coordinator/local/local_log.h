@@ -34,7 +34,7 @@ std::vector<std::byte> encode_finished(int32_t frame);
 /// What a log holds.
 struct LogContents {
   bool empty = true;
-  CutRecord cut;
+  CutRecord cut;  ///< tile_size 0: not found
   std::set<int32_t> finished;
   std::map<int32_t, std::shared_ptr<core::Film>> films;  ///< of the other frames, merged
   std::vector<std::string> problems;  ///< damage, in words; costs rendering again

@@ -91,12 +91,12 @@ core::Status LocalRun::start() {
   samples_before_ = progress_.samples_done;
   started_ = std::chrono::steady_clock::now();
 
+  if (core::Status kept = keeper_.start(plan_.tile_size); !kept) return kept;
   for (int i = 0; i < plan_.threads; ++i) {
     seats_.push_back(std::make_unique<Seat>());
     tell(WorkerJoined{WorkerId{static_cast<uint64_t>(i)}, 1, {}, {}});
   }
   rendering_ = plan_.threads;
-  keeper_.start(plan_.tile_size);
   carry_out(tell(job));
   for (int i = 0; i < plan_.threads; ++i) threads_.emplace_back([this, i] { render_loop(i); });
   threads_.emplace_back([this] { load_loop(); });
