@@ -242,6 +242,13 @@ void MapReader::map(std::string_view key, const std::string& section,
   reader.finish();
 }
 
+void MapReader::later(std::string_view key) {
+  const YamlEntry* entry = map_.find(key);
+  if (entry == nullptr) return;
+  later_.emplace_back(key);
+  complain(entry->key_where, fmt::format("'{}' is not available in this version", key));
+}
+
 void MapReader::mismatch(std::string_view key, const YamlNode& found, const std::string& expected) {
   complain_mismatch({context_, label(key), {}}, found, expected);
 }
@@ -252,6 +259,7 @@ void MapReader::finish() {
   asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
   for (const YamlEntry& entry : map_.map) {
     if (std::binary_search(asked_.begin(), asked_.end(), entry.key)) continue;
+    if (std::find(later_.begin(), later_.end(), entry.key) != later_.end()) continue;
     std::string hint = belongs_elsewhere(section_, entry.key);
     if (hint.empty()) hint = did_you_mean(entry.key, asked_);
     if (hint.empty()) hint = "; expected " + join_names(asked_);

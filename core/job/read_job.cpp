@@ -26,9 +26,6 @@ constexpr std::array<UnitRow, 6> kUnits = {{
     {"ft", 0.3048F},
 }};
 
-/// Keys that later versions will know.
-constexpr std::array<const char*, 2> kLater = {"media", "atmosphere"};
-
 void read_version(MapReader& top) {
   top.require("hyades", "the version of the job language: hyades: 1");
   const YamlNode* node = top.find("hyades");
@@ -85,12 +82,8 @@ void read_job(MapReader& top, Job& job) {
   read_lights(top);
   read_environment(top, job);
   read_outputs(top, job);
-  for (const char* key : kLater) {
-    if (top.listing() || !top.has(key)) continue;
-    if (const YamlNode* node = top.find(key)) {
-      top.complain(node->where, fmt::format("'{}' is not available in this version", key));
-    }
-  }
+  top.later("media");
+  top.later("atmosphere");
   top.finish();
 }
 

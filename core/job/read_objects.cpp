@@ -152,6 +152,7 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
     reader.context().listing->insert({"objects.group", "objects"});
     return;
   }
+  reader.later("interior");
   const KindRow* kind = find_kind(reader);
   if (kind == nullptr) return;
   kind->read(reader, object);
