@@ -25,6 +25,12 @@ void take_minimum(Fixed128& into, const Fixed128& from) {
   }
 }
 
+/// Whether the bits are those of a float that is no NaN.
+bool is_minimum(const Fixed128& value) {
+  const auto bits = static_cast<uint32_t>(value.low);
+  return value.high == 0 && value.low == bits && (bits & 0x7FFFFFFFU) <= 0x7F800000U;
+}
+
 float clamp_deposit(float value) { return std::clamp(value, -kMaxDeposit, kMaxDeposit); }
 
 std::string describe(const CoverageBox& box) {
@@ -171,12 +177,16 @@ Status Film::check() const {
         fmt::format("a pixel holds {} samples in {} batches", to_double(samples[i]), batches[i])};
   }
   for (size_t c = 0; c < planes_.size(); ++c) {
-    const Fixed128 zero =
-        layout_.channels[c].rule == MergeRule::min ? min_bits(kInfinity) : Fixed128{};
+    const bool minima = layout_.channels[c].rule == MergeRule::min;
+    const Fixed128 nothing = minima ? min_bits(kInfinity) : Fixed128{};
     for (size_t i = 0; i < batches.size(); ++i) {
-      if (batches[i] == 0 && planes_[c][i] != zero) {
+      if (batches[i] == 0 && planes_[c][i] != nothing) {
         return Error{
             fmt::format("channel {} has a value where no batch is held", layout_.channels[c].name)};
+      }
+      if (minima && !is_minimum(planes_[c][i])) {
+        return Error{
+            fmt::format("channel {} has a value that is no float", layout_.channels[c].name)};
       }
     }
   }

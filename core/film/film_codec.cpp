@@ -68,11 +68,6 @@ void append_channel(std::vector<std::byte>& out, std::span<const Fixed128> plane
   }
 }
 
-bool is_minimum(const Fixed128& value) {
-  const auto bits = static_cast<uint32_t>(value.low);
-  return value.high == 0 && value.low == bits && (bits & 0x7FFFFFFFU) <= 0x7F800000U;  // no NaN
-}
-
 /// Infinities and NaN would not be sums, nor would values beyond the range of Fixed128.
 bool is_sum(float value) { return value > -0x1p63F && value < 0x1p63F; }
 
@@ -82,7 +77,7 @@ Status read_channel(ByteReader& in, std::span<Fixed128> plane, const FilmChannel
   switch (in.number<ChannelForm>()) {
     case ChannelForm::constant: {
       const auto value = in.number<Fixed128>();
-      if (in.failed() || (minima && !is_minimum(value))) return damaged;
+      if (in.failed()) return damaged;
       std::fill(plane.begin(), plane.end(), value);
       return {};
     }
@@ -91,9 +86,8 @@ Status read_channel(ByteReader& in, std::span<Fixed128> plane, const FilmChannel
       const auto bytes = std::as_writable_bytes(std::span(floats));
       if (!read_planes(in, bytes, sizeof(float))) return damaged;
       for (size_t i = 0; i < plane.size(); ++i) {
-        const Fixed128 bits{std::bit_cast<uint32_t>(floats[i]), 0};
-        if (minima ? !is_minimum(bits) : !is_sum(floats[i])) return damaged;
-        plane[i] = minima ? bits : to_fixed(floats[i]);
+        if (!minima && !is_sum(floats[i])) return damaged;
+        plane[i] = minima ? Fixed128{std::bit_cast<uint32_t>(floats[i]), 0} : to_fixed(floats[i]);
       }
       return {};
     }

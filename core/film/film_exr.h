@@ -27,6 +27,9 @@ Status write_film_exr(const std::string& path, const FilmFile& file,
 /// with a reason; memory stays bounded by what the file really holds.
 Result<FilmFile> read_film_exr(const std::string& path);
 
+/// The same for a file's bytes; `name` is used in errors only.
+Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name);
+
 /// Joins `from` into `into`. Refused with a reason where render key, frame, size, crop, samples or
 /// class differ or batches overlap; nothing is changed then.
 Status merge_film_files(FilmFile& into, const FilmFile& from);

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <random>
 #include <vector>
 
+#include "core/base/hash.h"
 #include "core/film/film.h"
 
 namespace hyades::core {
@@ -13,14 +14,14 @@ inline const LayerSet kAllLayers{true, true, true};
 
 /// What a renderer would give: a pure function of pixel, batch and channel.
 inline float rendered(int x, int y, uint32_t batch, int channel, const FilmLayout& layout) {
-  std::mt19937 random(static_cast<uint32_t>(x * 7919 + y * 104729) + batch * 31U +
-                      static_cast<uint32_t>(channel) * 999983U);
-  const float u = static_cast<float>(random() % 0x1000000) * 0x1p-24F;
+  const uint64_t pixel = hash_combine(static_cast<uint32_t>(x), static_cast<uint32_t>(y));
+  const uint64_t random = hash_combine(pixel, hash_combine(batch, static_cast<uint32_t>(channel)));
+  const float u = static_cast<float>(random % 0x1000000) * 0x1p-24F;
   if (channel == layout.depth) {
     return u < 0.2F ? std::numeric_limits<float>::infinity() : 10.0F * u;
   }
   const float sign = channel >= 5 && u < 0.3F ? -1.0F : 1.0F;
-  return sign * std::ldexp(0.5F + u, static_cast<int>(random() % 30) - 20);
+  return sign * std::ldexp(0.5F + u, static_cast<int>((random >> 32U) % 30) - 20);
 }
 
 /// A film of one tile with some of its batches, of a job of `samples` samples per pixel.

@@ -1,0 +1,133 @@
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfPartType.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "core/base/assets.h"
+#include "core/film/film_exr.h"
+#include "core/film/film_exr_channels.h"
+#include "core/film/film_header.h"
+#include "core/image/exr_support.h"
+
+namespace hyades::core {
+namespace {
+
+constexpr uint32_t kExrMagic = 20000630;
+constexpr uint64_t kMaxExpansion = 4096;  // ZIP reaches 1032, half of the words may be left out
+constexpr ImageLimits kLimits{1 << 20, size_t{1} << 33U};
+
+const Error kNoFilm{"it is an OpenEXR file, but no film of Hyades (there is no part \"sums\")"};
+
+std::optional<std::string> text_attribute(const Imf::Header& header, const char* name) {
+  const auto* const attribute = header.findTypedAttribute<Imf::StringAttribute>(name);
+  return attribute != nullptr ? std::optional(attribute->value()) : std::nullopt;
+}
+
+/// Which of the words are there; an error for channels that do not belong to such a film.
+Result<std::vector<WordChannel>> present_words(const Imf::ChannelList& channels,
+                                               const FilmLayout& layout) {
+  std::vector<WordChannel> words = word_channels(layout);
+  size_t count = 0;
+  for (auto i = channels.begin(); i != channels.end(); ++i, ++count) {
+    const Imf::Channel& channel = i.channel();
+    const bool known = std::any_of(words.begin(), words.end(),
+                                   [&](const WordChannel& word) { return word.name == i.name(); });
+    if (!known || channel.type != Imf::UINT || channel.xSampling != 1 || channel.ySampling != 1) {
+      return Error{fmt::format("channel '{}' does not belong into this film", i.name())};
+    }
+  }
+  std::erase_if(words, [&](const WordChannel& word) {
+    return !word.required && channels.findChannel(word.name) == nullptr;
+  });
+  for (const WordChannel& word : words) {
+    if (channels.findChannel(word.name) == nullptr) {
+      return Error{fmt::format("channel '{}' is missing", word.name)};
+    }
+  }
+  return words;
+}
+
+Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
+  prepare_openexr();
+  uint32_t magic = 0;
+  if (bytes.size() >= sizeof magic) std::memcpy(&magic, bytes.data(), sizeof magic);
+  if (magic != kExrMagic) return Error{"it is no OpenEXR file"};
+  if (const Status header = check_exr_header(bytes, kLimits); !header) return header.error();
+  MemoryIStream stream(bytes);
+  Imf::MultiPartInputFile in(stream, 0, false);
+  int index = 0;
+  while (index < in.parts() &&
+         (!in.header(index).hasName() || in.header(index).name() != kSumsPart)) {
+    ++index;
+  }
+  if (index == in.parts()) return kNoFilm;
+  const Imf::Header& part_header = in.header(index);
+  const std::optional<std::string> facts = text_attribute(part_header, kFilmAttribute);
+  const std::optional<std::string> digest = text_attribute(part_header, kDigestAttribute);
+  if (!facts || !digest || !part_header.hasType() || part_header.type() != Imf::SCANLINEIMAGE) {
+    return kNoFilm;
+  }
+
+  Result<FilmHeader> header = parse_film_header(*facts);
+  if (!header) return header.error();
+  const PixelRect& window = header->window;
+  if (part_header.dataWindow() !=
+      Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1})) {
+    return Error{"its data window is not the film's"};
+  }
+  FilmLayout layout = make_film_layout(header->layers);
+  Result<std::vector<WordChannel>> words = present_words(part_header.channels(), layout);
+  if (!words) return words.error();
+  const uint64_t memory =
+      static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
+  if (memory / kMaxExpansion > bytes.size()) {
+    return Error{fmt::format("it claims {} x {} pixels, which {} bytes cannot hold", window.width(),
+                             window.height(), bytes.size())};
+  }
+
+  FilmFile file{std::move(header->info), Film(std::move(layout), window)};
+  Imf::FrameBuffer buffer;
+  for (const WordChannel& word : *words) buffer.insert(word.name, word_slice(file.film, word));
+  Imf::InputPart part(in, index);
+  part.setFrameBuffer(buffer);
+  part.readPixels(window.y0, window.y1 - 1);
+
+  file.film.mutable_coverage() = std::move(header->coverage);
+  if (const Status agrees = file.film.check(); !agrees) return agrees.error();
+  if (film_file_digest(*facts, file.film) != *digest) {
+    return Error{"it is damaged: its digest does not match"};
+  }
+  return file;
+}
+
+}  // namespace
+
+Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name) {
+  const std::string context = "cannot read " + name;
+  try {
+    Result<FilmFile> file = read_parts(bytes.span());
+    if (!file) return file.error().in(context);
+    return file;
+  } catch (const std::bad_alloc&) {
+    return Error{context + ": there is not enough memory for it"};
+  } catch (const std::exception& e) {
+    return Error{context + ": it is damaged: " + e.what()};
+  }
+}
+
+Result<FilmFile> read_film_exr(const std::string& path) {
+  const Result<Bytes> bytes = map_file(path);
+  if (!bytes) return bytes.error().in("cannot read " + path);
+  return read_film_exr(*bytes, path);
+}
+
+}  // namespace hyades::core
