@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 
 #include "core/base/text.h"
@@ -142,8 +143,9 @@ void check_expressions(ReadContext& context) {
     for (size_t i = 0; i < frames.size(); i += stride) {
       const double value = use.expression->evaluate(context.job.time_of(frames[i]));
       if (use.range.contains(static_cast<double>(static_cast<float>(value)))) continue;
-      context.complain(use.where, fmt::format("{} is {:.6g} at frame {}, expected {}", use.label,
-                                              value, frames[i], use.range.describe()));
+      const std::string shown = std::isnan(value) ? "not a number" : fmt::format("{:.6g}", value);
+      context.complain(use.where, fmt::format("{} is {} at frame {}, expected {}", use.label, shown,
+                                              frames[i], use.range.describe()));
       break;
     }
   }

@@ -47,7 +47,10 @@ bool read_keys(const ValueSite& site, const YamlNode& node, Animated<T>& target,
     Animated<T> value = target;
     value.keys.clear();
     value.expressions.fill(nullptr);
-    if (!read(site, *entry.value, value)) {
+    const size_t expressions = site.context.expressions.size();
+    const bool readable = read(site, *entry.value, value);
+    site.context.expressions.resize(expressions);
+    if (!readable) {
       good = false;
     } else if (!value.is_constant()) {
       site.context.complain(entry.value->where,

@@ -71,8 +71,11 @@ void read_list(MapReader& reader, const YamlNode& list, TransformList& steps) {
   for (const YamlPtr& item : list.list) {
     const bool one_key = item->kind == YamlNode::Kind::map && item->map.size() == 1;
     if (!one_key) {
-      reader.complain(item->where, fmt::format("a transform step is {}, expected one key of {}",
-                                               describe(*item), join_names(kSteps)));
+      const std::string found = item->kind == YamlNode::Kind::map
+                                    ? fmt::format("has {} keys", item->map.size())
+                                    : "is " + describe(*item);
+      reader.complain(item->where, fmt::format("a transform step {}, expected one key of {}", found,
+                                               join_names(kSteps)));
       continue;
     }
     MapReader step_reader(reader.context(), *item, "a transform step",
