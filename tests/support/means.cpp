@@ -7,7 +7,7 @@
 namespace hyades::test {
 namespace {
 
-constexpr double kExact = 1e-9;
+constexpr double kExact = 1e-6;  // float rounding
 
 bool equal(double a, double b) {
   return std::abs(a - b) <= kExact * std::fmax(std::abs(a), std::abs(b));

@@ -24,7 +24,7 @@ struct Promise {
 double sidak(double significance, int tests);
 
 /// Two-sided p-value of the hypothesis that `sample` comes from a distribution of mean `expected`
-/// (Student's t). 1 or 0 where the sample does not vary and equals or misses it (to 1e-9 relative).
+/// (Student's t). 1 or 0 where the sample does not vary and equals or misses it (to 1e-6 relative).
 double t_test(const Moments& sample, double expected);
 
 /// Two-sided p-value of the hypothesis that two samples have the same mean (Welch's t).

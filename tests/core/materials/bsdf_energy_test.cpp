@@ -16,6 +16,7 @@ namespace {
 TEST(BsdfReciprocity, SmoothValuesAreSymmetric) {
   test::Random random(21);
   for (const BsdfCase& c : smooth_cases()) {
+    if (!c.reciprocal) continue;
     const BsdfUnderTest bsdf(c.material);
     int seen = 0;
     for (int n = 0; n < 10000; ++n) {

@@ -11,31 +11,33 @@
 namespace hyades::core {
 namespace {
 
+class BsdfCases : public ::testing::TestWithParam<BsdfCase> {};
+
 // Detects a density that is 1 % too high on half of the samples' domain and as much too low on the
 // other with probability 0.99, at a joint significance of 0.01 over all cases and directions.
-TEST(BsdfSampling, DirectionsFollowThePdf) {
-  const auto cases = smooth_cases();
+TEST_P(BsdfCases, DirectionsFollowThePdf) {
   const auto directions = five_directions();
+  const BsdfUnderTest bsdf(GetParam().material);
   test::SphereTest settings;
   settings.grid = {6, 8};
   settings.tolerance = 3e-5;
-  settings.promise.tests = static_cast<int>(cases.size() * directions.size());
-  for (const BsdfCase& c : cases) {
-    const BsdfUnderTest bsdf(c.material);
-    for (const NamedDirection& d : directions) {
-      ++settings.seed;
-      EXPECT_TRUE(test::directions_follow(
-          [&](test::Random& random) -> std::optional<Vec3> {
-            const float lobe = random.uniform();
-            const auto s = bsdf->sample(d.wo, lobe, random.uniform2(), TransportMode::radiance);
-            // Delta lobes are not part of the density: their share of samples lacks in it.
-            return s && !s->delta ? std::optional(s->wi) : std::nullopt;
-          },
-          [&](const Vec3& wi) { return bsdf->pdf(d.wo, wi, TransportMode::radiance); }, settings))
-          << c.name << ", " << d.name;
-    }
+  settings.promise.tests = static_cast<int>(smooth_cases().size() * directions.size());
+  for (const NamedDirection& d : directions) {
+    ++settings.seed;
+    EXPECT_TRUE(test::directions_follow(
+        [&](test::Random& random) -> std::optional<Vec3> {
+          const float lobe = random.uniform();
+          const auto s = bsdf->sample(d.wo, lobe, random.uniform2(), TransportMode::radiance);
+          // Delta lobes are not part of the density: their share of samples lacks in it.
+          return s && !s->delta ? std::optional(s->wi) : std::nullopt;
+        },
+        [&](const Vec3& wi) { return bsdf->pdf(d.wo, wi, TransportMode::radiance); }, settings))
+        << d.name;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Smooth, BsdfCases, ::testing::ValuesIn(smooth_cases()),
+                         [](const auto& tested) { return tested.param.name; });
 
 // Exact up to rounding, on every sample: an error of 1e-4 in any of them fails.
 TEST(BsdfSampling, WeightIsValueOverPdf) {
