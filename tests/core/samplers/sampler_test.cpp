@@ -232,7 +232,7 @@ TEST(Sampler, AnyPairOfNumbersIsUniformOverPixels) {
 }
 
 /// Slope of log2 MSE over log2 N for N = 2^first .. 2^last, least squares over `pixels` estimates.
-double mse_slope(Sampler& sampler, uint32_t dimension, int width,
+double mse_slope(const char* name, Sampler& sampler, uint32_t dimension, int width,
                  const std::function<double(const float*)>& f, double integral, int first,
                  int last) {
   constexpr int kPixels = 1000;
@@ -263,7 +263,7 @@ double mse_slope(Sampler& sampler, uint32_t dimension, int width,
   }
   const int n = last - first + 1;
   const double slope = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-  testing::Test::RecordProperty("slope_of_dimension_" + std::to_string(dimension),
+  testing::Test::RecordProperty(std::string("slope_") + name + "_at_" + std::to_string(dimension),
                                 std::to_string(slope));
   return slope;
 }
@@ -282,16 +282,16 @@ double smooth4(const float* u) {
 // 7 or more sizes to 0.02; a slope off by 0.1 is noticed.
 TEST(Sampler, ErrorFallsAsPromised) {
   const auto independent = make_sampler(SamplerKind::independent);
-  EXPECT_NEAR(mse_slope(*independent, 0, 2, smooth2, kSmooth2, 2, 9), -1.0, 0.07);
-  EXPECT_NEAR(mse_slope(*independent, 6, 2, disk2, kDisk2, 2, 9), -1.0, 0.07);
+  EXPECT_NEAR(mse_slope("independent", *independent, 0, 2, smooth2, kSmooth2, 2, 9), -1.0, 0.07);
+  EXPECT_NEAR(mse_slope("independent_disk", *independent, 6, 2, disk2, kDisk2, 2, 9), -1.0, 0.07);
   const auto sobol = make_sampler(SamplerKind::sobol);
   for (const uint32_t d : {0U, 2U, 20U}) {
-    EXPECT_LT(mse_slope(*sobol, d, 2, smooth2, kSmooth2, 2, 9), -2.6) << d;
-    EXPECT_LT(mse_slope(*sobol, d, 2, disk2, kDisk2, 2, 9), -1.35) << d;
+    EXPECT_LT(mse_slope("smooth", *sobol, d, 2, smooth2, kSmooth2, 2, 9), -2.6) << d;
+    EXPECT_LT(mse_slope("disk", *sobol, d, 2, disk2, kDisk2, 2, 9), -1.35) << d;
   }
-  EXPECT_LT(mse_slope(*sobol, 4, 4, smooth4, kSmooth2, 2, 10), -2.0);
+  EXPECT_LT(mse_slope("smooth_4d", *sobol, 4, 4, smooth4, kSmooth2, 2, 10), -2.0);
   // Across groups the points are shuffled independently: better than random, not as good.
-  EXPECT_LT(mse_slope(*sobol, 3, 2, smooth2, kSmooth2, 2, 9), -0.95);
+  EXPECT_LT(mse_slope("across_groups", *sobol, 3, 2, smooth2, kSmooth2, 2, 9), -0.95);
 }
 
 // Any prefix, also one that is no power of two, beats independent numbers.
