@@ -1,0 +1,93 @@
+#include <chrono>
+#include <cstdio>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/load_job.h"
+#include "core/base/hash.h"
+#include "core/base/text.h"
+#include "core/job/layers.h"
+#include "core/render/frame_renderer.h"
+#include "core/scene/build_scene.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr double kProbeSeconds = 0.7;
+
+/// Seconds of one core that a sample of `renderer` takes, measured on small patches scattered over the window.
+double seconds_per_sample(const core::FrameRenderer& renderer, const core::PixelRect& window, int32_t frame) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int kPatch = 4;
+  const auto begin = Clock::now();
+  uint64_t samples = 0;
+  double seconds = 0.0;
+  for (uint64_t i = 0; seconds < kProbeSeconds; ++i) {
+    const uint64_t h = core::mix64(i + 1);
+    const int x = window.x0 + static_cast<int>(h % static_cast<uint64_t>(window.width()));
+    const int y = window.y0 + static_cast<int>((h >> 32) % static_cast<uint64_t>(window.height()));
+    const core::PixelRect patch = intersection(window, {x, y, x + kPatch, y + kPatch});
+    samples += renderer.render({frame, patch, {0, 1}}).counters.samples;
+    seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  }
+  return seconds / static_cast<double>(samples);
+}
+
+}  // namespace
+
+/// `hyades check job.yaml`: every mistake, or what the job is and would cost.
+int check_command(int argc, char** argv) {
+  CLI::App app("Reads a job and reports every mistake in it; a good one is summed up: frames, triangles, "
+               "units, and an estimate of memory and core-hours.", "hyades check");
+  std::string path;
+  bool no_probe = false;
+  app.add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->required();
+  app.add_flag("--no-probe", no_probe, "do not render a few pixels to estimate the time");
+  app.footer("example:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : kBadInput;
+  }
+  auto loaded = load_job(path);
+  if (!loaded) return kBadInput;
+  const core::Job& job = loaded->job;
+  core::SceneCache cache(*loaded->assets);
+  auto scene = core::build_scene(job, job.frames.first, cache);
+  if (!scene) {
+    std::fprintf(stderr, "%s: %s\n", path.c_str(), scene.error().message.c_str());
+    return kBadInput;
+  }
+  const core::PixelRect window = core::render_window(job.film);
+  const core::LayerSet layers = core::needed_layers(job);
+  const core::FrameRenderer renderer(*scene, job, job.frames.first, layers);
+  const int64_t frames = (int64_t{job.frames.last} - job.frames.first) / job.frames.step + 1;
+  const uint64_t pixels = static_cast<uint64_t>(window.area());
+  const uint64_t samples = pixels * job.sampling.samples * static_cast<uint64_t>(frames);
+  const uint64_t batches = core::batch_count(job.sampling.samples);
+  const uint64_t film = pixels * renderer.layout().channels.size() * sizeof(core::Fixed128);
+
+  std::printf("%s: good\n", path.c_str());
+  std::printf("  job        %s\n", job.name.c_str());
+  std::printf("  frames     %s of %d x %d%s\n", core::format_count(static_cast<uint64_t>(frames)).c_str(),
+              window.width(), window.height(), job.film.crop ? " (cropped)" : "");
+  std::printf("  objects    %s, %s triangles, %zu lights\n",
+              core::format_count((*scene)->objects.size()).c_str(),
+              core::format_count((*scene)->triangles).c_str(), (*scene)->lights.size());
+  std::printf("  samples    %u per pixel, %s in all\n", job.sampling.samples, core::format_count(samples).c_str());
+  std::printf("  batches    %s per frame, of %u samples of a pixel each\n",
+              core::format_count(batches).c_str(), core::kBatchSamples);
+  std::printf("  memory     about %s (geometry %s, textures %s, film %s)\n",
+              core::format_bytes((*scene)->world->memory() + (*scene)->texture_memory + film).c_str(),
+              core::format_bytes((*scene)->world->memory()).c_str(),
+              core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(film).c_str());
+  if (!no_probe && pixels > 0) {
+    const double hours = seconds_per_sample(renderer, window, job.frames.first) * static_cast<double>(samples) / 3600.0;
+    std::printf("  cost       about %s of one core like this one (%.3g core-hours)\n",
+                core::format_duration(hours * 3600.0).c_str(), hours);
+  }
+  return 0;
+}
+
+}  // namespace hyades::cli

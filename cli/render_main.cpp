@@ -1,0 +1,19 @@
+#include "cli/program.h"
+
+namespace hyades::cli {
+int bench_command(int argc, char** argv);
+int check_command(int argc, char** argv);
+int render_command(int argc, char** argv);
+int replay_command(int argc, char** argv);
+}  // namespace hyades::cli
+
+int main(int argc, char** argv) {
+  using namespace hyades::cli;
+  constexpr ProgramCommand kCommands[] = {
+      {"render", render_command},
+      {"check", check_command},
+      {"replay", replay_command},
+      {"bench", bench_command},
+  };
+  return run_program(kCommands, argc, argv);
+}
