@@ -1,1 +1,23 @@
-# Installation and the Debian package.
+# Installation (cmake --install) and the Debian package (cpack, in the build folder). The programs lie together in
+# libexec, where `hyades` finds its fellows; bin/ holds a link to it.
+install(TARGETS hyades hyades-render hyades-film RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
+install(CODE "
+  set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
+  file(MAKE_DIRECTORY \"\${bin}\")
+  file(CREATE_LINK \"../${CMAKE_INSTALL_LIBEXECDIR}/hyades/hyades\" \"\${bin}/hyades\" SYMBOLIC)")
+install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY jobs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/hyades/jobs
+        PATTERN generator EXCLUDE PATTERN CMakeLists.txt EXCLUDE)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_NAME hyades)
+set(CPACK_PACKAGE_CONTACT "The Hyades maintainers")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${CPACK_PACKAGE_CONTACT}")
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # exact dependencies, read off the programs
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_STRIP_FILES ON)
+include(CPack)
