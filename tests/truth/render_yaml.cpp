@@ -1,0 +1,55 @@
+#include "tests/truth/render_yaml.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include "core/job/parse.h"
+#include "core/scene/build_scene.h"
+
+namespace hyades::test {
+
+YamlScene::YamlScene(const std::string& yaml, int32_t frame, const core::LayerSet& layers,
+                     const std::string& folder)
+    : assets_(core::make_file_resolver(folder)), frame_(frame) {
+  core::Diagnostics diagnostics;
+  job_ = core::parse_job(yaml, "test.yaml", *assets_, diagnostics);
+  if (!diagnostics.empty()) throw std::runtime_error(diagnostics.to_string());
+  cache_ = std::make_unique<core::SceneCache>(*assets_);
+  auto scene = core::build_scene(job_, frame, *cache_);
+  if (!scene) throw std::runtime_error(scene.error().message);
+  renderer_ = std::make_unique<core::FrameRenderer>(*scene, job_, frame, layers);
+}
+
+core::RenderedFrame YamlScene::render(const core::RenderFrameOptions& options) const {
+  return core::render_frame(*renderer_, core::render_window(job_.film), job_.sampling.samples, frame_, options);
+}
+
+PictureMean picture_mean(const core::Film& film) {
+  const core::Image picture = film.normalised();
+  const int variance = picture.find_channel("variance.R");
+  PictureMean result;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        result.mean[c] += static_cast<double>(picture.at(x, y, c));
+        result.sigma[c] += static_cast<double>(picture.at(x, y, variance + c));
+      }
+    }
+  }
+  const double pixels = static_cast<double>(picture.width) * picture.height;
+  for (int c = 0; c < 3; ++c) {
+    result.mean[c] /= pixels;
+    result.sigma[c] = std::sqrt(result.sigma[c]) / pixels;
+  }
+  return result;
+}
+
+std::string shared_folder() {
+  const char* named = std::getenv("HYADES_SHARED");
+  const std::filesystem::path folder = named != nullptr ? named : "../shared";
+  return std::filesystem::exists(folder / "assets") ? folder.string() : "";
+}
+
+}  // namespace hyades::test

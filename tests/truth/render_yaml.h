@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/base/assets.h"
+#include "core/job/job.h"
+#include "core/render/render_frame.h"
+#include "core/scene/scene_cache.h"
+
+namespace hyades::test {
+
+/// A job written in a test, its scene at one frame, ready to render. Fails the test (and throws) where the job has
+/// mistakes. References to files are relative to `folder`.
+class YamlScene {
+ public:
+  explicit YamlScene(const std::string& yaml, int32_t frame = 1, const core::LayerSet& layers = {},
+                     const std::string& folder = ".");
+
+  /// All of the job's window.
+  core::RenderedFrame render(const core::RenderFrameOptions& options = {.threads = 2}) const;
+
+  /// The whole frame whatever the job's crop is.
+  const core::Job& job() const { return job_; }
+  const core::FrameRenderer& renderer() const { return *renderer_; }
+
+ private:
+  std::unique_ptr<core::AssetResolver> assets_;
+  core::Job job_;
+  std::unique_ptr<core::SceneCache> cache_;
+  std::unique_ptr<core::FrameRenderer> renderer_;
+  int32_t frame_;
+};
+
+/// Mean and standard error of the mean of each channel of a film's beauty over all its pixels, from the pixels' own
+/// variances (independent noise).
+struct PictureMean {
+  core::Vec3d mean{0.0};
+  core::Vec3d sigma{0.0};
+};
+PictureMean picture_mean(const core::Film& film);
+
+/// The folder of real-world inputs beside the repository; empty where it is absent.
+std::string shared_folder();
+
+}  // namespace hyades::test
