@@ -1,55 +1,192 @@
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include "cli/job_frames.h"
 #include "cli/load_job.h"
+#include "cli/progress_display.h"
+#include "coordinator/local/local_run.h"
 #include "core/base/parallel.h"
-#include "core/image/write_image.h"
-#include "core/render/render_frame.h"
-#include "core/scene/build_scene.h"
+#include "core/base/text.h"
 
 namespace hyades::cli {
+namespace {
 
-int render_command(int argc, char** argv) {
-  CLI::App app("Renders a job on this machine.", "hyades render");
+constexpr int kInterrupted = 130;
+
+volatile std::sig_atomic_t g_signals = 0;
+
+/// The first signal asks for an orderly end, the second one ends the process: what is durable is safe anyway.
+void on_signal(int) {
+  g_signals = g_signals + 1;
+  if (g_signals > 1) _exit(kInterrupted);
+}
+
+struct RenderOptions {
   std::string path;
-  std::string frames_text;
+  std::string frames;
   std::string folder = ".";
   int threads = core::hardware_threads();
   uint32_t samples = 0;
-  app.add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->required();
-  app.add_option("--frames", frames_text, "frames to render: 7, 1-10 or 1-10x2 (default: all)");
-  app.add_option("--samples", samples, "samples per pixel (default: the job's)");
-  app.add_option("--threads", threads, "rendering threads")->check(CLI::Range(1, 1024))->capture_default_str();
-  app.add_option("--output", folder, "folder for what is written")->capture_default_str();
+  std::vector<int> crop;
+  bool resume = false;
+  bool quiet = false;
+  bool film = false;
+};
+
+/// Exit status other than 0 where the arguments end the command.
+std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options) {
+  CLI::App app("Renders a job (or a mesh file) on this machine.", "hyades render");
+  app.add_option("job", options.path, "the job (.yaml) or mesh (.obj, .ply)")->required();
+  app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)");
+  app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
+      ->check(CLI::Range(1U, 1U << 24U));
+  app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")->delimiter(',')->expected(4);
+  app.add_option("--threads", options.threads, "rendering threads")
+      ->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
+  app.add_flag("--film", options.film, "also write each frame's film (NAME.film.exr), for 'hyades merge'");
+  app.add_flag("--resume", options.resume, "continue a run that was interrupted, to the same bits");
+  app.add_flag("--quiet", options.quiet, "show no progress");
+  app.footer("examples:\n"
+             "  hyades render jobs/quickstart/job.yaml\n"
+             "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
+             "  hyades render dragon.ply --samples 64\n"
+             "Ctrl-C stops; --resume continues, also after a crash.\n"
+             "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 interrupted");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kBadInput;
   }
-  auto loaded = load_job(path);
-  if (!loaded) return kBadInput;
+  return std::nullopt;
+}
+
+/// The job as the command line changes it; nothing (and a message) where that makes no sense.
+std::optional<LoadedJob> load(const RenderOptions& options) {
+  auto loaded = load_job(options.path);
+  if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
-  if (samples > 0) job.sampling.samples = samples;
-  const auto frames = select_frames(job, frames_text);
-  if (!frames) return kBadInput;
-  core::SceneCache cache(*loaded->assets);
-  for (const int32_t frame : *frames) {
-    auto scene = core::build_scene(job, frame, cache);
-    if (!scene) {
-      std::fprintf(stderr, "%s: %s\n", path.c_str(), scene.error().message.c_str());
-      return 1;
+  if (options.samples > 0) job.sampling.samples = options.samples;
+  if (!options.crop.empty()) {
+    const core::PixelRect crop{options.crop[0], options.crop[1], options.crop[2], options.crop[3]};
+    if (crop.empty() || !core::PixelRect{0, 0, job.film.width, job.film.height}.contains(crop)) {
+      std::fprintf(stderr, "--crop: expected X0,Y0,X1,Y1 within the frame, 0,0,%d,%d\n", job.film.width,
+                   job.film.height);
+      return std::nullopt;
     }
-    const core::FrameRenderer renderer(*scene, job, frame, {});
-    core::RenderFrameOptions options;
-    options.threads = threads;
-    const auto rendered = core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, frame, options);
-    const auto written = core::write_exr(folder + "/" + job.name + ".exr", rendered.film.normalised());
-    if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    job.film.crop = crop;
   }
-  return 0;
+  return loaded;
+}
+
+void print_bad_samples(const RunTotals& totals, const std::string& path) {
+  if (totals.counters.bad_samples == 0) return;
+  std::fprintf(stderr, "%s samples were not finite and count as black. To see why:\n",
+               core::format_count(totals.counters.bad_samples).c_str());
+  for (const RunTotals::Bad& bad : totals.bad) {
+    std::fprintf(stderr, "  hyades replay %s --frame %d --pixel %d,%d --sample %u\n", path.c_str(), bad.frame,
+                 bad.sample.pixel.x, bad.sample.pixel.y, bad.sample.sample);
+  }
+}
+
+int report(const RenderOptions& options, const JobFrames& frames, const std::vector<int32_t>& numbers,
+           const coordinator::LocalOutcome& outcome, const coordinator::Progress& progress) {
+  const RunTotals totals = frames.totals();
+  print_bad_samples(totals, options.path);
+  for (const coordinator::FrameFailure& failure : outcome.failures) {
+    std::fprintf(stderr, "frame %d failed: %s\n", failure.frame, failure.reason.c_str());
+  }
+  if (!outcome.error.empty()) {
+    std::fprintf(stderr, "%s\nwhat is done is kept: continue with --resume\n", outcome.error.c_str());
+    return 1;
+  }
+  if (!outcome.complete) {
+    std::fprintf(stderr, "interrupted; continue with --resume\n");
+    return kInterrupted;
+  }
+  if (!options.quiet && outcome.frames_done > 0) {
+    const std::vector<std::string> paths = frames.output_paths(numbers.front());
+    for (const std::string& path : paths) {
+      std::fprintf(stderr, "wrote %s%s\n", path.c_str(),
+                   numbers.size() > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done).c_str() : "");
+    }
+    const auto samples = static_cast<double>(totals.counters.samples);
+    std::fprintf(stderr, "%s, %.2f Msamples/s, %.2f Mrays/s, %.1f rays per sample\n",
+                 core::format_duration(progress.elapsed).c_str(), samples / progress.elapsed * 1e-6,
+                 static_cast<double>(totals.counters.rays) / progress.elapsed * 1e-6,
+                 samples > 0 ? static_cast<double>(totals.counters.rays) / samples : 0.0);
+  }
+  return outcome.failures.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+/// `hyades render job.yaml`.
+int render_command(int argc, char** argv) {
+  RenderOptions options;
+  if (const auto status = parse_arguments(argc, argv, options)) return *status;
+  auto loaded = load(options);
+  if (!loaded) return kBadInput;
+  const core::Job& job = loaded->job;
+  const auto numbers = select_frames(job, options.frames);
+  if (!numbers) return kBadInput;
+
+  std::error_code failed;
+  std::filesystem::create_directories(options.folder, failed);
+  if (failed) {
+    std::fprintf(stderr, "%s: the folder could not be made: %s\n", options.folder.c_str(), failed.message().c_str());
+    return 1;
+  }
+  JobFrames frames(*loaded, {options.folder, options.film, core::render_window(job.film)});
+  coordinator::LocalPlan plan;
+  plan.frames = *numbers;
+  plan.region = core::render_window(job.film);
+  plan.samples = job.sampling.samples;
+  plan.threads = options.threads;
+  coordinator::LocalLog log;
+  log.folder = options.folder + "/.hyades/" + job.name;
+  log.key = frames.log_key();
+  log.resume = options.resume;
+
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+
+  coordinator::LocalRun run(plan, log, frames, frames);
+  if (auto started = run.start(); !started) {
+    std::fprintf(stderr, "%s\n", started.error().message.c_str());
+    return 1;
+  }
+  for (const std::string& problem : run.log_problems()) std::fprintf(stderr, "%s\n", problem.c_str());
+  ProgressDisplay display(job.name, options.quiet);
+  bool stopping = false;
+  while (!run.wait_for(std::chrono::milliseconds(50))) {
+    if (g_signals > 0 && !stopping) {
+      stopping = true;
+      run.stop();
+    }
+    display.update(run.progress());
+  }
+  display.clear();
+  const coordinator::LocalOutcome outcome = run.outcome();
+  const int status = report(options, frames, *numbers, outcome, run.progress());
+  // Everything is written: the films of this run are of no more use.
+  if (outcome.complete && outcome.failures.empty()) {
+    std::filesystem::remove_all(log.folder, failed);
+    std::filesystem::remove(options.folder + "/.hyades", failed);  // only where no other job is in it
+  }
+  std::fflush(nullptr);
+  // An orderly end waits for frames that are loading or finishing; after Ctrl-C nobody wants to.
+  if (stopping) _exit(status);
+  return status;
 }
 
 }  // namespace hyades::cli

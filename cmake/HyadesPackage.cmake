@@ -1,6 +1,6 @@
 # Installation (cmake --install) and the Debian package (cpack, in the build folder). The programs lie together in
 # libexec, where `hyades` finds its fellows; bin/ holds a link to it.
-install(TARGETS hyades hyades-render RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
+install(TARGETS hyades hyades-render hyades-film RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
 install(CODE "
   set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
   file(MAKE_DIRECTORY \"\${bin}\")

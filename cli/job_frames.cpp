@@ -1,0 +1,132 @@
+#include "cli/job_frames.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "core/base/hash.h"
+#include "core/base/version.h"
+#include "core/film/film_exr.h"
+#include "core/finish/picture.h"
+#include "core/geometry/isa.h"
+#include "core/job/layers.h"
+#include "core/job/render_key.h"
+#include "core/scene/build_scene.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr size_t kBadExamples = 5;
+
+}  // namespace
+
+/// A loaded frame.
+class JobFrames::Work : public coordinator::FrameWork {
+ public:
+  Work(JobFrames& owner, int32_t frame, std::shared_ptr<const core::Scene> scene)
+      : owner_(owner), frame_(frame), renderer_(std::move(scene), owner.loaded_.job, frame, owner.layers_) {}
+
+  core::Result<core::Film> render(const core::Unit& unit, int /*thread*/,
+                                  const std::atomic<bool>& stop) const override {
+    core::RenderedUnit done = renderer_.render(unit, &stop);
+    owner_.note(frame_, done.counters);
+    return std::move(done.film);
+  }
+
+ private:
+  JobFrames& owner_;
+  int32_t frame_;
+  core::FrameRenderer renderer_;
+};
+
+JobFrames::JobFrames(LoadedJob& loaded, Options options)
+    : loaded_(loaded),
+      options_(std::move(options)),
+      layers_(core::needed_layers(loaded.job)),
+      cache_(*loaded.assets) {}
+
+core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(
+    int32_t frame, const std::atomic<bool>& /*stop*/) {
+  auto scene = core::build_scene(loaded_.job, frame, cache_);
+  if (!scene) return scene.error().in(fmt::format("frame {}", frame));
+  return std::shared_ptr<const coordinator::FrameWork>(std::make_shared<Work>(*this, frame, *scene));
+}
+
+core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
+  const core::FilmInfo info = film_info(frame);
+  const core::ImageMetadata metadata = {
+      {"hyades.job", info.job_name},       {"hyades.frame", std::to_string(frame)},
+      {"hyades.samples", std::to_string(info.samples)}, {"hyades.renderKey", info.render_key},
+      {"hyades.build", info.build},
+  };
+  const core::Image picture = film.normalised();
+  for (const core::OutputDesc& output : loaded_.job.outputs) {
+    const std::string path = core::output_path(output, options_.folder, frame);
+    if (auto written = core::write_output(output, picture, path, metadata); !written) return written;
+  }
+  if (!options_.write_films) return {};
+  return core::write_film_exr(film_path(frame), {info, film}, metadata);
+}
+
+bool JobFrames::outputs_exist(int32_t frame) {
+  const std::vector<std::string> paths = output_paths(frame);
+  return std::all_of(paths.begin(), paths.end(), [](const std::string& p) { return std::filesystem::exists(p); });
+}
+
+std::vector<std::string> JobFrames::output_paths(int32_t frame) const {
+  std::vector<std::string> paths;
+  for (const core::OutputDesc& output : loaded_.job.outputs) {
+    paths.push_back(core::output_path(output, options_.folder, frame));
+  }
+  if (options_.write_films) paths.push_back(film_path(frame));
+  return paths;
+}
+
+std::string JobFrames::film_path(int32_t frame) const {
+  core::OutputDesc film;
+  const bool several = loaded_.job.frames.last > loaded_.job.frames.first;
+  film.file = loaded_.job.name + (several ? ".####.film.exr" : ".film.exr");
+  return core::output_path(film, options_.folder, frame);
+}
+
+core::FilmInfo JobFrames::film_info(int32_t frame) const {
+  const core::Job& job = loaded_.job;
+  core::FilmInfo info;
+  info.job_name = job.name;
+  info.render_key = core::render_key(job, frame, loaded_.assets->records());
+  info.frame = frame;
+  info.width = job.film.width;
+  info.height = job.film.height;
+  info.crop = options_.window;
+  info.samples = job.sampling.samples;
+  info.worker_class = core::embree_isa().ok() ? *core::embree_isa() : "";
+  info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
+  return info;
+}
+
+std::string JobFrames::log_key() const {
+  const core::Job& job = loaded_.job;
+  const std::vector<core::AssetRecord> assets = loaded_.assets->records();
+  std::string keys = fmt::format("{} {} {} {} {}{}{}", options_.window.x0, options_.window.y0, options_.window.x1,
+                                 options_.window.y1, layers_.depth, layers_.albedo, layers_.normal);
+  for (int64_t f = job.frames.first; f <= job.frames.last; f += job.frames.step) {
+    keys += core::render_key(job, static_cast<int32_t>(f), assets);
+  }
+  return core::to_hex(core::sha256(keys));
+}
+
+void JobFrames::note(int32_t frame, const core::RenderCounters& counters) {
+  const std::lock_guard lock(mutex_);
+  totals_.counters.add(counters);
+  for (const core::BadSample& bad : counters.examples) {
+    if (totals_.bad.size() < kBadExamples) totals_.bad.push_back({frame, bad});
+  }
+}
+
+RunTotals JobFrames::totals() const {
+  const std::lock_guard lock(mutex_);
+  return totals_;
+}
+
+}  // namespace hyades::cli

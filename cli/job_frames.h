@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "coordinator/local/frame_work.h"
+#include "cli/load_job.h"
+#include "core/film/film_info.h"
+#include "core/render/frame_renderer.h"
+#include "core/scene/scene_cache.h"
+
+namespace hyades::cli {
+
+/// What rendering a run of frames has taken so far, and which samples went wrong.
+struct RunTotals {
+  core::RenderCounters counters;
+  struct Bad {
+    int32_t frame = 0;
+    core::BadSample sample;
+  };
+  std::vector<Bad> bad;  ///< the first few
+};
+
+/// The frames of a job for LocalRun: builds scenes, renders units, writes outputs.
+class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink {
+ public:
+  struct Options {
+    std::string folder;       ///< where outputs go
+    bool write_films = false; ///< also NAME.####.film.exr
+    core::PixelRect window;   ///< what is rendered of each frame
+  };
+
+  JobFrames(LoadedJob& loaded, Options options);
+
+  core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(
+      int32_t frame, const std::atomic<bool>& stop) override;
+  core::Status finish(int32_t frame, const core::Film& film) override;
+  bool outputs_exist(int32_t frame) override;
+
+  /// Everything that `frame` writes, in the job's order.
+  std::vector<std::string> output_paths(int32_t frame) const;
+
+  /// One line that names the pixels of all the job's frames: films of another key are never mixed in.
+  std::string log_key() const;
+
+  RunTotals totals() const;
+
+ private:
+  class Work;
+  core::FilmInfo film_info(int32_t frame) const;
+  std::string film_path(int32_t frame) const;
+  void note(int32_t frame, const core::RenderCounters& counters);
+
+  LoadedJob& loaded_;
+  Options options_;
+  core::LayerSet layers_;
+  core::SceneCache cache_;
+  mutable std::mutex mutex_;
+  RunTotals totals_;  ///< guarded by mutex_
+};
+
+}  // namespace hyades::cli

@@ -1,0 +1,93 @@
+#include "cli/progress_display.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "core/base/text.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr auto kRedraw = std::chrono::milliseconds(150);
+constexpr auto kPlainEvery = std::chrono::seconds(10);
+constexpr int kBarWidth = 24;
+
+bool is_terminal() {
+  const char* term = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && term != nullptr && std::string(term) != "dumb";
+}
+
+int terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+double fraction(const coordinator::Progress& p) {
+  return p.samples > 0 ? static_cast<double>(p.samples_done) / static_cast<double>(p.samples) : 0.0;
+}
+
+std::string rate(double samples_per_second) {
+  if (samples_per_second >= 1e6) return fmt::format("{:.2f} Msamples/s", samples_per_second * 1e-6);
+  return fmt::format("{:.0f} ksamples/s", samples_per_second * 1e-3);
+}
+
+}  // namespace
+
+ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
+    : name_(std::move(name)), quiet_(quiet), terminal_(is_terminal()), last_(std::chrono::steady_clock::now()) {}
+
+std::string ProgressDisplay::line(const coordinator::Progress& p) const {
+  const double done = fraction(p);
+  std::string text = name_ + "  ";
+  if (terminal_) {
+    const int filled = static_cast<int>(done * kBarWidth);
+    for (int i = 0; i < kBarWidth; ++i) text += i < filled ? "█" : "░";
+    text += "  ";
+  }
+  text += fmt::format("{:3.0f} %", 100.0 * done);
+  if (p.frames > 1) text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);
+  if (p.samples_per_second > 0.0) text += "  " + rate(p.samples_per_second);
+  if (p.noise >= 0.0) text += fmt::format("  noise {:.2g} %", 100.0 * p.noise);
+  if (p.seconds_left >= 0.0) text += "  " + core::format_duration(p.seconds_left) + " left";
+  if (!p.trouble.empty()) text += "  (" + p.trouble + ")";
+  return text;
+}
+
+void ProgressDisplay::update(const coordinator::Progress& progress) {
+  if (quiet_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (terminal_) {
+    if (drawn_ && now - last_ < kRedraw) return;
+    last_ = now;
+    drawn_ = true;
+    std::string text = line(progress);
+    // Cut by characters, not bytes: the bar's blocks take three bytes each.
+    int columns = terminal_width() - 1;
+    size_t end = 0;
+    for (; end < text.size() && columns > 0; ++end) {
+      if ((static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U && columns-- == 0) break;
+    }
+    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) ++end;
+    std::fprintf(stderr, "\r\033[K%s", text.substr(0, end).c_str());
+    std::fflush(stderr);
+    return;
+  }
+  const int percent = static_cast<int>(100.0 * fraction(progress));
+  if (now - last_ < kPlainEvery || percent == last_percent_) return;
+  last_ = now;
+  last_percent_ = percent;
+  std::fprintf(stderr, "%s\n", line(progress).c_str());
+}
+
+void ProgressDisplay::clear() {
+  if (drawn_) std::fprintf(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "coordinator/local/progress.h"
+
+namespace hyades::cli {
+
+/// Shows how far a run is: one line that is redrawn on a terminal, plain lines now and then elsewhere, nothing
+/// where `quiet`. Writes to standard error.
+class ProgressDisplay {
+ public:
+  ProgressDisplay(std::string name, bool quiet);
+
+  /// Shows `progress` if it is time to.
+  void update(const coordinator::Progress& progress);
+
+  /// Removes the redrawn line, so that other text can be written.
+  void clear();
+
+ private:
+  std::string line(const coordinator::Progress& progress) const;
+
+  std::string name_;
+  bool quiet_;
+  bool terminal_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point last_;
+  int last_percent_ = -1;
+};
+
+}  // namespace hyades::cli
