@@ -138,7 +138,7 @@ class Path {
 
     Ray shadow = sample->distance == kInfinity
                      ? spawn_ray(point, sample->direction)
-                     : spawn_ray_to(point, sample->position, sample->clearance);
+                     : spawn_ray_to(point, sample->position, 0.0F);
     shadow.time = point.time;
     ++work_.rays;
     if (scene_.world->occluded(shadow)) return;

@@ -31,8 +31,7 @@ std::optional<LightSample> AreaLight::seen_from(const Vec3& from, const Vec3& po
   sample.radiance = emitted(ng, -sample.direction);
   sample.pdf = area_to_solid_angle(pdf_area, from, position, ng);
   if (is_black(sample.radiance) || !(sample.pdf > 0.0F)) return std::nullopt;
-  sample.position = position;
-  sample.clearance = clearance;
+  sample.position = position + ng * std::copysign(clearance, -glm::dot(ng, to_light));
   return sample;
 }
 

@@ -20,8 +20,8 @@ class AreaLight : public Light {
   /// The radiance that leaves a place with unit outer normal `ng` towards `outward`.
   Rgb emitted(const Vec3& ng, const Vec3& outward) const;
 
-  /// What `from` gets from the place `position`, chosen with `pdf_area` per area. Nothing where
-  /// that place sends no light to `from`.
+  /// What `from` gets from the place `position`, chosen with `pdf_area` per area, that rays leave
+  /// freely at distance `clearance` from the surface. Nothing where it sends no light to `from`.
   std::optional<LightSample> seen_from(const Vec3& from, const Vec3& position, const Vec3& ng,
                                        float clearance, float pdf_area) const;
 

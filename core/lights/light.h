@@ -10,14 +10,14 @@ namespace hyades::core {
 
 /// Light arriving at a reference point from a chosen place of a light.
 struct LightSample {
-  Rgb radiance{0.0F};      ///< arriving, if nothing is in between; of delta lights: irradiance on a
-                           ///< facing surface
-  float pdf = 0.0F;        ///< per solid angle at the reference point; delta lights: 1
-  Vec3 direction{0.0F};    ///< unit, from the reference point towards the light
-  float distance = 0.0F;   ///< to the light; kInfinity for sun and environment
-  Vec3 position{0.0F};     ///< on the light (finite lights)
-  float clearance = 0.0F;  ///< SurfacePoint::clearance of that place; 0 for delta lights
-  bool delta = false;      ///< no BSDF sample can find it: no MIS
+  Rgb radiance{0.0F};     ///< arriving, if nothing is in between; of delta lights: irradiance on a
+                          ///< facing surface
+  float pdf = 0.0F;       ///< per solid angle at the reference point; delta lights: 1
+  Vec3 direction{0.0F};   ///< unit, from the reference point towards the light
+  float distance = 0.0F;  ///< to the light; kInfinity for sun and environment
+  Vec3 position{0.0F};    ///< finite lights: of the place, moved off its surface as by
+                          ///< offset_position, so that a shadow ray may go all the way
+  bool delta = false;     ///< no BSDF sample can find it: no MIS
 };
 
 /// Something that gives off light. Immutable and thread-safe; belongs to one frame.

@@ -90,8 +90,9 @@ std::optional<LightSample> SphereLight::sample_direct(const Vec3& from, float ti
   sample.radiance = outer_radiance();
   sample.pdf = cap->pdf();
   sample.distance = static_cast<float>(distance);
+  const Vec3 ng(normal);
   sample.position = Vec3(position);
-  sample.clearance = quadric_clearance(sample.position, Vec3(normal));
+  sample.position += ng * quadric_clearance(sample.position, ng);
   return sample;
 }
 
@@ -99,7 +100,8 @@ float SphereLight::pdf_direct(const Vec3& from, const Vec3& direction,
                               const SurfacePoint& on) const {
   const std::optional<Cap> cap = cap_from(to_world(on.time), shape().radius, from);
   if (!cap) return QuadricLight::pdf_direct(from, direction, on);
-  return is_dark() ? 0.0F : cap->pdf();
+  // From outside only the near side is chosen.
+  return is_dark() || glm::dot(direction, on.ng) > 0.0F ? 0.0F : cap->pdf();
 }
 
 }  // namespace hyades::core

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/cameras/camera.h"
+#include "tests/support/chi_squared.h"
 
 namespace hyades::core {
 namespace {
@@ -92,6 +95,51 @@ TEST(PerspectiveCamera, LensRaysMeetInThePlaneOfFocus) {
       expect_near(glm::normalize(to_focus), ray.direction, 2e-6F);
     }
     EXPECT_GT(widest, 0.2F);
+  }
+}
+
+TEST(PerspectiveCamera, LensIsUsedUniformly) {
+  constexpr int kGrid = 8;
+  for (const int blades : {0, 3, 6}) {
+    CameraPose pose = pose_at({0, 0, 0}, {0, 0, -1});
+    pose.lens_radius = 1.0F;
+    const auto camera = make_perspective_camera({pose}, {100, 100}, blades, 0.3F);
+    const auto inside = [&](double x, double y) {
+      if (blades < 3) return x * x + y * y < 1.0;
+      // Within cos(pi / n) of the centre along the normal of every side.
+      for (int side = 0; side < blades; ++side) {
+        const double angle = 0.3 + (2.0 * side + 1.0) * M_PI / blades;
+        if (x * std::cos(angle) + y * std::sin(angle) > std::cos(M_PI / blades)) return false;
+      }
+      return true;
+    };
+    const auto cell = [](double x, double y) {
+      const auto index = [](double t) {
+        return std::clamp(static_cast<int>((t + 1.0) * 0.5 * kGrid), 0, kGrid - 1);
+      };
+      return static_cast<size_t>(index(y) * kGrid + index(x));
+    };
+    std::vector<double> expected(kGrid * kGrid, 0.0);
+    constexpr int kFine = 2000;
+    double total = 0.0;
+    for (int i = 0; i < kFine * kFine; ++i) {
+      const double x = 2.0 * (i % kFine + 0.5) / kFine - 1.0;
+      const double y = 2.0 * (i / kFine + 0.5) / kFine - 1.0;
+      if (!inside(x, y)) continue;
+      expected[cell(x, y)] += 1.0;
+      total += 1.0;
+    }
+    const double alpha = test::sidak(0.01, 3);
+    const int64_t count = test::required_chi_squared_samples(kGrid * kGrid - 1, 0.01, alpha, 0.99);
+    for (double& e : expected) e *= static_cast<double>(count) / total;
+    std::vector<double> observed(expected.size(), 0.0);
+    test::Random random(3);
+    for (int64_t i = 0; i < count; ++i) {
+      const Vec3 at = camera->generate({50, 50}, random.uniform2(), 0.0F).origin;
+      observed[cell(static_cast<double>(at.x), static_cast<double>(at.y))] += 1.0;
+    }
+    const auto result = test::chi_squared(observed, expected);
+    EXPECT_GT(result.p, alpha) << blades << " blades";
   }
 }
 
