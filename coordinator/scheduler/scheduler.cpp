@@ -169,6 +169,8 @@ void Scheduler::complete_if_so(JobState& job, FrameSlot& slot) {
 }
 
 void Scheduler::finish(JobState& job, FrameSlot& slot) {
+  // Late films may have overtaken units that are still out.
+  take_back_frame(job, slot);
   slot.phase = FramePhase::finishing;
   say(FinishFrame{job.id, slot.frame});
 }
@@ -183,6 +185,7 @@ void Scheduler::fail_frame(JobState& job, FrameSlot& slot, std::string reason) {
 }
 
 void Scheduler::take_back_frame(JobState& job, FrameSlot& slot) {
+  if (!slot.books || !slot.books->any_assigned()) return;
   const auto index = static_cast<uint32_t>(&slot - job.slots.data());
   std::vector<uint64_t> numbers;
   for (const auto& [number, lease] : leases_) {

@@ -1,0 +1,68 @@
+// Thousands of small farms in which everything goes wrong, each driven by one seed. A failure names
+// its seed; HYADES_SIM_SEED=seed lives that world alone, HYADES_SIM_WORLDS=n lives n of them.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/coordinator/scheduler/simulated_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+uint64_t number_from(const char* variable, uint64_t otherwise) {
+  const char* text = std::getenv(variable);
+  return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
+  const uint64_t only = number_from("HYADES_SIM_SEED", 0);
+  const uint64_t worlds = only != 0 ? 1 : number_from("HYADES_SIM_WORLDS", 3000);
+  uint64_t restarts = 0;
+  uint64_t kills = 0;
+  uint64_t done = 0;
+  uint64_t failed = 0;
+  uint64_t duplicates = 0;
+  uint64_t adopted = 0;
+  uint64_t revoked = 0;
+  uint64_t overlaps = 0;
+  for (uint64_t i = 0; i < worlds; ++i) {
+    const uint64_t seed = only != 0 ? only : i + 1;
+    SimulatedWorld world(seed);
+    try {
+      world.run();
+    } catch (const std::string& what) {
+      FAIL() << what << "\nlive it again with HYADES_SIM_SEED=" << seed;
+    }
+    restarts += world.restarts;
+    kills += world.kills;
+    done += world.frames_done;
+    failed += world.frames_failed;
+    duplicates += world.duplicates;
+    adopted += world.adopted;
+    revoked += world.copies_revoked;
+    overlaps += world.overlaps;
+  }
+  RecordProperty("restarts", std::to_string(restarts));
+  RecordProperty("kills", std::to_string(kills));
+  std::printf(
+      "%llu worlds: %llu frames done, %llu failed; %llu restarts, %llu kills, %llu doubled "
+      "messages, %llu adopted, %llu revoked, %llu overlaps\n",
+      static_cast<unsigned long long>(worlds), static_cast<unsigned long long>(done),
+      static_cast<unsigned long long>(failed), static_cast<unsigned long long>(restarts),
+      static_cast<unsigned long long>(kills), static_cast<unsigned long long>(duplicates),
+      static_cast<unsigned long long>(adopted), static_cast<unsigned long long>(revoked),
+      static_cast<unsigned long long>(overlaps));
+  if (only != 0) return;
+  // The worlds must have been bad enough to prove something.
+  EXPECT_GE(done, worlds);
+  EXPECT_GE(failed, worlds / 20);
+  EXPECT_GE(restarts, worlds / 10);
+  EXPECT_GE(kills, worlds / 2);
+  EXPECT_GE(duplicates, worlds);
+  EXPECT_GE(adopted, worlds / 2);
+  EXPECT_GE(revoked, worlds);
+  EXPECT_GE(overlaps, worlds / 100);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
