@@ -115,7 +115,7 @@ TEST_P(EqualBits, OtherSeedOtherBits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EqualBits, testing::ValuesIn(kScenes),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& scene) { return std::string(scene.param.name); });
 
 }  // namespace
 }  // namespace hyades::test
