@@ -142,7 +142,7 @@ void check_expressions(ReadContext& context) {
   for (const ExpressionUse& use : context.expressions) {
     for (size_t i = 0; i < frames.size(); i += stride) {
       const double value = use.expression->evaluate(context.job.time_of(frames[i]));
-      if (use.range.contains(static_cast<double>(static_cast<float>(value)))) continue;
+      if (use.range.contains(value)) continue;
       const std::string shown = std::isnan(value) ? "not a number" : fmt::format("{:.6g}", value);
       context.complain(use.where, fmt::format("{} is {} at frame {}, expected {}", use.label, shown,
                                               frames[i], use.range.describe()));

@@ -1,5 +1,7 @@
 #include "core/job/yaml_guard.h"
 
+#include <fmt/format.h>
+
 #include <cstdint>
 
 #include "core/job/yaml_tree.h"
@@ -84,20 +86,28 @@ bool check_yaml_text(std::string_view text, const std::string& file, Diagnostics
 
 std::string hint_for_syntax_error(std::string_view text) {
   int line = 1;
+  bool indenting = true;
   char previous = '\n';  // last character that is not a space
   for (size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (c == '\n') ++line;
+    if (c == '\t' && indenting) {
+      return fmt::format(" (line {} is indented with a tab; YAML wants spaces)", line);
+    }
     if (c == '#' && (previous == ':' || previous == ',' || previous == '[')) {
       size_t digits = 0;
       while (i + 1 + digits < text.size() && is_hex(text[i + 1 + digits])) ++digits;
       if (digits == 3 || digits == 6) {
-        return " (line " + std::to_string(line) + " has an unquoted " +
-               std::string(text.substr(i, digits + 1)) + ": # starts a comment there; write \"" +
-               std::string(text.substr(i, digits + 1)) + "\")";
+        return fmt::format(
+            " (line {0} has an unquoted {1}: # starts a comment there; write "
+            "\"{1}\")",
+            line, text.substr(i, digits + 1));
       }
     }
-    if (c != ' ' && c != '\t') previous = c;
+    if (c != ' ' && c != '\t') {
+      previous = c;
+      indenting = c == '\n';
+    }
+    if (c == '\n') ++line;
   }
   return "";
 }

@@ -12,8 +12,8 @@ namespace hyades::core {
 /// brackets left open. False (with a complaint) where the text is refused.
 bool check_yaml_text(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 
-/// A hint for a syntax error that an unquoted `#d8c8a8` may have caused (a YAML comment swallows
-/// the rest of its line, closing brackets included), else "".
+/// A hint for a syntax error that a tab or an unquoted `#d8c8a8` may have caused (a YAML comment
+/// swallows the rest of its line, closing brackets included), else "".
 std::string hint_for_syntax_error(std::string_view text);
 
 }  // namespace hyades::core

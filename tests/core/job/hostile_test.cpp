@@ -1,0 +1,343 @@
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <random>
+
+#include "core/job/parse.h"
+#include "core/job/render_key.h"
+#include "tests/core/job/test_assets.h"
+
+/// Texts that mean harm, and texts that are merely broken: refused with a complaint, in bounded
+/// time and memory.
+namespace hyades::core {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Reading {
+  Diagnostics diagnostics;
+  double seconds = 0.0;
+  std::string first() const {
+    return diagnostics.empty() ? "" : diagnostics.list().front().to_string();
+  }
+};
+
+Reading read(const std::string& text, MemoryAssets assets = {}) {
+  Reading reading;
+  const auto begin = Clock::now();
+  parse_job(text, "job.yaml", assets, reading.diagnostics);
+  reading.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  return reading;
+}
+
+/// Generous: the machine may be busy and sanitizers slow. What is guarded against takes hours.
+constexpr double kPatience = 20.0;
+
+void expect_refused(const std::string& text, const std::string& complaint) {
+  const Reading reading = read(text);
+  EXPECT_EQ(reading.first(), complaint);
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
+std::string repeated(const std::string& piece, size_t times) {
+  std::string all;
+  all.reserve(piece.size() * times);
+  for (size_t i = 0; i < times; ++i) all += piece;
+  return all;
+}
+
+TEST(HostileJob, AliasBomb) {
+  std::string text = "hyades: 1\ntextures:\n  a0: &a0 {type: checker}\n";
+  for (int i = 1; i < 60; ++i) {
+    const std::string below = "*a" + std::to_string(i - 1);
+    text += "  a" + std::to_string(i) + ": &a" + std::to_string(i) +
+            " {type: checker, a: " + below + ", b: " + below + "}\n";
+  }
+  const Reading reading = read(text);
+  EXPECT_NE(reading.first().find("more than 1048576 values (aliases counted in full)"),
+            std::string::npos)
+      << reading.first();
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
+TEST(HostileJob, LikeBomb) {
+  // Each entry copies the one before it and adds a key: quadratically many keys.
+  std::string text = "hyades: 1\nmaterials:\n  m0: {type: lambert}\n";
+  for (int i = 1; i < 20000; ++i) {
+    text += "  m" + std::to_string(i) + ": {like: m" + std::to_string(i - 1) + ", k" +
+            std::to_string(i) + ": 1}\n";
+  }
+  const Reading reading = read(text);
+  EXPECT_FALSE(reading.diagnostics.empty());
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
+TEST(HostileJob, InstanceBomb) {
+  std::string text = "hyades: 1\ngroups:\n  g0: {objects: {a: {shape: sphere}}}\n";
+  for (int i = 1; i < 40; ++i) {
+    const std::string below = "{instance: g" + std::to_string(i - 1) + "}";
+    text += "  g" + std::to_string(i) + ": {objects: {a: " + below + ", b: " + below + "}}\n";
+  }
+  expect_refused(text + "objects: {x: {instance: g39}}\n",
+                 "job.yaml: the groups unfold to more than 4194304 objects");
+}
+
+TEST(HostileJob, AliasInItsOwnAnchor) {
+  expect_refused("hyades: 1\ntextures: &t {a: {type: checker, a: *t}}\n",
+                 "job.yaml:2:37: this alias stands inside its own anchor");
+}
+
+TEST(HostileJob, DeepNesting) {
+  expect_refused("hyades: 1\nobjects: " + repeated("{a: ", 3000) + "1" + repeated("}", 3000),
+                 "job.yaml:2:262: nested deeper than 64 levels");
+  expect_refused("hyades: 1\nobjects: " + repeated("[", 3000) + repeated("]", 3000),
+                 "job.yaml:2:73: nested deeper than 64 levels");
+  EXPECT_FALSE(read("hyades: 1\nobjects: " + repeated("[", 3000)).diagnostics.empty());
+  expect_refused(repeated("- ", 100000), "job.yaml:1:129: nested deeper than 64 levels");
+  expect_refused(repeated("? ", 100000),
+                 "job.yaml:1:3: a list or map as a key; keys are plain text");
+}
+
+TEST(HostileJob, MillionsOfOpenBrackets) {
+  expect_refused(repeated("[", 5'000'000), "job.yaml:1:10001: more than 10000 brackets left open");
+  expect_refused(repeated("]", 5'000'000) + repeated("{", 5'000'000),
+                 "job.yaml:1:5010001: more than 10000 brackets left open");
+}
+
+TEST(HostileJob, HugeTexts) {
+  expect_refused("hyades: 1\nname: " + repeated("a", 1'000'000),
+                 "job.yaml:2:7: a text of 1000000 bytes; at most 65536 are allowed");
+  expect_refused(repeated("x", 100'000'000),
+                 "job.yaml: the file has 100000000 bytes; a job may have at most 33554432");
+  expect_refused("hyades: 1\nmaterials: {" + repeated("a", 70'000) + ": 1}\n",
+                 "job.yaml:2:13: an empty key or an alias as a key; keys are plain text");
+}
+
+TEST(HostileJob, MillionsOfSmallValues) {
+  expect_refused("hyades: 1\nobjects: [" + repeated("1,", 2'000'000) + "]\n",
+                 "job.yaml:2:2097153: more than 1048576 values");
+}
+
+TEST(HostileJob, ManyObjectsWithOneName) {
+  std::string text = "hyades: 1\nobjects:\n";
+  for (int i = 0; i < 50000; ++i) text += "  a: {shape: sphere}\n";
+  const Reading reading = read(text);
+  EXPECT_EQ(reading.first(), "job.yaml:4:3: duplicate key 'a' (first at line 3)");
+  EXPECT_EQ(reading.diagnostics.list().size(), 101U);
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
+TEST(HostileJob, ManyHonestObjectsAreFine) {
+  std::string text = "hyades: 1\nobjects:\n";
+  for (int i = 0; i < 20000; ++i) {
+    text +=
+        "  a" + std::to_string(i) + ": {shape: sphere, at: [" + std::to_string(i) + ", 0, 0]}\n";
+  }
+  const Reading reading = read(text);
+  EXPECT_EQ(reading.diagnostics.to_string(), "");
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
+TEST(HostileJob, TextThatIsNoText) {
+  expect_refused(std::string("hyades: 1\nname: a\0b\n", 20),
+                 "job.yaml:2:8: the control character 0; a job is a UTF-8 YAML file");
+  expect_refused(
+      "\x7F"
+      "ELF\x02\x01",
+      "job.yaml:1:1: the control character 127; a job is a UTF-8 YAML file");
+  expect_refused("hyades: 1\nname: caf\xE9\n",
+                 "job.yaml:2:10: not UTF-8 text; a job is a UTF-8 YAML file");
+  expect_refused("\xFF\xFEh\0y\0", "job.yaml:1:1: not UTF-8 text; a job is a UTF-8 YAML file");
+  expect_refused("name: \xC0\xAF\n", "job.yaml:1:7: not UTF-8 text; a job is a UTF-8 YAML file");
+  expect_refused("name: \xED\xA0\x80\n",
+                 "job.yaml:1:7: not UTF-8 text; a job is a UTF-8 YAML file");
+  expect_refused("hyades: 1\nname: \"a\\0b\"\n",
+                 "job.yaml:2:7: a text with a control character in it");
+}
+
+TEST(HostileJob, YamlThatIsNoJob) {
+  expect_refused("", "job.yaml:1:1: the job is nothing, expected a map of keys and values");
+  expect_refused("just text",
+                 "job.yaml:1:1: the job is 'just text', expected a map of keys and "
+                 "values");
+  expect_refused("- a\n- b\n",
+                 "job.yaml:1:1: the job is a list of 2, expected a map of keys and "
+                 "values");
+  expect_refused("hyades: 1\n---\nhyades: 1\n",
+                 "job.yaml:3:1: a second YAML document ('---'); a job is one document");
+  expect_refused("hyades: 1\nname: !!binary aGVsbG8=\n",
+                 "job.yaml:2:7: the tag 'tag:yaml.org,2002:binary'; jobs use no YAML tags");
+  expect_refused("hyades: 1\nfilm:\n\tsize: [1, 1]\n",
+                 "job.yaml:3:6: not valid YAML: illegal map value (line 3 is indented with a tab; "
+                 "YAML wants spaces)");
+  expect_refused("hyades: 1\ncamera: {<<: {fov: 3}}\n",
+                 "job.yaml:2:10: '<<' is not supported; use `like: name` to copy another entry's "
+                 "keys");
+  expect_refused("hyades: 1\n[a, b]: c\n",
+                 "job.yaml:2:1: a list or map as a key; keys are plain text");
+  expect_refused("hyades: 1\nname: *nobody\n",
+                 "job.yaml:2:7: not valid YAML: the referenced anchor "
+                 "is not defined");
+}
+
+TEST(HostileJob, ExpressionsThatAskTooMuch) {
+  expect_refused(
+      "hyades: 1\ncamera: {fov: \"= " + repeated("(", 600) + "1" + repeated(")", 600) + "\"}\n",
+      "job.yaml:2:15: fov: an expression of 1202 characters; at most 1000 are allowed");
+  expect_refused("hyades: 1\ncamera: {fov: \"= system('reboot')\"}\n",
+                 "job.yaml:2:15: fov: the expression holds ''', which means nothing there "
+                 "(arithmetic of t and frame is expected)");
+  for (const char* bad : {"=",          "= ",         "= ()",          "= ,",    "= 1,2",
+                          "= t=3",      "= ?:",       "= 1?2",         "= 1 2",  "= sin",
+                          "= sin()",    "= sin(1,2)", "= clamp(1,2)",  "= t(1)", "= 2pi",
+                          "= 1..2",     "= .",        "= ^",           "= --",   "= e e",
+                          "= )(",       "= (((",      "= frame frame", "= 1?2:", "= t?(1:2)",
+                          "= noise(,)", "= +",        "= * 3"}) {
+    const Reading reading = read("hyades: 1\ncamera: {fov: \"" + std::string(bad) + "\"}\n");
+    EXPECT_FALSE(reading.diagnostics.empty()) << bad;
+  }
+}
+
+TEST(HostileJob, ManyExpressionsOverManyFrames) {
+  std::string text = "hyades: 1\nframes: 0-9999999\nobjects:\n";
+  for (int i = 0; i < 3000; ++i) {
+    text += "  a" + std::to_string(i) + ": {shape: sphere, at: [\"= sin(t) + " + std::to_string(i) +
+            "\", 0, 0]}\n";
+  }
+  const Reading reading = read(text);
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
+TEST(HostileJob, PathsThatAreNoFiles) {
+  auto files = make_file_resolver(".");
+  Diagnostics diagnostics;
+  parse_job(
+      "hyades: 1\n"
+      "environment: {image: /dev/zero}\n"
+      "objects: {a: {mesh: .}, b: {mesh: /proc/self/mem/../../../nothing}}\n",
+      "job.yaml", *files, diagnostics);
+  ASSERT_EQ(diagnostics.list().size(), 3U) << diagnostics.to_string();
+}
+
+constexpr const char* kSeed = R"yaml(hyades: 1
+name: fuzz
+include: more.yaml
+frames: {range: 1-120x2, fps: 24, shutter: 0.5}
+film: {size: [960, 540], crop: [1, 2, 30, 40], filter: {type: mitchell, radius: 1.5}}
+sampling: {samples: 256, seed: 7, sampler: sobol}
+camera:
+  look_from: [0, 1.6, "= 6 + t"]
+  look_at: {keys: {1: [0, 1, 0], 120: [0.5, 1, 0]}, ease: smooth}
+  aperture: {f_stop: 2.8, blades: 7}
+  focus: ball
+textures:
+  swell: &s {type: perlin4d, scale: 3, time: "= 0.5 * t ^ 2 + clamp(t, 0, 1)"}
+  tiles: {type: checker, scale: [8, 8], a: 0.05, b: "#d8c8a8"}
+  more: *s
+materials:
+  chrome: {type: conductor, metal: silver, roughness: tiles, bump: {texture: swell, height: 1}}
+  floor: {like: chrome, metal: gold}
+  both: {type: mix, first: floor, second: chrome, amount: {type: fbm3d}}
+groups:
+  pair: {objects: {a: {shape: disk}, b: {shape: box, size: [1, 2, 3], at: [1, 0, 0]}}}
+objects:
+  ball: {shape: sphere, radius: 1, at: [0, 1, 0], material: both}
+  two: {instance: pair, transform: [{rotate: {axis: [1, 1, 0], angle: "= 30 * t"}}, {scale: 2}]}
+  in: {group: {objects: {x: {shape: cylinder, caps: false}}}}
+  lamp: {like: ball, emit: {color: 3200K, power: 60}}
+lights: {sun: {type: sun, direction: [0, -1, 0.5]}}
+outputs:
+  - {file: a.####.exr, layers: [beauty, albedo]}
+  - {file: a.####.png, tone_map: filmic}
+)yaml";
+
+/// One random edit: a byte, a cut, a doubled piece, a swapped line, or a word with a meaning.
+std::string mutated(std::string text, std::mt19937& random) {
+  static const std::vector<std::string> words = {"&s",
+                                                 "*s",
+                                                 "{",
+                                                 "}",
+                                                 "[",
+                                                 "]",
+                                                 ": ",
+                                                 ", ",
+                                                 "\n",
+                                                 "- ",
+                                                 "? ",
+                                                 "#",
+                                                 "\"",
+                                                 "'",
+                                                 "| ",
+                                                 "> ",
+                                                 "!x ",
+                                                 "%",
+                                                 "@",
+                                                 "---\n",
+                                                 "~",
+                                                 ".nan",
+                                                 ".inf",
+                                                 "1e999",
+                                                 "-1",
+                                                 "0",
+                                                 "99999999999",
+                                                 "\"= t\"",
+                                                 "like: ball, ",
+                                                 "= sin(",
+                                                 "keys: {",
+                                                 "type: mix",
+                                                 "include: more.yaml\n",
+                                                 "\t",
+                                                 "\xC3\xA9",
+                                                 "\xFF",
+                                                 "group"};
+  const auto below = [&](size_t n) { return n == 0 ? 0 : random() % n; };
+  const size_t at = below(text.size());
+  switch (below(5)) {
+    case 0:
+      text[at] = static_cast<char>(random() & 0xFFU);
+      break;
+    case 1:
+      text.erase(at, below(20));
+      break;
+    case 2:
+      text.insert(at, text.substr(below(text.size()), below(60)));
+      break;
+    case 3:
+      text.insert(at, words[below(words.size())]);
+      break;
+    default: {
+      const std::string& word = words[below(words.size())];
+      text.replace(at, std::min(word.size(), text.size() - at), word);
+    }
+  }
+  return text;
+}
+
+TEST(HostileJob, RandomEditsNeverDoMoreThanComplain) {
+  MemoryAssets assets;
+  assets.add("more.yaml", "lights: {bulb: {type: point, color: [1, \"= t\", 1]}}\n");
+  std::mt19937 random(20240607);
+  int good = 0;
+  const auto begin = Clock::now();
+  double slowest = 0.0;
+  for (int i = 0; i < 6000; ++i) {
+    std::string text = kSeed;
+    for (size_t edits = 1 + random() % 4; edits > 0; --edits) text = mutated(text, random);
+    Diagnostics diagnostics;
+    const auto start = Clock::now();
+    const Job job = parse_job(text, "job.yaml", assets, diagnostics);
+    if (diagnostics.empty()) {
+      ++good;
+      EXPECT_EQ(render_key(job, job.frames.first, {}).size(), 64U);
+    }
+    slowest = std::max(slowest, std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  // The seed itself is good, so some edits (in comments, names, numbers) must leave it good.
+  EXPECT_GT(good, 20);
+  EXPECT_LT(good, 5000);
+  EXPECT_LT(slowest, kPatience);
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 10.0 * kPatience);
+}
+
+}  // namespace
+}  // namespace hyades::core
