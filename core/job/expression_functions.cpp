@@ -14,8 +14,13 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586476925;
 
-/// Radians brought to one turn before they become a float, so that long animations do not jitter.
-float one_turn(double radians) { return static_cast<float>(std::fmod(radians, kTwoPi)); }
+/// Radians brought to -pi..pi before they become a float, so that long animations do not jitter.
+float one_turn(double radians) {
+  double rest = std::fmod(radians, kTwoPi);
+  if (rest > 0.5 * kTwoPi) rest -= kTwoPi;
+  if (rest < -0.5 * kTwoPi) rest += kTwoPi;
+  return static_cast<float>(rest);
+}
 
 /// Slope of the noise at lattice point `i`, in [-2, 2]: then |noise| <= 1, reached half-way between
 /// opposite extreme slopes.

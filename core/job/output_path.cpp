@@ -8,18 +8,15 @@
 namespace hyades::core {
 
 std::string output_path(const std::string& file, int32_t frame) {
-  const size_t begin = file.find('#');
-  if (begin == std::string::npos) return file;
-  const size_t end = std::min(file.find_first_not_of('#', begin), file.size());
-  return file.substr(0, begin) + fmt::format("{:0{}}", frame, end - begin) + file.substr(end);
-}
-
-int count_frame_marks(const std::string& file) {
-  int runs = 0;
-  for (size_t i = 0; i < file.size(); ++i) {
-    if (file[i] == '#' && (i == 0 || file[i - 1] != '#')) ++runs;
+  std::string path;
+  for (size_t i = 0; i < file.size();) {
+    const size_t end = std::min(file.find_first_not_of('#', i), file.size());
+    if (end > i) path += fmt::format("{:0{}}", frame, end - i);
+    const size_t next = std::min(file.find('#', end), file.size());
+    path += file.substr(end, next - end);
+    i = next;
   }
-  return runs;
+  return path;
 }
 
 std::string file_extension(const std::string& file) {

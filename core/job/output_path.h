@@ -5,12 +5,9 @@
 
 namespace hyades::core {
 
-/// `file` with its run of # replaced by the frame number, padded with zeros to the run's length
+/// `file` with each run of # replaced by the frame number, padded with zeros to the run's length
 /// ("a.####.exr", 7 -> "a.0007.exr"). Unchanged where there is no #.
 std::string output_path(const std::string& file, int32_t frame);
-
-/// How many runs of # a file name has.
-int count_frame_marks(const std::string& file);
 
 /// ".exr" of "a/b.EXR"; "" where there is none.
 std::string file_extension(const std::string& file);
