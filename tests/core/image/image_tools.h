@@ -30,6 +30,16 @@ inline std::string file_contents(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+/// The checksum of a chunk's type and data (PNG specification, annex D).
+inline uint32_t png_crc(std::string_view bytes) {
+  uint32_t crc = 0xFFFFFFFFU;
+  for (const char byte : bytes) {
+    crc ^= static_cast<uint8_t>(byte);
+    for (int i = 0; i < 8; ++i) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  return ~crc;
+}
+
 /// A picture of hashed values in [0, 1).
 inline core::Image hashed_image(int width, int height, std::vector<std::string> channels) {
   core::Image image = core::make_image(width, height, std::move(channels));

@@ -59,16 +59,6 @@ std::string make_png(const PngSpec& spec, png_uint_32 width, const std::vector<s
   return file;
 }
 
-/// The checksum of a chunk's type and data (PNG specification, annex D).
-uint32_t png_crc(std::string_view bytes) {
-  uint32_t crc = 0xFFFFFFFFU;
-  for (const char byte : bytes) {
-    crc ^= static_cast<uint8_t>(byte);
-    for (int i = 0; i < 8; ++i) crc = (crc >> 1) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
-  }
-  return ~crc;
-}
-
 Image must_read(const std::string& file, ColorSpace space = ColorSpace::automatic) {
   Result<Image> image = read_image(exact_bytes(file), "test.png", space);
   EXPECT_TRUE(image) << image.error().message;
@@ -206,7 +196,7 @@ TEST(Png, ABombIsRefusedBeforeMemoryIsTaken) {
   std::string file = make_png({}, 1, {std::string("\1\2\3", 3)});
   const std::string size("\x00\x00\xEA\x60\x00\x00\x17\x70", 8);
   file.replace(16, 8, size);
-  const uint32_t crc = png_crc(std::string_view(file).substr(12, 17));
+  const uint32_t crc = test::png_crc(std::string_view(file).substr(12, 17));
   for (size_t i = 0; i < 4; ++i) file[29 + i] = static_cast<char>(crc >> (24 - 8 * i));
   const Result<Image> image = read_image(exact_bytes(file), "bomb.png");
   ASSERT_FALSE(image);
