@@ -1,6 +1,8 @@
 #include "core/base/atomic_file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -10,6 +12,8 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+
+#include "core/base/hash.h"
 
 namespace hyades::core {
 namespace {
@@ -64,14 +68,20 @@ struct Temporary {
   }
 };
 
-/// A name beside `target` that no other thread or living process uses.
+/// A name beside `target` that nobody else uses: other machines may share the folder, and processes
+/// in containers share their numbers, so chance decides.
 std::string temporary_name(const std::filesystem::path& target) {
+  static const uint64_t process = [] {
+    uint64_t value = static_cast<uint64_t>(::getpid());
+    // Without the system's chance the process number has to do.
+    if (::getrandom(&value, sizeof(value), 0) < 0) errno = 0;
+    return value;
+  }();
   static std::atomic<uint64_t> counter{0};
+  const uint64_t unique = hash_combine(process, counter++);
   // Names may have 255 bytes; the part that makes this one unique needs some of them.
   const std::string base = target.filename().string().substr(0, 200);
-  const std::string name =
-      "." + base + "." + std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
-  return (target.parent_path() / name).string();
+  return (target.parent_path() / fmt::format(".{}.{:016x}.tmp", base, unique)).string();
 }
 
 Status sync_folder(const std::string& folder) {

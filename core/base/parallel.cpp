@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
+#include <cstdint>
 #include <exception>
+#include <fstream>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -69,8 +72,25 @@ class Loop {
 
 }  // namespace
 
+std::optional<int> parse_cpu_quota(std::string_view cpu_max) {
+  int64_t quota = 0;
+  int64_t period = 0;
+  const char* const end = cpu_max.data() + cpu_max.size();
+  const auto first = std::from_chars(cpu_max.data(), end, quota);
+  if (first.ec != std::errc() || first.ptr == end || *first.ptr != ' ') return std::nullopt;
+  const auto second = std::from_chars(first.ptr + 1, end, period);
+  if (second.ec != std::errc() || quota <= 0 || period <= 0) return std::nullopt;
+  const int64_t whole = quota / period + (quota % period != 0 ? 1 : 0);
+  return static_cast<int>(std::min<int64_t>(whole, 1 << 20));
+}
+
 int hardware_threads() {
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  // Inside a container this file is its own; outside it does not exist at the root.
+  std::ifstream file("/sys/fs/cgroup/cpu.max");
+  std::string line;
+  std::getline(file, line);
+  return std::max(1, std::min(processors, parse_cpu_quota(line).value_or(processors)));
 }
 
 Status parallel_for(size_t count, int threads, const std::function<void(size_t)>& body,

@@ -2,13 +2,20 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <string_view>
 
 #include "core/base/result.h"
 
 namespace hyades::core {
 
-/// How many threads this process may run at once (its CPU affinity), at least 1.
+/// How many threads this process may run at once: its processors (affinity), but no more than its
+/// container's quota (cgroup v2). At least 1.
 int hardware_threads();
+
+/// Whole processors that the text of a cgroup's cpu.max allows ("150000 100000" -> 2); nothing
+/// where it sets no limit ("max 100000") or is not understood.
+std::optional<int> parse_cpu_quota(std::string_view cpu_max);
 
 /// Calls body(i) once for each i in [0, count), on up to `threads` threads of which the caller is
 /// one (`threads` <= 0: hardware_threads()). Indices are handed out in increasing order, `grain` at

@@ -287,8 +287,9 @@ Result<std::vector<CommonChannel>> common_channels(const Image& a, const Image& 
     channels.push_back(channel);
   }
   if (channels.empty()) {
-    return Error{fmt::format("the pictures have no channel of {} in common",
-                             beauty ? "beauty (R, G, B or Y)" : "layer '" + options.layer + "'")};
+    return Error{fmt::format("no channel of {} is in both pictures; a has {}, b has {}",
+                             beauty ? "beauty (R, G, B or Y)" : "layer '" + options.layer + "'",
+                             fmt::join(a.channels, " "), fmt::join(b.channels, " "))};
   }
   return channels;
 }

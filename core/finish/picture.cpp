@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/job/output_path.h"
 
 namespace hyades::core {
 namespace {
@@ -25,11 +25,6 @@ std::vector<std::string> channels_of(std::string_view layer) {
   if (layer == "variance") return {"variance.R", "variance.G", "variance.B"};
   if (layer == "samples") return {"samples.N"};
   return {};
-}
-
-std::string frame_digits(int32_t frame, size_t length) {
-  // The sign counts as a digit, as in printf's %0*d.
-  return fmt::format("{:0{}d}", frame, length);
 }
 
 Status write_encoded(PictureFormat format, const OutputDesc& output, const Image& normalised,
@@ -55,10 +50,7 @@ Status write_encoded(PictureFormat format, const OutputDesc& output, const Image
 }  // namespace
 
 Result<PictureFormat> picture_format(std::string_view file) {
-  std::string ending = std::filesystem::path(file).extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = file_extension(std::string(file));
   if (ending == ".exr") return PictureFormat::exr;
   if (ending == ".png") return PictureFormat::png;
   if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::jpeg;
@@ -68,21 +60,8 @@ Result<PictureFormat> picture_format(std::string_view file) {
 std::span<const std::string> layer_names() { return kLayers; }
 
 std::string output_path(const OutputDesc& output, const std::string& folder, int32_t frame) {
-  std::string file;
-  for (size_t i = 0; i < output.file.size();) {
-    size_t run = 0;
-    while (i + run < output.file.size() && output.file[i + run] == '#') ++run;
-    if (run > 0) {
-      file += frame_digits(frame, run);
-      i += run;
-    } else {
-      file += output.file[i++];
-    }
-  }
-  return (std::filesystem::path(folder) / file).string();
+  return (std::filesystem::path(folder) / output_path(output.file, frame)).string();
 }
-
-bool has_frame_number(std::string_view file) { return file.find('#') != std::string_view::npos; }
 
 Result<Image> select_layers(const Image& normalised, std::span<const std::string> layers) {
   std::vector<std::string> names;

@@ -22,13 +22,9 @@ Result<PictureFormat> picture_format(std::string_view file);
 /// The names of all layers that an EXR output may list.
 std::span<const std::string> layer_names();
 
-/// Where `output` goes for `frame`: its file below `folder` (unless absolute), each run of '#'
-/// replaced by the frame number, filled with zeros to the run's length ("a.####.exr", 7 ->
-/// "a.0007.exr"; a longer number keeps its digits; "-007" for a negative one).
+/// Where `output` goes for `frame`: its file below `folder` (unless absolute), with the frame
+/// number in place of # (core/job/output_path.h).
 std::string output_path(const OutputDesc& output, const std::string& folder, int32_t frame);
-
-/// Whether `file` has a place for the frame number.
-bool has_frame_number(std::string_view file);
 
 /// The channels of `layers` (names of layer_names()) out of a normalised film, under standard
 /// names, in the order of the list: beauty R G B, alpha A, depth "depth.Z", albedo "albedo.R", ...,

@@ -35,6 +35,18 @@ TEST(Parallel, FlushesDenormalsInEveryThreadAndRestores) {
   EXPECT_EQ(_mm_getcsr(), before);
 }
 
+TEST(Parallel, ContainersLimitThreads) {
+  EXPECT_EQ(parse_cpu_quota("max 100000"), std::nullopt);
+  EXPECT_EQ(parse_cpu_quota("200000 100000"), 2);
+  EXPECT_EQ(parse_cpu_quota("150000 100000"), 2);
+  EXPECT_EQ(parse_cpu_quota("5000 100000"), 1);
+  for (const char* wrong :
+       {"", "7", "0 100000", "-5 100000", "100000 0", "99999999999999999999 1"}) {
+    EXPECT_EQ(parse_cpu_quota(wrong), std::nullopt) << wrong;
+  }
+  EXPECT_GE(hardware_threads(), 1);
+}
+
 TEST(Parallel, TheLowestExceptionBecomesTheError) {
   for (int repeat = 0; repeat < 50; ++repeat) {
     const Status status = parallel_for(200, 4, [](size_t i) {

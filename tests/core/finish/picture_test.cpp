@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "core/base/hash.h"
+#include "core/base/text.h"
 #include "core/image/read_image.h"
+#include "core/job/parse.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::core {
@@ -39,14 +41,34 @@ TEST(Picture, OutputPaths) {
   };
   EXPECT_EQ(path("a.####.exr", 7), "out/a.0007.exr");
   EXPECT_EQ(path("a.##.exr", 12345), "out/a.12345.exr");
-  EXPECT_EQ(path("##/a.###.png", 4), "out/04/a.004.png");
+  EXPECT_EQ(path("##/a.png", 4), "out/04/a.png");
   EXPECT_EQ(path("a.####.exr", -7), "out/a.-007.exr");
   EXPECT_EQ(path("a.exr", 3), "out/a.exr");
   EXPECT_EQ(path("/abs/a#.exr", 3), "/abs/a3.exr");
   EXPECT_EQ(output_path(output("a.#.exr"), "", 3), "a.3.exr");
   EXPECT_EQ(output_path(output("a.exr"), "shot#1", 3), "shot#1/a.exr");
-  EXPECT_TRUE(has_frame_number("a.#.exr"));
-  EXPECT_FALSE(has_frame_number("a.exr"));
+}
+
+/// What the job parser says about one output.
+std::string complaint(const std::string& output_yaml) {
+  const std::string text = "hyades: 1\noutputs:\n  - " + output_yaml + "\n";
+  Diagnostics diagnostics;
+  class NoFiles : public AssetResolver {
+    Result<Bytes> open(const std::string&, const std::string&) override { return Error{"none"}; }
+  } files;
+  (void)parse_job(text, "job.yaml", files, diagnostics);
+  return diagnostics.to_string();
+}
+
+TEST(Picture, JobsKnowTheSameNames) {
+  const std::string layer = complaint("{file: a.exr, layers: [zzzz]}");
+  EXPECT_NE(layer.find(join_names(layer_names())), std::string::npos) << layer;
+  const std::string curve = complaint("{file: a.png, tone_map: zzzz}");
+  for (const std::string& name : tone_curve_names()) {
+    EXPECT_NE(curve.find(name), std::string::npos) << curve;
+    EXPECT_EQ(complaint("{file: a.png, tone_map: " + name + "}").find("tone_map"),
+              std::string::npos);
+  }
 }
 
 TEST(Picture, FormatsByEnding) {
