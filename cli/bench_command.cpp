@@ -41,9 +41,9 @@ int scaling(const std::string& path, int most_threads, uint32_t samples) {
     std::fprintf(stderr, "%s: %s\n", path.c_str(), scene.error().message.c_str());
     return 1;
   }
-  std::printf("%s: %s triangles, %d x %d, %u samples; scene ready after %.3f s\n\n", job.name.c_str(),
-              core::format_count((*scene)->triangles).c_str(), job.film.width, job.film.height,
-              job.sampling.samples, seconds_since(load_begin));
+  std::printf("%s: %s triangles, %d x %d, %u samples; scene ready after %.3f s\n\n",
+              job.name.c_str(), core::format_count((*scene)->triangles).c_str(), job.film.width,
+              job.film.height, job.sampling.samples, seconds_since(load_begin));
   std::printf("threads   seconds   speed-up   efficiency   Msamples/s   Mrays/s   rays/sample\n");
   const core::FrameRenderer renderer(*scene, job, job.frames.first, {});
   const core::PixelRect window = core::render_window(job.film);
@@ -52,14 +52,15 @@ int scaling(const std::string& path, int most_threads, uint32_t samples) {
     core::RenderFrameOptions options;
     options.threads = threads;
     const auto begin = Clock::now();
-    const auto frame = core::render_frame(renderer, window, job.sampling.samples, job.frames.first, options);
+    const auto frame =
+        core::render_frame(renderer, window, job.sampling.samples, job.frames.first, options);
     const double seconds = seconds_since(begin);
     if (alone == 0.0) alone = seconds;
     const auto samples_done = static_cast<double>(frame.counters.samples);
     const auto rays = static_cast<double>(frame.counters.rays);
-    std::printf("%7d %9.3f %9.2fx %11.0f%% %12.3f %9.3f %13.2f\n", threads, seconds, alone / seconds,
-                100.0 * alone / seconds / threads, samples_done / seconds * 1e-6, rays / seconds * 1e-6,
-                rays / samples_done);
+    std::printf("%7d %9.3f %9.2fx %11.0f%% %12.3f %9.3f %13.2f\n", threads, seconds,
+                alone / seconds, 100.0 * alone / seconds / threads, samples_done / seconds * 1e-6,
+                rays / seconds * 1e-6, rays / samples_done);
     std::fflush(stdout);
   }
   return 0;
@@ -74,9 +75,12 @@ int bench_command(int argc, char** argv) {
   std::string path = "jobs/mesh-100k/job.yaml";
   int threads = core::hardware_threads();
   uint32_t samples = 0;
-  auto* command = app.add_subcommand("scaling", "renders the first frame of a job with 1..N threads");
+  auto* command =
+      app.add_subcommand("scaling", "renders the first frame of a job with 1..N threads");
   command->add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->capture_default_str();
-  command->add_option("--threads", threads, "most threads")->check(CLI::Range(1, 1024))->capture_default_str();
+  command->add_option("--threads", threads, "most threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   command->add_option("--samples", samples, "samples per pixel (default: the job's)");
   try {
     app.parse(argc, argv);

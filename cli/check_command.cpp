@@ -16,8 +16,10 @@ namespace {
 
 constexpr double kProbeSeconds = 0.7;
 
-/// Seconds of one core that a sample of `renderer` takes, measured on small patches scattered over the window.
-double seconds_per_sample(const core::FrameRenderer& renderer, const core::PixelRect& window, int32_t frame) {
+/// Seconds of one core that a sample of `renderer` takes, measured on small patches scattered over
+/// the window.
+double seconds_per_sample(const core::FrameRenderer& renderer, const core::PixelRect& window,
+                          int32_t frame) {
   using Clock = std::chrono::steady_clock;
   constexpr int kPatch = 4;
   const auto begin = Clock::now();
@@ -38,13 +40,16 @@ double seconds_per_sample(const core::FrameRenderer& renderer, const core::Pixel
 
 /// `hyades check job.yaml`: every mistake, or what the job is and would cost.
 int check_command(int argc, char** argv) {
-  CLI::App app("Reads a job and reports every mistake in it; a good one is summed up: frames, triangles, "
-               "units, and an estimate of memory and core-hours.", "hyades check");
+  CLI::App app(
+      "Reads a job and reports every mistake in it; a good one is summed up: frames, triangles, "
+      "units, and an estimate of memory and core-hours.",
+      "hyades check");
   std::string path;
   bool no_probe = false;
   app.add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->required();
   app.add_flag("--no-probe", no_probe, "do not render a few pixels to estimate the time");
-  app.footer("example:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
+  app.footer(
+      "example:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -70,20 +75,24 @@ int check_command(int argc, char** argv) {
 
   std::printf("%s: good\n", path.c_str());
   std::printf("  job        %s\n", job.name.c_str());
-  std::printf("  frames     %s of %d x %d%s\n", core::format_count(static_cast<uint64_t>(frames)).c_str(),
-              window.width(), window.height(), job.film.crop ? " (cropped)" : "");
+  std::printf("  frames     %s of %d x %d%s\n",
+              core::format_count(static_cast<uint64_t>(frames)).c_str(), window.width(),
+              window.height(), job.film.crop ? " (cropped)" : "");
   std::printf("  objects    %s, %s triangles, %zu lights\n",
               core::format_count((*scene)->objects.size()).c_str(),
               core::format_count((*scene)->triangles).c_str(), (*scene)->lights.size());
-  std::printf("  samples    %u per pixel, %s in all\n", job.sampling.samples, core::format_count(samples).c_str());
+  std::printf("  samples    %u per pixel, %s in all\n", job.sampling.samples,
+              core::format_count(samples).c_str());
   std::printf("  batches    %s per frame, of %u samples of a pixel each\n",
               core::format_count(batches).c_str(), core::kBatchSamples);
-  std::printf("  memory     about %s (geometry %s, textures %s, film %s)\n",
-              core::format_bytes((*scene)->world->memory() + (*scene)->texture_memory + film).c_str(),
-              core::format_bytes((*scene)->world->memory()).c_str(),
-              core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(film).c_str());
+  std::printf(
+      "  memory     about %s (geometry %s, textures %s, film %s)\n",
+      core::format_bytes((*scene)->world->memory() + (*scene)->texture_memory + film).c_str(),
+      core::format_bytes((*scene)->world->memory()).c_str(),
+      core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(film).c_str());
   if (!no_probe && pixels > 0) {
-    const double hours = seconds_per_sample(renderer, window, job.frames.first) * static_cast<double>(samples) / 3600.0;
+    const double hours = seconds_per_sample(renderer, window, job.frames.first) *
+                         static_cast<double>(samples) / 3600.0;
     std::printf("  cost       about %s of one core like this one (%.3g core-hours)\n",
                 core::format_duration(hours * 3600.0).c_str(), hours);
   }

@@ -25,7 +25,9 @@ constexpr size_t kBadExamples = 5;
 class JobFrames::Work : public coordinator::FrameWork {
  public:
   Work(JobFrames& owner, int32_t frame, std::shared_ptr<const core::Scene> scene)
-      : owner_(owner), frame_(frame), renderer_(std::move(scene), owner.loaded_.job, frame, owner.layers_) {}
+      : owner_(owner),
+        frame_(frame),
+        renderer_(std::move(scene), owner.loaded_.job, frame, owner.layers_) {}
 
   core::Result<core::Film> render(const core::Unit& unit, int /*thread*/,
                                   const std::atomic<bool>& stop) const override {
@@ -50,20 +52,24 @@ core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(
     int32_t frame, const std::atomic<bool>& /*stop*/) {
   auto scene = core::build_scene(loaded_.job, frame, cache_);
   if (!scene) return scene.error().in(fmt::format("frame {}", frame));
-  return std::shared_ptr<const coordinator::FrameWork>(std::make_shared<Work>(*this, frame, *scene));
+  return std::shared_ptr<const coordinator::FrameWork>(
+      std::make_shared<Work>(*this, frame, *scene));
 }
 
 core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
   const core::FilmInfo info = film_info(frame);
   const core::ImageMetadata metadata = {
-      {"hyades.job", info.job_name},       {"hyades.frame", std::to_string(frame)},
-      {"hyades.samples", std::to_string(info.samples)}, {"hyades.renderKey", info.render_key},
+      {"hyades.job", info.job_name},
+      {"hyades.frame", std::to_string(frame)},
+      {"hyades.samples", std::to_string(info.samples)},
+      {"hyades.renderKey", info.render_key},
       {"hyades.build", info.build},
   };
   const core::Image picture = film.normalised();
   for (const core::OutputDesc& output : loaded_.job.outputs) {
     const std::string path = core::output_path(output, options_.folder, frame);
-    if (auto written = core::write_output(output, picture, path, metadata); !written) return written;
+    if (auto written = core::write_output(output, picture, path, metadata); !written)
+      return written;
   }
   if (!options_.write_films) return {};
   return core::write_film_exr(film_path(frame), {info, film}, metadata);
@@ -71,7 +77,8 @@ core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
 
 bool JobFrames::outputs_exist(int32_t frame) {
   const std::vector<std::string> paths = output_paths(frame);
-  return std::all_of(paths.begin(), paths.end(), [](const std::string& p) { return std::filesystem::exists(p); });
+  return std::all_of(paths.begin(), paths.end(),
+                     [](const std::string& p) { return std::filesystem::exists(p); });
 }
 
 std::vector<std::string> JobFrames::output_paths(int32_t frame) const {
@@ -108,8 +115,9 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
 std::string JobFrames::log_key() const {
   const core::Job& job = loaded_.job;
   const std::vector<core::AssetRecord> assets = loaded_.assets->records();
-  std::string keys = fmt::format("{} {} {} {} {}{}{}", options_.window.x0, options_.window.y0, options_.window.x1,
-                                 options_.window.y1, layers_.depth, layers_.albedo, layers_.normal);
+  std::string keys =
+      fmt::format("{} {} {} {} {}{}{}", options_.window.x0, options_.window.y0, options_.window.x1,
+                  options_.window.y1, layers_.depth, layers_.albedo, layers_.normal);
   for (int64_t f = job.frames.first; f <= job.frames.last; f += job.frames.step) {
     keys += core::render_key(job, static_cast<int32_t>(f), assets);
   }

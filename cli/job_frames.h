@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/local/frame_work.h"
 #include "cli/load_job.h"
+#include "coordinator/local/frame_work.h"
 #include "core/film/film_info.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/scene_cache.h"
@@ -27,9 +27,9 @@ struct RunTotals {
 class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink {
  public:
   struct Options {
-    std::string folder;       ///< where outputs go
-    bool write_films = false; ///< also NAME.####.film.exr
-    core::PixelRect window;   ///< what is rendered of each frame
+    std::string folder;        ///< where outputs go
+    bool write_films = false;  ///< also NAME.####.film.exr
+    core::PixelRect window;    ///< what is rendered of each frame
   };
 
   JobFrames(LoadedJob& loaded, Options options);
@@ -42,7 +42,8 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// Everything that `frame` writes, in the job's order.
   std::vector<std::string> output_paths(int32_t frame) const;
 
-  /// One line that names the pixels of all the job's frames: films of another key are never mixed in.
+  /// One line that names the pixels of all the job's frames: films of another key are never mixed
+  /// in.
   std::string log_key() const;
 
   RunTotals totals() const;

@@ -22,7 +22,8 @@ bool is_mesh(const std::string& path) {
 std::optional<LoadedJob> load_job(const std::string& path) {
   const std::filesystem::path file(path);
   LoadedJob loaded;
-  loaded.files = core::make_file_resolver(file.has_parent_path() ? file.parent_path().string() : ".");
+  loaded.files =
+      core::make_file_resolver(file.has_parent_path() ? file.parent_path().string() : ".");
   loaded.assets = std::make_unique<core::RecordingResolver>(*loaded.files);
   if (is_mesh(path)) {
     auto made = make_mesh_job(file.filename().string(), *loaded.assets);
@@ -39,7 +40,8 @@ std::optional<LoadedJob> load_job(const std::string& path) {
     return std::nullopt;
   }
   Diagnostics diagnostics;
-  loaded.job = core::parse_job(std::string(text->chars(), text->size()), path, *loaded.assets, diagnostics);
+  loaded.job =
+      core::parse_job(std::string(text->chars(), text->size()), path, *loaded.assets, diagnostics);
   if (!diagnostics.empty()) {
     std::fprintf(stderr, "%s\n", diagnostics.to_string().c_str());
     return std::nullopt;
@@ -60,16 +62,18 @@ std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const st
       step = 1;
       if (std::sscanf(text.c_str(), "%d-%d%n", &first, &last, &used) < 2 || !whole()) {
         if (std::sscanf(text.c_str(), "%d%n", &first, &used) < 1 || !whole()) {
-          std::fprintf(stderr, "--frames %s: expected a frame (7), a range (1-10) or a range with a step (1-10x2)\n",
-                       text.c_str());
+          std::fprintf(
+              stderr,
+              "--frames %s: expected a frame (7), a range (1-10) or a range with a step (1-10x2)\n",
+              text.c_str());
           return std::nullopt;
         }
         last = first;
       }
     }
     if (step < 1 || first > last || first < range.first || last > range.last) {
-      std::fprintf(stderr, "--frames %s: expected frames within the job's range %d-%d\n", text.c_str(),
-                   range.first, range.last);
+      std::fprintf(stderr, "--frames %s: expected frames within the job's range %d-%d\n",
+                   text.c_str(), range.first, range.last);
       return std::nullopt;
     }
   }

@@ -1,5 +1,5 @@
-// `hyades COMMAND ...` starts the program that knows the command, as git does, so that a coordinator never
-// loads a renderer and --help answers at once.
+// `hyades COMMAND ...` starts the program that knows the command, as git does, so that a
+// coordinator never loads a renderer and --help answers at once.
 
 #include <unistd.h>
 
@@ -25,14 +25,16 @@ constexpr Command kCommands[] = {
     {"render", "hyades-render", "render a job (or a mesh file) on this machine"},
     {"check", "hyades-render", "read a job, report every mistake in it, and what it would cost"},
     {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
-    {"bench", "hyades-render", "measure this machine: 'bench scaling' renders a job with 1..N threads"},
+    {"bench", "hyades-render",
+     "measure this machine: 'bench scaling' renders a job with 1..N threads"},
     {"merge", "hyades-film", "join films of the same frame"},
     {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
 };
 
 void print_help() {
-  std::printf("hyades %s: a path-tracing render farm\n\nusage: hyades COMMAND [ARGUMENTS]\n\ncommands:\n",
-              hyades::core::kVersion);
+  std::printf(
+      "hyades %s: a path-tracing render farm\n\nusage: hyades COMMAND [ARGUMENTS]\n\ncommands:\n",
+      hyades::core::kVersion);
   for (const Command& command : kCommands) std::printf("  %-10s %s\n", command.name, command.help);
   std::printf(
       "\nexamples:\n"
@@ -68,7 +70,8 @@ int main(int argc, char** argv) {
     if (name == command.name) {
       const std::string program = own_folder() + command.program;
       execv(program.c_str(), argv);
-      std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(), std::strerror(errno));
+      std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(),
+                   std::strerror(errno));
       return 1;
     }
     names.emplace_back(command.name);

@@ -18,7 +18,8 @@ inline int run_program(std::span<const ProgramCommand> commands, int argc, char*
   for (const ProgramCommand& command : commands) {
     if (name == command.name) return command.run(argc - 1, argv + 1);
   }
-  std::fprintf(stderr, "%s: there is no command '%s'; run it through 'hyades'\n", argv[0], name.c_str());
+  std::fprintf(stderr, "%s: there is no command '%s'; run it through 'hyades'\n", argv[0],
+               name.c_str());
   return 2;
 }
 

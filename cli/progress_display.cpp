@@ -40,7 +40,10 @@ std::string rate(double samples_per_second) {
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
-    : name_(std::move(name)), quiet_(quiet), terminal_(is_terminal()), last_(std::chrono::steady_clock::now()) {}
+    : name_(std::move(name)),
+      quiet_(quiet),
+      terminal_(is_terminal()),
+      last_(std::chrono::steady_clock::now()) {}
 
 std::string ProgressDisplay::line(const coordinator::Progress& p) const {
   const double done = fraction(p);
@@ -51,7 +54,8 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
     text += "  ";
   }
   text += fmt::format("{:3.0f} %", 100.0 * done);
-  if (p.frames > 1) text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);
+  if (p.frames > 1)
+    text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);
   if (p.samples_per_second > 0.0) text += "  " + rate(p.samples_per_second);
   if (p.noise >= 0.0) text += fmt::format("  noise {:.2g} %", 100.0 * p.noise);
   if (p.seconds_left >= 0.0) text += "  " + core::format_duration(p.seconds_left) + " left";

@@ -7,8 +7,8 @@
 
 namespace hyades::cli {
 
-/// Shows how far a run is: one line that is redrawn on a terminal, plain lines now and then elsewhere, nothing
-/// where `quiet`. Writes to standard error.
+/// Shows how far a run is: one line that is redrawn on a terminal, plain lines now and then
+/// elsewhere, nothing where `quiet`. Writes to standard error.
 class ProgressDisplay {
  public:
   ProgressDisplay(std::string name, bool quiet);

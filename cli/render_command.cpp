@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/job_frames.h"
 #include "cli/load_job.h"
@@ -22,7 +22,8 @@ constexpr int kInterrupted = 130;
 
 volatile std::sig_atomic_t g_signals = 0;
 
-/// The first signal asks for an orderly end, the second one ends the process: what is durable is safe anyway.
+/// The first signal asks for an orderly end, the second one ends the process: what is durable is
+/// safe anyway.
 void on_signal(int) {
   g_signals = g_signals + 1;
   if (g_signals > 1) _exit(kInterrupted);
@@ -47,19 +48,25 @@ std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options
   app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)");
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
       ->check(CLI::Range(1U, 1U << 24U));
-  app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")->delimiter(',')->expected(4);
+  app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
+      ->delimiter(',')
+      ->expected(4);
   app.add_option("--threads", options.threads, "rendering threads")
-      ->check(CLI::Range(1, 1024))->capture_default_str();
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
-  app.add_flag("--film", options.film, "also write each frame's film (NAME.film.exr), for 'hyades merge'");
+  app.add_flag("--film", options.film,
+               "also write each frame's film (NAME.film.exr), for 'hyades merge'");
   app.add_flag("--resume", options.resume, "continue a run that was interrupted, to the same bits");
   app.add_flag("--quiet", options.quiet, "show no progress");
-  app.footer("examples:\n"
-             "  hyades render jobs/quickstart/job.yaml\n"
-             "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
-             "  hyades render dragon.ply --samples 64\n"
-             "Ctrl-C stops; --resume continues, also after a crash.\n"
-             "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 interrupted");
+  app.footer(
+      "examples:\n"
+      "  hyades render jobs/quickstart/job.yaml\n"
+      "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
+      "  hyades render dragon.ply --samples 64\n"
+      "Ctrl-C stops; --resume continues, also after a crash.\n"
+      "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
+      "interrupted");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -77,8 +84,8 @@ std::optional<LoadedJob> load(const RenderOptions& options) {
   if (!options.crop.empty()) {
     const core::PixelRect crop{options.crop[0], options.crop[1], options.crop[2], options.crop[3]};
     if (crop.empty() || !core::PixelRect{0, 0, job.film.width, job.film.height}.contains(crop)) {
-      std::fprintf(stderr, "--crop: expected X0,Y0,X1,Y1 within the frame, 0,0,%d,%d\n", job.film.width,
-                   job.film.height);
+      std::fprintf(stderr, "--crop: expected X0,Y0,X1,Y1 within the frame, 0,0,%d,%d\n",
+                   job.film.width, job.film.height);
       return std::nullopt;
     }
     job.film.crop = crop;
@@ -91,20 +98,22 @@ void print_bad_samples(const RunTotals& totals, const std::string& path) {
   std::fprintf(stderr, "%s samples were not finite and count as black. To see why:\n",
                core::format_count(totals.counters.bad_samples).c_str());
   for (const RunTotals::Bad& bad : totals.bad) {
-    std::fprintf(stderr, "  hyades replay %s --frame %d --pixel %d,%d --sample %u\n", path.c_str(), bad.frame,
-                 bad.sample.pixel.x, bad.sample.pixel.y, bad.sample.sample);
+    std::fprintf(stderr, "  hyades replay %s --frame %d --pixel %d,%d --sample %u\n", path.c_str(),
+                 bad.frame, bad.sample.pixel.x, bad.sample.pixel.y, bad.sample.sample);
   }
 }
 
-int report(const RenderOptions& options, const JobFrames& frames, const std::vector<int32_t>& numbers,
-           const coordinator::LocalOutcome& outcome, const coordinator::Progress& progress) {
+int report(const RenderOptions& options, const JobFrames& frames,
+           const std::vector<int32_t>& numbers, const coordinator::LocalOutcome& outcome,
+           const coordinator::Progress& progress) {
   const RunTotals totals = frames.totals();
   print_bad_samples(totals, options.path);
   for (const coordinator::FrameFailure& failure : outcome.failures) {
     std::fprintf(stderr, "frame %d failed: %s\n", failure.frame, failure.reason.c_str());
   }
   if (!outcome.error.empty()) {
-    std::fprintf(stderr, "%s\nwhat is done is kept: continue with --resume\n", outcome.error.c_str());
+    std::fprintf(stderr, "%s\nwhat is done is kept: continue with --resume\n",
+                 outcome.error.c_str());
     return 1;
   }
   if (!outcome.complete) {
@@ -114,8 +123,9 @@ int report(const RenderOptions& options, const JobFrames& frames, const std::vec
   if (!options.quiet && outcome.frames_done > 0) {
     const std::vector<std::string> paths = frames.output_paths(numbers.front());
     for (const std::string& path : paths) {
-      std::fprintf(stderr, "wrote %s%s\n", path.c_str(),
-                   numbers.size() > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done).c_str() : "");
+      std::fprintf(
+          stderr, "wrote %s%s\n", path.c_str(),
+          numbers.size() > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done).c_str() : "");
     }
     const auto samples = static_cast<double>(totals.counters.samples);
     std::fprintf(stderr, "%s, %.2f Msamples/s, %.2f Mrays/s, %.1f rays per sample\n",
@@ -141,7 +151,8 @@ int render_command(int argc, char** argv) {
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
   if (failed) {
-    std::fprintf(stderr, "%s: the folder could not be made: %s\n", options.folder.c_str(), failed.message().c_str());
+    std::fprintf(stderr, "%s: the folder could not be made: %s\n", options.folder.c_str(),
+                 failed.message().c_str());
     return 1;
   }
   JobFrames frames(*loaded, {options.folder, options.film, core::render_window(job.film)});
@@ -165,7 +176,8 @@ int render_command(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", started.error().message.c_str());
     return 1;
   }
-  for (const std::string& problem : run.log_problems()) std::fprintf(stderr, "%s\n", problem.c_str());
+  for (const std::string& problem : run.log_problems())
+    std::fprintf(stderr, "%s\n", problem.c_str());
   ProgressDisplay display(job.name, options.quiet);
   bool stopping = false;
   while (!run.wait_for(std::chrono::milliseconds(50))) {
@@ -181,7 +193,8 @@ int render_command(int argc, char** argv) {
   // Everything is written: the films of this run are of no more use.
   if (outcome.complete && outcome.failures.empty()) {
     std::filesystem::remove_all(log.folder, failed);
-    std::filesystem::remove(options.folder + "/.hyades", failed);  // only where no other job is in it
+    std::filesystem::remove(options.folder + "/.hyades",
+                            failed);  // only where no other job is in it
   }
   std::fflush(nullptr);
   // An orderly end waits for frames that are loading or finishing; after Ctrl-C nobody wants to.

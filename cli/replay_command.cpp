@@ -9,10 +9,13 @@
 
 namespace hyades::cli {
 
-/// `hyades replay job.yaml --frame F --pixel X,Y --sample N`: traces one sample and tells its path in words.
+/// `hyades replay job.yaml --frame F --pixel X,Y --sample N`: traces one sample and tells its path
+/// in words.
 int replay_command(int argc, char** argv) {
-  CLI::App app("Traces one sample of one pixel and tells its path in words: what it met, how it scattered, "
-               "where light came in.", "hyades replay");
+  CLI::App app(
+      "Traces one sample of one pixel and tells its path in words: what it met, how it scattered, "
+      "where light came in.",
+      "hyades replay");
   std::string path;
   int32_t frame = 0;
   std::vector<int> pixel;
@@ -20,7 +23,9 @@ int replay_command(int argc, char** argv) {
   app.add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->required();
   auto* frame_option = app.add_option("--frame", frame, "frame number (default: the job's first)");
   app.add_option("--pixel", pixel, "X,Y in full-frame pixels, 0,0 is the top left")
-      ->required()->delimiter(',')->expected(2);
+      ->required()
+      ->delimiter(',')
+      ->expected(2);
   app.add_option("--sample", sample, "index of the sample within the pixel")->default_val(0);
   app.footer("example:\n  hyades replay jobs/cornell/job.yaml --pixel 120,80 --sample 3");
   try {
@@ -34,13 +39,13 @@ int replay_command(int argc, char** argv) {
   if (frame_option->empty()) frame = job.frames.first;
   const core::PixelRect whole{0, 0, job.film.width, job.film.height};
   if (!whole.contains(pixel[0], pixel[1])) {
-    std::fprintf(stderr, "--pixel %d,%d: expected a pixel of the frame, 0,0 to %d,%d\n", pixel[0], pixel[1],
-                 whole.x1 - 1, whole.y1 - 1);
+    std::fprintf(stderr, "--pixel %d,%d: expected a pixel of the frame, 0,0 to %d,%d\n", pixel[0],
+                 pixel[1], whole.x1 - 1, whole.y1 - 1);
     return kBadInput;
   }
   if (frame < job.frames.first || frame > job.frames.last) {
-    std::fprintf(stderr, "--frame %d: expected a frame within the job's range %d-%d\n", frame, job.frames.first,
-                 job.frames.last);
+    std::fprintf(stderr, "--frame %d: expected a frame within the job's range %d-%d\n", frame,
+                 job.frames.first, job.frames.last);
     return kBadInput;
   }
   core::SceneCache cache(*loaded->assets);
@@ -52,11 +57,13 @@ int replay_command(int argc, char** argv) {
   const core::FrameRenderer renderer(*scene, job, frame, {});
   core::PathLog log;
   const core::PixelSample result = renderer.replay({pixel[0], pixel[1]}, sample, log);
-  std::printf("%s, frame %d, pixel %d,%d, sample %u\n", job.name.c_str(), frame, pixel[0], pixel[1], sample);
+  std::printf("%s, frame %d, pixel %d,%d, sample %u\n", job.name.c_str(), frame, pixel[0], pixel[1],
+              sample);
   for (const std::string& line : log.lines) std::printf("%s\n", line.c_str());
-  std::printf("radiance %.9g %.9g %.9g, alpha %g, depth %g\n", static_cast<double>(result.radiance.x),
-              static_cast<double>(result.radiance.y), static_cast<double>(result.radiance.z),
-              static_cast<double>(result.alpha), static_cast<double>(result.depth));
+  std::printf("radiance %.9g %.9g %.9g, alpha %g, depth %g\n",
+              static_cast<double>(result.radiance.x), static_cast<double>(result.radiance.y),
+              static_cast<double>(result.radiance.z), static_cast<double>(result.alpha),
+              static_cast<double>(result.depth));
   return 0;
 }
 

@@ -16,10 +16,10 @@ namespace hyades::core {
 /// What one sample of a pixel yields.
 struct PixelSample {
   Rgb radiance{0.0F};
-  float alpha = 0.0F;        ///< 1 where the camera ray met a surface
-  float depth = kInfinity;   ///< along the view axis, of the first surface
-  Rgb albedo{0.0F};          ///< of the first surface that is not a mirror, through the mirrors before it
-  Vec3 normal{0.0F};         ///< shading normal of the first surface
+  float alpha = 0.0F;       ///< 1 where the camera ray met a surface
+  float depth = kInfinity;  ///< along the view axis, of the first surface
+  Rgb albedo{0.0F};   ///< of the first surface that is not a mirror, through the mirrors before it
+  Vec3 normal{0.0F};  ///< shading normal of the first surface
 };
 
 /// A path in words, for `hyades replay`.
@@ -30,18 +30,20 @@ struct PathLog {
 /// Scratch memory and counters of one rendering thread.
 struct Workspace {
   BsdfArena arena;
-  uint64_t rays = 0;         ///< closest-hit and occlusion queries
-  uint64_t bounces = 0;      ///< scattering events
-  PathLog* log = nullptr;    ///< where to tell the path; null while rendering
+  uint64_t rays = 0;       ///< closest-hit and occlusion queries
+  uint64_t bounces = 0;    ///< scattering events
+  PathLog* log = nullptr;  ///< where to tell the path; null while rendering
 };
 
-/// How paths are found and weighed. Immutable and thread-safe. Integrators that work sample by sample
-/// and pixel by pixel implement this; the sampler's dimensions before kCameraDimensions belong to the camera.
+/// How paths are found and weighed. Immutable and thread-safe. Integrators that work sample by
+/// sample and pixel by pixel implement this; the sampler's dimensions before kCameraDimensions
+/// belong to the camera.
 class Integrator {
  public:
   virtual ~Integrator() = default;
 
-  /// The radiance that arrives along `ray`, an unbiased estimate. `sampler` has been started for this sample.
+  /// The radiance that arrives along `ray`, an unbiased estimate. `sampler` has been started for
+  /// this sample.
   virtual PixelSample sample(const Scene& scene, const Ray& ray, Sampler& sampler,
                              Workspace& work) const = 0;
 };

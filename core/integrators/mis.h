@@ -2,8 +2,8 @@
 
 namespace hyades::core {
 
-/// Weight of a sample drawn with density `pdf` where another technique would draw it with `other`: power
-/// heuristic with exponent 2 (Veach 1997, eq. 9.10). 1 where `other` is 0.
+/// Weight of a sample drawn with density `pdf` where another technique would draw it with `other`:
+/// power heuristic with exponent 2 (Veach 1997, eq. 9.10). 1 where `other` is 0.
 inline float power_heuristic(float pdf, float other) {
   const float a = pdf * pdf;
   const float b = other * other;

@@ -22,7 +22,8 @@ enum BounceDimension : uint32_t {
   kPerBounce = 8,
 };
 
-/// Surfaces that a ray may pass without scattering (null materials) before it counts as caught in a bad mesh.
+/// Surfaces that a ray may pass without scattering (null materials) before it counts as caught in a
+/// bad mesh.
 constexpr int kMaxNullCrossings = 1000;
 
 /// A path that survives roulette less often than this would be all noise.
@@ -42,7 +43,8 @@ class Path {
     int null_crossings = 0;
     while (true) {
       ++work_.rays;
-      const auto hit = scene_.world->intersect(ray_, depth_ == 0 ? RayKind::camera : RayKind::other);
+      const auto hit =
+          scene_.world->intersect(ray_, depth_ == 0 ? RayKind::camera : RayKind::other);
       if (!hit) {
         add_sky();
         break;
@@ -74,10 +76,12 @@ class Path {
   }
 
  private:
-  /// Adds `light` times the path's throughput; what came by more than one bounce may be clamped on request.
+  /// Adds `light` times the path's throughput; what came by more than one bounce may be clamped on
+  /// request.
   void add(const Rgb& light, int events) {
     Rgb contribution = throughput_ * light;
-    if (settings_.clamp > 0.0F && events > 1) contribution = glm::min(contribution, Rgb(settings_.clamp));
+    if (settings_.clamp > 0.0F && events > 1)
+      contribution = glm::min(contribution, Rgb(settings_.clamp));
     out_.radiance += contribution;
     if (work_.log != nullptr && !is_black(contribution)) {
       work_.log->lines.push_back("    light arrives: " + show(contribution));
@@ -103,9 +107,8 @@ class Path {
       const Light& light = *scene_.lights[index];
       const Rgb radiance = light.radiance(nowhere, -ray_.direction);
       if (is_black(radiance)) continue;
-      const float pdf = previous_.specular
-                            ? 0.0F
-                            : light.pdf_direct(previous_.position, ray_.direction, nowhere);
+      const float pdf =
+          previous_.specular ? 0.0F : light.pdf_direct(previous_.position, ray_.direction, nowhere);
       add(radiance * bsdf_weight(index, pdf), depth_);
     }
   }
@@ -115,9 +118,8 @@ class Path {
     const Light& light = *scene_.lights[object.light];
     const Rgb radiance = light.radiance(point, -ray_.direction);
     if (is_black(radiance)) return;
-    const float pdf = previous_.specular
-                          ? 0.0F
-                          : light.pdf_direct(previous_.position, ray_.direction, point);
+    const float pdf =
+        previous_.specular ? 0.0F : light.pdf_direct(previous_.position, ray_.direction, point);
     add(radiance * bsdf_weight(object.light, pdf), depth_);
   }
 
@@ -136,19 +138,19 @@ class Path {
     const Rgb f = surface.evaluate(wo, sample->direction, TransportMode::radiance);
     if (is_black(f)) return;
 
-    Ray shadow = sample->distance == kInfinity
-                     ? spawn_ray(point, sample->direction)
-                     : spawn_ray_to(point, sample->position, 0.0F);
+    Ray shadow = sample->distance == kInfinity ? spawn_ray(point, sample->direction)
+                                               : spawn_ray_to(point, sample->position, 0.0F);
     shadow.time = point.time;
     ++work_.rays;
     if (scene_.world->occluded(shadow)) return;
     const float light_pdf = chosen->probability * sample->pdf;
     const float weight =
         sample->delta ? 1.0F
-                      : power_heuristic(light_pdf, surface.pdf(wo, sample->direction,
-                                                               TransportMode::radiance));
+                      : power_heuristic(
+                            light_pdf, surface.pdf(wo, sample->direction, TransportMode::radiance));
     if (work_.log != nullptr) {
-      work_.log->lines.push_back(fmt::format("    chooses light {}, weight {:.4g}", chosen->index, weight));
+      work_.log->lines.push_back(
+          fmt::format("    chooses light {}, weight {:.4g}", chosen->index, weight));
     }
     add(f * sample->radiance * (weight / light_pdf), depth_ + 1);
   }
@@ -184,7 +186,8 @@ class Path {
     ray_ = spawn_ray(point, sample->wi);
     ray_.time = point.time;
     if (work_.log != nullptr) {
-      work_.log->lines.push_back(fmt::format("  {} {} along {}, weight {}", sample->delta ? "specular" : "smooth",
+      work_.log->lines.push_back(fmt::format("  {} {} along {}, weight {}",
+                                             sample->delta ? "specular" : "smooth",
                                              sample->transmitted ? "transmission" : "reflection",
                                              show(sample->wi), show(sample->weight)));
     }
@@ -204,9 +207,9 @@ class Path {
   }
 
   void log_hit(const SurfacePoint& point, const SceneObject& object) {
-    work_.log->lines.push_back(fmt::format("  meets '{}' (triangle {}) at {} after {:.6g} m, normal {}",
-                                           object.name, point.primitive, show(point.position), point.t,
-                                           show(point.ns)));
+    work_.log->lines.push_back(
+        fmt::format("  meets '{}' (triangle {}) at {} after {:.6g} m, normal {}", object.name,
+                    point.primitive, show(point.position), point.t, show(point.ns)));
   }
 
   /// Where the path scattered last: what light selection and MIS refer to.

@@ -13,12 +13,18 @@ constexpr int kMaxDeposited = 16;
 
 FilterShape filter_shape(FilterKind kind) {
   switch (kind) {
-    case FilterKind::box: return FilterShape::box;
-    case FilterKind::triangle: return FilterShape::triangle;
-    case FilterKind::gaussian: return FilterShape::gaussian;
-    case FilterKind::mitchell: return FilterShape::mitchell;
-    case FilterKind::blackman_harris: return FilterShape::blackman_harris;
-    case FilterKind::center: return FilterShape::center;
+    case FilterKind::box:
+      return FilterShape::box;
+    case FilterKind::triangle:
+      return FilterShape::triangle;
+    case FilterKind::gaussian:
+      return FilterShape::gaussian;
+    case FilterKind::mitchell:
+      return FilterShape::mitchell;
+    case FilterKind::blackman_harris:
+      return FilterShape::blackman_harris;
+    case FilterKind::center:
+      return FilterShape::center;
   }
   return FilterShape::box;
 }
@@ -61,7 +67,8 @@ PixelSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sam
   const Vec2 lens = sampler.next_2d();
   const float time = needs_time_ ? sampler.next_1d() : 0.0F;
   const Vec2 film = Vec2(pixel) + Vec2(0.5F) + place.offset;
-  PixelSample out = integrator_->sample(*scene_, scene_->camera->generate(film, lens, time), sampler, work);
+  PixelSample out =
+      integrator_->sample(*scene_, scene_->camera->generate(film, lens, time), sampler, work);
   out.radiance *= place.weight;
   out.alpha *= place.weight;
   out.albedo *= place.weight;
@@ -69,9 +76,9 @@ PixelSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sam
   return out;
 }
 
-bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& sampler, Workspace& work,
-                                 std::vector<float>& sums, RenderCounters& counters,
-                                 const std::atomic<bool>* stop) const {
+bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& sampler,
+                                 Workspace& work, std::vector<float>& sums,
+                                 RenderCounters& counters, const std::atomic<bool>* stop) const {
   const uint32_t first = batch * kBatchSamples;
   const uint32_t count = samples_in_batch(batch, sampling_.samples);
   float* out = sums.data();
@@ -91,10 +98,12 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
         sum[3] += double{sample.alpha};
         depth = sample.depth < depth ? sample.depth : depth;
         if (layout_.albedo >= 0) {
-          for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(layout_.albedo + c)] += double{sample.albedo[c]};
+          for (int c = 0; c < 3; ++c)
+            sum[static_cast<size_t>(layout_.albedo + c)] += double{sample.albedo[c]};
         }
         if (layout_.normal >= 0) {
-          for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(layout_.normal + c)] += double{sample.normal[c]};
+          for (int c = 0; c < 3; ++c)
+            sum[static_cast<size_t>(layout_.normal + c)] += double{sample.normal[c]};
         }
       }
       for (int c = 0; c < layout_.deposited; ++c) {
@@ -109,10 +118,11 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
 RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* stop) const {
   const FpMode fp_mode;
   RenderedUnit result{Film(layout_, unit.tile), {}, false};
-  const auto sampler = make_sampler(sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol
-                                                                            : SamplerKind::independent);
+  const auto sampler = make_sampler(
+      sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol : SamplerKind::independent);
   Workspace work;
-  std::vector<float> sums(static_cast<size_t>(unit.tile.area()) * static_cast<size_t>(layout_.deposited));
+  std::vector<float> sums(static_cast<size_t>(unit.tile.area()) *
+                          static_cast<size_t>(layout_.deposited));
   for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
     if (!render_batch(unit, b, *sampler, work, sums, result.counters, stop)) {
       result.stopped = true;
@@ -127,8 +137,8 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
 
 PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& log) const {
   const FpMode fp_mode;
-  const auto sampler = make_sampler(sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol
-                                                                            : SamplerKind::independent);
+  const auto sampler = make_sampler(
+      sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol : SamplerKind::independent);
   Workspace work;
   work.log = &log;
   return sample_pixel(pixel, sample, *sampler, work);

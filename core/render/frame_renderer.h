@@ -14,7 +14,8 @@
 
 namespace hyades::core {
 
-/// A sample that did not give a finite colour: left out of the film, reported so that it can be replayed.
+/// A sample that did not give a finite colour: left out of the film, reported so that it can be
+/// replayed.
 struct BadSample {
   Vec2i pixel{0, 0};
   uint32_t sample = 0;
@@ -37,8 +38,8 @@ struct RenderedUnit {
   bool stopped = false;  ///< the stop flag was seen: the film is incomplete and must be thrown away
 };
 
-/// The front door of the renderer: a frame's scene and settings in, films out. render() is a pure function of
-/// the unit (invariant 1), so any thread may call it in any order.
+/// The front door of the renderer: a frame's scene and settings in, films out. render() is a pure
+/// function of the unit (invariant 1), so any thread may call it in any order.
 class FrameRenderer {
  public:
   FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
@@ -54,7 +55,8 @@ class FrameRenderer {
   const FilmLayout& layout() const { return layout_; }
 
  private:
-  PixelSample sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler, Workspace& work) const;
+  PixelSample sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
+                           Workspace& work) const;
   bool render_batch(const Unit& unit, uint32_t batch, Sampler& sampler, Workspace& work,
                     std::vector<float>& sums, RenderCounters& counters,
                     const std::atomic<bool>* stop) const;

@@ -28,8 +28,9 @@ std::vector<Unit> plan(const PixelRect& window, uint32_t samples, int32_t frame,
   if (options.shuffle) {
     std::sort(units.begin(), units.end(), [](const Unit& a, const Unit& b) {
       const auto key = [](const Unit& u) {
-        return hash_combine(hash_combine(static_cast<uint64_t>(u.tile.x0), static_cast<uint64_t>(u.tile.y0)),
-                            u.batches.first);
+        return hash_combine(
+            hash_combine(static_cast<uint64_t>(u.tile.x0), static_cast<uint64_t>(u.tile.y0)),
+            u.batches.first);
       };
       return key(a) < key(b);
     });

@@ -7,9 +7,9 @@ namespace hyades::core {
 /// How render_frame cuts its work; no choice changes the bits.
 struct RenderFrameOptions {
   int threads = 1;
-  int tile_size = 32;            ///< pixels
+  int tile_size = 32;  ///< pixels
   uint32_t batches_per_unit = 4;
-  bool shuffle = false;          ///< hand units out in a scrambled order (tests)
+  bool shuffle = false;  ///< hand units out in a scrambled order (tests)
 };
 
 struct RenderedFrame {
@@ -17,8 +17,8 @@ struct RenderedFrame {
   RenderCounters counters;
 };
 
-/// Renders all of `window` in memory, nothing durable: for tests, benchmarks and tools. Jobs go through the
-/// scheduler (coordinator/local) instead.
+/// Renders all of `window` in memory, nothing durable: for tests, benchmarks and tools. Jobs go
+/// through the scheduler (coordinator/local) instead.
 RenderedFrame render_frame(const FrameRenderer& renderer, const PixelRect& window, uint32_t samples,
                            int32_t frame, const RenderFrameOptions& options = {});
 

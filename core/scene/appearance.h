@@ -10,8 +10,8 @@
 
 namespace hyades::core {
 
-/// The textures and materials of a job at one moment, made on first use and shared afterwards. `units`:
-/// metres per unit of length of the job.
+/// The textures and materials of a job at one moment, made on first use and shared afterwards.
+/// `units`: metres per unit of length of the job.
 class Appearance {
  public:
   Appearance(const Job& job, const JobTime& time, SceneCache& cache)
@@ -35,7 +35,8 @@ class Appearance {
   SceneCache& cache_;
   std::map<std::string, TexturePtr> textures_;
   std::map<std::string, MaterialPtr> materials_;
-  int depth_ = 0;  ///< of references in progress: the parser refuses cycles, this stops what slips through
+  int depth_ =
+      0;  ///< of references in progress: the parser refuses cycles, this stops what slips through
 };
 
 }  // namespace hyades::core

@@ -10,19 +10,20 @@
 
 namespace hyades::core {
 
-/// An object of the job after groups and instances have been flattened: one shape, its place, its looks.
+/// An object of the job after groups and instances have been flattened: one shape, its place, its
+/// looks.
 struct FlatObject {
   std::string name;      ///< "tree1/trunk"
   std::string material;  ///< name; inherited from the enclosing group where the object has none
   std::optional<EmitDesc> emit;
-  Placement placement;   ///< in metres
+  Placement placement;  ///< in metres
 };
 
 /// Most objects that groups and instances may make; more is refused with a clear error.
 inline constexpr size_t kMaxPlacements = 50'000'000;
 
-/// All objects of a job at `frame`, in document order (Debian 12's Embree has one level of instancing, so
-/// nesting is multiplied out here).
+/// All objects of a job at `frame`, in document order (Debian 12's Embree has one level of
+/// instancing, so nesting is multiplied out here).
 Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache);
 
 }  // namespace hyades::core

@@ -26,7 +26,8 @@ struct Scene {
   std::shared_ptr<const World> world;
   std::vector<SceneObject> objects;  ///< by placement
   std::vector<LightPtr> lights;
-  std::vector<uint32_t> infinite_lights;  ///< indices in `lights` that rays find where they leave the world
+  std::vector<uint32_t>
+      infinite_lights;  ///< indices in `lights` that rays find where they leave the world
   std::unique_ptr<LightSelector> selector;
   std::unique_ptr<Camera> camera;
   bool environment_visible = true;  ///< whether camera rays see the infinite lights

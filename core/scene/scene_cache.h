@@ -14,14 +14,15 @@
 
 namespace hyades::core {
 
-/// What the frames of a job share: meshes, images, acceleration structures, and the whole world while
-/// nothing in it moves. Thread-safe: the next frame's scene loads while this one renders.
+/// What the frames of a job share: meshes, images, acceleration structures, and the whole world
+/// while nothing in it moves. Thread-safe: the next frame's scene loads while this one renders.
 class SceneCache {
  public:
   explicit SceneCache(AssetResolver& assets) : assets_(assets) {}
 
   /// A mesh file with its normals as `smooth` asks: "file", "flat" or "smooth".
-  Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file, const std::string& smooth);
+  Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file,
+                                                   const std::string& smooth);
 
   Result<std::shared_ptr<const Image>> image(const std::string& file, ColorSpace space);
 

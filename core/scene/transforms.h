@@ -6,12 +6,13 @@
 
 namespace hyades::core {
 
-/// The matrix of a transform list followed by the translation `at`, at one moment. Steps apply top to bottom.
+/// The matrix of a transform list followed by the translation `at`, at one moment. Steps apply top
+/// to bottom.
 Mat4 transform_at(const TransformList& steps, const Animated<Vec3>& at, const JobTime& time);
 
 /// Samples of `matrix_of(JobTime)` over the shutter interval of `frame` at equal steps, as few as
-/// keep linear interpolation between them within 1e-4 of the truth (relative to the matrix's size), at most 17.
-/// One where the shutter is closed or nothing moves.
+/// keep linear interpolation between them within 1e-4 of the truth (relative to the matrix's size),
+/// at most 17. One where the shutter is closed or nothing moves.
 template <class MatrixOf>
 std::vector<Mat4> shutter_matrices(const Job& job, int32_t frame, const MatrixOf& matrix_of);
 

@@ -14,8 +14,8 @@ void append(std::string& out, const T& value) {
 }  // namespace
 
 bool write_ply(const std::string& path, const Mesh& mesh, const std::string& comment) {
-  std::string out = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " +
-                    std::to_string(mesh.positions.size()) +
+  std::string out = "ply\nformat binary_little_endian 1.0\ncomment " + comment +
+                    "\nelement vertex " + std::to_string(mesh.positions.size()) +
                     "\nproperty float x\nproperty float y\nproperty float z\n";
   if (!mesh.normals.empty()) out += "property float nx\nproperty float ny\nproperty float nz\n";
   if (!mesh.uvs.empty()) out += "property float u\nproperty float v\n";
@@ -31,7 +31,8 @@ bool write_ply(const std::string& path, const Mesh& mesh, const std::string& com
     append(out, triangle);
   }
   std::FILE* file = std::fopen(path.c_str(), "wb");
-  const bool written = file != nullptr && std::fwrite(out.data(), 1, out.size(), file) == out.size();
+  const bool written =
+      file != nullptr && std::fwrite(out.data(), 1, out.size(), file) == out.size();
   if (file == nullptr || std::fclose(file) != 0 || !written) {
     std::fprintf(stderr, "%s: could not be written\n", path.c_str());
     return false;

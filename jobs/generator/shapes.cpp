@@ -15,14 +15,16 @@ Vec3 knot_point(const KnotShape& shape, double t) {
 Vec3 tube_point(const KnotShape& shape, double t, double angle) {
   const Vec3 p = knot_point(shape, t);
   const Vec3 tangent = glm::normalize(knot_point(shape, t + 1e-3) - knot_point(shape, t - 1e-3));
-  // The direction away from the torus's core circle never meets the tangent: a frame without twist jumps.
+  // The direction away from the torus's core circle never meets the tangent: a frame without twist
+  // jumps.
   const Vec3 core(2.0 * std::cos(shape.p * t), 0.0, 2.0 * std::sin(shape.p * t));
   const Vec3 away = p - core;
   const Vec3 side = glm::normalize(away - tangent * glm::dot(away, tangent));
   const Vec3 up = glm::cross(tangent, side);
   const double swell = 1.0 + shape.ridge * std::cos(shape.lobes * angle + shape.twist * t);
   const double r = shape.radius * swell;
-  return p + side * static_cast<float>(r * std::cos(angle)) + up * static_cast<float>(r * std::sin(angle));
+  return p + side * static_cast<float>(r * std::cos(angle)) +
+         up * static_cast<float>(r * std::sin(angle));
 }
 
 }  // namespace
@@ -64,13 +66,16 @@ Mesh make_knot(const KnotShape& shape) {
 Mesh make_lathe(const std::vector<Vec2>& profile, int steps_per_span, int around) {
   std::vector<Vec2> curve;
   const int spans = static_cast<int>(profile.size()) - 1;
-  const auto point = [&](int i) { return profile[static_cast<size_t>(std::min(std::max(i, 0), spans))]; };
+  const auto point = [&](int i) {
+    return profile[static_cast<size_t>(std::min(std::max(i, 0), spans))];
+  };
   for (int i = 0; i < spans; ++i) {
     for (int k = 0; k < steps_per_span; ++k) {
       const float t = static_cast<float>(k) / static_cast<float>(steps_per_span);
       const Vec2 a = point(i - 1), b = point(i), c = point(i + 1), d = point(i + 2);
-      const Vec2 p = 0.5F * ((2.0F * b) + (c - a) * t + (2.0F * a - 5.0F * b + 4.0F * c - d) * t * t +
-                             (3.0F * b - a - 3.0F * c + d) * t * t * t);
+      const Vec2 p =
+          0.5F * ((2.0F * b) + (c - a) * t + (2.0F * a - 5.0F * b + 4.0F * c - d) * t * t +
+                  (3.0F * b - a - 3.0F * c + d) * t * t * t);
       curve.emplace_back(std::max(p.x, 0.0F), p.y);
     }
   }

@@ -6,23 +6,24 @@
 
 namespace hyades::gallery {
 
-/// A tube around the (p, q) torus knot (x = (2 + cos qt) cos pt, z = (2 + cos qt) sin pt, y = sin qt; a classic
-/// curve), its section a circle whose radius swells in `lobes` spiralling ridges. Closed; 2 * along * around
-/// triangles; smooth normals; uv.
+/// A tube around the (p, q) torus knot (x = (2 + cos qt) cos pt, z = (2 + cos qt) sin pt, y = sin
+/// qt; a classic curve), its section a circle whose radius swells in `lobes` spiralling ridges.
+/// Closed; 2 * along * around triangles; smooth normals; uv.
 struct KnotShape {
   int p = 2;
   int q = 3;
   float radius = 0.45F;
   int lobes = 0;
-  float ridge = 0.0F;   ///< relative height of the ridges
-  int twist = 0;        ///< turns of the ridges along the knot
+  float ridge = 0.0F;  ///< relative height of the ridges
+  int twist = 0;       ///< turns of the ridges along the knot
   int along = 400;
   int around = 48;
 };
 Mesh make_knot(const KnotShape& shape);
 
-/// The surface of revolution around y of a profile of (radius, y) points, a closed loop from axis to axis or
-/// around; smoothed by a Catmull-Rom curve. Normals point to the right of the profile's direction.
+/// The surface of revolution around y of a profile of (radius, y) points, a closed loop from axis
+/// to axis or around; smoothed by a Catmull-Rom curve. Normals point to the right of the profile's
+/// direction.
 Mesh make_lathe(const std::vector<Vec2>& profile, int steps_per_span, int around);
 
 }  // namespace hyades::gallery

@@ -4,9 +4,9 @@
 
 namespace hyades::gallery {
 
-/// An evening sky as a lat-long map (width x width/2): a warm glow around a low sun, blue above, a bank of
-/// clouds from fractal noise lit from the sun's side, dark ground below the horizon. Angles in radians; azimuth
-/// counted as the environment look-up counts it (u = azimuth / 2pi + 0.5).
+/// An evening sky as a lat-long map (width x width/2): a warm glow around a low sun, blue above, a
+/// bank of clouds from fractal noise lit from the sun's side, dark ground below the horizon. Angles
+/// in radians; azimuth counted as the environment look-up counts it (u = azimuth / 2pi + 0.5).
 struct SkyShape {
   int width = 512;
   float sun_elevation = 0.2F;

@@ -82,13 +82,16 @@ class EqualBits : public testing::TestWithParam<NamedScene> {};
 
 TEST_P(EqualBits, WhateverThreadsTilesOrder) {
   const YamlScene scene(GetParam().yaml, 1, {.depth = true, .albedo = true, .normal = true});
-  const core::RenderedFrame first = scene.render({.threads = 1, .tile_size = 32, .batches_per_unit = 4});
+  const core::RenderedFrame first =
+      scene.render({.threads = 1, .tile_size = 32, .batches_per_unit = 4});
   EXPECT_EQ(first.counters.bad_samples, 0U);
   const std::string digest = first.film.digest();
   for (const int threads : {2, 7}) {
     for (const int tile : {8, 32, 57}) {
-      const auto again = scene.render(
-          {.threads = threads, .tile_size = tile, .batches_per_unit = tile == 8 ? 1U : 2U, .shuffle = true});
+      const auto again = scene.render({.threads = threads,
+                                       .tile_size = tile,
+                                       .batches_per_unit = tile == 8 ? 1U : 2U,
+                                       .shuffle = true});
       EXPECT_EQ(again.film.digest(), digest) << threads << " threads, tiles of " << tile;
     }
   }
@@ -102,7 +105,8 @@ TEST_P(EqualBits, WhateverTheCrop) {
                                        {.threads = 2, .tile_size = 11});
   for (int y = crop.y0; y < crop.y1; ++y) {
     for (int x = crop.x0; x < crop.x1; ++x) {
-      for (int c = 0; c < 4; ++c) ASSERT_EQ(part.film.sum(x, y, c), whole.film.sum(x, y, c)) << x << "," << y;
+      for (int c = 0; c < 4; ++c)
+        ASSERT_EQ(part.film.sum(x, y, c), whole.film.sum(x, y, c)) << x << "," << y;
     }
   }
 }
@@ -111,7 +115,8 @@ TEST_P(EqualBits, OtherSeedOtherBits) {
   // Shows that the digest sees the pixels at all.
   std::string other = GetParam().yaml;
   other.replace(other.find("seed: "), 7, "seed: 8");
-  EXPECT_NE(YamlScene(other).render().film.digest(), YamlScene(GetParam().yaml).render().film.digest());
+  EXPECT_NE(YamlScene(other).render().film.digest(),
+            YamlScene(GetParam().yaml).render().film.digest());
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, EqualBits, testing::ValuesIn(kScenes),

@@ -23,7 +23,8 @@ YamlScene::YamlScene(const std::string& yaml, int32_t frame, const core::LayerSe
 }
 
 core::RenderedFrame YamlScene::render(const core::RenderFrameOptions& options) const {
-  return core::render_frame(*renderer_, core::render_window(job_.film), job_.sampling.samples, frame_, options);
+  return core::render_frame(*renderer_, core::render_window(job_.film), job_.sampling.samples,
+                            frame_, options);
 }
 
 PictureMean picture_mean(const core::Film& film) {

@@ -10,8 +10,8 @@
 
 namespace hyades::test {
 
-/// A job written in a test, its scene at one frame, ready to render. Fails the test (and throws) where the job has
-/// mistakes. References to files are relative to `folder`.
+/// A job written in a test, its scene at one frame, ready to render. Fails the test (and throws)
+/// where the job has mistakes. References to files are relative to `folder`.
 class YamlScene {
  public:
   explicit YamlScene(const std::string& yaml, int32_t frame = 1, const core::LayerSet& layers = {},
@@ -32,8 +32,8 @@ class YamlScene {
   int32_t frame_;
 };
 
-/// Mean and standard error of the mean of each channel of a film's beauty over all its pixels, from the pixels' own
-/// variances (independent noise).
+/// Mean and standard error of the mean of each channel of a film's beauty over all its pixels, from
+/// the pixels' own variances (independent noise).
 struct PictureMean {
   core::Vec3d mean{0.0};
   core::Vec3d sigma{0.0};
