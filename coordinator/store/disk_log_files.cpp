@@ -159,6 +159,13 @@ class DiskFiles final : public LogFiles {
         std::make_unique<DiskReader>(path, fd, static_cast<uint64_t>(info.st_size)));
   }
 
+  Status sync_file(const std::string& path) override {
+    const Handle handle(open_retrying(path, O_RDONLY));
+    if (handle.fd() < 0) return failed("open", path, errno);
+    if (::fsync(handle.fd()) != 0) return failed("sync", path, errno);
+    return {};
+  }
+
   Status rename(const std::string& from, const std::string& to) override {
     if (::rename(from.c_str(), to.c_str()) != 0) return failed("rename to", to, errno);
     return {};

@@ -85,6 +85,12 @@ Result<ReplayReport> FilmLog::replay(const Visitor& visitor) {
   // What cannot be read now may yet be read after a repair: it goes only with a snapshot that
   // stands for all that has been appended by now.
   for (const size_t i : damaged) segments_[i].last_sequence = state.last_sequence;
+  // After kill -9 some of what was read may still be on its way to the disk, and a
+  // snapshot's name too, before what it replaces is removed.
+  for (const Segment& segment : segments_) {
+    if (Status s = files_.sync_file(path(segment.name)); !s) return s.error();
+  }
+  if (Status s = files_.sync_folder(folder_); !s) return s.error();
   // A compaction may have been interrupted before it removed what it replaced.
   if (newest) {
     const uint64_t index = found[*newest].index;

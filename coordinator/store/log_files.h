@@ -55,6 +55,9 @@ class LogFiles {
   virtual core::Result<std::unique_ptr<LogWriter>> create(const std::string& path) = 0;
   virtual core::Result<std::unique_ptr<LogReader>> open(const std::string& path) = 0;
 
+  /// Makes durable what any process wrote to the file.
+  virtual core::Status sync_file(const std::string& path) = 0;
+
   /// Takes the place of what `to` named.
   virtual core::Status rename(const std::string& from, const std::string& to) = 0;
   virtual core::Status remove(const std::string& path) = 0;

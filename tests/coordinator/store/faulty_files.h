@@ -22,6 +22,7 @@ class FaultyFiles final : public LogFiles {
   struct File {
     std::vector<std::byte> bytes;
     std::vector<std::byte> durable;
+    bool lost = false;  ///< a sync failed: the kernel takes its pages for clean from now on
   };
   using Names = std::map<std::string, std::shared_ptr<File>>;
 
@@ -31,11 +32,20 @@ class FaultyFiles final : public LogFiles {
   void fail_next_sync() { fail_sync_ = true; }
   /// The next write stores only this many bytes, then fails.
   void fail_next_write_after(size_t bytes) { write_budget_ = bytes; }
+  /// The next truncation fails.
+  void fail_next_truncate() { fail_truncate_ = true; }
   /// All files together may hold this many bytes.
   void set_capacity(uint64_t bytes) { capacity_ = bytes; }
 
   uint64_t operations() const { return operations_; }
   uint64_t syncs() const { return syncs_; }
+
+  /// The process was killed, the machine goes on: nothing that was written is lost.
+  void kill() {
+    const std::lock_guard<std::mutex> hold(mutex_);
+    locks_.clear();
+    fail_from_ = UINT64_MAX;
+  }
 
   /// The power fails: every name and every byte that was not synced is kept or lost by chance; torn
   /// tails may hold zeros. Locks are gone.
@@ -60,7 +70,7 @@ class FaultyFiles final : public LogFiles {
           kept.push_back(i < zeros_from ? file->bytes[file->durable.size() + i] : std::byte{0});
         }
       }
-      file = std::make_shared<File>(File{kept, kept});
+      file = std::make_shared<File>(File{kept, kept, false});
     }
     names_ = durable_names_ = after;
     locks_.clear();
@@ -112,6 +122,14 @@ class FaultyFiles final : public LogFiles {
     return std::unique_ptr<LogReader>(std::make_unique<Reader>(found->second->bytes));
   }
 
+  core::Status sync_file(const std::string& path) override {
+    const std::lock_guard<std::mutex> hold(mutex_);
+    if (core::Status s = operate(); !s) return s;
+    File& file = *names_.at(path);
+    if (!file.lost) file.durable = file.bytes;
+    return {};
+  }
+
   core::Status rename(const std::string& from, const std::string& to) override {
     const std::lock_guard<std::mutex> hold(mutex_);
     if (core::Status s = operate(); !s) return s;
@@ -131,6 +149,7 @@ class FaultyFiles final : public LogFiles {
   core::Status truncate(const std::string& path, uint64_t size) override {
     const std::lock_guard<std::mutex> hold(mutex_);
     if (core::Status s = operate(); !s) return s;
+    if (std::exchange(fail_truncate_, false)) return core::Error{"input/output error"};
     File& file = *names_.at(path);
     file.bytes.resize(std::min<size_t>(file.bytes.size(), size));
     file.durable.resize(std::min<size_t>(file.durable.size(), size));
@@ -153,7 +172,7 @@ class FaultyFiles final : public LogFiles {
       const std::lock_guard<std::mutex> hold(files_.mutex_);
       if (core::Status s = files_.operate(); !s) {
         // The power goes while it writes: some of it may have reached the disk.
-        if (!std::exchange(lost_, true)) take(bytes, bytes.size() / 2);
+        if (!std::exchange(dead_, true)) take(bytes, bytes.size() / 2);
         return s;
       }
       uint64_t used = 0;
@@ -169,11 +188,11 @@ class FaultyFiles final : public LogFiles {
       const std::lock_guard<std::mutex> hold(files_.mutex_);
       if (core::Status s = files_.operate(); !s) return s;
       if (std::exchange(files_.fail_sync_, false)) {
-        lost_ = true;  // the kernel has marked the pages clean: later syncs say yes
+        file_->lost = true;  // later syncs say yes
         return core::Error{"input/output error"};
       }
       ++files_.syncs_;
-      if (!lost_) file_->durable = file_->bytes;
+      if (!file_->lost) file_->durable = file_->bytes;
       return {};
     }
 
@@ -184,7 +203,7 @@ class FaultyFiles final : public LogFiles {
     }
     FaultyFiles& files_;
     std::shared_ptr<File> file_;
-    bool lost_ = false;
+    bool dead_ = false;
   };
 
   class Reader final : public LogReader {
@@ -231,6 +250,7 @@ class FaultyFiles final : public LogFiles {
   uint64_t capacity_ = UINT64_MAX;
   size_t write_budget_ = SIZE_MAX;
   bool fail_sync_ = false;
+  bool fail_truncate_ = false;
 };
 
 }  // namespace hyades::coordinator
