@@ -27,8 +27,10 @@ constexpr size_t kSharedTriangles = size_t{1} << 14;
 constexpr unsigned kAllRays = 0xFFFFFFFFU;
 
 unsigned mask_of(const Placement& p) {
-  const auto other = static_cast<unsigned>(RayKind::other);
-  return p.visible_to_camera ? other | static_cast<unsigned>(RayKind::camera) : other;
+  auto mask = static_cast<unsigned>(RayKind::other);
+  if (p.visible_to_camera) mask |= static_cast<unsigned>(RayKind::camera);
+  if (p.blocks_light) mask |= static_cast<unsigned>(RayKind::shadow);
+  return mask;
 }
 
 size_t triangle_count(const Placement& p) {
@@ -144,7 +146,8 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements) {
 bool same(const Placement& a, const Placement& b) {
   return a.shape.kind == b.shape.kind && a.shape.mesh == b.shape.mesh &&
          a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
-         a.to_world == b.to_world && a.visible_to_camera == b.visible_to_camera;
+         a.to_world == b.to_world && a.visible_to_camera == b.visible_to_camera &&
+         a.blocks_light == b.blocks_light;
 }
 
 /// Makes the object of a placement in world space.

@@ -91,7 +91,7 @@ std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
 
 bool EmbreeWorld::occluded(const Ray& ray) const {
   if (!usable(ray)) return false;
-  RTCRay query = to_embree(ray, RayKind::other);
+  RTCRay query = to_embree(ray, RayKind::shadow);
   trace_any(scene_, query);
   return query.tfar < 0.0F;
 }

@@ -13,7 +13,7 @@
 namespace hyades::core {
 
 /// Which rays a placement is seen by.
-enum class RayKind : uint32_t { camera = 1, other = 2 };
+enum class RayKind : uint32_t { camera = 1, other = 2, shadow = 4 };
 
 /// A shape put into the world.
 struct Placement {
@@ -22,6 +22,7 @@ struct Placement {
   /// interpolated linearly, element by element, between neighbours.
   std::vector<Mat4> to_world{Mat4(1.0F)};
   bool visible_to_camera = true;
+  bool blocks_light = true;  ///< false: occluded() looks through it (null materials)
   /// Whether neighbouring frames place it elsewhere or shape it otherwise: such placements are kept
   /// apart from the geometry that frames share. Decided by the job alone, never by which frames
   /// were built before, so that a frame's bits do not depend on them.
@@ -61,7 +62,7 @@ class World {
   /// The nearest surface on the ray, or nothing.
   virtual std::optional<Hit> intersect(const Ray& ray, RayKind kind) const = 0;
 
-  /// Whether anything lies on the ray.
+  /// Whether anything that blocks light lies on the ray.
   virtual bool occluded(const Ray& ray) const = 0;
 
   /// Everything about the point that `ray` hit.

@@ -29,7 +29,10 @@ class LightSelector {
   virtual float probability(const Vec3& from, const Vec3& normal, uint32_t light) const = 0;
 };
 
-/// In proportion to power; lights of unknown (zero) power are never chosen.
+/// Finite lights in proportion to their power, infinite ones likewise, and either kind half of the
+/// time where both are there: the power of a sky grows with the world's size (a wide ground would
+/// starve the lamps), so the two kinds' powers cannot be compared. Lights of zero power are never
+/// chosen.
 std::unique_ptr<LightSelector> make_power_selector(const std::vector<LightPtr>& lights);
 
 }  // namespace hyades::core

@@ -30,13 +30,20 @@ class PowerSelector : public LightSelector {
 }  // namespace
 
 std::unique_ptr<LightSelector> make_power_selector(const std::vector<LightPtr>& lights) {
-  std::vector<float> powers;
-  powers.reserve(lights.size());
+  std::vector<double> powers;
+  double total[2] = {0.0, 0.0};  // of finite and of infinite lights
   for (const LightPtr& light : lights) {
     // A power beyond float still has to be chosen.
-    powers.push_back(std::min(light->power(), 1e37F));
+    powers.push_back(static_cast<double>(std::min(light->power(), 1e37F)));
+    total[light->is_infinite() ? 1 : 0] += powers.back();
   }
-  return std::make_unique<PowerSelector>(powers);
+  std::vector<float> weights;
+  weights.reserve(lights.size());
+  for (size_t i = 0; i < lights.size(); ++i) {
+    const double kind = total[lights[i]->is_infinite() ? 1 : 0];
+    weights.push_back(kind > 0.0 ? static_cast<float>(powers[i] / kind) : 0.0F);
+  }
+  return std::make_unique<PowerSelector>(weights);
 }
 
 }  // namespace hyades::core

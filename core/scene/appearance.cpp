@@ -9,7 +9,8 @@ constexpr int kMaxReferenceDepth = 64;
 
 template <class Desc>
 const Desc* find_named(const std::vector<Desc>& list, const std::string& name) {
-  const auto it = std::find_if(list.begin(), list.end(), [&](const Desc& d) { return d.name == name; });
+  const auto it =
+      std::find_if(list.begin(), list.end(), [&](const Desc& d) { return d.name == name; });
   return it == list.end() ? nullptr : &*it;
 }
 
@@ -57,9 +58,10 @@ Result<TexturePtr> Appearance::make_texture(const TextureDesc& desc) {
   if (desc.type == "image") {
     auto image = cache_.image(desc.file, color_space(desc.color_space));
     if (!image) return image.error();
-    return make_image_texture(*image, wrap_mode(desc.wrap),
-                              desc.filter == "nearest" ? TextureFilter::nearest : TextureFilter::bilinear,
-                              Vec2(scale), Vec2(offset));
+    return make_image_texture(
+        *image, wrap_mode(desc.wrap),
+        desc.filter == "nearest" ? TextureFilter::nearest : TextureFilter::bilinear, Vec2(scale),
+        Vec2(offset));
   }
   auto a = color_texture(desc.a);
   if (!a) return a;

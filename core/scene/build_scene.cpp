@@ -11,9 +11,11 @@ namespace hyades::core {
 namespace {
 
 constexpr float kRadians = kPi / 180.0F;
-constexpr float kSensorHeight = 0.024F;  // m, the short side of a 35 mm frame: what f-stops refer to
+constexpr float kSensorHeight =
+    0.024F;  // m, the short side of a 35 mm frame: what f-stops refer to
 
-/// How far the world reaches from the middle of its bounds: infinite lights weigh their power by it.
+/// How far the world reaches from the middle of its bounds: infinite lights weigh their power by
+/// it.
 float world_radius(const World& world) {
   const Bounds bounds = world.bounds();
   return bounds.empty() ? 1.0F : 0.5F * std::sqrt(glm::dot(bounds.size(), bounds.size()));
@@ -22,7 +24,11 @@ float world_radius(const World& world) {
 class SceneBuilder {
  public:
   SceneBuilder(const Job& job, int32_t frame, SceneCache& cache)
-      : job_(job), frame_(frame), time_(job.time_of(frame)), cache_(cache), looks_(job, time_, cache) {}
+      : job_(job),
+        frame_(frame),
+        time_(job.time_of(frame)),
+        cache_(cache),
+        looks_(job, time_, cache) {}
 
   Result<std::shared_ptr<const Scene>> build() {
     if (auto done = add_objects(); !done) return done.error();
@@ -41,18 +47,20 @@ class SceneBuilder {
     if (!flat) return flat.error();
     std::vector<Placement> placements;
     placements.reserve(flat->size());
-    for (const FlatObject& object : *flat) placements.push_back(object.placement);
+    for (const FlatObject& object : *flat) {
+      auto material = looks_.material(object.material);
+      if (!material) return material.error().in("object '" + object.name + "'");
+      scene_->objects.push_back({*material, SceneObject::kNoLight, object.name});
+      placements.push_back(object.placement);
+      placements.back().blocks_light = !(*material)->is_null();
+      if (object.placement.shape.mesh)
+        scene_->triangles += object.placement.shape.mesh->triangles.size();
+    }
     auto world = cache_.world(std::move(placements));
     if (!world) return world.error();
     scene_->world = *world;
     for (uint32_t i = 0; i < flat->size(); ++i) {
-      const FlatObject& object = (*flat)[i];
-      auto material = looks_.material(object.material);
-      if (!material) return material.error().in("object '" + object.name + "'");
-      SceneObject entry{*material, SceneObject::kNoLight, object.name};
-      if (object.emit) entry.light = add_emitter(i, *object.emit);
-      scene_->objects.push_back(std::move(entry));
-      if (object.placement.shape.mesh) scene_->triangles += object.placement.shape.mesh->triangles.size();
+      if ((*flat)[i].emit) scene_->objects[i].light = add_emitter(i, *(*flat)[i].emit);
     }
     return {};
   }
@@ -78,8 +86,8 @@ class SceneBuilder {
       const Rgb color = light.color.at(time_);
       if (light.type == "sun") {
         add_light(make_sun_light(unit(light.direction.at(time_), {0.0F, -1.0F, 0.0F}),
-                                 color * light.irradiance.at(time_), light.angle.at(time_) * kRadians,
-                                 world_radius(*scene_->world)));
+                                 color * light.irradiance.at(time_),
+                                 light.angle.at(time_) * kRadians, world_radius(*scene_->world)));
         continue;
       }
       const Vec3 at = light.at.at(time_) * job_.units;
@@ -90,9 +98,11 @@ class SceneBuilder {
         const Vec3 towards = light.look_at.at(time_) * job_.units - at;
         const float outer = light.angle.at(time_) * kRadians;
         const float inner = outer * (1.0F - light.blend.at(time_));
-        add_light(make_spot_light(at, unit(towards, {0.0F, -1.0F, 0.0F}), power, cos(inner), cos(outer)));
+        add_light(
+            make_spot_light(at, unit(towards, {0.0F, -1.0F, 0.0F}), power, cos(inner), cos(outer)));
       } else {
-        return Error{"light '" + light.name + "': there is no kind of light called '" + light.type + "'"};
+        return Error{"light '" + light.name + "': there is no kind of light called '" + light.type +
+                     "'"};
       }
     }
     return {};
@@ -137,7 +147,8 @@ class SceneBuilder {
     pose.fov = camera.fov.at(time) * kRadians;
     const Vec3 axis = unit(pose.at - pose.from, {0.0F, 0.0F, -1.0F});
     if (!camera.focus_object.empty()) {
-      pose.focus_distance = glm::dot(center_of(camera.focus_object, shutter_time) - pose.from, axis);
+      pose.focus_distance =
+          glm::dot(center_of(camera.focus_object, shutter_time) - pose.from, axis);
     } else if (camera.focus_distance) {
       pose.focus_distance = camera.focus_distance->at(time) * job_.units;
     } else {
@@ -162,9 +173,10 @@ class SceneBuilder {
       const Bounds local = bounds_of(scene_->world->placement(i).shape);
       const Mat4 to_world = scene_->world->transform_at(i, shutter_time);
       for (int corner = 0; corner < 8; ++corner) {
-        bounds.include(transform_point(to_world, {(corner & 1) != 0 ? local.upper.x : local.lower.x,
-                                                  (corner & 2) != 0 ? local.upper.y : local.lower.y,
-                                                  (corner & 4) != 0 ? local.upper.z : local.lower.z}));
+        bounds.include(
+            transform_point(to_world, {(corner & 1) != 0 ? local.upper.x : local.lower.x,
+                                       (corner & 2) != 0 ? local.upper.y : local.lower.y,
+                                       (corner & 4) != 0 ? local.upper.z : local.lower.z}));
       }
     }
     return bounds.empty() ? Vec3(0.0F) : bounds.center();

@@ -37,14 +37,16 @@ class Flattener {
     const bool visible = parent_visible && object.visible_to_camera;
     if (object.shape == "group") return add_all(object.children, name + "/", material, visible);
     if (object.shape == "instance") {
-      const auto group = std::find_if(job_.groups.begin(), job_.groups.end(), [&](const GroupDesc& g) {
-        return g.name == object.instance_of;
-      });
-      if (group == job_.groups.end()) return Error{"there is no group '" + object.instance_of + "'"};
+      const auto group =
+          std::find_if(job_.groups.begin(), job_.groups.end(),
+                       [&](const GroupDesc& g) { return g.name == object.instance_of; });
+      if (group == job_.groups.end())
+        return Error{"there is no group '" + object.instance_of + "'"};
       return add_all(group->objects, name + "/", material, visible);
     }
     if (flat_.size() >= kMaxPlacements) {
-      return Error{"groups and instances make more than " + std::to_string(kMaxPlacements) + " objects"};
+      return Error{"groups and instances make more than " + std::to_string(kMaxPlacements) +
+                   " objects"};
     }
     auto shape = make_shape(object);
     if (!shape) return shape.error().in("object '" + name + "'");
@@ -54,8 +56,8 @@ class Flattener {
     flat.emit = object.emit;
     flat.placement.shape = *shape;
     flat.placement.visible_to_camera = visible;
-    flat.placement.to_world = shutter_matrices(
-        job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
+    flat.placement.to_world =
+        shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
     flat_.push_back(std::move(flat));
     if (object.shape == "cylinder" && object.caps) add_caps(object, name, material, visible);
     return {};
@@ -89,7 +91,8 @@ class Flattener {
   Mat4 chain_matrix(const JobTime& time) const {
     Mat4 m(1.0F);
     for (int i = 0; i < 3; ++i) m[i][i] = job_.units;
-    for (const ObjectDesc* object : chain_) m = m * transform_at(object->transform, object->at, time);
+    for (const ObjectDesc* object : chain_)
+      m = m * transform_at(object->transform, object->at, time);
     return m;
   }
 
@@ -105,7 +108,10 @@ class Flattener {
       shape.kind = Shape::Kind::cylinder;
     } else if (object.shape == "rectangle") {
       shape.mesh = cache_.made_mesh(
-          size_key("rectangle", object.size), [](const Vec3& s) { return make_rectangle({s.x, s.y}); },
+          size_key("rectangle", object.size),
+          [](const Vec3& s) {
+            return make_rectangle({s.x, s.y});
+          },
           object.size);
     } else if (object.shape == "box") {
       shape.mesh = cache_.made_mesh(

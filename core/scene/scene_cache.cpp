@@ -6,7 +6,8 @@ namespace {
 bool same_placement(const Placement& a, const Placement& b) {
   return a.shape.kind == b.shape.kind && a.shape.mesh == b.shape.mesh &&
          a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
-         a.visible_to_camera == b.visible_to_camera && a.to_world == b.to_world;
+         a.visible_to_camera == b.visible_to_camera && a.blocks_light == b.blocks_light &&
+         a.to_world == b.to_world;
 }
 
 bool same_placements(const std::vector<Placement>& a, const std::vector<Placement>& b) {

@@ -32,7 +32,8 @@ Mat4 translation(const Vec3& offset) {
 Mat4 step_matrix(const TransformStep& step, const JobTime& time) {
   using Kind = TransformStep::Kind;
   switch (step.kind) {
-    case Kind::translate: return translation(step.vector.at(time));
+    case Kind::translate:
+      return translation(step.vector.at(time));
     case Kind::scale: {
       const Vec3 s = step.vector.at(time);
       Mat4 m(1.0F);
@@ -41,11 +42,16 @@ Mat4 step_matrix(const TransformStep& step, const JobTime& time) {
       m[2].z = s.z;
       return m;
     }
-    case Kind::rotate_x: return rotation({1.0F, 0.0F, 0.0F}, step.angle.at(time));
-    case Kind::rotate_y: return rotation({0.0F, 1.0F, 0.0F}, step.angle.at(time));
-    case Kind::rotate_z: return rotation({0.0F, 0.0F, 1.0F}, step.angle.at(time));
-    case Kind::rotate: return rotation(step.vector.at(time), step.angle.at(time));
-    case Kind::matrix: return step.matrix;
+    case Kind::rotate_x:
+      return rotation({1.0F, 0.0F, 0.0F}, step.angle.at(time));
+    case Kind::rotate_y:
+      return rotation({0.0F, 1.0F, 0.0F}, step.angle.at(time));
+    case Kind::rotate_z:
+      return rotation({0.0F, 0.0F, 1.0F}, step.angle.at(time));
+    case Kind::rotate:
+      return rotation(step.vector.at(time), step.angle.at(time));
+    case Kind::matrix:
+      return step.matrix;
   }
   return Mat4(1.0F);
 }

@@ -52,6 +52,17 @@ TEST(PowerSelector, ChoosesInProportionToPower) {
   expect_consistent(*selector, 4);
 }
 
+TEST(PowerSelector, SharesHalfAndHalfBetweenLampsAndSky) {
+  // However large the world makes the power of the sky, the lamps keep their half.
+  std::vector<LightPtr> lights = lights_of({1.0F, 3.0F});
+  lights.push_back(make_environment_light(nullptr, 0.0F, Rgb(1.0F), 1e5F));
+  const auto selector = make_power_selector(lights);
+  EXPECT_NEAR(selector->probability({}, {}, 0), 0.125F, 1e-6F);
+  EXPECT_NEAR(selector->probability({}, {}, 1), 0.375F, 1e-6F);
+  EXPECT_NEAR(selector->probability({}, {}, 2), 0.5F, 1e-6F);
+  expect_consistent(*selector, 3);
+}
+
 TEST(PowerSelector, IsConsistentForManyLightsOfAllSizes) {
   std::vector<float> powers;
   test::Random random(23);
