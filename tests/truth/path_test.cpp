@@ -54,11 +54,15 @@ materials:
   thin: {type: thin-dielectric, ior: 1.4}
 objects:
   ball: {shape: sphere, radius: 0.9, at: [-0.4, 0, 0], material: glass}
-  block: {shape: box, size: [0.8, 0.9, 0.7], material: glass, at: [0.5, 0.2, 1], transform: [{rotate_y: 33}, {rotate_x: 20}]}
+  block: {shape: box, size: [0.8, 0.9, 0.7], material: glass, at: [0.9, 0.9, 0.8], transform: [{rotate_y: 33}, {rotate_x: 20}]}
   pane: {shape: rectangle, size: [1, 1], material: thin, at: [0.6, -0.5, 2], transform: [{rotate_x: 70}]}
 environment: {color: 1}
 )";
-  EXPECT_TRUE(mean_is(over_seeds(glass, 12), 1.0, {.relative_error = 0.005}));
+  // Every path that leaves brings exactly 1 but for rounding, so there is next to no noise to hide
+  // an error in.
+  const Moments mean = over_seeds(glass, 12);
+  EXPECT_NEAR(mean.mean(), 1.0, 1e-4);
+  EXPECT_LT(mean.variance_of_mean(), 1e-10);
 }
 
 TEST(Path, RouletteDoesNotBias) {
@@ -66,7 +70,7 @@ TEST(Path, RouletteDoesNotBias) {
     return kRoom + kLamp + "integrator: {type: path, max_depth: 64, roulette_depth: " + roulette +
            "}\n";
   };
-  EXPECT_TRUE(means_agree(over_seeds(with("1"), 40), over_seeds(with("64"), 40)));
+  EXPECT_TRUE(means_agree(over_seeds(with("1"), 75), over_seeds(with("64"), 75)));
 }
 
 // The camera's rays, shadow rays and bounces all pass a null surface as if it were not there.
@@ -77,7 +81,7 @@ TEST(Path, NullSurfacesAreNotThere) {
   std::string with_null = kRoom;
   with_null.insert(with_null.find("  black:"), "  nothing: {type: 'null'}\n");
   EXPECT_TRUE(
-      means_agree(over_seeds(with_null + kLamp + shell, 40), over_seeds(kRoom + kLamp, 40)));
+      means_agree(over_seeds(with_null + kLamp + shell, 75), over_seeds(kRoom + kLamp, 75)));
 }
 
 // T14: how a light's power is spread over lights changes the noise, not the picture.
@@ -93,7 +97,7 @@ TEST(Path, SplitLightsGiveTheSamePicture) {
       "10}}\n"
       "lights:\n"
       "  a: {type: point, at: [-0.5, 1.5, 0.5], power: 12}\n";
-  EXPECT_TRUE(means_agree(over_seeds(kRoom + halves, 50), over_seeds(kRoom + whole, 50)));
+  EXPECT_TRUE(means_agree(over_seeds(kRoom + halves, 75), over_seeds(kRoom + whole, 75)));
 }
 
 TEST(Path, DepthZeroShowsLightsOnly) {
@@ -104,8 +108,9 @@ TEST(Path, DepthZeroShowsLightsOnly) {
   for (int y = 0; y < picture.height; ++y) {
     for (int x = 0; x < picture.width; ++x) {
       brightest = std::max(brightest, picture.at(x, y, 0));
-      if (picture.at(x, y, 0) > 0.0F)
+      if (picture.at(x, y, 0) > 0.0F) {
         EXPECT_LT(y, 16) << "only the lamp, in the upper half, may shine";
+      }
     }
   }
   EXPECT_FLOAT_EQ(brightest, 10.0F);
