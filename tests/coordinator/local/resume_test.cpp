@@ -210,9 +210,12 @@ TEST(Resume, KilledAtRandomAgainAndAgain) {
       render.unit_delay = milliseconds(3);
       LocalLog log = log_in(folder.file("log"), true);
       log.compact_bytes = 20'000;
-      LocalRun run(plan, log, render, sink);
-      if (!run.start() || !run.wait_for(kLong) || !run.outcome().complete) ::_exit(1);
-      ::_exit(0);
+      bool ended = false;
+      {
+        LocalRun run(plan, log, render, sink);
+        ended = run.start().ok() && run.wait_for(kLong) && run.outcome().complete;
+      }
+      ::_exit(ended ? 0 : 1);
     }
     // Later kills come later, so that a slow machine gets on as well.
     const int longest = 40'000 + kills * 4'000;
