@@ -186,6 +186,7 @@ bool Scheduler::grant_from(JobState& job, WorkerId id, Worker& worker) {
       note_copy_candidate(job, index, slot.books->assign(*extent, {id, next}, next_assignment_++));
       extents.push_back(*extent);
     }
+    if (extents.empty()) continue;
     slot.worker_class = worker.worker_class;
     worker.wanted -= static_cast<uint32_t>(extents.size());
     new_lease(id, worker, job, index, false, std::move(extents));
