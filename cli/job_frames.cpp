@@ -72,7 +72,8 @@ core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
       return written;
   }
   if (!options_.write_films) return {};
-  return core::write_film_exr(film_path(frame), {info, film}, metadata);
+  // The film's own header says all that `metadata` does.
+  return core::write_film_exr(film_path(frame), {info, film});
 }
 
 bool JobFrames::outputs_exist(int32_t frame) {

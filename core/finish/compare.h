@@ -51,7 +51,8 @@ struct BlockDifference {
 /// difference over its standard deviation follows Student's t, with as many degrees of freedom as
 /// the two variances have batches behind them (Welch 1947; the normal distribution where no layer
 /// "samples" says so). Assumes batch sums that are about normal: rare bright samples (fireflies)
-/// make single pixels fail; blocks forgive more.
+/// make single pixels fail; blocks forgive more. Batches of Sobol points fill each other's gaps, so
+/// their variance is an upper bound and the test lenient.
 struct ZTest {
   size_t tests = 0;            ///< pixels (or blocks) times channels with a variance
   double share_above_3 = 0.0;  ///< beyond three sigma; expected: 0.0027
