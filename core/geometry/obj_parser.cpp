@@ -53,7 +53,7 @@ enum class Keyword { other, position, uv, normal, face };
 
 Keyword keyword_at(const char*& at, const char* end) {
   while (at < end && (*at == ' ' || *at == '\t')) ++at;
-  const auto blank = [&](size_t i) { return at + i < end && is_space(at[i]); };
+  const auto blank = [&](size_t i) { return at + i >= end || is_space(at[i]); };
   if (at >= end) return Keyword::other;
   if (*at == 'f' && blank(1)) return at += 1, Keyword::face;
   if (*at != 'v') return Keyword::other;
