@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <random>
 #include <set>
 #include <tuple>
@@ -193,14 +193,14 @@ TEST(Coverage, HostileBoxesAreRefusedAtOnce) {
     columns.push_back(box(i, 0, 100000, 1, static_cast<uint32_t>(i) * 2, 1));
     stairs.push_back(box(i, i, i + 1, 100000, 0, 1));
   }
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   EXPECT_FALSE(Coverage::from_canonical(columns).ok());
   EXPECT_FALSE(Coverage::from_canonical(stairs).ok());
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(3));
+  EXPECT_LT(std::clock() - start, 5 * CLOCKS_PER_SEC);
 }
 
 /// A 1080p frame in tiles of 32 x 32 whose batches arrive one by one in random order. It takes
-/// some 50 ms; quadratic joining took a hundred times longer.
+/// some 90 ms of processor time.
 TEST(Coverage, ThirtyThousandBoxesInRandomOrderAreCheap) {
   std::mt19937 random(5);
   std::vector<CoverageBox> pieces;
@@ -212,7 +212,7 @@ TEST(Coverage, ThirtyThousandBoxesInRandomOrderAreCheap) {
     }
   }
   std::shuffle(pieces.begin(), pieces.end(), random);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   Coverage c;
   size_t most = 0;
   for (const CoverageBox& b : pieces) {
@@ -220,13 +220,14 @@ TEST(Coverage, ThirtyThousandBoxesInRandomOrderAreCheap) {
     c.add(b);
     most = std::max(most, c.boxes().size());
   }
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   RecordProperty("milliseconds", static_cast<int>(seconds * 1000));
   RecordProperty("most_boxes", static_cast<int>(most));
   EXPECT_EQ(c.canonical(), std::vector{box(0, 0, 1920, 1080, 0, 64)});
   EXPECT_LT(c.boxes().size(), 400U);
-  EXPECT_LT(seconds, 5.0);
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  EXPECT_LT(seconds, 1.0);
+#endif
 }
 
 }  // namespace

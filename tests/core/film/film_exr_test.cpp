@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -272,23 +271,6 @@ TEST_F(FilmExr, RefusalsNameTheReason) {
               f.film = render(make_film_layout({}), {50, 30, 60, 40}, {0, 2}, 200);
             }).find("different layers"),
             std::string::npos);
-}
-
-/// The figures are in the test's report; the limit only catches what goes wrong by far.
-TEST_F(FilmExr, WritingAndReadingAreQuick) {
-  const FilmLayout layout = make_film_layout({});
-  FilmFile file{info(), render(layout, {0, 0, 256, 256}, {0, 4})};
-  file.info.width = file.info.height = 256;
-  file.info.crop = {0, 0, 256, 256};
-  const auto start = std::chrono::steady_clock::now();
-  ASSERT_TRUE(write_film_exr(path("a.exr"), file).ok());
-  const auto written = std::chrono::steady_clock::now();
-  ASSERT_TRUE(read_film_exr(path("a.exr")).ok());
-  const auto read = std::chrono::steady_clock::now();
-  RecordProperty("write_us", static_cast<int>((written - start).count() / 1000));
-  RecordProperty("read_us", static_cast<int>((read - written).count() / 1000));
-  RecordProperty("bytes", static_cast<int>(fs::file_size(path("a.exr"))));
-  EXPECT_LT(read - start, std::chrono::seconds(5));
 }
 
 }  // namespace
