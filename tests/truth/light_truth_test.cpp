@@ -202,7 +202,7 @@ TEST(LightTruth, BoxByItsVisibleFace) {
   const YamlScene scene =
       plane_under(with_plane("  lamp: {shape: box, size: [0.4, 0.2, 0.6], material: lamp, at: [0, "
                              "0.9, 0], emit: {radiance: 4}}\n"),
-                  5000);
+                  6000);
   expect_picture_mean(scene, lit(Vec3d(4.0 * rectangle_irradiance(-0.2, 0.2, -0.3, 0.3, 0.8))));
 }
 
