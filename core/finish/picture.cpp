@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -12,9 +11,6 @@
 
 namespace hyades::core {
 namespace {
-
-const std::array<std::string, 7> kLayers{"beauty", "alpha",    "depth",  "albedo",
-                                         "normal", "variance", "samples"};
 
 std::vector<std::string> channels_of(std::string_view layer) {
   if (layer == "beauty") return {"R", "G", "B"};
@@ -57,8 +53,6 @@ Result<PictureFormat> picture_format(std::string_view file) {
   return Error{fmt::format("'{}' has no known ending; expected .exr, .png or .jpg", file)};
 }
 
-std::span<const std::string> layer_names() { return kLayers; }
-
 std::string output_path(const OutputDesc& output, const std::string& folder, int32_t frame) {
   return (std::filesystem::path(folder) / output_path(output.file, frame)).string();
 }
@@ -82,8 +76,8 @@ Result<Image> select_layers(const Image& normalised, std::span<const std::string
   for (const std::string& layer : layers) {
     const std::vector<std::string> channels = channels_of(layer);
     if (channels.empty()) {
-      return Error{fmt::format("there is no layer '{}'; expected {}{}", layer, join_names(kLayers),
-                               did_you_mean(layer, kLayers))};
+      return Error{fmt::format("there is no layer '{}'; expected {}{}", layer,
+                               join_names(layer_names()), did_you_mean(layer, layer_names()))};
     }
     for (const std::string& channel : channels) {
       if (!take(channel)) return Error{fmt::format("the film holds no layer '{}'", layer)};

@@ -10,6 +10,7 @@
 #include "core/image/image.h"
 #include "core/image/write_image.h"
 #include "core/job/job.h"
+#include "core/job/output_names.h"
 
 namespace hyades::core {
 
@@ -18,9 +19,6 @@ enum class PictureFormat { exr, png, jpeg };
 /// The format that `file`'s ending means (.exr, .png, .jpg, .jpeg; upper case too). The error lists
 /// the endings.
 Result<PictureFormat> picture_format(std::string_view file);
-
-/// The names of all layers that an EXR output may list.
-std::span<const std::string> layer_names();
 
 /// Where `output` goes for `frame`: its file below `folder` (unless absolute), with the frame
 /// number in place of # (core/job/output_path.h).

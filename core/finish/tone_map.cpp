@@ -1,16 +1,13 @@
 #include "core/finish/tone_map.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/base/color.h"
 #include "core/base/elementary.h"
+#include "core/job/output_names.h"
 
 namespace hyades::core {
 namespace {
-
-// In the order of ToneCurve.
-const std::array<std::string, 4> kNames{"srgb", "filmic", "aces", "linear"};
 
 // Beyond this every curve is white; keeps infinity out of the fractions below.
 constexpr float kBrightest = 65504.0F;
@@ -55,12 +52,14 @@ float map_channel(float x, ToneCurve curve) {
 }  // namespace
 
 std::optional<ToneCurve> find_tone_curve(std::string_view name) {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) return std::nullopt;
-  return static_cast<ToneCurve>(found - kNames.begin());
+  if (name == "srgb") return ToneCurve::srgb;
+  if (name == "filmic") return ToneCurve::filmic;
+  if (name == "aces") return ToneCurve::aces;
+  if (name == "linear") return ToneCurve::linear;
+  return std::nullopt;
 }
 
-std::span<const std::string> tone_curve_names() { return kNames; }
+std::span<const std::string> tone_curve_names() { return tone_map_names(); }
 
 Rgb tone_map(const Rgb& color, ToneCurve curve, float exposure) {
   const float gain = core::exp2(exposure);

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/base/text.h"
+#include "core/job/output_names.h"
 #include "core/job/output_path.h"
 #include "core/job/read_sections.h"
 
@@ -11,25 +12,21 @@ namespace hyades::core {
 
 namespace {
 
-const std::array<std::string, 7> kLayers = {"beauty", "alpha",    "depth",  "albedo",
-                                            "normal", "variance", "samples"};
-const std::array<std::string, 4> kToneMaps = {"srgb", "filmic", "aces", "linear"};
-
 void read_layers(MapReader& reader, OutputDesc& output) {
   output.layers = {"beauty", "alpha"};
+  const auto names = layer_names();
   const YamlNode* node = reader.find("layers");
   if (node == nullptr) return;
   if (node->kind != YamlNode::Kind::list || node->list.empty()) {
-    reader.mismatch("layers", *node, "a list of " + join_names(kLayers));
+    reader.mismatch("layers", *node, "a list of " + join_names(names));
     return;
   }
   std::vector<std::string> layers;
   for (const YamlPtr& item : node->list) {
-    const bool known = std::find(kLayers.begin(), kLayers.end(), item->scalar) != kLayers.end();
-    if (!known) {
+    if (std::find(names.begin(), names.end(), item->scalar) == names.end()) {
       reader.complain(item->where,
-                      fmt::format("layer is {}, expected {}{}", describe(*item),
-                                  join_names(kLayers), did_you_mean(item->scalar, kLayers)));
+                      fmt::format("layer is {}, expected {}{}", describe(*item), join_names(names),
+                                  did_you_mean(item->scalar, names)));
     } else if (std::find(layers.begin(), layers.end(), item->scalar) != layers.end()) {
       reader.complain(item->where, fmt::format("layer '{}' is listed twice", item->scalar));
     } else {
@@ -45,7 +42,7 @@ void read_exr(MapReader& reader, OutputDesc& output) {
 }
 
 void read_picture(MapReader& reader, OutputDesc& output) {
-  reader.choice("tone_map", output.tone_map, kToneMaps);
+  reader.choice("tone_map", output.tone_map, tone_map_names());
   reader.number("exposure", output.exposure, {-64.0, 64.0});
 }
 

@@ -9,10 +9,6 @@
 
 namespace hyades::core {
 
-/// How many moments of an open shutter the render key looks at, first and last included. The scene
-/// builder may sample motion only at moments among these: multiples of 1 / (kShutterMoments - 1).
-inline constexpr int kShutterMoments = 17;
-
 /// Everything of `job` that decides the pixels of `frame`, one "path=value" per line in a fixed
 /// order: floats by their bits, animated values at the moments of the shutter, files by the hash
 /// that `assets` has for them. Not in it: the job's name and file, outputs, the frame range, how a

@@ -10,4 +10,8 @@ struct JobTime {
   double frame = 1.0;    ///< `frame` of expressions and keys
 };
 
+/// How many moments of an open shutter decide a frame, first and last included: the render key
+/// looks at them, and motion is sampled at moments among them only.
+inline constexpr int kShutterMoments = 17;
+
 }  // namespace hyades::core

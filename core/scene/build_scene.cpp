@@ -126,7 +126,7 @@ class SceneBuilder {
 
   void add_camera() {
     const bool moves = job_.frames.shutter > 0.0F;
-    const int steps = moves ? 16 : 0;
+    const int steps = moves ? kShutterMoments - 1 : 0;
     std::vector<CameraPose> poses;
     for (int i = 0; i <= steps; ++i) {
       const float shutter_time = moves ? static_cast<float>(i) / static_cast<float>(steps) : 0.0F;

@@ -12,7 +12,7 @@ Mat4 transform_at(const TransformList& steps, const Animated<Vec3>& at, const Jo
 
 /// Samples of `matrix_of(JobTime)` over the shutter interval of `frame` at equal steps, as few as
 /// keep linear interpolation between them within 1e-4 of the truth (relative to the matrix's size),
-/// at most 17. One where the shutter is closed or nothing moves.
+/// at most kShutterMoments. One where the shutter is closed or nothing moves.
 template <class MatrixOf>
 std::vector<Mat4> shutter_matrices(const Job& job, int32_t frame, const MatrixOf& matrix_of);
 
@@ -21,7 +21,7 @@ float largest_difference(const Mat4& a, const Mat4& b);
 
 template <class MatrixOf>
 std::vector<Mat4> shutter_matrices(const Job& job, int32_t frame, const MatrixOf& matrix_of) {
-  constexpr int kFine = 16;
+  constexpr int kFine = kShutterMoments - 1;
   if (job.frames.shutter <= 0.0F) return {matrix_of(job.time_of(frame))};
   std::vector<Mat4> fine;
   for (int i = 0; i <= kFine; ++i) {
