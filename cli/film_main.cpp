@@ -1,10 +1,12 @@
 #include "cli/compare_command.h"
+#include "cli/merge_command.h"
 #include "cli/program.h"
 
 int main(int argc, char** argv) {
   using namespace hyades::cli;
   constexpr ProgramCommand kCommands[] = {
       {"compare", compare_command},
+      {"merge", merge_command},
   };
   return run_program(kCommands, argc, argv);
 }

@@ -31,7 +31,16 @@ endif()
 
 find_program(HYADES_CCACHE ccache)
 if(HYADES_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${HYADES_CCACHE})
+  # Where its folder cannot be written (a read-only home), ccache fails instead of compiling.
+  file(WRITE ${CMAKE_BINARY_DIR}/CMakeFiles/ccache_works.cpp "int main() { return 0; }\n")
+  execute_process(COMMAND ${HYADES_CCACHE} ${CMAKE_CXX_COMPILER} -c ccache_works.cpp -o ccache_works.o
+                  WORKING_DIRECTORY ${CMAKE_BINARY_DIR}/CMakeFiles
+                  RESULT_VARIABLE ccache_status OUTPUT_QUIET ERROR_QUIET)
+  if(ccache_status EQUAL 0)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${HYADES_CCACHE})
+  else()
+    message(STATUS "ccache is here but does not work: built without it")
+  endif()
 endif()
 find_program(HYADES_MOLD mold)
 if(HYADES_MOLD)
