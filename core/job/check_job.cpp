@@ -16,6 +16,9 @@ namespace {
 
 constexpr uint64_t kMostObjects = uint64_t{1} << 22;  ///< once all groups are unfolded
 constexpr int kMostMoments = 1000;                    ///< at which expressions are tried
+/// Textures made of textures, materials of materials, groups of groups: readers of a job may use
+/// recursion this deep (and about 20 groups written in place, see kMaxYamlDepth).
+constexpr int kLongestChain = 32;
 
 template <class Desc>
 std::vector<std::string> names_of(const std::vector<Desc>& list) {
@@ -25,18 +28,16 @@ std::vector<std::string> names_of(const std::vector<Desc>& list) {
 }
 
 void check_names(ReadContext& context) {
-  const Job& job = context.job;
-  const std::array<std::vector<std::string>, 4> known = {
-      names_of(job.textures), names_of(job.materials), names_of(job.groups), names_of(job.objects)};
   static const char* const kNouns[] = {"texture", "material", "group", "object"};
-  std::array<std::set<std::string>, 4> sets;
-  for (size_t i = 0; i < 4; ++i) sets[i] = {known[i].begin(), known[i].end()};
+  std::array<std::set<std::string>, 4> given;
+  for (size_t i = 0; i < 4; ++i) given[i] = {context.given[i].begin(), context.given[i].end()};
   for (const NameUse& use : context.names) {
     const auto kind = static_cast<size_t>(use.kind);
-    if (sets[kind].contains(use.name)) continue;
-    std::string hint = did_you_mean(use.name, known[kind]);
-    if (hint.empty() && known[kind].empty()) hint = "; the job defines none";
-    if (hint.empty() && known[kind].size() <= 12) hint = "; there are " + join_names(known[kind]);
+    if (given[kind].contains(use.name)) continue;
+    const std::vector<std::string>& names = context.given[kind];
+    std::string hint = did_you_mean(use.name, names);
+    if (hint.empty() && names.empty()) hint = "; the job defines none";
+    if (hint.empty() && names.size() <= 12) hint = "; there are " + join_names(names);
     context.complain(use.where, fmt::format("{} names the {} '{}', which does not exist{}",
                                             use.label, kNouns[kind], use.name, hint));
   }
@@ -49,9 +50,16 @@ void check_texture_cycles(ReadContext& context) {
     graph.add(i, job.textures[i].a.texture);
     graph.add(i, job.textures[i].b.texture);
   }
-  for (const size_t i : graph.in_cycles()) {
+  const std::vector<size_t> cycles = graph.in_cycles();
+  for (const size_t i : cycles) {
     context.complain(job.textures[i].where,
                      fmt::format("texture '{}' is made of itself", job.textures[i].name));
+  }
+  if (!cycles.empty()) return;
+  if (const auto i = graph.first_longer_than(kLongestChain)) {
+    context.complain(job.textures[*i].where,
+                     fmt::format("texture '{}' is made of more than {} others in a row",
+                                 job.textures[*i].name, kLongestChain));
   }
 }
 
@@ -62,22 +70,30 @@ void check_material_cycles(ReadContext& context) {
     graph.add(i, job.materials[i].first);
     graph.add(i, job.materials[i].second);
   }
-  for (const size_t i : graph.in_cycles()) {
+  const std::vector<size_t> cycles = graph.in_cycles();
+  for (const size_t i : cycles) {
     context.complain(job.materials[i].where,
                      fmt::format("material '{}' is mixed of itself", job.materials[i].name));
   }
+  if (!cycles.empty()) return;
+  if (const auto i = graph.first_longer_than(kLongestChain)) {
+    context.complain(job.materials[*i].where,
+                     fmt::format("material '{}' is mixed of more than {} others in a row",
+                                 job.materials[*i].name, kLongestChain));
+  }
 }
 
-/// Calls `visit` with the name of every group that `objects` place, and returns how many objects
-/// they are without those.
+/// Calls `visit` with the name of every group that `objects` place and how many groups written in
+/// place are around it (itself included), and returns how many objects there are without those.
 template <class Visit>
-uint64_t visit_instances(const std::vector<ObjectDesc>& objects, const Visit& visit) {
+uint64_t visit_instances(const std::vector<ObjectDesc>& objects, const Visit& visit,
+                         int depth = 1) {
   uint64_t count = 0;
   for (const ObjectDesc& object : objects) {
     if (object.shape == "instance") {
-      visit(object.instance_of);
+      visit(object.instance_of, depth);
     } else if (object.shape == "group") {
-      count += visit_instances(object.children, visit);
+      count += visit_instances(object.children, visit, depth + 1);
     } else {
       ++count;
     }
@@ -89,7 +105,7 @@ void check_groups(ReadContext& context) {
   const Job& job = context.job;
   ReferenceGraph graph(names_of(job.groups));
   for (size_t i = 0; i < job.groups.size(); ++i) {
-    const auto add = [&](const std::string& name) { graph.add(i, name); };
+    const auto add = [&](const std::string& name, int depth) { graph.add(i, name, depth); };
     graph.weigh(i, visit_instances(job.groups[i].objects, add));
   }
   const std::vector<size_t> cycles = graph.in_cycles();
@@ -98,8 +114,13 @@ void check_groups(ReadContext& context) {
                      fmt::format("group '{}' contains itself", job.groups[i].name));
   }
   if (!cycles.empty()) return;
+  if (const auto i = graph.first_longer_than(kLongestChain)) {
+    context.complain(job.groups[*i].where,
+                     fmt::format("group '{}' has more than {} groups within each other",
+                                 job.groups[*i].name, kLongestChain));
+  }
   uint64_t total = 0;
-  total += visit_instances(job.objects, [&](const std::string& name) {
+  total += visit_instances(job.objects, [&](const std::string& name, int) {
     total = std::min(total + graph.unfolded(name), uint64_t{1} << 40);
   });
   if (total > kMostObjects) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -67,6 +68,9 @@ struct ReadContext {
 
   Job& job;
   Diagnostics& diagnostics;
+  /// Every name that the job gives, by NameKind; those of entries with mistakes too, so that one
+  /// mistake is one complaint. Objects: those of the top level.
+  std::array<std::vector<std::string>, 4> given;
   std::vector<NameUse> names;
   std::vector<FileUse> files;
   std::vector<ExpressionUse> expressions;

@@ -39,7 +39,7 @@ const std::array<TypeRow<LightDesc>, 3> kTypes = {{
 }  // namespace
 
 void read_lights(MapReader& top) {
-  read_named(top, "lights", "light",
+  read_named(top, "lights", "light", std::nullopt,
              [&](const YamlNode& node, const std::string& name, const std::string& what,
                  const std::string& path) {
                MapReader reader(top.context(), node, what, path, "lights");

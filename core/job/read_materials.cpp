@@ -108,7 +108,7 @@ const std::array<TypeRow<MaterialDesc>, 9> kTypes = {{
 }  // namespace
 
 void read_materials(MapReader& top) {
-  read_named(top, "materials", "material",
+  read_named(top, "materials", "material", NameKind::material,
              [&](const YamlNode& node, const std::string& name, const std::string& what,
                  const std::string& path) {
                MapReader reader(top.context(), node, what, path, "materials");

@@ -8,6 +8,7 @@
 namespace hyades::core {
 
 void read_named(MapReader& parent, std::string_view key, const std::string& noun,
+                std::optional<NameKind> kind,
                 const std::function<void(const YamlNode& node, const std::string& name,
                                          const std::string& what, const std::string& path)>& read) {
   const std::string path =
@@ -36,6 +37,7 @@ void read_named(MapReader& parent, std::string_view key, const std::string& noun
                       reads_as_color ? ", that do not read as a colour or number" : ""));
       continue;
     }
+    if (kind) context.given[static_cast<size_t>(*kind)].push_back(entry.key);
     if (entry.value->kind == YamlNode::Kind::null) {
       context.complain(entry.key_where,
                        fmt::format("{} '{}' is empty, expected a map", noun, entry.key));
@@ -47,7 +49,7 @@ void read_named(MapReader& parent, std::string_view key, const std::string& noun
 }
 
 void read_textures(MapReader& top) {
-  read_named(top, "textures", "texture",
+  read_named(top, "textures", "texture", NameKind::texture,
              [&](const YamlNode& node, const std::string& name, const std::string& what,
                  const std::string& path) { read_texture(top.context(), node, name, what, path); });
 }

@@ -163,7 +163,9 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
 }
 
 void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects) {
-  read_named(reader, "objects", "object",
+  // Names within groups are not seen from outside.
+  const auto kind = reader.path().empty() ? std::optional(NameKind::object) : std::nullopt;
+  read_named(reader, "objects", "object", kind,
              [&](const YamlNode& node, const std::string& name, const std::string& what,
                  const std::string& path) {
                MapReader object(reader.context(), node, what, path, "objects");
@@ -176,7 +178,7 @@ void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects) {
 void read_objects(MapReader& top) { read_object_list(top, top.context().job.objects); }
 
 void read_groups(MapReader& top) {
-  read_named(top, "groups", "group",
+  read_named(top, "groups", "group", NameKind::group,
              [&](const YamlNode& node, const std::string& name, const std::string& what,
                  const std::string& path) {
                MapReader reader(top.context(), node, what, path, "groups");

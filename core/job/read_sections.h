@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/job/map_reader.h"
 
 /// One reader per section of a job; each takes its key from the top-level reader.
@@ -25,8 +27,9 @@ void read_outputs(MapReader& top, Job& job);
 void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at);
 
 /// Reads every `name: {...}` of section `key`, with `like` resolved, in the order of the text.
-/// `noun` is what one of them is called ("material").
+/// `noun` is what one of them is called ("material"); `kind` is set where names may refer to them.
 void read_named(MapReader& parent, std::string_view key, const std::string& noun,
+                std::optional<NameKind> kind,
                 const std::function<void(const YamlNode& node, const std::string& name,
                                          const std::string& what, const std::string& path)>& read);
 

@@ -159,6 +159,17 @@ TEST(Complaints, DanglingNames) {
             "defines none\n");
 }
 
+TEST(Complaints, AMistakeInAnEntryDoesNotMakeItsNameUnknown) {
+  EXPECT_EQ(
+      complaints("materials: {red: {type: mirror, color: 7}, blue: {type: lambart}}\n"
+                 "objects: {a: {shape: box, material: red}, b: {shape: box, material: blue}}\n"
+                 "groups: {g: {objects: 3}}\n"),
+      "job.yaml:2:40: color is '7', expected a number from 0 to 1\n"
+      "job.yaml:2:57: type is 'lambart', expected lambert, dielectric, thin-dielectric, "
+      "conductor, glossy, mirror, mix, null or black, did you mean 'lambert'?\n"
+      "job.yaml:4:23: objects is '3', expected a map of names, such as {name: {...}}\n");
+}
+
 TEST(Complaints, ThingsThatContainThemselves) {
   EXPECT_EQ(complaints("textures: {a: {type: checker, a: b}, b: {type: scale, input: a}}\n"),
             "job.yaml:2:15: texture 'a' is made of itself\n"

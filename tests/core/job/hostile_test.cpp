@@ -74,12 +74,42 @@ TEST(HostileJob, LikeBomb) {
 
 TEST(HostileJob, InstanceBomb) {
   std::string text = "hyades: 1\ngroups:\n  g0: {objects: {a: {shape: sphere}}}\n";
-  for (int i = 1; i < 40; ++i) {
+  for (int i = 1; i < 32; ++i) {
     const std::string below = "{instance: g" + std::to_string(i - 1) + "}";
     text += "  g" + std::to_string(i) + ": {objects: {a: " + below + ", b: " + below + "}}\n";
   }
-  expect_refused(text + "objects: {x: {instance: g39}}\n",
+  expect_refused(text + "objects: {x: {instance: g31}}\n",
                  "job.yaml: the groups unfold to more than 4194304 objects");
+}
+
+TEST(HostileJob, LongChains) {
+  const auto chain = [](const std::string& head, const std::string& entry, int count) {
+    std::string text = head;
+    for (int i = 0; i < count; ++i) {
+      std::string line = entry;
+      for (const auto& [mark, number] : {std::pair("I", i), std::pair("N", i + 1)}) {
+        for (size_t at = 0; (at = line.find(mark, at)) != std::string::npos;) {
+          line.replace(at, 1, std::to_string(number));
+        }
+      }
+      text += line;
+    }
+    return text;
+  };
+  const std::string textures =
+      chain("hyades: 1\ntextures:\n", "  xI: {type: scale, input: xN}\n", 20000);
+  expect_refused(textures + "  x20000: {type: constant, value: 1}\n",
+                 "job.yaml:19970:11: texture 'x19967' is made of more than 32 others in a row");
+  const std::string materials =
+      chain("hyades: 1\nmaterials:\n", "  xI: {type: mix, first: xN, second: xN}\n", 40);
+  expect_refused(materials + "  x40: {type: mirror}\n",
+                 "job.yaml:10:7: material 'x7' is mixed of more than 32 others in a row");
+  const std::string groups = chain(
+      "hyades: 1\ngroups:\n",
+      "  xI: {objects: {a: {group: {objects: {b: {group: {objects: {c: {instance: xN}}}}}}}}}\n",
+      20);
+  expect_refused(groups + "  x20: {objects: {}}\n",
+                 "job.yaml:12:7: group 'x9' has more than 32 groups within each other");
 }
 
 TEST(HostileJob, AliasInItsOwnAnchor) {
