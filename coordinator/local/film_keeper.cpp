@@ -11,6 +11,10 @@ namespace {
 /// After something could not be taken: when the scheduler hands out work again.
 constexpr Duration kTryAgain = std::chrono::milliseconds(1100);
 
+/// How many complete films whose outputs could not be written are kept for another run. They cost
+/// memory; more would have to be rendered again.
+constexpr size_t kUnfinishedFilms = 2;
+
 TimePoint now() { return std::chrono::steady_clock::now(); }
 
 uint64_t memory_of(const core::Film& film) {
@@ -245,14 +249,20 @@ std::shared_ptr<const core::Film> FilmKeeper::film(int32_t frame) const {
 }
 
 void FilmKeeper::forget(int32_t frame, bool finished) {
-  films_.erase(frame);
-  failed_frames_ = failed_frames_ || !finished;
+  const auto it = films_.find(frame);
+  if (it == films_.end()) return;
+  const uint64_t all =
+      static_cast<uint64_t>(plan_.region.area()) * core::batch_count(plan_.samples);
+  if (!finished && log_ && it->second->coverage().volume() == all &&
+      unfinished_.size() < kUnfinishedFilms) {
+    unfinished_.insert(*it);
+  }
+  films_.erase(it);
 }
 
 /// Rewrites the log when films of finished frames, and units that could lie in it merged, fill it.
-/// Never after a frame has failed: what was rendered of it is then only in the log.
 void FilmKeeper::compact_if_worthwhile() {
-  if (!log_ || failed_frames_ || settled_sequence_ == 0) return;
+  if (!log_ || settled_sequence_ == 0) return;
   if (log_bytes_ < std::max(options_.compact_bytes, 2 * snapshot_bytes_)) return;
   snapshot_bytes_ = 0;
   const core::Status done = log_->compact(
@@ -275,7 +285,9 @@ core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
   for (const int32_t frame : finished_) {
     if (status) status = put(encode_finished(frame));
   }
-  for (const auto& [frame, film] : films_) {
+  std::map<int32_t, std::shared_ptr<core::Film>> films = films_;
+  films.insert(unfinished_.begin(), unfinished_.end());
+  for (const auto& [frame, film] : films) {
     const std::vector<core::Unit> units = units_of(frame, *film, plan_.region, tile_size_);
     for (size_t first = 0; status && first < units.size();) {
       size_t end = first;

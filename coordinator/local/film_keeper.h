@@ -69,7 +69,8 @@ class FilmKeeper {
   /// Adds the film that was handed over as `record` and is durable now.
   core::Status merge(RecordId record);
   std::shared_ptr<const core::Film> film(int32_t frame) const;
-  /// The frame is over: `finished`, or failed, and then its films stay for another run.
+  /// The frame is over. Its film, if it is complete but its outputs could not be written, stays in
+  /// the log for another run.
   void forget(int32_t frame, bool finished);
 
  private:
@@ -114,7 +115,8 @@ class FilmKeeper {
   Item* settling_ = nullptr;
   std::map<int32_t, std::shared_ptr<core::Film>> films_;
   std::set<int32_t> finished_;
-  bool failed_frames_ = false;
+  /// Complete films of frames whose outputs could not be written.
+  std::map<int32_t, std::shared_ptr<core::Film>> unfinished_;
   int32_t tile_size_ = 0;
   bool write_cut_ = false;  ///< the log is new
   uint64_t settled_sequence_ = 0;

@@ -114,7 +114,8 @@ struct UnitReturned {
   core::Unit unit;
 };
 
-/// The worker is gone. No blame.
+/// The worker is gone. No blame. Whoever watches the connections must not report the loss of an old
+/// one after the worker has joined again.
 struct WorkerLost {
   WorkerId worker{};
 };

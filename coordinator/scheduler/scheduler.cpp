@@ -21,6 +21,7 @@ std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
 }
 
 void Scheduler::on(const JobAdded& e) {
+  if (jobs_.contains(e.job)) return;
   auto owned = std::make_unique<JobState>();
   JobState& job = *owned;
   job.id = e.job;
@@ -30,8 +31,8 @@ void Scheduler::on(const JobAdded& e) {
   job.grid = TileGrid(e.plan.region, e.plan.tile_size, e.plan.shuffle);
   job.tile_cost.assign(job.grid.size(), 0.0F);
   for (const int32_t frame : e.plan.frames) {
-    job.by_number.emplace(frame, static_cast<uint32_t>(job.slots.size()));
-    job.slots.emplace_back().frame = frame;
+    const auto index = static_cast<uint32_t>(job.slots.size());
+    if (job.by_number.emplace(frame, index).second) job.slots.emplace_back().frame = frame;
   }
   jobs_.emplace(e.job, std::move(owned));
   restore(job, e.restored);
@@ -105,6 +106,7 @@ void Scheduler::on(const FrameOpened& e) {
   if (slot == nullptr || slot->phase != FramePhase::opening) return;
   slot->phase = FramePhase::rendering;
   update_ready(*job);
+  complete_if_so(*job, *slot);  // a frame without pixels
 }
 
 void Scheduler::on(const FrameRefused& e) {

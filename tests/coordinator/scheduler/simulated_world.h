@@ -13,6 +13,7 @@
 
 #include "coordinator/scheduler/scheduler.h"
 #include "core/base/hash.h"
+#include "tests/coordinator/scheduler/simulated_types.h"
 
 namespace hyades::coordinator {
 
@@ -69,50 +70,6 @@ class SimulatedWorld {
   uint64_t overlaps = 0;
 
  private:
-  struct Happening {
-    TimePoint when;
-    uint64_t serial;
-    std::function<void()> what;
-    bool operator<(const Happening& o) const {
-      return when != o.when ? when > o.when : serial > o.serial;
-    }
-  };
-  struct UnitHeld {
-    JobId job{};
-    core::Unit unit;
-    LeaseId lease;
-    bool rendered = false;
-  };
-  struct SimWorker {
-    std::string name;
-    int threads = 1;
-    double slowness = 1;
-    bool connected = false;
-    uint64_t session = 0;
-    uint64_t life = 0;  ///< what was begun in an earlier life is lost
-    int asked = 0;
-    std::map<uint64_t, UnitHeld> held;  ///< by order of arrival
-  };
-  using UnitName = std::tuple<int32_t, int32_t, int32_t, uint32_t, uint32_t>;
-  struct SimFrame {
-    std::set<std::tuple<int32_t, int32_t, uint32_t>> batches;  ///< that have been merged
-    uint64_t sum = 0;
-    bool poisoned = false;
-    bool refused = false;
-    bool unfinishable = false;
-    int bad_luck = 2;  ///< failures that may still happen by chance
-    bool over = false;
-  };
-  struct SimJob {
-    JobPlan plan;
-    RestoredJob stored;  ///< what the store holds
-    std::set<UnitName> stored_units;
-    std::map<int32_t, SimFrame> frames;
-    bool ended = false;
-    bool paused = false;
-    bool cancelled = false;
-  };
-
   [[noreturn]] static void fail(const std::string& what) { throw what; }
   bool chance(double p) { return uniform() < p; }
   bool fault() { return now_ < faults_end_ && chance(fault_rate_); }

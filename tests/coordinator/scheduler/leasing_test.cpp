@@ -1,0 +1,169 @@
+// Who gets which unit.
+#include "tests/coordinator/scheduler/scheduler_testing.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using Bench = SchedulerBench;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+TEST(Scheduler, AWaitingWorkerIsServedWhenWorkAppears) {
+  Bench b;
+  b.join(kAnna);
+  b.tell(WorkRequested{kAnna, 2});
+  EXPECT_TRUE(b.said.empty());
+  b.add(small_plan());
+  b.tell(FrameOpened{kJob, 1});
+  EXPECT_EQ(b.only<Lease>().units.size(), 2U);
+}
+
+TEST(Scheduler, LostWorkersUnitsGoToOthers) {
+  Bench b;
+  b.join(kAnna);
+  b.join(kBert);
+  b.add(small_plan({1}, 1));
+  b.tell(FrameOpened{kJob, 1});
+  const Lease lost = b.ask(kAnna, 2);
+  b.tell(WorkRequested{kBert, 2});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(WorkerLost{kAnna});
+  EXPECT_THAT(b.only<Lease>().units, testing::UnorderedElementsAreArray(lost.units));
+}
+
+TEST(Scheduler, ALeaseThatIsNotRenewedRunsOut) {
+  SchedulerOptions options;
+  options.lease_time = seconds(10);
+  options.copy_after = Duration{0};
+  Bench b(options);
+  b.join(kAnna);
+  b.join(kBert);
+  b.add(small_plan({1}, 1));
+  b.tell(FrameOpened{kJob, 1});
+  const Lease kept = b.ask(kAnna);
+  const Lease forgotten = b.ask(kAnna);
+  b.tell(WorkRequested{kBert, 1});
+  b.now += seconds(8);
+  b.tell(WorkerAlive{kAnna, {kept.lease}});
+  b.now += seconds(4);
+  ASSERT_TRUE(b.scheduler.next_wake().has_value());
+  EXPECT_LE(*b.scheduler.next_wake(), b.now);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Revoke>().unit, forgotten.units[0]);
+  EXPECT_EQ(b.only<Lease>().units[0], forgotten.units[0]);
+}
+
+TEST(Scheduler, AFailedUnitGoesToSomebodyElseFirst) {
+  Bench b;
+  b.join(kAnna);
+  b.join(kBert);
+  JobPlan plan = small_plan({1}, 1);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  const Lease lease = b.ask(kAnna);
+  b.tell(UnitFailed{kAnna, lease.lease, kJob, lease.units[0], "bad luck"});
+  b.tell(WorkRequested{kAnna, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(WorkerLost{kBert});
+  EXPECT_EQ(b.only<Lease>().worker, kAnna) << "nobody else is left";
+}
+
+TEST(Scheduler, AfterARestartUnitsInHandAreAdopted) {
+  SchedulerOptions options;
+  options.incarnation = 2;
+  Bench b(options);
+  b.add(small_plan({1}, 4));
+  b.tell(FrameOpened{kJob, 1});
+  const core::Unit unit{1, {0, 0, 32, 32}, {1, 2}};
+  const LeaseId old{1, 99};
+  b.join(kAnna, {{old, kJob, unit}});
+  const Lease adopted = b.only<Lease>();
+  EXPECT_TRUE(adopted.adopted);
+  EXPECT_EQ(adopted.units[0], unit);
+  EXPECT_EQ(adopted.lease.incarnation, 2U);
+  b.join(kBert, {{old, kJob, unit}});
+  EXPECT_EQ(b.only<Revoke>().worker, kBert) << "Anna has it";
+  b.deliver_durably(adopted);
+  EXPECT_EQ(b.only<Merge>().unit, unit);
+  // What is left is leased without the adopted part.
+  uint32_t batches = 0;
+  for (const core::Unit& u : b.ask(kBert, 100).units) batches += u.batches.count;
+  EXPECT_EQ(batches, 6U);
+}
+
+TEST(Scheduler, IdleWorkersGetOneCopyOfTheOldestUnits) {
+  SchedulerOptions options;
+  options.copy_after = seconds(5);
+  Bench b(options);
+  constexpr WorkerId kCarl{3};
+  b.join(kAnna);
+  b.join(kBert);
+  b.join(kCarl);
+  JobPlan plan = small_plan({1}, 1);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  const Lease slow = b.ask(kAnna);
+  b.tell(WorkRequested{kAnna, 1});
+  b.tell(WorkRequested{kBert, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.now += seconds(6);
+  b.tell(Tick{});
+  const Lease copy = b.only<Lease>();
+  EXPECT_EQ(copy.worker, kBert);
+  EXPECT_EQ(copy.units, slow.units);
+  b.tell(WorkRequested{kCarl, 1});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "nothing is copied twice";
+  b.deliver(copy);
+  EXPECT_EQ(b.only<Revoke>().lease, slow.lease);
+}
+
+TEST(Scheduler, AReturnedUnitIsNobodysFault) {
+  Bench b;
+  b.join(kAnna);
+  b.add(small_plan({1}, 1));
+  b.tell(FrameOpened{kJob, 1});
+  for (int i = 0; i < 5; ++i) {
+    const Lease lease = b.ask(kAnna);
+    b.tell(UnitReturned{kAnna, lease.lease, kJob, lease.units[0]});
+    EXPECT_TRUE(b.said.empty());
+  }
+}
+
+TEST(Scheduler, PriorityGoesFirstThenTheOwnerWhoHasLess) {
+  Bench b;
+  b.join(kAnna);
+  const auto add = [&](uint64_t id, int priority, const char* owner) {
+    JobPlan plan = small_plan({1}, 4);
+    plan.priority = priority;
+    plan.owner = owner;
+    b.add(plan, {}, JobId{id});
+    b.tell(FrameOpened{JobId{id}, 1});
+  };
+  add(1, 0, "eve");
+  add(2, 0, "eve");
+  add(3, 0, "fay");
+  add(4, 1, "gil");
+  std::vector<uint64_t> order;
+  for (int i = 0; i < 14; ++i) order.push_back(static_cast<uint64_t>(b.ask(kAnna).job));
+  EXPECT_THAT(order, testing::ElementsAre(4, 4, 4, 4, 4, 4, 4, 4, 1, 3, 1, 3, 1, 3));
+}
+
+TEST(Scheduler, RunsGrowToTheTimeAUnitShallTake) {
+  SchedulerOptions options;
+  options.unit_time = milliseconds(500);
+  Bench b(options);
+  b.join(kAnna);
+  JobPlan plan = small_plan({1}, 1000);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  const Lease first = b.ask(kAnna);
+  EXPECT_EQ(first.units[0].batches.count, 1U) << "nothing is known yet";
+  b.deliver_durably(first);  // 10 ms
+  EXPECT_EQ(b.ask(kAnna).units[0].batches.count, 50U);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "coordinator/scheduler/job_plan.h"
+
+namespace hyades::coordinator {
+
+/// Something that will happen at a time; what is earlier, or was planned earlier, comes first.
+struct Happening {
+  TimePoint when;
+  uint64_t serial;
+  std::function<void()> what;
+  bool operator<(const Happening& o) const {
+    return when != o.when ? when > o.when : serial > o.serial;
+  }
+};
+
+/// A unit in a worker's hands.
+struct UnitHeld {
+  JobId job{};
+  core::Unit unit;
+  LeaseId lease;
+  bool rendered = false;
+};
+
+struct SimWorker {
+  std::string name;
+  int threads = 1;
+  double slowness = 1;
+  bool connected = false;
+  uint64_t session = 0;
+  uint64_t life = 0;  ///< what was begun in an earlier life is lost
+  int asked = 0;
+  std::map<uint64_t, UnitHeld> held;  ///< by order of arrival
+};
+
+/// Names a unit within its job: frame, corner of the tile, batches.
+using UnitName = std::tuple<int32_t, int32_t, int32_t, uint32_t, uint32_t>;
+
+/// What the merger holds of a frame, and what shall go wrong with it.
+struct SimFrame {
+  std::set<std::tuple<int32_t, int32_t, uint32_t>> batches;  ///< that have been merged
+  uint64_t sum = 0;
+  bool poisoned = false;
+  bool refused = false;
+  bool unfinishable = false;
+  int bad_luck = 2;  ///< failures that may still happen by chance
+  bool over = false;
+};
+
+struct SimJob {
+  JobPlan plan;
+  RestoredJob stored;  ///< what the store holds
+  std::set<UnitName> stored_units;
+  std::map<int32_t, SimFrame> frames;
+  bool ended = false;
+  bool paused = false;
+  bool cancelled = false;
+};
+
+}  // namespace hyades::coordinator
