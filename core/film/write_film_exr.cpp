@@ -26,7 +26,7 @@ Imf::Header part_header(const char* name, const FilmFile& file) {
   header.setName(name);
   header.setType(Imf::SCANLINEIMAGE);
   header.compression() = Imf::ZIP_COMPRESSION;
-  // The fastest level: files are a few per cent larger and written in a third of the time.
+  // The fastest level: measured on noisy sums, a tenth quicker and 2 % larger than the usual one.
   header.zipCompressionLevel() = 1;
   return header;
 }
