@@ -215,7 +215,7 @@ void Coverage::tidy() {
 }
 
 std::vector<CoverageBox> Coverage::canonical() const {
-  return *cut_and_join(boxes_, std::numeric_limits<uint64_t>::max());
+  return cut_and_join(boxes_, std::numeric_limits<uint64_t>::max()).value();
 }
 
 Result<Coverage> Coverage::from_canonical(const std::vector<CoverageBox>& boxes) {
