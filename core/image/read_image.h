@@ -23,9 +23,11 @@ struct ImageLimits {
 
 /// Decodes PNG (1-16 bits), JPEG, Radiance HDR (flat and RLE) or OpenEXR (any compression, half or
 /// float, scanline or tiled), told apart by their first bytes. Colour is linear Rec.709 on return;
-/// alpha stays straight. Grey files have channel "Y", colour ones "R","G","B"[,"A"]; an EXR keeps
-/// its own channel names (first part; subsampled channels are refused). `name` is used in errors
-/// only.
+/// alpha stays straight and is never decoded. Grey files have channel "Y"[,"A"], colour ones
+/// "R","G","B"[,"A"]; an EXR keeps its own channel names, R G B A Y first (first part, all of its
+/// data window; subsampled channels and deep data are refused). EXPOSURE of a Radiance file is
+/// undone, so that pixels are radiances. Files that are truncated, damaged, CMYK or beyond `limits`
+/// are errors. `name` is used in errors only. Thread-safe.
 Result<Image> read_image(const Bytes& bytes, const std::string& name,
                          ColorSpace space = ColorSpace::automatic, const ImageLimits& limits = {});
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/hash.h"
+#include "core/finish/student_t.h"
 
 namespace hyades::core {
 namespace {
@@ -168,6 +169,20 @@ TEST(Compare, ZTestOfBlocksSeesAFewPercent) {
   EXPECT_LT(c.block_test->smallest_p, 1e-6);
   EXPECT_GT(c.block_test->share_above_3, 0.9);
   EXPECT_NE(describe_comparison(c).find("z-test of blocks"), std::string::npos);
+}
+
+TEST(Compare, ZIsTheDifferenceOverItsDeviation) {
+  const std::vector<std::string> names{"Y", "variance.Y", "samples.N"};
+  Image a = make_image(1, 1, names);
+  Image b = a;
+  a.data = {1.5F, 0.03F, 16.0F * 11.0F};
+  b.data = {1.0F, 0.01F, 16.0F * 6.0F};
+  const Comparison c = must_compare(a, b);
+  ASSERT_TRUE(c.pixel_test.has_value());
+  EXPECT_NEAR(c.pixel_test->largest_z, 0.5 / std::sqrt(0.04), 1e-6);
+  // Welch: 0.04^2 / (0.03^2 / 10 + 0.01^2 / 5).
+  const double dof = 0.0016 / (0.0009 / 10.0 + 0.0001 / 5.0);
+  EXPECT_NEAR(c.pixel_test->smallest_p, two_sided_p(2.5, dof), 1e-6);
 }
 
 TEST(Compare, ZTestWithoutNoise) {

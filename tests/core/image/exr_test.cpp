@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -183,6 +184,61 @@ TEST(Exr, RefusesSubsampledAndTooLarge) {
   EXPECT_FALSE(read_image(bytes, "a", ColorSpace::automatic, limits));
   limits.max_pixels = 1000;
   EXPECT_TRUE(read_image(bytes, "a", ColorSpace::automatic, limits));
+}
+
+/// Replaces the value of attribute `name` of type `type` in a file.
+void set_attribute(std::string& file, const std::string& name, const std::string& type,
+                   const std::vector<int32_t>& value) {
+  const std::string key = name + '\0' + type + '\0';
+  const size_t at = file.find(key);
+  ASSERT_NE(at, std::string::npos) << name;
+  std::memcpy(file.data() + at + key.size() + 4, value.data(), 4 * value.size());
+}
+
+TEST(Exr, BombsAreRefusedBeforeMemoryIsTaken) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.exr");
+  const Image image = hashed_image(16, 16, {"R", "G", "B"});
+  ASSERT_TRUE(write_exr(path, image));
+  const std::string scanlines = test::file_contents(path);
+  Imf::Header header(16, 16);
+  for (const auto& name : image.channels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  header.setTileDescription(Imf::TileDescription(16, 16));
+  {
+    Imf::TiledOutputFile file(path.c_str(), header, 0);
+    file.setFrameBuffer(buffer_of(image, header.dataWindow(), Imf::FLOAT));
+    file.writeTile(0, 0);
+  }
+  const std::string tiled = test::file_contents(path);
+  const auto error_of = [](const std::string& file) {
+    const Result<Image> read = read_image(test::exact_bytes(file), "bomb.exr");
+    return read ? std::string("no error") : read.error().message;
+  };
+  EXPECT_EQ(error_of(scanlines), "no error");
+  EXPECT_EQ(error_of(tiled), "no error");
+
+  std::string tall = scanlines;
+  set_attribute(tall, "dataWindow", "box2i", {0, 0, 1, 59'999});
+  EXPECT_EQ(error_of(tall), "bomb.exr: OpenEXR: the file is truncated");
+  std::string large = scanlines;
+  set_attribute(large, "dataWindow", "box2i", {0, 0, 49'999, 49'999});
+  EXPECT_NE(error_of(large).find("at most 400,000,000 in all"), std::string::npos);
+  std::string wrapped = scanlines;
+  set_attribute(wrapped, "dataWindow", "box2i", {INT32_MIN, 0, INT32_MAX, 15});
+  EXPECT_NE(error_of(wrapped).find("per side"), std::string::npos);
+  std::string tiny_tiles = tiled;
+  set_attribute(tiny_tiles, "dataWindow", "box2i", {0, 0, 9'999, 9'999});
+  set_attribute(tiny_tiles, "tiles", "tiledesc", {1, 1});
+  EXPECT_EQ(error_of(tiny_tiles), "bomb.exr: OpenEXR: the file is truncated");
+  std::string no_tiles = tiled;
+  set_attribute(no_tiles, "tiles", "tiledesc", {0, -1});
+  EXPECT_EQ(error_of(no_tiles), "bomb.exr: OpenEXR: tiles of no size");
+  std::string long_attribute = scanlines;
+  const size_t size_at = long_attribute.find(std::string("compression\0compression\0", 24)) + 24;
+  const int32_t huge = 0x7FFFFFFF;
+  std::memcpy(long_attribute.data() + size_at, &huge, 4);
+  EXPECT_EQ(error_of(long_attribute),
+            "bomb.exr: OpenEXR: attribute 'compression' is longer than the file");
 }
 
 TEST(Exr, SrgbOnRequestLeavesAlpha) {
