@@ -64,8 +64,9 @@ class ImageSky : public Light {
     LightSample sample;
     sample.direction = map_->sample(u, turn_);
     // Looked up again from the rounded direction: the same numbers that a ray will find there.
-    sample.pdf = map_->pdf(sample.direction, turn_);
-    sample.radiance = scale_ * map_->look_up(sample.direction, turn_);
+    const EnvironmentMap::View view = map_->view(sample.direction, turn_);
+    sample.pdf = view.pdf;
+    sample.radiance = scale_ * view.radiance;
     sample.distance = kInfinity;
     if (!(sample.pdf > 0.0F) || is_black(sample.radiance)) return std::nullopt;
     return sample;
@@ -73,7 +74,7 @@ class ImageSky : public Light {
 
   float pdf_direct(const Vec3& /*from*/, const Vec3& direction,
                    const SurfacePoint& /*on*/) const override {
-    return is_dark() ? 0.0F : map_->pdf(direction, turn_);
+    return is_dark() ? 0.0F : map_->view(direction, turn_).pdf;
   }
 
   Rgb radiance(const SurfacePoint& /*on*/, const Vec3& outward) const override {

@@ -19,12 +19,24 @@ float sample_linear(float u, float a, float b) {
   return divisor > 0.0F ? std::min(u * (a + b) / divisor, 1.0F) : u;
 }
 
-float mix(float a, float b, float t) { return (1.0F - t) * a + t * b; }
+Rgb blend(const Rgb& a, const Rgb& b, float t) { return (1.0F - t) * a + t * b; }
+
+bool is_clean(float value) { return value >= 0.0F && value <= kLargest; }
+
+/// The image itself, or a copy without what is no radiance.
+std::shared_ptr<const Image> clean(std::shared_ptr<const Image> image) {
+  if (std::all_of(image->data.begin(), image->data.end(), is_clean)) return image;
+  auto copy = std::make_shared<Image>(*image);
+  for (float& value : copy->data) {
+    if (!is_clean(value)) value = value > 0.0F ? kLargest : 0.0F;
+  }
+  return copy;
+}
 
 }  // namespace
 
 EnvironmentMap::EnvironmentMap(std::shared_ptr<const Image> image)
-    : image_(std::move(image)), width_(image_->width), height_(image_->height) {
+    : image_(clean(std::move(image))), width_(image_->width), height_(image_->height) {
   const char* names[] = {"R", "G", "B"};
   for (int c = 0; c < 3; ++c) {
     const int found = image_->find_channel(names[c]);
@@ -42,19 +54,44 @@ EnvironmentMap::EnvironmentMap(std::shared_ptr<const Image> image)
     const double cosine = 2 * edge == rows ? 0.0 : 1.0 - 2.0 * half * half;
     cosines_[static_cast<size_t>(edge)] = edge == mirrored ? cosine : -cosine;
   }
+  measure();
+}
+
+/// The mean of a bilinear cell is that of its corners.
+void EnvironmentMap::measure() {
+  const auto columns = static_cast<size_t>(width_);
+  std::vector<float> upper(columns + 1);
+  std::vector<float> lower(columns + 1);
+  Vec3d upper_sum(0.0);
+  Vec3d lower_sum(0.0);
+  const auto read_row = [&](int y, std::vector<float>& luminances, Vec3d& sum) {
+    sum = Vec3d(0.0);
+    for (size_t x = 0; x < columns; ++x) {
+      const Rgb value = pixel(static_cast<int>(x), y);
+      luminances[x] = luminance(value);
+      sum += Vec3d(value);
+    }
+    luminances[columns] = luminances[0];
+  };
+  read_row(0, lower, lower_sum);
 
   std::vector<float> weights;
-  weights.reserve(static_cast<size_t>(rows) * static_cast<size_t>(width_));
+  weights.reserve(columns * static_cast<size_t>(height_ + 1));
   Vec3d integral(0.0);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < width_; ++column) {
-      // The middle of a bilinear cell is its mean.
-      const Rgb mean = blend(column, row, 0.5F, 0.5F);
-      weights.push_back(static_cast<float>(double{luminance(mean)} * cell_angle(row)));
-      integral += Vec3d(mean) * cell_angle(row);
+  for (int row = 0; row <= height_; ++row) {
+    std::swap(upper, lower);
+    std::swap(upper_sum, lower_sum);
+    read_row(std::min(row, height_ - 1), lower, lower_sum);
+    if (row == 0) read_row(0, upper, upper_sum);
+    const double angle = cell_angle(row);
+    for (size_t x = 0; x < columns; ++x) {
+      const float mean = 0.25F * (upper[x] + upper[x + 1] + lower[x] + lower[x + 1]);
+      weights.push_back(static_cast<float>(double{mean} * angle));
     }
+    integral += 0.5 * (upper_sum + lower_sum) * angle;
   }
-  cells_ = Distribution2D(weights, static_cast<uint32_t>(width_), static_cast<uint32_t>(rows));
+  cells_ =
+      Distribution2D(weights, static_cast<uint32_t>(width_), static_cast<uint32_t>(height_ + 1));
   integral_ = Rgb(integral);
 }
 
@@ -65,42 +102,43 @@ double EnvironmentMap::cell_angle(int row) const {
 
 Rgb EnvironmentMap::look_up(const Vec3& direction, float turn) const {
   const Place place = locate(direction, turn);
-  return blend(place.column, place.row, place.across, place.down);
+  const Cell c = cell(place.column, place.row);
+  return blend(blend(c.top_left, c.top_right, place.across),
+               blend(c.bottom_left, c.bottom_right, place.across), place.down);
 }
 
-float EnvironmentMap::density(const Place& place, float cell_pdf) const {
-  const Corners c = corners_of(place.column, place.row);
-  const float mean = c.mean();
-  if (!(mean > 0.0F)) return 0.0F;
-  const float left = mix(c.top_left, c.bottom_left, place.lower);
-  const float right = mix(c.top_right, c.bottom_right, place.lower);
-  const float here = mix(left, right, place.across);
-  const double cells = static_cast<double>(width_) * (height_ + 1);
-  return static_cast<float>(double{cell_pdf} * double{here / mean} /
-                            (cells * cell_angle(place.row)));
-}
-
-float EnvironmentMap::pdf(const Vec3& direction, float turn) const {
+EnvironmentMap::View EnvironmentMap::view(const Vec3& direction, float turn) const {
   const Place place = locate(direction, turn);
-  const Vec2 cell((static_cast<float>(place.column) + 0.5F) / static_cast<float>(width_),
-                  (static_cast<float>(place.row) + 0.5F) / static_cast<float>(height_ + 1));
-  return density(place, cells_.pdf(cell));
+  const Cell c = cell(place.column, place.row);
+  const Rgb top = blend(c.top_left, c.top_right, place.across);
+  const Rgb bottom = blend(c.bottom_left, c.bottom_right, place.across);
+  View view;
+  view.radiance = blend(top, bottom, place.down);
+  const float mean = 0.25F * luminance(c.top_left + c.top_right + c.bottom_left + c.bottom_right);
+  if (!(mean > 0.0F)) return view;
+  const float here = luminance(blend(top, bottom, place.lower));
+  const Vec2 middle((static_cast<float>(place.column) + 0.5F) / static_cast<float>(width_),
+                    (static_cast<float>(place.row) + 0.5F) / static_cast<float>(height_ + 1));
+  const double cells = static_cast<double>(width_) * (height_ + 1);
+  view.pdf = static_cast<float>(double{cells_.pdf(middle)} * double{here / mean} /
+                                (cells * cell_angle(place.row)));
+  return view;
 }
 
 Vec3 EnvironmentMap::sample(const Vec2& u, float turn) const {
-  const Distribution2D::Point cell = cells_.sample(u);
-  const auto column = static_cast<int>(cell.x);
-  const auto row = static_cast<int>(cell.y);
+  const Distribution2D::Point chosen = cells_.sample(u);
+  const auto column = static_cast<int>(chosen.x);
+  const auto row = static_cast<int>(chosen.y);
   const float across_u =
-      std::max(cell.at.x * static_cast<float>(width_) - static_cast<float>(column), 0.0F);
+      std::max(chosen.at.x * static_cast<float>(width_) - static_cast<float>(column), 0.0F);
   const float down_u =
-      std::max(cell.at.y * static_cast<float>(height_ + 1) - static_cast<float>(row), 0.0F);
+      std::max(chosen.at.y * static_cast<float>(height_ + 1) - static_cast<float>(row), 0.0F);
   // Bilinear density: first the height (its marginal is linear), then the column given that.
-  const Corners c = corners_of(column, row);
-  const float lower =
-      sample_linear(down_u, c.top_left + c.top_right, c.bottom_left + c.bottom_right);
-  const float across = sample_linear(across_u, mix(c.top_left, c.bottom_left, lower),
-                                     mix(c.top_right, c.bottom_right, lower));
+  const Cell c = cell(column, row);
+  const float lower = sample_linear(down_u, luminance(c.top_left + c.top_right),
+                                    luminance(c.bottom_left + c.bottom_right));
+  const float across = sample_linear(across_u, luminance(blend(c.top_left, c.bottom_left, lower)),
+                                     luminance(blend(c.top_right, c.bottom_right, lower)));
 
   const auto r = static_cast<size_t>(row);
   const double cosine = cosines_[r] + static_cast<double>(lower) * (cosines_[r + 1] - cosines_[r]);
@@ -141,29 +179,15 @@ EnvironmentMap::Place EnvironmentMap::locate(const Vec3& direction, float turn) 
 }
 
 Rgb EnvironmentMap::pixel(int x, int y) const {
-  Rgb value;
-  for (int c = 0; c < 3; ++c) {
-    const float raw = image_->at(x, y, channels_[c]);
-    value[c] = raw > 0.0F ? std::min(raw, kLargest) : 0.0F;  // NaN is not > 0
-  }
-  return value;
+  const float* values = &image_->data[image_->index(x, y, 0)];
+  return {values[channels_[0]], values[channels_[1]], values[channels_[2]]};
 }
 
-Rgb EnvironmentMap::blend(int column, int row, float across, float down) const {
+EnvironmentMap::Cell EnvironmentMap::cell(int column, int row) const {
   const int right = column + 1 < width_ ? column + 1 : 0;
   const int top = std::max(row - 1, 0);
   const int bottom = std::min(row, height_ - 1);
-  const Rgb upper = (1.0F - across) * pixel(column, top) + across * pixel(right, top);
-  const Rgb lower = (1.0F - across) * pixel(column, bottom) + across * pixel(right, bottom);
-  return (1.0F - down) * upper + down * lower;
-}
-
-EnvironmentMap::Corners EnvironmentMap::corners_of(int column, int row) const {
-  const int right = column + 1 < width_ ? column + 1 : 0;
-  const int top = std::max(row - 1, 0);
-  const int bottom = std::min(row, height_ - 1);
-  return {luminance(pixel(column, top)), luminance(pixel(right, top)),
-          luminance(pixel(column, bottom)), luminance(pixel(right, bottom))};
+  return {pixel(column, top), pixel(right, top), pixel(column, bottom), pixel(right, bottom)};
 }
 
 }  // namespace hyades::core

@@ -26,14 +26,20 @@ class EnvironmentMap {
   /// `image` has channels R, G, B or Y and at least one pixel.
   explicit EnvironmentMap(std::shared_ptr<const Image> image);
 
-  /// The picture's value in `direction`; `turn` is added to u.
+  /// What is seen in a direction.
+  struct View {
+    Rgb radiance{0.0F};
+    float pdf = 0.0F;  ///< density per solid angle with which sample() chooses the direction
+  };
+
+  /// The view in `direction`; `turn` is added to u.
+  View view(const Vec3& direction, float turn) const;
+
+  /// Only the picture's value.
   Rgb look_up(const Vec3& direction, float turn) const;
 
   /// A direction for `u` in [0, 1)^2. Only where integral() is not black.
   Vec3 sample(const Vec2& u, float turn) const;
-
-  /// The density per solid angle of sample().
-  float pdf(const Vec3& direction, float turn) const;
 
   /// The integral of the values over all directions, as sampling sees it [sr].
   Rgb integral() const { return integral_; }
@@ -49,21 +55,18 @@ class EnvironmentMap {
     float lower = 0.0F;   ///< in cos(theta), for density
   };
 
+  /// The values at the corners of a cell.
+  struct Cell {
+    Rgb top_left, top_right, bottom_left, bottom_right;
+  };
+
+  void measure();
   Place locate(const Vec3& direction, float turn) const;
   Rgb pixel(int x, int y) const;
-  Rgb blend(int column, int row, float across, float down) const;
+  Cell cell(int column, int row) const;
+  double cell_angle(int row) const;  ///< of each cell of a row [sr]
 
-  /// Luminance at the corners of a cell.
-  struct Corners {
-    float top_left, top_right, bottom_left, bottom_right;
-    float mean() const { return 0.25F * (top_left + top_right + bottom_left + bottom_right); }
-  };
-  Corners corners_of(int column, int row) const;
-  /// The density per solid angle at a place, of a cell that Distribution2D gives `cell_pdf`.
-  float density(const Place& place, float cell_pdf) const;
-  double cell_angle(int row) const;
-
-  std::shared_ptr<const Image> image_;
+  std::shared_ptr<const Image> image_;  ///< without negative, broken or overwhelming values
   int width_;
   int height_;
   int channels_[3];              ///< of the image: red, green, blue

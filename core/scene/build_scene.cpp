@@ -111,15 +111,16 @@ class SceneBuilder {
   Status add_environment() {
     if (!job_.environment) return {};
     const EnvironmentDesc& sky = *job_.environment;
-    std::shared_ptr<const Image> image;
-    if (!sky.image.empty()) {
-      auto loaded = cache_.image(sky.image, ColorSpace::automatic);
-      if (!loaded) return loaded.error().in("environment");
-      image = *loaded;
+    const Rgb scale = sky.color.at(time_) * sky.strength.at(time_);
+    const float radius = world_radius(*scene_->world);
+    if (sky.image.empty()) {
+      add_light(make_environment_light(nullptr, 0.0F, scale, radius));
+    } else {
+      auto map = cache_.environment_map(sky.image);
+      if (!map) return map.error().in("environment");
+      const float turn = sky.rotate_y.at(time_) * kRadians;
+      add_light(make_environment_map_light(*map, turn, scale, radius));
     }
-    add_light(make_environment_light(image, sky.rotate_y.at(time_) * kRadians,
-                                     sky.color.at(time_) * sky.strength.at(time_),
-                                     world_radius(*scene_->world)));
     scene_->environment_visible = sky.visible_to_camera;
     return {};
   }

@@ -42,6 +42,16 @@ Result<std::shared_ptr<const Image>> SceneCache::image(const std::string& file, 
   return slot;
 }
 
+Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(
+    const std::string& file) {
+  auto picture = image(file, ColorSpace::automatic);
+  if (!picture) return picture.error();
+  const std::lock_guard lock(mutex_);
+  auto& slot = environment_maps_[file];
+  if (!slot) slot = std::make_shared<const EnvironmentMap>(*picture);
+  return slot;
+}
+
 std::shared_ptr<const TriangleMesh> SceneCache::made_mesh(
     const std::string& key, std::shared_ptr<TriangleMesh> (*make)(const Vec3&), const Vec3& size) {
   const std::lock_guard lock(mutex_);

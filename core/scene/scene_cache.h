@@ -11,6 +11,7 @@
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/world.h"
 #include "core/image/read_image.h"
+#include "core/lights/environment_map.h"
 
 namespace hyades::core {
 
@@ -25,6 +26,9 @@ class SceneCache {
                                                    const std::string& smooth);
 
   Result<std::shared_ptr<const Image>> image(const std::string& file, ColorSpace space);
+
+  /// An image as a sky, ready to be sampled.
+  Result<std::shared_ptr<const EnvironmentMap>> environment_map(const std::string& file);
 
   /// A mesh made here (rectangle, box), shared between equal requests under `key`.
   std::shared_ptr<const TriangleMesh> made_mesh(const std::string& key,
@@ -42,6 +46,7 @@ class SceneCache {
   // Guarded by mutex_.
   std::map<std::pair<std::string, std::string>, std::shared_ptr<const TriangleMesh>> meshes_;
   std::map<std::pair<std::string, ColorSpace>, std::shared_ptr<const Image>> images_;
+  std::map<std::string, std::shared_ptr<const EnvironmentMap>> environment_maps_;
   std::vector<Placement> world_placements_;
   std::shared_ptr<const World> world_;
   GeometryCache geometry_;
