@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "core/base/fp_mode.h"
+#include "core/geometry/build_thresholds.h"
 #include "core/geometry/embree_geometry.h"
 #include "core/geometry/embree_world.h"
 
@@ -16,13 +18,6 @@ constexpr float kLargestCoordinate = 1e12F;
 
 /// Embree's limit for matrices of one motion (RTC_MAX_TIME_STEP_COUNT).
 constexpr size_t kMaxSteps = 129;
-
-/// A mesh that is placed several times is copied, not instanced, while all copies together stay
-/// below this many triangles: direct geometry traces faster.
-constexpr size_t kCopiedTriangles = size_t{1} << 16;
-
-/// Still geometry gets a scene of its own, which the next frame can share, from this size on.
-constexpr size_t kSharedTriangles = size_t{1} << 14;
 
 constexpr unsigned kAllRays = 0xFFFFFFFFU;
 
@@ -118,7 +113,8 @@ enum class Way {
 };
 
 /// Depends on the placements alone: never on what was built before.
-std::vector<Way> choose_ways(const std::vector<Placement>& placements) {
+std::vector<Way> choose_ways(const std::vector<Placement>& placements,
+                             const BuildThresholds& thresholds) {
   std::map<const TriangleMesh*, size_t> uses;
   for (const Placement& p : placements) {
     if (p.shape.kind == Shape::Kind::mesh) ++uses[p.shape.mesh.get()];
@@ -129,15 +125,21 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements) {
   for (const Placement& p : placements) {
     const bool mesh = p.shape.kind == Shape::Kind::mesh;
     const size_t copies = mesh ? uses[p.shape.mesh.get()] : 1;
-    const bool repeated = copies > 1 && copies * triangle_count(p) > kCopiedTriangles;
-    const bool changes = p.changes_between_frames || p.to_world.size() > 1;
+    const bool repeated = copies > 1 && copies * triangle_count(p) > thresholds.copied_triangles;
+    const bool moves = p.to_world.size() > 1;
+    const bool rebuilt_often =
+        p.changes_between_frames && triangle_count(p) > thresholds.shared_triangles;
     any_changes = any_changes || p.changes_between_frames;
-    ways.push_back(mesh && (repeated || changes) ? Way::instance
-                   : changes                     ? Way::direct
-                                                 : Way::shared);
-    if (ways.back() == Way::shared) still_triangles += triangle_count(p);
+    if (mesh && (repeated || moves || rebuilt_often)) {
+      ways.push_back(Way::instance);
+    } else if (moves || p.changes_between_frames) {
+      ways.push_back(Way::direct);
+    } else {
+      ways.push_back(Way::shared);
+      still_triangles += triangle_count(p);
+    }
   }
-  if (!any_changes || still_triangles < kSharedTriangles) {
+  if (!any_changes || still_triangles <= thresholds.shared_triangles) {
     std::replace(ways.begin(), ways.end(), Way::shared, Way::direct);
   }
   return ways;
@@ -173,8 +175,9 @@ class WorldBuilder {
  public:
   explicit WorldBuilder(GeometryCache::State& cache) : cache_(cache), lock_(cache.mutex) {}
 
-  Result<std::shared_ptr<const World>> build(std::vector<Placement> placements) {
-    const std::vector<Way> ways = choose_ways(placements);
+  Result<std::shared_ptr<const World>> build(std::vector<Placement> placements,
+                                             const BuildThresholds& thresholds) {
+    const std::vector<Way> ways = choose_ways(placements, thresholds);
     if (Status s = add_shared(placements, ways); !s) return s.error();
     parts_.objects.resize(placements.size());
     if (parts_.still != nullptr) {
@@ -229,10 +232,7 @@ class WorldBuilder {
       const std::shared_ptr<const TriangleMesh>& mesh) {
     std::weak_ptr<const MeshScene>& known = cache_.meshes[mesh.get()];
     if (auto found = known.lock()) {
-      if (std::find(parts_.mesh_scenes.begin(), parts_.mesh_scenes.end(), found) ==
-          parts_.mesh_scenes.end()) {
-        parts_.mesh_scenes.push_back(found);
-      }
+      if (used_.insert(found.get()).second) parts_.mesh_scenes.push_back(found);
       return found;
     }
     auto fresh = std::make_shared<MeshScene>();
@@ -243,6 +243,7 @@ class WorldBuilder {
     if (!scene) return scene.error();
     fresh->scene = *scene;
     known = fresh;
+    used_.insert(fresh.get());
     parts_.mesh_scenes.push_back(fresh);
     return std::shared_ptr<const MeshScene>(std::move(fresh));
   }
@@ -283,6 +284,7 @@ class WorldBuilder {
   GeometryCache::State& cache_;
   std::lock_guard<std::mutex> lock_;
   WorldParts parts_;
+  std::set<const MeshScene*> used_;  ///< those in parts_.mesh_scenes
 };
 
 }  // namespace
@@ -292,6 +294,12 @@ GeometryCache::~GeometryCache() = default;
 
 Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
                                                  GeometryCache& cache) {
+  return build_world(std::move(placements), cache, BuildThresholds());
+}
+
+Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
+                                                 GeometryCache& cache,
+                                                 const BuildThresholds& thresholds) {
   if (const auto device = embree_device(); !device) return device.error();
   for (size_t i = 0; i < placements.size(); ++i) {
     if (Status s = check_placement(placements[i]); !s) {
@@ -299,7 +307,7 @@ Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placemen
     }
   }
   const FpMode mode;
-  return WorldBuilder(cache.state()).build(std::move(placements));
+  return WorldBuilder(cache.state()).build(std::move(placements), thresholds);
 }
 
 }  // namespace hyades::core

@@ -56,6 +56,7 @@ class Flattener {
     flat.emit = object.emit;
     flat.placement.shape = *shape;
     flat.placement.visible_to_camera = visible;
+    flat.placement.changes_between_frames = chain_is_animated();
     flat.placement.to_world =
         shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
     flat_.push_back(std::move(flat));
@@ -74,6 +75,7 @@ class Flattener {
       cap.placement.shape.kind = Shape::Kind::disk;
       cap.placement.shape.radius = object.radius;
       cap.placement.visible_to_camera = visible;
+      cap.placement.changes_between_frames = chain_is_animated();
       Mat4 place(1.0F);
       if (top) {
         place[3].y = object.height;
@@ -85,6 +87,17 @@ class Flattener {
           job_, frame_, [&](const JobTime& time) { return chain_matrix(time) * place; });
       flat_.push_back(std::move(cap));
     }
+  }
+
+  /// Whether the object or a group around it is placed by keys or expressions.
+  bool chain_is_animated() const {
+    const auto animated_step = [](const TransformStep& step) {
+      return !step.vector.is_constant() || !step.angle.is_constant();
+    };
+    return std::any_of(chain_.begin(), chain_.end(), [&](const ObjectDesc* object) {
+      return !object->at.is_constant() ||
+             std::any_of(object->transform.begin(), object->transform.end(), animated_step);
+    });
   }
 
   /// Object to world, through all enclosing groups, scaled to metres.

@@ -153,8 +153,9 @@ Mat4 random_transform(Random& random) {
 }
 
 /// Compares `count` rays; at most one in a hundred may be left out as doubtful.
-void compare(const std::vector<Placement>& placements, size_t count, uint64_t seed) {
-  const auto world = test::build(placements);
+void compare(const std::vector<Placement>& placements, size_t count, uint64_t seed,
+             const BuildThresholds& thresholds = {}) {
+  const auto world = test::build(placements, thresholds);
   ASSERT_NE(world, nullptr);
   Random random(seed);
   size_t doubtful = 0;
@@ -213,7 +214,7 @@ TEST(BruteForce, Instances) {
     placements.push_back(test::place(soup, {random_transform(random)}));
     placements.back().changes_between_frames = true;
   }
-  compare(placements, 3000, 13);
+  compare(placements, 3000, 13, test::kInstanceAll);
 }
 
 TEST(BruteForce, MovingInstances) {
@@ -259,6 +260,9 @@ TEST(BruteForce, EverythingTogether) {
     }
   }
   compare(placements, 3000, 16);
+  compare(placements, 3000, 17, test::kInstanceAll);
+  for (size_t i = 0; i < 6; ++i) placements[i].changes_between_frames = true;
+  compare(placements, 3000, 18, test::kInstanceAll);
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ std::vector<Placement> mixed_scene(int frame) {
   Random random(5);
   static const auto fine = test::make_ball(7);  // 131072 triangles
   static const auto coarse = test::make_ball(2);
+  static const auto changing = test::make_ball(6);  // 32768 triangles: instanced
   std::vector<Placement> out;
   for (int i = 0; i < 6; ++i) {
     const Mat4 m = test::translation(3.0F * random.direction()) * test::random_rotation(random);
@@ -77,8 +78,10 @@ std::vector<Placement> mixed_scene(int frame) {
     out.push_back(test::place(kind, 0.7F, 1.0F, {m, test::translation(random.direction()) * m}));
   }
   const Mat4 m = test::translation({0.0F, 0.1F * static_cast<float>(frame), 0.0F});
-  out.push_back(test::place(coarse, {m}));
-  out.back().changes_between_frames = true;
+  for (const auto& mesh : {coarse, changing}) {
+    out.push_back(test::place(mesh, {m}));
+    out.back().changes_between_frames = true;
+  }
   out.push_back(test::place(Shape::Kind::sphere, 0.3F, 1.0F, {m}));
   out.back().changes_between_frames = true;
   return out;

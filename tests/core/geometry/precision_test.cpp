@@ -30,7 +30,7 @@ std::shared_ptr<const World> build_way(const std::shared_ptr<const TriangleMesh>
   if (way == Way::moving) {
     p.to_world.push_back(test::translation(0.1F * Vec3(m[1]) + 0.2F * Vec3(m[0])) * m);
   }
-  return test::build({p});
+  return test::build({p}, test::kInstanceAll);
 }
 
 /// Calls body(world) for a mesh at every scale and offset and in every way.
@@ -327,7 +327,7 @@ TEST(Precision, DegenerateTrianglesAreNeverHit) {
   for (const bool instance : {false, true}) {
     Placement p = test::place(mesh);
     p.changes_between_frames = instance;
-    const auto world = test::build({p});
+    const auto world = test::build({p}, test::kInstanceAll);
     for (size_t i = 0; i < 5000; ++i) {
       const Vec3 from = 3.0F * random.direction();
       const Vec3 to = mesh->positions[test::pick(random, mesh->positions.size())];

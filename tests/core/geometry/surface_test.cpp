@@ -59,7 +59,7 @@ TEST(Surface, MeshPointsAgreeWithTheirDefinition) {
   Random random(1);
   const auto mesh = textured_ball();
   for (const auto& placements : ways(test::place(mesh), random)) {
-    const auto world = test::build(placements);
+    const auto world = test::build(placements, test::kInstanceAll);
     for (int i = 0; i < 300; ++i) {
       Ray ray;
       const auto p = random_point(*world, random, ray);
@@ -98,7 +98,7 @@ TEST(Surface, QuadricPointsAgreeWithTheirDefinition) {
   Random random(2);
   for (const auto kind : {Shape::Kind::sphere, Shape::Kind::disk, Shape::Kind::cylinder}) {
     for (const auto& placements : ways(test::place(kind, 1.5F, 2.0F), random)) {
-      const auto world = test::build(placements);
+      const auto world = test::build(placements, test::kInstanceAll);
       size_t found = 0;
       for (int i = 0; i < 300; ++i) {
         Ray ray;
@@ -169,7 +169,7 @@ TEST(Surface, QuadricTangentsAreDerivatives) {
 TEST(Surface, TrianglePointIsWhereTheRayHits) {
   Random random(3);
   for (const auto& placements : ways(test::place(textured_ball()), random)) {
-    const auto world = test::build(placements);
+    const auto world = test::build(placements, test::kInstanceAll);
     for (int i = 0; i < 100; ++i) {
       Ray ray;
       const auto p = random_point(*world, random, ray);
@@ -221,7 +221,7 @@ TEST(Surface, MissingOrSingularParametersGiveSomeTangents) {
       {test::place(Shape::Kind::disk, 1.0F, 1.0F)},
   };
   for (const auto& placements : worlds) {
-    const auto world = test::build(placements);
+    const auto world = test::build(placements, test::kInstanceAll);
     const Ray ray{{0.0F, 3.0F, 0.0F}, {0.0F, -1.0F, 0.0F}};
     const auto hit = world->intersect(ray, RayKind::camera);
     ASSERT_TRUE(hit);

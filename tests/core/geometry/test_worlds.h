@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/build_thresholds.h"
 #include "core/geometry/world.h"
 #include "tests/support/random.h"
 
@@ -101,9 +102,13 @@ inline core::Placement place(core::Shape::Kind kind, float radius, float height,
   return p;
 }
 
-inline std::shared_ptr<const core::World> build(std::vector<core::Placement> placements) {
+/// Instances every mesh that repeats or changes, and shares all that stands still.
+inline constexpr core::BuildThresholds kInstanceAll{0, 0};
+
+inline std::shared_ptr<const core::World> build(std::vector<core::Placement> placements,
+                                                const core::BuildThresholds& thresholds = {}) {
   core::GeometryCache cache;
-  auto world = core::build_world(std::move(placements), cache);
+  auto world = core::build_world(std::move(placements), cache, thresholds);
   EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().message);
   return world.ok() ? *world : nullptr;
 }

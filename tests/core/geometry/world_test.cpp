@@ -93,6 +93,19 @@ TEST(World, CameraRaysPassInvisiblePlacements) {
   EXPECT_TRUE(world->occluded(ray));
 }
 
+TEST(World, ShadowsPassWhatBlocksNoLight) {
+  for (const bool mesh : {false, true}) {
+    Placement p = mesh ? mesh_placement(make_rectangle({2, 2}))
+                       : quadric_placement(Shape::Kind::sphere, 1.0F);
+    p.blocks_light = false;
+    const auto world = world_of({p});
+    const Ray ray{{0.1F, 5, 0.2F}, {0, -1, 0}};
+    EXPECT_TRUE(world->intersect(ray, RayKind::camera));
+    EXPECT_TRUE(world->intersect(ray, RayKind::other));
+    EXPECT_FALSE(world->occluded(ray));
+  }
+}
+
 TEST(World, NonFiniteRaysAreCountedAndMiss) {
   const auto world = world_of({quadric_placement(Shape::Kind::sphere, 1.0F)});
   const float nan = std::nanf("");
