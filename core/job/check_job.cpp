@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "core/base/text.h"
 #include "core/job/reference_graph.h"
@@ -15,6 +16,7 @@ namespace hyades::core {
 namespace {
 
 constexpr uint64_t kMostObjects = uint64_t{1} << 22;  ///< once all groups are unfolded
+constexpr size_t kMostCandidates = 10'000;            ///< for 'did you mean'
 constexpr int kMostMoments = 1000;                    ///< at which expressions are tried
 /// Textures made of textures, materials of materials, groups of groups: readers of a job may use
 /// recursion this deep (and about 20 groups written in place, see kMaxYamlDepth).
@@ -34,7 +36,9 @@ void check_names(ReadContext& context) {
   for (const NameUse& use : context.names) {
     const auto kind = static_cast<size_t>(use.kind);
     if (given[kind].contains(use.name)) continue;
-    const std::vector<std::string>& names = context.given[kind];
+    if (context.diagnostics.full()) return;
+    const std::vector<std::string>& all = context.given[kind];
+    const std::span<const std::string> names(all.data(), std::min(all.size(), kMostCandidates));
     std::string hint = did_you_mean(use.name, names);
     if (hint.empty() && names.empty()) hint = "; the job defines none";
     if (hint.empty() && names.size() <= 12) hint = "; there are " + join_names(names);

@@ -90,6 +90,7 @@ class LikeResolver {
   size_t target_of(size_t i, const YamlEntry& like) {
     const auto found = index_.find(like.value->scalar);
     if (like.value->kind == YamlNode::Kind::scalar && found != index_.end()) return found->second;
+    if (context_.diagnostics.full()) return kNone;
     std::vector<std::string> names;
     for (const YamlEntry& entry : named_.map) {
       if (names.size() < 1000 && entry.key != named_.map[i].key) names.push_back(entry.key);

@@ -45,8 +45,6 @@ MapReader::MapReader(ReadContext& context, const YamlNode& map, std::string what
   context_.spend(map.map.size() + 1, where_);
 }
 
-std::string MapReader::label(std::string_view key) const { return std::string(key); }
-
 const YamlNode* MapReader::find(std::string_view key) {
   asked_.emplace_back(key);
   if (listing()) context_.listing->insert({section_, std::string(key)});
@@ -56,7 +54,7 @@ const YamlNode* MapReader::find(std::string_view key) {
     complain(entry->key_where,
              fmt::format("{} is empty, expected a value (a colour such as \"#d8c8a8\" needs its "
                          "quotes: an unquoted # starts a comment)",
-                         label(key)));
+                         std::string(key)));
     return nullptr;
   }
   return entry->value.get();
@@ -69,13 +67,14 @@ void MapReader::require(std::string_view key, std::string_view expected) {
 }
 
 void MapReader::number(std::string_view key, float& target, const Range& range) {
-  if (const YamlNode* node = find(key)) read_number({context_, label(key), range}, *node, target);
+  if (const YamlNode* node = find(key))
+    read_number({context_, std::string(key), range}, *node, target);
 }
 
 void MapReader::integer(std::string_view key, int32_t& target, int64_t low, int64_t high) {
   int64_t value = 0;
   const YamlNode* node = find(key);
-  if (node != nullptr && read_integer({context_, label(key), {}}, *node, low, high, value)) {
+  if (node != nullptr && read_integer({context_, std::string(key), {}}, *node, low, high, value)) {
     target = static_cast<int32_t>(value);
   }
 }
@@ -83,7 +82,7 @@ void MapReader::integer(std::string_view key, int32_t& target, int64_t low, int6
 void MapReader::integer(std::string_view key, uint32_t& target, int64_t low, int64_t high) {
   int64_t value = 0;
   const YamlNode* node = find(key);
-  if (node != nullptr && read_integer({context_, label(key), {}}, *node, low, high, value)) {
+  if (node != nullptr && read_integer({context_, std::string(key), {}}, *node, low, high, value)) {
     target = static_cast<uint32_t>(value);
   }
 }
@@ -194,29 +193,29 @@ bool MapReader::integers(std::string_view key, std::span<int32_t> target, int64_
 
 void MapReader::animated(std::string_view key, Animated<float>& target, const Range& range) {
   const YamlNode* node = find(key);
-  if (node != nullptr) read_animated_number({context_, label(key), range}, *node, target);
+  if (node != nullptr) read_animated_number({context_, std::string(key), range}, *node, target);
 }
 
 void MapReader::animated(std::string_view key, Animated<Vec3>& target, const Range& range) {
   const YamlNode* node = find(key);
-  if (node != nullptr) read_animated_vector({context_, label(key), range}, *node, target);
+  if (node != nullptr) read_animated_vector({context_, std::string(key), range}, *node, target);
 }
 
 void MapReader::animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range) {
   const YamlNode* node = find(key);
-  if (node != nullptr) read_animated_scale({context_, label(key), range}, *node, target);
+  if (node != nullptr) read_animated_scale({context_, std::string(key), range}, *node, target);
 }
 
 void MapReader::color(std::string_view key, Animated<Rgb>& target, const Range& range) {
   const YamlNode* node = find(key);
-  if (node != nullptr) read_animated_color({context_, label(key), range}, *node, target);
+  if (node != nullptr) read_animated_color({context_, std::string(key), range}, *node, target);
 }
 
 void MapReader::color_input(std::string_view key, ColorInput& target, const Range& range) {
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_texture_input(*this, key, *node, target.texture)) return;
-  if (read_animated_color({context_, label(key), range}, *node, target.value)) {
+  if (read_animated_color({context_, std::string(key), range}, *node, target.value)) {
     target.texture.clear();
   }
 }
@@ -225,7 +224,7 @@ void MapReader::scalar_input(std::string_view key, ScalarInput& target, const Ra
   const YamlNode* node = find(key);
   if (node == nullptr) return;
   if (read_texture_input(*this, key, *node, target.texture)) return;
-  if (read_animated_number({context_, label(key), range}, *node, target.value)) {
+  if (read_animated_number({context_, std::string(key), range}, *node, target.value)) {
     target.texture.clear();
   }
 }
@@ -250,7 +249,7 @@ void MapReader::later(std::string_view key) {
 }
 
 void MapReader::mismatch(std::string_view key, const YamlNode& found, const std::string& expected) {
-  complain_mismatch({context_, label(key), {}}, found, expected);
+  complain_mismatch({context_, std::string(key), {}}, found, expected);
 }
 
 void MapReader::finish() {
@@ -260,6 +259,7 @@ void MapReader::finish() {
   for (const YamlEntry& entry : map_.map) {
     if (std::binary_search(asked_.begin(), asked_.end(), entry.key)) continue;
     if (std::find(later_.begin(), later_.end(), entry.key) != later_.end()) continue;
+    if (context_.diagnostics.full()) return;
     std::string hint = belongs_elsewhere(section_, entry.key);
     if (hint.empty()) hint = did_you_mean(entry.key, asked_);
     if (hint.empty()) hint = "; expected " + join_names(asked_);

@@ -79,8 +79,6 @@ class MapReader {
   void finish();
 
  private:
-  std::string label(std::string_view key) const;
-
   ReadContext& context_;
   const YamlNode& map_;
   std::string what_;

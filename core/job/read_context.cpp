@@ -24,7 +24,7 @@ std::string Range::describe(const std::string& noun) const {
 
 void ReadContext::complain(const SourceLocation& where, const std::string& message) {
   const Diagnostic complaint{where, message};
-  if (complaints_.size() > 1000) return;  // only 100 are ever kept
+  if (diagnostics.full()) return;
   if (!complaints_.insert(complaint.to_string()).second) return;
   diagnostics.add(where, message);
 }

@@ -125,9 +125,11 @@ bool read_component(const ValueSite& site, const YamlNode& node, float& constant
 
 bool read_number(const ValueSite& site, const YamlNode& node, float& target) {
   double value = 0.0;
-  if (node.kind != YamlNode::Kind::scalar || node.quoted || !parse_number(node.scalar, value) ||
-      !fits(site.range, value)) {
-    complain_mismatch(site, node, site.range.describe());
+  const bool number =
+      node.kind == YamlNode::Kind::scalar && !node.quoted && parse_number(node.scalar, value);
+  if (!number || !fits(site.range, value)) {
+    const char* const size = number && std::abs(value) > 1e18 ? ", no larger than 1e18" : "";
+    complain_mismatch(site, node, site.range.describe() + size);
     return false;
   }
   target = static_cast<float>(value);

@@ -21,7 +21,7 @@ std::string Diagnostic::to_string() const {
 }
 
 void Diagnostics::add(const SourceLocation& where, std::string message) {
-  if (list_.size() > kMaxDiagnostics) return;
+  if (full()) return;
   if (list_.size() == kMaxDiagnostics) {
     message = "too many complaints: only the first " + std::to_string(kMaxDiagnostics) +
               " are listed, mend those and look again";
@@ -31,11 +31,13 @@ void Diagnostics::add(const SourceLocation& where, std::string message) {
   list_.push_back({where, std::move(message)});
 }
 
+bool Diagnostics::full() const { return list_.size() > kMaxDiagnostics; }
+
 std::string Diagnostics::to_string() const {
   std::vector<const Diagnostic*> order;
   for (const Diagnostic& d : list_) order.push_back(&d);
   // The closing "too many" carries no line and stays last.
-  const bool cut = list_.size() > kMaxDiagnostics;
+  const bool cut = full();
   std::stable_sort(order.begin(), order.end() - (cut ? 1 : 0), [](const auto* a, const auto* b) {
     return std::tie(a->where.file, a->where.line, a->where.column) <
            std::tie(b->where.file, b->where.line, b->where.column);

@@ -25,6 +25,7 @@ class Diagnostics {
  public:
   void add(const SourceLocation& where, std::string message);
   bool empty() const { return list_.empty(); }
+  bool full() const;  ///< further complaints would be dropped
   const std::vector<Diagnostic>& list() const { return list_; }
   std::string to_string() const;  ///< one per line, in order of file and line
 

@@ -73,7 +73,7 @@ TEST(Complaints, NumbersOutOfRange) {
             "job.yaml:2:15: fov is '.nan', expected a number above 0 and below 180\n");
   EXPECT_EQ(complaints("camera: {look_at: [.inf, 1e300, nan]}\n"),
             "job.yaml:2:20: look_at[0] is '.inf', expected a number\n"
-            "job.yaml:2:26: look_at[1] is '1e300', expected a number\n"
+            "job.yaml:2:26: look_at[1] is '1e300', expected a number, no larger than 1e18\n"
             "job.yaml:2:33: look_at[2] is 'nan', expected a number\n");
   EXPECT_EQ(complaints("film: {size: [70000, 10]}\n"),
             "job.yaml:2:15: size[0] is '70000', expected a whole number from 1 to 65536\n");

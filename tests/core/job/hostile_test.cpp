@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <random>
 
 #include "core/job/parse.h"
@@ -155,6 +156,25 @@ TEST(HostileJob, ManyObjectsWithOneName) {
   EXPECT_EQ(reading.first(), "job.yaml:4:3: duplicate key 'a' (first at line 3)");
   EXPECT_EQ(reading.diagnostics.list().size(), 101U);
   EXPECT_LT(reading.seconds, kPatience);
+}
+
+TEST(HostileJob, ManyMistakesDoNotTakeLong) {
+  // Each of them could be compared with each good name.
+  std::string text = "hyades: 1\n";
+  std::string materials = "materials:\n";
+  std::string lights = "lights:\n";
+  std::string objects = "objects:\n";
+  for (int i = 0; i < 8000; ++i) {
+    const std::string n = std::to_string(i);
+    materials += "  a_rather_long_name_" + n + ": {type: lambert, key_" + n + ": 1}\n";
+    lights += "  another_long_name_" + n + ": {like: some_other_long_name_" + n + "}\n";
+    objects += "  o" + n + ": {shape: box, material: a_rather_lung_name_x" + n + "}\n";
+  }
+  for (const std::string& part : {materials, lights, materials + objects, objects}) {
+    const Reading reading = read(text + part);
+    EXPECT_EQ(reading.diagnostics.list().size(), 101U);
+    EXPECT_LT(reading.seconds, kPatience);
+  }
 }
 
 TEST(HostileJob, ManyHonestObjectsAreFine) {
@@ -347,10 +367,12 @@ TEST(HostileJob, RandomEditsNeverDoMoreThanComplain) {
   MemoryAssets assets;
   assets.add("more.yaml", "lights: {bulb: {type: point, color: [1, \"= t\", 1]}}\n");
   std::mt19937 random(20240607);
+  // More rounds on request: HYADES_FUZZ_ROUNDS=100000 under the sanitizers, say.
+  const char* const wish = std::getenv("HYADES_FUZZ_ROUNDS");
+  const int rounds = wish != nullptr ? std::atoi(wish) : 6000;
   int good = 0;
-  const auto begin = Clock::now();
   double slowest = 0.0;
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < rounds; ++i) {
     std::string text = kSeed;
     for (size_t edits = 1 + random() % 4; edits > 0; --edits) text = mutated(text, random);
     Diagnostics diagnostics;
@@ -363,10 +385,9 @@ TEST(HostileJob, RandomEditsNeverDoMoreThanComplain) {
     slowest = std::max(slowest, std::chrono::duration<double>(Clock::now() - start).count());
   }
   // The seed itself is good, so some edits (in comments, names, numbers) must leave it good.
-  EXPECT_GT(good, 20);
-  EXPECT_LT(good, 5000);
+  EXPECT_GT(good, rounds / 300);
+  EXPECT_LT(good, rounds / 2);
   EXPECT_LT(slowest, kPatience);
-  EXPECT_LT(std::chrono::duration<double>(Clock::now() - begin).count(), 10.0 * kPatience);
 }
 
 }  // namespace
