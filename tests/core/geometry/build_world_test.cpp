@@ -75,7 +75,8 @@ std::vector<Placement> mixed_scene(int frame) {
   }
   out.push_back(out[1]);  // the same twice: coplanar everywhere
   out.push_back(test::place(make_box({9, 9, 9})));
-  out.push_back(test::place(test::make_ball(5)));
+  static const auto lone = test::make_ball(6);  // enough to be shared
+  out.push_back(test::place(lone, {test::translation({-2, 0, 0})}));
   for (const auto kind : {Shape::Kind::sphere, Shape::Kind::disk, Shape::Kind::cylinder}) {
     const Mat4 m = test::translation(3.0F * random.direction()) * test::random_rotation(random);
     out.push_back(test::place(kind, 0.7F, 1.0F, {m, test::translation(random.direction()) * m}));
@@ -98,8 +99,8 @@ TEST(BuildWorld, FramesShareWhatStandsStill) {
   EXPECT_GT(one, 1000000U);
   const auto second = build_world(mixed_scene(1), cache);
   ASSERT_TRUE(second);
-  // Only the top scene is new.
-  EXPECT_LT(embree_memory() - one, one / 10);
+  // Only the top scene is new (Embree takes a megabyte or two for the smallest of them).
+  EXPECT_LT(embree_memory() - one, one / 4);
   // What comes out of the cache has the bits of what is built afresh.
   const auto fresh = test::build(mixed_scene(1));
   EXPECT_EQ(digest(**second, 5000, 1), digest(*fresh, 5000, 1));
@@ -113,7 +114,7 @@ TEST(BuildWorld, SharedGeometryOutlivesItsWorldUntilTheNextIsBuilt) {
   const size_t kept = embree_memory();
   EXPECT_GT(kept, before + 1000000U);
   (void)build_world(mixed_scene(1), cache);
-  EXPECT_LT(embree_memory(), kept + kept / 10);
+  EXPECT_LT(embree_memory(), kept + kept / 4);
   (void)build_world({}, cache);
   EXPECT_LE(embree_memory(), before + 4096);
 }
