@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct BsdfCase {
   float ior = 1.0F;        ///< of the side z < 0 over that of z > 0
   bool reciprocal = true;  ///< false where part of it has another normal than the whole
 };
+
+inline void PrintTo(const BsdfCase& c, std::ostream* out) { *out << c.name; }
 
 /// Materials that scatter smoothly, some with delta lobes beside.
 inline std::vector<BsdfCase> smooth_cases() {

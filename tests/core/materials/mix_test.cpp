@@ -110,6 +110,24 @@ TEST(Mix, PartsKeepTheirBumps) {
               0.5F * kInvPi * (0.5F + 0.5F * tilted), 1e-6F);
 }
 
+// Where a part's own normal looks away from wo, that part is neither evaluated nor drawn, even if
+// it transmits.
+TEST(Mix, PartsSeenFromBehindTheirNormalAreBlack) {
+  const MaterialPtr glass = make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(0.5F));
+  const BsdfUnderTest mix(make_mix(make_lambert(color_of(Rgb(0.5F))),
+                                   make_bump(glass, object_slope({1.0F, 0.0F, 0.0F}), 1.0F),
+                                   number(0.5F)));
+  const Vec3 wo = glm::normalize(Vec3(0.9F, 0.1F, 0.2F));
+  test::Random random(10);
+  for (int n = 0; n < 1000; ++n) {
+    const Vec3 wi = random.direction();
+    const float expected = wi.z > 0.0F ? 0.5F * kInvPi * wi.z : 0.0F;
+    EXPECT_NEAR(mix->pdf(wo, wi, TransportMode::radiance), expected, 1e-6F);
+    EXPECT_NEAR(mix->evaluate(wo, wi, TransportMode::radiance).x, 0.5F * expected, 1e-6F);
+    EXPECT_FALSE(mix->sample(wo, 0.25F, random.uniform2(), TransportMode::radiance).has_value());
+  }
+}
+
 TEST(BsdfArena, RunsOutWithoutHarm) {
   BsdfArena arena;
   MaterialPtr material = make_lambert(color_of(Rgb(0.5F)));
