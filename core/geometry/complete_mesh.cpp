@@ -4,22 +4,20 @@
 #include <limits>
 #include <string>
 
-#include "core/base/parallel.h"
+#include "core/geometry/chunks.h"
 #include "core/geometry/mesh_source.h"
 
 namespace hyades::core {
 namespace {
 
-constexpr size_t kChunk = size_t{1} << 15;
 constexpr size_t kNone = std::numeric_limits<size_t>::max();
 
 /// The least i in [0, n) for which bad(i), or kNone; in parallel.
 template <class Bad>
 size_t find_first(size_t n, const Bad& bad) {
   std::atomic<size_t> first{kNone};
-  (void)parallel_for((n + kChunk - 1) / kChunk, n > kChunk ? 0 : 1, [&](size_t chunk) {
-    const size_t end = std::min(n, (chunk + 1) * kChunk);
-    for (size_t i = chunk * kChunk; i < end; ++i) {
+  for_chunks(n, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
       if (!bad(i)) continue;
       size_t known = first.load();
       while (i < known && !first.compare_exchange_weak(known, i)) {

@@ -4,14 +4,10 @@
 #include <cmath>
 
 #include "core/base/elementary.h"
-#include "core/base/parallel.h"
+#include "core/geometry/chunks.h"
 
 namespace hyades::core {
 namespace {
-
-constexpr size_t kChunk = size_t{1} << 16;
-
-size_t chunk_count(size_t n) { return (n + kChunk - 1) / kChunk; }
 
 /// Interior angle between two edges, in radians.
 float angle_between(const Vec3d& a, const Vec3d& b) {
@@ -49,11 +45,10 @@ void finish_mesh(TriangleMesh& mesh) {
   mesh.positions.reserve(mesh.positions.size() + 1);
   const size_t n = mesh.positions.size();
   std::vector<Bounds> parts(chunk_count(n));
-  (void)parallel_for(parts.size(), 0, [&](size_t chunk) {
+  for_chunks(n, [&](size_t begin, size_t end) {
     Bounds b;
-    const size_t end = std::min(n, (chunk + 1) * kChunk);
-    for (size_t i = chunk * kChunk; i < end; ++i) b.include(mesh.positions[i]);
-    parts[chunk] = b;
+    for (size_t i = begin; i < end; ++i) b.include(mesh.positions[i]);
+    parts[begin / kChunk] = b;
   });
   mesh.bounds = Bounds();
   for (const Bounds& b : parts) mesh.bounds.include(b);
@@ -62,14 +57,13 @@ void finish_mesh(TriangleMesh& mesh) {
 void compute_smooth_normals(TriangleMesh& mesh) {
   const size_t n = mesh.triangles.size();
   std::vector<Vec3d> sums(mesh.positions.size(), Vec3d(0.0));
-  std::vector<Corners> corners(std::min(n, 16 * kChunk));
+  std::vector<Corners> corners(std::min(n, 32 * kChunk));
   // Angles and face normals in parallel, sums in the order of the triangles: the same bits for any
   // number of threads.
   for (size_t begin = 0; begin < n; begin += corners.size()) {
     const size_t count = std::min(corners.size(), n - begin);
-    (void)parallel_for(chunk_count(count), 0, [&](size_t chunk) {
-      const size_t end = std::min(count, (chunk + 1) * kChunk);
-      for (size_t i = chunk * kChunk; i < end; ++i) corners[i] = corners_of(mesh, begin + i);
+    for_chunks(count, [&](size_t from, size_t to) {
+      for (size_t i = from; i < to; ++i) corners[i] = corners_of(mesh, begin + i);
     });
     for (size_t i = 0; i < count; ++i) {
       for (int k = 0; k < 3; ++k) {

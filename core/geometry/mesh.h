@@ -33,7 +33,7 @@ struct TriangleMesh {
   std::vector<Vec3>
       positions;  ///< allocated with room for one more element: Embree reads 16 bytes at the last
   std::vector<std::array<uint32_t, 3>> triangles;
-  std::vector<Vec3> normals;  ///< per vertex, unit; or empty: flat
+  std::vector<Vec3> normals;  ///< per vertex, unit, or 0: none there; or empty: flat
   std::vector<Vec2> uvs;      ///< per vertex; or empty
   Bounds bounds;
 

@@ -3,21 +3,11 @@
 #include <limits>
 #include <utility>
 
-#include "core/base/parallel.h"
+#include "core/geometry/chunks.h"
 #include "core/geometry/placed_object.h"
 
 namespace hyades::core {
 namespace {
-
-constexpr size_t kChunk = size_t{1} << 15;
-
-/// body(begin, end) over chunks of [0, n), in parallel.
-template <class Body>
-void for_chunks(size_t n, const Body& body) {
-  (void)parallel_for((n + kChunk - 1) / kChunk, n > kChunk ? 0 : 1, [&](size_t chunk) {
-    body(chunk * kChunk, std::min(n, (chunk + 1) * kChunk));
-  });
-}
 
 /// World-space copies of the vertices, with room for the padding that Embree reads.
 std::vector<Vec3> copy_positions(const TriangleMesh& mesh, const Affine* to_world) {
@@ -34,7 +24,7 @@ std::vector<Vec3> copy_positions(const TriangleMesh& mesh, const Affine* to_worl
 }
 
 Bounds bounds_of_positions(const Vec3* positions, size_t n) {
-  std::vector<Bounds> parts((n + kChunk - 1) / kChunk);
+  std::vector<Bounds> parts(chunk_count(n));
   for_chunks(n, [&](size_t begin, size_t end) {
     Bounds b;
     for (size_t i = begin; i < end; ++i) b.include(positions[i]);

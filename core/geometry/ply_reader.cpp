@@ -5,73 +5,16 @@
 #include <string>
 #include <utility>
 
-#include "core/base/parallel.h"
+#include "core/geometry/chunks.h"
 #include "core/geometry/mesh_source.h"
 #include "core/geometry/ply_header.h"
+#include "core/geometry/ply_layout.h"
 #include "core/geometry/ply_source.h"
 
 namespace hyades::core {
 namespace {
 
-constexpr size_t kChunk = size_t{1} << 15;
 constexpr uint32_t kMaxVertices = std::numeric_limits<int32_t>::max();
-
-/// body(begin, end) over chunks of [0, n), in parallel.
-template <class Body>
-void for_chunks(size_t n, const Body& body) {
-  (void)parallel_for((n + kChunk - 1) / kChunk, n > kChunk ? 0 : 1, [&](size_t chunk) {
-    body(chunk * kChunk, std::min(n, (chunk + 1) * kChunk));
-  });
-}
-
-/// What a vertex property means: its place in a row of eight floats.
-enum Slot : int { kX, kY, kZ, kNx, kNy, kNz, kU, kV, kSlots, kIgnored = -1 };
-using Row = std::array<float, kSlots>;
-
-Slot slot_named(const std::string& name) {
-  static const std::array<std::pair<const char*, Slot>, 16> known{{
-      {"x", kX},
-      {"y", kY},
-      {"z", kZ},
-      {"nx", kNx},
-      {"ny", kNy},
-      {"nz", kNz},
-      {"u", kU},
-      {"v", kV},
-      {"s", kU},
-      {"t", kV},
-      {"texture_u", kU},
-      {"texture_v", kV},
-      {"texture_s", kU},
-      {"texture_t", kV},
-      {"texcoord_u", kU},
-      {"texcoord_v", kV},
-  }};
-  for (const auto& [text, slot] : known) {
-    if (name == text) return slot;
-  }
-  return kIgnored;
-}
-
-struct VertexLayout {
-  std::vector<Slot> slots;  ///< per property
-  bool has_normals = false;
-  bool has_uvs = false;
-};
-
-Result<VertexLayout> layout_of(const PlyElement& element) {
-  VertexLayout out;
-  std::array<bool, kSlots> seen{};
-  for (const PlyProperty& p : element.properties) {
-    Slot slot = p.is_list ? kIgnored : slot_named(p.name);
-    if (slot != kIgnored && std::exchange(seen[slot], true)) slot = kIgnored;
-    out.slots.push_back(slot);
-  }
-  if (!seen[kX] || !seen[kY] || !seen[kZ]) return Error{"its vertices have no x, y and z"};
-  out.has_normals = seen[kNx] && seen[kNy] && seen[kNz];
-  out.has_uvs = seen[kU] && seen[kV];
-  return out;
-}
 
 /// Reads the data of one file into a mesh.
 template <class Source>
@@ -125,7 +68,7 @@ class PlyReader {
   }
 
   Status read_vertices(const PlyElement& e) {
-    auto layout = layout_of(e);
+    auto layout = ply_layout(e);
     if (!layout) return layout.error();
     const size_t n = e.count;
     mesh_->positions.reserve(n + 1);
@@ -136,7 +79,7 @@ class PlyReader {
       if (!e.has_lists()) return read_fixed_vertices(e, *layout);
     }
     for (size_t i = 0; i < n; ++i) {
-      Row row{};
+      PlyRow row{};
       for (size_t k = 0; k < e.properties.size(); ++k) {
         float value = 0.0F;
         const PlyProperty& p = e.properties[k];
@@ -152,18 +95,18 @@ class PlyReader {
     return {};
   }
 
-  void store(size_t i, const Row& row) {
+  void store(size_t i, const PlyRow& row) {
     mesh_->positions[i] = {row[kX], row[kY], row[kZ]};
     if (!mesh_->normals.empty()) mesh_->normals[i] = {row[kNx], row[kNy], row[kNz]};
     if (!mesh_->uvs.empty()) mesh_->uvs[i] = {row[kU], row[kV]};
   }
 
   /// Rows of one size: read in parallel.
-  Status read_fixed_vertices(const PlyElement& e, const VertexLayout& layout) {
+  Status read_fixed_vertices(const PlyElement& e, const PlyLayout& layout) {
     struct Column {
       size_t offset;
       PlyType type;
-      Slot slot;
+      PlySlot slot;
     };
     std::vector<Column> columns;
     size_t stride = 0;
@@ -177,7 +120,7 @@ class PlyReader {
     const char* data = source_.at();
     for_chunks(e.count, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
-        Row row{};
+        PlyRow row{};
         for (const Column& c : columns) {
           row[static_cast<size_t>(c.slot)] =
               load_as<float, Source::kSwap>(c.type, data + i * stride + c.offset);

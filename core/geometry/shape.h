@@ -8,11 +8,12 @@ namespace hyades::core {
 
 /// A surface in object space: a mesh, or one of the quadrics that are intersected exactly.
 struct Shape {
+  /// Angles turn around +y from +x towards -z; u = angle / 2pi, in [0, 1).
   enum class Kind {
-    mesh,
-    sphere,    ///< around the origin; u = longitude / 2pi around +y, v = 0 at -y, 1 at +y
-    disk,      ///< in the plane y = 0 around the origin, normal +y; u = angle / 2pi, v = r / radius
-    cylinder,  ///< open tube around the y axis, y in [0, height]; normal outwards
+    mesh,      ///< UVs of the mesh; (0, 0) where it has none
+    sphere,    ///< around the origin; v = angle from -y / pi: 0 at -y, 1 at +y
+    disk,      ///< in the plane y = 0 around the origin, normal +y; v = r / radius
+    cylinder,  ///< open tube around the y axis, y in [0, height], normal outwards; v = y / height
   };
   Kind kind = Kind::mesh;
   std::shared_ptr<const TriangleMesh> mesh;
