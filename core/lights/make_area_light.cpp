@@ -7,6 +7,7 @@
 #include "core/lights/make_light.h"
 #include "core/lights/mesh_light.h"
 #include "core/lights/quadric_light.h"
+#include "core/lights/rectangle_light.h"
 
 namespace hyades::core {
 
@@ -100,6 +101,10 @@ double surface_area(const World& world, uint32_t object) {
 LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided) {
   const Shape& shape = world.placement(object).shape;
   if (shape.kind == Shape::Kind::mesh) {
+    if (const auto rectangle = find_rectangle(world, object)) {
+      return std::make_shared<RectangleLight>(*rectangle, radiance, two_sided,
+                                              surface_area(world, object));
+    }
     const MeshAreas areas = mesh_areas(*shape.mesh, Mat3(world.transform_at(object, 0.0F)));
     return std::make_shared<MeshLight>(world, object, radiance, two_sided, areas.triangles,
                                        areas.total);

@@ -14,8 +14,8 @@ using LightPtr = std::shared_ptr<const Light>;
 
 /// Light given off by placement `object` of `world` with constant radiance on its outer side (both
 /// sides where `two_sided`). Spheres (uniformly scaled) are sampled by solid angle from outside, by
-/// area from inside; everything else by area. Surfaces of zero area give no light. `world` must
-/// outlive the light.
+/// area from inside; still rectangles of two triangles by solid angle; everything else by area.
+/// Surfaces of zero area give no light. `world` must outlive the light.
 LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided);
 
 /// Area of placement `object` when the shutter opens [length^2]. A surface of total flux P [W] per

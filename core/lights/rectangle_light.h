@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+
+#include "core/geometry/world.h"
+#include "core/lights/area_light.h"
+
+namespace hyades::core {
+
+/// A rectangle in world space: corner + a * edge[0] + b * edge[1], a and b in [0, 1].
+struct Rectangle {
+  Vec3d corner{0.0};
+  Vec3d edge[2] = {Vec3d(0.0), Vec3d(0.0)};  ///< at right angles
+  Vec3 ng{0.0F};                             ///< unit, the outer side
+  float clearance = 0.0F;                    ///< SurfacePoint::clearance, the largest on it
+};
+
+/// The rectangle that placement `object` is: a still mesh of two triangles. Nothing where it is
+/// something else.
+std::optional<Rectangle> find_rectangle(const World& world, uint32_t object);
+
+/// A rectangle that gives off light, chosen uniformly by the solid angle it covers where that is
+/// large (Urena, Fajardo & King 2013, "An Area-Preserving Parametrization for Spherical
+/// Rectangles"), by area where it is small and the two are much the same.
+class RectangleLight : public AreaLight {
+ public:
+  RectangleLight(const Rectangle& rectangle, const Rgb& radiance, bool two_sided, double area);
+
+  std::optional<LightSample> sample_direct(const Vec3& from, float time, float pick,
+                                           const Vec2& u) const override;
+  float pdf_direct(const Vec3& from, const Vec3& direction, const SurfacePoint& on) const override;
+
+ private:
+  Rectangle rectangle_;
+  Vec3d x_;  ///< unit, along edge[0]
+  Vec3d y_;  ///< unit, along edge[1]
+  Vec3d z_;  ///< x cross y
+  double width_;
+  double height_;
+};
+
+}  // namespace hyades::core
