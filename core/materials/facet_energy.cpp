@@ -1,0 +1,105 @@
+#include "core/materials/facet_energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/fp_mode.h"
+
+namespace hyades::core {
+namespace {
+
+/// Column 0..1 of a cosine. At grazing angles E depends on cosine / alpha, far from them hardly at
+/// all: even steps in this are bent least by interpolation.
+float column_of(float cosine, float alpha) {
+  return cosine > 0.0F ? std::sqrt(cosine * (1.0F + alpha) / (cosine + alpha)) : 0.0F;
+}
+
+float cosine_of(float column, float alpha) {
+  const float square = column * column;
+  return std::min(1.0F, square * alpha / (1.0F + alpha - square));
+}
+
+/// A place between two of `count` even nodes.
+struct Between {
+  int node;
+  float part;
+};
+Between between(float x, int count) {
+  const float scaled = std::clamp(x, 0.0F, 1.0F) * static_cast<float>(count - 1);
+  const int node = std::min(static_cast<int>(scaled), count - 2);
+  return {node, scaled - static_cast<float>(node)};
+}
+
+float lerp(float a, float b, float part) { return a + part * (b - a); }
+
+/// Mean weight of visible normals over a lattice of the golden ratio; 1024 points are within 3e-4.
+float integrate_reflectance(float cosine, float alpha) {
+  constexpr int kPoints = 1024;
+  constexpr float kGoldenRatio = 0.618033988749895F;
+  const Ggx facets{alpha};
+  // A horizontal direction sees facets like one just above.
+  const float z = std::max(cosine, 1e-7F);
+  const Vec3 wo(std::sqrt(1.0F - z * z), 0.0F, z);
+  float sum = 0.0F;
+  float v = 0.5F;
+  for (int i = 0; i < kPoints; ++i) {
+    const float u = (static_cast<float>(i) + 0.5F) / static_cast<float>(kPoints);
+    v += kGoldenRatio;
+    if (v >= 1.0F) v -= 1.0F;
+    const Vec3 wi = reflected(wo, facets.sample_normal(wo, {v, u}));
+    if (wi.z > 0.0F) sum += facets.reflect_weight(wo, wi);
+  }
+  return sum / static_cast<float>(kPoints);
+}
+
+}  // namespace
+
+FacetEnergy::FacetEnergy() {
+  // The table is part of the picture: the same bits whoever asks first.
+  const FpMode mode;
+  reflectance_[0].fill(1.0F);
+  for (int row = 1; row < kAlphas; ++row) {
+    const float alpha = static_cast<float>(row) / static_cast<float>(kAlphas - 1);
+    for (int column = 0; column < kCosines; ++column) {
+      const float x = static_cast<float>(column) / static_cast<float>(kCosines - 1);
+      reflectance_[row][column] = integrate_reflectance(cosine_of(x, alpha), alpha);
+    }
+  }
+  // Of the interpolated table, so that the two lobes add up to one; even steps in the column.
+  constexpr int kSteps = 512;
+  mean_[0] = 1.0F;
+  for (int i = 1; i < kMeans; ++i) {
+    const float roughness = static_cast<float>(i) / static_cast<float>(kMeans - 1);
+    const float alpha = roughness * roughness;
+    double lost = 0.0;
+    float last = 0.0F;
+    for (int step = 1; step <= kSteps; ++step) {
+      const float next = cosine_of(static_cast<float>(step) / kSteps, alpha);
+      const float middle = 0.5F * (last + next);
+      lost += double{1.0F - reflectance(middle, alpha)} * (2.0 * middle * (next - last));
+      last = next;
+    }
+    mean_[i] = static_cast<float>(1.0 - lost);
+  }
+}
+
+const FacetEnergy& FacetEnergy::table() {
+  static const FacetEnergy energy;
+  return energy;
+}
+
+float FacetEnergy::reflectance(float cosine, float alpha) const {
+  const Between row = between(alpha, kAlphas);
+  const Between column = between(column_of(cosine, alpha), kCosines);
+  const auto& low = reflectance_[row.node];
+  const auto& high = reflectance_[row.node + 1];
+  return lerp(lerp(low[column.node], low[column.node + 1], column.part),
+              lerp(high[column.node], high[column.node + 1], column.part), row.part);
+}
+
+float FacetEnergy::mean(float alpha) const {
+  const Between at = between(std::sqrt(alpha), kMeans);
+  return lerp(mean_[at.node], mean_[at.node + 1], at.part);
+}
+
+}  // namespace hyades::core
