@@ -65,6 +65,7 @@ void read_conductor(MapReader& reader, MaterialDesc& material) {
   }
   if (material.eta.has_value()) material.metal = "custom";
   reader.scalar_input("roughness", material.roughness, kUnitInterval);
+  reader.flag("multiple_scattering", material.multiple_scattering);
   reader.color("reflection", material.reflection, kUnitInterval);
   read_bump(reader, material);
 }
@@ -73,6 +74,7 @@ void read_glossy(MapReader& reader, MaterialDesc& material) {
   reader.color_input("color", material.color, kUnitInterval);
   reader.scalar_input("reflectiveness", material.reflectiveness, kUnitInterval);
   reader.scalar_input("glossiness", material.glossiness, kUnitInterval);
+  reader.flag("multiple_scattering", material.multiple_scattering);
   read_bump(reader, material);
 }
 

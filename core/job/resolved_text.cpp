@@ -89,6 +89,7 @@ void write(FieldWriter& out, const MaterialDesc& material) {
   out.put("reflection", material.reflection);
   out.put("reflectiveness", material.reflectiveness);
   out.put("glossiness", material.glossiness);
+  out.put("multiple_scattering", material.multiple_scattering);
   out.put("first", material.first);
   out.put("second", material.second);
   out.put("amount", material.amount);

@@ -4,6 +4,7 @@
 #include "core/materials/fresnel.h"
 #include "core/materials/ggx.h"
 #include "core/materials/local.h"
+#include "core/materials/lost_light_bsdf.h"
 #include "core/materials/params.h"
 
 namespace hyades::core {
@@ -15,6 +16,16 @@ struct Metal {
   Rgb tint{1.0F};
 
   Rgb reflectance(float cosine) const { return tint * fresnel_conductor(cosine, eta, k); }
+
+  /// Over the hemisphere, weighed with the cosine: the integral of F(sqrt(s)) over s.
+  Rgb mean_reflectance() const {
+    constexpr int kSteps = 64;
+    Rgb sum(0.0F);
+    for (int i = 0; i < kSteps; ++i) {
+      sum += reflectance(std::sqrt((static_cast<float>(i) + 0.5F) / kSteps));
+    }
+    return sum / static_cast<float>(kSteps);
+  }
 };
 
 class SmoothConductorBsdf final : public DeltaBsdf {
@@ -78,26 +89,35 @@ class RoughConductorBsdf final : public Bsdf {
 
 class Conductor final : public Material {
  public:
-  Conductor(const Metal& metal, ScalarParam roughness)
-      : metal_(metal), roughness_(std::move(roughness)) {}
+  Conductor(const Metal& metal, ScalarParam roughness, FacetScattering scattering)
+      : metal_(metal),
+        roughness_(std::move(roughness)),
+        scattering_(scattering),
+        mean_reflectance_(metal.mean_reflectance()) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
     const float roughness = fraction_at(roughness_, point);
     const float alpha = roughness * roughness;
     if (alpha < Ggx::kLeastAlpha) return arena.make<SmoothConductorBsdf>(metal_);
+    if (scattering_ == FacetScattering::multiple) {
+      return arena.make<LostLightBsdf<RoughConductorBsdf>>(RoughConductorBsdf(metal_, alpha), alpha,
+                                                           1.0F, mean_reflectance_);
+    }
     return arena.make<RoughConductorBsdf>(metal_, alpha);
   }
 
  private:
   Metal metal_;
   ScalarParam roughness_;
+  FacetScattering scattering_;
+  Rgb mean_reflectance_;
 };
 
 }  // namespace
 
 MaterialPtr make_conductor(const Rgb& eta, const Rgb& k, const ScalarParam& roughness,
-                           const Rgb& tint) {
-  return std::make_shared<Conductor>(Metal{eta, k, unit_clamp(tint)}, roughness);
+                           const Rgb& tint, FacetScattering scattering) {
+  return std::make_shared<Conductor>(Metal{eta, k, unit_clamp(tint)}, roughness, scattering);
 }
 
 }  // namespace hyades::core

@@ -57,9 +57,9 @@ float integrate_reflectance(float cosine, float alpha) {
 FacetEnergy::FacetEnergy() {
   // The table is part of the picture: the same bits whoever asks first.
   const FpMode mode;
-  reflectance_[0].fill(1.0F);
-  for (int row = 1; row < kAlphas; ++row) {
-    const float alpha = static_cast<float>(row) / static_cast<float>(kAlphas - 1);
+  for (int row = 0; row < kAlphas; ++row) {
+    // The first row is the limit of small alpha, where E depends on cosine / alpha alone.
+    const float alpha = std::max(static_cast<float>(row) / static_cast<float>(kAlphas - 1), 1e-3F);
     for (int column = 0; column < kCosines; ++column) {
       const float x = static_cast<float>(column) / static_cast<float>(kCosines - 1);
       reflectance_[row][column] = integrate_reflectance(cosine_of(x, alpha), alpha);
@@ -67,7 +67,7 @@ FacetEnergy::FacetEnergy() {
   }
   // Of the interpolated table, so that the two lobes add up to one; even steps in the column.
   constexpr int kSteps = 512;
-  mean_[0] = 1.0F;
+  mean_loss_[0] = 0.0F;
   for (int i = 1; i < kMeans; ++i) {
     const float roughness = static_cast<float>(i) / static_cast<float>(kMeans - 1);
     const float alpha = roughness * roughness;
@@ -79,7 +79,7 @@ FacetEnergy::FacetEnergy() {
       lost += double{1.0F - reflectance(middle, alpha)} * (2.0 * middle * (next - last));
       last = next;
     }
-    mean_[i] = static_cast<float>(1.0 - lost);
+    mean_loss_[i] = static_cast<float>(lost);
   }
 }
 
@@ -97,9 +97,9 @@ float FacetEnergy::reflectance(float cosine, float alpha) const {
               lerp(high[column.node], high[column.node + 1], column.part), row.part);
 }
 
-float FacetEnergy::mean(float alpha) const {
+float FacetEnergy::mean_loss(float alpha) const {
   const Between at = between(std::sqrt(alpha), kMeans);
-  return lerp(mean_[at.node], mean_[at.node + 1], at.part);
+  return lerp(mean_loss_[at.node], mean_loss_[at.node + 1], at.part);
 }
 
 }  // namespace hyades::core

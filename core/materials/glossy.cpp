@@ -1,6 +1,7 @@
 #include "core/base/warp.h"
 #include "core/materials/ggx.h"
 #include "core/materials/local.h"
+#include "core/materials/lost_light_bsdf.h"
 #include "core/materials/params.h"
 
 namespace hyades::core {
@@ -66,29 +67,38 @@ class GlossyBsdf final : public Bsdf {
 
 class Glossy final : public Material {
  public:
-  Glossy(ColorParam color, ScalarParam reflectiveness, ScalarParam glossiness)
+  Glossy(ColorParam color, ScalarParam reflectiveness, ScalarParam glossiness,
+         FacetScattering scattering)
       : color_(std::move(color)),
         reflectiveness_(std::move(reflectiveness)),
-        glossiness_(std::move(glossiness)) {}
+        glossiness_(std::move(glossiness)),
+        scattering_(scattering) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
     const Rgb color = reflectance_at(color_, point);
     if (is_black(color)) return nullptr;
     const float dull = 1.0F - fraction_at(glossiness_, point);
-    return arena.make<GlossyBsdf>(color, fraction_at(reflectiveness_, point), dull * dull);
+    const float alpha = dull * dull;
+    const float reflectiveness = fraction_at(reflectiveness_, point);
+    if (scattering_ == FacetScattering::multiple && alpha >= Ggx::kLeastAlpha) {
+      return arena.make<LostLightBsdf<GlossyBsdf>>(GlossyBsdf(color, reflectiveness, alpha), alpha,
+                                                   reflectiveness, color);
+    }
+    return arena.make<GlossyBsdf>(color, reflectiveness, alpha);
   }
 
  private:
   ColorParam color_;
   ScalarParam reflectiveness_;
   ScalarParam glossiness_;
+  FacetScattering scattering_;
 };
 
 }  // namespace
 
 MaterialPtr make_glossy(const ColorParam& color, const ScalarParam& reflectiveness,
-                        const ScalarParam& glossiness) {
-  return std::make_shared<Glossy>(color, reflectiveness, glossiness);
+                        const ScalarParam& glossiness, FacetScattering scattering) {
+  return std::make_shared<Glossy>(color, reflectiveness, glossiness, scattering);
 }
 
 }  // namespace hyades::core

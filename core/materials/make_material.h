@@ -39,10 +39,16 @@ MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb&
 /// (R' = 2R / (1 + R) without absorption).
 MaterialPtr make_thin_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
 
+/// What becomes of light that a microfacet reflects onto another one.
+enum class FacetScattering {
+  single,    ///< it is lost, as in most renderers: rough metals darken
+  multiple,  ///< it is given back (Kulla and Conty 2017): a white metal reflects all it gets
+};
+
 /// Metal of complex index eta + i k per channel, relative to vacuum; roughness 0 is a mirror, else
 /// GGX with visible-normal sampling (Heitz 2018), alpha = roughness^2.
 MaterialPtr make_conductor(const Rgb& eta, const Rgb& k, const ScalarParam& roughness,
-                           const Rgb& tint);
+                           const Rgb& tint, FacetScattering scattering = FacetScattering::single);
 
 /// Ideal mirror of reflectance `color`, no Fresnel.
 MaterialPtr make_mirror(const ColorParam& color);
@@ -51,7 +57,8 @@ MaterialPtr make_mirror(const ColorParam& color);
 /// direction whose sharpness grows with glossiness (0..1); energy never above `color`. docs/job.md
 /// has the formula.
 MaterialPtr make_glossy(const ColorParam& color, const ScalarParam& reflectiveness,
-                        const ScalarParam& glossiness);
+                        const ScalarParam& glossiness,
+                        FacetScattering scattering = FacetScattering::single);
 
 /// (1 - amount) first + amount second.
 MaterialPtr make_mix(MaterialPtr first, MaterialPtr second, const ScalarParam& amount);

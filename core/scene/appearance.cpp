@@ -118,6 +118,8 @@ Result<MaterialPtr> Appearance::material(const std::string& name) {
 
 Result<MaterialPtr> Appearance::make_material(const MaterialDesc& desc) {
   const std::string& type = desc.type;
+  const auto scattering =
+      desc.multiple_scattering ? FacetScattering::multiple : FacetScattering::single;
   if (type == "null") return make_null();
   if (type == "black") return make_black();
   if (type == "dielectric") {
@@ -142,7 +144,7 @@ Result<MaterialPtr> Appearance::make_material(const MaterialDesc& desc) {
     }
     auto roughness = scalar(desc.roughness);
     if (!roughness) return roughness.error();
-    return make_conductor(index.eta, index.k, *roughness, desc.reflection.at(time_));
+    return make_conductor(index.eta, index.k, *roughness, desc.reflection.at(time_), scattering);
   }
   if (type == "mix") {
     auto first = material(desc.first);
@@ -163,7 +165,7 @@ Result<MaterialPtr> Appearance::make_material(const MaterialDesc& desc) {
     if (!reflectiveness) return reflectiveness.error();
     auto glossiness = scalar(desc.glossiness);
     if (!glossiness) return glossiness.error();
-    return make_glossy(*base, *reflectiveness, *glossiness);
+    return make_glossy(*base, *reflectiveness, *glossiness, scattering);
   }
   return Error{"there is no kind of material called '" + type + "'"};
 }
