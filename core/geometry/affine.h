@@ -22,13 +22,14 @@ struct Affine {
   Vec3d vector(const Vec3d& v) const { return linear * v; }
   double determinant() const { return glm::determinant(linear); }
 
-  /// The inverse; meaningless where the determinant is 0.
+  /// The inverse; all zeros where there is none.
   Affine inverse() const {
     const Vec3d a = linear[0];
     const Vec3d b = linear[1];
     const Vec3d c = linear[2];
     const Vec3d bc = glm::cross(b, c);
     const double scale = 1.0 / glm::dot(a, bc);
+    if (!std::isfinite(scale)) return {glm::dmat3(0.0), Vec3d(0.0)};
     const glm::dmat3 inv =
         glm::transpose(glm::dmat3(bc * scale, glm::cross(c, a) * scale, glm::cross(a, b) * scale));
     return {inv, -(inv * offset)};
@@ -51,12 +52,23 @@ class Motion {
   bool still() const { return steps_.size() == 1; }
   const std::vector<Affine>& steps() const { return steps_; }
 
+  /// A place between two steps.
+  struct Place {
+    size_t step;      ///< the earlier one; there is a next
+    double fraction;  ///< of the way to the next, 0 to 1
+  };
+
+  /// Where `time` in [0, 1] falls; only where it is not still.
+  Place place_of(float time) const {
+    const double place = static_cast<double>(time) * static_cast<double>(steps_.size() - 1);
+    const size_t i = std::min(static_cast<size_t>(std::max(place, 0.0)), steps_.size() - 2);
+    return {i, std::clamp(place - static_cast<double>(i), 0.0, 1.0)};
+  }
+
   /// Object to world at `time` in [0, 1], interpolated element by element as Embree does.
   Affine at(float time) const {
     if (still()) return steps_[0];
-    const double place = static_cast<double>(time) * static_cast<double>(steps_.size() - 1);
-    const size_t i = std::min(static_cast<size_t>(std::max(place, 0.0)), steps_.size() - 2);
-    const double f = std::clamp(place - static_cast<double>(i), 0.0, 1.0);
+    const auto [i, f] = place_of(time);
     const Affine& a = steps_[i];
     const Affine& b = steps_[i + 1];
     return {a.linear * (1.0 - f) + b.linear * f, a.offset * (1.0 - f) + b.offset * f};

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -9,15 +8,10 @@
 #include "core/geometry/build_thresholds.h"
 #include "core/geometry/embree_geometry.h"
 #include "core/geometry/embree_world.h"
+#include "core/geometry/placement_check.h"
 
 namespace hyades::core {
 namespace {
-
-/// Coordinates beyond this leave no room for Embree's products of three lengths in a float.
-constexpr float kLargestCoordinate = 1e12F;
-
-/// Embree's limit for matrices of one motion (RTC_MAX_TIME_STEP_COUNT).
-constexpr size_t kMaxSteps = 129;
 
 constexpr unsigned kAllRays = 0xFFFFFFFFU;
 
@@ -32,82 +26,9 @@ size_t triangle_count(const Placement& p) {
   return p.shape.kind == Shape::Kind::mesh ? p.shape.mesh->triangles.size() : 1;
 }
 
-bool all_finite(const Mat4& m) {
-  for (int c = 0; c < 4; ++c) {
-    for (int r = 0; r < 4; ++r) {
-      if (!std::isfinite(m[c][r])) return false;
-    }
-  }
-  return true;
-}
-
-std::string describe(const Placement& p, size_t number) {
-  std::string text = "object " + std::to_string(number);
-  if (p.shape.kind == Shape::Kind::mesh && p.shape.mesh != nullptr)
-    text += " (" + p.shape.mesh->name + ")";
-  return text;
-}
-
-Status check_shape(const Shape& shape) {
-  if (shape.kind == Shape::Kind::mesh) {
-    if (shape.mesh == nullptr) return Error{"it has no mesh"};
-    return {};
-  }
-  if (!(shape.radius > 0.0F) || !std::isfinite(shape.radius)) {
-    return Error{"its radius must be positive and finite"};
-  }
-  if (shape.kind == Shape::Kind::cylinder &&
-      (!(shape.height > 0.0F) || !std::isfinite(shape.height))) {
-    return Error{"its height must be positive and finite"};
-  }
-  return {};
-}
-
-/// Whether the inverse of `m` exists well enough to compute with.
-bool invertible(const Affine& m) {
-  double product = 1.0;
-  for (int i = 0; i < 3; ++i) product *= std::sqrt(glm::dot(m.linear[i], m.linear[i]));
-  // The determinant of the columns made unit vectors: 0 where they lie in one plane.
-  return product > 0.0 && std::abs(m.determinant()) > 1e-12 * product;
-}
-
-Status check_motion(const std::vector<Mat4>& matrices) {
-  if (matrices.empty()) return Error{"it has no transform"};
-  if (matrices.size() > kMaxSteps) {
-    return Error{"it has " + std::to_string(matrices.size()) + " motion steps; at most " +
-                 std::to_string(kMaxSteps) + " are possible"};
-  }
-  for (const Mat4& m : matrices) {
-    if (!all_finite(m)) return Error{"its transform is not finite"};
-  }
-  const Motion motion(matrices);
-  const bool mirrored = motion.steps()[0].determinant() < 0.0;
-  for (const Affine& step : motion.steps()) {
-    if (!invertible(step)) return Error{"its transform is singular: it flattens the shape"};
-    if ((step.determinant() < 0.0) != mirrored) {
-      return Error{"its transform turns the shape inside out while the shutter is open"};
-    }
-  }
-  return {};
-}
-
-Status check_placement(const Placement& p) {
-  if (Status s = check_shape(p.shape); !s) return s;
-  if (Status s = check_motion(p.to_world); !s) return s;
-  const Bounds box = bounds_of(p.shape);
-  if (box.empty()) return {};
-  for (const Mat4& m : p.to_world) {
-    const Bounds b = transform_bounds(Affine(m), box);
-    const float largest =
-        std::max(max_component(glm::abs(b.lower)), max_component(glm::abs(b.upper)));
-    if (!(largest <= kLargestCoordinate)) return Error{"it reaches beyond a distance of 1e12"};
-  }
-  return {};
-}
-
 /// How a placement gets into the world.
 enum class Way {
-  direct,    ///< in world space, in the top scene
+  direct,    ///< in world space, in the top scene; vertices may move
   shared,    ///< in world space, in the still scene that frames share
   instance,  ///< its mesh has a scene of its own
 };
@@ -130,7 +51,7 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
     const bool rebuilt_often =
         p.changes_between_frames && triangle_count(p) > thresholds.shared_triangles;
     any_changes = any_changes || p.changes_between_frames;
-    if (mesh && (repeated || moves || rebuilt_often)) {
+    if (mesh && (repeated || moves || rebuilt_often) && can_be_instanced(p)) {
       ways.push_back(Way::instance);
     } else if (moves || p.changes_between_frames) {
       ways.push_back(Way::direct);
@@ -155,12 +76,11 @@ bool same(const Placement& a, const Placement& b) {
 /// Makes the object of a placement in world space.
 std::shared_ptr<const PlacedObject> make_direct(Placement p) {
   std::shared_ptr<const MeshBuffers> buffers;
-  const bool mesh = p.shape.kind == Shape::Kind::mesh;
-  if (mesh) {
-    const Affine to_world(p.to_world[0]);
-    buffers = make_mesh_buffers(p.shape.mesh, &to_world);
+  if (p.shape.kind == Shape::Kind::mesh) {
+    const Motion motion(p.to_world);
+    buffers = make_mesh_buffers(p.shape.mesh, &motion);
   }
-  return std::make_shared<const PlacedObject>(std::move(p), std::move(buffers), mesh);
+  return std::make_shared<const PlacedObject>(std::move(p), std::move(buffers));
 }
 
 void attach_direct(SceneBuilder& builder, const PlacedObject& object, uint32_t number) {
@@ -191,7 +111,7 @@ class WorldBuilder {
       if (!mesh) return mesh.error();
       instanced[i] = *mesh;
       parts_.objects[i] =
-          std::make_shared<const PlacedObject>(std::move(placements[i]), (*mesh)->buffers, false);
+          std::make_shared<const PlacedObject>(std::move(placements[i]), (*mesh)->buffers);
     }
     if (Status s = build_top(ways, instanced); !s) return s.error();
     remember();
@@ -303,7 +223,7 @@ Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placemen
   if (const auto device = embree_device(); !device) return device.error();
   for (size_t i = 0; i < placements.size(); ++i) {
     if (Status s = check_placement(placements[i]); !s) {
-      return s.error().in(describe(placements[i], i));
+      return s.error().in(describe_placement(placements[i], i));
     }
   }
   const FpMode mode;

@@ -1,5 +1,6 @@
 #include "core/geometry/embree_geometry.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace hyades::core {
@@ -48,8 +49,14 @@ void occlude_quadric(const RTCOccludedFunctionNArguments* args) {
 
 RTCGeometry new_mesh_geometry(RTCDevice device, const MeshBuffers& buffers, unsigned mask) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                             buffers.positions, 0, sizeof(Vec3), buffers.mesh->positions.size());
+  const size_t steps = std::max<size_t>(buffers.own_positions.size(), 1);
+  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps));
+  for (size_t i = 0; i < steps; ++i) {
+    const Vec3* positions = i == 0 ? buffers.positions : buffers.own_positions[i].data();
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(i),
+                               RTC_FORMAT_FLOAT3, positions, 0, sizeof(Vec3),
+                               buffers.mesh->positions.size());
+  }
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              buffers.triangles, 0, sizeof(buffers.triangles[0]),
                              buffers.mesh->triangles.size());

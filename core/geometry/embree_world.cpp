@@ -6,11 +6,13 @@
 #include <set>
 #include <utility>
 
+#include "core/geometry/placement_check.h"
+
 namespace hyades::core {
 namespace {
 
-/// Rays farther out than this overflow inside Embree.
-constexpr float kReach = 1e18F;
+/// Directions are unit vectors; longer ones are refused long before they overflow.
+constexpr float kLongestDirection = 1e3F;
 
 /// Embree counts hits at tnear itself; those at 0 are not wanted.
 constexpr float kNearest = std::numeric_limits<float>::min();
@@ -18,8 +20,9 @@ constexpr float kNearest = std::numeric_limits<float>::min();
 /// How often a hit that exact arithmetic denies is skipped before the ray counts as a miss.
 constexpr int kMaxRetries = 16;
 
-bool within_reach(const Vec3& v) {
-  return std::abs(v.x) <= kReach && std::abs(v.y) <= kReach && std::abs(v.z) <= kReach;
+/// False for NaN too.
+bool within(const Vec3& v, float limit) {
+  return std::abs(v.x) <= limit && std::abs(v.y) <= limit && std::abs(v.z) <= limit;
 }
 
 RTCRay to_embree(const Ray& ray, RayKind kind) {
@@ -58,8 +61,8 @@ EmbreeWorld::EmbreeWorld(WorldParts parts)
 
 bool EmbreeWorld::usable(const Ray& ray) const {
   const Vec3& d = ray.direction;
-  const bool good = within_reach(ray.origin) && within_reach(d) && glm::dot(d, d) > 0.0F &&
-                    std::abs(ray.time) <= kReach && !std::isnan(ray.t_max);
+  const bool good = within(ray.origin, kRayReach) && within(d, kLongestDirection) &&
+                    glm::dot(d, d) > 0.0F && std::isfinite(ray.time) && !std::isnan(ray.t_max);
   if (!good) invalid_rays_.fetch_add(1, std::memory_order_relaxed);
   return good && ray.t_max > kNearest;
 }

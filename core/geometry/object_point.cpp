@@ -33,6 +33,12 @@ double transform_error(const Affine& to_world, const Affine& to_object, const Ve
   return 0.5 * kRoundoff * glm::dot(glm::abs(n), error);
 }
 
+/// By how much Embree may misplace a triangle whose vertices it interpolates between two steps.
+double vertex_motion_error(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d size = glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+  return 2.0 * kRoundoff * std::max(size.x, std::max(size.y, size.z));
+}
+
 bool finite(const Vec3& v) { return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0.0F; }
 
 /// v made a unit vector; +y for a zero vector (degenerate triangles have no better normal).
@@ -73,9 +79,9 @@ SurfacePoint PlacedObject::point(const Ray& ray, const Hit& hit) const {
 SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, float time) const {
   const TriangleMesh& mesh = *buffers_->mesh;
   const auto& corners = mesh.triangles[primitive];
-  const Vec3d a(buffers_->positions[corners[0]]);
-  const Vec3d e1 = Vec3d(buffers_->positions[corners[1]]) - a;
-  const Vec3d e2 = Vec3d(buffers_->positions[corners[2]]) - a;
+  const auto [a, b, c] = buffers_->corners(primitive, motion_, time);
+  const Vec3d e1 = b - a;
+  const Vec3d e2 = c - a;
   const double du = static_cast<double>(u);
   const double dv = static_cast<double>(v);
   const Vec3d offset = e1 * du + e2 * dv;
@@ -96,8 +102,9 @@ SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, floa
   Vec3d position = a + offset;
   Vec3d ng = n;
   double embree_error = triangle_error(-offset, e1 - offset, e2 - offset, n);
-  if (in_world_) {
-    ng = n * handedness_;
+  if (in_world()) {
+    if (to_world.determinant() < 0.0) ng = -n;
+    if (!still) embree_error += vertex_motion_error(a, b, c);
   } else {
     position = to_world.point(position);
     const Vec3d world_n = normal_to_world * n;
@@ -128,7 +135,7 @@ SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, floa
     if (determinant != 0.0) {
       dpdu = (e1 * d2.y - e2 * d1.y) / determinant;
       dpdv = (e2 * d1.x - e1 * d2.x) / determinant;
-      if (!in_world_) {
+      if (!in_world()) {
         dpdu = to_world.vector(dpdu);
         dpdv = to_world.vector(dpdv);
       }

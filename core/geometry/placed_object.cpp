@@ -63,19 +63,14 @@ Bounds quadric_bounds(const Affine& m, const Shape& shape) {
   return b;
 }
 
-PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffers> buffers,
-                           bool in_world)
-    : placement_(std::move(placement)),
-      buffers_(std::move(buffers)),
-      in_world_(in_world),
-      motion_(placement_.to_world) {
+PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffers> buffers)
+    : placement_(std::move(placement)), buffers_(std::move(buffers)), motion_(placement_.to_world) {
   to_world_ = motion_.steps()[0];
   to_object_ = to_world_.inverse();
   world_to_object_ = to_object_.to_mat4();
-  handedness_ = to_world_.determinant() < 0.0 ? -1.0 : 1.0;
   quadric_ = {placement_.shape.kind, static_cast<double>(placement_.shape.radius),
               static_cast<double>(placement_.shape.height)};
-  if (in_world_) {
+  if (in_world()) {
     bounds_ = buffers_->bounds;
     return;
   }
@@ -88,7 +83,7 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
 std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const {
   Vec3d origin(ray.origin);
   Vec3d direction(ray.direction);
-  if (!in_world_) {
+  if (!in_world()) {
     const Affine m = to_object_at(ray.time);
     origin = m.point(origin);
     direction = m.vector(direction);
@@ -102,10 +97,8 @@ std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const 
     if (!met) return std::nullopt;
     t = *met;
   } else {
-    const auto& corners = buffers_->triangles[primitive];
-    const auto met =
-        meet_triangle(origin, direction, buffers_->positions[corners[0]],
-                      buffers_->positions[corners[1]], buffers_->positions[corners[2]]);
+    const auto [a, b, c] = buffers_->corners(primitive, motion_, ray.time);
+    const auto met = meet_triangle(origin, direction, a, b, c);
     if (!met) return std::nullopt;
     t = met->t;
     hit.u = static_cast<float>(met->u);

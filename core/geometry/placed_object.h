@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -8,37 +7,18 @@
 
 #include "core/base/ray.h"
 #include "core/geometry/affine.h"
+#include "core/geometry/mesh_buffers.h"
 #include "core/geometry/quadric.h"
 #include "core/geometry/world.h"
 
 namespace hyades::core {
 
-/// Vertices and triangles as Embree sees a mesh: those of the mesh itself, or copies.
-struct MeshBuffers {
-  std::shared_ptr<const TriangleMesh> mesh;
-  const Vec3* positions = nullptr;
-  const std::array<uint32_t, 3>* triangles = nullptr;
-  std::vector<Vec3> own_positions;  ///< in world space; empty: the mesh's
-  std::vector<std::array<uint32_t, 3>>
-      own_triangles;  ///< with degenerate ones made invalid; empty: the mesh's
-  Bounds bounds;      ///< of positions
-
-  size_t own_memory() const {
-    return own_positions.capacity() * sizeof(Vec3) +
-           own_triangles.capacity() * sizeof(own_triangles[0]);
-  }
-};
-
-/// Buffers in world space (`to_world` not null) or object space. Shares what it can.
-std::shared_ptr<const MeshBuffers> make_mesh_buffers(std::shared_ptr<const TriangleMesh> mesh,
-                                                     const Affine* to_world);
-
 /// A placement made ready for intersection: what was found by Embree is computed again here, in
 /// double precision from the primitive and the ray.
 class PlacedObject {
  public:
-  /// A quadric, or a mesh that `buffers` holds in world space (`in_world`) or object space.
-  PlacedObject(Placement placement, std::shared_ptr<const MeshBuffers> buffers, bool in_world);
+  /// A quadric, or a mesh that `buffers` holds in world or object space.
+  PlacedObject(Placement placement, std::shared_ptr<const MeshBuffers> buffers);
 
   const Placement& placement() const { return placement_; }
   const MeshBuffers* buffers() const { return buffers_.get(); }  ///< null for quadrics
@@ -65,15 +45,14 @@ class PlacedObject {
 
  private:
   SurfacePoint quadric_surface(const Ray& ray, const Hit& hit) const;
+  bool in_world() const { return buffers_ != nullptr && buffers_->in_world; }
 
   Placement placement_;
   std::shared_ptr<const MeshBuffers> buffers_;
-  bool in_world_ = false;
   Motion motion_;
   Affine to_world_;   // where still
   Affine to_object_;  // where still
   Mat4 world_to_object_{1.0F};
-  double handedness_ = 1.0;  // -1 where to_world mirrors
   Quadric quadric_;
   Bounds bounds_;
 };

@@ -23,15 +23,14 @@ struct TriangleHit {
 /// Trumbore 1997) in double precision with true divisions: the same bits on every processor. The
 /// barycentrics are clamped onto the triangle. Nothing where the line is parallel to it.
 inline std::optional<TriangleHit> meet_triangle(const Vec3d& origin, const Vec3d& direction,
-                                                const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3d p0(a);
-  const Vec3d e1 = Vec3d(b) - p0;
-  const Vec3d e2 = Vec3d(c) - p0;
+                                                const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d e1 = b - a;
+  const Vec3d e2 = c - a;
   const Vec3d h = glm::cross(direction, e2);
   const double determinant = glm::dot(e1, h);
   if (determinant == 0.0) return std::nullopt;
   const double scale = 1.0 / determinant;
-  const Vec3d s = origin - p0;
+  const Vec3d s = origin - a;
   const Vec3d q = glm::cross(s, e1);
   double u = std::max(glm::dot(s, h) * scale, 0.0);
   double v = std::max(glm::dot(direction, q) * scale, 0.0);

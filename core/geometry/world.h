@@ -86,8 +86,10 @@ class World {
 };
 
 /// Builds the world. Single still placements become direct geometry with world-space vertices;
-/// meshes that are placed several times or move become instances of a scene in `cache`. Errors: a
-/// transform that is singular or not finite, Embree out of memory or without the pinned ISA.
+/// large meshes that are placed several times, and meshes that move, become instances of a scene in
+/// `cache`. Singular transforms are no error: meshes become flat, quadrics vanish. Errors: a
+/// transform that is not finite, coordinates beyond 1e12, Embree out of memory or without the
+/// pinned ISA.
 Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placements,
                                                  GeometryCache& cache);
 

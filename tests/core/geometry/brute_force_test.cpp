@@ -232,6 +232,22 @@ TEST(BruteForce, MovingInstances) {
   compare(placements, 3000, 14);
 }
 
+TEST(BruteForce, MovingVertices) {
+  // Motions that no instance can follow: half a turn, through a point, mirrored on the way.
+  Random random(7);
+  std::vector<Placement> placements;
+  for (int i = 0; i < 6; ++i) {
+    const Mat4 first = random_transform(random);
+    Mat4 last = first;
+    if (i % 3 != 1) last[0] = -last[0];
+    if (i % 3 != 2) last[1] = -last[1];
+    std::vector<Mat4> steps{first, last};
+    if (i >= 3) steps.push_back(test::translation(random.direction()) * first);
+    placements.push_back(test::place(random_soup(random, 30), steps));
+  }
+  compare(placements, 3000, 19);
+}
+
 TEST(BruteForce, Quadrics) {
   Random random(5);
   std::vector<Placement> placements;

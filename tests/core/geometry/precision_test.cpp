@@ -21,7 +21,8 @@ constexpr float kScales[] = {1e-3F, 1.0F, 1e3F, 1e6F};
 /// Distances from the origin in sizes of the object.
 constexpr float kOffsets[] = {0.0F, 1.0F, 30.0F};
 
-enum class Way { direct, instance, moving };
+/// The last: vertices move one by one, since at time 0 the object is a point. All times are late.
+enum class Way { direct, instance, moving, growing };
 
 std::shared_ptr<const World> build_way(const std::shared_ptr<const TriangleMesh>& mesh,
                                        const Mat4& m, Way way) {
@@ -30,15 +31,20 @@ std::shared_ptr<const World> build_way(const std::shared_ptr<const TriangleMesh>
   if (way == Way::moving) {
     p.to_world.push_back(test::translation(0.1F * Vec3(m[1]) + 0.2F * Vec3(m[0])) * m);
   }
+  if (way == Way::growing) {
+    p.to_world.insert(p.to_world.begin(), Mat4(Vec4(0.0F), Vec4(0.0F), Vec4(0.0F), m[3]));
+  }
   return test::build({p}, test::kInstanceAll);
 }
+
+float random_time(test::Random& random) { return random.uniform(0.5F, 1.0F); }
 
 /// Calls body(world) for a mesh at every scale and offset and in every way.
 template <class Body>
 void everywhere(const std::shared_ptr<const TriangleMesh>& mesh, uint64_t seed, const Body& body) {
   Random random(seed);
   const FpMode mode;
-  for (const Way way : {Way::direct, Way::instance, Way::moving}) {
+  for (const Way way : {Way::direct, Way::instance, Way::moving, Way::growing}) {
     for (const float scale : kScales) {
       for (const float offset : kOffsets) {
         const Mat4 m = test::translation(scale * offset * random.direction()) *
@@ -105,7 +111,7 @@ void expect_closed(const std::shared_ptr<const TriangleMesh>& mesh, size_t count
   everywhere(mesh, seed, [&](const World& world, Random& random) {
     Leaks leaks;
     for (size_t i = 0; i < count; ++i) {
-      const float time = random.uniform();
+      const float time = random_time(random);
       // A place inside: between the centre of the object and one of its points.
       const Vec3 center = transform_point(world.transform_at(0, time), Vec3(0.0F));
       const Vec3 at = corner(world, test::pick(random, mesh->triangles.size()), 0, time);
@@ -154,7 +160,7 @@ TEST(Precision, TheBunnyDoesNotLeak) {
 
 /// A point of the mesh seen from a random place, at a random time.
 std::optional<SurfacePoint> random_point(const World& world, Random& random) {
-  const float time = random.uniform();
+  const float time = random_time(random);
   const Vec3 center = transform_point(world.transform_at(0, time), Vec3(0.0F));
   const Vec3 from = center + 2.0F * glm::length(world.bounds().size()) * random.direction();
   const Ray ray = aim(world, from, time, Target::face, random);
@@ -266,7 +272,7 @@ TEST(Precision, ParallelSurfacesVeryNearAreFound) {
   finish_mesh(*sheet);
   everywhere(sheet, 9, [&](const World& world, Random& random) {
     for (int i = 0; i < 300; ++i) {
-      const float time = random.uniform();
+      const float time = random_time(random);
       const float u = random.uniform(0.1F, 0.5F);
       const auto triangle = static_cast<uint32_t>(test::pick(random, 2));
       const SurfacePoint p = world.triangle_point(0, triangle, u, 0.4F, time);
@@ -291,7 +297,7 @@ TEST(Precision, ShadowRaysReachTheirTarget) {
     size_t blocked_by_clearance = 0;
     constexpr size_t kCount = 1000;
     for (size_t i = 0; i < kCount; ++i) {
-      const float time = random.uniform();
+      const float time = random_time(random);
       const size_t n = world.placement(0).shape.mesh->triangles.size();
       const auto point = [&] {
         const auto triangle = static_cast<uint32_t>(test::pick(random, n));

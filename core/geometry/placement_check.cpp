@@ -1,0 +1,137 @@
+#include "core/geometry/placement_check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/affine.h"
+#include "core/geometry/placed_object.h"
+
+namespace hyades::core {
+namespace {
+
+/// Embree's limit for the matrices of one motion (RTC_MAX_TIME_STEP_COUNT).
+constexpr size_t kMaxSteps = 129;
+
+/// Largest factor by which an instance may enlarge a ray: keeps kRayReach below 1.8e18.
+constexpr double kLargestEnlargement = 1e5;
+
+bool all_finite(const Mat4& m) {
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) {
+      if (!std::isfinite(m[c][r])) return false;
+    }
+  }
+  return true;
+}
+
+bool is_positive(float x) { return x > 0.0F && std::isfinite(x); }
+
+Status check_shape(const Shape& shape) {
+  if (shape.kind == Shape::Kind::mesh) {
+    if (shape.mesh == nullptr) return Error{"it has no mesh"};
+    return {};
+  }
+  if (!is_positive(shape.radius)) return Error{"its radius must be positive and finite"};
+  if (shape.kind == Shape::Kind::cylinder && !is_positive(shape.height)) {
+    return Error{"its height must be positive and finite"};
+  }
+  return {};
+}
+
+Status check_matrices(const std::vector<Mat4>& matrices) {
+  if (matrices.empty()) return Error{"it has no transform"};
+  if (matrices.size() > kMaxSteps) {
+    return Error{"it has " + std::to_string(matrices.size()) + " motion steps; at most " +
+                 std::to_string(kMaxSteps) + " are possible"};
+  }
+  if (!std::all_of(matrices.begin(), matrices.end(), all_finite)) {
+    return Error{"its transform is not finite"};
+  }
+  return {};
+}
+
+/// Least absolute value of a cubic polynomial over [0, 1], given its values at 0, 1/3, 2/3, 1.
+double least_of_cubic(const std::array<double, 4>& y) {
+  // Its coefficients by Newton's divided differences with step 1/3.
+  const double d1 = y[1] - y[0];
+  const double d2 = y[2] - 2.0 * y[1] + y[0];
+  const double d3 = y[3] - 3.0 * y[2] + 3.0 * y[1] - y[0];
+  const double c1 = 3.0 * d1 - 1.5 * d2 + d3;
+  const double c2 = 4.5 * (d2 - d3);
+  const double c3 = 4.5 * d3;
+  const auto value = [&](double t) { return y[0] + t * (c1 + t * (c2 + t * c3)); };
+  std::array<double, 4> at{0.0, 1.0, 0.0, 1.0};
+  const double root2 = c2 * c2 - 3.0 * c1 * c3;
+  if (root2 >= 0.0) {
+    // Where the derivative c1 + 2 c2 t + 3 c3 t^2 vanishes, without cancellation.
+    const double q = -(c2 + (c2 >= 0.0 ? std::sqrt(root2) : -std::sqrt(root2)));
+    if (c3 != 0.0) at[2] = std::clamp(q / (3.0 * c3), 0.0, 1.0);
+    if (q != 0.0) at[3] = std::clamp(c1 / q, 0.0, 1.0);
+  }
+  double least = std::abs(value(at[0]));
+  for (const double t : at) {
+    if (value(t) * y[0] <= 0.0) return 0.0;
+    least = std::min(least, std::abs(value(t)));
+  }
+  return least;
+}
+
+/// An upper bound of the norm of the inverse of any matrix between two: that of the adjugate (from
+/// the lengths of the columns, convex in between) over the least determinant.
+double inverse_bound(const Affine& a, const Affine& b) {
+  std::array<double, 4> determinants;
+  for (int i = 0; i < 4; ++i) {
+    const double f = i / 3.0;
+    determinants[static_cast<size_t>(i)] = glm::determinant(a.linear * (1.0 - f) + b.linear * f);
+  }
+  std::array<double, 3> columns2;
+  for (int i = 0; i < 3; ++i) {
+    columns2[static_cast<size_t>(i)] =
+        std::max(glm::dot(a.linear[i], a.linear[i]), glm::dot(b.linear[i], b.linear[i]));
+  }
+  const auto [x, y, z] = columns2;
+  const double adjugate = std::sqrt(x * y + y * z + z * x);
+  const double least = least_of_cubic(determinants);
+  return least > 0.0 ? adjugate / least : std::numeric_limits<double>::infinity();
+}
+
+float largest_coordinate(const Vec3& v) { return max_component(glm::abs(v)); }
+
+}  // namespace
+
+Status check_placement(const Placement& p) {
+  if (Status s = check_shape(p.shape); !s) return s;
+  if (Status s = check_matrices(p.to_world); !s) return s;
+  const Bounds box = bounds_of(p.shape);
+  if (box.empty()) return {};
+  for (const Mat4& m : p.to_world) {
+    const Bounds b = transform_bounds(Affine(m), box);
+    if (!(largest_coordinate(b.lower) <= kLargestCoordinate &&
+          largest_coordinate(b.upper) <= kLargestCoordinate)) {
+      return Error{"it reaches beyond a distance of 1e12"};
+    }
+  }
+  return {};
+}
+
+bool can_be_instanced(const Placement& p) {
+  const Motion motion(p.to_world);
+  const std::vector<Affine>& steps = motion.steps();
+  for (size_t i = 0; i < steps.size(); ++i) {
+    if (!(largest_coordinate(Vec3(steps[i].offset)) <= kLargestCoordinate)) return false;
+    const Affine& next = steps[std::min(i + 1, steps.size() - 1)];
+    if (!(inverse_bound(steps[i], next) <= kLargestEnlargement)) return false;
+  }
+  return true;
+}
+
+std::string describe_placement(const Placement& p, size_t number) {
+  std::string text = "object " + std::to_string(number);
+  if (p.shape.kind == Shape::Kind::mesh && p.shape.mesh != nullptr) {
+    text += " (" + p.shape.mesh->name + ")";
+  }
+  return text;
+}
+
+}  // namespace hyades::core
