@@ -83,7 +83,7 @@ std::string format_duration(double seconds) {
   const auto whole = static_cast<uint64_t>(std::floor(seconds + 0.5));
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   const uint64_t minutes = (whole + 30) / 60;
-  if (minutes < 24 * 60) return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+  if (minutes / 60 < 24) return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
   const uint64_t hours = (minutes + 30) / 60;
   return fmt::format("{} d {:02} h", hours / 24, hours % 24);
 }

@@ -165,7 +165,7 @@ void Coverage::link(uint32_t id) {
   const int64_t low = buckets_.empty() ? first : std::min(first, first_bucket_);
   const int64_t high =
       buckets_.empty() ? end : std::max(int64_t{end}, first_bucket_ + int64_t(buckets_.size()));
-  if (int64_t{end} - first > kTallBuckets || high - low > 64 * kTallBuckets) {
+  if (int64_t{end} - first > kTallBuckets || high - low > int64_t{64} * kTallBuckets) {
     tall_.push_back(id);
     return;
   }

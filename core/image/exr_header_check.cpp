@@ -75,7 +75,7 @@ void note(std::string_view name, std::string_view type, std::span<const std::byt
 }
 
 Status check_part(const Part& part, size_t file_size, const ImageLimits& limits) {
-  if (const Status size = check_image_size(part.width, part.height, part.channels, limits); !size) {
+  if (Status size = check_image_size(part.width, part.height, part.channels, limits); !size) {
     return size;
   }
   int64_t chunks = part.height / 256;  // the tallest chunk of all compressions, for scan lines
@@ -119,7 +119,7 @@ Status check_exr_header(std::span<const std::byte> file, const ImageLimits& limi
     if (multi_part && !any) {
       return parts > 0 ? Status() : Status(Error{"the file has no parts"});
     }
-    if (const Status status = check_part(part, file.size(), limits); !status) return status;
+    if (Status status = check_part(part, file.size(), limits); !status) return status;
     if (!multi_part) return {};
   }
   return Error{"too many parts"};

@@ -33,7 +33,7 @@ struct Key {
 /// expression per component.
 template <class T>
 struct Animated {
-  static constexpr int kComponents = static_cast<int>(sizeof(T) / sizeof(float));
+  static constexpr int kComponents = static_cast<int>(sizeof(T) / sizeof(float));  // NOLINT: floats
 
   T constant{};
   std::vector<Key<T>> keys;  ///< sorted by frame; empty unless keyed

@@ -98,7 +98,7 @@ class Loader {
     const std::string shown = (main_.parent_path() / reference).lexically_normal().string();
     tree.includes.push_back(reference);
     tree.shown[shown] = reference;
-    const YamlPtr root = load({bytes->chars(), bytes->size()}, reference, shown);
+    YamlPtr root = load({bytes->chars(), bytes->size()}, reference, shown);
     if (root == nullptr) return nullptr;
     if (root->kind != YamlNode::Kind::map) {
       diagnostics_.add(root->where, "the included file holds " + describe(*root) +

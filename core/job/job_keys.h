@@ -11,6 +11,7 @@ namespace hyades::core {
 struct JobKey {
   std::string section;
   std::string key;
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 misreads defaulted comparisons
   friend auto operator<=>(const JobKey&, const JobKey&) = default;
 };
 

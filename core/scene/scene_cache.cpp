@@ -42,8 +42,7 @@ Result<std::shared_ptr<const Image>> SceneCache::image(const std::string& file, 
   return slot;
 }
 
-Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(
-    const std::string& file) {
+Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const std::string& file) {
   auto picture = image(file, ColorSpace::automatic);
   if (!picture) return picture.error();
   const std::lock_guard lock(mutex_);
