@@ -56,7 +56,7 @@ class ShadedSurface {
     return below > 0.0F ? above / below : 0.0F;
   }
 
-  SurfacePoint point_;
+  const SurfacePoint& point_;  ///< of the caller, which outlives this
   Frame frame_;
   const Bsdf* bsdf_ = nullptr;
 };

@@ -1,0 +1,134 @@
+// Pictures of an independent renderer: means of every channel and of 16x16-pixel blocks must agree.
+// docs/testing.md tells where the references come from.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/truth/render_yaml.h"
+
+namespace hyades::test {
+namespace {
+
+constexpr int kBlock = 16;
+
+struct Block {
+  std::array<double, 3> mean{};
+  std::array<double, 3> sigma{};  ///< standard error of the mean
+};
+
+std::vector<Block> read_blocks(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<Block> blocks;
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    Block b;
+    words >> b.mean[0] >> b.mean[1] >> b.mean[2] >> b.sigma[0] >> b.sigma[1] >> b.sigma[2];
+    blocks.push_back(b);
+  }
+  return blocks;
+}
+
+std::vector<Block> blocks_of(const core::Image& picture) {
+  const int columns = picture.width / kBlock;
+  std::vector<Block> blocks(static_cast<size_t>(columns * (picture.height / kBlock)));
+  const int variance = picture.find_channel("variance.R");
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      Block& b = blocks[static_cast<size_t>(y / kBlock * columns + x / kBlock)];
+      for (int c = 0; c < 3; ++c) {
+        b.mean[static_cast<size_t>(c)] += static_cast<double>(picture.at(x, y, c));
+        b.sigma[static_cast<size_t>(c)] += static_cast<double>(picture.at(x, y, variance + c));
+      }
+    }
+  }
+  for (Block& b : blocks) {
+    for (size_t c = 0; c < 3; ++c) {
+      b.mean[c] /= kBlock * kBlock;
+      b.sigma[c] = std::sqrt(b.sigma[c]) / (kBlock * kBlock);
+    }
+  }
+  return blocks;
+}
+
+/// What a scene is allowed, besides the general rule.
+struct Reference {
+  const char* name;
+  uint32_t samples;
+  double worst_block = 0.10;  ///< relative; caustics that a path finds by chance need more
+};
+
+void PrintTo(const Reference& reference, std::ostream* out) { *out << reference.name; }
+
+class References : public testing::TestWithParam<Reference> {};
+
+// Every channel's mean within 3 sigma or 0.5 %; 99 % of the blocks within 4 sigma or 2 %; no block
+// off by more than 10 %. The mean's own error is far below 0.5 % at these samples, so a picture
+// that is off by 1 % fails.
+TEST_P(References, Agree) {
+  const Reference& reference = GetParam();
+  const std::string base = std::string("tests/references/") + reference.name;
+  std::ifstream file(base + ".yaml");
+  std::stringstream yaml;
+  yaml << file.rdbuf();
+  if (yaml.str().find("shared/assets") != std::string::npos && shared_folder().empty()) {
+    GTEST_SKIP() << reference.name << " needs ../shared/assets, which is not here";
+  }
+  std::string text = yaml.str();
+  text.replace(text.find("samples: 512"), 12, "samples: " + std::to_string(reference.samples));
+  const YamlScene scene(text, 1, {}, "tests/references");
+  const core::RenderedFrame frame = scene.render();
+  EXPECT_EQ(frame.counters.bad_samples, 0U);
+
+  const std::vector<Block> ours = blocks_of(frame.film.normalised());
+  const std::vector<Block> theirs = read_blocks(base + ".blocks");
+  ASSERT_EQ(ours.size(), theirs.size());
+  const auto count = static_cast<double>(ours.size());
+  int outside = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    double mean = 0.0;
+    double expected = 0.0;
+    double variance = 0.0;
+    for (size_t i = 0; i < ours.size(); ++i) {
+      mean += ours[i].mean[c] / count;
+      expected += theirs[i].mean[c] / count;
+      const double block_variance =
+          ours[i].sigma[c] * ours[i].sigma[c] + theirs[i].sigma[c] * theirs[i].sigma[c];
+      variance += block_variance / (count * count);
+      const double difference = std::abs(ours[i].mean[c] - theirs[i].mean[c]);
+      if (difference > std::max(4.0 * std::sqrt(block_variance), 0.02 * theirs[i].mean[c]))
+        ++outside;
+      EXPECT_LE(difference, std::max(reference.worst_block * theirs[i].mean[c],
+                                     4.0 * std::sqrt(block_variance)))
+          << "block " << i % 16 << "," << i / 16 << " channel " << c << ": " << ours[i].mean[c]
+          << ", expected " << theirs[i].mean[c];
+    }
+    RecordProperty("channel" + std::to_string(c), std::to_string(mean / expected));
+    EXPECT_NEAR(mean, expected, std::max(3.0 * std::sqrt(variance), 0.005 * expected))
+        << "channel " << c;
+    EXPECT_LT(std::sqrt(variance), 0.0025 * expected) << "underpowered: take more samples";
+  }
+  EXPECT_LE(outside, 0.01 * 3.0 * count) << "blocks beyond 4 sigma and 2 %";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, References,
+                         testing::Values(Reference{"box-grey", 96}, Reference{"box-diffuse", 96},
+                                         Reference{"box-glass-mirror", 192},
+                                         Reference{"rough-glass", 192}, Reference{"lens", 64},
+                                         Reference{"env-bunny-gold", 64}),
+                         [](const auto& scene) {
+                           std::string name = scene.param.name;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace hyades::test
