@@ -122,7 +122,7 @@ TEST_P(References, Agree) {
 INSTANTIATE_TEST_SUITE_P(Scenes, References,
                          testing::Values(Reference{"box-grey", 96}, Reference{"box-diffuse", 96},
                                          Reference{"box-glass-mirror", 192},
-                                         Reference{"rough-glass", 192}, Reference{"lens", 64},
+                                         Reference{"rough-glass", 800}, Reference{"lens", 64},
                                          Reference{"env-bunny-gold", 64}),
                          [](const auto& scene) {
                            std::string name = scene.param.name;
