@@ -10,8 +10,13 @@ namespace hyades::core {
 
 namespace {
 
-/// Solid angles below this [sr] are sampled by area: the sum of angles below would lose figures,
-/// and seen from there a rectangle is nearly even.
+/// Rectangles whose area is less than this part of the squared distance to their nearest point are
+/// chosen from by area: seen from there they are nearly even, and the angles below cost more than
+/// the rest of the light's sampling.
+constexpr double kLeastExtent = 0.25;
+
+/// So are those that cover less than this [sr] because they are seen from the side: the sum of
+/// angles would lose figures.
 constexpr double kLeastSolidAngle = 0.02;
 
 double length(const Vec3d& v) { return std::sqrt(glm::dot(v, v)); }
@@ -128,26 +133,33 @@ RectangleLight::RectangleLight(const Rectangle& rectangle, const Rgb& radiance, 
   z_ = glm::cross(x_, y_);
 }
 
+bool RectangleLight::is_near(double x0, double y0, double z0) const {
+  const double dx = std::max({x0, -(x0 + width_), 0.0});
+  const double dy = std::max({y0, -(y0 + height_), 0.0});
+  return width_ * height_ > kLeastExtent * (dx * dx + dy * dy + z0 * z0);
+}
+
 std::optional<LightSample> RectangleLight::sample_direct(const Vec3& from, float /*time*/,
                                                          float /*pick*/, const Vec2& u) const {
   if (is_dark()) return std::nullopt;
   const Vec3d to_corner = rectangle_.corner - Vec3d(from);
   const double x0 = glm::dot(to_corner, x_);
   const double y0 = glm::dot(to_corner, y_);
-  const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, glm::dot(to_corner, z_));
-  const bool large = seen.solid_angle > kLeastSolidAngle;
-  Vec3d position = rectangle_.corner;
-  if (large) {
-    const glm::dvec2 place = seen.place(u);
-    position += x_ * (place.x - x0) + y_ * (place.y - y0);
-  } else {
-    position += rectangle_.edge[0] * static_cast<double>(u.x) +
-                rectangle_.edge[1] * static_cast<double>(u.y);
+  const double z0 = glm::dot(to_corner, z_);
+  const auto density = static_cast<float>(1.0 / (width_ * height_));
+  if (is_near(x0, y0, z0)) {
+    const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, z0);
+    if (seen.solid_angle > kLeastSolidAngle) {
+      const glm::dvec2 place = seen.place(u);
+      const Vec3d position = rectangle_.corner + x_ * (place.x - x0) + y_ * (place.y - y0);
+      auto sample = seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance, density);
+      if (sample) sample->pdf = static_cast<float>(1.0 / seen.solid_angle);
+      return sample;
+    }
   }
-  auto sample = seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance,
-                          static_cast<float>(1.0 / (width_ * height_)));
-  if (sample && large) sample->pdf = static_cast<float>(1.0 / seen.solid_angle);
-  return sample;
+  const Vec3d position = rectangle_.corner + rectangle_.edge[0] * static_cast<double>(u.x) +
+                         rectangle_.edge[1] * static_cast<double>(u.y);
+  return seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance, density);
 }
 
 float RectangleLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
@@ -156,8 +168,11 @@ float RectangleLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
   const Vec3d to_corner = rectangle_.corner - Vec3d(from);
   const double x0 = glm::dot(to_corner, x_);
   const double y0 = glm::dot(to_corner, y_);
-  const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, glm::dot(to_corner, z_));
-  if (seen.solid_angle > kLeastSolidAngle) return static_cast<float>(1.0 / seen.solid_angle);
+  const double z0 = glm::dot(to_corner, z_);
+  if (is_near(x0, y0, z0)) {
+    const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, z0);
+    if (seen.solid_angle > kLeastSolidAngle) return static_cast<float>(1.0 / seen.solid_angle);
+  }
   return area_to_solid_angle(static_cast<float>(1.0 / (width_ * height_)), from, on.position,
                              on.ng);
 }

@@ -31,6 +31,10 @@ class RectangleLight : public AreaLight {
   float pdf_direct(const Vec3& from, const Vec3& direction, const SurfacePoint& on) const override;
 
  private:
+  /// Whether it may cover a large solid angle, seen from where its corner is at (x0, y0, z0) along
+  /// its edges.
+  bool is_near(double x0, double y0, double z0) const;
+
   Rectangle rectangle_;
   Vec3d x_;  ///< unit, along edge[0]
   Vec3d y_;  ///< unit, along edge[1]

@@ -12,10 +12,13 @@ namespace hyades::core {
 /// gets the adjoint correction of shading normals (Veach 1997, section 5.3).
 class ShadedSurface {
  public:
+  /// `point` outlives the surface.
   ShadedSurface(const SurfacePoint& point, const Material& material, BsdfArena& arena)
       : point_(point), frame_(Frame::around(point.ns, point.dpdu)) {
     bsdf_ = material.bsdf_at(point, frame_, arena);
   }
+
+  ShadedSurface(const SurfacePoint&& point, const Material& material, BsdfArena& arena) = delete;
 
   const SurfacePoint& point() const { return point_; }
   const Frame& frame() const { return frame_; }

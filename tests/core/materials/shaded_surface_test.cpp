@@ -53,7 +53,8 @@ TEST(ShadedSurface, WeightIsValueOverPdf) {
   for (const BsdfCase& c : smooth_cases()) {
     for (int n = 0; n < 2000; ++n) {
       BsdfArena arena;
-      const ShadedSurface surface(leaning(random.direction(), 0.4F), *c.material, arena);
+      const SurfacePoint p = leaning(random.direction(), 0.4F);
+      const ShadedSurface surface(p, *c.material, arena);
       const Vec3 wo = random.direction();
       const TransportMode mode = kBothModes[n % 2];
       const float lobe = random.uniform();
