@@ -84,13 +84,15 @@ size_t MeshBuffers::own_memory() const {
   return bytes;
 }
 
-std::array<Vec3d, 3> MeshBuffers::moving_corners(const std::array<uint32_t, 3>& t,
+std::array<Vec3d, 3> MeshBuffers::moving_corners(const std::array<uint32_t, 3>& triangle,
                                                  const Motion& motion, float time) const {
   const auto [step, f] = motion.place_of(time);
   const std::vector<Vec3>& a = own_positions[step];
   const std::vector<Vec3>& b = own_positions[step + 1];
   std::array<Vec3d, 3> out;
-  for (size_t k = 0; k < 3; ++k) out[k] = Vec3d(a[t[k]]) * (1.0 - f) + Vec3d(b[t[k]]) * f;
+  for (size_t k = 0; k < 3; ++k) {
+    out[k] = Vec3d(a[triangle[k]]) * (1.0 - f) + Vec3d(b[triangle[k]]) * f;
+  }
   return out;
 }
 

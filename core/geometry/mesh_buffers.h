@@ -23,17 +23,9 @@ struct MeshBuffers {
 
   size_t own_memory() const;  ///< bytes of the copies
 
-  /// The corners of triangle `triangle` at `time`; `motion` is the placement's. In world space
-  /// vertices move on straight lines from step to step, which is what matrices interpolated
-  /// linearly do to them.
-  std::array<Vec3d, 3> corners(uint32_t triangle, const Motion& motion, float time) const {
-    const std::array<uint32_t, 3>& t = indices[triangle];
-    if (own_positions.size() > 1) return moving_corners(t, motion, time);
-    return {Vec3d(positions[t[0]]), Vec3d(positions[t[1]]), Vec3d(positions[t[2]])};
-  }
-
- private:
-  std::array<Vec3d, 3> moving_corners(const std::array<uint32_t, 3>& t, const Motion& motion,
+  /// The corners of a triangle at `time` where there are several steps: in world space vertices
+  /// move on straight lines from step to step, which is what matrices interpolated linearly do.
+  std::array<Vec3d, 3> moving_corners(const std::array<uint32_t, 3>& triangle, const Motion& motion,
                                       float time) const;
 };
 

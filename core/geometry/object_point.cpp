@@ -78,8 +78,8 @@ SurfacePoint PlacedObject::point(const Ray& ray, const Hit& hit) const {
 
 SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, float time) const {
   const TriangleMesh& mesh = *buffers_->mesh;
-  const auto& corners = mesh.triangles[primitive];
-  const auto [a, b, c] = buffers_->corners(primitive, motion_, time);
+  const auto& vertices = mesh.triangles[primitive];
+  const auto [a, b, c] = corners(primitive, time);
   const Vec3d e1 = b - a;
   const Vec3d e2 = c - a;
   const double du = static_cast<double>(u);
@@ -89,7 +89,7 @@ SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, floa
   SurfacePoint p;
   p.time = time;
   p.primitive = primitive;
-  const bool still = motion_.still();
+  const bool still = !moves_;
   const Affine moving = still ? Affine() : motion_.at(time);
   const Affine moving_inverse = still ? Affine() : moving.inverse();
   const Affine& to_world = still ? to_world_ : moving;
@@ -102,7 +102,7 @@ SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, floa
   Vec3d position = a + offset;
   Vec3d ng = n;
   double embree_error = triangle_error(-offset, e1 - offset, e2 - offset, n);
-  if (in_world()) {
+  if (in_world_) {
     if (to_world.determinant() < 0.0) ng = -n;
     if (!still) embree_error += vertex_motion_error(a, b, c);
   } else {
@@ -119,23 +119,23 @@ SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, floa
 
   p.ns = p.ng;
   if (!mesh.normals.empty()) {
-    const Vec3d ns = Vec3d(mesh.normals[corners[0]]) * (1.0 - du - dv) +
-                     Vec3d(mesh.normals[corners[1]]) * du + Vec3d(mesh.normals[corners[2]]) * dv;
+    const Vec3d ns = Vec3d(mesh.normals[vertices[0]]) * (1.0 - du - dv) +
+                     Vec3d(mesh.normals[vertices[1]]) * du + Vec3d(mesh.normals[vertices[2]]) * dv;
     p.ns = shading_normal(normal_to_world * ns, p.ng);
   }
 
   Vec3d dpdu(0.0);
   Vec3d dpdv(0.0);
   if (!mesh.uvs.empty()) {
-    const glm::dvec2 uv0(mesh.uvs[corners[0]]);
-    const glm::dvec2 d1 = glm::dvec2(mesh.uvs[corners[1]]) - uv0;
-    const glm::dvec2 d2 = glm::dvec2(mesh.uvs[corners[2]]) - uv0;
+    const glm::dvec2 uv0(mesh.uvs[vertices[0]]);
+    const glm::dvec2 d1 = glm::dvec2(mesh.uvs[vertices[1]]) - uv0;
+    const glm::dvec2 d2 = glm::dvec2(mesh.uvs[vertices[2]]) - uv0;
     p.uv = Vec2(uv0 + d1 * du + d2 * dv);
     const double determinant = d1.x * d2.y - d1.y * d2.x;
     if (determinant != 0.0) {
       dpdu = (e1 * d2.y - e2 * d1.y) / determinant;
       dpdv = (e2 * d1.x - e1 * d2.x) / determinant;
-      if (!in_world()) {
+      if (!in_world_) {
         dpdu = to_world.vector(dpdu);
         dpdv = to_world.vector(dpdv);
       }

@@ -64,13 +64,19 @@ Bounds quadric_bounds(const Affine& m, const Shape& shape) {
 }
 
 PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffers> buffers)
-    : placement_(std::move(placement)), buffers_(std::move(buffers)), motion_(placement_.to_world) {
+    : buffers_(std::move(buffers)), motion_(placement.to_world), placement_(std::move(placement)) {
+  moves_ = !motion_.still();
+  if (buffers_ != nullptr) {
+    indices_ = buffers_->indices;
+    positions_ = buffers_->positions;
+    in_world_ = buffers_->in_world;
+  }
   to_world_ = motion_.steps()[0];
   to_object_ = to_world_.inverse();
   world_to_object_ = to_object_.to_mat4();
   quadric_ = {placement_.shape.kind, static_cast<double>(placement_.shape.radius),
               static_cast<double>(placement_.shape.height)};
-  if (in_world()) {
+  if (in_world_) {
     bounds_ = buffers_->bounds;
     return;
   }
@@ -83,7 +89,7 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
 std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const {
   Vec3d origin(ray.origin);
   Vec3d direction(ray.direction);
-  if (!in_world()) {
+  if (!in_world_) {
     const Affine m = to_object_at(ray.time);
     origin = m.point(origin);
     direction = m.vector(direction);
@@ -97,7 +103,7 @@ std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const 
     if (!met) return std::nullopt;
     t = *met;
   } else {
-    const auto [a, b, c] = buffers_->corners(primitive, motion_, ray.time);
+    const auto [a, b, c] = corners(primitive, ray.time);
     const auto met = meet_triangle(origin, direction, a, b, c);
     if (!met) return std::nullopt;
     t = met->t;

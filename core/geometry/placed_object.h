@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -24,12 +25,10 @@ class PlacedObject {
   const MeshBuffers* buffers() const { return buffers_.get(); }  ///< null for quadrics
   const Motion& motion() const { return motion_; }
   const Quadric& quadric() const { return quadric_; }
-  bool is_quadric() const { return placement_.shape.kind != Shape::Kind::mesh; }
+  bool is_quadric() const { return buffers_ == nullptr; }
 
-  Affine to_world_at(float time) const { return motion_.still() ? to_world_ : motion_.at(time); }
-  Affine to_object_at(float time) const {
-    return motion_.still() ? to_object_ : motion_.at(time).inverse();
-  }
+  Affine to_world_at(float time) const { return moves_ ? motion_.at(time) : to_world_; }
+  Affine to_object_at(float time) const { return moves_ ? motion_.at(time).inverse() : to_object_; }
 
   /// Where the ray's line meets triangle `primitive` (or the quadric: u = v = 0), as distance along
   /// the ray and barycentrics. Nothing where it does not, by this arithmetic.
@@ -45,15 +44,25 @@ class PlacedObject {
 
  private:
   SurfacePoint quadric_surface(const Ray& ray, const Hit& hit) const;
-  bool in_world() const { return buffers_ != nullptr && buffers_->in_world; }
+  /// The corners of triangle `primitive`, in the space of the buffers.
+  std::array<Vec3d, 3> corners(uint32_t primitive, float time) const {
+    const std::array<uint32_t, 3>& t = indices_[primitive];
+    if (moves_ && in_world_) return buffers_->moving_corners(t, motion_, time);
+    return {Vec3d(positions_[t[0]]), Vec3d(positions_[t[1]]), Vec3d(positions_[t[2]])};
+  }
 
-  Placement placement_;
+  // First what every hit reads: few cache lines, for worlds of many objects.
+  const std::array<uint32_t, 3>* indices_ = nullptr;
+  const Vec3* positions_ = nullptr;
   std::shared_ptr<const MeshBuffers> buffers_;
-  Motion motion_;
-  Affine to_world_;   // where still
+  bool in_world_ = false;
+  bool moves_ = false;
   Affine to_object_;  // where still
-  Mat4 world_to_object_{1.0F};
   Quadric quadric_;
+  Motion motion_;
+  Affine to_world_;  // where still
+  Mat4 world_to_object_{1.0F};
+  Placement placement_;
   Bounds bounds_;
 };
 
