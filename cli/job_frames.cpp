@@ -19,6 +19,9 @@ namespace {
 
 constexpr size_t kBadExamples = 5;
 
+/// Up to so many frames the log's key is made of every frame's render key.
+constexpr int64_t kMostKeyedFrames = 2000;
+
 }  // namespace
 
 /// A loaded frame.
@@ -77,6 +80,7 @@ core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
 }
 
 bool JobFrames::outputs_exist(int32_t frame) {
+  if (!options_.trust_outputs) return false;
   const std::vector<std::string> paths = output_paths(frame);
   return std::all_of(paths.begin(), paths.end(),
                      [](const std::string& p) { return std::filesystem::exists(p); });
@@ -106,7 +110,7 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
   info.frame = frame;
   info.width = job.film.width;
   info.height = job.film.height;
-  info.crop = options_.window;
+  info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
   info.worker_class = core::embree_isa().ok() ? *core::embree_isa() : "";
   info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
@@ -119,8 +123,16 @@ std::string JobFrames::log_key() const {
   std::string keys =
       fmt::format("{} {} {} {} {}{}{}", options_.window.x0, options_.window.y0, options_.window.x1,
                   options_.window.y1, layers_.depth, layers_.albedo, layers_.normal);
-  for (int64_t f = job.frames.first; f <= job.frames.last; f += job.frames.step) {
-    keys += core::render_key(job, static_cast<int32_t>(f), assets);
+  const int64_t count = (int64_t{job.frames.last} - job.frames.first) / job.frames.step + 1;
+  if (count > kMostKeyedFrames) {
+    // Too many keys to compute at every start: the text and the files stand for them. A changed
+    // comment then costs a resume, which is safe.
+    keys += fmt::format(" {} {} {}", loaded_.text_digest, job.sampling.samples,
+                        core::render_key(job, job.frames.first, assets));
+  } else {
+    for (int64_t f = job.frames.first; f <= job.frames.last; f += job.frames.step) {
+      keys += core::render_key(job, static_cast<int32_t>(f), assets);
+    }
   }
   return core::to_hex(core::sha256(keys));
 }

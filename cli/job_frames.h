@@ -30,6 +30,8 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
     std::string folder;        ///< where outputs go
     bool write_films = false;  ///< also NAME.####.film.exr
     core::PixelRect window;    ///< what is rendered of each frame
+    bool trust_outputs =
+        false;  ///< whether output files that are there were made with the job's settings
   };
 
   JobFrames(LoadedJob& loaded, Options options);

@@ -22,6 +22,22 @@ core::MaterialDesc lambert(const std::string& name, const Rgb& color) {
   return material;
 }
 
+/// A name for files and folders out of a mesh file's: what is not a letter, a digit or one of _-.
+/// becomes '-', and it begins with a letter or digit, so that it can neither hide nor lead out of a
+/// folder.
+std::string safe_name(const std::string& stem) {
+  std::string name;
+  for (const char c : stem) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (plain || (!name.empty() && (c == '_' || c == '-' || c == '.'))) {
+      name += c;
+    } else if (!name.empty()) {
+      name += '-';
+    }
+  }
+  return name.empty() ? "mesh" : name;
+}
+
 }  // namespace
 
 core::Result<core::Job> make_mesh_job(const std::string& reference, core::AssetResolver& assets) {
@@ -33,13 +49,13 @@ core::Result<core::Job> make_mesh_job(const std::string& reference, core::AssetR
   const float radius = std::max(0.5F * std::sqrt(glm::dot(bounds.size(), bounds.size())), 1e-20F);
 
   core::Job job;
-  job.name = std::filesystem::path(reference).stem().string();
+  job.name = safe_name(std::filesystem::path(reference).stem().string());
   job.film.width = 960;
   job.film.height = 720;
   job.materials = {lambert("clay", {0.60F, 0.45F, 0.35F}), lambert("ground", Rgb(0.35F))};
 
   core::ObjectDesc object;
-  object.name = job.name.empty() ? "mesh" : job.name;
+  object.name = job.name;
   object.shape = "mesh";
   object.mesh = reference;
   object.material = "clay";

@@ -3,6 +3,8 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <span>
 #include <string>
 
 #include <fmt/format.h>
@@ -12,6 +14,8 @@
 #include "cli/load_job.h"
 #include "cli/progress_display.h"
 #include "coordinator/local/local_run.h"
+#include "core/base/atomic_file.h"
+#include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 
@@ -83,14 +87,51 @@ std::optional<LoadedJob> load(const RenderOptions& options) {
   if (options.samples > 0) job.sampling.samples = options.samples;
   if (!options.crop.empty()) {
     const core::PixelRect crop{options.crop[0], options.crop[1], options.crop[2], options.crop[3]};
-    if (crop.empty() || !core::PixelRect{0, 0, job.film.width, job.film.height}.contains(crop)) {
-      std::fprintf(stderr, "--crop: expected X0,Y0,X1,Y1 within the frame, 0,0,%d,%d\n",
-                   job.film.width, job.film.height);
+    const core::PixelRect whole = core::render_window(job.film);
+    if (crop.empty() || !whole.contains(crop)) {
+      std::fprintf(stderr,
+                   "--crop: expected X0,Y0,X1,Y1 within what the job renders, %d,%d,%d,%d\n",
+                   whole.x0, whole.y0, whole.x1, whole.y1);
       return std::nullopt;
     }
-    job.film.crop = crop;
   }
   return loaded;
+}
+
+/// Remembers how outputs were made, so that a resumed run does not take pictures for finished that
+/// were made with another exposure, say.
+class OutputNote {
+ public:
+  OutputNote(std::string path, const core::Job& job) : path_(std::move(path)) {
+    std::string settings;
+    for (const core::OutputDesc& output : job.outputs) {
+      settings += fmt::format("{}|{}|{}|{}|{}|{}\n", output.file, fmt::join(output.layers, ","),
+                              output.tone_map, output.exposure, output.half, output.transparent);
+    }
+    digest_ = core::to_hex(core::sha256(settings));
+  }
+
+  /// Whether an earlier run noted the same settings.
+  bool still_true() const {
+    std::ifstream file(path_);
+    std::string noted;
+    return std::getline(file, noted) && noted == digest_;
+  }
+
+  /// Without the note a later run only makes the outputs again, so failing to write it is no error.
+  void write() const { (void)core::write_file(path_, std::as_bytes(std::span(digest_))); }
+
+ private:
+  std::string path_;
+  std::string digest_;
+};
+
+/// What is rendered of each frame. --crop is no part of the job: films of several crops belong to
+/// one picture, and 'hyades merge' joins them.
+core::PixelRect window_of(const RenderOptions& options, const core::Job& job) {
+  const core::PixelRect whole = core::render_window(job.film);
+  if (options.crop.empty()) return whole;
+  return intersection(whole, {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
 }
 
 void print_bad_samples(const RunTotals& totals, const std::string& path) {
@@ -155,14 +196,17 @@ int render_command(int argc, char** argv) {
                  failed.message().c_str());
     return 1;
   }
-  JobFrames frames(*loaded, {options.folder, options.film, core::render_window(job.film)});
+  const core::PixelRect window = window_of(options, job);
+  const std::string kept = options.folder + "/.hyades/" + job.name;
+  const OutputNote note(kept + ".outputs", job);
+  JobFrames frames(*loaded, {options.folder, options.film, window, note.still_true()});
   coordinator::LocalPlan plan;
   plan.frames = *numbers;
-  plan.region = core::render_window(job.film);
+  plan.region = window;
   plan.samples = job.sampling.samples;
   plan.threads = options.threads;
   coordinator::LocalLog log;
-  log.folder = options.folder + "/.hyades/" + job.name;
+  log.folder = kept;
   log.key = frames.log_key();
   log.resume = options.resume;
 
@@ -176,6 +220,7 @@ int render_command(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", started.error().message.c_str());
     return 1;
   }
+  note.write();
   for (const std::string& problem : run.log_problems())
     std::fprintf(stderr, "%s\n", problem.c_str());
   ProgressDisplay display(job.name, options.quiet);
@@ -190,9 +235,12 @@ int render_command(int argc, char** argv) {
   display.clear();
   const coordinator::LocalOutcome outcome = run.outcome();
   const int status = report(options, frames, *numbers, outcome, run.progress());
-  // Everything is written: the films of this run are of no more use.
-  if (outcome.complete && outcome.failures.empty()) {
+  // Everything is written: the films are of no more use. After --frames the log may hold work on
+  // other frames.
+  const bool all_frames = numbers->size() == select_frames(job, "")->size();
+  if (outcome.complete && outcome.failures.empty() && all_frames) {
     std::filesystem::remove_all(log.folder, failed);
+    std::filesystem::remove(kept + ".outputs", failed);
     std::filesystem::remove(options.folder + "/.hyades",
                             failed);  // only where no other job is in it
   }

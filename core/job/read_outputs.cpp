@@ -73,6 +73,17 @@ void check_frame_marks(MapReader& reader, const SourceLocation& where, const std
                                      file));
 }
 
+/// A job says where below the output folder its pictures go; it has no say over the rest of the
+/// disk.
+void check_inside_folder(MapReader& reader, const SourceLocation& where, const std::string& file) {
+  const std::string padded = "/" + file + "/";
+  if (file.starts_with('/') || padded.find("/../") != std::string::npos) {
+    reader.complain(where, fmt::format("file is '{}', expected a path below the output folder "
+                                       "(no '..', not absolute); --output chooses the folder",
+                                       file));
+  }
+}
+
 void read_output(MapReader& reader, Job& job) {
   OutputDesc output;
   output.where = reader.where();
@@ -100,6 +111,7 @@ void read_output(MapReader& reader, Job& job) {
     return;
   }
   check_frame_marks(reader, where, output.file, job.frames);
+  check_inside_folder(reader, where, output.file);
   reader.enter_section(row->section);
   row->read(reader, output);
   reader.finish();

@@ -34,7 +34,8 @@ std::unique_ptr<LightSelector> make_power_selector(const std::vector<LightPtr>& 
   double total[2] = {0.0, 0.0};  // of finite and of infinite lights
   for (const LightPtr& light : lights) {
     // A power beyond float still has to be chosen.
-    powers.push_back(static_cast<double>(std::min(light->power(), 1e37F)));
+    const float power = light->power();
+    powers.push_back(power > 0.0F ? static_cast<double>(std::min(power, 1e37F)) : 0.0);
     total[light->is_infinite() ? 1 : 0] += powers.back();
   }
   std::vector<float> weights;

@@ -244,8 +244,11 @@ TEST(Complaints, Outputs) {
   EXPECT_EQ(complaints("frames: 1-2\noutputs: [{file: a.exr}]\n"),
             "job.yaml:3:18: file is 'a.exr', but the job has several frames: expected #### where "
             "the frame number goes\n");
-  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: ./b/../a.exr}\n"),
-            "job.yaml:4:12: file is './b/../a.exr', which line 3 writes already\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: ../a.exr}\n"),
+            "job.yaml:3:12: file is '../a.exr', expected a path below the output folder (no '..', "
+            "not absolute); --output chooses the folder\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: .//./a.exr}\n"),
+            "job.yaml:4:12: file is './/./a.exr', which line 3 writes already\n");
   EXPECT_EQ(complaints("outputs: [{file: a.gif}]\n"),
             "job.yaml:2:18: file is 'a.gif', expected the ending .exr, .png, .jpg or .jpeg\n");
   EXPECT_EQ(complaints("outputs: [{file: a.exr, layers: [beauty, normals, beauty]}]\n"),
