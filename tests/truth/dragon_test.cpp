@@ -23,7 +23,8 @@ TEST(Dragons, RenderInGlassAndGoldUnderAMeasuredSky) {
   const auto frame = core::render_frame(scene.renderer(), middle, 16, 1, {.threads = 2});
   EXPECT_EQ(frame.counters.bad_samples, 0U);
   const core::Image picture = frame.film.normalised();
-  // Gold is yellow: where the gold dragon's back is, red outweighs blue by far; depth finds both dragons.
+  // Gold is yellow: where the gold dragon's back is, red outweighs blue by far; depth finds both
+  // dragons.
   int near = 0;
   int golden = 0;
   const int depth = picture.find_channel("depth.Z");
