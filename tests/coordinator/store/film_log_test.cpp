@@ -15,7 +15,7 @@ namespace {
 using Texts = std::vector<std::string>;
 
 std::string new_folder(const std::string& name) {
-  const std::string folder = ::testing::TempDir() + "hyades_film_log_" + name;
+  std::string folder = ::testing::TempDir() + "hyades_film_log_" + name;
   std::filesystem::remove_all(folder);
   return folder;
 }

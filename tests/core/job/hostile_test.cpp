@@ -197,7 +197,8 @@ TEST(HostileJob, TextThatIsNoText) {
       "job.yaml:1:1: the control character 127; a job is a UTF-8 YAML file");
   expect_refused("hyades: 1\nname: caf\xE9\n",
                  "job.yaml:2:10: not UTF-8 text; a job is a UTF-8 YAML file");
-  expect_refused("\xFF\xFEh\0y\0", "job.yaml:1:1: not UTF-8 text; a job is a UTF-8 YAML file");
+  expect_refused(std::string("\xFF\xFEh\0y\0", 6),
+                 "job.yaml:1:1: not UTF-8 text; a job is a UTF-8 YAML file");
   expect_refused("name: \xC0\xAF\n", "job.yaml:1:7: not UTF-8 text; a job is a UTF-8 YAML file");
   expect_refused("name: \xED\xA0\x80\n",
                  "job.yaml:1:7: not UTF-8 text; a job is a UTF-8 YAML file");
