@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -226,9 +227,10 @@ TEST(HostileJob, YamlThatIsNoJob) {
                  "keys");
   expect_refused("hyades: 1\n[a, b]: c\n",
                  "job.yaml:2:1: a list or map as a key; keys are plain text");
-  expect_refused("hyades: 1\nname: *nobody\n",
-                 "job.yaml:2:7: not valid YAML: the referenced anchor "
-                 "is not defined");
+  // yaml-cpp 0.8 adds the anchor's name.
+  EXPECT_THAT(read("hyades: 1\nname: *nobody\n").first(),
+              testing::StartsWith("job.yaml:2:7: not valid YAML: the referenced anchor "
+                                  "is not defined"));
 }
 
 TEST(HostileJob, ExpressionsThatAskTooMuch) {
