@@ -1,0 +1,118 @@
+#include "farm/channel.h"
+
+#include <fstream>
+#include <sstream>
+
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <grpcpp/security/server_credentials.h>
+
+#include "farm/wire.h"
+
+namespace hyades::farm {
+namespace {
+
+constexpr size_t kShortestToken = 16;
+constexpr int kKeepaliveMs = 20'000;
+constexpr int kKeepaliveTimeoutMs = 10'000;
+
+core::Result<std::string> read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) return core::Error{path + ": cannot be read"};
+  return text.str();
+}
+
+core::Error plaintext_error(const std::string& address) {
+  return {address +
+          " is not this machine: give certificates (TLS), or --insecure to send all as plain text"};
+}
+
+}  // namespace
+
+core::Result<std::string> read_token(const std::string& file) {
+  if (file.empty()) return std::string();
+  auto text = read_file(file);
+  if (!text) return text;
+  std::string token = *text;
+  while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
+  bool good = token.size() >= kShortestToken;
+  for (const char c : token) good &= c > ' ' && c < 127;
+  if (!good) {
+    return core::Error{file + ": expected one line of at least 16 printable characters, a token"};
+  }
+  return token;
+}
+
+bool is_loopback(const std::string& address) {
+  const std::string host = address.substr(0, address.rfind(':'));
+  return host == "localhost" || host == "[::1]" ||
+         (host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string::npos);
+}
+
+core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer) {
+  std::shared_ptr<grpc::ChannelCredentials> credentials;
+  if (!peer.ca_file.empty()) {
+    const auto ca = read_file(peer.ca_file);
+    if (!ca) return ca.error();
+    grpc::SslCredentialsOptions options;
+    options.pem_root_certs = *ca;
+    credentials = grpc::SslCredentials(options);
+  } else if (is_loopback(peer.address) || peer.insecure) {
+    credentials = grpc::InsecureChannelCredentials();
+  } else {
+    return plaintext_error(peer.address);
+  }
+  grpc::ChannelArguments arguments;
+  arguments.SetMaxReceiveMessageSize(static_cast<int>(kMaxMessageBytes));
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+  arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 1000);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 10'000);
+  return grpc::CreateCustomChannel(peer.address, credentials, arguments);
+}
+
+void prepare(grpc::ClientContext& context, const std::string& token,
+             std::chrono::milliseconds timeout) {
+  context.AddMetadata(kProtocolKey, std::to_string(kProtocol));
+  if (!token.empty()) context.AddMetadata(kTokenKey, "Bearer " + token);
+  if (timeout.count() > 0) context.set_deadline(std::chrono::system_clock::now() + timeout);
+}
+
+core::Result<std::shared_ptr<grpc::ServerCredentials>> server_credentials(const Listen& listen) {
+  const bool open = !is_loopback(listen.address) && !listen.insecure;
+  if (listen.cert_file.empty() != listen.key_file.empty()) {
+    return core::Error{"TLS needs both a certificate and its key"};
+  }
+  if (listen.cert_file.empty()) {
+    if (!listen.ca_file.empty()) {
+      return core::Error{"clients' certificates need TLS: give a certificate and its key"};
+    }
+    if (open) return plaintext_error(listen.address);
+    return grpc::InsecureServerCredentials();
+  }
+  if (open && listen.token_file.empty()) {
+    return core::Error{listen.address +
+                       " is not this machine: give a token file, or --insecure to let anybody in"};
+  }
+  const auto cert = read_file(listen.cert_file);
+  if (!cert) return cert.error();
+  const auto key = read_file(listen.key_file);
+  if (!key) return key.error();
+  grpc::SslServerCredentialsOptions options(
+      listen.ca_file.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
+                             : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+  if (!listen.ca_file.empty()) {
+    const auto ca = read_file(listen.ca_file);
+    if (!ca) return ca.error();
+    options.pem_root_certs = *ca;
+  }
+  options.pem_key_cert_pairs.push_back({*key, *cert});
+  return grpc::SslServerCredentials(options);
+}
+
+}  // namespace hyades::farm

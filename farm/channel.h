@@ -1,0 +1,60 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "core/base/result.h"
+
+namespace grpc {
+class Channel;
+class ClientContext;
+class ServerCredentials;
+}  // namespace grpc
+
+namespace hyades::farm {
+
+/// How a client or a worker reaches its coordinator.
+struct Peer {
+  std::string address = "127.0.0.1:7700";  ///< HOST:PORT
+  std::string ca_file;     ///< PEM: who signed the coordinator's certificate; empty: plaintext
+  std::string token_file;  ///< holds the farm's token; empty: none
+  bool insecure = false;   ///< plaintext also beyond this machine
+};
+
+/// How a coordinator is reached.
+struct Listen {
+  std::string address = "127.0.0.1:7700";  ///< HOST:PORT; port 0: one that is free
+  std::string cert_file;                   ///< PEM, with key_file: TLS
+  std::string key_file;
+  std::string ca_file;     ///< PEM: clients must show a certificate that it signed; empty: need not
+  std::string token_file;  ///< every call must carry its token; empty: none
+  bool insecure = false;   ///< plaintext or no token also beyond this machine
+};
+
+/// A line of at least 16 printable characters; an empty file name gives an empty token. Errors name
+/// the file.
+core::Result<std::string> read_token(const std::string& file);
+
+/// Whether HOST:PORT stays on this machine: 127.x.y.z, [::1], localhost.
+bool is_loopback(const std::string& address);
+
+/// A connection that reconnects by itself; the files of `peer` have been read. Keepalive pings
+/// notice a dead peer within 30 s, also between calls. Thread-safe; nothing is contacted yet. An
+/// error where plaintext would leave this machine without `insecure`.
+core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer);
+
+/// What every call carries: protocol version, token, and a deadline (none where `timeout` is 0, for
+/// streams without end).
+void prepare(grpc::ClientContext& context, const std::string& token,
+             std::chrono::milliseconds timeout);
+
+/// The credentials that `listen` asks for; an error where they are not there, or where plaintext or
+/// an open door would be offered beyond this machine without `insecure`.
+core::Result<std::shared_ptr<grpc::ServerCredentials>> server_credentials(const Listen& listen);
+
+/// The names of the metadata of every call.
+inline constexpr const char* kProtocolKey = "hyades-protocol";
+inline constexpr const char* kTokenKey = "authorization";  ///< "Bearer TOKEN"
+
+}  // namespace hyades::farm

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include <grpcpp/support/status.h>
+
+#include "hyades/v1/common.pb.h"
+
+namespace hyades::farm {
+
+/// An error as it goes over the wire, with what a program can make of it.
+grpc::Status wire_status(grpc::StatusCode code, const std::string& message,
+                         const v1::ErrorDetail& detail);
+
+/// The same, told to come again after `retry_after`.
+grpc::Status retry_later(grpc::StatusCode code, const std::string& message,
+                         std::chrono::milliseconds retry_after);
+
+/// What the error carries; empty where it carries nothing.
+v1::ErrorDetail detail_of(const grpc::Status& status);
+
+/// Whether the same call may succeed later: the coordinator is not there, busy, or the connection
+/// broke. docs/wire.md lists the codes.
+bool is_retryable(const grpc::Status& status);
+
+}  // namespace hyades::farm
