@@ -11,39 +11,15 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <system_error>
 
 #include "core/base/hash.h"
+#include "core/base/io_reason.h"
 
 namespace hyades::core {
 namespace {
 
-constexpr const char* kDiskFull = "the disk is full";
-
-std::string reason(int error) {
-  switch (error) {
-    case ENOSPC:
-      return kDiskFull;
-    case EDQUOT:
-      return "the disk quota is used up";
-    case EROFS:
-      return "the file system is read-only";
-    case EACCES:
-    case EPERM:
-      return "permission denied";
-    case ENOENT:
-      return "the folder does not exist";
-    case ENOTDIR:
-      return "a part of the path is not a folder";
-    case ENAMETOOLONG:
-      return "the name is too long";
-    default:
-      return std::generic_category().message(error);
-  }
-}
-
 Error failure(const std::string& path, int error) {
-  return {"cannot write " + path + ": " + reason(error)};
+  return {"cannot write " + path + ": " + io_reason(error)};
 }
 
 bool disk_is_full(const std::string& folder) {
@@ -122,8 +98,9 @@ Status replace_file(const std::string& path,
   if (const Status written = write(temporary.path); !written) {
     const std::string& message = written.error().message;
     // Encoders often report a failed write without its cause.
-    const bool add_cause = disk_is_full(folder) && message.find(kDiskFull) == std::string::npos;
-    return add_cause ? Error{message + " (" + kDiskFull + ")"} : written.error();
+    const std::string full = io_reason(ENOSPC);
+    const bool add_cause = disk_is_full(folder) && message.find(full) == std::string::npos;
+    return add_cause ? Error{message + " (" + full + ")"} : written.error();
   }
   {
     const Descriptor handle{::open(temporary.path.c_str(), O_RDWR | O_CLOEXEC)};

@@ -21,6 +21,40 @@ Sha256 sha256(std::span<const std::byte> bytes) {
 
 Sha256 sha256(std::string_view text) { return sha256(std::as_bytes(std::span(text))); }
 
+struct Sha256Stream::Context {
+  EVP_MD_CTX* openssl = EVP_MD_CTX_new();
+  Context() {
+    if (openssl == nullptr) throw std::bad_alloc();
+  }
+  ~Context() { EVP_MD_CTX_free(openssl); }
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+};
+
+// As above: these calls fail only where memory is out.
+Sha256Stream::Sha256Stream() : context_(std::make_unique<Context>()) {
+  if (EVP_DigestInit_ex(context_->openssl, EVP_sha256(), nullptr) != 1) throw std::bad_alloc();
+}
+
+Sha256Stream::~Sha256Stream() = default;
+Sha256Stream::Sha256Stream(Sha256Stream&&) noexcept = default;
+Sha256Stream& Sha256Stream::operator=(Sha256Stream&&) noexcept = default;
+
+void Sha256Stream::add(std::span<const std::byte> bytes) {
+  if (EVP_DigestUpdate(context_->openssl, bytes.data(), bytes.size()) != 1) throw std::bad_alloc();
+}
+
+Sha256 Sha256Stream::digest() const {
+  const Context copy;
+  Sha256 digest{};
+  unsigned length = 0;
+  if (EVP_MD_CTX_copy_ex(copy.openssl, context_->openssl) != 1 ||
+      EVP_DigestFinal_ex(copy.openssl, digest.data(), &length) != 1) {
+    throw std::bad_alloc();
+  }
+  return digest;
+}
+
 std::string to_hex(std::span<const uint8_t> bytes) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string text;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,24 @@ using Sha256 = std::array<uint8_t, 32>;
 /// SHA-256 of `bytes` (FIPS 180-4; OpenSSL does the work).
 Sha256 sha256(std::span<const std::byte> bytes);
 Sha256 sha256(std::string_view text);
+
+/// SHA-256 of bytes that come in pieces.
+class Sha256Stream {
+ public:
+  Sha256Stream();
+  ~Sha256Stream();
+  Sha256Stream(Sha256Stream&&) noexcept;
+  Sha256Stream& operator=(Sha256Stream&&) noexcept;
+
+  void add(std::span<const std::byte> bytes);
+
+  /// The digest of everything added so far; more may be added afterwards.
+  Sha256 digest() const;
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+};
 
 /// Lower-case hexadecimal.
 std::string to_hex(std::span<const uint8_t> bytes);

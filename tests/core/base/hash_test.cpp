@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,21 @@ TEST(Hash, Sha256KnownAnswers) {  // FIPS 180-4 examples
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(to_hex(sha256(std::string_view())),
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST(Hash, Sha256InPiecesIsThatOfTheWhole) {
+  std::vector<std::byte> bytes(300);
+  for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * 31 + 7);
+  const std::span<const std::byte> all(bytes);
+  for (const size_t piece : {1, 63, 64, 65, 299, 300}) {
+    Sha256Stream stream;
+    for (size_t at = 0; at < all.size(); at += piece) {
+      EXPECT_EQ(stream.digest(), sha256(all.first(at)));  // asking changes nothing
+      stream.add(all.subspan(at, std::min(piece, all.size() - at)));
+    }
+    EXPECT_EQ(stream.digest(), sha256(all));
+  }
+  EXPECT_EQ(Sha256Stream().digest(), sha256(std::string_view()));
 }
 
 TEST(Hash, Crc32cKnownAnswers) {  // RFC 3720, B.4

@@ -1,0 +1,110 @@
+// What leaves a content store: files beyond its budget, and unfinished ones that nobody goes on
+// with.
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/base/io_reason.h"
+#include "core/base/text.h"
+#include "farm/content_store.h"
+
+namespace hyades::farm {
+
+using core::Error;
+using core::Status;
+
+namespace {
+
+constexpr int64_t kPartialLife = 3 * 24 * 3600;  // s without a byte: an upload may rest a weekend
+constexpr int64_t kSweepEvery = 3600;            // s
+
+struct StoredFile {
+  std::string path;
+  uint64_t size = 0;
+  int64_t used = 0;      ///< nanoseconds of the wall clock
+  int64_t modified = 0;  ///< seconds of the wall clock
+};
+
+/// Adds the store's own files of `folder`: what else lies there is not ours to count or remove.
+void list_files(const std::string& folder, std::vector<StoredFile>& files) {
+  DIR* open = ::opendir(folder.c_str());
+  if (open == nullptr) return;
+  while (const dirent* entry = ::readdir(open)) {  // NOLINT(concurrency-mt-unsafe): own stream
+    struct stat info {};
+    if (!is_content_name(std::string_view(entry->d_name).substr(0, 64))) continue;
+    if (::fstatat(::dirfd(open), entry->d_name, &info, AT_SYMLINK_NOFOLLOW) != 0) continue;
+    if (!S_ISREG(info.st_mode)) continue;
+    files.push_back({folder + "/" + entry->d_name, static_cast<uint64_t>(info.st_size),
+                     int64_t{info.st_atim.tv_sec} * 1'000'000'000 + info.st_atim.tv_nsec,
+                     info.st_mtim.tv_sec});
+  }
+  ::closedir(open);
+}
+
+/// Removes `path` unless somebody holds a lock on it.
+bool remove_if_free(const std::string& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  return file.valid() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) == 0;
+}
+
+}  // namespace
+
+void ContentStore::sweep_partials() {
+  const int64_t now = std::chrono::duration_cast<std::chrono::seconds>(
+                          std::chrono::steady_clock::now().time_since_epoch())
+                          .count();
+  int64_t due = next_sweep_;
+  if (now < due || !next_sweep_.compare_exchange_strong(due, now + kSweepEvery)) return;
+  std::vector<StoredFile> files;
+  list_files(options_.folder + "/partial", files);
+  for (const StoredFile& file : files) {
+    if (file.modified + kPartialLife < std::time(nullptr)) remove_if_free(file.path);
+  }
+}
+
+Status ContentStore::make_room(const std::string& name, uint64_t bytes) {
+  if (options_.budget == 0) return {};
+  if (bytes > options_.budget) {
+    return Error{fmt::format("a file of {} is larger than the whole budget of {}, {}",
+                             core::format_bytes(bytes), options_.folder,
+                             core::format_bytes(options_.budget))};
+  }
+  // One process at a time, so that two do not both evict for the same shortage.
+  const std::string lock_path = options_.folder + "/lock";
+  const Descriptor lock(::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  if (!lock.valid() || ::flock(lock.get(), LOCK_EX) != 0) {
+    return Error{"cannot lock " + lock_path + ": " + core::io_reason(errno)};
+  }
+  std::vector<StoredFile> files;
+  list_files(options_.folder, files);
+  list_files(options_.folder + "/partial", files);
+  // What there is of the file itself is among its bytes.
+  std::erase_if(files, [&](const StoredFile& file) {
+    return !name.empty() && file.path == options_.folder + "/partial/" + name;
+  });
+  uint64_t used = expected_ + bytes;
+  for (const StoredFile& file : files) used += file.size;
+  std::sort(files.begin(), files.end(),
+            [](const StoredFile& a, const StoredFile& b) { return a.used < b.used; });
+  for (const StoredFile& file : files) {
+    if (used <= options_.budget) return {};
+    if (remove_if_free(file.path)) used -= file.size;
+  }
+  if (used <= options_.budget) return {};
+  return Error{fmt::format("the budget of {}, {}, is taken by files in use: {} more are needed",
+                           options_.folder, core::format_bytes(options_.budget),
+                           core::format_bytes(used - options_.budget))};
+}
+
+}  // namespace hyades::farm

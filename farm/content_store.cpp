@@ -1,0 +1,166 @@
+#include "farm/content_store.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "core/base/assets.h"
+#include "core/base/hash.h"
+#include "core/base/io_reason.h"
+
+namespace hyades::farm {
+
+using core::Bytes;
+using core::Error;
+using core::Result;
+using core::Status;
+
+namespace {
+
+Error not_a_name(const std::string& name) {
+  return {"'" + name.substr(0, 80) + "' is not the SHA-256 of a file (64 digits of 0-9 and a-f)"};
+}
+
+Status make_folder(const std::string& path) {
+  // For this user alone: assets may be secret.
+  if (::mkdir(path.c_str(), 0700) == 0) return {};
+  const int error = errno;
+  struct stat info {};
+  if (error == EEXIST && ::stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) return {};
+  return Error{"cannot make the folder " + path + ": " + core::io_reason(error)};
+}
+
+Status sync_folder(const std::string& path) {
+  const Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!folder.valid() || ::fsync(folder.get()) != 0) {
+    return Error{"cannot write " + path + ": " + core::io_reason(errno)};
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_content_name(std::string_view name) {
+  return name.size() == 64 && std::all_of(name.begin(), name.end(), [](char c) {
+           return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+         });
+}
+
+Result<std::unique_ptr<ContentStore>> ContentStore::open(const Options& options) {
+  for (const std::string& folder : {options.folder, options.folder + "/partial"}) {
+    if (auto made = make_folder(folder); !made) return made.error();
+  }
+  auto store = std::unique_ptr<ContentStore>(new ContentStore(options));
+  store->sweep_partials();
+  if (auto fits = store->make_room({}, 0); !fits) return fits.error();
+  return store;
+}
+
+Result<ContentStore::Identity> ContentStore::identify(const std::string& path) {
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) != 0) {
+    if (errno == ENOENT) return Error{"it is not here"};
+    return Error{"cannot read " + path + ": " + core::io_reason(errno)};
+  }
+  if (!S_ISREG(info.st_mode)) return Error{path + " is not a regular file"};
+  return Identity{info.st_ino, static_cast<uint64_t>(info.st_size),
+                  int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec};
+}
+
+void ContentStore::remember(const std::string& name, const Identity& identity) {
+  const std::lock_guard lock(mutex_);
+  verified_[name] = identity;
+}
+
+bool ContentStore::contains(const std::string& name, uint64_t size) {
+  if (!is_content_name(name)) return false;
+  const auto identity = identify(path_of(name));
+  if (!identity) return false;
+  // A wrong size is the file's or the caller's fault: the bytes know.
+  return identity->size == size || read(name).ok();
+}
+
+Result<Bytes> ContentStore::read(const std::string& name) {
+  if (!is_content_name(name)) return not_a_name(name);
+  const std::string path = path_of(name);
+  const auto identity = identify(path);
+  if (!identity) return identity.error().in("asset " + name);
+  auto bytes = core::map_file(path);
+  if (!bytes) return bytes.error().in("asset " + name);
+  // The time of reading decides who is evicted; that of writing tells whether the file is the same.
+  const struct timespec times[2] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};
+  ::utimensat(AT_FDCWD, path.c_str(), times, AT_SYMLINK_NOFOLLOW);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = verified_.find(name);
+    if (known != verified_.end() && known->second == *identity && bytes->size() == identity->size) {
+      return bytes;
+    }
+  }
+  if (core::to_hex(core::sha256(bytes->span())) != name) {
+    // Another process may have put a good one there meanwhile.
+    const auto now = identify(path);
+    if (now && *now == *identity) ::unlink(path.c_str());
+    return Error{"asset " + name + ": the stored file was damaged and has been removed"};
+  }
+  remember(name, *identity);
+  return bytes;
+}
+
+Result<ContentPin> ContentStore::pin(const std::string& name) {
+  if (!is_content_name(name)) return not_a_name(name);
+  const std::string path = path_of(name);
+  while (true) {
+    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+    struct stat info {};
+    if (!file.valid()) {
+      const std::string why = errno == ENOENT ? "it is not here" : core::io_reason(errno);
+      return Error{"asset " + name + ": " + why};
+    }
+    if (::flock(file.get(), LOCK_SH) != 0 || ::fstat(file.get(), &info) != 0) {
+      if (errno == EINTR) continue;
+      return Error{"asset " + name + ": cannot be locked: " + core::io_reason(errno)};
+    }
+    // Evicted or replaced between opening and locking: look again.
+    if (info.st_nlink > 0) return ContentPin(std::move(file));
+  }
+}
+
+Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size) {
+  if (!is_content_name(name)) return not_a_name(name);
+  sweep_partials();
+  if (auto fits = make_room(name, size); !fits) return fits.error();
+  ContentWriter writer(*this, name, size);
+  expected_ += size;
+  if (auto taken = writer.take_partial(); !taken) return taken.error();
+  return writer;
+}
+
+Status ContentStore::commit(ContentWriter& writer) {
+  const std::string path = path_of(writer.name_);
+  if (::fsync(writer.file_.get()) != 0 || ::rename(writer.path_.c_str(), path.c_str()) != 0) {
+    const Error error{"cannot write " + path + ": " + core::io_reason(errno)};
+    // What a failed sync has kept cannot be known.
+    ::unlink(writer.path_.c_str());
+    writer.file_.close();
+    return error;
+  }
+  if (auto synced = sync_folder(options_.folder); !synced) return synced;
+  writer.file_.close();
+  if (const auto identity = identify(path)) remember(writer.name_, *identity);
+  // Other processes may have written too: never above the budget for long. That all others are in
+  // use is no reason to refuse a file that is here.
+  (void)make_room({}, 0);
+  return {};
+}
+
+Status ContentStore::remove(const std::string& name) {
+  if (!is_content_name(name)) return not_a_name(name);
+  if (::unlink(path_of(name).c_str()) == 0 || errno == ENOENT) return {};
+  return Error{"cannot remove " + path_of(name) + ": " + core::io_reason(errno)};
+}
+
+}  // namespace hyades::farm

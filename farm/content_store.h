@@ -1,0 +1,95 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "core/base/bytes.h"
+#include "core/base/result.h"
+#include "farm/content_writer.h"
+#include "farm/descriptor.h"
+
+namespace hyades::farm {
+
+/// Whether `name` is the lower-case hexadecimal SHA-256 of something: the only names that the
+/// store turns into paths.
+bool is_content_name(std::string_view name);
+
+/// Keeps one file of a store from eviction, by any process, until it is destroyed (also by the end
+/// of this process, however that comes).
+class ContentPin {
+ public:
+  explicit ContentPin(Descriptor locked) : locked_(std::move(locked)) {}
+
+ private:
+  Descriptor locked_;
+};
+
+/// Files named by the SHA-256 of their bytes, in one folder. A file has its name only once all its
+/// bytes were checked against it and are durable; what is damaged later (truncated, corrupted) is
+/// noticed when it is read, removed and then simply missing, so that it is fetched again.
+///
+/// Thread-safe. Several processes may share a folder. Bytes that were read stay valid when their
+/// file is evicted.
+class ContentStore {
+ public:
+  struct Options {
+    std::string folder;   ///< made if it is missing; its parent must exist
+    uint64_t budget = 0;  ///< bytes of all files, unfinished ones included; 0: no limit, and
+                          ///< nothing is ever evicted
+  };
+
+  static core::Result<std::unique_ptr<ContentStore>> open(const Options& options);
+
+  /// Whether there is a file `name`. One that has not `size` bytes is checked first, so that a
+  /// truncated file counts as missing.
+  bool contains(const std::string& name, uint64_t size);
+
+  /// The bytes of file `name`, mapped. They are hashed when this process first reads the file and
+  /// whenever the file changed since. Errors: no such file, damaged (it is removed), unreadable.
+  core::Result<core::Bytes> read(const std::string& name);
+
+  /// Error where there is no such file.
+  core::Result<ContentPin> pin(const std::string& name);
+
+  /// Begins or resumes file `name` of `size` bytes: the writer's offset says what is there already.
+  /// Of two that write the same file at once the second begins its own copy. With a budget, files
+  /// that were not used for longest make room; it is an error if those that are not pinned are too
+  /// few. The store must outlive the writer.
+  core::Result<ContentWriter> write(const std::string& name, uint64_t size);
+
+  /// Removes file `name`, pinned or not. No error where it is missing.
+  core::Status remove(const std::string& name);
+
+ private:
+  friend class ContentWriter;
+
+  /// What tells one state of a file from another without reading it.
+  struct Identity {
+    uint64_t inode = 0;
+    uint64_t size = 0;
+    int64_t modified = 0;  ///< nanoseconds
+    bool operator==(const Identity&) const = default;
+  };
+
+  explicit ContentStore(const Options& options) : options_(options) {}
+  std::string path_of(const std::string& name) const { return options_.folder + "/" + name; }
+  static core::Result<Identity> identify(const std::string& path);
+  void remember(const std::string& name, const Identity& identity);
+  /// Evicts until `bytes` more fit, which are to become file `name`.
+  core::Status make_room(const std::string& name, uint64_t bytes);
+  void sweep_partials();
+  core::Status commit(ContentWriter& writer);
+
+  Options options_;
+  std::atomic<uint64_t> expected_{0};   ///< bytes that this process' writers have still to write
+  std::atomic<int64_t> next_sweep_{0};  ///< seconds of the steady clock
+  std::mutex mutex_;
+  std::map<std::string, Identity> verified_;  ///< guarded by mutex_
+};
+
+}  // namespace hyades::farm

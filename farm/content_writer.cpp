@@ -1,0 +1,134 @@
+#include "farm/content_writer.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <cerrno>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/base/io_reason.h"
+#include "farm/content_store.h"
+
+namespace hyades::farm {
+
+using core::Error;
+using core::Status;
+
+namespace {
+
+constexpr size_t kReadPiece = size_t{1} << 20;
+constexpr int kOpenFlags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW;
+
+Error write_failure(const std::string& path, int error) {
+  return {"cannot write " + path + ": " + core::io_reason(error)};
+}
+
+/// Whether `fd` is still what `path` names.
+bool still_named(int fd, const std::string& path) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(fd, &open) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         open.st_ino == named.st_ino && open.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+ContentWriter::ContentWriter(ContentWriter&& other) noexcept
+    : store_(std::exchange(other.store_, nullptr)),
+      name_(std::move(other.name_)),
+      size_(other.size_),
+      offset_(other.offset_),
+      path_(std::move(other.path_)),
+      resumable_(other.resumable_),
+      file_(std::move(other.file_)),
+      hash_(std::move(other.hash_)) {}
+
+ContentWriter::~ContentWriter() {
+  if (store_ == nullptr) return;
+  store_->expected_ -= size_ - offset_;
+  // Nobody would find a copy with a name of its own again.
+  if (file_.valid() && !resumable_) ::unlink(path_.c_str());
+}
+
+Status ContentWriter::take_partial() {
+  const std::string common = store_->options_.folder + "/partial/" + name_;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    path_ = common;
+    file_ = Descriptor(::open(path_.c_str(), kOpenFlags, 0600));
+    if (!file_.valid()) return write_failure(path_, errno);
+    if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) {
+      // Between opening and locking it the last writer may have finished or thrown it away.
+      if (!still_named(file_.get(), path_)) continue;
+      return read_partial();
+    }
+    if (errno != EWOULDBLOCK) return write_failure(path_, errno);
+    path_ = fmt::format("{}.{}.{}", common, ::getpid(), attempt);
+    file_ = Descriptor(::open(path_.c_str(), kOpenFlags | O_EXCL, 0600));
+    if (file_.valid()) {
+      resumable_ = false;
+      if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) return write_failure(path_, errno);
+      return {};
+    }
+    if (errno != EEXIST) return write_failure(path_, errno);
+  }
+  return Error{"cannot write " + common + ": too many write it at once"};
+}
+
+Status ContentWriter::read_partial() {
+  struct stat info {};
+  if (::fstat(file_.get(), &info) != 0) return write_failure(path_, errno);
+  if (static_cast<uint64_t>(info.st_size) > size_) {
+    if (::ftruncate(file_.get(), 0) != 0) return write_failure(path_, errno);
+    return {};
+  }
+  std::vector<std::byte> piece(kReadPiece);
+  while (true) {
+    const ssize_t got =
+        ::pread(file_.get(), piece.data(), piece.size(), static_cast<off_t>(offset_));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return Error{"cannot read " + path_ + ": " + core::io_reason(errno)};
+    if (got == 0) return {};
+    hash_.add(std::span(piece).first(static_cast<size_t>(got)));
+    offset_ += static_cast<uint64_t>(got);
+    store_->expected_ -= static_cast<uint64_t>(got);
+  }
+}
+
+Status ContentWriter::append(std::span<const std::byte> bytes) {
+  if (bytes.size() > size_ - offset_) {
+    return Error{fmt::format("{}: more than the {} bytes that were announced", name_, size_)};
+  }
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::pwrite(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset_));
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      return write_failure(path_, errno);
+    }
+    const auto count = static_cast<size_t>(written);
+    hash_.add(bytes.first(count));
+    offset_ += count;
+    store_->expected_ -= count;
+    bytes = bytes.subspan(count);
+  }
+  return {};
+}
+
+Status ContentWriter::commit() {
+  if (offset_ != size_) {
+    return Error{fmt::format("{}: {} of {} bytes are there", name_, offset_, size_)};
+  }
+  const std::string digest = core::to_hex(hash_.digest());
+  if (digest != name_) {
+    ::unlink(path_.c_str());
+    file_.close();
+    return Error{fmt::format("{}: the bytes that came have the SHA-256 {}", name_, digest)};
+  }
+  return store_->commit(*this);
+}
+
+}  // namespace hyades::farm

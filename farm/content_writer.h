@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/base/hash.h"
+#include "core/base/result.h"
+#include "farm/descriptor.h"
+
+namespace hyades::farm {
+
+class ContentStore;
+
+/// A file of a ContentStore in the making. Destroyed without commit(), it leaves what it has for a
+/// later writer to go on with. One thread at a time.
+class ContentWriter {
+ public:
+  ContentWriter(ContentWriter&&) noexcept;
+  ContentWriter& operator=(ContentWriter&&) = delete;
+  ~ContentWriter();
+
+  /// Bytes that are there: what comes next begins here.
+  uint64_t offset() const { return offset_; }
+  uint64_t size() const { return size_; }
+
+  /// Errors: more bytes than the file's size, a full disk.
+  core::Status append(std::span<const std::byte> bytes);
+
+  /// Gives the complete file its name, durably. Where bytes are missing nothing changes; where the
+  /// bytes are not those that the name promises they are thrown away, and both are errors.
+  core::Status commit();
+
+ private:
+  friend class ContentStore;
+  ContentWriter(ContentStore& store, std::string name, uint64_t size)
+      : store_(&store), name_(std::move(name)), size_(size) {}
+
+  /// Takes hold of an unfinished file that no one else writes to, and reads what it has.
+  core::Status take_partial();
+  core::Status read_partial();
+
+  ContentStore* store_;
+  std::string name_;
+  uint64_t size_ = 0;
+  uint64_t offset_ = 0;
+  std::string path_;       ///< of the unfinished file
+  bool resumable_ = true;  ///< whether a later writer will find it
+  Descriptor file_;        ///< locked exclusively
+  core::Sha256Stream hash_;
+};
+
+}  // namespace hyades::farm

@@ -1,0 +1,128 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "tests/farm/content_testing.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::farm {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TempFolder;
+
+std::string text(char letter, size_t size = 1000) { return std::string(size, letter); }
+
+/// Makes the file look last used (and written) `seconds` ago.
+void age(const std::string& path, int64_t seconds) {
+  const timespec then{std::time(nullptr) - seconds, 0};
+  const timespec times[2] = {then, then};
+  ASSERT_EQ(::utimensat(AT_FDCWD, path.c_str(), times, 0), 0);
+}
+
+TEST(ContentEviction, WhatWasNotUsedForLongestGoes) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("cache"), 3500);
+  const std::string a = put(*store, text('a'));
+  const std::string b = put(*store, text('b'));
+  const std::string c = put(*store, text('c'));
+  age(folder.file("cache/" + a), 30);
+  age(folder.file("cache/" + b), 20);
+  age(folder.file("cache/" + c), 10);
+  EXPECT_TRUE(store->read(a));  // used now
+  put(*store, text('d'));
+  EXPECT_TRUE(store->contains(a, 1000));
+  EXPECT_FALSE(store->contains(b, 1000));
+  EXPECT_TRUE(store->contains(c, 1000));
+}
+
+TEST(ContentEviction, PinnedFilesStayAcrossProcesses) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("cache"), 2500);
+  const auto other = open_store(folder.file("cache"), 2500);  // as another process would
+  const std::string a = put(*store, text('a'));
+  const std::string b = put(*store, text('b'));
+  age(folder.file("cache/" + a), 30);
+  auto pinned = std::make_optional(store->pin(a));
+  ASSERT_TRUE(*pinned) << error_of(*pinned);
+  put(*other, text('c'));
+  EXPECT_TRUE(store->contains(a, 1000));
+  EXPECT_FALSE(store->contains(b, 1000));
+  const auto also = store->pin(name_of(text('c')));
+  ASSERT_TRUE(also);
+  EXPECT_NE(error_of(other->write(name_of(text('d')), 1000)).find("in use"), std::string::npos);
+  pinned.reset();
+  put(*other, text('d'));
+  EXPECT_FALSE(store->contains(a, 1000));
+  EXPECT_FALSE(store->pin(a));
+}
+
+TEST(ContentEviction, AFileBeyondTheBudgetIsRefused) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("cache"), 1000);
+  EXPECT_NE(error_of(store->write(name_of("x"), 1001)).find("larger than the whole budget"),
+            std::string::npos);
+  put(*store, text('a'));
+}
+
+TEST(ContentEviction, UnfinishedFilesCountAndGo) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("cache"), 2500);
+  const std::string begun = name_of(text('x', 2000));
+  {
+    auto writer = store->write(begun, 2000);
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE(writer->append(bytes_of(text('x', 1900))));
+    // What a writer has still to write is spoken for.
+    EXPECT_FALSE(store->write(name_of(text('y')), 1000));
+  }
+  {
+    // Its own bytes are no obstacle to going on.
+    const auto writer = store->write(begun, 2000);
+    ASSERT_TRUE(writer) << error_of(writer);
+    EXPECT_EQ(writer->offset(), 1900U);
+  }
+  put(*store, text('y'));
+  EXPECT_FALSE(fs::exists(folder.file("cache/partial/" + begun)));
+}
+
+TEST(ContentEviction, OldUnfinishedFilesAreSwept) {
+  const TempFolder folder;
+  open_store(folder.file("assets"));
+  const std::string old = folder.file("assets/partial/" + name_of("old"));
+  const std::string young = folder.file("assets/partial/" + name_of("young"));
+  const std::string foreign = folder.file("assets/partial/notes.txt");
+  for (const std::string& path : {old, young, foreign}) std::ofstream(path) << "x";
+  age(old, 4 * 24 * 3600);
+  age(young, 2 * 24 * 3600);
+  age(foreign, 4 * 24 * 3600);
+  open_store(folder.file("assets"));
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_TRUE(fs::exists(young));
+  EXPECT_TRUE(fs::exists(foreign));
+}
+
+TEST(ContentEviction, OtherPeoplesFilesStay) {
+  const TempFolder folder;
+  std::ofstream(folder.file("thesis.tex")) << text('t', 5000);
+  const auto store = open_store(folder.path().string(), 1500);
+  put(*store, text('a'));
+  put(*store, text('b'));
+  EXPECT_TRUE(fs::exists(folder.file("thesis.tex")));
+}
+
+TEST(ContentEviction, WithoutABudgetNothingGoes) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("assets"));
+  for (char c = 'a'; c <= 'z'; ++c) put(*store, text(c));
+  for (char c = 'a'; c <= 'z'; ++c) EXPECT_TRUE(store->contains(name_of(text(c)), 1000));
+}
+
+}  // namespace
+}  // namespace hyades::farm
