@@ -67,29 +67,45 @@ bool EmbreeWorld::usable(const Ray& ray) const {
   return good && ray.t_max > kNearest;
 }
 
-std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
-  if (!usable(ray)) return std::nullopt;
+template <class Take>
+bool EmbreeWorld::find_nearest(const Ray& ray, RayKind kind, Take&& take) const {
+  if (!usable(ray)) return false;
   RTCRayHit query;
   query.ray = to_embree(ray, kind);
   for (int i = 0; i < kMaxRetries; ++i) {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     trace_nearest(scene_, query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     const uint32_t instance = query.hit.instID[0];
     const uint32_t number = instance == RTC_INVALID_GEOMETRY_ID || instance == still_number_
                                 ? query.hit.geomID
                                 : instance;
-    if (auto hit = parts_.objects[number]->meet(ray, query.hit.primID)) {
-      hit->object = number;
-      return hit;
-    }
+    if (take(number, query.hit.primID)) return true;
     // The primitive lies behind the origin, beyond the end or edge-on, by less than float can tell.
     query.ray.tnear = std::nextafter(query.ray.tfar, kInfinity);
     query.ray.tfar = ray.t_max;
-    if (!(query.ray.tnear < query.ray.tfar)) return std::nullopt;
+    if (!(query.ray.tnear < query.ray.tfar)) return false;
   }
-  return std::nullopt;
+  return false;
+}
+
+std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
+  std::optional<Hit> hit;
+  find_nearest(ray, kind, [&](uint32_t object, uint32_t primitive) {
+    hit = parts_.objects[object]->meet(ray, primitive);
+    if (hit) hit->object = object;
+    return hit.has_value();
+  });
+  return hit;
+}
+
+bool EmbreeWorld::nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const {
+  return find_nearest(ray, kind, [&](uint32_t object, uint32_t primitive) {
+    if (!parts_.objects[object]->meet(ray, primitive, point)) return false;
+    point.object = object;
+    return true;
+  });
 }
 
 bool EmbreeWorld::occluded(const Ray& ray) const {

@@ -28,6 +28,7 @@ class EmbreeWorld final : public World {
   std::optional<Hit> intersect(const Ray& ray, RayKind kind) const override;
   bool occluded(const Ray& ray) const override;
   SurfacePoint surface(const Ray& ray, const Hit& hit) const override;
+  bool nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const override;
   SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
                               float time) const override;
   Mat4 transform_at(uint32_t object, float time) const override;
@@ -39,6 +40,11 @@ class EmbreeWorld final : public World {
 
  private:
   bool usable(const Ray& ray) const;
+
+  /// Hands what Embree finds along the ray to `take(placement, primitive)` until it returns true;
+  /// false where it never does.
+  template <class Take>
+  bool find_nearest(const Ray& ray, RayKind kind, Take&& take) const;
 
   WorldParts parts_;
   RTCScene scene_;

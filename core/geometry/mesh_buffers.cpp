@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/geometry/chunks.h"
+#include "core/geometry/triangle.h"
 
 namespace hyades::core {
 namespace {
@@ -76,10 +77,24 @@ void leave_out_degenerate(MeshBuffers& b) {
   b.triangles = b.own_triangles.data();
 }
 
+/// Computed once here, because every hit needs one.
+std::vector<float> triangle_errors(const MeshBuffers& b) {
+  const auto& triangles = b.mesh->triangles;
+  std::vector<float> errors(triangles.size());
+  for_chunks(errors.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const auto corner = [&](size_t k) { return Vec3d(b.positions[triangles[i][k]]); };
+      errors[i] = largest_triangle_error(corner(0), corner(1), corner(2));
+    }
+  });
+  return errors;
+}
+
 }  // namespace
 
 size_t MeshBuffers::own_memory() const {
-  size_t bytes = own_triangles.capacity() * sizeof(own_triangles[0]);
+  size_t bytes =
+      own_triangles.capacity() * sizeof(own_triangles[0]) + errors.capacity() * sizeof(errors[0]);
   for (const auto& p : own_positions) bytes += p.capacity() * sizeof(Vec3);
   return bytes;
 }
@@ -119,6 +134,7 @@ std::shared_ptr<const MeshBuffers> make_mesh_buffers(std::shared_ptr<const Trian
     }
   }
   leave_out_degenerate(*out);
+  if (out->own_positions.size() <= 1) out->errors = triangle_errors(*out);
   return out;
 }
 

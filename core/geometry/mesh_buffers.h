@@ -19,9 +19,12 @@ struct MeshBuffers {
   const std::array<uint32_t, 3>* triangles = nullptr;  ///< the same, degenerate ones made invalid
   std::vector<std::vector<Vec3>> own_positions;        ///< per step; empty: the mesh's
   std::vector<std::array<uint32_t, 3>> own_triangles;  ///< empty: the mesh's
-  Bounds bounds;                                       ///< of all positions
+  /// Per triangle: by how much Embree may misplace it at most [length of the buffers' space];
+  /// empty where vertices move.
+  std::vector<float> errors;
+  Bounds bounds;  ///< of all positions
 
-  size_t own_memory() const;  ///< bytes of the copies
+  size_t own_memory() const;  ///< bytes of the copies and errors
 
   /// The corners of a triangle at `time` where there are several steps: in world space vertices
   /// move on straight lines from step to step, which is what matrices interpolated linearly do.

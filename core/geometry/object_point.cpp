@@ -44,7 +44,14 @@ bool finite(const Vec3& v) { return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0
 /// v made a unit vector; +y for a zero vector (degenerate triangles have no better normal).
 Vec3d unit(const Vec3d& v) {
   const double length2 = glm::dot(v, v);
-  return length2 > 0.0 ? v / std::sqrt(length2) : Vec3d(0.0, 1.0, 0.0);
+  return length2 > 0.0 ? v * (1.0 / std::sqrt(length2)) : Vec3d(0.0, 1.0, 0.0);
+}
+
+/// Tangents where the shape has no parametrisation.
+void set_any_tangents(SurfacePoint& p) {
+  const Frame frame = Frame::around(p.ng);
+  p.dpdu = frame.s;
+  p.dpdv = frame.t;
 }
 
 /// Makes the tangents usable where the parametrisation is singular or missing.
@@ -53,9 +60,7 @@ void set_tangents(SurfacePoint& p, const Vec3d& dpdu, const Vec3d& dpdv) {
   p.dpdv = Vec3(dpdv);
   const Vec3 cross = glm::cross(p.dpdu, p.dpdv);
   if (finite(p.dpdu) && finite(p.dpdv) && glm::dot(cross, cross) > 0.0F && finite(cross)) return;
-  const Frame frame = Frame::around(p.ng);
-  p.dpdu = frame.s;
-  p.dpdv = frame.t;
+  set_any_tangents(p);
 }
 
 /// The unit shading normal from an interpolated one, on the side of ng; ng where there is none.
@@ -76,40 +81,72 @@ SurfacePoint PlacedObject::point(const Ray& ray, const Hit& hit) const {
   return p;
 }
 
-SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, float time) const {
-  const TriangleMesh& mesh = *buffers_->mesh;
-  const auto& vertices = mesh.triangles[primitive];
-  const auto [a, b, c] = corners(primitive, time);
-  const Vec3d e1 = b - a;
-  const Vec3d e2 = c - a;
-  const double du = static_cast<double>(u);
-  const double dv = static_cast<double>(v);
-  const Vec3d offset = e1 * du + e2 * dv;
+bool PlacedObject::meet(const Ray& ray, uint32_t primitive, SurfacePoint& point) const {
+  if (is_quadric()) {
+    const auto hit = meet(ray, primitive);
+    if (hit) point = this->point(ray, *hit);
+    return hit.has_value();
+  }
+  const Triangle triangle = triangle_at(primitive, ray.time);
+  const auto hit = meet_triangle_of(ray, primitive, triangle);
+  if (!hit) return false;
+  fill_mesh_point(point, *hit, triangle, ray.time);
+  point.t = hit->t;
+  return true;
+}
 
+SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, float time) const {
   SurfacePoint p;
+  Hit hit;
+  hit.primitive = primitive;
+  hit.u = u;
+  hit.v = v;
+  fill_mesh_point(p, hit, triangle_at(primitive, time), time);
+  return p;
+}
+
+void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
+                                   float time) const {
   p.time = time;
-  p.primitive = primitive;
-  const bool still = !moves_;
-  const Affine moving = still ? Affine() : motion_.at(time);
-  const Affine moving_inverse = still ? Affine() : moving.inverse();
-  const Affine& to_world = still ? to_world_ : moving;
-  const Affine& to_object = still ? to_object_ : moving_inverse;
-  p.world_to_object = still ? world_to_object_ : moving_inverse.to_mat4();
-  const glm::dmat3 normal_to_world = glm::transpose(to_object.linear);
+  if (!moves_) {
+    fill_mesh_point(p, hit, triangle, {to_world_, to_object_, world_to_object_, mirrors_});
+    return;
+  }
+  const Affine to_world = motion_.at(time);
+  const Affine to_object = to_world.inverse();
+  const Mat4 world_to_object = to_object.to_mat4();
+  fill_mesh_point(p, hit, triangle,
+                  {to_world, to_object, world_to_object, to_world.determinant() < 0.0});
+}
+
+void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
+                                   const Pose& pose) const {
+  const TriangleMesh& mesh = *buffers_->mesh;
+  const auto& vertices = indices_[hit.primitive];
+  const Vec3d& e1 = triangle.e1;
+  const Vec3d& e2 = triangle.e2;
+  const double du = static_cast<double>(hit.u);
+  const double dv = static_cast<double>(hit.v);
+  const Vec3d offset = e1 * du + e2 * dv;
+  p.primitive = hit.primitive;
+  p.world_to_object = pose.world_to_object;
 
   // Normal and error bound in the space of the buffers, then in the world.
   const Vec3d n = unit(glm::cross(e1, e2));
-  Vec3d position = a + offset;
+  Vec3d position = triangle.a + offset;
   Vec3d ng = n;
-  double embree_error = triangle_error(-offset, e1 - offset, e2 - offset, n);
+  double embree_error = errors_ != nullptr ? static_cast<double>(errors_[hit.primitive])
+                                           : triangle_error(-offset, e1 - offset, e2 - offset, n);
   if (in_world_) {
-    if (to_world.determinant() < 0.0) ng = -n;
-    if (!still) embree_error += vertex_motion_error(a, b, c);
+    if (pose.mirrors) ng = -n;
+    if (moves_) {
+      embree_error += vertex_motion_error(triangle.a, triangle.a + e1, triangle.a + e2);
+    }
   } else {
-    position = to_world.point(position);
-    const Vec3d world_n = normal_to_world * n;
+    position = pose.to_world.point(position);
+    const Vec3d world_n = glm::transpose(pose.to_object.linear) * n;
     const double stretch = std::sqrt(glm::dot(world_n, world_n));
-    embree_error += transform_error(to_world, to_object, position, n);
+    embree_error += transform_error(pose.to_world, pose.to_object, position, n);
     embree_error /= stretch;
     ng = world_n / stretch;
   }
@@ -121,28 +158,30 @@ SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, floa
   if (!mesh.normals.empty()) {
     const Vec3d ns = Vec3d(mesh.normals[vertices[0]]) * (1.0 - du - dv) +
                      Vec3d(mesh.normals[vertices[1]]) * du + Vec3d(mesh.normals[vertices[2]]) * dv;
-    p.ns = shading_normal(normal_to_world * ns, p.ng);
+    p.ns = shading_normal(glm::transpose(pose.to_object.linear) * ns, p.ng);
   }
 
-  Vec3d dpdu(0.0);
-  Vec3d dpdv(0.0);
-  if (!mesh.uvs.empty()) {
-    const glm::dvec2 uv0(mesh.uvs[vertices[0]]);
-    const glm::dvec2 d1 = glm::dvec2(mesh.uvs[vertices[1]]) - uv0;
-    const glm::dvec2 d2 = glm::dvec2(mesh.uvs[vertices[2]]) - uv0;
-    p.uv = Vec2(uv0 + d1 * du + d2 * dv);
-    const double determinant = d1.x * d2.y - d1.y * d2.x;
-    if (determinant != 0.0) {
-      dpdu = (e1 * d2.y - e2 * d1.y) / determinant;
-      dpdv = (e2 * d1.x - e1 * d2.x) / determinant;
-      if (!in_world_) {
-        dpdu = to_world.vector(dpdu);
-        dpdv = to_world.vector(dpdv);
-      }
-    }
+  if (mesh.uvs.empty()) {
+    p.uv = Vec2(0.0F);
+    set_any_tangents(p);
+    return;
+  }
+  const glm::dvec2 uv0(mesh.uvs[vertices[0]]);
+  const glm::dvec2 d1 = glm::dvec2(mesh.uvs[vertices[1]]) - uv0;
+  const glm::dvec2 d2 = glm::dvec2(mesh.uvs[vertices[2]]) - uv0;
+  p.uv = Vec2(uv0 + d1 * du + d2 * dv);
+  const double determinant = d1.x * d2.y - d1.y * d2.x;
+  if (determinant == 0.0) {
+    set_any_tangents(p);
+    return;
+  }
+  Vec3d dpdu = (e1 * d2.y - e2 * d1.y) / determinant;
+  Vec3d dpdv = (e2 * d1.x - e1 * d2.x) / determinant;
+  if (!in_world_) {
+    dpdu = pose.to_world.vector(dpdu);
+    dpdv = pose.to_world.vector(dpdv);
   }
   set_tangents(p, dpdu, dpdv);
-  return p;
 }
 
 SurfacePoint PlacedObject::quadric_surface(const Ray& ray, const Hit& hit) const {

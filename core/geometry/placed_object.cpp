@@ -21,6 +21,11 @@ Bounds round_outwards(const Vec3d& lower, const Vec3d& upper) {
   return b;
 }
 
+/// A distance above 0 as a float above 0.
+float to_distance(double t) {
+  return std::max(static_cast<float>(t), std::numeric_limits<float>::min());
+}
+
 /// Half extents of the image of a disk of radius r around the y axis.
 Vec3d disk_extent(const Affine& m, double r) {
   Vec3d e;
@@ -70,10 +75,12 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
     indices_ = buffers_->indices;
     positions_ = buffers_->positions;
     in_world_ = buffers_->in_world;
+    if (!buffers_->errors.empty()) errors_ = buffers_->errors.data();
   }
   to_world_ = motion_.steps()[0];
   to_object_ = to_world_.inverse();
   world_to_object_ = to_object_.to_mat4();
+  mirrors_ = to_world_.determinant() < 0.0;
   quadric_ = {placement_.shape.kind, static_cast<double>(placement_.shape.radius),
               static_cast<double>(placement_.shape.height)};
   if (in_world_) {
@@ -87,6 +94,22 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
 }
 
 std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const {
+  if (!is_quadric()) {
+    return meet_triangle_of(ray, primitive, triangle_at(primitive, ray.time));
+  }
+  const Affine m = to_object_at(ray.time);
+  const double t_max = static_cast<double>(ray.t_max);
+  const auto t = meet_quadric(quadric_, m.point(Vec3d(ray.origin)), m.vector(Vec3d(ray.direction)),
+                              0.0, t_max);
+  if (!t || !(*t > 0.0 && *t < t_max)) return std::nullopt;
+  Hit hit;
+  hit.primitive = primitive;
+  hit.t = to_distance(*t);
+  return hit;
+}
+
+std::optional<Hit> PlacedObject::meet_triangle_of(const Ray& ray, uint32_t primitive,
+                                                  const Triangle& triangle) const {
   Vec3d origin(ray.origin);
   Vec3d direction(ray.direction);
   if (!in_world_) {
@@ -94,24 +117,13 @@ std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const 
     origin = m.point(origin);
     direction = m.vector(direction);
   }
+  const auto met = meet_triangle(origin, direction, triangle);
+  if (!met || !(met->t > 0.0 && met->t < static_cast<double>(ray.t_max))) return std::nullopt;
   Hit hit;
   hit.primitive = primitive;
-  double t = 0.0;
-  const double t_max = static_cast<double>(ray.t_max);
-  if (is_quadric()) {
-    const auto met = meet_quadric(quadric_, origin, direction, 0.0, t_max);
-    if (!met) return std::nullopt;
-    t = *met;
-  } else {
-    const auto [a, b, c] = corners(primitive, ray.time);
-    const auto met = meet_triangle(origin, direction, a, b, c);
-    if (!met) return std::nullopt;
-    t = met->t;
-    hit.u = static_cast<float>(met->u);
-    hit.v = static_cast<float>(met->v);
-  }
-  if (!(t > 0.0 && t < t_max)) return std::nullopt;
-  hit.t = std::max(static_cast<float>(t), std::numeric_limits<float>::min());
+  hit.t = to_distance(met->t);
+  hit.u = static_cast<float>(met->u);
+  hit.v = static_cast<float>(met->v);
   return hit;
 }
 

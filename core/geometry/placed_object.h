@@ -10,6 +10,7 @@
 #include "core/geometry/affine.h"
 #include "core/geometry/mesh_buffers.h"
 #include "core/geometry/quadric.h"
+#include "core/geometry/triangle.h"
 #include "core/geometry/world.h"
 
 namespace hyades::core {
@@ -37,27 +38,46 @@ class PlacedObject {
   /// The point of a hit.
   SurfacePoint point(const Ray& ray, const Hit& hit) const;
 
+  /// Both at once: the same bits for less work. False where the line does not meet it; `point` is
+  /// then unchanged.
+  bool meet(const Ray& ray, uint32_t primitive, SurfacePoint& point) const;
+
   /// The point of a mesh at barycentrics (u, v) of triangle `primitive`.
   SurfacePoint mesh_point(uint32_t primitive, float u, float v, float time) const;
 
   Bounds bounds() const { return bounds_; }
 
  private:
+  /// Where it stands at some time.
+  struct Pose {
+    const Affine& to_world;
+    const Affine& to_object;
+    const Mat4& world_to_object;
+    bool mirrors;  ///< turns the shape inside out
+  };
+
+  std::optional<Hit> meet_triangle_of(const Ray& ray, uint32_t primitive,
+                                      const Triangle& triangle) const;
+  void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle, float time) const;
+  void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
+                       const Pose& pose) const;
   SurfacePoint quadric_surface(const Ray& ray, const Hit& hit) const;
-  /// The corners of triangle `primitive`, in the space of the buffers.
-  std::array<Vec3d, 3> corners(uint32_t primitive, float time) const {
+  /// Triangle `primitive` in the space of the buffers.
+  Triangle triangle_at(uint32_t primitive, float time) const {
     const std::array<uint32_t, 3>& t = indices_[primitive];
-    if (moves_ && in_world_) return buffers_->moving_corners(t, motion_, time);
-    return {Vec3d(positions_[t[0]]), Vec3d(positions_[t[1]]), Vec3d(positions_[t[2]])};
+    if (moves_ && in_world_) return Triangle(buffers_->moving_corners(t, motion_, time));
+    return Triangle({Vec3d(positions_[t[0]]), Vec3d(positions_[t[1]]), Vec3d(positions_[t[2]])});
   }
 
   // First what every hit reads: few cache lines, for worlds of many objects.
   const std::array<uint32_t, 3>* indices_ = nullptr;
   const Vec3* positions_ = nullptr;
+  const float* errors_ = nullptr;  ///< MeshBuffers::errors; null where there are none
   std::shared_ptr<const MeshBuffers> buffers_;
   bool in_world_ = false;
   bool moves_ = false;
-  Affine to_object_;  // where still
+  bool mirrors_ = false;  // where still
+  Affine to_object_;      // where still
   Quadric quadric_;
   Motion motion_;
   Affine to_world_;  // where still

@@ -23,7 +23,7 @@ Ray segment(const Vec3& from, const Vec3& to, float time, double gap) {
   ray.time = time;
   ray.t_max = 0.0F;
   if (!(length > 0.0)) return ray;
-  ray.direction = Vec3(d / length);
+  ray.direction = Vec3(d * (1.0 / length));
   ray.t_max = static_cast<float>(std::max(0.0, length * (1.0 - kEndMargin) - gap));
   return ray;
 }

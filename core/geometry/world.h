@@ -68,6 +68,10 @@ class World {
   /// Everything about the point that `ray` hit.
   virtual SurfacePoint surface(const Ray& ray, const Hit& hit) const = 0;
 
+  /// The point of the nearest surface on the ray: intersect() and surface() in one, the same bits
+  /// for less work. False, and `point` is unchanged, where there is none.
+  virtual bool nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const = 0;
+
   /// The surface point of placement `object` at triangle `primitive`, barycentrics (u, v), shutter
   /// time `time`: what light sampling on a mesh needs.
   virtual SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,

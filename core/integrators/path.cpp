@@ -11,14 +11,10 @@
 namespace hyades::core {
 namespace {
 
-// Dimensions of one bounce, in the order of their use; two groups of four of the Sobol sampler.
+// Dimensions of one bounce: two groups of four of the sampler.
 enum BounceDimension : uint32_t {
-  kLightPosition = 0,  // 2
-  kLightChoice = 2,
-  kLightPart = 3,
-  kBsdfDirection = 4,  // 2
-  kBsdfLobe = 6,
-  kRoulette = 7,
+  kLight = 0,  // place on it (2), which light, which part of it
+  kBsdf = 4,   // direction (2), lobe, roulette
   kPerBounce = 8,
 };
 
@@ -43,13 +39,11 @@ class Path {
     int null_crossings = 0;
     while (true) {
       ++work_.rays;
-      const auto hit =
-          scene_.world->intersect(ray_, depth_ == 0 ? RayKind::camera : RayKind::other);
-      if (!hit) {
+      SurfacePoint point;
+      if (!scene_.world->nearest(ray_, depth_ == 0 ? RayKind::camera : RayKind::other, point)) {
         add_sky();
         break;
       }
-      const SurfacePoint point = scene_.world->surface(ray_, *hit);
       const SceneObject& object = scene_.objects[point.object];
       if (object.material->is_null()) {
         add_emission(point, object);
@@ -126,14 +120,12 @@ class Path {
   void add_direct_light(const ShadedSurface& surface, const Vec3& wo, uint32_t dimension) {
     if (scene_.lights.empty()) return;
     const SurfacePoint& point = surface.point();
-    sampler_.set_dimension(dimension + kLightPosition);
-    const Vec2 u = sampler_.next_2d();
-    const float choice = sampler_.next_1d();
-    const float part = sampler_.next_1d();
-    const auto chosen = scene_.selector->select(point.position, point.ng, choice);
+    sampler_.set_dimension(dimension + kLight);
+    const Vec4 u = sampler_.next_4d();
+    const auto chosen = scene_.selector->select(point.position, point.ng, u.z);
     if (!chosen) return;
     const Light& light = *scene_.lights[chosen->index];
-    const auto sample = light.sample_direct(point.position, point.time, part, u);
+    const auto sample = light.sample_direct(point.position, point.time, u.w, Vec2(u));
     if (!sample || is_black(sample->radiance)) return;
     const Rgb f = surface.evaluate(wo, sample->direction, TransportMode::radiance);
     if (is_black(f)) return;
@@ -157,10 +149,9 @@ class Path {
 
   /// Goes on along the BSDF; false where the path ends.
   bool scatter(const ShadedSurface& surface, const Vec3& wo, uint32_t dimension) {
-    sampler_.set_dimension(dimension + kBsdfDirection);
-    const Vec2 u = sampler_.next_2d();
-    const float lobe = sampler_.next_1d();
-    const auto sample = surface.sample(wo, lobe, u, TransportMode::radiance);
+    sampler_.set_dimension(dimension + kBsdf);
+    const Vec4 u = sampler_.next_4d();
+    const auto sample = surface.sample(wo, u.z, Vec2(u), TransportMode::radiance);
     if (!sample || is_black(sample->weight)) return false;
     ++work_.bounces;
     throughput_ *= sample->weight;
@@ -171,7 +162,7 @@ class Path {
       // Without the factor of refraction, which is undone when the path leaves the glass again.
       const float keep = std::max(max_component(throughput_) * eta_scale_, kMinSurvival);
       if (keep < 1.0F) {
-        if (sampler_.next_1d() >= keep) {
+        if (u.w >= keep) {
           if (work_.log != nullptr) work_.log->lines.emplace_back("  ended by roulette");
           return false;
         }

@@ -21,6 +21,11 @@ class IndependentSampler final : public Sampler {
     dimension_ = even + 2;
     return {at(even), at(even + 1)};
   }
+  Vec4 next_4d() override {
+    const uint32_t first = (dimension_ + 3) & ~3U;
+    dimension_ = first + 4;
+    return {at(first), at(first + 1), at(first + 2), at(first + 3)};
+  }
 
  private:
   float at(uint32_t dimension) const {

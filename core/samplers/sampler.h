@@ -37,6 +37,10 @@ class Sampler {
 
   /// Two numbers that are stratified together, in [0, 1)^2. Starts at an even dimension.
   virtual Vec2 next_2d() = 0;
+
+  /// Four numbers at once: what next_2d, next_1d and next_1d hand out from the next dimension that
+  /// is a multiple of four, for less work.
+  virtual Vec4 next_4d() = 0;
 };
 
 enum class SamplerKind { sobol, independent };

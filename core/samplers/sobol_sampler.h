@@ -39,6 +39,13 @@ class SobolSampler final : public Sampler {
     return {values_[d & 3], values_[(d & 3) + 1]};
   }
 
+  Vec4 next_4d() override {
+    const uint32_t group = (dimension_ + 3) >> 2;
+    dimension_ = 4 * group + 4;
+    load(group);
+    return {values_[0], values_[1], values_[2], values_[3]};
+  }
+
  private:
   static constexpr uint32_t kNoGroup = ~0U;
 

@@ -112,6 +112,23 @@ TEST(Sampler, NumbersArePureFunctionsOfSampleAndDimension) {
   }
 }
 
+TEST(Sampler, FoursAreWhatSingleNumbersAre) {
+  for (const SamplerKind kind : kKinds) {
+    const auto sampler = make_sampler(kind);
+    for (uint32_t d = 0; d < 16; ++d) {
+      sampler->start(id_of(3, 9));
+      sampler->set_dimension(d);
+      const Vec4 four = sampler->next_4d();
+      const float next = sampler->next_1d();
+      const uint32_t first = (d + 3) & ~3U;
+      for (int i = 0; i < 4; ++i) {
+        EXPECT_EQ(four[i], value(*sampler, id_of(3, 9), first + static_cast<uint32_t>(i)));
+      }
+      EXPECT_EQ(next, value(*sampler, id_of(3, 9), first + 4));
+    }
+  }
+}
+
 TEST(Sampler, PairsStartAtEvenDimensions) {
   for (const SamplerKind kind : kKinds) {
     const auto sampler = make_sampler(kind);
