@@ -166,6 +166,41 @@ TEST(Surface, QuadricTangentsAreDerivatives) {
   }
 }
 
+TEST(Surface, NearestIsIntersectAndSurfaceToTheBit) {
+  Random random(5);
+  for (const auto& shape : {test::place(textured_ball()), test::place(test::make_ball(2)),
+                            test::place(Shape::Kind::cylinder, 1.5F, 2.0F)}) {
+    for (const auto& placements : ways(shape, random)) {
+      const auto world = test::build(placements, test::kInstanceAll);
+      const Bounds b = world->bounds();
+      int found = 0;
+      for (int i = 0; i < 300; ++i) {
+        Ray ray{test::in_box(random, b.lower, b.upper), random.direction()};
+        ray.time = random.uniform();
+        SurfacePoint p;
+        const auto hit = world->intersect(ray, RayKind::other);
+        ASSERT_EQ(world->nearest(ray, RayKind::other, p), hit.has_value());
+        if (!hit) continue;
+        ++found;
+        const SurfacePoint q = world->surface(ray, *hit);
+        EXPECT_EQ(p.position, q.position);
+        EXPECT_EQ(p.ng, q.ng);
+        EXPECT_EQ(p.ns, q.ns);
+        EXPECT_EQ(p.dpdu, q.dpdu);
+        EXPECT_EQ(p.dpdv, q.dpdv);
+        EXPECT_EQ(p.uv, q.uv);
+        EXPECT_EQ(p.t, q.t);
+        EXPECT_EQ(p.time, q.time);
+        EXPECT_EQ(p.clearance, q.clearance);
+        EXPECT_EQ(p.object, q.object);
+        EXPECT_EQ(p.primitive, q.primitive);
+        EXPECT_EQ(p.world_to_object, q.world_to_object);
+      }
+      EXPECT_GT(found, 30);
+    }
+  }
+}
+
 TEST(Surface, TrianglePointIsWhereTheRayHits) {
   Random random(3);
   for (const auto& placements : ways(test::place(textured_ball()), random)) {
