@@ -1,5 +1,6 @@
 #include <array>
 
+#include "core/job/kinds.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
@@ -37,6 +38,8 @@ const std::array<TypeRow<LightDesc>, 3> kTypes = {{
 }};
 
 }  // namespace
+
+std::vector<std::string> light_types() { return type_names<LightDesc>(kTypes); }
 
 void read_lights(MapReader& top) {
   read_named(top, "lights", "light", std::nullopt,

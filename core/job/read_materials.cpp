@@ -1,5 +1,6 @@
 #include <array>
 
+#include "core/job/kinds.h"
 #include "core/job/metal_names.h"
 #include "core/job/read_sections.h"
 #include "core/job/read_textures.h"
@@ -108,6 +109,8 @@ const std::array<TypeRow<MaterialDesc>, 9> kTypes = {{
 }};
 
 }  // namespace
+
+std::vector<std::string> material_types() { return type_names<MaterialDesc>(kTypes); }
 
 void read_materials(MapReader& top) {
   read_named(top, "materials", "material", NameKind::material,

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/base/text.h"
+#include "core/job/kinds.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
@@ -65,6 +66,8 @@ constexpr std::array<ShapeRow, 5> kShapes = {{
     {"cylinder", read_cylinder},
 }};
 
+const std::array<std::string, 3> kMeshNormals = {"file", "flat", "smooth"};
+
 void read_shape(MapReader& reader, ObjectDesc& object) {
   std::vector<std::string> names;
   for (const ShapeRow& row : kShapes) names.emplace_back(row.name);
@@ -80,12 +83,11 @@ void read_shape(MapReader& reader, ObjectDesc& object) {
 }
 
 void read_mesh(MapReader& reader, ObjectDesc& object) {
-  static const std::array<std::string, 3> kNormals = {"file", "flat", "smooth"};
   object.shape = "mesh";
   reader.file("mesh", object.mesh);
   read_emit(reader, object);
   reader.enter_section("objects.mesh");
-  reader.choice("normals", object.smooth, kNormals);
+  reader.choice("normals", object.smooth, kMeshNormals);
 }
 
 void read_instance(MapReader& reader, ObjectDesc& object) {
@@ -174,6 +176,14 @@ void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects) {
 }
 
 }  // namespace
+
+std::vector<std::string> shape_names() {
+  std::vector<std::string> names = {"mesh"};
+  for (const ShapeRow& row : kShapes) names.emplace_back(row.name);
+  return names;
+}
+
+std::span<const std::string> mesh_normals_names() { return kMeshNormals; }
 
 void read_objects(MapReader& top) { read_object_list(top, top.context().job.objects); }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "core/job/kinds.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core {
@@ -83,6 +84,12 @@ const std::array<TypeRow<TextureDesc>, 8> kTypes = {{
 }};
 
 }  // namespace
+
+std::vector<std::string> texture_types() { return type_names<TextureDesc>(kTypes); }
+std::span<const std::string> color_space_names() { return kColorSpaces; }
+std::span<const std::string> wrap_names() { return kWraps; }
+std::span<const std::string> texture_filter_names() { return kFilters; }
+std::span<const std::string> mapping_names() { return kMappings; }
 
 void read_texture(ReadContext& context, const YamlNode& node, const std::string& name,
                   const std::string& what, const std::string& path) {

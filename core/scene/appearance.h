@@ -10,8 +10,9 @@
 
 namespace hyades::core {
 
-/// The textures and materials of a job at one moment, made on first use and shared afterwards.
-/// `units`: metres per unit of length of the job.
+/// The textures and materials of a job at one moment, made on first use and shared afterwards. What
+/// the kinds are made of stands in make_texture.h and make_material.h, which ask here for what they
+/// refer to.
 class Appearance {
  public:
   Appearance(const Job& job, const JobTime& time, SceneCache& cache)
@@ -23,13 +24,18 @@ class Appearance {
   /// The material called `name`; the grey default for "".
   Result<MaterialPtr> material(const std::string& name);
 
- private:
-  Result<TexturePtr> make_texture(const TextureDesc& desc);
-  Result<MaterialPtr> make_material(const MaterialDesc& desc);
+  // A parameter at this moment: its value, or the texture that it names.
   Result<ColorParam> color(const ColorInput& input);
   Result<ScalarParam> scalar(const ScalarInput& input);
+  /// A texture in any case: one of constant colour where the parameter is a value.
   Result<TexturePtr> color_texture(const ColorInput& input);
 
+  const JobTime& time() const { return time_; }
+  /// Metres per unit of length of the job.
+  float units() const { return job_.units; }
+  SceneCache& cache() { return cache_; }
+
+ private:
   const Job& job_;
   JobTime time_;
   SceneCache& cache_;

@@ -6,6 +6,8 @@
 #include "core/base/elementary.h"
 #include "core/scene/appearance.h"
 #include "core/scene/flatten.h"
+#include "core/scene/light_makers.h"
+#include "core/scene/scene_files.h"
 
 namespace hyades::core {
 namespace {
@@ -31,6 +33,7 @@ class SceneBuilder {
         looks_(job, time_, cache) {}
 
   Result<std::shared_ptr<const Scene>> build() {
+    load_files(job_, cache_);
     if (auto done = add_objects(); !done) return done.error();
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
@@ -82,28 +85,11 @@ class SceneBuilder {
   }
 
   Status add_lights() {
-    for (const LightDesc& light : job_.lights) {
-      const Rgb color = light.color.at(time_);
-      if (light.type == "sun") {
-        add_light(make_sun_light(unit(light.direction.at(time_), {0.0F, -1.0F, 0.0F}),
-                                 color * light.irradiance.at(time_),
-                                 light.angle.at(time_) * kRadians, world_radius(*scene_->world)));
-        continue;
-      }
-      const Vec3 at = light.at.at(time_) * job_.units;
-      const Rgb power = color * light.power.at(time_);
-      if (light.type == "point") {
-        add_light(make_point_light(at, power));
-      } else if (light.type == "spot") {
-        const Vec3 towards = light.look_at.at(time_) * job_.units - at;
-        const float outer = light.angle.at(time_) * kRadians;
-        const float inner = outer * (1.0F - light.blend.at(time_));
-        add_light(
-            make_spot_light(at, unit(towards, {0.0F, -1.0F, 0.0F}), power, cos(inner), cos(outer)));
-      } else {
-        return Error{"light '" + light.name + "': there is no kind of light called '" + light.type +
-                     "'"};
-      }
+    const LightSetting setting{time_, job_.units, world_radius(*scene_->world)};
+    for (const LightDesc& desc : job_.lights) {
+      auto light = make_light(desc, setting);
+      if (!light) return light.error();
+      add_light(*light);
     }
     return {};
   }

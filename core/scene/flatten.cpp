@@ -1,9 +1,10 @@
 #include "core/scene/flatten.h"
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_map>
 
-#include <fmt/format.h>
-
+#include "core/scene/shape_makers.h"
 #include "core/scene/transforms.h"
 
 namespace hyades::core {
@@ -12,7 +13,9 @@ namespace {
 class Flattener {
  public:
   Flattener(const Job& job, int32_t frame, SceneCache& cache)
-      : job_(job), frame_(frame), cache_(cache) {}
+      : job_(job), frame_(frame), cache_(cache) {
+    for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
+  }
 
   Status add_all(const std::vector<ObjectDesc>& objects, const std::string& prefix,
                  const std::string& material, bool visible) {
@@ -37,18 +40,15 @@ class Flattener {
     const bool visible = parent_visible && object.visible_to_camera;
     if (object.shape == "group") return add_all(object.children, name + "/", material, visible);
     if (object.shape == "instance") {
-      const auto group =
-          std::find_if(job_.groups.begin(), job_.groups.end(),
-                       [&](const GroupDesc& g) { return g.name == object.instance_of; });
-      if (group == job_.groups.end())
-        return Error{"there is no group '" + object.instance_of + "'"};
-      return add_all(group->objects, name + "/", material, visible);
+      const auto group = groups_.find(object.instance_of);
+      if (group == groups_.end()) return Error{"there is no group '" + object.instance_of + "'"};
+      return add_all(group->second->objects, name + "/", material, visible);
     }
     if (flat_.size() >= kMaxPlacements) {
       return Error{"groups and instances make more than " + std::to_string(kMaxPlacements) +
                    " objects"};
     }
-    auto shape = make_shape(object);
+    auto shape = make_shape(object, cache_);
     if (!shape) return shape.error().in("object '" + name + "'");
     FlatObject flat;
     flat.name = name;
@@ -109,43 +109,10 @@ class Flattener {
     return m;
   }
 
-  Result<Shape> make_shape(const ObjectDesc& object) {
-    Shape shape;
-    shape.radius = object.radius;
-    shape.height = object.height;
-    if (object.shape == "sphere") {
-      shape.kind = Shape::Kind::sphere;
-    } else if (object.shape == "disk") {
-      shape.kind = Shape::Kind::disk;
-    } else if (object.shape == "cylinder") {
-      shape.kind = Shape::Kind::cylinder;
-    } else if (object.shape == "rectangle") {
-      shape.mesh = cache_.made_mesh(
-          size_key("rectangle", object.size),
-          [](const Vec3& s) {
-            return make_rectangle({s.x, s.y});
-          },
-          object.size);
-    } else if (object.shape == "box") {
-      shape.mesh = cache_.made_mesh(
-          size_key("box", object.size), [](const Vec3& s) { return make_box(s); }, object.size);
-    } else if (object.shape == "mesh") {
-      auto mesh = cache_.mesh(object.mesh, object.smooth);
-      if (!mesh) return mesh.error();
-      shape.mesh = *mesh;
-    } else {
-      return Error{"there is no shape called '" + object.shape + "'"};
-    }
-    return shape;
-  }
-
-  static std::string size_key(const char* kind, const Vec3& size) {
-    return fmt::format("{} {} {} {}", kind, size.x, size.y, size.z);
-  }
-
   const Job& job_;
   int32_t frame_;
   SceneCache& cache_;
+  std::unordered_map<std::string_view, const GroupDesc*> groups_;
   std::vector<const ObjectDesc*> chain_;  ///< from the outermost group to the object in hand
   std::vector<FlatObject> flat_;
 };

@@ -17,50 +17,45 @@ bool same_placements(const std::vector<Placement>& a, const std::vector<Placemen
 }  // namespace
 
 Result<std::shared_ptr<const TriangleMesh>> SceneCache::mesh(const std::string& file,
-                                                             const std::string& smooth) {
-  const std::lock_guard lock(mutex_);
-  auto& slot = meshes_[{file, smooth}];
-  if (slot) return slot;
-  auto loaded = read_mesh(assets_, file);
-  if (!loaded) return loaded.error();
-  const std::shared_ptr<TriangleMesh> mesh = *loaded;
-  if (smooth == "flat") mesh->normals.clear();
-  if (smooth == "smooth") compute_smooth_normals(*mesh);
-  slot = mesh;
-  return slot;
+                                                             MeshNormals normals) {
+  return meshes_.get({file, normals}, [&]() -> Result<std::shared_ptr<const TriangleMesh>> {
+    auto loaded = read_mesh(assets_, file);
+    if (!loaded) return loaded.error();
+    const std::shared_ptr<TriangleMesh> mesh = *loaded;
+    if (normals == MeshNormals::flat) mesh->normals.clear();
+    if (normals == MeshNormals::smooth) compute_smooth_normals(*mesh);
+    return std::shared_ptr<const TriangleMesh>(mesh);
+  });
 }
 
 Result<std::shared_ptr<const Image>> SceneCache::image(const std::string& file, ColorSpace space) {
-  const std::lock_guard lock(mutex_);
-  auto& slot = images_[{file, space}];
-  if (slot) return slot;
-  auto bytes = assets_.open(file);
-  if (!bytes) return bytes.error();
-  auto loaded = read_image(*bytes, file, space);
-  if (!loaded) return loaded.error();
-  slot = std::make_shared<const Image>(std::move(*loaded));
-  return slot;
+  return images_.get({file, space}, [&]() -> Result<std::shared_ptr<const Image>> {
+    auto bytes = assets_.open(file);
+    if (!bytes) return bytes.error();
+    auto loaded = read_image(*bytes, file, space);
+    if (!loaded) return loaded.error();
+    return std::make_shared<const Image>(std::move(*loaded));
+  });
 }
 
 Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const std::string& file) {
-  auto picture = image(file, ColorSpace::automatic);
-  if (!picture) return picture.error();
-  const std::lock_guard lock(mutex_);
-  auto& slot = environment_maps_[file];
-  if (!slot) slot = std::make_shared<const EnvironmentMap>(*picture);
-  return slot;
+  return environment_maps_.get(file, [&]() -> Result<std::shared_ptr<const EnvironmentMap>> {
+    auto picture = image(file, ColorSpace::automatic);
+    if (!picture) return picture.error();
+    return std::make_shared<const EnvironmentMap>(*picture);
+  });
 }
 
 std::shared_ptr<const TriangleMesh> SceneCache::made_mesh(
     const std::string& key, std::shared_ptr<TriangleMesh> (*make)(const Vec3&), const Vec3& size) {
-  const std::lock_guard lock(mutex_);
-  auto& slot = meshes_[{key, "made"}];
-  if (!slot) slot = make(size);
-  return slot;
+  auto made = made_meshes_.get(key, [&]() -> Result<std::shared_ptr<const TriangleMesh>> {
+    return std::shared_ptr<const TriangleMesh>(make(size));
+  });
+  return *made;
 }
 
 Result<std::shared_ptr<const World>> SceneCache::world(std::vector<Placement> placements) {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(world_mutex_);
   if (world_ && same_placements(placements, world_placements_)) return world_;
   world_placements_ = placements;
   auto built = build_world(std::move(placements), geometry_);
@@ -73,11 +68,8 @@ Result<std::shared_ptr<const World>> SceneCache::world(std::vector<Placement> pl
 }
 
 size_t SceneCache::image_memory() const {
-  const std::lock_guard lock(mutex_);
   size_t bytes = 0;
-  for (const auto& [key, image] : images_) {
-    if (image) bytes += image->data.size() * sizeof(float);
-  }
+  images_.for_each([&](const Image& image) { bytes += image.data.size() * sizeof(float); });
   return bytes;
 }
 

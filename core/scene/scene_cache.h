@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,18 +11,22 @@
 #include "core/geometry/world.h"
 #include "core/image/read_image.h"
 #include "core/lights/environment_map.h"
+#include "core/scene/once_map.h"
 
 namespace hyades::core {
 
+/// Which normals a mesh gets: those of its file (or of its triangles, where it has none), those of
+/// its triangles, or smooth ones.
+enum class MeshNormals { file, flat, smooth };
+
 /// What the frames of a job share: meshes, images, acceleration structures, and the whole world
-/// while nothing in it moves. Thread-safe: the next frame's scene loads while this one renders.
+/// while nothing in it moves. Thread-safe: the next frame's scene loads while this one renders, and
+/// several files load at once.
 class SceneCache {
  public:
   explicit SceneCache(AssetResolver& assets) : assets_(assets) {}
 
-  /// A mesh file with its normals as `smooth` asks: "file", "flat" or "smooth".
-  Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file,
-                                                   const std::string& smooth);
+  Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file, MeshNormals normals);
 
   Result<std::shared_ptr<const Image>> image(const std::string& file, ColorSpace space);
 
@@ -38,18 +41,20 @@ class SceneCache {
   /// The world of `placements`; the previous one where they are the same.
   Result<std::shared_ptr<const World>> world(std::vector<Placement> placements);
 
+  /// Bytes of all images' pixels.
   size_t image_memory() const;
 
  private:
   AssetResolver& assets_;
-  mutable std::mutex mutex_;
-  // Guarded by mutex_.
-  std::map<std::pair<std::string, std::string>, std::shared_ptr<const TriangleMesh>> meshes_;
-  std::map<std::pair<std::string, ColorSpace>, std::shared_ptr<const Image>> images_;
-  std::map<std::string, std::shared_ptr<const EnvironmentMap>> environment_maps_;
+  OnceMap<std::pair<std::string, MeshNormals>, TriangleMesh> meshes_;
+  OnceMap<std::string, TriangleMesh> made_meshes_;
+  OnceMap<std::pair<std::string, ColorSpace>, Image> images_;
+  OnceMap<std::string, EnvironmentMap> environment_maps_;
+  GeometryCache geometry_;
+  std::mutex world_mutex_;
+  // Guarded by world_mutex_.
   std::vector<Placement> world_placements_;
   std::shared_ptr<const World> world_;
-  GeometryCache geometry_;
 };
 
 }  // namespace hyades::core

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/job/job.h"
+#include "core/lights/make_light.h"
+
+namespace hyades::core {
+
+/// What a light is made for.
+struct LightSetting {
+  JobTime time;
+  float units = 1.0F;         ///< metres per unit of length of the job
+  float world_radius = 1.0F;  ///< metres; infinite lights weigh their power by it
+};
+
+/// The light that `desc` describes (no shape's emission, no environment).
+Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting);
+
+/// The types that can be made: those of core/job/kinds.h.
+std::vector<std::string> made_light_types();
+
+}  // namespace hyades::core

@@ -1,0 +1,106 @@
+#include "core/scene/material_makers.h"
+
+#include "core/scene/name_table.h"
+
+namespace hyades::core {
+namespace {
+
+FacetScattering facets_of(const MaterialDesc& desc) {
+  return desc.multiple_scattering ? FacetScattering::multiple : FacetScattering::single;
+}
+
+Result<MaterialPtr> lambert(const MaterialDesc& desc, Appearance& looks) {
+  auto color = looks.color(desc.color);
+  if (!color) return color.error();
+  return make_lambert(*color);
+}
+
+Result<MaterialPtr> mirror(const MaterialDesc& desc, Appearance& looks) {
+  auto color = looks.color(desc.color);
+  if (!color) return color.error();
+  return make_mirror(*color);
+}
+
+Result<MaterialPtr> glossy(const MaterialDesc& desc, Appearance& looks) {
+  auto base = looks.color(desc.color);
+  if (!base) return base.error();
+  auto reflectiveness = looks.scalar(desc.reflectiveness);
+  if (!reflectiveness) return reflectiveness.error();
+  auto glossiness = looks.scalar(desc.glossiness);
+  if (!glossiness) return glossiness.error();
+  return make_glossy(*base, *reflectiveness, *glossiness, facets_of(desc));
+}
+
+Result<MaterialPtr> dielectric(const MaterialDesc& desc, Appearance& looks) {
+  auto roughness = looks.scalar(desc.roughness);
+  if (!roughness) return roughness.error();
+  const JobTime& time = looks.time();
+  return make_rough_dielectric(desc.ior.at(time), desc.transmission.at(time),
+                               desc.reflection.at(time), *roughness);
+}
+
+Result<MaterialPtr> thin_dielectric(const MaterialDesc& desc, Appearance& looks) {
+  const JobTime& time = looks.time();
+  return make_thin_dielectric(desc.ior.at(time), desc.transmission.at(time),
+                              desc.reflection.at(time));
+}
+
+Result<MetalIndex> index_of(const MaterialDesc& desc, const JobTime& time) {
+  if (desc.eta && desc.k) {
+    MetalIndex index;
+    index.eta = desc.eta->at(time);
+    index.k = desc.k->at(time);
+    return index;
+  }
+  const auto found = find_metal(desc.metal);
+  if (!found) return Error{"there is no metal '" + desc.metal + "' in the table"};
+  return *found;
+}
+
+Result<MaterialPtr> conductor(const MaterialDesc& desc, Appearance& looks) {
+  const auto index = index_of(desc, looks.time());
+  if (!index) return index.error();
+  auto roughness = looks.scalar(desc.roughness);
+  if (!roughness) return roughness.error();
+  return make_conductor(index->eta, index->k, *roughness, desc.reflection.at(looks.time()),
+                        facets_of(desc));
+}
+
+Result<MaterialPtr> mix(const MaterialDesc& desc, Appearance& looks) {
+  auto first = looks.material(desc.first);
+  if (!first) return first;
+  auto second = looks.material(desc.second);
+  if (!second) return second;
+  auto amount = looks.scalar(desc.amount);
+  if (!amount) return amount.error();
+  return make_mix(*first, *second, *amount);
+}
+
+Result<MaterialPtr> nothing(const MaterialDesc&, Appearance&) { return make_null(); }
+
+Result<MaterialPtr> black(const MaterialDesc&, Appearance&) { return make_black(); }
+
+using Maker = Result<MaterialPtr> (*)(const MaterialDesc&, Appearance&);
+constexpr std::array<NameRow<Maker>, 9> kMakers = {{
+    {"lambert", lambert},
+    {"dielectric", dielectric},
+    {"thin-dielectric", thin_dielectric},
+    {"conductor", conductor},
+    {"glossy", glossy},
+    {"mirror", mirror},
+    {"mix", mix},
+    {"null", nothing},
+    {"black", black},
+}};
+
+}  // namespace
+
+Result<MaterialPtr> make_material(const MaterialDesc& desc, Appearance& looks) {
+  const auto make = look_up(kMakers, desc.type, "type of material");
+  if (!make) return make.error();
+  return (*make)->value(desc, looks);
+}
+
+std::vector<std::string> made_material_types() { return names_of(kMakers); }
+
+}  // namespace hyades::core

@@ -1,0 +1,113 @@
+#include "core/scene/scene_files.h"
+
+#include <map>
+#include <set>
+
+#include "core/base/parallel.h"
+#include "core/scene/shape_makers.h"
+#include "core/scene/texture_makers.h"
+
+namespace hyades::core {
+namespace {
+
+/// Walks from the objects to all that they use. Names that lead nowhere and unknown kinds are left
+/// to who builds the scene.
+class Walk {
+ public:
+  explicit Walk(const Job& job) {
+    for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
+    for (const MaterialDesc& material : job.materials) materials_.emplace(material.name, &material);
+    for (const TextureDesc& texture : job.textures) textures_.emplace(texture.name, &texture);
+    visit(job.objects, "");
+    if (job.environment) files_.sky = job.environment->image;
+  }
+
+  SceneFiles take() { return std::move(files_); }
+
+ private:
+  void visit(const std::vector<ObjectDesc>& objects, const std::string& inherited) {
+    for (const ObjectDesc& object : objects) {
+      const std::string& material = object.material.empty() ? inherited : object.material;
+      if (object.shape == "group") {
+        visit(object.children, material);
+      } else if (object.shape == "instance") {
+        const auto group = groups_.find(object.instance_of);
+        if (group == groups_.end()) continue;
+        if (!seen_groups_.insert({object.instance_of, material}).second) continue;
+        visit(group->second->objects, material);
+      } else {
+        add_mesh(object);
+        visit_material(material);
+      }
+    }
+  }
+
+  void add_mesh(const ObjectDesc& object) {
+    if (object.shape != "mesh") return;
+    const auto normals = mesh_normals_of(object);
+    if (normals && seen_meshes_.insert({object.mesh, *normals}).second) {
+      files_.meshes.emplace_back(object.mesh, *normals);
+    }
+  }
+
+  void visit_material(const std::string& name) {
+    const auto found = materials_.find(name);
+    if (found == materials_.end() || !seen_materials_.insert(name).second) return;
+    const MaterialDesc& material = *found->second;
+    for (const std::string* texture :
+         {&material.color.texture, &material.roughness.texture, &material.reflectiveness.texture,
+          &material.glossiness.texture, &material.amount.texture}) {
+      visit_texture(*texture);
+    }
+    visit_material(material.first);
+    visit_material(material.second);
+    if (material.bump) visit_texture(material.bump->texture);
+  }
+
+  void visit_texture(const std::string& name) {
+    const auto found = textures_.find(name);
+    if (found == textures_.end() || !seen_textures_.insert(name).second) return;
+    const TextureDesc& texture = *found->second;
+    if (!texture.file.empty()) {
+      const auto space = color_space_of(texture);
+      if (space && seen_images_.insert({texture.file, *space}).second) {
+        files_.images.emplace_back(texture.file, *space);
+      }
+    }
+    visit_texture(texture.a.texture);
+    visit_texture(texture.b.texture);
+  }
+
+  std::map<std::string, const GroupDesc*> groups_;
+  std::map<std::string, const MaterialDesc*> materials_;
+  std::map<std::string, const TextureDesc*> textures_;
+  std::set<std::pair<std::string, std::string>> seen_groups_;  ///< with the material they inherit
+  std::set<std::string> seen_materials_;
+  std::set<std::string> seen_textures_;
+  std::set<std::pair<std::string, MeshNormals>> seen_meshes_;
+  std::set<std::pair<std::string, ColorSpace>> seen_images_;
+  SceneFiles files_;
+};
+
+}  // namespace
+
+SceneFiles files_of_scene(const Job& job) { return Walk(job).take(); }
+
+void load_files(const Job& job, SceneCache& cache) {
+  const SceneFiles files = files_of_scene(job);
+  const size_t meshes = files.meshes.size();
+  const size_t images = files.images.size();
+  const size_t count = meshes + images + (files.sky.empty() ? 0 : 1);
+  // Errors come again, and are told, when the scene is built.
+  (void)parallel_for(count, 0, [&](size_t i) {
+    if (i < meshes) {
+      (void)cache.mesh(files.meshes[i].first, files.meshes[i].second);
+    } else if (i < meshes + images) {
+      (void)cache.image(files.images[i - meshes].first, files.images[i - meshes].second);
+    } else {
+      (void)cache.environment_map(files.sky);
+    }
+  });
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/scene/appearance.h"
+
+namespace hyades::core {
+
+/// The texture that `desc` describes at the moment of `looks`, which gives what it refers to.
+Result<TexturePtr> make_texture(const TextureDesc& desc, Appearance& looks);
+
+/// The colour space that an image texture names.
+Result<ColorSpace> color_space_of(const TextureDesc& desc);
+
+/// The names that can be made: those of core/job/kinds.h.
+std::vector<std::string> made_texture_types();
+std::vector<std::string> made_color_spaces();
+std::vector<std::string> made_wraps();
+std::vector<std::string> made_texture_filters();
+std::vector<std::string> made_mappings();
+
+}  // namespace hyades::core

@@ -1,0 +1,217 @@
+#include "core/job/kinds.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/job/parse.h"
+#include "core/scene/appearance.h"
+#include "core/scene/build_scene.h"
+#include "core/scene/light_makers.h"
+#include "core/scene/material_makers.h"
+#include "core/scene/shape_makers.h"
+#include "core/scene/texture_makers.h"
+#include "tests/core/job/test_assets.h"
+
+/// The names that a job may give are listed by the job room; the scene room makes things of them.
+namespace hyades::core {
+namespace {
+
+using testing::HasSubstr;
+using testing::UnorderedElementsAreArray;
+
+constexpr const char* kTriangle =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+/// A Radiance picture of one grey pixel.
+std::string one_pixel() {
+  return std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n") + "\x80\x80\x80\x81";
+}
+
+Status builds(const std::string& text) {
+  MemoryAssets assets;
+  assets.add("triangle.ply", kTriangle);
+  assets.add("pixel.hdr", one_pixel());
+  Diagnostics diagnostics;
+  const Job job = parse_job("hyades: 1\n" + text, "kinds.yaml", assets, diagnostics);
+  if (!diagnostics.empty()) return Error{diagnostics.to_string()};
+  SceneCache cache(assets);
+  const auto scene = build_scene(job, 1, cache);
+  if (!scene) return scene.error();
+  return {};
+}
+
+void expect_builds(const std::string& text) {
+  const Status built = builds(text);
+  EXPECT_TRUE(built) << text << "\n" << built.error().message;
+}
+
+TEST(Kinds, EveryNameOfAJobHasAMaker) {
+  EXPECT_THAT(made_texture_types(), UnorderedElementsAreArray(texture_types()));
+  EXPECT_THAT(made_material_types(), UnorderedElementsAreArray(material_types()));
+  EXPECT_THAT(made_light_types(), UnorderedElementsAreArray(light_types()));
+  EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shape_names()));
+  EXPECT_THAT(made_color_spaces(), UnorderedElementsAreArray(color_space_names()));
+  EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(wrap_names()));
+  EXPECT_THAT(made_texture_filters(), UnorderedElementsAreArray(texture_filter_names()));
+  EXPECT_THAT(made_mappings(), UnorderedElementsAreArray(mapping_names()));
+  EXPECT_THAT(made_mesh_normals(), UnorderedElementsAreArray(mesh_normals_names()));
+}
+
+/// What docs/job.md lists as the range of `key` in the table below the heading of `section`.
+std::vector<std::string> documented(const std::string& section, const std::string& key) {
+  std::ifstream page("docs/job.md");
+  bool here = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("#")) here = line.ends_with(": `" + section + "`");
+    if (!here || !line.starts_with("| " + key + " |")) continue;
+    std::stringstream row(line);
+    std::string cell;
+    for (int i = 0; i < 6; ++i) std::getline(row, cell, '|');  // key, type, unit, default, range
+    std::vector<std::string> names;
+    std::stringstream list(cell);
+    for (std::string name; std::getline(list, name, ',');) {
+      const size_t begin = name.find_first_not_of(' ');
+      names.push_back(name.substr(begin, name.find_last_not_of(' ') - begin + 1));
+    }
+    return names;
+  }
+  return {};
+}
+
+TEST(Kinds, TheReferenceListsTheSameNames) {
+  EXPECT_THAT(made_texture_types(), UnorderedElementsAreArray(documented("textures", "type")));
+  EXPECT_THAT(made_material_types(), UnorderedElementsAreArray(documented("materials", "type")));
+  EXPECT_THAT(made_light_types(), UnorderedElementsAreArray(documented("lights", "type")));
+  std::vector<std::string> shapes = documented("objects", "shape");
+  shapes.emplace_back("mesh");
+  EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shapes));
+  EXPECT_THAT(made_color_spaces(),
+              UnorderedElementsAreArray(documented("textures.image", "color_space")));
+  EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(documented("textures.image", "wrap")));
+  EXPECT_THAT(made_mesh_normals(),
+              UnorderedElementsAreArray(documented("objects.mesh", "normals")));
+}
+
+TEST(Kinds, ASceneIsBuiltOfEach) {
+  for (const std::string& type : texture_types()) {
+    std::string more;
+    if (type == "constant") more = ", value: 0.5";
+    if (type == "image") more = ", file: pixel.hdr";
+    if (type == "scale") more = ", input: 0.5";
+    expect_builds("textures: {x: {type: '" + type + "'" + more +
+                  "}}\nmaterials: {m: {type: lambert, color: x}}\n"
+                  "objects: {o: {shape: sphere, material: m}}\n");
+  }
+  for (const std::string& type : material_types()) {
+    const std::string more = type == "mix" ? ", first: a, second: a" : "";
+    expect_builds("materials: {a: {type: lambert}, m: {type: '" + type + "'" + more +
+                  "}}\nobjects: {o: {shape: sphere, material: m}}\n");
+  }
+  for (const std::string& type : light_types())
+    expect_builds("lights: {l: {type: " + type + "}}\n");
+  for (const std::string& shape : shape_names()) {
+    const std::string what = shape == "mesh" ? "mesh: triangle.ply" : "shape: " + shape;
+    expect_builds("objects: {o: {" + what + "}}\n");
+  }
+  for (const std::string& name : wrap_names()) {
+    expect_builds("textures: {x: {type: image, file: pixel.hdr, wrap: " + name +
+                  "}}\nmaterials: {m: {type: lambert, color: x}}\n"
+                  "objects: {o: {shape: sphere, material: m}}\n");
+  }
+}
+
+/// The grey of a picture of a black and a white pixel, at u = 1.25 when it repeats, clamps, ...
+float beyond_the_edge(const std::string& wrap) {
+  MemoryAssets assets;
+  assets.add("two.hdr", std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") +
+                            std::string("\0\0\0\0", 4) + "\x80\x80\x80\x81");
+  Job job;
+  TextureDesc texture;
+  texture.name = "x";
+  texture.type = "image";
+  texture.file = "two.hdr";
+  texture.filter = "nearest";
+  texture.wrap = wrap;
+  job.textures.push_back(texture);
+  SceneCache cache(assets);
+  Appearance looks(job, job.time_of(1), cache);
+  const auto made = looks.texture("x");
+  if (!made) return -1.0F;
+  TexturePoint at;
+  at.uv = Vec2(-0.25F, 0.5F);
+  const float left = (*made)->color(at).x;
+  at.uv = Vec2(1.25F, 0.5F);
+  return 10.0F * left + (*made)->color(at).x;
+}
+
+TEST(Kinds, WrapsDoWhatTheirNamesSay) {
+  EXPECT_NEAR(beyond_the_edge("repeat"), 10.0F, 0.1F) << "white, black";
+  EXPECT_NEAR(beyond_the_edge("clamp"), 1.0F, 0.1F) << "black, white";
+  EXPECT_NEAR(beyond_the_edge("mirror"), 1.0F, 0.1F) << "black, white";
+  EXPECT_NEAR(beyond_the_edge("black"), 0.0F, 0.1F);
+}
+
+/// A job that no parser has seen, with one textured ball.
+Job textured_job() {
+  Job job;
+  TextureDesc texture;
+  texture.name = "x";
+  texture.type = "image";
+  texture.file = "pixel.hdr";
+  job.textures.push_back(texture);
+  MaterialDesc material;
+  material.name = "m";
+  material.type = "lambert";
+  material.color.texture = "x";
+  job.materials.push_back(material);
+  ObjectDesc object;
+  object.name = "o";
+  object.shape = "sphere";
+  object.material = "m";
+  job.objects.push_back(object);
+  return job;
+}
+
+std::string refusal(const Job& job) {
+  MemoryAssets assets;
+  assets.add("pixel.hdr", one_pixel());
+  SceneCache cache(assets);
+  const auto scene = build_scene(job, 1, cache);
+  return scene ? "" : scene.error().message;
+}
+
+TEST(Kinds, AnUnknownNameIsAnErrorThatListsTheOthers) {
+  EXPECT_EQ(refusal(textured_job()), "");
+  Job job = textured_job();
+  job.textures[0].wrap = "wound";
+  EXPECT_THAT(refusal(job), HasSubstr("there is no wrap 'wound', expected one of repeat, clamp"));
+  job = textured_job();
+  job.textures[0].color_space = "lab";
+  EXPECT_THAT(refusal(job), HasSubstr("there is no color_space 'lab', expected one of auto"));
+  job = textured_job();
+  job.textures[0].type = "marble";
+  EXPECT_THAT(refusal(job), HasSubstr("there is no type of texture 'marble'"));
+  job = textured_job();
+  job.materials[0].type = "velvet";
+  EXPECT_THAT(refusal(job), HasSubstr("there is no type of material 'velvet'"));
+  job = textured_job();
+  job.objects[0].shape = "torus";
+  EXPECT_THAT(refusal(job), HasSubstr("object 'o': there is no shape 'torus'"));
+  job = textured_job();
+  job.lights.emplace_back();
+  job.lights[0].name = "l";
+  job.lights[0].type = "laser";
+  EXPECT_THAT(refusal(job), HasSubstr("light 'l': there is no type of light 'laser'"));
+}
+
+}  // namespace
+}  // namespace hyades::core

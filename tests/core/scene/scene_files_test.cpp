@@ -1,0 +1,182 @@
+#include "core/scene/scene_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "core/base/parallel.h"
+#include "core/job/parse.h"
+#include "core/scene/build_scene.h"
+#include "tests/core/job/test_assets.h"
+
+namespace hyades::core {
+namespace {
+
+using testing::ElementsAre;
+using testing::Pair;
+
+constexpr std::chrono::seconds kLong{20};
+constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// Counts who opens what; `meet` files wait in open() until all of them are being opened.
+class WatchedAssets : public MemoryAssets {
+ public:
+  explicit WatchedAssets(size_t meet = 0) : meet_(meet) {}
+
+  Result<Bytes> open(const std::string& reference, const std::string& from = {}) override {
+    {
+      std::unique_lock lock(mutex_);
+      ++opened_[reference];
+      ++inside_;
+      wake_.notify_all();
+      if (!wake_.wait_for(lock, kLong, [&] { return inside_ >= meet_; })) alone_ = true;
+    }
+    return MemoryAssets::open(reference, from);
+  }
+
+  std::map<std::string, int> opened() const { return opened_; }
+  bool somebody_was_alone() const { return alone_; }
+
+ private:
+  const size_t meet_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::map<std::string, int> opened_;
+  size_t inside_ = 0;
+  bool alone_ = false;
+};
+
+Job parsed(const std::string& text, AssetResolver& assets) {
+  Diagnostics diagnostics;
+  const Job job = parse_job("hyades: 1\n" + text, "files.yaml", assets, diagnostics);
+  EXPECT_TRUE(diagnostics.empty()) << diagnostics.to_string();
+  return job;
+}
+
+/// A job of `count` meshes, m0.obj, m1.obj, ...
+Job job_of_meshes(int count) {
+  Job job;
+  for (int i = 0; i < count; ++i) {
+    ObjectDesc object;
+    object.name = "o" + std::to_string(i);
+    object.shape = "mesh";
+    object.mesh = "m" + std::to_string(i) + ".obj";
+    job.objects.push_back(object);
+  }
+  return job;
+}
+
+TEST(SceneFiles, AreWhatTheSceneShows) {
+  MemoryAssets assets;
+  for (const char* file : {"a.obj", "b.obj", "unused.obj"}) assets.add(file, kTriangle);
+  for (const char* file : {"bark.png", "leaf.png", "bump.png", "unused.png", "sky.hdr"}) {
+    assets.add(file, "never decoded here");
+  }
+  const Job job = parsed(R"yaml(
+textures:
+  bark: {type: image, file: bark.png, color_space: linear}
+  leaf: {type: image, file: leaf.png}
+  rough: {type: image, file: bump.png}
+  both: {type: checker, a: leaf, b: bark}
+  unused: {type: image, file: unused.png}
+materials:
+  wood: {type: lambert, color: both, bump: {texture: rough}}
+  pane: {type: dielectric, roughness: unused}
+  mixed: {type: mix, first: wood, second: wood}
+groups:
+  twig: {objects: {a: {mesh: a.obj}, b: {mesh: b.obj, normals: flat}}}
+  tree: {objects: {t: {instance: twig}}}
+  never: {objects: {a: {mesh: unused.obj}}}
+objects:
+  one: {instance: tree, material: mixed}
+  two: {instance: tree, material: mixed}
+  three: {mesh: a.obj}
+environment: {image: sky.hdr}
+)yaml",
+                         assets);
+  const SceneFiles files = files_of_scene(job);
+  EXPECT_THAT(files.meshes,
+              ElementsAre(Pair("a.obj", MeshNormals::file), Pair("b.obj", MeshNormals::flat)));
+  EXPECT_THAT(files.images, ElementsAre(Pair("leaf.png", ColorSpace::automatic),
+                                        Pair("bark.png", ColorSpace::linear),
+                                        Pair("bump.png", ColorSpace::automatic)));
+  EXPECT_EQ(files.sky, "sky.hdr");
+}
+
+TEST(SceneFiles, LoadSeveralAtOnce) {
+  if (hardware_threads() < 2) GTEST_SKIP() << "needs two processors";
+  WatchedAssets assets(2);
+  for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
+  const Job job = job_of_meshes(8);
+  SceneCache cache(assets);
+  load_files(job, cache);
+  EXPECT_FALSE(assets.somebody_was_alone());
+  const auto scene = build_scene(job, 1, cache);
+  ASSERT_TRUE(scene);
+  EXPECT_EQ((*scene)->triangles, 8U);
+  for (const auto& [file, times] : assets.opened()) EXPECT_EQ(times, 1) << file;
+  EXPECT_EQ(assets.opened().size(), 8U);
+}
+
+TEST(SceneFiles, ErrorsComeInTheOrderOfTheDocument) {
+  MemoryAssets assets;
+  const Job job = job_of_meshes(8);
+  // The first bad one takes the longest to be found out.
+  std::string late;
+  for (int i = 0; i < 20'000; ++i) late += "v 0 0 0\n";
+  for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
+  assets.add("m3.obj", late + "f 1 2 x\n");
+  assets.add("m5.obj", "f 1 2 3\n");
+  for (int again = 0; again < 2; ++again) {
+    SceneCache cache(assets);
+    const auto scene = build_scene(job, 1, cache);
+    ASSERT_FALSE(scene);
+    EXPECT_THAT(scene.error().message, testing::StartsWith("object 'o3': m3.obj"));
+  }
+}
+
+TEST(SceneFiles, OneThatIsBeingLoadedHoldsUpNoOther) {
+  // The second and third file are opened while the first one is still being read.
+  WatchedAssets assets(3);
+  for (int i = 0; i < 3; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
+  SceneCache cache(assets);
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 3; ++i) {
+    threads.emplace_back([&cache, i] {
+      EXPECT_TRUE(cache.mesh("m" + std::to_string(i) + ".obj", MeshNormals::file));
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_FALSE(assets.somebody_was_alone());
+}
+
+TEST(SceneFiles, WhoAsksForTheSameFileGetsTheSameMesh) {
+  WatchedAssets assets;
+  assets.add("m0.obj", kTriangle);
+  SceneCache cache(assets);
+  std::vector<std::shared_ptr<const TriangleMesh>> meshes(8);
+  std::vector<std::thread> threads;
+  for (auto& mesh : meshes) {
+    threads.emplace_back([&cache, &mesh] { mesh = *cache.mesh("m0.obj", MeshNormals::file); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& mesh : meshes) EXPECT_EQ(mesh, meshes[0]);
+  EXPECT_THAT(assets.opened(), ElementsAre(Pair("m0.obj", 1)));
+}
+
+TEST(SceneFiles, WhatCouldNotBeLoadedIsTriedAgain) {
+  MemoryAssets assets;
+  SceneCache cache(assets);
+  EXPECT_FALSE(cache.mesh("m0.obj", MeshNormals::file));
+  assets.add("m0.obj", kTriangle);
+  EXPECT_TRUE(cache.mesh("m0.obj", MeshNormals::file));
+}
+
+}  // namespace
+}  // namespace hyades::core
