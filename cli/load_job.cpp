@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "cli/frame_range.h"
 #include "cli/mesh_job.h"
 #include "core/base/hash.h"
 #include "core/job/parse.h"
@@ -52,35 +53,15 @@ std::optional<LoadedJob> load_job(const std::string& path) {
 }
 
 std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const std::string& text) {
-  const core::FramesDesc& range = job.frames;
-  int first = range.first;
-  int last = range.last;
-  int step = range.step;
-  if (!text.empty()) {
-    int used = 0;
-    step = 1;
-    const auto whole = [&] { return used == static_cast<int>(text.size()); };
-    if (std::sscanf(text.c_str(), "%d-%dx%d%n", &first, &last, &step, &used) < 3 || !whole()) {
-      step = 1;
-      if (std::sscanf(text.c_str(), "%d-%d%n", &first, &last, &used) < 2 || !whole()) {
-        if (std::sscanf(text.c_str(), "%d%n", &first, &used) < 1 || !whole()) {
-          std::fprintf(
-              stderr,
-              "--frames %s: expected a frame (7), a range (1-10) or a range with a step (1-10x2)\n",
-              text.c_str());
-          return std::nullopt;
-        }
-        last = first;
-      }
-    }
-    if (step < 1 || first > last || first < range.first || last > range.last) {
-      std::fprintf(stderr, "--frames %s: expected frames within the job's range %d-%d\n",
-                   text.c_str(), range.first, range.last);
-      return std::nullopt;
-    }
+  const auto range = parse_frames(job.frames, text);
+  if (!range) {
+    std::fprintf(stderr, "%s\n", range.error().message.c_str());
+    return std::nullopt;
   }
   std::vector<int32_t> frames;
-  for (int64_t f = first; f <= last; f += step) frames.push_back(static_cast<int32_t>(f));
+  for (int64_t f = range->first; f <= range->last; f += range->step) {
+    frames.push_back(static_cast<int32_t>(f));
+  }
   return frames;
 }
 

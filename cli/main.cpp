@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/completion.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 
@@ -17,7 +18,7 @@ namespace {
 
 struct Command {
   const char* name;
-  const char* program;
+  const char* program;  ///< null: this one
   const char* help;
 };
 
@@ -29,6 +30,26 @@ constexpr Command kCommands[] = {
      "measure this machine: 'bench scaling' renders a job with 1..N threads"},
     {"merge", "hyades-film", "join films of the same frame"},
     {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
+#ifdef HYADES_FARM
+    {"submit", "hyades-client", "give a job to the farm"},
+    {"jobs", "hyades-client", "list the farm's jobs"},
+    {"status", "hyades-client", "how a job and its frames are"},
+    {"watch", "hyades-client", "show how a job gets on, until it has ended"},
+    {"fetch", "hyades-client", "bring a job's finished pictures here"},
+    {"logs", "hyades-client", "what has happened to a job"},
+    {"explain", "hyades-client", "why a job does or does not get on"},
+    {"pause", "hyades-client", "lease no more units of a job"},
+    {"resume", "hyades-client", "let a paused job go on"},
+    {"cancel", "hyades-client", "end a job"},
+    {"retry", "hyades-client", "take up a job's failed frames again"},
+    {"priority", "hyades-client", "change a job's priority"},
+    {"delete", "hyades-client", "forget a job that has ended"},
+    {"workers", "hyades-client", "list the farm's workers"},
+    {"drain", "hyades-client", "let a worker finish and leave"},
+    {"quarantine", "hyades-client", "give a worker no more work"},
+    {"release", "hyades-client", "end a worker's quarantine"},
+#endif
+    {"completion", nullptr, "print a script that completes commands in bash, zsh or fish"},
 };
 
 void print_help() {
@@ -68,6 +89,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Command& command : kCommands) {
     if (name == command.name) {
+      if (command.program == nullptr) return hyades::cli::completion_command(argc - 1, argv + 1);
       const std::string program = own_folder() + command.program;
       execv(program.c_str(), argv);
       std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(),

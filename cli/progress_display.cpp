@@ -1,11 +1,7 @@
 #include "cli/progress_display.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
 #include <fmt/format.h>
 
@@ -14,19 +10,8 @@
 namespace hyades::cli {
 namespace {
 
-constexpr auto kRedraw = std::chrono::milliseconds(150);
 constexpr auto kPlainEvery = std::chrono::seconds(10);
 constexpr int kBarWidth = 24;
-
-bool is_terminal() {
-  const char* term = std::getenv("TERM");
-  return isatty(STDERR_FILENO) == 1 && term != nullptr && std::string(term) != "dumb";
-}
-
-int terminal_width() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
 
 double fraction(const coordinator::Progress& p) {
   return p.samples > 0 ? static_cast<double>(p.samples_done) / static_cast<double>(p.samples) : 0.0;
@@ -40,15 +25,12 @@ std::string rate(double samples_per_second) {
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
-    : name_(std::move(name)),
-      quiet_(quiet),
-      terminal_(is_terminal()),
-      last_(std::chrono::steady_clock::now()) {}
+    : name_(std::move(name)), quiet_(quiet), last_(std::chrono::steady_clock::now()) {}
 
 std::string ProgressDisplay::line(const coordinator::Progress& p) const {
   const double done = fraction(p);
   std::string text = name_ + "  ";
-  if (terminal_) {
+  if (status_.redraws()) {
     const int filled = static_cast<int>(done * kBarWidth);
     for (int i = 0; i < kBarWidth; ++i) text += i < filled ? "█" : "░";
     text += "  ";
@@ -66,20 +48,8 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
 void ProgressDisplay::update(const coordinator::Progress& progress) {
   if (quiet_) return;
   const auto now = std::chrono::steady_clock::now();
-  if (terminal_) {
-    if (drawn_ && now - last_ < kRedraw) return;
-    last_ = now;
-    drawn_ = true;
-    std::string text = line(progress);
-    // Cut by characters, not bytes: the bar's blocks take three bytes each.
-    int columns = terminal_width() - 1;
-    size_t end = 0;
-    for (; end < text.size() && columns > 0; ++end) {
-      if ((static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U && columns-- == 0) break;
-    }
-    while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) ++end;
-    std::fprintf(stderr, "\r\033[K%s", text.substr(0, end).c_str());
-    std::fflush(stderr);
+  if (status_.redraws()) {
+    if (status_.is_due()) status_.show(line(progress));
     return;
   }
   const int percent = static_cast<int>(100.0 * fraction(progress));
@@ -89,9 +59,6 @@ void ProgressDisplay::update(const coordinator::Progress& progress) {
   std::fprintf(stderr, "%s\n", line(progress).c_str());
 }
 
-void ProgressDisplay::clear() {
-  if (drawn_) std::fprintf(stderr, "\r\033[K");
-  drawn_ = false;
-}
+void ProgressDisplay::clear() { status_.clear(); }
 
 }  // namespace hyades::cli

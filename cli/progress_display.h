@@ -3,6 +3,7 @@
 #include <chrono>
 #include <string>
 
+#include "cli/status_line.h"
 #include "coordinator/local/progress.h"
 
 namespace hyades::cli {
@@ -24,8 +25,7 @@ class ProgressDisplay {
 
   std::string name_;
   bool quiet_;
-  bool terminal_;
-  bool drawn_ = false;
+  StatusLine status_;
   std::chrono::steady_clock::time_point last_;
   int last_percent_ = -1;
 };

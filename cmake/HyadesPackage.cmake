@@ -1,6 +1,9 @@
 # Installation (cmake --install) and the Debian package (cpack, in the build folder). The programs lie together in
 # libexec, where `hyades` finds its fellows; bin/ holds a link to it.
 install(TARGETS hyades hyades-render hyades-film RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
+if(HYADES_FARM)
+  install(TARGETS hyades-client RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
+endif()
 install(CODE "
   set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")
   file(MAKE_DIRECTORY \"\${bin}\")

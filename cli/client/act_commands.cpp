@@ -1,0 +1,121 @@
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/find_job.h"
+#include "cli/client/show.h"
+
+namespace hyades::cli {
+namespace {
+
+using Deed = std::function<Outcome(FarmClient&, uint64_t id, v1::Job& after)>;
+
+/// Does `deed` to each of the jobs called `names`; the first failure's exit status, after all were
+/// tried.
+int for_each_job(const ClientApp& app, const std::vector<std::string>& names, bool json,
+                 const Deed& deed) {
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  int worst = kDone;
+  Json list = Json::array();
+  for (const std::string& name : names) {
+    uint64_t id = 0;
+    v1::Job job;
+    Outcome failure = find_job(*client, name, id);
+    if (!failure) failure = deed(*client, id, job);
+    if (failure) {
+      const int status = app.report(*failure);
+      if (worst == kDone) worst = status;
+      if (status == kNoAnswer) break;
+      continue;
+    }
+    if (json) {
+      list.push_back(to_json(job));
+    } else if (job.state() != v1::JOB_STATE_UNSPECIFIED) {
+      std::printf("job %lu (%s) is %s, priority %d\n", id, printable(job.name()).c_str(),
+                  state_name(job.state()).c_str(), job.priority());
+    } else {
+      std::printf("job %lu is deleted\n", id);
+    }
+  }
+  if (json) print_json(list);
+  return worst;
+}
+
+/// The same for the jobs that the command line names.
+int for_each_job(ClientApp& app, int argc, char** argv, const Deed& deed) {
+  std::vector<std::string> names;
+  bool json = false;
+  app.app().add_option("jobs", names, "their ids, or names that only one job has")->required();
+  app.app().add_flag("--json", json, "print the jobs as JSON (field id)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  return for_each_job(app, names, json, deed);
+}
+
+int act(const char* command, const char* description, FarmClient::Action action, int argc,
+        char** argv) {
+  ClientApp app(command, description);
+  return for_each_job(app, argc, argv, [&](FarmClient& client, uint64_t id, v1::Job& after) {
+    v1::JobResponse response;
+    auto failure = client.act(action, id, response);
+    after = response.job();
+    return failure;
+  });
+}
+
+}  // namespace
+
+int pause_command(int argc, char** argv) {
+  return act("pause", "Stops leasing units of jobs; those that are out go on.",
+             FarmClient::Action::pause, argc, argv);
+}
+
+int resume_command(int argc, char** argv) {
+  return act("resume", "Lets paused jobs go on.", FarmClient::Action::resume, argc, argv);
+}
+
+int cancel_command(int argc, char** argv) {
+  return act("cancel", "Ends jobs; frames that are finished stay.", FarmClient::Action::cancel,
+             argc, argv);
+}
+
+int retry_command(int argc, char** argv) {
+  return act("retry",
+             "Takes up again the failed frames of jobs, or all that a cancelled job has left.",
+             FarmClient::Action::retry, argc, argv);
+}
+
+int delete_command(int argc, char** argv) {
+  ClientApp app("delete", "Forgets jobs that have ended, with their films and outputs.");
+  return for_each_job(app, argc, argv, [](FarmClient& client, uint64_t id, v1::Job& after) {
+    after.set_id(id);
+    return client.remove(id);
+  });
+}
+
+int priority_command(int argc, char** argv) {
+  ClientApp app("priority", "Changes the priority of a job; higher goes first.");
+  std::string name;
+  int32_t priority = 0;
+  bool json = false;
+  app.app().add_option("job", name, "its id, or its name where only one has it")->required();
+  app.app()
+      .add_option("priority", priority, "the new priority (write -- before a negative one)")
+      ->check(CLI::Range(-1'000'000, 1'000'000))
+      ->required();
+  app.app().add_flag("--json", json, "print the job as JSON (field id)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  return for_each_job(app, {name}, json, [&](FarmClient& client, uint64_t id, v1::Job& after) {
+    v1::JobResponse response;
+    auto failure = client.set_priority(id, priority, response);
+    after = response.job();
+    return failure;
+  });
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,368 @@
+#include "cli/client/farm_client.h"
+
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+
+#include "cli/client/patience.h"
+#include "core/base/hash.h"
+#include "core/base/text.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+#include "hyades/v1/assets.grpc.pb.h"
+#include "hyades/v1/farm.grpc.pb.h"
+#include "hyades/v1/jobs.grpc.pb.h"
+
+namespace hyades::cli {
+
+using core::Result;
+using std::chrono::milliseconds;
+
+namespace {
+
+constexpr milliseconds kShortCall{20'000};
+constexpr milliseconds kSubmit{120'000};  // the coordinator reads the job
+constexpr uint64_t kSlowestLink = 64;     // bytes/ms: bounds the deadlines of transfers
+
+milliseconds transfer_time(uint64_t bytes) {
+  return milliseconds{60'000 + static_cast<int64_t>(bytes / kSlowestLink)};
+}
+
+std::vector<std::string> hex_of(const v1::ErrorDetail& detail) {
+  std::vector<std::string> names;
+  for (const std::string& digest : detail.missing()) {
+    if (const auto sha = farm::digest_from_wire(digest)) names.push_back(core::to_hex(*sha));
+  }
+  return names;
+}
+
+/// The first line of what gRPC has to say.
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+}  // namespace
+
+struct FarmClient::State {
+  ClientOptions options;
+  std::string token;
+  std::shared_ptr<grpc::Channel> channel;
+  std::unique_ptr<v1::Jobs::Stub> jobs;
+  std::unique_ptr<v1::Assets::Stub> assets;
+  std::unique_ptr<v1::Farm::Stub> farm;
+  Patience patience{0, 0};
+  std::function<void(const std::string&)> tell;
+  bool told = false;  ///< that the coordinator is gone
+
+  void reached() {
+    patience.reached();
+    told = false;
+  }
+
+  Failure failure(const grpc::Status& status) const {
+    Failure out;
+    out.missing = hex_of(farm::detail_of(status));
+    out.message = status.error_message();
+    switch (status.error_code()) {
+      case grpc::StatusCode::INVALID_ARGUMENT:
+        out.code = kBadArguments;
+        break;
+      case grpc::StatusCode::NOT_FOUND:
+        out.code = kUnknown;
+        break;
+      case grpc::StatusCode::UNAUTHENTICATED:
+      case grpc::StatusCode::PERMISSION_DENIED:
+        out.code = kRefused;
+        out.message += token.empty() ? " (--token-file FILE or HYADES_TOKEN_FILE gives a token)"
+                                     : " (the token is that of " + options.peer.token_file + ")";
+        break;
+      case grpc::StatusCode::UNIMPLEMENTED:
+        out.message = "the coordinator at " + options.peer.address + " cannot do this: it is older";
+        break;
+      case grpc::StatusCode::DATA_LOSS:
+        out.damaged = true;
+        break;
+      case grpc::StatusCode::UNAVAILABLE:
+      case grpc::StatusCode::DEADLINE_EXCEEDED:
+        out.code = kNoAnswer;
+        out.message = patience.was_reached()
+                          ? fmt::format("the coordinator at {} answers no more ({})",
+                                        options.peer.address, first_line(status.error_message()))
+                          : fmt::format(
+                                "no coordinator answers at {} ({}); --coordinator HOST:PORT or "
+                                "HYADES_COORDINATOR says where it is",
+                                options.peer.address, first_line(status.error_message()));
+        break;
+      default:
+        break;
+    }
+    if (out.message.empty())
+      out.message = fmt::format("error {}", static_cast<int>(status.error_code()));
+    return out;
+  }
+
+  /// Whether to try again, after having waited.
+  bool wait_after(const grpc::Status& status) {
+    if (!farm::is_retryable(status)) return false;
+    const double asked = farm::detail_of(status).retry_after_ms() * 1e-3;
+    const double wait = patience.next_wait(Patience::Clock::now(), asked);
+    if (wait < 0) return false;
+    if (patience.was_reached() && !told) {
+      told = true;
+      const std::string text = fmt::format("{} ({}): trying for up to {}", options.peer.address,
+                                           first_line(status.error_message()),
+                                           core::format_duration(options.later_patience));
+      tell ? tell(text) : static_cast<void>(std::fprintf(stderr, "%s\n", text.c_str()));
+    }
+    std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+    return true;
+  }
+
+  /// `once` until it succeeds, fails for good, or patience ends.
+  Outcome persist(milliseconds timeout,
+                  const std::function<grpc::Status(grpc::ClientContext&)>& once) {
+    while (true) {
+      grpc::ClientContext context;
+      farm::prepare(context, token, timeout);
+      const grpc::Status status = once(context);
+      if (status.ok()) {
+        reached();
+        return std::nullopt;
+      }
+      if (!wait_after(status)) return failure(status);
+    }
+  }
+
+  template <class Stub, class Request, class Response>
+  Outcome call(Stub& stub,
+               grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+               const Request& request, Response& response, milliseconds timeout = kShortCall) {
+    return persist(timeout, [&](grpc::ClientContext& context) {
+      response.Clear();
+      return (stub.*method)(&context, request, &response);
+    });
+  }
+
+  /// Every message of a server's stream until `on_message` returns false; an error that it leaves
+  /// in `stopped` ends everything.
+  template <class Message, class Begin>
+  Outcome stream(milliseconds timeout, const Begin& begin,
+                 const std::function<bool(const Message&)>& on_message, const Outcome& stopped) {
+    Outcome outcome = persist(timeout, [&](grpc::ClientContext& context) {
+      const auto reader = begin(context);
+      Message message;
+      while (reader->Read(&message)) {
+        reached();
+        if (on_message(message)) continue;
+        context.TryCancel();
+        while (reader->Read(&message)) {
+        }
+        (void)reader->Finish();
+        return grpc::Status::OK;
+      }
+      return reader->Finish();
+    });
+    return stopped ? stopped : outcome;
+  }
+};
+
+Result<std::unique_ptr<FarmClient>> FarmClient::open(const ClientOptions& options) {
+  auto state = std::make_unique<State>();
+  state->options = options;
+  auto token = farm::read_token(options.peer.token_file);
+  if (!token) return token.error();
+  state->token = *token;
+  auto channel = farm::connect(options.peer);
+  if (!channel) return channel.error();
+  state->channel = *channel;
+  state->jobs = v1::Jobs::NewStub(*channel);
+  state->assets = v1::Assets::NewStub(*channel);
+  state->farm = v1::Farm::NewStub(*channel);
+  state->patience = Patience(options.first_patience, options.later_patience);
+  return std::unique_ptr<FarmClient>(new FarmClient(std::move(state)));
+}
+
+FarmClient::FarmClient(std::unique_ptr<State> state) : state_(std::move(state)) {}
+FarmClient::~FarmClient() = default;
+
+void FarmClient::on_notice(std::function<void(const std::string&)> tell) {
+  state_->tell = std::move(tell);
+}
+
+Outcome FarmClient::submit(const v1::SubmitRequest& request, v1::SubmitResponse& response) {
+  return state_->call(*state_->jobs, &v1::Jobs::Stub::Submit, request, response, kSubmit);
+}
+
+Outcome FarmClient::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
+  return state_->call(*state_->jobs, &v1::Jobs::Stub::List, request, response);
+}
+
+Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
+  v1::GetJobRequest request;
+  request.set_job(job);
+  return state_->call(*state_->jobs, &v1::Jobs::Stub::Get, request, response);
+}
+
+Outcome FarmClient::act(Action action, uint64_t job, v1::JobResponse& response) {
+  v1::JobRequest request;
+  request.set_job(job);
+  const auto call = [&](auto method) {
+    return state_->call(*state_->jobs, method, request, response);
+  };
+  switch (action) {
+    case Action::pause:
+      return call(&v1::Jobs::Stub::Pause);
+    case Action::resume:
+      return call(&v1::Jobs::Stub::Resume);
+    case Action::cancel:
+      return call(&v1::Jobs::Stub::Cancel);
+    case Action::retry:
+      return call(&v1::Jobs::Stub::Retry);
+  }
+  return Failure{kFailed, "no such action"};
+}
+
+Outcome FarmClient::set_priority(uint64_t job, int32_t priority, v1::JobResponse& response) {
+  v1::SetPriorityRequest request;
+  request.set_job(job);
+  request.set_priority(priority);
+  return state_->call(*state_->jobs, &v1::Jobs::Stub::SetPriority, request, response);
+}
+
+Outcome FarmClient::remove(uint64_t job) {
+  v1::JobRequest request;
+  request.set_job(job);
+  v1::DeleteJobResponse response;
+  return state_->call(*state_->jobs, &v1::Jobs::Stub::Delete, request, response);
+}
+
+Outcome FarmClient::explain(uint64_t job, v1::ExplainResponse& response) {
+  v1::JobRequest request;
+  request.set_job(job);
+  return state_->call(*state_->jobs, &v1::Jobs::Stub::Explain, request, response);
+}
+
+Outcome FarmClient::watch(uint64_t job,
+                          const std::function<bool(const v1::WatchEvent&)>& on_event) {
+  v1::WatchRequest request;
+  request.set_job(job);
+  return state_->stream<v1::WatchEvent>(
+      milliseconds{0}, [&](grpc::ClientContext& c) { return state_->jobs->Watch(&c, request); },
+      on_event, std::nullopt);
+}
+
+Outcome FarmClient::outputs(const v1::OutputsRequest& request,
+                            const std::function<Outcome(const v1::OutputFile&)>& on_file) {
+  Outcome stopped;
+  return state_->stream<v1::OutputFile>(
+      request.follow() ? milliseconds{0} : kSubmit,
+      [&](grpc::ClientContext& c) { return state_->jobs->Outputs(&c, request); },
+      [&](const v1::OutputFile& file) { return !(stopped = on_file(file)); }, stopped);
+}
+
+Outcome FarmClient::fetch(v1::FetchRequest request, uint64_t size,
+                          const std::function<Outcome(const std::string&)>& on_bytes) {
+  Outcome stopped;
+  const auto on_chunk = [&](const v1::Chunk& chunk) {
+    if (chunk.offset() != request.offset() || chunk.data().size() > size - request.offset()) {
+      stopped = Failure{
+          kFailed, request.path() + ": the coordinator sends other bytes than those asked for"};
+      return false;
+    }
+    request.set_offset(request.offset() + chunk.data().size());
+    stopped = on_bytes(chunk.data());
+    return !stopped;
+  };
+  return state_->stream<v1::Chunk>(
+      transfer_time(size), [&](grpc::ClientContext& c) { return state_->jobs->Fetch(&c, request); },
+      on_chunk, stopped);
+}
+
+Outcome FarmClient::logs(const v1::LogsRequest& request,
+                         const std::function<void(const v1::LogLine&)>& on_line) {
+  uint64_t told = 0;  // lines are only ever added: after a break those told already are skipped
+  uint64_t seen = 0;
+  return state_->stream<v1::LogLine>(
+      request.follow() ? milliseconds{0} : kSubmit,
+      [&](grpc::ClientContext& c) {
+        seen = 0;
+        return state_->jobs->Logs(&c, request);
+      },
+      [&](const v1::LogLine& line) {
+        if (seen++ >= told) {
+          on_line(line);
+          ++told;
+        }
+        return true;
+      },
+      std::nullopt);
+}
+
+Outcome FarmClient::find_missing(const v1::FindMissingRequest& request,
+                                 v1::FindMissingResponse& response) {
+  return state_->call(*state_->assets, &v1::Assets::Stub::FindMissing, request, response);
+}
+
+Outcome FarmClient::upload(const core::AssetRecord& file, const std::string& path, uint64_t offset,
+                           const std::function<void(uint64_t)>& on_progress) {
+  const auto digest = farm::digest_from_hex(file.sha256);
+  if (!digest) return Failure{kFailed, digest.error().message};
+  const Failure changed{kFailed, path + " changed while it was being sent: submit again"};
+  // Read, not mapped: a file that shrinks must not end the program.
+  std::ifstream input(path, std::ios::binary);
+  input.seekg(static_cast<std::streamoff>(offset));
+  if (!input) return Failure{kFailed, path + ": cannot be read"};
+
+  grpc::ClientContext context;
+  farm::prepare(context, state_->token, transfer_time(file.size));
+  v1::UploadResponse response;
+  const auto writer = state_->assets->Upload(&context, &response);
+  v1::UploadPart part;
+  part.set_sha256(farm::to_wire(*digest));
+  part.set_size(file.size);
+  uint64_t sent = offset;
+  do {
+    std::string& data = *part.mutable_chunk()->mutable_data();
+    data.resize(std::min(farm::kMaxChunkBytes, file.size - sent));
+    input.read(data.data(), static_cast<std::streamsize>(data.size()));
+    if (static_cast<size_t>(input.gcount()) != data.size()) {
+      context.TryCancel();
+      (void)writer->Finish();
+      return changed;
+    }
+    part.mutable_chunk()->set_offset(sent);
+    if (!writer->Write(part)) break;
+    sent += data.size();
+    on_progress(data.size());
+    part.Clear();
+  } while (sent < file.size);
+  writer->WritesDone();
+  const grpc::Status status = writer->Finish();
+  if (status.ok()) {
+    state_->reached();
+    return std::nullopt;
+  }
+  Failure out = state_->failure(status);
+  if (status.error_code() == grpc::StatusCode::DATA_LOSS) out.message = changed.message;
+  // The caller asks how far it came and goes on from there.
+  out.again = state_->wait_after(status);
+  return out;
+}
+
+Outcome FarmClient::workers(v1::WorkersResponse& response) {
+  return state_->call(*state_->farm, &v1::Farm::Stub::Workers, v1::WorkersRequest(), response);
+}
+
+Outcome FarmClient::act(WorkerAction action, const v1::WorkerRequest& request,
+                        v1::WorkerResponse& response) {
+  const auto method = action == WorkerAction::drain        ? &v1::Farm::Stub::DrainWorker
+                      : action == WorkerAction::quarantine ? &v1::Farm::Stub::QuarantineWorker
+                                                           : &v1::Farm::Stub::ReleaseWorker;
+  return state_->call(*state_->farm, method, request, response);
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,145 @@
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/fetch.h"
+#include "cli/client/find_job.h"
+#include "cli/client/show.h"
+#include "cli/status_line.h"
+#include "core/base/hash.h"
+#include "core/base/text.h"
+
+namespace hyades::cli {
+namespace {
+
+struct Options {
+  std::string job;
+  std::string folder = ".";
+  std::vector<int32_t> frames;
+  bool follow = false;
+  bool list = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("job", options.job, "its id, or its name where only one has it")->required();
+  app.add_option("--output", options.folder, "folder for the files")->capture_default_str();
+  app.add_option("--frame", options.frames, "only these frames")->delimiter(',');
+  app.add_flag("--follow", options.follow, "stay, and bring each file as it is finished");
+  app.add_flag("--list", options.list, "only tell which files there are");
+  app.add_flag("--quiet", options.quiet, "show no progress");
+  app.add_flag("--json", options.json, "print the files as JSON (field id: the path)");
+  app.footer(
+      "Goes on where an earlier run stopped; every file is checked against its SHA-256 before it "
+      "gets its\n"
+      "name, and those that are there already are left alone.\n"
+      "exit status: 0 fine, 1 something failed or there is nothing to fetch yet; others: "
+      "docs/client.md");
+}
+
+Json to_json(const v1::OutputFile& file) {
+  core::Sha256 digest{};
+  std::copy_n(file.sha256().begin(), std::min(file.sha256().size(), digest.size()), digest.begin());
+  return {{"id", file.path()},
+          {"frame", file.frame()},
+          {"size", file.size()},
+          {"sha256", core::to_hex(digest)}};
+}
+
+/// One run of the command.
+class FetchRun {
+ public:
+  FetchRun(FarmClient& client, const Options& options, uint64_t id)
+      : client_(client), options_(options), id_(id) {}
+
+  Outcome run() {
+    v1::OutputsRequest request;
+    request.set_job(id_);
+    request.set_follow(options_.follow);
+    for (const int32_t frame : options_.frames) {
+      v1::FrameRange& range = *request.add_frames();
+      range.set_first(frame);
+      range.set_last(frame);
+    }
+    if (auto failure = client_.outputs(request, [&](const auto& file) { return take(file); })) {
+      line_.clear();
+      return failure;
+    }
+    line_.clear();
+    return std::nullopt;
+  }
+
+  void print() const {
+    if (options_.json) {
+      print_json(told_);
+    } else if (!options_.list && !options_.quiet && totals_.files > 0) {
+      std::fprintf(
+          stderr, "%lu file%s in %s, %s fetched%s\n", totals_.files, totals_.files == 1 ? "" : "s",
+          options_.folder.c_str(), core::format_bytes(totals_.bytes).c_str(),
+          totals_.present > 0 ? fmt::format(" ({} were there)", totals_.present).c_str() : "");
+    }
+  }
+
+  bool found_nothing() const { return seen_.empty(); }
+
+ private:
+  Outcome take(const v1::OutputFile& file) {
+    // After a break the stream begins again.
+    if (!seen_.insert(file.path() + file.sha256()).second) return std::nullopt;
+    if (options_.json) told_.push_back(to_json(file));
+    if (options_.list) {
+      if (!options_.json) {
+        std::printf("%s  %s\n", printable(file.path()).c_str(),
+                    core::format_bytes(file.size()).c_str());
+      }
+      return std::nullopt;
+    }
+    uint64_t here = 0;
+    return fetch_file(
+        client_, id_, file, options_.folder,
+        [&](uint64_t bytes) {
+          here += bytes;
+          if (options_.quiet || !line_.is_due()) return;
+          line_.show(fmt::format("{}  {} of {}", printable(file.path()), core::format_bytes(here),
+                                 core::format_bytes(file.size())));
+        },
+        totals_);
+  }
+
+  FarmClient& client_;
+  const Options& options_;
+  uint64_t id_;
+  StatusLine line_;
+  std::set<std::string> seen_;
+  Fetched totals_;
+  Json told_ = Json::array();
+};
+
+}  // namespace
+
+int fetch_command(int argc, char** argv) {
+  ClientApp app("fetch", "Brings a job's finished pictures to this machine.");
+  Options options;
+  declare(app.app(), options);
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  uint64_t id = 0;
+  if (auto failure = find_job(*client, options.job, id)) return app.report(*failure);
+  FetchRun run(*client, options, id);
+  const Outcome failure = run.run();
+  run.print();
+  if (failure) return app.report(*failure);
+  if (run.found_nothing() && !options.list && !options.json) {
+    return app.report(
+        {kFailed, fmt::format("job {} has nothing to fetch yet (hyades watch {})", id, id)});
+  }
+  return kDone;
+}
+
+}  // namespace hyades::cli

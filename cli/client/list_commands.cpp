@@ -1,0 +1,205 @@
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/find_job.h"
+#include "cli/client/show.h"
+#include "core/base/text.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr size_t kMostFrames = 20;  ///< told by status without --json or --frames
+
+std::string frames_text(const v1::Job& job) {
+  std::string text = fmt::format("{}/{}", job.frames_done(), job.frames());
+  if (job.frames_failed() > 0) text += fmt::format(" ({} failed)", job.frames_failed());
+  return text;
+}
+
+std::string left_text(const v1::Job& job) {
+  return job.state() == v1::JOB_STATE_RUNNING && job.seconds_left() >= 0
+             ? core::format_duration(job.seconds_left())
+             : "-";
+}
+
+void print_jobs(const std::vector<v1::Job>& jobs) {
+  std::vector<std::vector<std::string>> rows = {
+      {"id", "name", "owner", "prio", "state", "frames", "samples", "units out", "left", "reason"}};
+  for (const v1::Job& job : jobs) {
+    rows.push_back({std::to_string(job.id()), job.name(), job.owner(),
+                    std::to_string(job.priority()), state_name(job.state()), frames_text(job),
+                    percent(job.samples_done(), job.samples()), std::to_string(job.leased()),
+                    left_text(job), job.reason()});
+  }
+  print_table(rows);
+}
+
+void print_line(const char* name, const std::string& value) {
+  std::printf("%-10s %s\n", name, printable(value).c_str());
+}
+
+void print_frames(const v1::GetJobResponse& response, bool all) {
+  std::vector<std::vector<std::string>> rows = {
+      {"frame", "state", "samples", "class", "restarts", "reason"}};
+  size_t more = 0;
+  for (const v1::Frame& frame : response.frames()) {
+    const bool telling =
+        frame.state() != v1::FRAME_STATE_WAITING && frame.state() != v1::FRAME_STATE_DONE;
+    if (!all && !telling) continue;
+    if (!all && rows.size() > kMostFrames) {
+      ++more;
+      continue;
+    }
+    rows.push_back({std::to_string(frame.frame()), state_name(frame.state()),
+                    percent(frame.samples_done(), frame.samples()),
+                    frame.worker_class().substr(0, 12), std::to_string(frame.restarts()),
+                    frame.reason()});
+  }
+  if (rows.size() == 1) return;
+  std::printf("\n");
+  print_table(rows);
+  if (more > 0) std::printf("... and %zu more: --frames shows all\n", more);
+}
+
+void print_status(const v1::GetJobResponse& response, bool all) {
+  const v1::Job& job = response.job();
+  std::printf("job %lu: %s\n", job.id(), printable(job.name()).c_str());
+  print_line("state", state_name(job.state()) + (job.reason().empty() ? "" : ": " + job.reason()));
+  print_line("owner", fmt::format("{}, priority {}", job.owner(), job.priority()));
+  print_line("frames", frames_text(job));
+  print_line("samples", fmt::format("{} of {}", percent(job.samples_done(), job.samples()),
+                                    core::format_count(job.samples())));
+  if (job.state() == v1::JOB_STATE_RUNNING) {
+    print_line("now", fmt::format("{} units with workers, {:.2f} Msamples/s, {} left", job.leased(),
+                                  job.samples_per_second() * 1e-6, left_text(job)));
+  }
+  print_line("submitted", format_time(job.submitted_ms()));
+  if (job.ended_ms() != 0) print_line("ended", format_time(job.ended_ms()));
+  print_frames(response, all);
+}
+
+void print_log_line(const v1::LogLine& line) {
+  std::string text = format_time(line.time_ms());
+  if (line.level() != v1::LOG_LEVEL_INFO) text += "  " + level_name(line.level());
+  if (line.of_frame()) text += fmt::format("  frame {}", line.frame());
+  if (!line.worker().empty()) text += "  " + printable(line.worker());
+  std::printf("%s  %s\n", text.c_str(), printable(line.text()).c_str());
+}
+
+}  // namespace
+
+int jobs_command(int argc, char** argv) {
+  ClientApp app("jobs", "Lists the farm's jobs, the newest first.");
+  bool all = false;
+  bool json = false;
+  std::string owner;
+  app.app().add_flag("--all", all, "also those that have ended");
+  app.app().add_option("--owner", owner, "only the jobs of this owner");
+  app.app().add_flag("--json", json, "print them as JSON (field id)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  std::vector<v1::Job> jobs;
+  if (auto failure = list_all_jobs(*client, all, owner, jobs)) return app.report(*failure);
+  if (json) {
+    Json list = Json::array();
+    for (const v1::Job& job : jobs) list.push_back(to_json(job));
+    print_json(list);
+  } else if (jobs.empty()) {
+    std::printf("%s\n", all ? "no jobs" : "no job is open (--all shows those that have ended)");
+  } else {
+    print_jobs(jobs);
+  }
+  return kDone;
+}
+
+int status_command(int argc, char** argv) {
+  ClientApp app("status", "Tells how a job and its frames are.");
+  std::string job;
+  bool all = false;
+  bool json = false;
+  app.app().add_option("job", job, "its id, or its name where only one has it")->required();
+  app.app().add_flag("--frames", all, "tell of every frame");
+  app.app().add_flag("--json", json, "print the job as JSON (fields id and frame_list)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  uint64_t id = 0;
+  if (auto failure = find_job(*client, job, id)) return app.report(*failure);
+  v1::GetJobResponse response;
+  if (auto failure = client->get(id, response)) return app.report(*failure);
+  if (!json) {
+    print_status(response, all);
+    return kDone;
+  }
+  Json out = to_json(response.job());
+  out["frame_list"] = Json::array();
+  for (const v1::Frame& frame : response.frames()) out["frame_list"].push_back(to_json(frame));
+  print_json(out);
+  return kDone;
+}
+
+int explain_command(int argc, char** argv) {
+  ClientApp app("explain", "Tells why a job does or does not get on.");
+  std::string job;
+  bool json = false;
+  app.app().add_option("job", job, "its id, or its name where only one has it")->required();
+  app.app().add_flag("--json", json, "print JSON (fields id and reasons)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  uint64_t id = 0;
+  if (auto failure = find_job(*client, job, id)) return app.report(*failure);
+  v1::ExplainResponse response;
+  if (auto failure = client->explain(id, response)) return app.report(*failure);
+  if (json) {
+    Json out = {{"id", id}, {"reasons", Json::array()}};
+    for (const std::string& reason : response.reasons()) out["reasons"].push_back(reason);
+    print_json(out);
+    return kDone;
+  }
+  for (const std::string& reason : response.reasons())
+    std::printf("%s\n", printable(reason).c_str());
+  return kDone;
+}
+
+int logs_command(int argc, char** argv) {
+  ClientApp app("logs", "Shows what has happened to a job, oldest first.");
+  std::string job;
+  std::vector<int32_t> frames;
+  bool follow = false;
+  bool json = false;
+  app.app().add_option("job", job, "its id, or its name where only one has it")->required();
+  app.app().add_option("--frame", frames, "only these frames")->delimiter(',');
+  app.app().add_flag("--follow", follow, "stay until the job has ended");
+  app.app().add_flag("--json", json, "print one JSON object a line (field id: its number)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  v1::LogsRequest request;
+  uint64_t id = 0;
+  if (auto failure = find_job(*client, job, id)) return app.report(*failure);
+  request.set_job(id);
+  request.set_follow(follow);
+  request.mutable_frames()->Add(frames.begin(), frames.end());
+  uint64_t number = 0;
+  const auto failure = client->logs(request, [&](const v1::LogLine& line) {
+    ++number;
+    if (json) {
+      Json out = {{"id", number}};
+      out.update(to_json(line));
+      print_json(out);
+    } else {
+      print_log_line(line);
+    }
+    std::fflush(stdout);
+  });
+  return failure ? app.report(*failure) : kDone;
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,154 @@
+#include <pwd.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/show.h"
+#include "cli/client/upload.h"
+#include "cli/client/watch.h"
+#include "cli/frame_range.h"
+#include "core/base/hash.h"
+#include "farm/job_package.h"
+#include "farm/wire.h"
+
+namespace hyades::cli {
+
+using core::Result;
+
+namespace {
+
+constexpr int kMostUploads = 3;  // rounds of bringing what the coordinator misses
+
+struct Options {
+  std::string path;
+  std::string frames;
+  std::string owner;
+  uint32_t samples = 0;
+  int32_t priority = 0;
+  uint32_t max_workers = 0;
+  bool watch = false;
+  bool quiet = false;
+  bool json = false;
+};
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("job", options.path, "the job (.yaml)")->required();
+  app.add_flag("--watch", options.watch, "stay and show progress until the job has ended");
+  app.add_option("--priority", options.priority, "higher goes first")
+      ->check(CLI::Range(-1'000'000, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--owner", options.owner, "whose job it is; owners share the farm (default: you)");
+  app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)");
+  app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
+      ->check(CLI::Range(1U, 1U << 24U));
+  app.add_option("--max-workers", options.max_workers, "render on no more than so many at once");
+  app.add_flag("--quiet", options.quiet, "show no progress");
+  app.add_flag("--json", options.json, "print the job as JSON (field id)");
+  app.footer(
+      "example:\n  hyades submit jobs/perlin-sphere/job.yaml --watch && hyades fetch perlin-sphere "
+      "--output out\n"
+      "exit status: 0 taken in (with --watch: the job is done), 1 failed, 2 the job or the "
+      "arguments are\n"
+      "wrong, 3 no coordinator answers; others: docs/client.md");
+}
+
+std::string user_name() {
+  if (const char* user = std::getenv("USER"); user != nullptr && *user != '\0') return user;
+  const passwd* entry = ::getpwuid(::getuid());
+  return entry != nullptr ? entry->pw_name : fmt::format("user-{}", ::getuid());
+}
+
+/// Something that no other submission has.
+Result<std::string> random_key() {
+  std::array<uint8_t, 16> bytes{};
+  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    return core::Error{"the system gives no random numbers"};
+  }
+  return core::to_hex(bytes);
+}
+
+Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Options& options) {
+  v1::SubmitRequest request;
+  v1::JobSpec& spec = *request.mutable_spec();
+  spec.set_name(package.job.name);
+  spec.set_document(package.document);
+  spec.set_samples(options.samples);
+  for (const core::AssetRecord& asset : package.files) {
+    const auto digest = farm::digest_from_hex(asset.sha256);
+    if (!digest) return digest.error();
+    v1::JobFile& file = *spec.add_files();
+    file.set_path(asset.reference);
+    file.set_sha256(farm::to_wire(*digest));
+    file.set_size(asset.size);
+  }
+  const auto range = parse_frames(package.job.frames, options.frames);
+  if (!range) return range.error();
+  if (!options.frames.empty()) {
+    v1::FrameRange& frames = *spec.add_frames();
+    frames.set_first(range->first);
+    frames.set_last(range->last);
+    frames.set_step(range->step);
+  }
+  request.set_owner(options.owner.empty() ? user_name() : options.owner);
+  request.set_priority(options.priority);
+  request.set_max_workers(options.max_workers);
+  const auto key = random_key();
+  if (!key) return key.error();
+  request.set_idempotency_key(*key);
+  return request;
+}
+
+Outcome submit(FarmClient& client, const farm::JobPackage& package,
+               const v1::SubmitRequest& request, bool quiet, v1::Job& job) {
+  for (int round = 1;; ++round) {
+    if (auto failure = upload_missing(client, package, quiet)) return failure;
+    v1::SubmitResponse response;
+    const auto failure = client.submit(request, response);
+    if (!failure) {
+      job = response.job();
+      return std::nullopt;
+    }
+    // Files that were there may have been removed since, with the last job that had them.
+    if (failure->missing.empty() || round == kMostUploads) return failure;
+  }
+}
+
+}  // namespace
+
+int submit_command(int argc, char** argv) {
+  ClientApp app("submit", "Gives a job and all files that it needs to the farm.");
+  Options options;
+  declare(app.app(), options);
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto package = farm::package_job(options.path);
+  if (!package) {
+    std::fprintf(stderr, "%s\n", package.error().message.c_str());
+    return kBadArguments;
+  }
+  const auto request = make_request(*package, options);
+  if (!request) return app.report({kBadArguments, request.error().message});
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  v1::Job job;
+  if (auto failure = submit(*client, *package, *request, options.quiet, job)) {
+    return app.report(*failure);
+  }
+  if (options.json) {
+    print_json(to_json(job));
+  } else {
+    std::printf("job %lu: %s, %u frame%s\n", job.id(), printable(job.name()).c_str(), job.frames(),
+                job.frames() == 1 ? "" : "s");
+  }
+  std::fflush(stdout);
+  if (!options.watch) return kDone;
+  if (auto failure = watch_job(*client, job.id(), options.quiet)) return app.report(*failure);
+  return kDone;
+}
+
+}  // namespace hyades::cli

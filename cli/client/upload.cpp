@@ -1,0 +1,129 @@
+#include "cli/client/upload.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/status_line.h"
+#include "core/base/hash.h"
+#include "core/base/text.h"
+#include "farm/wire.h"
+
+namespace hyades::cli {
+
+using core::AssetRecord;
+
+namespace {
+
+constexpr size_t kMostAsked = 10'000;  // files in one FindMissing
+constexpr int kMostRestarts = 1;       // of one file whose bytes arrived damaged
+
+/// A file to be sent, and from where on.
+struct Missing {
+  AssetRecord file;
+  uint64_t offset = 0;
+};
+
+Outcome ask(FarmClient& client, const std::vector<AssetRecord>& files,
+            std::vector<Missing>& missing) {
+  for (size_t at = 0; at < files.size(); at += kMostAsked) {
+    v1::FindMissingRequest request;
+    std::map<std::string, const AssetRecord*> by_digest;
+    for (size_t i = at; i < std::min(files.size(), at + kMostAsked); ++i) {
+      const auto digest = farm::digest_from_hex(files[i].sha256);
+      if (!digest) return Failure{kFailed, digest.error().message};
+      v1::JobFile& asked = *request.add_files();
+      asked.set_sha256(farm::to_wire(*digest));
+      asked.set_size(files[i].size);
+      by_digest[asked.sha256()] = &files[i];
+    }
+    v1::FindMissingResponse response;
+    if (auto failure = client.find_missing(request, response)) return failure;
+    for (const auto& one : response.missing()) {
+      const auto found = by_digest.find(one.sha256());
+      if (found == by_digest.end()) {
+        return Failure{kFailed, "the coordinator asks for a file that the job does not have"};
+      }
+      missing.push_back({*found->second, std::min(one.offset(), found->second->size)});
+    }
+  }
+  return std::nullopt;
+}
+
+/// Shows how much has gone.
+class UploadDisplay {
+ public:
+  UploadDisplay(bool quiet, const std::vector<Missing>& missing)
+      : quiet_(quiet), files_(missing.size()) {
+    for (const Missing& one : missing) total_ += one.file.size - one.offset;
+  }
+
+  void begin_file() { ++file_; }
+
+  void sent(uint64_t bytes) {
+    sent_ += bytes;
+    if (quiet_ || !line_.is_due()) return;
+    line_.show(fmt::format("uploading file {} of {}: {} of {}", file_, files_,
+                           core::format_bytes(std::min(sent_, total_)),
+                           core::format_bytes(total_)));
+  }
+
+  void end() {
+    line_.clear();
+    if (!quiet_ && files_ > 0) {
+      std::fprintf(stderr, "uploaded %zu file%s, %s\n", files_, files_ == 1 ? "" : "s",
+                   core::format_bytes(total_).c_str());
+    }
+  }
+
+ private:
+  bool quiet_;
+  StatusLine line_;
+  size_t files_;
+  size_t file_ = 0;
+  uint64_t total_ = 0;
+  uint64_t sent_ = 0;
+};
+
+Outcome upload_file(FarmClient& client, Missing one, const std::string& path,
+                    UploadDisplay& display) {
+  int restarts = 0;
+  while (true) {
+    const Outcome failure =
+        client.upload(one.file, path, one.offset, [&](uint64_t bytes) { display.sent(bytes); });
+    if (!failure) return std::nullopt;
+    // What was there of the file before may have been wrong too: once more from the beginning.
+    if (failure->damaged ? ++restarts > kMostRestarts : !failure->again) return failure;
+    std::vector<Missing> still;
+    if (auto broken = ask(client, {one.file}, still)) return broken;
+    if (still.empty()) return std::nullopt;
+    one = still.front();
+  }
+}
+
+}  // namespace
+
+Outcome upload_missing(FarmClient& client, const farm::JobPackage& package, bool quiet) {
+  std::vector<AssetRecord> files;
+  std::set<std::string> seen;
+  for (const AssetRecord& file : package.files) {
+    if (seen.insert(file.sha256).second) files.push_back(file);
+  }
+  std::vector<Missing> missing;
+  if (auto failure = ask(client, files, missing)) return failure;
+  UploadDisplay display(quiet, missing);
+  for (const Missing& one : missing) {
+    display.begin_file();
+    const auto path = std::filesystem::path(package.folder) / one.file.reference;
+    if (auto failure = upload_file(client, one, path.string(), display)) return failure;
+  }
+  display.end();
+  return std::nullopt;
+}
+
+}  // namespace hyades::cli

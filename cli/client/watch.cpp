@@ -1,0 +1,147 @@
+#include "cli/client/watch.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "cli/client/show.h"
+#include "cli/progress_display.h"
+#include "core/base/text.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr size_t kMostFramesTold = 10;
+constexpr auto kStreamEnded = std::chrono::milliseconds(500);
+
+/// What Ctrl-C says, made before the handler may need it.
+char g_farewell[160];
+
+void on_interrupt(int) {
+  // Nothing is left to be done where even this cannot be said.
+  [[maybe_unused]] const auto said = ::write(STDERR_FILENO, g_farewell, std::strlen(g_farewell));
+  ::_exit(kInterrupted);
+}
+
+void leave_job_running_on_interrupt(uint64_t id) {
+  const std::string text = fmt::format(
+      "\nthe job goes on: hyades watch {} shows it again, hyades cancel {} ends it\n", id, id);
+  std::strncpy(g_farewell, text.c_str(), sizeof g_farewell - 1);
+  struct sigaction action {};
+  action.sa_handler = on_interrupt;
+  sigaction(SIGINT, &action, nullptr);
+}
+
+bool has_ended(const v1::Job& job) {
+  return job.state() == v1::JOB_STATE_DONE || job.state() == v1::JOB_STATE_FAILED ||
+         job.state() == v1::JOB_STATE_CANCELLED;
+}
+
+coordinator::Progress progress_of(const v1::Job& job) {
+  coordinator::Progress progress;
+  progress.frames = job.frames();
+  progress.frames_done = job.frames_done();
+  progress.frames_failed = job.frames_failed();
+  progress.samples = job.samples();
+  progress.samples_done = job.samples_done();
+  progress.samples_per_second = job.samples_per_second();
+  progress.seconds_left = job.seconds_left();
+  progress.trouble = job.state() == v1::JOB_STATE_PAUSED ? "paused" : printable(job.reason());
+  return progress;
+}
+
+/// Follows one job.
+class Watcher {
+ public:
+  explicit Watcher(bool quiet) : quiet_(quiet) {}
+
+  void take(const v1::WatchEvent& event) {
+    job_ = event.job();
+    for (const v1::Frame& frame : event.changed()) {
+      if (frame.state() == v1::FRAME_STATE_FAILED) {
+        failed_[frame.frame()] = frame.reason();
+      } else {
+        failed_.erase(frame.frame());
+      }
+    }
+    if (!display_) display_ = std::make_unique<ProgressDisplay>(printable(job_.name()), quiet_);
+    if (!has_ended(job_)) display_->update(progress_of(job_));
+  }
+
+  bool ended() const { return has_ended(job_); }
+
+  /// Makes room for another line.
+  void clear() {
+    if (display_) display_->clear();
+  }
+
+  Outcome verdict() {
+    clear();
+    if (job_.state() == v1::JOB_STATE_DONE) {
+      if (!quiet_) {
+        std::fprintf(
+            stderr, "job %lu is done: %u frame%s in %s; hyades fetch %lu brings them\n", job_.id(),
+            job_.frames_done(), job_.frames_done() == 1 ? "" : "s",
+            core::format_duration(1e-3 * static_cast<double>(job_.ended_ms() - job_.submitted_ms()))
+                .c_str(),
+            job_.id());
+      }
+      return std::nullopt;
+    }
+    size_t told = 0;
+    for (const auto& [frame, reason] : failed_) {
+      if (++told > kMostFramesTold) break;
+      std::fprintf(stderr, "frame %d failed: %s\n", frame, printable(reason).c_str());
+    }
+    if (failed_.size() > kMostFramesTold) {
+      std::fprintf(stderr, "... and %zu more (hyades status %lu)\n",
+                   failed_.size() - kMostFramesTold, job_.id());
+    }
+    const std::string why = job_.reason().empty() ? "" : ": " + printable(job_.reason());
+    if (job_.state() == v1::JOB_STATE_CANCELLED) {
+      return Failure{kCancelled, fmt::format("job {} was cancelled{}", job_.id(), why)};
+    }
+    return Failure{
+        kFailed,
+        fmt::format("job {} failed: {} of {} frames are done{}; hyades retry {} takes up the rest",
+                    job_.id(), job_.frames_done(), job_.frames(), why, job_.id())};
+  }
+
+ private:
+  bool quiet_;
+  v1::Job job_;
+  std::map<int32_t, std::string> failed_;  ///< reasons by frame
+  std::unique_ptr<ProgressDisplay> display_;
+};
+
+}  // namespace
+
+Outcome watch_job(FarmClient& client, uint64_t id, bool quiet) {
+  leave_job_running_on_interrupt(id);
+  Watcher watcher(quiet);
+  client.on_notice([&](const std::string& text) {
+    watcher.clear();
+    std::fprintf(stderr, "%s\n", text.c_str());
+  });
+  Outcome outcome;
+  while (!outcome && !watcher.ended()) {
+    outcome = client.watch(id, [&](const v1::WatchEvent& event) {
+      watcher.take(event);
+      return !watcher.ended();
+    });
+    // A coordinator that ends the stream in order before the job has ended is about to stop.
+    if (!outcome && !watcher.ended()) std::this_thread::sleep_for(kStreamEnded);
+  }
+  watcher.clear();
+  return outcome ? outcome : watcher.verdict();
+}
+
+}  // namespace hyades::cli

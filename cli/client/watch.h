@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cli/client/farm_client.h"
+
+namespace hyades::cli {
+
+/// Shows how job `id` gets on until it has ended; Ctrl-C leaves it running. Nothing where it is
+/// done; a job that failed or was cancelled is a failure, told with its frames.
+Outcome watch_job(FarmClient& client, uint64_t id, bool quiet);
+
+}  // namespace hyades::cli

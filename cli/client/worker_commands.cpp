@@ -1,0 +1,113 @@
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/show.h"
+#include "core/base/text.h"
+
+namespace hyades::cli {
+namespace {
+
+/// How long ago a moment was, by this machine's clock.
+std::string ago(int64_t ms) {
+  const auto now = std::chrono::duration_cast<std::chrono::milliseconds>(
+                       std::chrono::system_clock::now().time_since_epoch())
+                       .count();
+  return core::format_duration(1e-3 * static_cast<double>(std::max<int64_t>(now - ms, 0)));
+}
+
+void print_workers(const v1::WorkersResponse& response) {
+  std::vector<std::vector<std::string>> rows = {{"id", "name", "state", "threads", "units out",
+                                                 "done", "failed", "class", "heard", "reason"}};
+  for (const v1::Worker& worker : response.workers()) {
+    rows.push_back({std::to_string(worker.id()), worker.name(), state_name(worker.state()),
+                    std::to_string(worker.threads()), std::to_string(worker.leased()),
+                    core::format_count(worker.units_done()), std::to_string(worker.units_failed()),
+                    worker.worker_class().substr(0, 12), ago(worker.heard_ms()) + " ago",
+                    worker.reason()});
+  }
+  print_table(rows);
+}
+
+int act(const char* command, const char* description, FarmClient::WorkerAction action, int argc,
+        char** argv) {
+  ClientApp app(command, description);
+  std::vector<std::string> names;
+  std::string reason;
+  bool json = false;
+  app.app().add_option("workers", names, "their ids, or names that only one has")->required();
+  app.app().add_option("--reason", reason, "why, for people; kept");
+  app.app().add_flag("--json", json, "print the workers as JSON (field id)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  int worst = kDone;
+  Json list = Json::array();
+  for (const std::string& name : names) {
+    v1::WorkerRequest request;
+    request.set_worker(name);
+    request.set_reason(reason);
+    v1::WorkerResponse response;
+    if (auto failure = client->act(action, request, response)) {
+      const int status = app.report(*failure);
+      if (worst == kDone) worst = status;
+      if (status == kNoAnswer) break;
+      continue;
+    }
+    const v1::Worker& worker = response.worker();
+    if (json) {
+      list.push_back(to_json(worker));
+    } else {
+      std::printf("worker %lu (%s) is %s\n", worker.id(), printable(worker.name()).c_str(),
+                  state_name(worker.state()).c_str());
+    }
+  }
+  if (json) print_json(list);
+  return worst;
+}
+
+}  // namespace
+
+int workers_command(int argc, char** argv) {
+  ClientApp app("workers", "Lists the farm's workers.");
+  bool json = false;
+  app.app().add_flag("--json", json, "print them as JSON (field id)");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  v1::WorkersResponse response;
+  if (auto failure = client->workers(response)) return app.report(*failure);
+  if (json) {
+    Json list = Json::array();
+    for (const v1::Worker& worker : response.workers()) list.push_back(to_json(worker));
+    print_json(list);
+  } else if (response.workers().empty()) {
+    std::printf("no workers: start some with 'hyades worker'\n");
+  } else {
+    print_workers(response);
+  }
+  return kDone;
+}
+
+int drain_command(int argc, char** argv) {
+  return act("drain", "Gives workers no more work; they deliver what they have and leave.",
+             FarmClient::WorkerAction::drain, argc, argv);
+}
+
+int quarantine_command(int argc, char** argv) {
+  return act("quarantine",
+             "Gives workers no more work and refuses what they have not delivered yet.",
+             FarmClient::WorkerAction::quarantine, argc, argv);
+}
+
+int release_command(int argc, char** argv) {
+  return act("release", "Ends the quarantine of workers.", FarmClient::WorkerAction::release, argc,
+             argv);
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,78 @@
+#include "cli/completion.h"
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace hyades::cli {
+namespace {
+
+// The scripts ask the program itself (--help) for commands and options: nothing to keep in step.
+
+constexpr std::string_view kBash = R"sh(_hyades() {
+  local word=${COMP_WORDS[COMP_CWORD]} program=${COMP_WORDS[0]}
+  COMPREPLY=()
+  if [ "$COMP_CWORD" = 1 ]; then
+    COMPREPLY=($(compgen -W "$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z]+) .*/\1/p')" -- "$word"))
+  elif [[ $word == -* ]]; then
+    COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u)" -- "$word"))
+  elif [ "${COMP_WORDS[1]}" = completion ]; then
+    COMPREPLY=($(compgen -W "bash zsh fish" -- "$word"))
+  fi
+}
+complete -o default -F _hyades hyades
+)sh";
+
+constexpr std::string_view kZsh = R"sh(#compdef hyades
+_hyades() {
+  local program=${words[1]}
+  if (( CURRENT == 2 )); then
+    local -a commands
+    commands=(${(f)"$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z]+) +(.*)/\1:\2/p')"})
+    _describe command commands
+  elif [[ ${words[CURRENT]} == -* ]]; then
+    local -a options
+    options=(${(f)"$("$program" "${words[2]}" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u)"})
+    compadd -- $options
+  elif [[ ${words[2]} == completion ]]; then
+    compadd bash zsh fish
+  else
+    _files
+  fi
+}
+compdef _hyades hyades
+)sh";
+
+constexpr std::string_view kFish = R"sh(function __hyades_commands
+  hyades --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z]+) +(.*)/\1\t\2/p'
+end
+function __hyades_options
+  set -l words (commandline -opc)
+  hyades $words[2] --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u
+end
+complete -c hyades -n 'test (count (commandline -opc)) -eq 1' -f -a '(__hyades_commands)'
+complete -c hyades -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__hyades_options)'
+complete -c hyades -n '__fish_seen_subcommand_from completion' -f -a 'bash zsh fish'
+)sh";
+
+}  // namespace
+
+int completion_command(int argc, char** argv) {
+  const std::string shell = argc > 1 ? argv[1] : "";
+  const std::string_view script = shell == "bash"   ? kBash
+                                  : shell == "zsh"  ? kZsh
+                                  : shell == "fish" ? kFish
+                                                    : "";
+  const bool help = shell == "--help" || shell == "-h";
+  if (script.empty()) {
+    std::fprintf(help ? stdout : stderr,
+                 "usage: hyades completion bash|zsh|fish\n"
+                 "prints a script for that shell; in bash: source <(hyades completion bash)\n"
+                 "'hyades completion --help' says this\n");
+    return help ? 0 : 2;
+  }
+  std::fwrite(script.data(), 1, script.size(), stdout);
+  return 0;
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,34 @@
+#include "cli/frame_range.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace hyades::cli {
+
+core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::string& text) {
+  FrameRange range{job.first, job.last, job.step};
+  if (text.empty()) return range;
+  int used = 0;
+  const auto whole = [&] { return used == static_cast<int>(text.size()); };
+  if (std::sscanf(text.c_str(), "%d-%dx%d%n", &range.first, &range.last, &range.step, &used) < 3 ||
+      !whole()) {
+    range.step = 1;
+    if (std::sscanf(text.c_str(), "%d-%d%n", &range.first, &range.last, &used) < 2 || !whole()) {
+      if (std::sscanf(text.c_str(), "%d%n", &range.first, &used) < 1 || !whole()) {
+        return core::Error{fmt::format(
+            "--frames {}: expected a frame (7), a range (1-10) or a range with a step (1-10x2)",
+            text)};
+      }
+      range.last = range.first;
+    }
+  }
+  if (range.step < 1 || range.first > range.last || range.first < job.first ||
+      range.last > job.last) {
+    return core::Error{fmt::format("--frames {}: expected frames within the job's range {}-{}",
+                                   text, job.first, job.last)};
+  }
+  return range;
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+#include "core/job/job.h"
+
+namespace hyades::cli {
+
+/// Frames first, first + step, ... up to last.
+struct FrameRange {
+  int first = 1;
+  int last = 1;
+  int step = 1;
+};
+
+/// "7", "1-10" or "1-10x2" as frames of a job; "" is all of them. An error where the text is not of
+/// that form or names a frame outside the job's range.
+core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::string& text);
+
+}  // namespace hyades::cli

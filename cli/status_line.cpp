@@ -1,0 +1,52 @@
+#include "cli/status_line.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace hyades::cli {
+namespace {
+
+constexpr auto kRedraw = std::chrono::milliseconds(150);
+
+bool is_terminal() {
+  const char* term = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && term != nullptr && std::string(term) != "dumb";
+}
+
+int terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+StatusLine::StatusLine() : terminal_(is_terminal()) {}
+
+bool StatusLine::is_due() const {
+  return !drawn_ || std::chrono::steady_clock::now() - last_ >= kRedraw;
+}
+
+void StatusLine::show(const std::string& text) {
+  if (!terminal_) return;
+  last_ = std::chrono::steady_clock::now();
+  drawn_ = true;
+  // Cut by characters, not bytes: the bar's blocks take three bytes each.
+  int columns = terminal_width() - 1;
+  size_t end = 0;
+  for (; end < text.size() && columns > 0; ++end) {
+    if ((static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U && columns-- == 0) break;
+  }
+  while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80U) ++end;
+  std::fprintf(stderr, "\r\033[K%s", text.substr(0, end).c_str());
+  std::fflush(stderr);
+}
+
+void StatusLine::clear() {
+  if (drawn_) std::fprintf(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+}  // namespace hyades::cli
