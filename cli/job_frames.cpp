@@ -19,8 +19,8 @@ namespace {
 
 constexpr size_t kBadExamples = 5;
 
-/// Up to so many frames the log's key is made of every frame's render key.
-constexpr int64_t kMostKeyedFrames = 2000;
+/// So many frames' keys are remembered: more than are in flight.
+constexpr size_t kKeysKept = 16;
 
 }  // namespace
 
@@ -32,7 +32,7 @@ class JobFrames::Work : public coordinator::FrameWork {
         frame_(frame),
         renderer_(std::move(scene), owner.loaded_.job, frame, owner.layers_) {}
 
-  core::Result<core::Film> render(const core::Unit& unit, int /*thread*/,
+  core::Result<core::Film> render(const core::Unit& unit,
                                   const std::atomic<bool>& stop) const override {
     core::RenderedUnit done = renderer_.render(unit, &stop);
     owner_.note(frame_, done.counters);
@@ -49,10 +49,10 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
     : loaded_(loaded),
       options_(std::move(options)),
       layers_(core::needed_layers(loaded.job)),
+      assets_(loaded.assets->records()),
       cache_(*loaded.assets) {}
 
-core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(
-    int32_t frame, const std::atomic<bool>& /*stop*/) {
+core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {
   auto scene = core::build_scene(loaded_.job, frame, cache_);
   if (!scene) return scene.error().in(fmt::format("frame {}", frame));
   return std::shared_ptr<const coordinator::FrameWork>(
@@ -106,7 +106,7 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
   const core::Job& job = loaded_.job;
   core::FilmInfo info;
   info.job_name = job.name;
-  info.render_key = core::render_key(job, frame, loaded_.assets->records());
+  info.render_key = core::render_key(job, frame, assets_);
   info.frame = frame;
   info.width = job.film.width;
   info.height = job.film.height;
@@ -117,24 +117,15 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
   return info;
 }
 
-std::string JobFrames::log_key() const {
-  const core::Job& job = loaded_.job;
-  const std::vector<core::AssetRecord> assets = loaded_.assets->records();
-  std::string keys =
-      fmt::format("{} {} {} {} {}{}{}", options_.window.x0, options_.window.y0, options_.window.x1,
-                  options_.window.y1, layers_.depth, layers_.albedo, layers_.normal);
-  const int64_t count = (int64_t{job.frames.last} - job.frames.first) / job.frames.step + 1;
-  if (count > kMostKeyedFrames) {
-    // Too many keys to compute at every start: the text and the files stand for them. A changed
-    // comment then costs a resume, which is safe.
-    keys += fmt::format(" {} {} {}", loaded_.text_digest, job.sampling.samples,
-                        core::render_key(job, job.frames.first, assets));
-  } else {
-    for (int64_t f = job.frames.first; f <= job.frames.last; f += job.frames.step) {
-      keys += core::render_key(job, static_cast<int32_t>(f), assets);
-    }
-  }
-  return core::to_hex(core::sha256(keys));
+coordinator::FrameKey JobFrames::frame_key(int32_t frame) {
+  const std::lock_guard lock(keys_mutex_);
+  if (const auto known = keys_.find(frame); known != keys_.end()) return known->second;
+  const coordinator::FrameKey key =
+      core::sha256(fmt::format("{} {}{}{}", core::render_key(loaded_.job, frame, assets_),
+                               layers_.depth, layers_.albedo, layers_.normal));
+  if (keys_.size() >= kKeysKept) keys_.erase(keys_.begin());
+  keys_.emplace(frame, key);
+  return key;
 }
 
 void JobFrames::note(int32_t frame, const core::RenderCounters& counters) {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include "cli/load_job.h"
 #include "coordinator/local/frame_work.h"
+#include "coordinator/local/local_plan.h"
 #include "core/film/film_info.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/scene_cache.h"
@@ -36,17 +38,15 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
 
   JobFrames(LoadedJob& loaded, Options options);
 
-  core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(
-      int32_t frame, const std::atomic<bool>& stop) override;
+  core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(int32_t frame) override;
   core::Status finish(int32_t frame, const core::Film& film) override;
   bool outputs_exist(int32_t frame) override;
 
   /// Everything that `frame` writes, in the job's order.
   std::vector<std::string> output_paths(int32_t frame) const;
 
-  /// One line that names the pixels of all the job's frames: films of another key are never mixed
-  /// in.
-  std::string log_key() const;
+  /// Names the pixels and layers of a frame: films of another key are never mixed in. Thread-safe.
+  coordinator::FrameKey frame_key(int32_t frame);
 
   RunTotals totals() const;
 
@@ -59,7 +59,11 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   LoadedJob& loaded_;
   Options options_;
   core::LayerSet layers_;
+  const std::vector<core::AssetRecord>
+      assets_;  ///< all files of the job, as they were when it was read
   core::SceneCache cache_;
+  std::mutex keys_mutex_;
+  std::map<int32_t, coordinator::FrameKey> keys_;  ///< of some frames; guarded by keys_mutex_
   mutable std::mutex mutex_;
   RunTotals totals_;  ///< guarded by mutex_
 };

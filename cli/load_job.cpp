@@ -5,7 +5,6 @@
 
 #include "cli/frame_range.h"
 #include "cli/mesh_job.h"
-#include "core/base/hash.h"
 #include "core/job/parse.h"
 
 namespace hyades::cli {
@@ -41,7 +40,6 @@ std::optional<LoadedJob> load_job(const std::string& path) {
     std::fprintf(stderr, "%s\n", text.error().message.c_str());
     return std::nullopt;
   }
-  loaded.text_digest = core::to_hex(core::sha256(text->span()));
   Diagnostics diagnostics;
   loaded.job =
       core::parse_job(std::string(text->chars(), text->size()), path, *loaded.assets, diagnostics);

@@ -13,7 +13,6 @@ namespace hyades::cli {
 /// A job that has been read and found good, and the door to its files.
 struct LoadedJob {
   core::Job job;
-  std::string text_digest;  ///< SHA-256 of the YAML; empty for a mesh
   std::unique_ptr<core::AssetResolver> files;
   std::unique_ptr<core::RecordingResolver> assets;  ///< over `files`; knows what was opened
 };

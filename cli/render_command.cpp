@@ -1,9 +1,12 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
 
@@ -144,6 +147,16 @@ void print_bad_samples(const RunTotals& totals, const std::string& path) {
   }
 }
 
+/// The first of `numbers` whose outputs are there.
+std::optional<int32_t> first_written(const std::vector<int32_t>& numbers,
+                                     const coordinator::LocalOutcome& outcome) {
+  std::set<int32_t> failed;
+  for (const coordinator::FrameFailure& failure : outcome.failures) failed.insert(failure.frame);
+  const auto first = std::find_if(numbers.begin(), numbers.end(),
+                                  [&](int32_t frame) { return !failed.contains(frame); });
+  return first == numbers.end() ? std::nullopt : std::optional(*first);
+}
+
 int report(const RenderOptions& options, const JobFrames& frames,
            const std::vector<int32_t>& numbers, const coordinator::LocalOutcome& outcome,
            const coordinator::Progress& progress) {
@@ -161,12 +174,12 @@ int report(const RenderOptions& options, const JobFrames& frames,
     std::fprintf(stderr, "interrupted; continue with --resume\n");
     return kInterrupted;
   }
-  if (!options.quiet && outcome.frames_done > 0) {
-    const std::vector<std::string> paths = frames.output_paths(numbers.front());
-    for (const std::string& path : paths) {
-      std::fprintf(
-          stderr, "wrote %s%s\n", path.c_str(),
-          numbers.size() > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done).c_str() : "");
+  const auto first = first_written(numbers, outcome);
+  if (!options.quiet && first) {
+    const std::string others =
+        outcome.frames_done > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done) : "";
+    for (const std::string& path : frames.output_paths(*first)) {
+      std::fprintf(stderr, "wrote %s%s\n", path.c_str(), others.c_str());
     }
     const auto samples = static_cast<double>(totals.counters.samples);
     std::fprintf(stderr, "%s, %.2f Msamples/s, %.2f Mrays/s, %.1f rays per sample\n",
@@ -207,7 +220,7 @@ int render_command(int argc, char** argv) {
   plan.threads = options.threads;
   coordinator::LocalLog log;
   log.folder = kept;
-  log.key = frames.log_key();
+  log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
   log.resume = options.resume;
 
   struct sigaction action {};

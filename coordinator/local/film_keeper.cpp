@@ -15,6 +15,9 @@ constexpr Duration kTryAgain = std::chrono::milliseconds(1100);
 /// memory; more would have to be rendered again.
 constexpr size_t kUnfinishedFilms = 2;
 
+/// Whose log it is. What its films are of stands beside each of them.
+constexpr const char* kLogKey = "hyades render, films by frame";
+
 TimePoint now() { return std::chrono::steady_clock::now(); }
 
 uint64_t memory_of(const core::Film& film) {
@@ -35,6 +38,10 @@ FilmKeeper::~FilmKeeper() {
 
 void FilmKeeper::join() {
   if (thread_.joinable()) thread_.join();
+}
+
+FrameKey FilmKeeper::key_of(int32_t frame) const {
+  return options_.frame_key ? options_.frame_key(frame) : FrameKey{};
 }
 
 core::Status FilmKeeper::open_log(bool erase) {
@@ -58,7 +65,7 @@ core::Status FilmKeeper::open_log(bool erase) {
     trouble_ = error.message;
     wake_.notify_one();
   };
-  auto log = FilmLog::open(options_.folder, options_.key, options);
+  auto log = FilmLog::open(options_.folder, kLogKey, options);
   if (!log) return log.error();
   log_ = std::move(*log);
   return {};
@@ -67,20 +74,24 @@ core::Status FilmKeeper::open_log(bool erase) {
 core::Result<LogContents> FilmKeeper::open() {
   if (options_.folder.empty()) return LogContents{};
   if (core::Status opened = open_log(!options_.resume); !opened) return opened.error();
-  const std::set<int32_t> frames(plan_.frames.begin(), plan_.frames.end());
-  auto contents = read_log(*log_, plan_.region, plan_.samples, frames);
+  const LogWish wish{
+      {plan_.frames.begin(), plan_.frames.end()}, plan_.region, plan_.samples, options_.frame_key};
+  auto contents = read_log(*log_, wish);
   if (contents && !contents->empty && contents->cut.tile_size == 0) {
     // Its beginning is damaged: without the cut the films cannot be told apart into units.
     if (core::Status opened = open_log(true); !opened) return opened.error();
     auto problems = std::move(contents->problems);
-    contents = read_log(*log_, plan_.region, plan_.samples, frames);
+    contents = read_log(*log_, wish);
     problems.emplace_back("how the frames were cut is lost: it begins afresh");
     if (contents) contents->problems = std::move(problems);
   }
-  if (!contents) return contents;
+  if (!contents) {
+    return core::Error{contents.error().in(options_.folder).message +
+                       "; render without --resume to begin afresh, or into another folder"};
+  }
   finished_ = contents->finished;
   films_ = contents->films;
-  write_cut_ = contents->empty;
+  write_cut_ = contents->empty || contents->cut.region != plan_.region;
   return contents;
 }
 
@@ -109,7 +120,7 @@ void FilmKeeper::keep(RecordId record, int32_t frame, core::Film film) {
   item.record = record;
   item.frame = frame;
   // Packing takes longer than anything else here and so is done by the thread that hands over.
-  if (log_) item.bytes = encode_unit(frame, film);
+  if (log_) item.bytes = encode_unit(frame, key_of(frame), film);
   item.memory = memory_of(film) + item.bytes.size();
   item.film = std::move(film);
   push(std::move(item), true);
@@ -120,7 +131,7 @@ void FilmKeeper::keep_finished(RecordId record, int32_t frame) {
   item.record = record;
   item.kind = Item::Kind::finished;
   item.frame = frame;
-  if (log_) item.bytes = encode_finished(frame);
+  if (log_) item.bytes = encode_finished(frame, {key_of(frame), plan_.region});
   push(std::move(item), false);
 }
 
@@ -221,7 +232,9 @@ void FilmKeeper::settle(uint64_t durable) {
     appended_.pop_front();
     settling_ = &item;
     settled_sequence_ = std::max(settled_sequence_, item.sequence);
-    if (item.kind == Item::Kind::finished) finished_.insert(item.frame);
+    if (item.kind == Item::Kind::finished) {
+      finished_[item.frame] = {key_of(item.frame), plan_.region};
+    }
     owner_.persisted(item.record);
     settling_ = nullptr;
     release(item.memory);
@@ -282,8 +295,8 @@ core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
     return sink(bytes);
   };
   core::Status status = put(encode_cut({plan_.region, tile_size_, plan_.samples}));
-  for (const int32_t frame : finished_) {
-    if (status) status = put(encode_finished(frame));
+  for (const auto& [frame, finished] : finished_) {
+    if (status) status = put(encode_finished(frame, finished));
   }
   std::map<int32_t, std::shared_ptr<core::Film>> films = films_;
   films.insert(unfinished_.begin(), unfinished_.end());
@@ -292,7 +305,8 @@ core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
     for (size_t first = 0; status && first < units.size();) {
       size_t end = first;
       while (end < units.size() && units[end].tile == units[first].tile) ++end;
-      status = put(encode_unit(frame, cut_film(*film, {units.data() + first, end - first})));
+      status = put(
+          encode_unit(frame, key_of(frame), cut_film(*film, {units.data() + first, end - first})));
       first = end;
       const std::lock_guard lock(mutex_);
       if (draining_) return core::Error{"the run ends"};

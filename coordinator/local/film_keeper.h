@@ -86,6 +86,7 @@ class FilmKeeper {
   };
 
   core::Status open_log(bool erase);
+  FrameKey key_of(int32_t frame) const;
   void push(Item item, bool may_wait);
   void run();
   void append(std::deque<Item> items);
@@ -114,7 +115,7 @@ class FilmKeeper {
   std::deque<Item> appended_;  ///< not durable yet, or not settled
   Item* settling_ = nullptr;
   std::map<int32_t, std::shared_ptr<core::Film>> films_;
-  std::set<int32_t> finished_;
+  std::map<int32_t, FinishedRecord> finished_;
   /// Complete films of frames whose outputs could not be written.
   std::map<int32_t, std::shared_ptr<core::Film>> unfinished_;
   int32_t tile_size_ = 0;

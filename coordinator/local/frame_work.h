@@ -17,10 +17,10 @@ class FrameWork {
   virtual ~FrameWork() = default;
 
   /// The film of exactly this unit: window = its tile, coverage = its batches. A pure function of
-  /// the unit, called by many threads at once. `thread` is in [0, threads) and tells the callers
-  /// apart. When `stop` becomes true it returns soon (within a row of pixels) with anything; an
-  /// error otherwise is the unit's fault and counts as a failed attempt.
-  virtual core::Result<core::Film> render(const core::Unit& unit, int thread,
+  /// the unit, called by many threads at once. When `stop` becomes true it returns soon (within a
+  /// row of pixels) with anything; an error otherwise is the unit's fault and counts as a failed
+  /// attempt.
+  virtual core::Result<core::Film> render(const core::Unit& unit,
                                           const std::atomic<bool>& stop) const = 0;
 };
 
@@ -30,9 +30,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   /// Loads the frame's scene. Called by one thread, for one frame after the other, while others
-  /// render; may look at `stop` to return early with an error.
-  virtual core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t frame,
-                                                                 const std::atomic<bool>& stop) = 0;
+  /// render.
+  virtual core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t frame) = 0;
 };
 
 /// Where frames go to.

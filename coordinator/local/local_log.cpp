@@ -1,11 +1,13 @@
 #include "coordinator/local/local_log.h"
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "coordinator/scheduler/tile_grid.h"
 #include "core/film/film_codec.h"
 
 namespace hyades::coordinator {
@@ -13,7 +15,7 @@ namespace {
 
 /// The first byte of every record.
 enum class Kind : uint8_t { cut = 1, unit = 2, finished = 3 };
-constexpr uint8_t kVersion = 1;
+constexpr uint8_t kVersion = 2;
 
 // Numbers are little-endian, 32 bits.
 void put(std::vector<std::byte>& out, uint32_t value) {
@@ -32,12 +34,31 @@ std::vector<std::byte> begin(Kind kind) {
   return {static_cast<std::byte>(kind), static_cast<std::byte>(kVersion)};
 }
 
+void put(std::vector<std::byte>& out, const core::PixelRect& rect) {
+  for (const int32_t n : {rect.x0, rect.y0, rect.x1, rect.y1}) put(out, static_cast<uint32_t>(n));
+}
+
+core::PixelRect get_rect(std::span<const std::byte> bytes, size_t at) {
+  const auto number = [&](size_t i) { return static_cast<int32_t>(get(bytes, at + 4 * i)); };
+  return {number(0), number(1), number(2), number(3)};
+}
+
+void put(std::vector<std::byte>& out, const FrameKey& key) {
+  for (const uint8_t byte : key) out.push_back(static_cast<std::byte>(byte));
+}
+
+FrameKey get_key(std::span<const std::byte> bytes, size_t at) {
+  FrameKey key{};
+  for (size_t i = 0; i < key.size(); ++i) key[i] = std::to_integer<uint8_t>(bytes[at + i]);
+  return key;
+}
+
 constexpr size_t kHead = 2;
+constexpr size_t kFrameAndKey = 4 + sizeof(FrameKey);
 
 class Reader {
  public:
-  Reader(LogContents& contents, const core::PixelRect& region, const std::set<int32_t>& frames)
-      : contents_(contents), region_(region), frames_(frames) {}
+  Reader(LogContents& contents, const LogWish& wish) : contents_(contents), wish_(wish) {}
 
   core::Status read(std::span<const std::byte> record) {
     if (record.size() < kHead + 4) return core::Error{"a record is too short"};
@@ -51,78 +72,137 @@ class Reader {
       case Kind::unit:
         return read_unit(record.subspan(kHead));
       case Kind::finished:
-        contents_.finished.insert(static_cast<int32_t>(get(record, kHead)));
-        contents_.films.erase(static_cast<int32_t>(get(record, kHead)));
-        return {};
+        return read_finished(record.subspan(kHead));
     }
     return core::Error{"a record of an unknown kind"};
   }
 
+  /// The first frame that is wanted and whose films are of other pixels.
+  std::optional<int32_t> other_pixels() const { return other_pixels_; }
+
  private:
   core::Status read_cut(std::span<const std::byte> bytes) {
-    if (bytes.size() != 24) return core::Error{"the first record has a wrong length"};
-    const auto number = [&](size_t i) { return static_cast<int32_t>(get(bytes, 4 * i)); };
-    contents_.cut = {{number(0), number(1), number(2), number(3)}, number(4), get(bytes, 20)};
-    if (contents_.cut.tile_size < 1) return core::Error{"an absurd tile size"};
+    if (bytes.size() != 24) return core::Error{"the record of the cut has a wrong length"};
+    const CutRecord cut{get_rect(bytes, 0), static_cast<int32_t>(get(bytes, 16)), get(bytes, 20)};
+    if (cut.tile_size < 1) return core::Error{"an absurd tile size"};
+    contents_.cut = cut;
+    other_regions_ = other_regions_ || cut.region != wish_.region;
     return {};
   }
 
   core::Status read_unit(std::span<const std::byte> bytes) {
+    if (bytes.size() < kFrameAndKey) return core::Error{"a film's record is too short"};
     const auto frame = static_cast<int32_t>(get(bytes, 0));
     // A film after the end means that the frame was begun again, because its outputs were gone.
     contents_.finished.erase(frame);
-    if (!frames_.contains(frame)) return {};
-    auto film = core::decode_film(bytes.subspan(4));
+    if (!wish_.frames.contains(frame) || !has_key(frame, get_key(bytes, 4))) return {};
+    auto film = core::decode_film(bytes.subspan(kFrameAndKey));
     if (!film) return film.error();
     auto& whole = contents_.films[frame];
-    if (!whole) whole = std::make_shared<core::Film>(film->layout(), region_);
-    return whole->merge(*film);
+    if (!whole) whole = std::make_shared<core::Film>(film->layout(), wish_.region);
+    return other_regions_ ? merge_tiles(*film, *whole) : whole->merge(*film);
+  }
+
+  core::Status read_finished(std::span<const std::byte> bytes) {
+    if (bytes.size() != kFrameAndKey + 16) return core::Error{"a record has a wrong length"};
+    const auto frame = static_cast<int32_t>(get(bytes, 0));
+    const FinishedRecord finished{get_key(bytes, 4), get_rect(bytes, kFrameAndKey)};
+    contents_.finished.erase(frame);
+    if (wish_.frames.contains(frame)) {
+      if (!has_key(frame, finished.key)) return {};
+      // The outputs show another crop now, but the films may be of use.
+      if (finished.region != wish_.region) return {};
+    }
+    contents_.finished[frame] = finished;
+    contents_.films.erase(frame);
+    return {};
+  }
+
+  bool has_key(int32_t frame, const FrameKey& key) {
+    if (other_pixels_) return false;
+    auto [known, fresh] = keys_.try_emplace(frame);
+    if (fresh && wish_.key) known->second = wish_.key(frame);
+    if (known->second == key) return true;
+    other_pixels_ = frame;
+    return false;
+  }
+
+  /// Takes from the film of another region what makes up whole tiles here and is not there yet.
+  core::Status merge_tiles(const core::Film& film, core::Film& whole) const {
+    const core::PixelRect common = core::intersection(film.window(), wish_.region);
+    const int32_t size = contents_.cut.tile_size;
+    if (size < 1) return core::Error{"a film stands before the record of its cut"};
+    for (int32_t y = tile_begin(common.y0, size); y < common.y1; y += size) {
+      for (int32_t x = tile_begin(common.x0, size); x < common.x1; x += size) {
+        const core::PixelRect tile = core::intersection(wish_.region, {x, y, x + size, y + size});
+        if (core::Status merged = merge_tile(film, tile, whole); !merged) return merged;
+      }
+    }
+    return {};
+  }
+
+  static core::Status merge_tile(const core::Film& film, const core::PixelRect& tile,
+                                 core::Film& whole) {
+    if (!film.window().contains(tile)) return {};
+    std::vector<core::Unit> units;
+    for (const core::CoverageBox& box : film.coverage().boxes()) {
+      if (core::intersection(box.tile, tile).empty()) continue;
+      // Sums cannot be taken apart: all that the film holds of the tile, or nothing.
+      if (!box.tile.contains(tile) || whole.coverage().overlap({tile, box.batches})) return {};
+      units.push_back({0, tile, box.batches});
+    }
+    return units.empty() ? core::Status() : whole.merge(cut_film(film, units));
   }
 
   LogContents& contents_;
-  const core::PixelRect region_;
-  const std::set<int32_t>& frames_;
+  const LogWish& wish_;
+  std::map<int32_t, FrameKey> keys_;  ///< of the frames met
+  std::optional<int32_t> other_pixels_;
+  bool other_regions_ = false;  ///< films may reach beyond the region, or hold parts of its tiles
 };
 
 }  // namespace
 
 std::vector<std::byte> encode_cut(const CutRecord& cut) {
   std::vector<std::byte> out = begin(Kind::cut);
-  for (const int32_t n :
-       {cut.region.x0, cut.region.y0, cut.region.x1, cut.region.y1, cut.tile_size}) {
-    put(out, static_cast<uint32_t>(n));
-  }
+  put(out, cut.region);
+  put(out, static_cast<uint32_t>(cut.tile_size));
   put(out, cut.samples);
   return out;
 }
 
-std::vector<std::byte> encode_unit(int32_t frame, const core::Film& film) {
+std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const core::Film& film) {
   std::vector<std::byte> out = begin(Kind::unit);
   put(out, static_cast<uint32_t>(frame));
+  put(out, key);
   const std::vector<std::byte> bytes = core::encode_film(film);
   out.insert(out.end(), bytes.begin(), bytes.end());
   return out;
 }
 
-std::vector<std::byte> encode_finished(int32_t frame) {
+std::vector<std::byte> encode_finished(int32_t frame, const FinishedRecord& finished) {
   std::vector<std::byte> out = begin(Kind::finished);
   put(out, static_cast<uint32_t>(frame));
+  put(out, finished.key);
+  put(out, finished.region);
   return out;
 }
 
-core::Result<LogContents> read_log(FilmLog& log, const core::PixelRect& region, uint32_t samples,
-                                   const std::set<int32_t>& frames) {
+core::Result<LogContents> read_log(FilmLog& log, const LogWish& wish) {
   LogContents contents;
-  Reader reader(contents, region, frames);
+  Reader reader(contents, wish);
   auto report = log.replay([&](std::span<const std::byte> record) { return reader.read(record); });
   if (!report) return report.error();
   contents.problems = std::move(report->problems);
   if (contents.cut.tile_size == 0) return contents;
-  if (contents.cut.region != region || contents.cut.samples != samples) {
-    return core::Error{
-        fmt::format("the kept films are of {}x{} pixels and {} samples, the job has {}x{} and {}",
-                    contents.cut.region.width(), contents.cut.region.height(), contents.cut.samples,
-                    region.width(), region.height(), samples)};
+  if (contents.cut.samples != wish.samples) {
+    return core::Error{fmt::format("the kept films are of {} samples per pixel, the job has {}",
+                                   contents.cut.samples, wish.samples)};
+  }
+  if (const auto frame = reader.other_pixels()) {
+    return core::Error{fmt::format(
+        "the kept films of frame {} are of another picture: what decides its pixels has changed",
+        *frame)};
   }
   return contents;
 }
@@ -131,8 +211,8 @@ std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,
                                  const core::PixelRect& region, int32_t tile_size) {
   std::vector<core::Unit> units;
   for (const core::CoverageBox& box : film.coverage().boxes()) {
-    for (int32_t y = box.tile.y0; y < box.tile.y1; y += tile_size) {
-      for (int32_t x = box.tile.x0; x < box.tile.x1; x += tile_size) {
+    for (int32_t y = tile_begin(box.tile.y0, tile_size); y < box.tile.y1; y += tile_size) {
+      for (int32_t x = tile_begin(box.tile.x0, tile_size); x < box.tile.x1; x += tile_size) {
         const core::PixelRect tile =
             core::intersection(region, {x, y, x + tile_size, y + tile_size});
         units.push_back({frame, tile, box.batches});

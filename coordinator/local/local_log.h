@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -18,7 +19,8 @@ namespace hyades::coordinator {
 
 // The records of a run's film log. docs/film-log.md describes the log, which does not know them.
 
-/// What every log begins with: how the frames are cut. Version 1.
+/// What the log of every run begins with: how the frames are cut. Where the region differs from run
+/// to run (another crop), one stands before the films of each.
 struct CutRecord {
   core::PixelRect region;
   int32_t tile_size = 0;
@@ -26,24 +28,40 @@ struct CutRecord {
   friend bool operator==(const CutRecord&, const CutRecord&) = default;
 };
 
+/// A frame whose outputs are there.
+struct FinishedRecord {
+  FrameKey key{};
+  core::PixelRect region;
+};
+
 std::vector<std::byte> encode_cut(const CutRecord& cut);
 /// A film of some tiles and batches of a frame.
-std::vector<std::byte> encode_unit(int32_t frame, const core::Film& film);
-std::vector<std::byte> encode_finished(int32_t frame);
+std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const core::Film& film);
+std::vector<std::byte> encode_finished(int32_t frame, const FinishedRecord& finished);
 
 /// What a log holds.
 struct LogContents {
   bool empty = true;
-  CutRecord cut;  ///< tile_size 0: not found
-  std::set<int32_t> finished;
+  CutRecord cut;  ///< the last; tile_size 0: not found
+  /// Of the frames that were asked for: with this key and region; of others: whatever they have.
+  std::map<int32_t, FinishedRecord> finished;
   std::map<int32_t, std::shared_ptr<core::Film>> films;  ///< of the other frames, merged
   std::vector<std::string> problems;  ///< damage, in words; costs rendering again
 };
 
-/// Reads all of `log`, which has just been opened, merging the films of `frames`; others are
-/// skipped. Fails where the log was written for another cut than `region` and `samples`.
-core::Result<LogContents> read_log(FilmLog& log, const core::PixelRect& region, uint32_t samples,
-                                   const std::set<int32_t>& frames);
+/// What is wanted of a log.
+struct LogWish {
+  std::set<int32_t> frames;
+  core::PixelRect region;
+  uint32_t samples = 1;
+  std::function<FrameKey(int32_t frame)> key;
+};
+
+/// Reads all of `log`, which has just been opened, merging the films of the frames of `wish`;
+/// others are skipped. Of films of another region the tiles are taken that lie within both. Fails
+/// where the log has films of these frames that have other pixels: another key, or another number
+/// of samples.
+core::Result<LogContents> read_log(FilmLog& log, const LogWish& wish);
 
 /// The units that a film holds: its coverage, cut along the tiles; those of a tile stand together.
 std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,

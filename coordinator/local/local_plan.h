@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/store/log_files.h"
+#include "core/base/hash.h"
 #include "core/base/rect.h"
 
 namespace hyades::coordinator {
@@ -26,11 +28,15 @@ struct LocalPlan {
   uint64_t max_waiting_bytes = uint64_t{512} << 20U;
 };
 
+using FrameKey = core::Sha256;
+
 /// Where the run keeps its films.
 struct LocalLog {
   std::string folder;  ///< empty: nothing is kept, the run cannot be resumed
-  /// What decides the pixels of all frames (one line): films of another key are never mixed in.
-  std::string key;
+  /// Hash of what decides a frame's pixels: a kept film of another key is never mixed in, it ends
+  /// the run before it begins. Called by many threads. All frames have the same key where it is
+  /// empty.
+  std::function<FrameKey(int32_t frame)> frame_key;
   /// Continue with what the folder holds; otherwise it is emptied first.
   bool resume = false;
   /// The log is rewritten when it has grown by this much, and by as much as the films take.

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "coordinator/local/noise.h"
-
 namespace hyades::coordinator {
 namespace {
 
 constexpr JobId kJob{1};
-constexpr Duration kNoiseEvery = std::chrono::seconds(1);
 
 SchedulerOptions scheduler_options(const LocalPlan& plan) {
   SchedulerOptions options;
@@ -23,14 +18,6 @@ SchedulerOptions scheduler_options(const LocalPlan& plan) {
 }
 
 double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
-
-uint64_t samples_of(const core::Unit& unit, uint32_t samples_per_pixel) {
-  uint64_t samples = 0;
-  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
-    samples += core::samples_in_batch(b, samples_per_pixel);
-  }
-  return samples * static_cast<uint64_t>(unit.tile.area());
-}
 
 }  // namespace
 
@@ -80,7 +67,7 @@ core::Status LocalRun::start() {
     } else if (const auto film = contents->films.find(frame); film != contents->films.end()) {
       for (const core::Unit& unit : units_of(frame, *film->second, plan_.region, plan_.tile_size)) {
         job.restored.accepted.push_back({unit, Digest{}, {}});
-        frame_samples_[frame] += samples_of(unit, plan_.samples);
+        frame_samples_[frame] += samples_of(unit);
       }
       progress_.samples_done += frame_samples_[frame];
     }
@@ -179,78 +166,6 @@ std::vector<Action> LocalRun::tell_locked(const Event& event) {
     }
   }
   return others;
-}
-
-void LocalRun::carry_out(const std::vector<Action>& actions) {
-  for (const Action& action : actions) {
-    if (const auto* persist = std::get_if<Persist>(&action)) {
-      if (const auto* done = std::get_if<FrameFinishedRecord>(&persist->record)) {
-        keeper_.keep_finished(persist->id, done->frame);
-      } else if (std::holds_alternative<FrameFailedRecord>(persist->record)) {
-        keeper_.keep_failed(persist->id);
-      }
-    } else if (const auto* merge = std::get_if<Merge>(&action)) {
-      if (const core::Status merged = keeper_.merge(merge->record); !merged) {
-        const std::lock_guard lock(mutex_);
-        end_locked("a film cannot be merged: " + merged.error().message);
-      } else {
-        note_film(merge->unit.frame, *keeper_.film(merge->unit.frame));
-      }
-    } else if (const auto* finish = std::get_if<FinishFrame>(&action)) {
-      const std::lock_guard lock(mutex_);
-      works_.erase(finish->frame);
-      in_flight_.insert(finish->frame);
-      // The keeper's films are its thread's; a second attempt comes from the finishing thread.
-      auto& film = complete_[finish->frame];
-      if (!film) film = keeper_.film(finish->frame);
-      to_finish_.push_back({finish->frame, film});
-      finish_wake_.notify_one();
-    } else if (const auto* done = std::get_if<FrameDone>(&action)) {
-      keeper_.forget(done->frame, true);
-      const std::lock_guard lock(mutex_);
-      in_flight_.erase(done->frame);
-      complete_.erase(done->frame);
-      frame_samples_.erase(done->frame);
-      ++progress_.frames_done;
-    } else if (const auto* failed = std::get_if<FrameFailed>(&action)) {
-      keeper_.forget(failed->frame, false);
-      const std::lock_guard lock(mutex_);
-      works_.erase(failed->frame);
-      in_flight_.erase(failed->frame);
-      complete_.erase(failed->frame);
-      progress_.samples -= static_cast<uint64_t>(plan_.region.area()) * plan_.samples;
-      progress_.samples_done -= frame_samples_[failed->frame];
-      frame_samples_.erase(failed->frame);
-      ++progress_.frames_failed;
-      outcome_.failures.push_back({failed->frame, failed->reason});
-    } else if (const auto* reject = std::get_if<Reject>(&action)) {
-      // A film that was lost on its way to the disk: its unit will be rendered again.
-      const std::lock_guard lock(mutex_);
-      count_locked(reject->unit, false);
-    } else if (std::holds_alternative<JobEnded>(action)) {
-      const std::lock_guard lock(mutex_);
-      outcome_.complete = true;
-      end_locked({});
-    }
-  }
-}
-
-void LocalRun::count_locked(const core::Unit& unit, bool done) {
-  if (!in_flight_.contains(unit.frame)) return;
-  const uint64_t samples = samples_of(unit, plan_.samples);
-  progress_.units_done += done ? 1 : 0;
-  progress_.samples_done += done ? samples : -samples;
-  frame_samples_[unit.frame] += done ? samples : -samples;
-}
-
-void LocalRun::note_film(int32_t frame, const core::Film& film) {
-  const TimePoint now = std::chrono::steady_clock::now();
-  if (now - last_noise_ < kNoiseEvery) return;
-  last_noise_ = now;
-  const double noise = estimate_noise(film);
-  const std::lock_guard lock(mutex_);
-  progress_.noise = noise;
-  progress_.noise_frame = frame;
 }
 
 void LocalRun::persisted(RecordId record) { carry_out(tell(Persisted{record})); }

@@ -78,7 +78,22 @@ class LocalRun : private FilmKeeper::Owner {
   std::vector<Action> tell(const Event& event);
   std::vector<Action> tell_locked(const Event& event);
   void carry_out(const std::vector<Action>& actions);
+  void act(const Persist& persist);
+  void act(const Merge& merge);
+  void act(const FinishFrame& finish);
+  void act(const FrameDone& done);
+  void act(const FrameFailed& failed);
+  void act(const Reject& reject);
+  void act(const JobEnded& ended);
+  // tell_locked() has dealt with these.
+  void act(const Lease&) {}
+  void act(const OpenFrame&) {}
+  // Threads do not forget, do not fall behind each other and are all of one machine.
+  void act(const Revoke&) {}
+  void act(const Acknowledge&) {}
+  void act(const Conflict&) {}
   void end_locked(const std::string& error);
+  uint64_t samples_of(const core::Unit& unit) const;
   void count_locked(const core::Unit& unit, bool done);
   void note_film(int32_t frame, const core::Film& film);
 

@@ -13,10 +13,10 @@ namespace {
 constexpr JobId kJob{1};
 
 /// Renders a unit and makes sure that the film is that unit's. What is thrown is its failure.
-core::Result<core::Film> render_unit(const FrameWork& work, const core::Unit& unit, int thread,
+core::Result<core::Film> render_unit(const FrameWork& work, const core::Unit& unit,
                                      const std::atomic<bool>& stop) {
   try {
-    auto film = work.render(unit, thread, stop);
+    auto film = work.render(unit, stop);
     if (!film || stop) return film;
     const core::CoverageBox box{unit.tile, unit.batches};
     const uint64_t volume = static_cast<uint64_t>(unit.tile.area()) * unit.batches.count;
@@ -42,7 +42,7 @@ void LocalRun::render_loop(int thread) {
   const core::FpMode mode;
   while (const std::optional<Task> task = next_task(thread)) {
     const TimePoint begin = std::chrono::steady_clock::now();
-    auto film = render_unit(*task->work, task->unit, thread, stop_);
+    auto film = render_unit(*task->work, task->unit, stop_);
     if (stop_) break;
     if (film) {
       deliver(thread, *task, std::move(*film), std::chrono::steady_clock::now() - begin);
@@ -98,7 +98,7 @@ void LocalRun::load_loop() {
     }
     core::Result<std::shared_ptr<const FrameWork>> work = core::Error{};
     try {
-      work = source_.prepare(frame, stop_);
+      work = source_.prepare(frame);
     } catch (const std::exception& e) {
       work = core::Error{e.what()};
     }

@@ -31,9 +31,11 @@ uint64_t hilbert_index(uint32_t side, uint32_t x, uint32_t y) {
 
 TileGrid::TileGrid(core::PixelRect region, int32_t tile_size, uint64_t shuffle)
     : region_(region),
+      x0_(tile_begin(region.x0, tile_size)),
+      y0_(tile_begin(region.y0, tile_size)),
       tile_size_(tile_size),
-      columns_(static_cast<uint32_t>((region.width() + tile_size - 1) / tile_size)),
-      rows_(static_cast<uint32_t>((region.height() + tile_size - 1) / tile_size)) {
+      columns_(static_cast<uint32_t>((region.x1 - x0_ + tile_size - 1) / tile_size)),
+      rows_(static_cast<uint32_t>((region.y1 - y0_ + tile_size - 1) / tile_size)) {
   const uint32_t side = std::bit_ceil(std::max(columns_, rows_));
   std::vector<uint64_t> rank(size());
   for (uint32_t i = 0; i < size(); ++i) {
@@ -47,15 +49,15 @@ TileGrid::TileGrid(core::PixelRect region, int32_t tile_size, uint64_t shuffle)
 }
 
 core::PixelRect TileGrid::tile(uint32_t index) const {
-  const int32_t x = region_.x0 + static_cast<int32_t>(index % columns_) * tile_size_;
-  const int32_t y = region_.y0 + static_cast<int32_t>(index / columns_) * tile_size_;
+  const int32_t x = x0_ + static_cast<int32_t>(index % columns_) * tile_size_;
+  const int32_t y = y0_ + static_cast<int32_t>(index / columns_) * tile_size_;
   return core::intersection(region_, {x, y, x + tile_size_, y + tile_size_});
 }
 
 std::optional<uint32_t> TileGrid::index_of(const core::PixelRect& rect) const {
   if (rect.empty() || !region_.contains(rect)) return std::nullopt;
-  const uint32_t column = static_cast<uint32_t>((rect.x0 - region_.x0) / tile_size_);
-  const uint32_t row = static_cast<uint32_t>((rect.y0 - region_.y0) / tile_size_);
+  const uint32_t column = static_cast<uint32_t>((rect.x0 - x0_) / tile_size_);
+  const uint32_t row = static_cast<uint32_t>((rect.y0 - y0_) / tile_size_);
   const uint32_t index = row * columns_ + column;
   if (tile(index) != rect) return std::nullopt;
   return index;

@@ -8,6 +8,14 @@
 
 namespace hyades::coordinator {
 
+/// Where the tile that pixel `at` (row or column) lies in begins. Tiles begin at multiples of their
+/// size in the full frame, whatever part of it is rendered, so that films of one crop are of use to
+/// another.
+inline int32_t tile_begin(int32_t at, int32_t tile_size) {
+  const int32_t past = at % tile_size;
+  return past < 0 ? at - past - tile_size : at - past;
+}
+
 /// How a frame's pixels are cut into tiles, and in which order the tiles are leased: along a
 /// Hilbert curve, so that what is rendered together lies together; or shuffled, which must not
 /// change any picture and exists so that tests can show it.
@@ -27,6 +35,8 @@ class TileGrid {
 
  private:
   core::PixelRect region_;
+  int32_t x0_ = 0;  ///< where the first column and row begin, perhaps outside the region
+  int32_t y0_ = 0;
   int32_t tile_size_ = 1;
   uint32_t columns_ = 0;
   uint32_t rows_ = 0;

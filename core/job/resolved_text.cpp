@@ -11,12 +11,6 @@ void write(FieldWriter& out, const FilmDesc& film) {
   out.enter("film");
   out.put("width", film.width);
   out.put("height", film.height);
-  const PixelRect all{0, 0, film.width, film.height};
-  const PixelRect crop = film.crop.value_or(all);
-  out.put("crop.x0", crop.x0);
-  out.put("crop.y0", crop.y0);
-  out.put("crop.x1", crop.x1);
-  out.put("crop.y1", crop.y1);
   out.put("filter", static_cast<int32_t>(film.filter));
   out.put("filter_radius", film.filter_radius);
   out.leave();

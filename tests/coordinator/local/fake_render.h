@@ -69,7 +69,7 @@ class FakeRender final : public FrameSource, public FrameSink {
   // What shall happen; to be set before the run.
   std::chrono::microseconds unit_delay{0};  ///< given up at once on stop
   std::chrono::milliseconds finish_delay{0};
-  std::function<core::Status(const core::Unit&, int thread)> unit_fault;
+  std::function<core::Status(const core::Unit&)> unit_fault;
   std::function<core::Status(int32_t frame)> prepare_fault;
   std::function<core::Status(int32_t frame)> finish_fault;
 
@@ -87,8 +87,7 @@ class FakeRender final : public FrameSource, public FrameSink {
   uint64_t units() const { return units_; }
   bool prepared_while_rendering() const { return prepared_while_rendering_; }
 
-  core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t frame,
-                                                         const std::atomic<bool>&) override {
+  core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t frame) override {
     if (prepare_fault) {
       if (auto fault = prepare_fault(frame); !fault) return fault.error();
     }
@@ -122,19 +121,19 @@ class FakeRender final : public FrameSource, public FrameSink {
     }
     ~Work() override { --owner_.alive_; }
 
-    core::Result<core::Film> render(const core::Unit& unit, int thread,
+    core::Result<core::Film> render(const core::Unit& unit,
                                     const std::atomic<bool>& stop) const override {
       ++owner_.rendering_;
-      auto film = render_slowly(unit, thread, stop);
+      auto film = render_slowly(unit, stop);
       --owner_.rendering_;
       return film;
     }
 
    private:
-    core::Result<core::Film> render_slowly(const core::Unit& unit, int thread,
+    core::Result<core::Film> render_slowly(const core::Unit& unit,
                                            const std::atomic<bool>& stop) const {
       if (owner_.unit_fault) {
-        if (auto fault = owner_.unit_fault(unit, thread); !fault) return fault.error();
+        if (auto fault = owner_.unit_fault(unit); !fault) return fault.error();
       }
       const auto end = std::chrono::steady_clock::now() + owner_.unit_delay;
       while (!stop && std::chrono::steady_clock::now() < end) {

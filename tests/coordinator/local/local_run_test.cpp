@@ -87,7 +87,7 @@ TEST(LocalRun, AUnitThatAlwaysFailsFailsItsFrameOnly) {
   plan.frames = {1, 2, 3};
   FakeRender render(plan.samples);
   std::atomic<int> attempts = 0;
-  render.unit_fault = [&](const core::Unit& unit, int) -> core::Status {
+  render.unit_fault = [&](const core::Unit& unit) -> core::Status {
     if (unit.frame != 2 || !unit.tile.contains(40, 30) || unit.batches.first != 0) return {};
     ++attempts;
     return core::Error{"the walls fell down"};
@@ -105,7 +105,7 @@ TEST(LocalRun, AUnitThatFailsOnceIsRenderedAgain) {
   LocalPlan plan = small_plan();
   FakeRender render(plan.samples);
   std::atomic<int> failures = 0;
-  render.unit_fault = [&](const core::Unit&, int) -> core::Status {
+  render.unit_fault = [&](const core::Unit&) -> core::Status {
     if (failures.fetch_add(1) == 4) throw std::runtime_error("a passing cloud");
     return {};
   };
@@ -115,11 +115,10 @@ TEST(LocalRun, AUnitThatFailsOnceIsRenderedAgain) {
 
 TEST(LocalRun, AFilmOfSomethingElseIsAFailure) {
   class Wrong final : public FrameSource, public FrameWork {
-    core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t,
-                                                           const std::atomic<bool>&) override {
+    core::Result<std::shared_ptr<const FrameWork>> prepare(int32_t) override {
       return std::shared_ptr<const FrameWork>(std::make_shared<Wrong>());
     }
-    core::Result<core::Film> render(const core::Unit& unit, int,
+    core::Result<core::Film> render(const core::Unit& unit,
                                     const std::atomic<bool>&) const override {
       core::Unit other = unit;
       other.batches.first += 1;

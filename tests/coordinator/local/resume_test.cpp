@@ -37,7 +37,7 @@ LocalPlan small_plan() {
 LocalLog log_in(const std::string& folder, bool resume) {
   LocalLog log;
   log.folder = folder;
-  log.key = "the same pixels";
+  log.frame_key = [](int32_t frame) { return core::sha256("pixels " + std::to_string(frame)); };
   log.resume = resume;
   return log;
 }
@@ -61,6 +61,14 @@ bool run_for(const LocalPlan& plan, const LocalLog& log, FakeRender& render, Dur
   EXPECT_TRUE(run.wait_for(kLong));
   EXPECT_EQ(run.outcome().error, "");
   return run.outcome().complete;
+}
+
+/// What a run that must not start says.
+std::string refusal(const LocalPlan& plan, const LocalLog& log, FakeRender& render) {
+  LocalRun run(plan, log, render, render);
+  const core::Status started = run.start();
+  EXPECT_FALSE(started);
+  return started ? "" : started.error().message;
 }
 
 TEST(Resume, TenInterruptionsChangeNoBit) {
@@ -152,14 +160,89 @@ TEST(Resume, AnotherJobsFilmsAreRefused) {
   FakeRender render(plan.samples);
   ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
   LocalLog other = log_in(folder.file("log"), true);
-  other.key = "other pixels";
-  {
-    LocalRun run(plan, other, render, render);
-    EXPECT_FALSE(run.start());
-  }
+  other.frame_key = [](int32_t frame) { return core::sha256("others " + std::to_string(frame)); };
+  EXPECT_THAT(refusal(plan, other, render), testing::HasSubstr("frame 1 are of another picture"));
   plan.samples += 1;
-  LocalRun run(plan, log_in(folder.file("log"), true), render, render);
-  EXPECT_FALSE(run.start());
+  EXPECT_THAT(refusal(plan, log_in(folder.file("log"), true), render),
+              testing::HasSubstr("of 40 samples per pixel, the job has 41"));
+}
+
+/// Everything is rendered and kept, but no output can be written: the log holds all films.
+void render_without_outputs(const LocalPlan& plan, const LocalLog& log, FakeRender& render) {
+  render.finish_fault = [](int32_t) -> core::Status { return core::Error{"no such folder"}; };
+  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  render.finish_fault = nullptr;
+}
+
+TEST(Resume, OnlyTheFramesAskedForMustBeOfTheSamePixels) {
+  for (const bool finished : {false, true}) {
+    test::TempFolder folder;
+    LocalPlan plan = small_plan();
+    plan.frames = {1, 2};
+    FakeRender render(plan.samples);
+    if (finished) {
+      ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+    } else {
+      render_without_outputs(plan, log_in(folder.file("log"), false), render);
+    }
+    const uint64_t units = render.units();
+    LocalLog changed = log_in(folder.file("log"), true);
+    changed.frame_key = [](int32_t frame) {
+      return core::sha256((frame == 2 ? "others " : "pixels ") + std::to_string(frame));
+    };
+    EXPECT_THAT(refusal(plan, changed, render),
+                testing::HasSubstr("frame 2 are of another picture"));
+    plan.frames = {1, 3};
+    ASSERT_TRUE(run_for(plan, changed, render, kLong));
+    EXPECT_EQ(render.units(), units + units / 2) << "frame 1 was there";
+    expect_the_truth(plan, render);
+  }
+}
+
+TEST(Resume, AnotherCropKeepsTheTilesThatItShares) {
+  for (const uint64_t compact_bytes : {uint64_t{1} << 30U, uint64_t{10'000}}) {
+    test::TempFolder folder;
+    LocalPlan plan = small_plan();
+    plan.frames = {1, 2};
+    FakeRender render(plan.samples);
+    LocalLog log = log_in(folder.file("log"), false);
+    log.compact_bytes = compact_bytes;
+    render_without_outputs(plan, log, render);
+    log.resume = true;
+    const auto new_units = [&](const core::PixelRect& region) {
+      const uint64_t before = render.units();
+      plan.region = region;
+      render_without_outputs(plan, log, render);
+      const uint64_t units = render.units() - before;
+      EXPECT_TRUE(run_for(plan, log, render, kLong));
+      EXPECT_EQ(render.units(), before + units) << "only outputs were missing";
+      expect_the_truth(plan, render);
+      return units;
+    };
+    const uint64_t per_tile = 3 * 2;  // batches, frames
+    EXPECT_EQ(new_units({16, 0, 40, 32}), 0U);
+    if (compact_bytes < 1'000'000) continue;  // what no run asks for is not kept for ever
+    EXPECT_EQ(new_units({3, 5, 40, 40}), 0U);
+    // Its tiles at the right and lower edge reach farther than those that are there.
+    EXPECT_EQ(new_units({0, 0, 48, 48}), 5 * per_tile);
+    EXPECT_EQ(new_units({40, 40, 48, 48}), 0U);
+    EXPECT_EQ(new_units({0, 0, 40, 40}), 0U);
+    EXPECT_EQ(new_units({0, 0, 49, 48}), 3 * per_tile);
+  }
+}
+
+TEST(Resume, AFrameFinishedForAnotherCropIsNotTakenForThisOne) {
+  test::TempFolder folder;
+  LocalPlan plan = small_plan();
+  plan.frames = {1};
+  FakeRender render(plan.samples);
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  for (const core::PixelRect region :
+       {core::PixelRect{0, 0, 20, 20}, core::PixelRect{0, 0, 40, 40}}) {
+    plan.region = region;
+    ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLong));
+    expect_the_truth(plan, render);
+  }
 }
 
 TEST(Resume, MoreFramesCanBeAskedForLater) {

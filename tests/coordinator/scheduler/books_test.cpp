@@ -34,6 +34,22 @@ TEST(TileGrid, CoversEveryPixelOnce) {
   }
 }
 
+TEST(TileGrid, TilesLieAlikeWhateverPartIsRendered) {
+  const TileGrid whole({-40, -40, 80, 80}, 16);
+  for (const core::PixelRect region :
+       {core::PixelRect{-40, -40, 80, 80}, core::PixelRect{3, 5, 40, 31},
+        core::PixelRect{-7, -17, -1, 20}, core::PixelRect{32, 16, 33, 17}}) {
+    const TileGrid part(region, 16);
+    for (const uint32_t i : part.order()) {
+      bool within = false;
+      for (const uint32_t k : whole.order()) {
+        within = within || core::intersection(whole.tile(k), region) == part.tile(i);
+      }
+      EXPECT_TRUE(within);
+    }
+  }
+}
+
 TEST(TileGrid, ConsecutiveTilesAreNeighbours) {
   const TileGrid grid({0, 0, 128, 128}, 8);
   for (size_t i = 1; i < grid.order().size(); ++i) {

@@ -226,6 +226,7 @@ Outcome read(const std::string& text) {
   for (const int32_t frame : {job.frames.first, job.frames.first + 4, job.frames.last}) {
     all << render_key(job, frame, assets.records()) << "\n";
   }
+  if (job.film.crop) all << job.film.crop->x0 << " " << job.film.crop->y1 << " ";
   all << job.name << " " << job.frames.first << " " << job.frames.last << " " << job.frames.step;
   for (const OutputDesc& output : job.outputs) {
     all << "\n"

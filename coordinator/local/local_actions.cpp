@@ -1,0 +1,107 @@
+// What a run does of what the scheduler says.
+#include "coordinator/local/local_run.h"
+#include "coordinator/local/noise.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr Duration kNoiseEvery = std::chrono::seconds(1);
+
+}  // namespace
+
+void LocalRun::carry_out(const std::vector<Action>& actions) {
+  for (const Action& action : actions) {
+    std::visit([this](const auto& one) { act(one); }, action);
+  }
+}
+
+void LocalRun::act(const Persist& persist) {
+  if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {
+    keeper_.keep_finished(persist.id, done->frame);
+  } else if (std::holds_alternative<FrameFailedRecord>(persist.record)) {
+    keeper_.keep_failed(persist.id);
+  }
+  // A unit's film is handed over by the thread that has it, see deliver().
+}
+
+void LocalRun::act(const Merge& merge) {
+  if (const core::Status merged = keeper_.merge(merge.record); !merged) {
+    const std::lock_guard lock(mutex_);
+    end_locked("a film cannot be merged: " + merged.error().message);
+  } else {
+    note_film(merge.unit.frame, *keeper_.film(merge.unit.frame));
+  }
+}
+
+void LocalRun::act(const FinishFrame& finish) {
+  const std::lock_guard lock(mutex_);
+  works_.erase(finish.frame);
+  in_flight_.insert(finish.frame);
+  // The keeper's films are its thread's; a second attempt comes from the finishing thread.
+  auto& film = complete_[finish.frame];
+  if (!film) film = keeper_.film(finish.frame);
+  to_finish_.push_back({finish.frame, film});
+  finish_wake_.notify_one();
+}
+
+void LocalRun::act(const FrameDone& done) {
+  keeper_.forget(done.frame, true);
+  const std::lock_guard lock(mutex_);
+  in_flight_.erase(done.frame);
+  complete_.erase(done.frame);
+  frame_samples_.erase(done.frame);
+  ++progress_.frames_done;
+}
+
+void LocalRun::act(const FrameFailed& failed) {
+  keeper_.forget(failed.frame, false);
+  const std::lock_guard lock(mutex_);
+  works_.erase(failed.frame);
+  in_flight_.erase(failed.frame);
+  complete_.erase(failed.frame);
+  progress_.samples -= static_cast<uint64_t>(plan_.region.area()) * plan_.samples;
+  progress_.samples_done -= frame_samples_[failed.frame];
+  frame_samples_.erase(failed.frame);
+  ++progress_.frames_failed;
+  outcome_.failures.push_back({failed.frame, failed.reason});
+}
+
+/// A film was lost on its way to the disk: its unit will be rendered again.
+void LocalRun::act(const Reject& reject) {
+  const std::lock_guard lock(mutex_);
+  count_locked(reject.unit, false);
+}
+
+void LocalRun::act(const JobEnded& /*ended*/) {
+  const std::lock_guard lock(mutex_);
+  outcome_.complete = true;
+  end_locked({});
+}
+
+uint64_t LocalRun::samples_of(const core::Unit& unit) const {
+  uint64_t samples = 0;
+  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
+    samples += core::samples_in_batch(b, plan_.samples);
+  }
+  return samples * static_cast<uint64_t>(unit.tile.area());
+}
+
+void LocalRun::count_locked(const core::Unit& unit, bool done) {
+  if (!in_flight_.contains(unit.frame)) return;
+  const uint64_t samples = samples_of(unit);
+  progress_.units_done += done ? 1 : 0;
+  progress_.samples_done += done ? samples : -samples;
+  frame_samples_[unit.frame] += done ? samples : -samples;
+}
+
+void LocalRun::note_film(int32_t frame, const core::Film& film) {
+  const TimePoint now = std::chrono::steady_clock::now();
+  if (now - last_noise_ < kNoiseEvery) return;
+  last_noise_ = now;
+  const double noise = estimate_noise(film);
+  const std::lock_guard lock(mutex_);
+  progress_.noise = noise;
+  progress_.noise_frame = frame;
+}
+
+}  // namespace hyades::coordinator
