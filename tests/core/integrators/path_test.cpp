@@ -176,6 +176,23 @@ objects:
   EXPECT_TRUE(test::mean_is(moments, expected));
 }
 
+// Where the light begins within the glass, the factor stays: n^2 = 2.25 times less comes out of it.
+TEST(PathIntegrator, ALampInGlassIsSqueezedOnItsWayOut) {
+  const TestScene test(with_path(R"yaml(
+materials: {glass: {type: dielectric, ior: 1.5}, dark: {type: black}}
+objects:
+  block: {shape: box, size: [9, 2, 9], material: glass}
+  lamp: {shape: rectangle, size: [8, 8], material: dark, emit: {radiance: 1}}
+)yaml",
+                                 "max_depth: 100, roulette_depth: 100"));
+  Ray ray;
+  ray.origin = Vec3(0.0F, 3.0F, 0.0F);
+  ray.direction = Vec3(0.0F, -1.0F, 0.0F);
+  test::Moments moments;
+  for (uint32_t i = 0; i < 40'000; ++i) moments.add(double{trace(test, ray, i).radiance.x});
+  EXPECT_TRUE(test::mean_is(moments, 0.96 / 2.25));
+}
+
 TEST(PathIntegrator, LayersAreThoseOfTheFirstSurfaceAlbedoOfTheFirstThatIsNoMirror) {
   const TestScene test(with_path(R"yaml(
 materials: {mirror: {type: mirror, color: [0.5, 0.25, 1]}, wall: {type: lambert, color: [0.8, 0.8, 0.4]}}
