@@ -157,6 +157,12 @@ Status ContentStore::commit(ContentWriter& writer) {
   return {};
 }
 
+uint64_t ContentStore::begun(const std::string& name) const {
+  if (!is_content_name(name)) return 0;
+  const auto identity = identify(options_.folder + "/partial/" + name);
+  return identity ? identity->size : 0;
+}
+
 Status ContentStore::remove(const std::string& name) {
   if (!is_content_name(name)) return not_a_name(name);
   if (::unlink(path_of(name).c_str()) == 0 || errno == ENOENT) return {};

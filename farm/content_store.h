@@ -62,6 +62,10 @@ class ContentStore {
   /// few. The store must outlive the writer.
   core::Result<ContentWriter> write(const std::string& name, uint64_t size);
 
+  /// How many bytes of file `name` an unfinished write has left: where write() will probably go on.
+  /// Makes nothing and reads nothing, so that answering anybody's question costs little.
+  uint64_t begun(const std::string& name) const;
+
   /// Removes file `name`, pinned or not. No error where it is missing.
   core::Status remove(const std::string& name);
 

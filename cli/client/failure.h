@@ -24,6 +24,7 @@ struct Failure {
   std::string message;
   std::vector<std::string> missing = {};  ///< SHA-256 in hexadecimal: files to be uploaded first
   bool damaged = false;                   ///< bytes were not what their digest says
+  bool from_start = false;                ///< the other side lacks what it was believed to have
   bool again = false;                     ///< another try is due now
 };
 

@@ -348,7 +348,9 @@ Outcome FarmClient::upload(const core::AssetRecord& file, const std::string& pat
   }
   Failure out = state_->failure(status);
   if (status.error_code() == grpc::StatusCode::DATA_LOSS) out.message = changed.message;
-  // The caller asks how far it came and goes on from there.
+  // The caller asks how far it came and goes on from there. What the coordinator said may be held
+  // by a stream that it does not know to be broken yet: then everything has to come again.
+  out.from_start = status.error_code() == grpc::StatusCode::OUT_OF_RANGE && offset > 0;
   out.again = state_->wait_after(status);
   return out;
 }

@@ -97,6 +97,10 @@ Outcome upload_file(FarmClient& client, Missing one, const std::string& path,
     const Outcome failure =
         client.upload(one.file, path, one.offset, [&](uint64_t bytes) { display.sent(bytes); });
     if (!failure) return std::nullopt;
+    if (failure->from_start) {
+      one.offset = 0;
+      continue;
+    }
     // What was there of the file before may have been wrong too: once more from the beginning.
     if (failure->damaged ? ++restarts > kMostRestarts : !failure->again) return failure;
     std::vector<Missing> still;

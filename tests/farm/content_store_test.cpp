@@ -64,6 +64,9 @@ TEST(ContentStore, ResumesWhatWasBegun) {
   const auto store = open_store(folder.file("assets"));
   EXPECT_FALSE(store->contains(name, text.size()));
   EXPECT_FALSE(store->read(name));
+  EXPECT_EQ(store->begun(name), 60'000U);
+  EXPECT_EQ(store->begun(name_of("never")), 0U);
+  EXPECT_FALSE(fs::exists(folder.file("assets/partial/" + name_of("never"))));
   auto writer = store->write(name, text.size());
   ASSERT_TRUE(writer) << error_of(writer);
   ASSERT_EQ(writer->offset(), 60'000U);

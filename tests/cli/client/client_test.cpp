@@ -145,6 +145,14 @@ TEST_F(Client, UploadsGoOnWhereTheyBroke) {
   EXPECT_LT(farm_.uploaded, mesh_.size() + (size_t{1} << 20));
 }
 
+TEST_F(Client, UploadsBeginAgainWhereTheirBeginningIsLost) {
+  farm_.upload_cut = 1'500'000;
+  farm_.lose_partial = true;
+  const Ran ran = submit();
+  EXPECT_EQ(ran.status, kDone) << ran.err;
+  EXPECT_EQ(farm_.files[digest_of(mesh_)], mesh_);
+}
+
 TEST_F(Client, UploadsThatArriveDamagedAreSentAgain) {
   farm_.damage_upload = true;
   EXPECT_EQ(submit().status, kDone);

@@ -229,6 +229,11 @@ struct FakeFarm::AssetsService : v1::Assets::Service {
         size = part.size();
       }
       std::string& bytes = farm.partial[digest];
+      if (farm.lose_partial && part.chunk().offset() > 0) {
+        farm.lose_partial = false;
+        bytes.clear();
+        return {StatusCode::OUT_OF_RANGE, "bytes from 0 on are missing"};
+      }
       if (part.chunk().offset() != bytes.size()) return {StatusCode::INVALID_ARGUMENT, "offset"};
       std::string data = part.chunk().data();
       if (farm.damage_upload && !data.empty()) {

@@ -35,10 +35,11 @@ class FakeFarm {
   std::vector<v1::SubmitRequest> submitted;
   std::vector<v1::Worker> workers;
 
-  int unavailable = 0;         ///< so many calls fail with UNAVAILABLE first
-  int forget_files = 0;        ///< so many times Submit misses all files, which are forgotten
-  int break_streams = 0;       ///< so many streams of the server break in the middle
-  uint64_t upload_cut = 0;     ///< an upload breaks after so many bytes, once; 0: none
+  int unavailable = 0;        ///< so many calls fail with UNAVAILABLE first
+  int forget_files = 0;       ///< so many times Submit misses all files, which are forgotten
+  int break_streams = 0;      ///< so many streams of the server break in the middle
+  uint64_t upload_cut = 0;    ///< an upload breaks after so many bytes, once; 0: none
+  bool lose_partial = false;  ///< what had come of the next upload's file turns out not to be there
   bool damage_upload = false;  ///< the next upload's first byte arrives damaged
   bool damage_fetch = false;   ///< every fetched byte is wrong
   int calls = 0;
