@@ -9,9 +9,9 @@
 #include "core/base/version.h"
 #include "core/film/film_exr.h"
 #include "core/finish/picture.h"
-#include "core/geometry/isa.h"
 #include "core/job/layers.h"
 #include "core/job/render_key.h"
+#include "core/render/class_probe.h"
 #include "core/scene/build_scene.h"
 
 namespace hyades::cli {
@@ -21,6 +21,12 @@ constexpr size_t kBadExamples = 5;
 
 /// So many frames' keys are remembered: more than are in flight.
 constexpr size_t kKeysKept = 16;
+
+/// Empty where Embree does not run: then there is no film either.
+std::string machine_class() {
+  const auto measured = core::this_class();
+  return measured ? *measured : std::string();
+}
 
 }  // namespace
 
@@ -66,6 +72,7 @@ core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
       {"hyades.frame", std::to_string(frame)},
       {"hyades.samples", std::to_string(info.samples)},
       {"hyades.renderKey", info.render_key},
+      {"hyades.class", info.worker_class},
       {"hyades.build", info.build},
   };
   const core::Image picture = film.normalised();
@@ -112,7 +119,7 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
   info.height = job.film.height;
   info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
-  info.worker_class = core::embree_isa().ok() ? *core::embree_isa() : "";
+  info.worker_class = machine_class();
   info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
   return info;
 }
@@ -121,8 +128,10 @@ coordinator::FrameKey JobFrames::frame_key(int32_t frame) {
   const std::lock_guard lock(keys_mutex_);
   if (const auto known = keys_.find(frame); known != keys_.end()) return known->second;
   const coordinator::FrameKey key =
-      core::sha256(fmt::format("{} {}{}{}", core::render_key(loaded_.job, frame, assets_),
-                               layers_.depth, layers_.albedo, layers_.normal));
+      // Another machine (or build) may give other bits: its films are not continued here.
+      core::sha256(fmt::format("{} {} {}{}{}", machine_class(),
+                               core::render_key(loaded_.job, frame, assets_), layers_.depth,
+                               layers_.albedo, layers_.normal));
   if (keys_.size() >= kKeysKept) keys_.erase(keys_.begin());
   keys_.emplace(frame, key);
   return key;

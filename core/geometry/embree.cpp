@@ -86,6 +86,14 @@ Result<std::string> embree_isa() {
 
 std::string embree_version() { return RTC_VERSION_STRING; }
 
+std::string loaded_embree_version() {
+  if (device().handle == nullptr) return {};
+  const auto version = static_cast<int>(  // 31305 for 3.13.5
+      rtcGetDeviceProperty(device().handle, RTC_DEVICE_PROPERTY_VERSION));
+  return std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) + "." +
+         std::to_string(version % 100);
+}
+
 size_t embree_memory() { return held_bytes.load(); }
 
 void limit_embree_memory(size_t bytes) { limit_bytes.store(bytes); }

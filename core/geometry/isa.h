@@ -14,4 +14,7 @@ Result<std::string> embree_isa();
 /// "3.13.5", of the library that was compiled against.
 std::string embree_version();
 
+/// Of the library that is loaded, which may be a newer one; empty where Embree does not run here.
+std::string loaded_embree_version();
+
 }  // namespace hyades::core

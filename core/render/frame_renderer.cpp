@@ -115,7 +115,8 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
   return true;
 }
 
-RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* stop) const {
+RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* stop,
+                                   std::atomic<uint32_t>* batches_done) const {
   const FpMode fp_mode;
   RenderedUnit result{Film(layout_, unit.tile), {}, false};
   const auto sampler = make_sampler(
@@ -129,6 +130,7 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
       break;
     }
     result.film.deposit(unit.tile, b, samples_in_batch(b, sampling_.samples), sums);
+    if (batches_done != nullptr) batches_done->fetch_add(1, std::memory_order_relaxed);
   }
   result.counters.rays = work.rays;
   result.counters.bounces = work.bounces;

@@ -35,7 +35,7 @@ struct RenderCounters {
 struct RenderedUnit {
   Film film;
   RenderCounters counters;
-  bool stopped = false;  ///< the stop flag was seen: the film is incomplete and must be thrown away
+  bool stopped = false;  ///< the stop flag was seen: the film holds only the first whole batches
 };
 
 /// The front door of the renderer: a frame's scene and settings in, films out. render() is a pure
@@ -45,8 +45,10 @@ class FrameRenderer {
   FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                 const LayerSet& layers);
 
-  /// Renders `unit` on the calling thread. `stop` is looked at after every row of pixels.
-  RenderedUnit render(const Unit& unit, const std::atomic<bool>* stop = nullptr) const;
+  /// Renders `unit` on the calling thread. `stop` is looked at after every row of pixels;
+  /// `batches_done` counts along, for whoever watches.
+  RenderedUnit render(const Unit& unit, const std::atomic<bool>* stop = nullptr,
+                      std::atomic<uint32_t>* batches_done = nullptr) const;
 
   /// One sample of one pixel; `log` gets the path in words.
   PixelSample replay(const Vec2i& pixel, uint32_t sample, PathLog& log) const;

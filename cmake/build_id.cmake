@@ -1,0 +1,18 @@
+# cmake -DROOT=... -DOUTPUT=... -DCOMPILER=... -P build_id.cmake: writes a header with the hash of the renderer's sources and of
+# how they are compiled. The file is touched only when the hash changes, so that nothing is compiled for nothing.
+file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/core/*.cpp ${ROOT}/core/*.h)
+list(SORT sources)
+set(text "${COMPILER}\n")
+foreach(source ${sources})
+  file(SHA256 ${ROOT}/${source} hash)
+  string(APPEND text "${source} ${hash}\n")
+endforeach()
+string(SHA256 id "${text}")
+set(header "#pragma once\n#define HYADES_BUILD_ID \"${id}\"\n")
+set(old "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} old)
+endif()
+if(NOT old STREQUAL header)
+  file(WRITE ${OUTPUT} "${header}")
+endif()
