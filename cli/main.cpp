@@ -28,6 +28,7 @@ constexpr Command kCommands[] = {
     {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
     {"bench", "hyades-render",
      "measure this machine: 'bench scaling' renders a job with 1..N threads"},
+    {"worker", "hyades-worker", "render for a coordinator"},
     {"merge", "hyades-film", "join films of the same frame"},
     {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
 #ifdef HYADES_FARM

@@ -1,0 +1,108 @@
+// `hyades worker`: works for a coordinator.
+#include <unistd.h>
+
+#include <climits>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+#include "core/base/parallel.h"
+#include "worker/worker.h"
+
+namespace {
+
+using hyades::worker::WorkerOptions;
+
+volatile std::sig_atomic_t g_signals = 0;
+
+/// The first signal asks for an orderly end, the second ends the process: the rendering child goes
+/// with it, and what was not delivered is rendered again elsewhere.
+void on_signal(int signal) {
+  g_signals = g_signals + 1;
+  if (g_signals > 1) _exit(128 + signal);
+}
+
+/// What this machine or its container has, less a fifth for all else.
+uint64_t usable_memory() {
+  uint64_t bytes =
+      static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+  uint64_t limit = 0;
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit && limit < bytes) bytes = limit;
+  return bytes / 5 * 4;
+}
+
+std::string default_cache() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache == '/') {
+    return std::string(cache) + "/hyades";
+  }
+  const char* home = std::getenv("HOME");
+  return std::string(home == nullptr ? "/var/tmp" : home) + "/.cache/hyades";
+}
+
+/// The program beside this one.
+std::string renderer_path() {
+  char path[PATH_MAX];
+  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+  const std::string self(path, length > 0 ? static_cast<size_t>(length) : 0);
+  return self.substr(0, self.rfind('/') + 1) + "hyades-worker-render";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Renders for a coordinator.", "hyades worker");
+  WorkerOptions options;
+  options.threads = hyades::core::hardware_threads();
+  options.memory = usable_memory();
+  options.cache = default_cache();
+  options.cache_size = uint64_t{16} << 30U;
+  options.renderer = renderer_path();
+  app.add_option("--coordinator", options.coordinator.address, "HOST:PORT")
+      ->envname("HYADES_COORDINATOR")
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "units rendered at once")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_option("--memory", options.memory,
+                 "most memory of the process that renders: 8G, 512M (default: four fifths of what "
+                 "is here)")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--cache", options.cache, "folder for the files of jobs; workers may share it")
+      ->capture_default_str();
+  app.add_option("--cache-size", options.cache_size, "most bytes in it (default: 16G)")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--name", options.name, "what people call it (default: this host's name)");
+  app.add_option("--tag", options.tags, "a tag that jobs may ask for; may be repeated");
+  app.add_option("--token-file", options.coordinator.token_file, "file with the farm's token");
+  app.add_option("--tls-ca", options.coordinator.ca_file,
+                 "certificate (PEM) that signed the coordinator's");
+  app.add_flag("--insecure", options.coordinator.insecure,
+               "plain text also to another machine's coordinator");
+  app.add_option("--grace", options.grace, "seconds from SIGTERM to the end")
+      ->check(CLI::Range(0.3, 3600.0))
+      ->capture_default_str();
+  app.footer(
+      "examples:\n"
+      "  hyades worker\n"
+      "  hyades worker --coordinator farm.example:7700 --tls-ca ca.pem --token-file token\n"
+      "Ctrl-C or SIGTERM: what is done is handed over, the rest given back; a second one ends it "
+      "at once.\n"
+      "exit status: 0 asked to leave, 1 cannot work here, 2 wrong arguments or refused by the "
+      "coordinator");
+  // Where `hyades` has started this program, argv[1] is the word "worker".
+  const int skipped = argc > 1 && std::string_view(argv[1]) == "worker" ? 1 : 0;
+  try {
+    app.parse(argc - skipped, argv + skipped);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return hyades::worker::run_worker(options, g_signals);
+}

@@ -1,0 +1,70 @@
+// hyades-worker-render: the child of a worker that renders. It knows light and no network: units
+// come and films go through the socket it is born with, files come out of the worker's cache.
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "core/base/version.h"
+#include "core/render/class_probe.h"
+#include "farm/content_store.h"
+#include "worker/pipe/message_pipe.h"
+#include "worker/pipe/render_pipe.pb.h"
+#include "worker/render/process_memory.h"
+#include "worker/render/render_server.h"
+#include "worker/render/scene_shelf.h"
+
+namespace {
+
+using namespace hyades;
+
+/// Where the worker leaves its end of the pipe.
+constexpr int kPipe = 3;
+/// What threads and libraries take besides scenes.
+constexpr uint64_t kOverhead = uint64_t{256} << 20U;
+
+int refuse(pipe::MessagePipe& parent, const std::string& reason) {
+  pipe::FromRenderer message;
+  message.mutable_not_ready()->set_reason(reason);
+  (void)parent.send(message);
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Renders for a worker, which starts it.", "hyades-worker-render");
+  int threads = 1;
+  uint64_t memory = 0;
+  std::string cache;
+  app.add_option("--threads", threads)->check(CLI::Range(1, 4096));
+  app.add_option("--memory", memory);
+  app.add_option("--cache", cache)->required();
+  CLI11_PARSE(app, argc, argv);
+  // The worker decides when this process ends: a Ctrl-C reaches both.
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_IGN);
+  worker::limit_memory(memory == 0 ? 0 : memory + kOverhead);
+
+  pipe::MessagePipe parent(kPipe);
+  const auto measured = core::this_class();
+  if (!measured) return refuse(parent, measured.error().message);
+  auto store = farm::ContentStore::open({cache, 0});
+  if (!store) return refuse(parent, store.error().message);
+  pipe::FromRenderer ready;
+  ready.mutable_ready()->set_worker_class(*measured);
+  ready.mutable_ready()->set_build(fmt::format("hyades {}, renderer {}, build {}", core::kVersion,
+                                               core::kRendererRevision,
+                                               core::build_id().substr(0, 12)));
+  if (!parent.send(ready)) return 1;
+
+  worker::SceneShelf shelf(**store, memory);
+  worker::RenderServer server(parent, shelf, threads);
+  server.run();
+  ::_exit(0);  // threads may be in the midst of units that nobody waits for
+}

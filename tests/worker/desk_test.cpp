@@ -1,0 +1,318 @@
+#include "worker/desk.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/worker/desk_testing.h"
+
+namespace hyades::worker {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Message = v1::WorkerMessage;
+
+TEST(Desk, SaysHelloWhenItsClassIsMeasured) {
+  DeskWorld world;
+  world.desk->stream_opened(world.now);
+  EXPECT_TRUE(world.take_sent().empty());
+  world.renderer_up();
+  const auto sent = world.take_sent();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].hello().worker_class(), "class");
+  EXPECT_EQ(sent[0].hello().want(), 3U);
+}
+
+TEST(Desk, RendersWhenFilesAreThereAndKeepsTheFilmUntilItIsAcknowledged) {
+  DeskWorld world;
+  world.begin();
+  const auto unit = DeskWorld::unit(0);
+  world.lease(unit);
+  EXPECT_EQ(world.ports.fetched, std::vector<uint64_t>{DeskWorld::kJob});
+  EXPECT_EQ(world.token_of(0), 0U);
+  world.desk->files_are_there(DeskWorld::kJob);
+  ASSERT_NE(world.token_of(0), 0U);
+  world.take_sent();
+  world.film(world.token_of(0));
+  const Message result = first(world.take_sent(), &Message::has_result);
+  EXPECT_EQ(result.result().unit().batches(), 4U);
+  EXPECT_EQ(result.result().want(), 1U) << "a result asks for the next unit";
+  EXPECT_FALSE(world.desk->empty());
+  EXPECT_EQ(world.ports.released, std::vector<uint64_t>{DeskWorld::kJob});
+  world.acknowledge(unit);
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, HasNoMoreInWorkThanThreadsAndWhatWaits) {
+  DeskWorld world(2, 1);
+  world.begin();
+  EXPECT_EQ(first(world.take_sent(), &Message::has_hello).hello().want(), 3U);
+  for (const int x : {0, 8, 16}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.desk->tick(world.now, true);
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_request).has_request());
+  world.film(world.token_of(8));
+  EXPECT_EQ(first(world.take_sent(), &Message::has_result).result().want(), 1U);
+}
+
+TEST(Desk, AsksForNothingWhileTooManyFilmsWait) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.take_sent();
+  world.film(world.token_of(0), 4, 2000);  // more than max_kept_bytes
+  EXPECT_EQ(first(world.take_sent(), &Message::has_result).result().want(), 0U);
+  world.acknowledge(DeskWorld::unit(0));
+  EXPECT_EQ(first(world.take_sent(), &Message::has_request).request().units(), 1U);
+}
+
+TEST(Desk, FilmsSurviveALostStreamAndAreSentAgain) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.lease(DeskWorld::unit(8, 2));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.film(world.token_of(0));
+  world.desk->stream_closed();
+  world.take_sent();
+  world.desk->stream_opened(world.now);
+  const Message hello = first(world.take_sent(), &Message::has_hello);
+  EXPECT_EQ(hello.hello().in_hand_size(), 2);
+  EXPECT_EQ(hello.hello().want(), 2U);
+  world.welcome();
+  EXPECT_EQ(first(world.take_sent(), &Message::has_result).result().unit().tile().x0(), 0);
+  world.lease(DeskWorld::unit(8, 31), true);
+  world.film(world.token_of(8));
+  EXPECT_EQ(first(world.take_sent(), &Message::has_result).result().lease().number(), 31U)
+      << "an adopted unit goes on under its new lease";
+}
+
+TEST(Desk, FilmsMadeWithoutAStreamAreSentLater) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.desk->stream_closed();
+  world.take_sent();
+  world.film(world.token_of(0));
+  EXPECT_TRUE(world.take_sent().empty());
+  world.desk->stream_opened(world.now);
+  world.welcome();
+  EXPECT_TRUE(first(world.take_sent(), &Message::has_result).has_result());
+}
+
+TEST(Desk, StopsItsUnitsByItselfWhenItsLeasesRanOut) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.lease(DeskWorld::unit(8, 2));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.film(world.token_of(0));
+  world.desk->stream_closed();
+  world.now += seconds(9);
+  world.desk->tick(world.now, true);
+  EXPECT_FALSE(world.stopped(world.token_of(8)));
+  world.now += seconds(2);
+  world.desk->tick(world.now, true);
+  EXPECT_TRUE(world.stopped(world.token_of(8)));
+  EXPECT_EQ(world.desk->unacknowledged(), 1U) << "films are kept";
+  world.take_sent();
+  world.desk->stream_opened(world.now);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_hello).hello().in_hand_size(), 1);
+}
+
+TEST(Desk, ASleeperGivesUpItsUnitsBeforeItListensAgain) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.now += seconds(60);  // SIGSTOP, SIGCONT: the stream still looks alive
+  world.lease(DeskWorld::unit(8, 2));
+  EXPECT_TRUE(world.stopped(world.token_of(0)));
+  world.film(world.token_of(0));
+  EXPECT_EQ(world.desk->unacknowledged(), 0U) << "a late film of a unit that was given up";
+}
+
+TEST(Desk, HeartbeatsNameEveryLeaseAndRenewThem) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.lease(DeskWorld::unit(8, 2));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.film(world.token_of(0));
+  world.take_sent();
+  for (int i = 0; i < 30; ++i) {
+    world.now += milliseconds(1000);
+    world.desk->tick(world.now, true);
+    EXPECT_EQ(first(world.take_sent(), &Message::has_heartbeat).heartbeat().leases_size(), 2);
+  }
+  EXPECT_FALSE(world.stopped(world.token_of(8)));
+  for (int i = 0; i < 12; ++i) {
+    world.now += milliseconds(1000);
+    world.desk->tick(world.now, false);  // nothing leaves this machine
+  }
+  EXPECT_TRUE(world.stopped(world.token_of(8)));
+}
+
+TEST(Desk, TheUnitThatKillsItsProcessAloneHasFailed) {
+  DeskWorld world(3, 1);
+  world.begin();
+  for (const int x : {0, 8, 16, 24}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  for (const int x : {0, 8}) world.started(world.token_of(x));
+  world.take_sent();
+  world.desk->renderer_died("crashed with signal 11");
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_failure).has_failure())
+      << "nobody knows yet which of the two it was";
+  world.ports.told.clear();
+  world.renderer_up();
+  EXPECT_NE(world.token_of(0), 0U);
+  EXPECT_EQ(world.token_of(8), 0U) << "one suspect at a time";
+  EXPECT_EQ(world.token_of(16), 0U) << "and nothing beside it";
+  world.film(world.token_of(0));
+  EXPECT_NE(world.token_of(8), 0U);
+  EXPECT_EQ(world.token_of(16), 0U);
+  world.started(world.token_of(8));
+  world.desk->renderer_died("crashed with signal 11");
+  const Message failure = first(world.take_sent(), &Message::has_failure);
+  EXPECT_EQ(failure.failure().unit().unit().tile().x0(), 8);
+  EXPECT_NE(failure.failure().reason().find("signal 11"), std::string::npos);
+  world.renderer_up();
+  EXPECT_NE(world.token_of(16), 0U);
+  EXPECT_NE(world.token_of(24), 0U);
+}
+
+TEST(Desk, OneUnitInWorkNeedsNoSecondTrial) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.started(world.token_of(0));
+  world.take_sent();
+  world.desk->renderer_died("ran out of memory");
+  EXPECT_TRUE(first(world.take_sent(), &Message::has_failure).has_failure());
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, LeavingHandsOverWholeBatchesAndGivesBackTheRest) {
+  DeskWorld world(1, 2);
+  world.begin();
+  for (const int x : {0, 8}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.job(8);
+  world.lease(DeskWorld::unit(16, 17, 8));  // its files are still being fetched
+  world.take_sent();
+  world.desk->leave("SIGTERM", true);
+  auto sent = world.take_sent();
+  EXPECT_EQ(first(sent, &Message::has_leaving).leaving().reason(), "SIGTERM");
+  EXPECT_EQ(first(sent, &Message::has_returned).returned().units(0).job(), 8U);
+  EXPECT_TRUE(world.ports.told.back().has_hand_over());
+  world.film(world.token_of(0), 2);
+  world.returned(world.token_of(8));
+  sent = world.take_sent();
+  const Message result = first(sent, &Message::has_result);
+  EXPECT_EQ(result.result().unit().batches(), 2U);
+  EXPECT_EQ(result.result().want(), 0U);
+  EXPECT_EQ(first(sent, &Message::has_returned).returned().units(0).unit().tile().x0(), 8);
+  EXPECT_EQ(world.desk->unacknowledged(), 1U);
+  world.acknowledge(DeskWorld::unit(0, 1, DeskWorld::kJob, 2));
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, DrainedItFinishesWhatIsLeasedAndTakesNoMore) {
+  DeskWorld world(1, 1);
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  v1::CoordinatorMessage drain;
+  drain.mutable_drain()->set_reason("maintenance");
+  world.desk->coordinator_says(drain, world.now);
+  EXPECT_TRUE(world.desk->leaving());
+  EXPECT_FALSE(world.desk->empty());
+  world.take_sent();
+  world.lease(DeskWorld::unit(8, 2));  // crossed our Leaving
+  EXPECT_EQ(first(world.take_sent(), &Message::has_returned).returned().units_size(), 1);
+  world.film(world.token_of(0));
+  EXPECT_EQ(first(world.take_sent(), &Message::has_result).result().unit().batches(), 4U);
+  world.acknowledge(DeskWorld::unit(0));
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, FilmsThatCannotBeStoredNowComeAgain) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.film(world.token_of(0));
+  world.take_sent();
+  v1::CoordinatorMessage message;
+  *message.mutable_rejected()->mutable_unit() = DeskWorld::unit(0);
+  message.mutable_rejected()->set_reason(v1::Rejected::REASON_NOT_NOW);
+  message.mutable_rejected()->set_retry_after_ms(500);
+  world.desk->coordinator_says(message, world.now);
+  world.now += milliseconds(400);
+  world.desk->tick(world.now, true);
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_result).has_result());
+  world.now += milliseconds(200);
+  world.desk->tick(world.now, true);
+  EXPECT_TRUE(first(world.take_sent(), &Message::has_result).has_result());
+  message.mutable_rejected()->set_reason(v1::Rejected::REASON_UNKNOWN);
+  world.desk->coordinator_says(message, world.now);
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, UnitsWhoseFilesCannotBeHadGoBack) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.take_sent();
+  world.desk->files_failed(DeskWorld::kJob, "not there", false);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_returned).returned().reason(), "not there");
+  EXPECT_TRUE(world.desk->empty());
+  world.lease(DeskWorld::unit(0, 2));
+  EXPECT_EQ(world.ports.fetched.size(), 2U) << "and are tried again with the next lease";
+  world.desk->files_failed(DeskWorld::kJob, "the cache is too small", true);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_failure).failure().reason(),
+            "the cache is too small");
+}
+
+TEST(Desk, AJobThatIsOverIsForgotten) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  v1::CoordinatorMessage message;
+  message.mutable_over()->set_job(DeskWorld::kJob);
+  world.desk->coordinator_says(message, world.now);
+  EXPECT_TRUE(world.desk->empty());
+  EXPECT_TRUE(world.stopped(world.token_of(0)));
+  EXPECT_TRUE(world.ports.told.back().has_forget());
+}
+
+TEST(Desk, FilesThatComeTooLateAreNotKept) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  v1::CoordinatorMessage message;
+  message.mutable_over()->set_job(DeskWorld::kJob);
+  world.desk->coordinator_says(message, world.now);
+  world.ports.released.clear();
+  world.desk->files_are_there(DeskWorld::kJob);
+  EXPECT_EQ(world.ports.released, std::vector<uint64_t>{DeskWorld::kJob});
+}
+
+TEST(Desk, StoppedUnitsAreDroppedAndMakeRoom) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.take_sent();
+  v1::CoordinatorMessage message;
+  *message.mutable_stop()->mutable_unit() = DeskWorld::unit(0);
+  world.desk->coordinator_says(message, world.now);
+  EXPECT_TRUE(world.stopped(world.token_of(0)));
+  EXPECT_EQ(first(world.take_sent(), &Message::has_request).request().units(), 1U);
+}
+
+}  // namespace
+}  // namespace hyades::worker

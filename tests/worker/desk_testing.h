@@ -1,0 +1,144 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "worker/desk.h"
+
+namespace hyades::worker {
+
+/// Keeps what a desk wants done.
+class FakePorts : public DeskPorts {
+ public:
+  void send(v1::WorkerMessage message) override { sent.push_back(std::move(message)); }
+  void tell_renderer(pipe::ToRenderer message) override { told.push_back(std::move(message)); }
+  void fetch(uint64_t job, const v1::JobSpec& /*spec*/) override { fetched.push_back(job); }
+  void release(uint64_t job) override { released.push_back(job); }
+  void note(const std::string& text) override { notes.push_back(text); }
+
+  std::vector<v1::WorkerMessage> sent;
+  std::vector<pipe::ToRenderer> told;
+  std::vector<uint64_t> fetched;
+  std::vector<uint64_t> released;
+  std::vector<std::string> notes;
+};
+
+/// A desk with a clock, and short ways to say what happens to it.
+class DeskWorld {
+ public:
+  static constexpr uint64_t kJob = 7;
+
+  explicit DeskWorld(uint32_t threads = 2, uint32_t ahead = 1) {
+    DeskOptions options;
+    options.worker_id = "0123456789abcdef";
+    options.threads = threads;
+    options.ahead = ahead;
+    options.max_kept_bytes = 1000;
+    desk.emplace(options, ports);
+  }
+
+  void renderer_up() {
+    pipe::Ready ready;
+    ready.set_worker_class("class");
+    desk->renderer_ready(ready);
+  }
+  void welcome(uint32_t heartbeat_ms = 1000, uint32_t lease_ms = 10'000) {
+    v1::CoordinatorMessage message;
+    message.mutable_welcome()->set_heartbeat_ms(heartbeat_ms);
+    message.mutable_welcome()->set_lease_ms(lease_ms);
+    desk->coordinator_says(message, now);
+  }
+  void job(uint64_t id = kJob) {
+    v1::CoordinatorMessage message;
+    message.mutable_job()->set_job(id);
+    message.mutable_job()->mutable_spec()->set_document("job.yaml");
+    desk->coordinator_says(message, now);
+  }
+  /// Everything up to where units can come.
+  void begin() {
+    renderer_up();
+    desk->stream_opened(now);
+    welcome();
+    job();
+  }
+
+  static v1::LeasedUnit unit(int x, uint64_t lease = 1, uint64_t id = kJob, uint32_t batches = 4) {
+    v1::LeasedUnit leased;
+    leased.mutable_lease()->set_incarnation(1);
+    leased.mutable_lease()->set_number(lease);
+    leased.set_job(id);
+    leased.mutable_unit()->set_frame(1);
+    leased.mutable_unit()->mutable_tile()->set_x0(x);
+    leased.mutable_unit()->mutable_tile()->set_x1(x + 8);
+    leased.mutable_unit()->mutable_tile()->set_y1(8);
+    leased.mutable_unit()->set_batches(batches);
+    return leased;
+  }
+  void lease(const v1::LeasedUnit& leased, bool adopted = false) {
+    v1::CoordinatorMessage message;
+    *message.mutable_lease()->mutable_lease() = leased.lease();
+    message.mutable_lease()->set_job(leased.job());
+    *message.mutable_lease()->add_units() = leased.unit();
+    message.mutable_lease()->set_adopted(adopted);
+    desk->coordinator_says(message, now);
+  }
+  void acknowledge(const v1::LeasedUnit& leased) {
+    v1::CoordinatorMessage message;
+    *message.mutable_acknowledge()->mutable_unit() = leased;
+    desk->coordinator_says(message, now);
+  }
+
+  void started(uint64_t token) {
+    pipe::FromRenderer message;
+    message.mutable_started()->set_token(token);
+    desk->renderer_says(message, now);
+  }
+  void film(uint64_t token, uint32_t batches = 4, size_t bytes = 10) {
+    pipe::FromRenderer message;
+    message.mutable_film()->set_token(token);
+    message.mutable_film()->set_batches(batches);
+    message.mutable_film()->set_film(std::string(bytes, 'f'));
+    desk->renderer_says(message, now);
+  }
+  void returned(uint64_t token) {
+    pipe::FromRenderer message;
+    message.mutable_returned()->set_token(token);
+    desk->renderer_says(message, now);
+  }
+
+  /// The token under which the child was told of the unit at `x`, lately; 0: it was not.
+  uint64_t token_of(int x) const {
+    uint64_t token = 0;
+    for (const pipe::ToRenderer& message : ports.told) {
+      if (message.has_unit() && message.unit().unit().tile().x0() == x) {
+        token = message.unit().token();
+      }
+    }
+    return token;
+  }
+  bool stopped(uint64_t token) const {
+    for (const pipe::ToRenderer& message : ports.told) {
+      if (message.has_stop() && message.stop().token() == token) return true;
+    }
+    return false;
+  }
+  /// What was sent since the last call.
+  std::vector<v1::WorkerMessage> take_sent() { return std::exchange(ports.sent, {}); }
+
+  FakePorts ports;
+  std::optional<Desk> desk;
+  TimePoint now{std::chrono::hours(1)};
+};
+
+/// The first of `messages` that `has` something; a default one where there is none.
+template <class Has>
+v1::WorkerMessage first(const std::vector<v1::WorkerMessage>& messages, Has has) {
+  for (const v1::WorkerMessage& message : messages) {
+    if ((message.*has)()) return message;
+  }
+  return {};
+}
+
+}  // namespace hyades::worker

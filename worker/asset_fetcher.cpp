@@ -1,0 +1,175 @@
+#include "worker/asset_fetcher.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+
+#include "core/base/hash.h"
+#include "farm/channel.h"
+#include "hyades/v1/assets.grpc.pb.h"
+
+namespace hyades::worker {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstPause{200};
+constexpr milliseconds kLongestPause{5000};
+/// A download slower than this many bytes per millisecond is broken off and resumed.
+constexpr uint64_t kSlowest = 16;
+constexpr milliseconds kShortestDeadline{60'000};
+
+std::string name_of(const v1::JobFile& file) {
+  return core::to_hex(
+      {reinterpret_cast<const uint8_t*>(file.sha256().data()), file.sha256().size()});
+}
+
+}  // namespace
+
+AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token,
+                           farm::ContentStore& store, Owner& owner, milliseconds patience)
+    : channel_(std::move(channel)),
+      token_(std::move(token)),
+      store_(store),
+      owner_(owner),
+      patience_(patience),
+      thread_([this] { loop(); }) {}
+
+AssetFetcher::~AssetFetcher() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+    if (call_ != nullptr) call_->TryCancel();
+    wake_.notify_all();
+  }
+  thread_.join();
+}
+
+void AssetFetcher::fetch(uint64_t job, const v1::JobSpec& spec) {
+  const std::lock_guard lock(mutex_);
+  wanted_.push_back({job, spec});
+  wake_.notify_one();
+}
+
+void AssetFetcher::release(uint64_t job) {
+  std::vector<farm::ContentPin> released;  // let go of without the lock
+  const std::lock_guard lock(mutex_);
+  if (const auto pins = pins_.find(job); pins != pins_.end()) {
+    released = std::move(pins->second);
+    pins_.erase(pins);
+  }
+}
+
+void AssetFetcher::loop() {
+  for (;;) {
+    Wanted wanted;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return stop_ || !wanted_.empty(); });
+      if (stop_) return;
+      wanted = std::move(wanted_.front());
+      wanted_.pop_front();
+    }
+    const Outcome failed = fetch_all(wanted);
+    {
+      const std::lock_guard lock(mutex_);
+      if (stop_) return;
+    }
+    if (failed) {
+      owner_.files_failed(wanted.job, failed->reason, failed->final);
+    } else {
+      owner_.files_are_there(wanted.job);
+    }
+  }
+}
+
+AssetFetcher::Outcome AssetFetcher::fetch_all(const Wanted& wanted) {
+  std::vector<farm::ContentPin> pins;
+  for (const v1::JobFile& file : wanted.spec.files()) {
+    if (file.sha256().size() != sizeof(core::Sha256)) {
+      return Failure{file.path() + ": its name is no SHA-256", true};
+    }
+    const std::string name = name_of(file);
+    // Another process may evict a file before it is pinned.
+    for (int attempt = 0;; ++attempt) {
+      if (!store_.contains(name, file.size())) {
+        if (auto failed = fetch_patiently(file)) return failed;
+      }
+      auto pin = store_.pin(name);
+      if (pin) {
+        pins.push_back(std::move(*pin));
+        break;
+      }
+      if (attempt == 2) return Failure{pin.error().in(file.path()).message};
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  pins_[wanted.job] = std::move(pins);
+  return std::nullopt;
+}
+
+AssetFetcher::Outcome AssetFetcher::fetch_patiently(const v1::JobFile& file) {
+  const auto give_up = std::chrono::steady_clock::now() + patience_;
+  milliseconds wait = kFirstPause;
+  for (;;) {
+    Outcome failed = download(file);
+    if (!failed || !failed->again || std::chrono::steady_clock::now() >= give_up) return failed;
+    if (!pause(wait)) return failed;
+    wait = std::min(wait * 2, kLongestPause);
+  }
+}
+
+/// Waits; false when the fetcher ends.
+bool AssetFetcher::pause(milliseconds time) {
+  std::unique_lock lock(mutex_);
+  return !wake_.wait_for(lock, time, [this] { return stop_; });
+}
+
+AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
+  auto writer = store_.write(name_of(file), file.size());
+  if (!writer) return Failure{writer.error().in(file.path()).message, true};
+  const auto stub = v1::Assets::NewStub(channel_);
+  grpc::ClientContext context;
+  farm::prepare(context, token_, std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
+  {
+    const std::lock_guard lock(mutex_);
+    if (stop_) return Failure{"stopped"};
+    call_ = &context;
+  }
+  v1::DownloadRequest request;
+  request.set_sha256(file.sha256());
+  request.set_offset(writer->offset());
+  const auto stream = stub->Download(&context, request);
+  v1::Chunk chunk;
+  core::Status kept;
+  while (kept && stream->Read(&chunk)) {
+    if (chunk.offset() != writer->offset()) {
+      kept = core::Error{fmt::format("a piece from byte {} came, {} was expected", chunk.offset(),
+                                     writer->offset())};
+      break;
+    }
+    kept = writer->append(std::as_bytes(std::span(chunk.data())));
+  }
+  if (!kept) context.TryCancel();
+  const grpc::Status status = stream->Finish();
+  {
+    const std::lock_guard lock(mutex_);
+    call_ = nullptr;
+  }
+  if (!kept) return Failure{kept.error().in(file.path()).message};
+  if (!status.ok()) {
+    // Even a file that is not there may be uploaded again; and giving units back at once would only
+    // bring them here again at once.
+    return Failure{file.path() + " cannot be fetched: " + status.error_message(), false, true};
+  }
+  if (auto done = writer->commit(); !done) {
+    return Failure{done.error().in(file.path()).message, false, true};
+  }
+  return std::nullopt;
+}
+
+}  // namespace hyades::worker

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/base/result.h"
+#include "farm/content_store.h"
+#include "hyades/v1/common.pb.h"
+
+namespace grpc {
+class Channel;
+class ClientContext;
+}  // namespace grpc
+
+namespace hyades::worker {
+
+/// Brings the files of jobs into the cache, one after the other, by a thread of its own. What has
+/// come of a file stays when the connection breaks. Thread-safe.
+class AssetFetcher {
+ public:
+  /// Called from the fetching thread; must not block.
+  class Owner {
+   public:
+    virtual ~Owner() = default;
+    virtual void files_are_there(uint64_t job) = 0;
+    /// `final`: trying again here, or elsewhere, gives the same.
+    virtual void files_failed(uint64_t job, const std::string& reason, bool final) = 0;
+  };
+
+  /// `store` and `owner` outlive the fetcher. A coordinator that cannot be reached is tried again
+  /// for `patience`.
+  AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store,
+               Owner& owner, std::chrono::milliseconds patience);
+  /// Breaks off what is being fetched.
+  ~AssetFetcher();
+  AssetFetcher(const AssetFetcher&) = delete;
+  AssetFetcher& operator=(const AssetFetcher&) = delete;
+
+  /// All files of the job, which are then kept from eviction until release().
+  void fetch(uint64_t job, const v1::JobSpec& spec);
+  void release(uint64_t job);
+
+ private:
+  struct Wanted {
+    uint64_t job = 0;
+    v1::JobSpec spec;
+  };
+  struct Failure {
+    std::string reason;
+    bool final = false;
+    bool again = false;  ///< the same may succeed soon
+  };
+  using Outcome = std::optional<Failure>;
+
+  void loop();
+  Outcome fetch_all(const Wanted& wanted);
+  Outcome fetch_patiently(const v1::JobFile& file);
+  Outcome download(const v1::JobFile& file);
+  bool pause(std::chrono::milliseconds time);
+
+  const std::shared_ptr<grpc::Channel> channel_;
+  const std::string token_;
+  farm::ContentStore& store_;
+  Owner& owner_;
+  const std::chrono::milliseconds patience_;
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  // Guarded by mutex_.
+  std::deque<Wanted> wanted_;
+  std::map<uint64_t, std::vector<farm::ContentPin>> pins_;
+  grpc::ClientContext* call_ = nullptr;  ///< the download in progress
+  bool stop_ = false;
+
+  std::thread thread_;
+};
+
+}  // namespace hyades::worker

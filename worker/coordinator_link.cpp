@@ -1,0 +1,170 @@
+#include "worker/coordinator_link.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <utility>
+
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+
+#include "farm/channel.h"
+#include "hyades/v1/work.grpc.pb.h"
+
+namespace hyades::worker {
+
+struct CoordinatorLink::State {
+  std::shared_ptr<grpc::Channel> channel;
+  std::unique_ptr<v1::Work::Stub> stub;
+  std::string token;
+  Owner* owner = nullptr;
+  std::mutex mutex;
+  std::condition_variable closed;
+  // Guarded by mutex.
+  std::shared_ptr<Stream> stream;  ///< the one that is open
+  int live = 0;                    ///< streams whose end the owner has not heard of
+};
+
+/// One call. It keeps itself alive until gRPC is done with it.
+class CoordinatorLink::Stream
+    : public grpc::ClientBidiReactor<v1::WorkerMessage, v1::CoordinatorMessage> {
+ public:
+  explicit Stream(std::shared_ptr<State> state) : state_(std::move(state)) {
+    farm::prepare(context_, state_->token, std::chrono::milliseconds(0));
+  }
+
+  void start() {
+    state_->stub->async()->Attend(&context_, this);
+    AddHold();  // writes begin outside of reactions; let go of when the stream is broken
+    StartRead(&incoming_);
+    StartCall();
+  }
+
+  void send(v1::WorkerMessage message) {
+    const std::lock_guard lock(mutex_);
+    if (broken_ || finishing_) return;
+    outgoing_.push_back(std::move(message));
+    write_next_locked();
+  }
+
+  bool flowing() const {
+    const std::lock_guard lock(mutex_);
+    return outgoing_.empty() && !writing_;
+  }
+
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    if (broken_ || finishing_) return;
+    finishing_ = true;
+    write_next_locked();
+  }
+
+  void cancel() { context_.TryCancel(); }
+
+  void OnReadDone(bool ok) override {
+    if (ok) {
+      state_->owner->stream_says(std::move(incoming_));
+      incoming_.Clear();
+      StartRead(&incoming_);
+      return;
+    }
+    {
+      const std::lock_guard lock(mutex_);
+      broken_ = true;
+    }
+    RemoveHold();
+  }
+
+  void OnWriteDone(bool /*ok: a broken stream is noticed by reading*/) override {
+    const std::lock_guard lock(mutex_);
+    writing_ = false;
+    if (!broken_) write_next_locked();
+  }
+
+  void OnDone(const grpc::Status& status) override {
+    const auto code = status.error_code();
+    const bool final =
+        code == grpc::StatusCode::UNAUTHENTICATED || code == grpc::StatusCode::PERMISSION_DENIED ||
+        code == grpc::StatusCode::FAILED_PRECONDITION || code == grpc::StatusCode::UNIMPLEMENTED;
+    const std::shared_ptr<State> state = state_;
+    std::shared_ptr<Stream> self;  // outlives this function's last line
+    {
+      const std::lock_guard lock(state->mutex);
+      self = std::move(state->stream);
+      state->stream.reset();
+    }
+    state->owner->stream_ended(final, status.ok() ? "it was closed" : status.error_message());
+    const std::lock_guard lock(state->mutex);
+    --state->live;
+    state->closed.notify_all();
+  }
+
+ private:
+  void write_next_locked() {
+    if (writing_) return;
+    if (!outgoing_.empty()) {
+      writing_ = true;
+      current_ = std::move(outgoing_.front());
+      outgoing_.pop_front();
+      StartWrite(&current_);
+    } else if (finishing_ && !half_closed_) {
+      half_closed_ = true;
+      StartWritesDone();
+    }
+  }
+
+  const std::shared_ptr<State> state_;
+  grpc::ClientContext context_;
+  v1::CoordinatorMessage incoming_;
+
+  mutable std::mutex mutex_;
+  // Guarded by mutex_.
+  std::deque<v1::WorkerMessage> outgoing_;
+  v1::WorkerMessage current_;
+  bool writing_ = false;
+  bool broken_ = false;
+  bool finishing_ = false;
+  bool half_closed_ = false;
+};
+
+CoordinatorLink::CoordinatorLink(std::shared_ptr<grpc::Channel> channel, std::string token,
+                                 Owner& owner)
+    : state_(std::make_shared<State>()) {
+  state_->channel = std::move(channel);
+  state_->stub = v1::Work::NewStub(state_->channel);
+  state_->token = std::move(token);
+  state_->owner = &owner;
+}
+
+CoordinatorLink::~CoordinatorLink() {
+  std::unique_lock lock(state_->mutex);
+  if (state_->stream) state_->stream->cancel();
+  state_->closed.wait(lock, [this] { return state_->live == 0; });
+}
+
+void CoordinatorLink::open() {
+  const auto stream = std::make_shared<Stream>(state_);
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->stream = stream;
+    ++state_->live;
+  }
+  stream->start();
+}
+
+void CoordinatorLink::send(v1::WorkerMessage message) {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->stream) state_->stream->send(std::move(message));
+}
+
+bool CoordinatorLink::flowing() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->stream == nullptr || state_->stream->flowing();
+}
+
+void CoordinatorLink::finish() {
+  const std::lock_guard lock(state_->mutex);
+  if (state_->stream) state_->stream->finish();
+}
+
+}  // namespace hyades::worker

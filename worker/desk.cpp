@@ -1,0 +1,265 @@
+#include "worker/desk.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "farm/wire.h"
+
+namespace hyades::worker {
+namespace {
+
+auto key_of(const v1::LeasedUnit& u) {
+  return std::make_tuple(u.job(), u.unit().frame(), u.unit().tile().x0(), u.unit().tile().y0(),
+                         u.unit().tile().x1(), u.unit().tile().y1(), u.unit().first_batch(),
+                         u.unit().batches());
+}
+
+}  // namespace
+
+Desk::Items::iterator Desk::find(const v1::LeasedUnit& leased) {
+  const auto key = key_of(leased);
+  return std::find_if(items_.begin(), items_.end(),
+                      [&](const auto& entry) { return key_of(entry.second.leased) == key; });
+}
+
+// ---- the rendering child ----
+
+void Desk::renderer_ready(const pipe::Ready& ready) {
+  worker_class_ = ready.worker_class();
+  build_ = ready.build();
+  renderer_up_ = true;
+  if (open_ && !welcomed_) send_hello();
+  dispatch();
+}
+
+void Desk::renderer_says(pipe::FromRenderer message, TimePoint /*now*/) {
+  if (message.has_progress()) {
+    renderer_memory_ = message.progress().memory_bytes();
+    for (const auto& unit : message.progress().units()) {
+      const auto item = items_.find(unit.token());
+      if (item != items_.end()) item->second.samples_done = unit.samples_done();
+    }
+    return;
+  }
+  const auto named = [&](uint64_t token) {
+    const auto item = items_.find(token);
+    // The child may answer late about a unit that was given up.
+    const bool in_work = item != items_.end() && item->second.state == Item::State::rendering;
+    return in_work ? item : items_.end();
+  };
+  if (message.has_started()) {
+    if (const auto item = named(message.started().token()); item != items_.end()) {
+      item->second.begun = true;
+    }
+  } else if (message.has_film()) {
+    if (const auto item = named(message.film().token()); item != items_.end()) {
+      keep_film(item, message.film());
+    }
+  } else if (message.has_failed()) {
+    if (const auto item = named(message.failed().token()); item != items_.end()) {
+      fail(item, message.failed().reason());
+    }
+  } else if (message.has_returned()) {
+    // Stopped by hand_over before its first batch was done.
+    if (const auto item = named(message.returned().token()); item != items_.end()) {
+      item->second.state = Item::State::waiting;
+      item->second.begun = false;
+      if (handing_over_) give_back_rest(leaving_reason_);
+    }
+  }
+  dispatch();
+  top_up();
+}
+
+void Desk::renderer_died(const std::string& reason) {
+  renderer_up_ = false;
+  for (auto& [id, job] : jobs_) job.told = false;
+  std::vector<uint64_t> guilty;
+  for (auto& [token, item] : items_) {
+    if (item.state != Item::State::rendering) continue;
+    if (item.begun && item.suspect) guilty.push_back(token);
+    item.suspect = item.suspect || item.begun;
+    item.state = Item::State::waiting;
+    item.begun = false;
+    item.samples_done = 0;
+  }
+  const auto suspects =
+      static_cast<size_t>(std::count_if(items_.begin(), items_.end(), [](const auto& entry) {
+        return entry.second.suspect && entry.second.state == Item::State::waiting;
+      }));
+  if (guilty.empty() && suspects == 1) {
+    // Nothing else was being worked on: no need to try again.
+    for (auto& [token, item] : items_) {
+      if (item.suspect && item.state == Item::State::waiting) guilty.push_back(token);
+    }
+  }
+  for (const uint64_t token : guilty) {
+    fail(items_.find(token), "the process that rendered it " + reason);
+  }
+}
+
+/// Gives the child what it can work on.
+void Desk::dispatch() {
+  if (!renderer_up_ || handing_over_) return;
+  bool suspects = false;
+  for (const auto& [token, item] : items_) {
+    suspects = suspects || (item.suspect && item.state <= Item::State::rendering);
+  }
+  for (auto& [token, item] : items_) {
+    if (item.state != Item::State::waiting) continue;
+    if (suspects) {
+      // One suspect at a time, and nothing beside it.
+      const bool busy = std::any_of(items_.begin(), items_.end(), [](const auto& entry) {
+        return entry.second.state == Item::State::rendering;
+      });
+      if (busy) return;
+      if (!item.suspect) continue;
+    }
+    tell_child(token, item);
+  }
+}
+
+void Desk::tell_child(uint64_t token, Item& item) {
+  JobState& job = jobs_[item.leased.job()];
+  if (!job.told) {
+    pipe::ToRenderer message;
+    message.mutable_job()->set_job(item.leased.job());
+    *message.mutable_job()->mutable_spec() = job.spec;
+    ports_.tell_renderer(std::move(message));
+    job.told = true;
+  }
+  pipe::ToRenderer message;
+  message.mutable_unit()->set_token(token);
+  message.mutable_unit()->set_job(item.leased.job());
+  *message.mutable_unit()->mutable_unit() = item.leased.unit();
+  ports_.tell_renderer(std::move(message));
+  item.state = Item::State::rendering;
+}
+
+void Desk::keep_film(Items::iterator found, const pipe::UnitFilm& film) {
+  Item& item = found->second;
+  v1::UnitResult& result = item.result;
+  *result.mutable_lease() = item.leased.lease();
+  result.set_job(item.leased.job());
+  *result.mutable_unit() = item.leased.unit();
+  result.mutable_unit()->set_batches(film.batches());
+  result.set_film(film.film());
+  result.set_digest(film.digest());
+  result.set_render_ns(film.render_ns());
+  result.set_samples(film.samples());
+  result.set_rays(film.rays());
+  result.set_bad_samples(film.bad_samples());
+  *result.mutable_notes() = film.notes();
+  if (result.ByteSizeLong() > max_message_bytes_) {
+    fail(found, fmt::format("its film is too large to be sent: {} bytes, the coordinator takes {}",
+                            result.ByteSizeLong(), max_message_bytes_));
+    return;
+  }
+  *item.leased.mutable_unit() = result.unit();
+  item.state = Item::State::kept;
+  item.suspect = false;
+  ++kept_;
+  kept_bytes_ += result.film().size();
+  forget_idle_job(item.leased.job());
+  if (!welcomed_) return;
+  v1::WorkerMessage message;
+  *message.mutable_result() = result;
+  message.mutable_result()->set_want(take_wish());
+  ports_.send(std::move(message));
+}
+
+void Desk::fail(Items::iterator item, const std::string& reason) {
+  constexpr size_t kLongestReason = 4000;
+  ports_.note(fmt::format("a unit of frame {} of job {} failed: {}",
+                          item->second.leased.unit().frame(), item->second.leased.job(), reason));
+  v1::WorkerMessage message;
+  *message.mutable_failure()->mutable_unit() = item->second.leased;
+  message.mutable_failure()->set_reason(reason.substr(0, kLongestReason));
+  drop(item);
+  // Without a stream nobody hears it: the lease runs out, and the unit fails elsewhere.
+  if (!welcomed_) return;
+  message.mutable_failure()->set_want(take_wish());
+  ports_.send(std::move(message));
+}
+
+void Desk::drop(Items::iterator item) {
+  const uint64_t job = item->second.leased.job();
+  if (item->second.state == Item::State::kept) {
+    --kept_;
+    kept_bytes_ -= item->second.result.film().size();
+  }
+  items_.erase(item);
+  forget_idle_job(job);
+}
+
+void Desk::stop_rendering(Items::iterator item) {
+  if (item->second.state != Item::State::rendering) return;
+  pipe::ToRenderer message;
+  message.mutable_stop()->set_token(item->first);
+  ports_.tell_renderer(std::move(message));
+}
+
+/// Lets go of a job of which nothing is left to be rendered.
+void Desk::forget_idle_job(uint64_t id) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end()) return;
+  for (const auto& [token, item] : items_) {
+    if (item.leased.job() == id && item.state != Item::State::kept) return;
+  }
+  ports_.release(id);
+  job->second.has_files = false;
+  if (!job->second.over) return;
+  if (job->second.told) {
+    pipe::ToRenderer message;
+    message.mutable_forget()->set_job(id);
+    ports_.tell_renderer(std::move(message));
+  }
+  jobs_.erase(job);
+}
+
+// ---- the job's files ----
+
+void Desk::files_are_there(uint64_t id) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end()) {
+    ports_.release(id);  // the job ended meanwhile
+    return;
+  }
+  job->second.fetching = false;
+  job->second.has_files = true;
+  for (auto& [token, item] : items_) {
+    if (item.leased.job() == id && item.state == Item::State::fetching) {
+      item.state = Item::State::waiting;
+    }
+  }
+  forget_idle_job(id);  // where all its units were taken back meanwhile
+  dispatch();
+}
+
+void Desk::files_failed(uint64_t id, const std::string& reason, bool final) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end()) return;
+  job->second.fetching = false;
+  std::vector<uint64_t> waiting;
+  for (const auto& [token, item] : items_) {
+    if (item.leased.job() == id && item.state == Item::State::fetching) waiting.push_back(token);
+  }
+  v1::WorkerMessage message;
+  message.mutable_returned()->set_reason(reason);
+  for (const uint64_t token : waiting) {
+    const auto item = items_.find(token);
+    if (final) {
+      fail(item, reason);
+    } else {
+      *message.mutable_returned()->add_units() = item->second.leased;
+      drop(item);
+    }
+  }
+  if (!final && !waiting.empty() && welcomed_) ports_.send(std::move(message));
+  top_up();
+}
+
+}  // namespace hyades::worker

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hyades/v1/work.pb.h"
+#include "worker/pipe/render_pipe.pb.h"
+
+namespace hyades::worker {
+
+using TimePoint = std::chrono::steady_clock::time_point;
+using Duration = std::chrono::steady_clock::duration;
+
+/// What a Desk has done by others. Nothing here calls back into the desk before it returns.
+class DeskPorts {
+ public:
+  virtual ~DeskPorts() = default;
+
+  /// To the coordinator, on the stream that is open.
+  virtual void send(v1::WorkerMessage message) = 0;
+  /// To the rendering child; lost if there is none.
+  virtual void tell_renderer(pipe::ToRenderer message) = 0;
+  /// Brings the job's files into the cache; answered by Desk::files_are_there or files_failed.
+  virtual void fetch(uint64_t job, const v1::JobSpec& spec) = 0;
+  /// No unit of the job is left: its files may be evicted. What was being fetched may go on.
+  virtual void release(uint64_t job) = 0;
+  /// For people.
+  virtual void note(const std::string& text) = 0;
+};
+
+/// What this worker is; see Hello.
+struct DeskOptions {
+  std::string worker_id;
+  std::string name;
+  std::string host;
+  uint32_t threads = 1;
+  uint32_t ahead = 1;  ///< units that wait so that no thread ever does
+  uint64_t memory_bytes = 0;
+  std::vector<std::string> tags;
+  /// Films that may wait for their acknowledgement before no more work is asked for.
+  uint64_t max_kept_bytes = uint64_t{1} << 30U;
+};
+
+/// The worker's books: which units it has under which leases, who renders what, which films are not
+/// acknowledged yet. A deterministic state machine: no threads, no clock, no input or output.
+///
+/// A unit is in hand from its lease on until its film is acknowledged or refused for good, it has
+/// failed, or it was given back. Streams come and go; what is in hand stays, and is told to the
+/// coordinator in the next Hello.
+///
+/// When the rendering child dies, every unit that it had begun is a suspect. Suspects are rendered
+/// again one at a time, with nothing beside them: the one that kills the child alone has failed.
+class Desk {
+ public:
+  Desk(DeskOptions options, DeskPorts& ports) : options_(std::move(options)), ports_(ports) {}
+
+  // The rendering child.
+  void renderer_ready(const pipe::Ready& ready);
+  void renderer_says(pipe::FromRenderer message, TimePoint now);
+  /// `reason` in words: "was killed by signal 11 (Segmentation fault)".
+  void renderer_died(const std::string& reason);
+
+  // The stream to the coordinator.
+  void stream_opened(TimePoint now);
+  void coordinator_says(v1::CoordinatorMessage message, TimePoint now);
+  void stream_closed();
+
+  // The job's files.
+  void files_are_there(uint64_t job);
+  /// The units that wait for them go back; `final` where no other worker can have more luck.
+  void files_failed(uint64_t job, const std::string& reason, bool final);
+
+  /// Heartbeats, leases that ran out, films to be sent again. To be called at least every 100 ms.
+  /// `flowing`: what was sent before has left, so that a heartbeat reaches the coordinator.
+  void tick(TimePoint now, bool flowing);
+
+  /// Takes no more work. With `hand_over` units in work stop at once and the batches that are done
+  /// are delivered; otherwise what is leased is finished.
+  void leave(const std::string& reason, bool hand_over);
+  /// Every unit that nobody works on goes back to the coordinator.
+  void give_back_rest(const std::string& reason);
+
+  bool leaving() const { return leaving_; }
+  /// Whether nothing is in hand any more.
+  bool empty() const { return items_.empty(); }
+  size_t unacknowledged() const { return kept_; }
+  /// Whether the coordinator has said Welcome on the stream that is open.
+  bool attended() const { return welcomed_; }
+
+ private:
+  struct Item {
+    enum class State : uint8_t { fetching, waiting, rendering, kept };
+    v1::LeasedUnit leased;
+    State state = State::fetching;
+    bool begun = false;    ///< the child has said Started
+    bool suspect = false;  ///< it was begun when a child died
+    uint64_t samples_done = 0;
+    v1::UnitResult result;  ///< of a kept film
+    std::optional<TimePoint> send_again;
+  };
+  struct JobState {
+    v1::JobSpec spec;
+    bool has_files = false;
+    bool fetching = false;
+    bool told = false;  ///< the child knows it
+    bool over = false;
+  };
+  using Items = std::map<uint64_t, Item>;
+
+  void take(const v1::Lease& lease);
+  void take_unit(const v1::LeasedUnit& leased, bool adopted);
+  void dispatch();
+  void tell_child(uint64_t token, Item& item);
+  void keep_film(Items::iterator item, const pipe::UnitFilm& film);
+  void fail(Items::iterator item, const std::string& reason);
+  void drop(Items::iterator item);
+  void stop_rendering(Items::iterator item);
+  void fence(TimePoint now);
+  void heartbeat();
+  void send_result(const Item& item);
+  void say_leaving();
+  void top_up();
+  uint32_t take_wish();
+  void send_hello();
+  void rejected(const v1::Rejected& message, TimePoint now);
+  Items::iterator find(const v1::LeasedUnit& leased);
+  void forget_idle_job(uint64_t job);
+
+  DeskOptions options_;
+  DeskPorts& ports_;
+  Items items_;  ///< by token
+  std::map<uint64_t, JobState> jobs_;
+  uint64_t next_token_ = 1;
+  size_t kept_ = 0;  ///< items with a film
+  uint64_t kept_bytes_ = 0;
+
+  std::string worker_class_;
+  std::string build_;
+  bool renderer_up_ = false;
+  uint64_t renderer_memory_ = 0;
+
+  bool open_ = false;
+  bool welcomed_ = false;
+  uint32_t wished_ = 0;  ///< units asked for on this stream that have not come
+  Duration heartbeat_every_{std::chrono::seconds(5)};
+  Duration lease_time_{std::chrono::seconds(30)};
+  uint64_t max_message_bytes_ = uint64_t{64} << 20U;
+  std::optional<TimePoint> renewed_;  ///< when the leases were last renewed
+  TimePoint last_heartbeat_;
+  bool leaving_ = false;
+  bool handing_over_ = false;  ///< nothing more is rendered
+  std::string leaving_reason_;
+};
+
+}  // namespace hyades::worker

@@ -1,0 +1,275 @@
+// The desk's side of the stream: hello, leases, answers to films, heartbeats, leaving.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "farm/wire.h"
+#include "worker/desk.h"
+
+namespace hyades::worker {
+namespace {
+
+constexpr Duration kShortestHeartbeat = std::chrono::milliseconds(100);
+constexpr Duration kShortestLease = std::chrono::seconds(1);
+constexpr Duration kResendAfter = std::chrono::milliseconds(200);
+
+Duration milliseconds(uint64_t count) { return std::chrono::milliseconds(count); }
+
+}  // namespace
+
+void Desk::stream_opened(TimePoint now) {
+  fence(now);
+  open_ = true;
+  welcomed_ = false;
+  wished_ = 0;
+  if (!worker_class_.empty()) send_hello();
+}
+
+void Desk::stream_closed() {
+  open_ = false;
+  welcomed_ = false;
+  wished_ = 0;
+}
+
+void Desk::send_hello() {
+  v1::WorkerMessage message;
+  v1::Hello& hello = *message.mutable_hello();
+  hello.set_protocol(farm::kProtocol);
+  hello.set_worker_id(options_.worker_id);
+  hello.set_name(options_.name);
+  hello.set_host(options_.host);
+  hello.set_worker_class(worker_class_);
+  hello.set_build(build_);
+  hello.set_threads(options_.threads);
+  hello.set_memory_bytes(options_.memory_bytes);
+  for (const std::string& tag : options_.tags) hello.add_tags(tag);
+  for (const auto& [token, item] : items_) *hello.add_in_hand() = item.leased;
+  hello.set_want(take_wish());
+  ports_.send(std::move(message));
+}
+
+void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
+  fence(now);
+  if (message.has_welcome()) {
+    const v1::Welcome& welcome = message.welcome();
+    heartbeat_every_ = std::max(milliseconds(welcome.heartbeat_ms()), kShortestHeartbeat);
+    lease_time_ = std::max(milliseconds(welcome.lease_ms()), kShortestLease);
+    if (welcome.max_message_bytes() > 0) max_message_bytes_ = welcome.max_message_bytes();
+    welcomed_ = true;
+    renewed_ = now;
+    last_heartbeat_ = now;
+    for (auto& [token, item] : items_) {
+      if (item.state == Item::State::kept) send_result(item);
+      item.send_again.reset();
+    }
+    if (leaving_) say_leaving();
+  } else if (message.has_job()) {
+    const uint64_t id = message.job().job();
+    jobs_[id].spec = std::move(*message.mutable_job()->mutable_spec());
+    jobs_[id].over = false;
+  } else if (message.has_lease()) {
+    take(message.lease());
+  } else if (message.has_acknowledge()) {
+    const auto item = find(message.acknowledge().unit());
+    if (item != items_.end() && item->second.state == Item::State::kept) drop(item);
+  } else if (message.has_rejected()) {
+    rejected(message.rejected(), now);
+  } else if (message.has_stop()) {
+    const auto item = find(message.stop().unit());
+    if (item != items_.end()) {
+      stop_rendering(item);
+      drop(item);
+    }
+  } else if (message.has_drain()) {
+    leave("drained: " + message.drain().reason(), false);
+  } else if (message.has_over()) {
+    const auto job = jobs_.find(message.over().job());
+    if (job != jobs_.end()) {
+      job->second.over = true;
+      for (auto it = items_.begin(); it != items_.end();) {
+        const auto item = it++;
+        if (item->second.leased.job() != message.over().job()) continue;
+        stop_rendering(item);
+        drop(item);
+      }
+      forget_idle_job(message.over().job());
+    }
+  }
+  dispatch();
+  top_up();
+}
+
+void Desk::take(const v1::Lease& lease) {
+  const auto units = static_cast<uint32_t>(lease.units_size());
+  if (!lease.adopted()) wished_ -= std::min(wished_, units);
+  for (const v1::Unit& unit : lease.units()) {
+    v1::LeasedUnit leased;
+    *leased.mutable_lease() = lease.lease();
+    leased.set_job(lease.job());
+    *leased.mutable_unit() = unit;
+    take_unit(leased, lease.adopted());
+  }
+}
+
+void Desk::take_unit(const v1::LeasedUnit& leased, bool adopted) {
+  if (const auto there = find(leased); there != items_.end()) {
+    Item& item = there->second;
+    *item.leased.mutable_lease() = leased.lease();
+    if (item.state != Item::State::kept) return;
+    *item.result.mutable_lease() = leased.lease();
+    // After Welcome every film was sent; a new lease means that this one did not count.
+    if (!adopted) send_result(item);
+    return;
+  }
+  const auto job = jobs_.find(leased.job());
+  if (job == jobs_.end() || adopted || leaving_) {
+    v1::WorkerMessage message;
+    *message.mutable_returned()->add_units() = leased;
+    message.mutable_returned()->set_reason(leaving_  ? leaving_reason_
+                                           : adopted ? "given up meanwhile"
+                                                     : "the job is not known");
+    ports_.send(std::move(message));
+    return;
+  }
+  Item item;
+  item.leased = leased;
+  item.state = job->second.has_files ? Item::State::waiting : Item::State::fetching;
+  items_.emplace(next_token_++, std::move(item));
+  if (!job->second.has_files && !job->second.fetching) {
+    job->second.fetching = true;
+    ports_.fetch(leased.job(), job->second.spec);
+  }
+}
+
+void Desk::rejected(const v1::Rejected& message, TimePoint now) {
+  const auto item = find(message.unit());
+  if (item == items_.end()) return;
+  if (message.reason() == v1::Rejected::REASON_NOT_NOW) {
+    item->second.send_again = now + std::max(milliseconds(message.retry_after_ms()), kResendAfter);
+    return;
+  }
+  ports_.note(fmt::format(
+      "a film of frame {} of job {} was refused: {}", message.unit().unit().frame(),
+      message.unit().job(),
+      message.text().empty() ? v1::Rejected::Reason_Name(message.reason()) : message.text()));
+  stop_rendering(item);
+  drop(item);
+}
+
+void Desk::send_result(const Item& item) {
+  v1::WorkerMessage message;
+  *message.mutable_result() = item.result;
+  ports_.send(std::move(message));
+}
+
+// ---- time ----
+
+void Desk::tick(TimePoint now, bool flowing) {
+  fence(now);
+  if (!welcomed_) return;
+  if (now - last_heartbeat_ >= heartbeat_every_ && flowing) {
+    heartbeat();
+    last_heartbeat_ = now;
+    renewed_ = now;
+  }
+  for (auto& [token, item] : items_) {
+    if (!item.send_again || *item.send_again > now) continue;
+    item.send_again.reset();
+    if (item.state == Item::State::kept) send_result(item);
+  }
+  top_up();
+}
+
+/// Out of contact for as long as a lease lasts, or asleep: whatever is not rendered yet was given
+/// to others by now.
+void Desk::fence(TimePoint now) {
+  if (!renewed_ || now - *renewed_ <= lease_time_) return;
+  size_t dropped = 0;
+  for (auto it = items_.begin(); it != items_.end();) {
+    const auto item = it++;
+    if (item->second.state == Item::State::kept) continue;
+    stop_rendering(item);
+    drop(item);
+    ++dropped;
+  }
+  renewed_.reset();
+  if (dropped > 0) {
+    ports_.note(fmt::format("out of contact for longer than a lease: {} units given up", dropped));
+  }
+}
+
+void Desk::heartbeat() {
+  v1::WorkerMessage message;
+  v1::Heartbeat& beat = *message.mutable_heartbeat();
+  std::map<std::pair<uint64_t, uint64_t>, uint64_t> samples;  // by lease
+  for (const auto& [token, item] : items_) {
+    const v1::LeaseId& lease = item.leased.lease();
+    samples[{lease.incarnation(), lease.number()}] += item.samples_done;
+  }
+  for (const auto& [id, done] : samples) {
+    v1::LeaseProgress& lease = *beat.add_leases();
+    lease.mutable_lease()->set_incarnation(id.first);
+    lease.mutable_lease()->set_number(id.second);
+    lease.set_samples_done(done);
+  }
+  beat.set_memory_bytes(renderer_memory_);
+  ports_.send(std::move(message));
+}
+
+// ---- wishes ----
+
+/// How many units more to ask for now; they are counted as asked for.
+uint32_t Desk::take_wish() {
+  if (leaving_ || kept_bytes_ > options_.max_kept_bytes) return 0;
+  const size_t in_work = items_.size() - kept_ + wished_;
+  const size_t enough = size_t{options_.threads} + options_.ahead;
+  const auto wish = static_cast<uint32_t>(enough - std::min(enough, in_work));
+  wished_ += wish;
+  return wish;
+}
+
+void Desk::top_up() {
+  if (!welcomed_) return;
+  const uint32_t wish = take_wish();
+  if (wish == 0) return;
+  v1::WorkerMessage message;
+  message.mutable_request()->set_units(wish);
+  ports_.send(std::move(message));
+}
+
+// ---- leaving ----
+
+void Desk::say_leaving() {
+  v1::WorkerMessage message;
+  message.mutable_leaving()->set_reason(leaving_reason_);
+  ports_.send(std::move(message));
+}
+
+void Desk::leave(const std::string& reason, bool hand_over) {
+  if (!leaving_) {
+    leaving_ = true;
+    leaving_reason_ = reason;
+    if (welcomed_) say_leaving();
+  }
+  if (!hand_over || handing_over_) return;
+  handing_over_ = true;
+  give_back_rest(reason);
+  pipe::ToRenderer message;
+  message.mutable_hand_over();
+  ports_.tell_renderer(std::move(message));
+}
+
+void Desk::give_back_rest(const std::string& reason) {
+  v1::WorkerMessage message;
+  message.mutable_returned()->set_reason(reason);
+  for (auto it = items_.begin(); it != items_.end();) {
+    const auto item = it++;
+    if (item->second.state > Item::State::waiting) continue;
+    *message.mutable_returned()->add_units() = item->second.leased;
+    drop(item);
+  }
+  if (welcomed_ && message.returned().units_size() > 0) ports_.send(std::move(message));
+}
+
+}  // namespace hyades::worker

@@ -1,0 +1,249 @@
+#include "worker/render/render_server.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/base/fp_mode.h"
+#include "core/film/film_codec.h"
+#include "farm/wire.h"
+#include "worker/render/process_memory.h"
+
+namespace hyades::worker {
+namespace {
+
+constexpr auto kProgressEvery = std::chrono::milliseconds(500);
+
+/// Runs `body`, which returns a Result; what it throws becomes the error.
+template <class Body>
+auto guarded(const Body& body) -> decltype(body()) {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    return core::Error{"out of memory (--memory of the worker)"};
+  } catch (const std::exception& e) {
+    return core::Error{e.what()};
+  }
+}
+
+core::Status check(const core::Unit& unit, const ShelvedFrame& frame) {
+  if (frame.window.contains(unit.tile) && unit.batches.end() <= core::batch_count(frame.samples)) {
+    return {};
+  }
+  return core::Error{"the unit is not one of this job"};
+}
+
+}  // namespace
+
+RenderServer::RenderServer(pipe::MessagePipe& parent, SceneShelf& shelf, int threads)
+    : parent_(parent), shelf_(shelf) {
+  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { render_loop(); });
+  threads_.emplace_back([this] { load_loop(); });
+  threads_.emplace_back([this] { progress_loop(); });
+}
+
+void RenderServer::run() {
+  pipe::ToRenderer message;
+  for (;;) {
+    const auto more = parent_.receive(message);
+    if (!more || !*more) return;
+    if (message.has_job()) {
+      shelf_.add_job(message.job().job(), message.job().spec());
+    } else if (message.has_unit()) {
+      add(message.unit());
+    } else if (message.has_stop()) {
+      stop(message.stop().token(), false);
+    } else if (message.has_hand_over()) {
+      std::vector<uint64_t> tokens;
+      {
+        const std::lock_guard lock(mutex_);
+        for (const auto& [token, task] : tasks_) tokens.push_back(token);
+      }
+      for (const uint64_t token : tokens) stop(token, true);
+    } else if (message.has_forget()) {
+      shelf_.forget_job(message.forget().job());
+    }
+  }
+}
+
+void RenderServer::add(const pipe::UnitToRender& message) {
+  auto unit = farm::from_wire(message.unit());
+  if (!unit) {
+    say_failed(message.token(), unit.error().message);
+    return;
+  }
+  auto task = std::make_shared<Task>();
+  task->token = message.token();
+  task->job = message.job();
+  task->unit = *unit;
+  const std::lock_guard lock(mutex_);
+  task->frame = shelf_.find(task->job, unit->frame);
+  task->state = task->frame ? Task::State::ready : Task::State::waiting;
+  tasks_[task->token] = task;
+  (task->frame ? render_wake_ : load_wake_).notify_one();
+}
+
+void RenderServer::stop(uint64_t token, bool keep_batches) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = tasks_.find(token);
+    if (found == tasks_.end()) return;
+    Task& task = *found->second;
+    task.keep_batches = keep_batches;
+    task.stop = true;
+    if (task.state == Task::State::rendering) return;  // its thread answers
+    tasks_.erase(found);
+  }
+  pipe::FromRenderer returned;
+  returned.mutable_returned()->set_token(token);
+  send(returned);
+}
+
+RenderServer::TaskPtr RenderServer::next_ready() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    for (const auto& [token, task] : tasks_) {
+      if (task->state != Task::State::ready) continue;
+      task->state = Task::State::rendering;
+      return task;
+    }
+    render_wake_.wait(lock);
+  }
+}
+
+void RenderServer::render_loop() {
+  const core::FpMode mode;
+  for (;;) {
+    const TaskPtr task = next_ready();
+    pipe::FromRenderer started;
+    started.mutable_started()->set_token(task->token);
+    send(started);
+    render(*task);
+    const std::lock_guard lock(mutex_);
+    tasks_.erase(task->token);
+  }
+}
+
+void RenderServer::render(Task& task) {
+  const auto begin = std::chrono::steady_clock::now();
+  pipe::FromRenderer message;
+  const core::Status done = guarded([&]() -> core::Status {
+    if (auto checked = check(task.unit, *task.frame); !checked) return checked;
+    const core::RenderedUnit unit =
+        task.frame->renderer.render(task.unit, &task.stop, &task.batches_done);
+    const uint32_t batches = unit.stopped ? task.batches_done.load() : task.unit.batches.count;
+    bool keep = !unit.stopped;
+    if (unit.stopped) {
+      const std::lock_guard lock(mutex_);
+      keep = task.keep_batches && batches > 0;
+    }
+    if (!keep) {
+      message.mutable_returned()->set_token(task.token);
+      return {};
+    }
+    pipe::UnitFilm& film = *message.mutable_film();
+    film.set_token(task.token);
+    film.set_batches(batches);
+    const auto bytes = core::encode_film(unit.film);
+    film.set_film(bytes.data(), bytes.size());
+    const auto digest = farm::digest_from_hex(unit.film.digest());
+    if (!digest) return digest.error();
+    film.set_digest(farm::to_wire(*digest));
+    film.set_render_ns(static_cast<uint64_t>((std::chrono::steady_clock::now() - begin).count()));
+    film.set_samples(unit.counters.samples);
+    film.set_rays(unit.counters.rays);
+    film.set_bad_samples(unit.counters.bad_samples);
+    for (const core::BadSample& bad : unit.counters.examples) {
+      film.add_notes(
+          fmt::format("a sample is not finite; to see why: hyades replay {} --frame {} --pixel "
+                      "{},{} --sample {}",
+                      task.frame->document, task.unit.frame, bad.pixel.x, bad.pixel.y, bad.sample));
+    }
+    return {};
+  });
+  if (done) {
+    send(message);
+  } else {
+    say_failed(task.token, done.error().message);
+  }
+}
+
+void RenderServer::load_loop() {
+  const core::FpMode mode;
+  for (;;) {
+    TaskPtr first;
+    {
+      std::unique_lock lock(mutex_);
+      const auto waiting = [](const auto& entry) {
+        return entry.second->state == Task::State::waiting;
+      };
+      load_wake_.wait(lock, [&] { return std::any_of(tasks_.begin(), tasks_.end(), waiting); });
+      first = std::find_if(tasks_.begin(), tasks_.end(), waiting)->second;
+      first->state = Task::State::loading;
+    }
+    pipe::FromRenderer started;
+    started.mutable_started()->set_token(first->token);
+    send(started);
+    const auto frame = guarded([&] { return shelf_.load(first->job, first->unit.frame); });
+    std::vector<uint64_t> failed;
+    {
+      const std::lock_guard lock(mutex_);
+      for (auto it = tasks_.begin(); it != tasks_.end();) {
+        Task& task = *it->second;
+        const bool same = task.job == first->job && task.unit.frame == first->unit.frame &&
+                          task.state <= Task::State::loading;
+        if (same && frame) {
+          task.frame = *frame;
+          task.state = Task::State::ready;
+        } else if (same) {
+          failed.push_back(it->first);
+          it = tasks_.erase(it);
+          continue;
+        }
+        ++it;
+      }
+      render_wake_.notify_all();
+    }
+    for (const uint64_t token : failed) say_failed(token, frame.error().message);
+  }
+}
+
+void RenderServer::progress_loop() {
+  for (;;) {
+    std::this_thread::sleep_for(kProgressEvery);
+    pipe::FromRenderer message;
+    {
+      const std::lock_guard lock(mutex_);
+      for (const auto& [token, task] : tasks_) {
+        if (task->state != Task::State::rendering) continue;
+        auto& unit = *message.mutable_progress()->add_units();
+        unit.set_token(token);
+        unit.set_samples_done(uint64_t{task->batches_done.load()} * core::kBatchSamples *
+                              static_cast<uint64_t>(task->unit.tile.area()));
+      }
+    }
+    if (!message.has_progress()) continue;
+    message.mutable_progress()->set_memory_bytes(resident_memory());
+    send(message);
+  }
+}
+
+void RenderServer::say_failed(uint64_t token, const std::string& reason) {
+  pipe::FromRenderer message;
+  message.mutable_failed()->set_token(token);
+  message.mutable_failed()->set_reason(reason);
+  send(message);
+}
+
+void RenderServer::send(const pipe::FromRenderer& message) {
+  // Without its parent this process has nothing to do.
+  if (!parent_.send(message)) ::_exit(1);
+}
+
+}  // namespace hyades::worker

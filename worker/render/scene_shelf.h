@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/film/layout.h"
+#include "core/job/job.h"
+#include "core/render/frame_renderer.h"
+#include "core/scene/scene_cache.h"
+#include "farm/content_store.h"
+#include "farm/manifest_resolver.h"
+#include "hyades/v1/common.pb.h"
+
+namespace hyades::worker {
+
+/// A frame of a job, ready to be rendered.
+struct ShelvedFrame {
+  core::FrameRenderer renderer;
+  core::PixelRect window;  ///< the pixels that the job renders
+  uint32_t samples = 0;    ///< per pixel
+  std::string document;    ///< the job's document, for messages
+};
+
+/// Jobs and the scenes of their frames, in memory within a budget. Frames of a job share their
+/// geometry and images. Files come out of the content store through the job's manifest, and from
+/// nowhere else.
+class SceneShelf {
+ public:
+  /// `memory` in bytes, of the whole process: what was not used for longest goes when more is in
+  /// use than that; 0: no limit.
+  SceneShelf(farm::ContentStore& store, uint64_t memory) : store_(store), memory_(memory) {}
+
+  void add_job(uint64_t job, hyades::v1::JobSpec spec);
+  void forget_job(uint64_t job);
+
+  /// The frame, if it is loaded.
+  std::shared_ptr<const ShelvedFrame> find(uint64_t job, int32_t frame);
+
+  /// Loads a frame, and its job before its first frame. One thread at a time. Errors: what is wrong
+  /// with the job, or why the scene cannot be built.
+  core::Result<std::shared_ptr<const ShelvedFrame>> load(uint64_t job, int32_t frame);
+
+ private:
+  struct LoadedFrame {
+    std::shared_ptr<const ShelvedFrame> frame;
+    uint64_t used = 0;  ///< when, in uses of the shelf
+  };
+  struct LoadedJob {
+    core::Job job;
+    core::LayerSet layers;
+    std::unique_ptr<farm::ManifestResolver> files;
+    std::unique_ptr<core::SceneCache> cache;
+  };
+  struct ShelvedJob {
+    hyades::v1::JobSpec spec;
+    std::shared_ptr<LoadedJob> loaded;  ///< the loading thread's
+    std::map<int32_t, LoadedFrame> frames;
+    uint64_t used = 0;
+  };
+
+  core::Result<std::shared_ptr<LoadedJob>> read(const hyades::v1::JobSpec& spec) const;
+  bool drop_one_locked(uint64_t but_job, size_t frames_kept);
+  void make_room(uint64_t job);
+
+  farm::ContentStore& store_;
+  const uint64_t memory_;
+  std::mutex mutex_;
+  std::map<uint64_t, ShelvedJob> jobs_;  ///< guarded by mutex_
+  uint64_t uses_ = 0;                    ///< guarded by mutex_
+};
+
+}  // namespace hyades::worker

@@ -1,0 +1,136 @@
+#include "worker/renderer_process.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace hyades::worker {
+namespace {
+
+/// Where the child finds its end of the pipe.
+constexpr int kChildPipe = 3;
+
+std::string describe_end(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGKILL) {
+      return "was killed by signal 9: most likely this machine ran out of memory";
+    }
+    return fmt::format("crashed with signal {} ({})", signal, strsignal(signal));
+  }
+  return fmt::format("ended with status {}", WEXITSTATUS(status));
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
+    const RendererOptions& options, Owner& owner) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    return core::Error{std::string("no socket pair for the renderer: ") + std::strerror(errno)};
+  }
+  std::vector<std::string> words = {options.program,
+                                    "--threads",
+                                    std::to_string(options.threads),
+                                    "--memory",
+                                    std::to_string(options.memory),
+                                    "--cache",
+                                    options.cache};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], kChildPipe);
+  pid_t pid = 0;
+  const int error =
+      ::posix_spawn(&pid, options.program.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[1]);
+  if (error != 0) {
+    ::close(ends[0]);
+    return core::Error{options.program + ": cannot be started: " + std::strerror(error)};
+  }
+  return std::unique_ptr<RendererProcess>(new RendererProcess(pid, ends[0], owner));
+}
+
+RendererProcess::RendererProcess(pid_t pid, int fd, Owner& owner)
+    : owner_(owner), pipe_(fd), pid_(pid), reader_([this] { read_loop(); }), writer_([this] {
+        write_loop();
+      }) {}
+
+RendererProcess::~RendererProcess() {
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+    wake_.notify_all();
+  }
+  kill_child();
+  pipe_.shut_down();
+  reader_.join();
+  writer_.join();
+}
+
+void RendererProcess::kill_child() {
+  const std::lock_guard lock(mutex_);
+  if (pid_ > 0) ::kill(pid_, SIGKILL);
+}
+
+void RendererProcess::send(pipe::ToRenderer message) {
+  const std::lock_guard lock(mutex_);
+  outgoing_.push_back(std::move(message));
+  wake_.notify_one();
+}
+
+void RendererProcess::read_loop() {
+  for (;;) {
+    pipe::FromRenderer message;
+    const auto more = pipe_.receive(message);
+    if (!more || !*more) break;
+    owner_.renderer_says(std::move(message));
+  }
+  kill_child();  // where it has merely closed its end
+  siginfo_t info{};
+  while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 &&
+         errno == EINTR) {
+  }
+  bool wanted = false;
+  int status = 0;
+  {
+    // Under the lock, so that nobody signals a pid that belongs to another process by then.
+    const std::lock_guard lock(mutex_);
+    ::waitpid(pid_, &status, 0);
+    pid_ = 0;
+    wanted = closing_;
+    closing_ = true;
+    wake_.notify_all();
+  }
+  if (!wanted) owner_.renderer_ended(describe_end(status));
+}
+
+void RendererProcess::write_loop() {
+  for (;;) {
+    pipe::ToRenderer message;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return closing_ || !outgoing_.empty(); });
+      if (closing_) return;
+      message = std::move(outgoing_.front());
+      outgoing_.pop_front();
+    }
+    if (!pipe_.send(message)) return;  // the reader notices why
+  }
+}
+
+}  // namespace hyades::worker

@@ -1,0 +1,296 @@
+#include "worker/worker.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/base/hash.h"
+#include "farm/content_store.h"
+#include "worker/asset_fetcher.h"
+#include "worker/backoff.h"
+#include "worker/coordinator_link.h"
+#include "worker/desk.h"
+#include "worker/renderer_process.h"
+
+namespace hyades::worker {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick{50};
+/// A child that dies sooner than this is not started again at once.
+constexpr std::chrono::seconds kHealthyLife{5};
+/// Deaths in a row before a first Ready that make the worker give up.
+constexpr int kMostStillbirths = 3;
+constexpr milliseconds kFetchPatience{60'000};
+/// How long the end of the stream may take when all is said.
+constexpr milliseconds kGoodbye{200};
+
+std::string random_id() {
+  std::random_device device;
+  std::array<uint32_t, 4> words{};
+  for (uint32_t& word : words) word = device();
+  return core::to_hex({reinterpret_cast<const uint8_t*>(words.data()), sizeof words});
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+/// One loop that everything happens in: other threads only post to it.
+class Worker : private DeskPorts,
+               private CoordinatorLink::Owner,
+               private RendererProcess::Owner,
+               private AssetFetcher::Owner {
+ public:
+  Worker(const WorkerOptions& options, std::shared_ptr<grpc::Channel> channel, std::string token,
+         farm::ContentStore& store)
+      : options_(options),
+        desk_(desk_options(options), *this),
+        link_(channel, token, *this),
+        fetcher_(channel, token, store, *this, kFetchPatience) {}
+
+  int run(const volatile std::sig_atomic_t& signals) {
+    start_renderer();
+    while (!exit_status_) {
+      run_posted();
+      const TimePoint now = Clock::now();
+      if (signals > 0) leave(now);
+      if (restart_at_ && now >= *restart_at_ && !leave_by_) start_renderer();
+      if (connect_at_ && now >= *connect_at_) connect(now);
+      desk_.tick(now, link_.flowing());
+      if (desk_.leaving()) try_to_go(now);
+    }
+    return *exit_status_;
+  }
+
+ private:
+  static DeskOptions desk_options(const WorkerOptions& options) {
+    DeskOptions desk;
+    desk.worker_id = random_id();
+    desk.name = options.name.empty() ? host_name() : options.name;
+    desk.host = host_name();
+    desk.threads = static_cast<uint32_t>(options.threads);
+    desk.ahead = desk.threads;
+    desk.memory_bytes = options.memory;
+    desk.tags = options.tags;
+    return desk;
+  }
+
+  // ---- the loop ----
+
+  void post(std::function<void()> event) {
+    const std::lock_guard lock(mutex_);
+    posted_.push_back(std::move(event));
+    wake_.notify_one();
+  }
+
+  void run_posted() {
+    std::deque<std::function<void()>> events;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, kTick, [this] { return !posted_.empty(); });
+      events.swap(posted_);
+    }
+    for (const auto& event : events) event();
+  }
+
+  void leave(TimePoint now) {
+    if (leave_by_) return;
+    note("leaving: batches that are done are handed over");
+    leave_by_ =
+        now + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options_.grace)) -
+        kGoodbye;
+    desk_.leave("asked to leave", true);
+  }
+
+  void try_to_go(TimePoint now) {
+    const bool late = leave_by_ && now >= *leave_by_;
+    if (!goodbye_by_ && (desk_.empty() || late)) {
+      desk_.give_back_rest("asked to leave");
+      if (desk_.unacknowledged() > 0) {
+        note(fmt::format("{} films were not acknowledged in time", desk_.unacknowledged()));
+      }
+      link_.finish();
+      goodbye_by_ = now + kGoodbye;
+    }
+    if (goodbye_by_ && (now >= *goodbye_by_ || !streaming_)) exit_status_ = 0;
+  }
+
+  // ---- the rendering child ----
+
+  void start_renderer() {
+    restart_at_.reset();
+    renderer_.reset();
+    renderer_started_ = Clock::now();
+    renderer_ready_ = false;
+    auto started = RendererProcess::start(
+        {options_.renderer, options_.cache, options_.threads, options_.memory}, *this);
+    if (!started) {
+      note(started.error().message);
+      exit_status_ = 1;
+      return;
+    }
+    renderer_ = std::move(*started);
+  }
+
+  void renderer_says(pipe::FromRenderer message) override {
+    post([this, message = std::move(message)]() mutable {
+      if (message.has_ready()) {
+        renderer_ready_ = true;
+        stillbirths_ = 0;
+        desk_.renderer_ready(message.ready());
+        if (!ever_connected_) connect(Clock::now());
+      } else if (message.has_not_ready()) {
+        note("this machine cannot render: " + message.not_ready().reason());
+        exit_status_ = 1;
+      } else {
+        desk_.renderer_says(std::move(message), Clock::now());
+      }
+    });
+  }
+
+  void renderer_ended(const std::string& reason) override {
+    post([this, reason] {
+      note("the rendering process " + reason);
+      desk_.renderer_died(reason);
+      const TimePoint now = Clock::now();
+      if (!renderer_ready_ && ++stillbirths_ >= kMostStillbirths) {
+        exit_status_ = 1;
+        return;
+      }
+      const bool healthy = now - renderer_started_ >= kHealthyLife;
+      restart_at_ = healthy ? now : now + std::chrono::seconds(1);
+      // No time for another child.
+      if (leave_by_) desk_.give_back_rest("the rendering process " + reason);
+    });
+  }
+
+  void tell_renderer(pipe::ToRenderer message) override {
+    if (renderer_) renderer_->send(std::move(message));
+  }
+
+  // ---- the coordinator ----
+
+  void connect(TimePoint now) {
+    connect_at_.reset();
+    ever_connected_ = true;
+    streaming_ = true;
+    link_.open();
+    desk_.stream_opened(now);
+  }
+
+  void send(v1::WorkerMessage message) override { link_.send(std::move(message)); }
+
+  void stream_says(v1::CoordinatorMessage message) override {
+    post([this, message = std::move(message)]() mutable {
+      if (message.has_welcome()) {
+        backoff_.reset();
+        told_trouble_.clear();
+        note(fmt::format("working for {} as {}", options_.coordinator.address,
+                         message.welcome().name()));
+      }
+      desk_.coordinator_says(std::move(message), Clock::now());
+    });
+  }
+
+  void stream_ended(bool final, const std::string& reason) override {
+    post([this, final, reason] {
+      streaming_ = false;
+      desk_.stream_closed();
+      if (final) {
+        note("the coordinator refuses this worker: " + reason);
+        exit_status_ = 2;
+        return;
+      }
+      const Duration pause = backoff_.next();
+      connect_at_ = Clock::now() + pause;
+      if (goodbye_by_ || reason == told_trouble_) return;
+      note(fmt::format("no connection to {} ({}); trying again", options_.coordinator.address,
+                       reason));
+      told_trouble_ = reason;
+    });
+  }
+
+  // ---- files ----
+
+  void fetch(uint64_t job, const v1::JobSpec& spec) override { fetcher_.fetch(job, spec); }
+  void release(uint64_t job) override { fetcher_.release(job); }
+  void files_are_there(uint64_t job) override {
+    post([this, job] { desk_.files_are_there(job); });
+  }
+  void files_failed(uint64_t job, const std::string& reason, bool final) override {
+    post([this, job, reason, final] {
+      note(reason);
+      desk_.files_failed(job, reason, final);
+    });
+  }
+
+  void note(const std::string& text) override {
+    std::fprintf(stderr, "hyades worker: %s\n", text.c_str());
+    std::fflush(stderr);
+  }
+
+  const WorkerOptions options_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::function<void()>> posted_;  ///< guarded by mutex_
+
+  // All else belongs to the loop.
+  Desk desk_;
+  Backoff backoff_;
+  bool streaming_ = false;
+  bool ever_connected_ = false;
+  bool renderer_ready_ = false;
+  int stillbirths_ = 0;
+  TimePoint renderer_started_;
+  std::string told_trouble_;
+  std::optional<TimePoint> connect_at_;
+  std::optional<TimePoint> restart_at_;
+  std::optional<TimePoint> leave_by_;
+  std::optional<TimePoint> goodbye_by_;
+  std::optional<int> exit_status_;
+
+  // Last: their threads post to the above.
+  std::unique_ptr<RendererProcess> renderer_;
+  CoordinatorLink link_;
+  AssetFetcher fetcher_;
+};
+
+}  // namespace
+
+int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals) {
+  const auto refuse = [](const core::Error& error) {
+    std::fprintf(stderr, "hyades worker: %s\n", error.message.c_str());
+    return 1;
+  };
+  auto token = farm::read_token(options.coordinator.token_file);
+  if (!token) return refuse(token.error());
+  auto channel = farm::connect(options.coordinator);
+  if (!channel) return refuse(channel.error());
+  std::error_code failed;
+  std::filesystem::create_directories(options.cache, failed);
+  if (failed) return refuse({options.cache + ": cannot be made: " + failed.message()});
+  auto store = farm::ContentStore::open({options.cache, options.cache_size});
+  if (!store) return refuse(store.error());
+  Worker worker(options, *channel, *token, **store);
+  return worker.run(signals);
+}
+
+}  // namespace hyades::worker

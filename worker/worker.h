@@ -1,0 +1,29 @@
+#pragma once
+
+#include <csignal>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "farm/channel.h"
+
+namespace hyades::worker {
+
+struct WorkerOptions {
+  farm::Peer coordinator;
+  int threads = 1;
+  uint64_t memory = 0;      ///< bytes for scenes and all else of the rendering child; 0: no limit
+  std::string cache;        ///< folder for assets; made if it is missing
+  uint64_t cache_size = 0;  ///< bytes; 0: no limit
+  std::string name;         ///< for people
+  std::vector<std::string> tags;
+  double grace = 2.0;    ///< seconds from SIGTERM to the end
+  std::string renderer;  ///< path of hyades-worker-render
+};
+
+/// Works for a coordinator until `signals` is not 0 or it is drained. Returns the process' exit
+/// status: 0 when it was asked to leave, 1 where it cannot work here, 2 where the coordinator does
+/// not want it (token, version).
+int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals);
+
+}  // namespace hyades::worker
