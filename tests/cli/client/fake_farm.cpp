@@ -229,7 +229,7 @@ struct FakeFarm::AssetsService : v1::Assets::Service {
         size = part.size();
       }
       std::string& bytes = farm.partial[digest];
-      if (farm.lose_partial && part.chunk().offset() > 0) {
+      if (farm.lose_partial && !part.sha256().empty() && part.chunk().offset() > 0) {
         farm.lose_partial = false;
         bytes.clear();
         return {StatusCode::OUT_OF_RANGE, "bytes from 0 on are missing"};
