@@ -1,4 +1,5 @@
 #include "cli/compare_command.h"
+#include "cli/finish_command.h"
 #include "cli/merge_command.h"
 #include "cli/program.h"
 
@@ -6,6 +7,7 @@ int main(int argc, char** argv) {
   using namespace hyades::cli;
   constexpr ProgramCommand kCommands[] = {
       {"compare", compare_command},
+      {"finish", finish_command},
       {"merge", merge_command},
   };
   return run_program(kCommands, argc, argv);

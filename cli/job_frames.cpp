@@ -8,6 +8,7 @@
 #include "core/base/hash.h"
 #include "core/base/version.h"
 #include "core/film/film_exr.h"
+#include "core/finish/frame_outputs.h"
 #include "core/finish/picture.h"
 #include "core/job/layers.h"
 #include "core/job/render_key.h"
@@ -67,22 +68,9 @@ core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(i
 
 core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
   const core::FilmInfo info = film_info(frame);
-  const core::ImageMetadata metadata = {
-      {"hyades.job", info.job_name},
-      {"hyades.frame", std::to_string(frame)},
-      {"hyades.samples", std::to_string(info.samples)},
-      {"hyades.renderKey", info.render_key},
-      {"hyades.class", info.worker_class},
-      {"hyades.build", info.build},
-  };
-  const core::Image picture = film.normalised();
-  for (const core::OutputDesc& output : loaded_.job.outputs) {
-    const std::string path = core::output_path(output, options_.folder, frame);
-    if (auto written = core::write_output(output, picture, path, metadata); !written)
-      return written;
-  }
+  const auto written = core::write_outputs(loaded_.job.outputs, options_.folder, info, film);
+  if (!written) return written.error();
   if (!options_.write_films) return {};
-  // The film's own header says all that `metadata` does.
   return core::write_film_exr(film_path(frame), {info, film});
 }
 

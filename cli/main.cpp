@@ -28,7 +28,11 @@ constexpr Command kCommands[] = {
     {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
     {"bench", "hyades-render",
      "measure this machine: 'bench scaling' renders a job with 1..N threads"},
+#ifdef HYADES_FARM
+    {"coordinator", "hyades-coordinator",
+     "own jobs, lease their units to workers, merge the films"},
     {"worker", "hyades-worker", "render for a coordinator"},
+#endif
     {"merge", "hyades-film", "join films of the same frame"},
     {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
 #ifdef HYADES_FARM
@@ -57,7 +61,7 @@ void print_help() {
   std::printf(
       "hyades %s: a path-tracing render farm\n\nusage: hyades COMMAND [ARGUMENTS]\n\ncommands:\n",
       hyades::core::kVersion);
-  for (const Command& command : kCommands) std::printf("  %-10s %s\n", command.name, command.help);
+  for (const Command& command : kCommands) std::printf("  %-11s %s\n", command.name, command.help);
   std::printf(
       "\nexamples:\n"
       "  hyades render jobs/quickstart/job.yaml\n"

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "core/film/film_codec.h"
+
 namespace hyades::coordinator {
 namespace {
 
@@ -91,6 +93,7 @@ core::Result<LogContents> FilmKeeper::open() {
   }
   finished_ = contents->finished;
   films_ = contents->films;
+  for (const auto& [frame, units] : contents->units) classes_[frame] = units.front().worker_class;
   write_cut_ = contents->empty || contents->cut.region != plan_.region;
   return contents;
 }
@@ -124,6 +127,39 @@ void FilmKeeper::keep(RecordId record, int32_t frame, core::Film film) {
   item.memory = memory_of(film) + item.bytes.size();
   item.film = std::move(film);
   push(std::move(item), true);
+}
+
+void FilmKeeper::keep_delivered(RecordId record, const AcceptedUnit& unit, core::Film film,
+                                std::vector<std::byte> bytes) {
+  Item item;
+  item.record = record;
+  item.frame = unit.unit.frame;
+  if (log_) item.bytes = std::move(bytes);
+  item.memory = memory_of(film) + item.bytes.size();
+  item.film = std::move(film);
+  item.worker_class = unit.worker_class;
+  push(std::move(item), false);
+}
+
+void FilmKeeper::begin_again(RecordId record, int32_t frame) {
+  Item item;
+  item.record = record;
+  item.kind = Item::Kind::begun_again;
+  item.frame = frame;
+  if (log_) item.bytes = encode_begun_again(frame);
+  push(std::move(item), false);
+}
+
+void FilmKeeper::call(std::function<void()> what) {
+  Item item;
+  item.kind = Item::Kind::call;
+  item.call = std::move(what);
+  push(std::move(item), false);
+}
+
+bool FilmKeeper::crowded() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_bytes_ >= plan_.max_waiting_bytes;
 }
 
 void FilmKeeper::keep_finished(RecordId record, int32_t frame) {
@@ -208,6 +244,10 @@ void FilmKeeper::run() {
 
 void FilmKeeper::append(std::deque<Item> items) {
   for (Item& item : items) {
+    if (item.kind == Item::Kind::call) {
+      item.call();
+      continue;
+    }
     if (log_ && item.kind != Item::Kind::failed) {
       const uint64_t bytes = item.bytes.size();
       auto sequence = log_->append(std::move(item.bytes));
@@ -232,6 +272,12 @@ void FilmKeeper::settle(uint64_t durable) {
     appended_.pop_front();
     settling_ = &item;
     settled_sequence_ = std::max(settled_sequence_, item.sequence);
+    if (item.kind == Item::Kind::begun_again) {
+      films_.erase(item.frame);
+      classes_.erase(item.frame);
+      finished_.erase(item.frame);
+    }
+    if (!item.worker_class.empty()) classes_[item.frame] = item.worker_class;
     if (item.kind == Item::Kind::finished) {
       finished_[item.frame] = {key_of(item.frame), plan_.region};
     }
@@ -264,6 +310,7 @@ std::shared_ptr<const core::Film> FilmKeeper::film(int32_t frame) const {
 void FilmKeeper::forget(int32_t frame, bool finished) {
   const auto it = films_.find(frame);
   if (it == films_.end()) return;
+  if (finished) classes_.erase(frame);
   const uint64_t all =
       static_cast<uint64_t>(plan_.region.area()) * core::batch_count(plan_.samples);
   if (!finished && log_ && it->second->coverage().volume() == all &&
@@ -305,8 +352,12 @@ core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
     for (size_t first = 0; status && first < units.size();) {
       size_t end = first;
       while (end < units.size() && units[end].tile == units[first].tile) ++end;
-      status = put(
-          encode_unit(frame, key_of(frame), cut_film(*film, {units.data() + first, end - first})));
+      const core::Film part = cut_film(*film, {units.data() + first, end - first});
+      const auto known = classes_.find(frame);
+      status =
+          put(known == classes_.end() ? encode_unit(frame, key_of(frame), part)
+                                      : encode_delivered({units[first], Digest{}, known->second},
+                                                         key_of(frame), core::encode_film(part)));
       first = end;
       const std::lock_guard lock(mutex_);
       if (draining_) return core::Error{"the run ends"};

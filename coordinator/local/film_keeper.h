@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -56,6 +57,12 @@ class FilmKeeper {
 
   /// Takes a unit's film. Waits while too much waits for the disk already.
   void keep(RecordId record, int32_t frame, core::Film film);
+  /// The same for a film that a worker has delivered, whose record is `bytes` (encode_delivered);
+  /// never waits.
+  void keep_delivered(RecordId record, const AcceptedUnit& unit, core::Film film,
+                      std::vector<std::byte> bytes);
+  /// All films of the frame that were handed over before are void.
+  void begin_again(RecordId record, int32_t frame);
   void keep_finished(RecordId record, int32_t frame);
   void keep_failed(RecordId record);
   /// From now on keep() does not wait any more.
@@ -63,6 +70,10 @@ class FilmKeeper {
   /// No more will come: the thread makes durable what it has, and ends.
   void drain();
   std::string trouble() const;
+  /// As much waits for the disk as may: who delivers should come again later.
+  bool crowded() const;
+  /// Has the keeper's thread call `what` soon.
+  void call(std::function<void()> what);
 
   // The keeper's thread (from within Owner's functions), or before start().
 
@@ -75,12 +86,14 @@ class FilmKeeper {
 
  private:
   struct Item {
-    enum class Kind : uint8_t { film, finished, failed };
+    enum class Kind : uint8_t { film, finished, failed, begun_again, call };
     RecordId record{};
     Kind kind = Kind::film;
     int32_t frame = 0;
     core::Film film;
+    std::string worker_class;
     std::vector<std::byte> bytes;
+    std::function<void()> call;
     uint64_t memory = 0;
     uint64_t sequence = 0;
   };
@@ -115,6 +128,7 @@ class FilmKeeper {
   std::deque<Item> appended_;  ///< not durable yet, or not settled
   Item* settling_ = nullptr;
   std::map<int32_t, std::shared_ptr<core::Film>> films_;
+  std::map<int32_t, std::string> classes_;  ///< of frames, where workers delivered their films
   std::map<int32_t, FinishedRecord> finished_;
   /// Complete films of frames whose outputs could not be written.
   std::map<int32_t, std::shared_ptr<core::Film>> unfinished_;

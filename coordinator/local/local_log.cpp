@@ -14,7 +14,7 @@ namespace hyades::coordinator {
 namespace {
 
 /// The first byte of every record.
-enum class Kind : uint8_t { cut = 1, unit = 2, finished = 3 };
+enum class Kind : uint8_t { cut = 1, unit = 2, finished = 3, delivered = 4, begun_again = 5 };
 constexpr uint8_t kVersion = 2;
 
 // Numbers are little-endian, 32 bits.
@@ -73,6 +73,13 @@ class Reader {
         return read_unit(record.subspan(kHead));
       case Kind::finished:
         return read_finished(record.subspan(kHead));
+      case Kind::delivered:
+        return read_delivered(record.subspan(kHead));
+      case Kind::begun_again:
+        contents_.finished.erase(static_cast<int32_t>(get(record, kHead)));
+        contents_.films.erase(static_cast<int32_t>(get(record, kHead)));
+        contents_.units.erase(static_cast<int32_t>(get(record, kHead)));
+        return {};
     }
     return core::Error{"a record of an unknown kind"};
   }
@@ -103,6 +110,30 @@ class Reader {
     return other_regions_ ? merge_tiles(*film, *whole) : whole->merge(*film);
   }
 
+  core::Status read_delivered(std::span<const std::byte> bytes) {
+    constexpr size_t kFixed = kFrameAndKey + sizeof(Digest) + 4;
+    if (bytes.size() < kFixed) return core::Error{"a delivered film's record is too short"};
+    const auto frame = static_cast<int32_t>(get(bytes, 0));
+    const Digest digest = get_key(bytes, kFrameAndKey);
+    const uint32_t length = get(bytes, kFixed - 4);
+    if (length > bytes.size() - kFixed) return core::Error{"a delivered film's class is cut off"};
+    std::string worker_class(length, '\0');
+    for (size_t i = 0; i < length; ++i) worker_class[i] = std::to_integer<char>(bytes[kFixed + i]);
+    contents_.finished.erase(frame);
+    if (!wish_.frames.contains(frame) || !has_key(frame, get_key(bytes, 4))) return {};
+    auto film = core::decode_film(bytes.subspan(kFixed + length));
+    if (!film) return film.error();
+    auto& whole = contents_.films[frame];
+    if (!whole) whole = std::make_shared<core::Film>(film->layout(), wish_.region);
+    if (core::Status merged = whole->merge(*film); !merged) return merged;
+    if (contents_.cut.tile_size < 1) return {};
+    const auto units = units_of(frame, *film, wish_.region, contents_.cut.tile_size);
+    for (const core::Unit& unit : units) {
+      contents_.units[frame].push_back({unit, units.size() == 1 ? digest : Digest{}, worker_class});
+    }
+    return {};
+  }
+
   core::Status read_finished(std::span<const std::byte> bytes) {
     if (bytes.size() != kFrameAndKey + 16) return core::Error{"a record has a wrong length"};
     const auto frame = static_cast<int32_t>(get(bytes, 0));
@@ -115,6 +146,7 @@ class Reader {
     }
     contents_.finished[frame] = finished;
     contents_.films.erase(frame);
+    contents_.units.erase(frame);
     return {};
   }
 
@@ -177,6 +209,25 @@ std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const cor
   put(out, key);
   const std::vector<std::byte> bytes = core::encode_film(film);
   out.insert(out.end(), bytes.begin(), bytes.end());
+  return out;
+}
+
+std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey& key,
+                                        std::span<const std::byte> film) {
+  std::vector<std::byte> out = begin(Kind::delivered);
+  out.reserve(film.size() + unit.worker_class.size() + 128);
+  put(out, static_cast<uint32_t>(unit.unit.frame));
+  put(out, key);
+  put(out, unit.digest);
+  put(out, static_cast<uint32_t>(unit.worker_class.size()));
+  for (const char c : unit.worker_class) out.push_back(static_cast<std::byte>(c));
+  out.insert(out.end(), film.begin(), film.end());
+  return out;
+}
+
+std::vector<std::byte> encode_begun_again(int32_t frame) {
+  std::vector<std::byte> out = begin(Kind::begun_again);
+  put(out, static_cast<uint32_t>(frame));
   return out;
 }
 

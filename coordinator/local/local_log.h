@@ -17,7 +17,8 @@
 
 namespace hyades::coordinator {
 
-// The records of a run's film log. docs/film-log.md describes the log, which does not know them.
+// The records of a film log, of a run on this machine or of a job of a farm. docs/film-log.md
+// describes the log, which does not know them.
 
 /// What the log of every run begins with: how the frames are cut. Where the region differs from run
 /// to run (another crop), one stands before the films of each.
@@ -37,6 +38,12 @@ struct FinishedRecord {
 std::vector<std::byte> encode_cut(const CutRecord& cut);
 /// A film of some tiles and batches of a frame.
 std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const core::Film& film);
+/// The same as a worker delivered it: `film` is its film as film_codec.h packs it. Of `unit` frame,
+/// digest and class are kept; the film says the rest.
+std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey& key,
+                                        std::span<const std::byte> film);
+/// All films of the frame before this record are void.
+std::vector<std::byte> encode_begun_again(int32_t frame);
 std::vector<std::byte> encode_finished(int32_t frame, const FinishedRecord& finished);
 
 /// What a log holds.
@@ -46,6 +53,9 @@ struct LogContents {
   /// Of the frames that were asked for: with this key and region; of others: whatever they have.
   std::map<int32_t, FinishedRecord> finished;
   std::map<int32_t, std::shared_ptr<core::Film>> films;  ///< of the other frames, merged
+  /// The units of these films, where workers delivered them. A digest is zero where it is not known
+  /// any more.
+  std::map<int32_t, std::vector<AcceptedUnit>> units;
   std::vector<std::string> problems;  ///< damage, in words; costs rendering again
 };
 

@@ -92,6 +92,7 @@ class LocalRun : private FilmKeeper::Owner {
   void act(const Revoke&) {}
   void act(const Acknowledge&) {}
   void act(const Conflict&) {}
+  void act(const FrameRestarted&) {}
   void end_locked(const std::string& error);
   uint64_t samples_of(const core::Unit& unit) const;
   void count_locked(const core::Unit& unit, bool done);

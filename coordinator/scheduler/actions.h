@@ -49,7 +49,13 @@ struct FrameFailedRecord {
   JobId job{};
   FailedFrame failed;
 };
-using Record = std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord>;
+/// All films of the frame before this record are void.
+struct FrameRestartedRecord {
+  JobId job{};
+  int32_t frame = 0;
+};
+using Record =
+    std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord, FrameRestartedRecord>;
 
 /// Make this durable; answered by Persisted or PersistFailed. For a unit that means the film that
 /// came with the result now being handled.
@@ -115,6 +121,12 @@ struct FrameFailed {
   std::string reason;
 };
 
+/// The frame has begun again from nothing, and that is durable.
+struct FrameRestarted {
+  JobId job{};
+  int32_t frame = 0;
+};
+
 /// All frames of the job are over; the scheduler has forgotten it.
 struct JobEnded {
   JobId job{};
@@ -124,6 +136,6 @@ struct JobEnded {
 };
 
 using Action = std::variant<OpenFrame, Lease, Revoke, Persist, Merge, Acknowledge, Reject, Conflict,
-                            FinishFrame, FrameDone, FrameFailed, JobEnded>;
+                            FinishFrame, FrameDone, FrameFailed, FrameRestarted, JobEnded>;
 
 }  // namespace hyades::coordinator

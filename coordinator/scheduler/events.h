@@ -30,6 +30,14 @@ struct JobResumed {
 struct JobCancelled {
   JobId job{};
 };
+struct JobReprioritised {
+  JobId job{};
+  int priority = 0;
+};
+/// The job's failed frames are to be rendered again, from their beginning.
+struct FramesRetried {
+  JobId job{};
+};
 
 // Frames: answers to OpenFrame and FinishFrame.
 
@@ -114,6 +122,13 @@ struct UnitReturned {
   core::Unit unit;
 };
 
+/// The worker gets no more units (it drains, or is in quarantine), or gets some again. What it has
+/// stays its own. Ends when it joins again.
+struct WorkerBarred {
+  WorkerId worker{};
+  bool barred = true;
+};
+
 /// The worker is gone. No blame. Whoever watches the connections must not report the loss of an old
 /// one after the worker has joined again.
 struct WorkerLost {
@@ -133,9 +148,9 @@ struct PersistFailed {
 /// Nothing but time has passed.
 struct Tick {};
 
-using Event =
-    std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, FrameOpened, FrameRefused,
-                 FinishDone, FinishFailed, WorkerJoined, WorkRequested, WorkerAlive, ResultArrived,
-                 UnitFailed, UnitReturned, WorkerLost, Persisted, PersistFailed, Tick>;
+using Event = std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised,
+                           FramesRetried, FrameOpened, FrameRefused, FinishDone, FinishFailed,
+                           WorkerJoined, WorkRequested, WorkerAlive, ResultArrived, UnitFailed,
+                           UnitReturned, WorkerBarred, WorkerLost, Persisted, PersistFailed, Tick>;
 
 }  // namespace hyades::coordinator

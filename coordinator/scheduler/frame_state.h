@@ -57,6 +57,7 @@ class FrameState {
   uint64_t free() const { return free_; }  ///< tile-batches neither leased nor held
   uint64_t durable() const { return durable_; }
   bool complete() const { return durable_ == total_; }
+  bool all_held() const { return free_ == 0 && assignments_.empty(); }
   bool any_assigned() const { return !assignments_.empty(); }
   size_t holders() const;  ///< of all assignments together
 

@@ -23,6 +23,7 @@ struct JobPlan {
 
   /// Frames that may be opened, rendered or finished at once: each costs its film's memory.
   uint32_t frames_in_flight = 3;
+  uint32_t max_workers = 0;   ///< that may have units of it at once; 0: no limit
   uint32_t max_attempts = 3;  ///< failures of one unit that fail its frame
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -13,11 +14,12 @@
 namespace hyades::coordinator {
 
 enum class FramePhase : uint8_t {
-  waiting,    ///< not opened yet
-  opening,    ///< OpenFrame was said
-  rendering,  ///< its units are leased
-  finishing,  ///< complete; FinishFrame was said
-  closing,    ///< finished or failed; waits for that to be durable
+  waiting,     ///< not opened yet
+  opening,     ///< OpenFrame was said
+  rendering,   ///< its units are leased
+  finishing,   ///< complete; FinishFrame was said
+  closing,     ///< finished or failed; waits for that to be durable
+  restarting,  ///< begins again; waits for that to be durable
   done,
   failed,
 };
@@ -35,7 +37,8 @@ struct FrameSlot {
     return phase != FramePhase::waiting && phase != FramePhase::done && phase != FramePhase::failed;
   }
   bool over() const {
-    return phase == FramePhase::closing || phase == FramePhase::done || phase == FramePhase::failed;
+    return phase == FramePhase::closing || phase == FramePhase::restarting ||
+           phase == FramePhase::done || phase == FramePhase::failed;
   }
 };
 
@@ -49,6 +52,8 @@ struct JobState {
   std::unordered_map<int32_t, uint32_t> by_number;  ///< frame number -> slot; never walked
   std::vector<uint32_t> in_flight;                  ///< slots, in order
   size_t next_slot = 0;                             ///< before it nothing waits
+  uint64_t running = 0;                             ///< leased units
+  std::map<WorkerId, uint32_t> workers;             ///< how many leases each has
   bool paused = false;
   bool ready = false;  ///< listed among those that have work
 

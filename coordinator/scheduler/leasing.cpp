@@ -22,7 +22,7 @@ void Scheduler::on(const WorkerJoined& e) {
   worker.threads = e.threads;
   worker.worker_class = intern_class(e.worker_class);
   threads_ += worker.threads;
-  ++class_workers_[worker.worker_class];
+  count_class(worker.worker_class, 1);
   for (const UnitInHand& held : e.in_hand) adopt(e.worker, worker, held);
   for (const auto& [id, job] : jobs_) open_frames(*job);
 }
@@ -62,6 +62,20 @@ void Scheduler::on(const WorkerAlive& e) {
   }
 }
 
+void Scheduler::on(const WorkerBarred& e) {
+  Worker* worker = find_worker(e.worker);
+  if (worker == nullptr || worker->barred == e.barred) return;
+  worker->barred = e.barred;
+  count_class(worker->worker_class, e.barred ? -1 : 1);
+  work_appeared_ = true;
+}
+
+/// One worker of the class more or less that may get units.
+void Scheduler::count_class(uint32_t worker_class, int change) {
+  class_workers_[worker_class] += static_cast<uint32_t>(change);
+  if (change < 0 && class_workers_[worker_class] == 0) class_gone_[worker_class] = now_;
+}
+
 void Scheduler::on(const WorkerLost& e) {
   Worker* worker = find_worker(e.worker);
   if (worker == nullptr) return;
@@ -69,7 +83,7 @@ void Scheduler::on(const WorkerLost& e) {
   for (const uint64_t number : numbers) release_lease(number, false);
   if (worker->waiting != 0) waiting_.erase(worker->waiting);
   threads_ -= worker->threads;
-  --class_workers_[worker->worker_class];
+  if (!worker->barred) count_class(worker->worker_class, -1);
   workers_.erase(e.worker);
   // A unit that failed with others may now be theirs to try again.
   work_appeared_ = true;
@@ -78,6 +92,7 @@ void Scheduler::on(const WorkerLost& e) {
 void Scheduler::on(const Tick&) {
   expire_leases();
   retry_persisting();
+  restart_orphans();
   if (now_ >= storage_blocked_until_) work_appeared_ = true;
 }
 
@@ -108,16 +123,32 @@ void Scheduler::release_lease(uint64_t number, bool revoke) {
     slot.books->release(e, id);
     if (revoke) say(Revoke{lease.worker, id, job.id, unit_of(job, slot, e)});
   }
-  set_running(job.share, -static_cast<int64_t>(lease.units.size()));
+  set_running(job, -static_cast<int64_t>(lease.units.size()));
+  leave_job(job, lease.worker);
   update_ready(job);
+}
+
+/// One lease less.
+void Scheduler::leave_job(JobState& job, WorkerId worker) {
+  const auto found = job.workers.find(worker);
+  if (--found->second > 0) return;
+  job.workers.erase(found);
+  if (job.plan.max_workers > 0) work_appeared_ = true;
+}
+
+/// Whether the job's limit leaves room for this worker.
+bool Scheduler::may_join(const JobState& job, WorkerId worker) const {
+  return job.plan.max_workers == 0 || job.workers.size() < job.plan.max_workers ||
+         job.workers.contains(worker);
 }
 
 /// The unit is no longer out under this lease; its books are the caller's business.
 void Scheduler::drop_from_lease(const LeaseId& id, const Extent& e) {
   LeaseState* lease = find_lease(id);
   if (lease == nullptr || std::erase(lease->units, e) == 0) return;
-  set_running(find_job(lease->job)->share, -1);
+  set_running(*find_job(lease->job), -1);
   if (!lease->units.empty()) return;
+  leave_job(*find_job(lease->job), lease->worker);
   std::erase(find_worker(lease->worker)->leases, id.number);
   leases_.erase(id.number);
 }
@@ -133,6 +164,7 @@ void Scheduler::set_waiting(WorkerId id, Worker& worker) {
 }
 
 void Scheduler::serve(WorkerId id, Worker& worker, bool copies) {
+  if (worker.barred) return;
   while (worker.wanted > 0 && grant(id, worker)) {
   }
   while (copies && worker.wanted > 0 && grant_copy(id, worker)) {
@@ -168,6 +200,7 @@ bool Scheduler::grant(WorkerId id, Worker& worker) {
 }
 
 bool Scheduler::grant_from(JobState& job, WorkerId id, Worker& worker) {
+  if (!may_join(job, id)) return false;
   const auto judge = [&](const std::vector<WorkerId>& blamed) {
     return may_try(id, worker, blamed);
   };
@@ -211,6 +244,7 @@ bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
     if (assignment == nullptr || assignment->holders.front().worker == id) continue;
     JobState& job = *find_job(candidate.job);
     if (job.paused || job.slots[candidate.slot].worker_class != worker.worker_class) continue;
+    if (!may_join(job, id)) continue;
     assignment->copied = true;
     assignment->holders.push_back({id, {options_.incarnation, next_lease_}});
     --worker.wanted;
@@ -228,9 +262,10 @@ void Scheduler::new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t s
   Lease action{id, lease, job.id, {}, deadline, adopted};
   for (const Extent& e : extents) action.units.push_back(unit_of(job, job.slots[slot], e));
   say(std::move(action));
-  set_running(job.share, static_cast<int64_t>(extents.size()));
+  set_running(job, static_cast<int64_t>(extents.size()));
   leases_.emplace(lease.number, LeaseState{id, job.id, slot, std::move(extents), deadline});
   worker.leases.push_back(lease.number);
+  ++job.workers[id];
   deadlines_.emplace(deadline, lease.number);
 }
 

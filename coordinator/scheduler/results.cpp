@@ -22,7 +22,8 @@ void Scheduler::on(const ResultArrived& e) {
   }
   FrameState& books = *slot->books;
   if (const HeldRecord* held = books.find_held(*extent)) {
-    if (held->digest != e.digest) {
+    // After a restart what was merged has no digest any more.
+    if (held->digest != Digest{} && held->digest != e.digest) {
       say(Conflict{e.job, e.unit, held->worker, e.worker});
       reject(RejectReason::conflict);
     } else if (held->pending == RecordId{}) {
@@ -112,6 +113,11 @@ void Scheduler::on(const Persisted& e) {
   }
   const auto* finished = std::get_if<FrameFinishedRecord>(&pending.record);
   const auto* failed = std::get_if<FrameFailedRecord>(&pending.record);
+  if (const auto* again = std::get_if<FrameRestartedRecord>(&pending.record)) {
+    JobState* job = find_job(again->job);
+    if (job != nullptr) frame_restarted(*job, *job->slot(again->frame));
+    return;
+  }
   JobState* job = find_job(finished ? finished->job : failed->job);
   if (job == nullptr) return;
   FrameSlot& slot = *job->slot(finished ? finished->frame : failed->failed.frame);

@@ -11,6 +11,7 @@ Scheduler::Scheduler(SchedulerOptions options) : options_(options) {
   // Class 0 stands for 'none yet'.
   class_names_.emplace_back();
   class_workers_.push_back(0);
+  class_gone_.emplace_back();
 }
 
 std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
@@ -100,6 +101,30 @@ void Scheduler::on(const JobCancelled& e) {
   jobs_.erase(e.job);
 }
 
+void Scheduler::on(const JobReprioritised& e) {
+  JobState* job = find_job(e.job);
+  if (job == nullptr || job->plan.priority == e.priority) return;
+  const auto running = static_cast<int64_t>(job->running);
+  list_ready(*job, false);
+  set_running(*job, -running);
+  job->plan.priority = e.priority;
+  job->share = share_of(e.priority, job->plan.owner);
+  set_running(*job, running);
+  update_ready(*job);
+}
+
+void Scheduler::on(const FramesRetried& e) {
+  JobState* job = find_job(e.job);
+  if (job == nullptr) return;
+  for (uint32_t i = 0; i < job->slots.size(); ++i) {
+    FrameSlot& slot = job->slots[i];
+    if (slot.phase != FramePhase::failed) continue;
+    --job->frames_failed;
+    job->in_flight.push_back(i);
+    restart_frame(*job, slot);
+  }
+}
+
 void Scheduler::on(const FrameOpened& e) {
   JobState* job = find_job(e.job);
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
@@ -186,6 +211,45 @@ void Scheduler::fail_frame(JobState& job, FrameSlot& slot, std::string reason) {
   persist(FrameFailedRecord{job.id, {slot.frame, slot.reason}}, {});
 }
 
+/// What is on its way to the disk of this frame's films is durable before the record, and void.
+void Scheduler::restart_frame(JobState& job, FrameSlot& slot) {
+  slot.phase = FramePhase::restarting;
+  take_back_frame(job, slot);
+  slot.books.reset();
+  update_ready(job);
+  persist(FrameRestartedRecord{job.id, slot.frame}, {});
+}
+
+void Scheduler::frame_restarted(JobState& job, FrameSlot& slot) {
+  const auto index = static_cast<uint32_t>(&slot - job.slots.data());
+  slot.phase = FramePhase::waiting;
+  slot.worker_class = 0;
+  slot.finish_attempts = 0;
+  slot.reason.clear();
+  std::erase(job.in_flight, index);
+  job.next_slot = std::min<size_t>(job.next_slot, index);
+  say(FrameRestarted{job.id, slot.frame});
+  open_frames(job);
+}
+
+/// Frames whose class has been gone for too long begin again, if there is somebody to render them.
+void Scheduler::restart_orphans() {
+  if (options_.class_patience <= Duration{0} || now_ < next_orphan_check_) return;
+  next_orphan_check_ = now_ + options_.class_patience / 4;
+  if (threads_ == 0) return;
+  for (const auto& [id, job] : jobs_) {
+    if (job->paused) continue;
+    const std::vector<uint32_t> in_flight = job->in_flight;
+    for (const uint32_t i : in_flight) {
+      FrameSlot& slot = job->slots[i];
+      const uint32_t c = slot.worker_class;
+      if (slot.phase != FramePhase::rendering || c == 0 || class_workers_[c] > 0) continue;
+      if (now_ < class_gone_[c] + options_.class_patience || slot.books->all_held()) continue;
+      restart_frame(*job, slot);
+    }
+  }
+}
+
 void Scheduler::take_back_frame(JobState& job, FrameSlot& slot) {
   if (!slot.books || !slot.books->any_assigned()) return;
   const auto index = static_cast<uint32_t>(&slot - job.slots.data());
@@ -248,7 +312,9 @@ uint32_t Scheduler::share_of(int priority, const std::string& owner) {
   return it->second;
 }
 
-void Scheduler::set_running(uint32_t index, int64_t change) {
+void Scheduler::set_running(JobState& job, int64_t change) {
+  job.running += static_cast<uint64_t>(change);
+  const uint32_t index = job.share;
   Share& share = shares_[index];
   if (!share.ready.empty()) ready_shares_.erase({-share.priority, share.running, index});
   share.running += static_cast<uint64_t>(change);
@@ -264,6 +330,10 @@ void Scheduler::update_ready(JobState& job) {
   }
   ready = ready && !job.paused;
   if (ready) work_appeared_ = true;
+  list_ready(job, ready);
+}
+
+void Scheduler::list_ready(JobState& job, bool ready) {
   if (ready == job.ready) return;
   job.ready = ready;
   Share& share = shares_[job.share];
@@ -284,6 +354,7 @@ uint32_t Scheduler::intern_class(const std::string& name) {
   if (fresh) {
     class_names_.push_back(name);
     class_workers_.push_back(0);
+    class_gone_.push_back(now_);
   }
   return it->second;
 }
@@ -299,10 +370,26 @@ std::optional<TimePoint> Scheduler::next_wake() const {
   const auto at = [&](TimePoint t) { wake = wake ? std::min(*wake, t) : t; };
   if (!deadlines_.empty()) at(deadlines_.top().first);
   if (now_ < storage_blocked_until_) at(storage_blocked_until_);
+  if (options_.class_patience > Duration{0} && !jobs_.empty() && threads_ > 0) {
+    at(next_orphan_check_);
+  }
   if (!waiting_.empty() && !copy_candidates_.empty() && options_.copy_after > Duration{0}) {
     at(std::max(copy_candidates_.front().since + options_.copy_after, next_copy_round_));
   }
   return wake;
+}
+
+uint32_t Scheduler::leased_units(JobId id) const {
+  const auto job = jobs_.find(id);
+  return job == jobs_.end() ? 0 : static_cast<uint32_t>(job->second->running);
+}
+
+uint32_t Scheduler::leased_units(WorkerId id) const {
+  const auto worker = workers_.find(id);
+  if (worker == workers_.end()) return 0;
+  size_t units = 0;
+  for (const uint64_t number : worker->second.leases) units += leases_.at(number).units.size();
+  return static_cast<uint32_t>(units);
 }
 
 std::string Scheduler::audit() const {

@@ -28,6 +28,9 @@ struct SchedulerOptions {
   Duration unit_time = std::chrono::milliseconds(500);
   /// Idle workers get a copy of a unit that has been out for this long; 0: no copies.
   Duration copy_after = std::chrono::seconds(5);
+  /// A frame whose class of workers has been gone for this long begins again with another; 0:
+  /// never.
+  Duration class_patience{0};
   /// Nothing is leased for this long after something could not be made durable.
   Duration storage_retry = std::chrono::seconds(1);
 };
@@ -46,6 +49,11 @@ class Scheduler {
   /// When a Tick is needed at the latest, if nothing else happens before.
   std::optional<TimePoint> next_wake() const;
 
+  /// How many units of the job are out with workers.
+  uint32_t leased_units(JobId job) const;
+  /// How many units the worker has.
+  uint32_t leased_units(WorkerId worker) const;
+
   /// What is wrong with the books, or nothing. Slow; for tests and audits.
   std::string audit() const;
 
@@ -55,6 +63,7 @@ class Scheduler {
     uint32_t worker_class = 0;
     uint32_t wanted = 0;   ///< units it asked for and did not get yet
     uint64_t waiting = 0;  ///< its key in waiting_, or 0
+    bool barred = false;   ///< gets nothing
     std::vector<uint64_t> leases;
   };
   struct LeaseState {
@@ -95,6 +104,8 @@ class Scheduler {
   void on(const JobPaused& e);
   void on(const JobResumed& e);
   void on(const JobCancelled& e);
+  void on(const JobReprioritised& e);
+  void on(const FramesRetried& e);
   void on(const FrameOpened& e);
   void on(const FrameRefused& e);
   void on(const FinishDone& e);
@@ -105,6 +116,9 @@ class Scheduler {
   void finish(JobState& job, FrameSlot& slot);
   void fail_frame(JobState& job, FrameSlot& slot, std::string reason);
   void take_back_frame(JobState& job, FrameSlot& slot);
+  void restart_frame(JobState& job, FrameSlot& slot);
+  void frame_restarted(JobState& job, FrameSlot& slot);
+  void restart_orphans();
   void frame_over(JobState& job, FrameSlot& slot, FramePhase phase);
   void end_job_if_over(JobState& job);
 
@@ -112,6 +126,7 @@ class Scheduler {
   void on(const WorkerJoined& e);
   void on(const WorkRequested& e);
   void on(const WorkerAlive& e);
+  void on(const WorkerBarred& e);
   void on(const WorkerLost& e);
   void on(const Tick& e);
   void adopt(WorkerId id, Worker& worker, const UnitInHand& held);
@@ -128,6 +143,9 @@ class Scheduler {
   Assignment* live_copy_candidate(const CopyCandidate& c);
   void release_lease(uint64_t number, bool revoke);
   void drop_from_lease(const LeaseId& id, const Extent& e);
+  void count_class(uint32_t worker_class, int change);
+  void leave_job(JobState& job, WorkerId worker);
+  bool may_join(const JobState& job, WorkerId worker) const;
   void set_waiting(WorkerId id, Worker& worker);
   void serve(WorkerId id, Worker& worker, bool copies);
 
@@ -150,8 +168,9 @@ class Scheduler {
   std::optional<Extent> extent_of(const JobState& job, const core::Unit& unit) const;
   core::Unit unit_of(const JobState& job, const FrameSlot& slot, const Extent& extent) const;
   uint32_t share_of(int priority, const std::string& owner);
-  void set_running(uint32_t share, int64_t change);
+  void set_running(JobState& job, int64_t change);
   void update_ready(JobState& job);
+  void list_ready(JobState& job, bool ready);
   uint32_t intern_class(const std::string& name);
   LeaseState* find_lease(const LeaseId& id);
   void say(Action action) { actions_.push_back(std::move(action)); }
@@ -171,7 +190,9 @@ class Scheduler {
   uint64_t next_waiting_ = 1;
   bool work_appeared_ = false;           ///< since the waiting were last served
   uint64_t threads_ = 0;                 ///< of all workers
-  std::vector<uint32_t> class_workers_;  ///< how many workers there are of each class
+  std::vector<uint32_t> class_workers_;  ///< how many of each class may get units
+  std::vector<TimePoint> class_gone_;    ///< since when there are none
+  TimePoint next_orphan_check_;
   std::map<std::string, uint32_t, std::less<>> class_index_;
   std::vector<std::string> class_names_;
 

@@ -55,6 +55,12 @@ struct FilmDesc {
   float filter_radius = 1.5F;  ///< pixels; half the filter's width
 };
 
+/// The part of the frame that a job renders: its crop, or everything.
+inline PixelRect render_window(const FilmDesc& film) {
+  const PixelRect frame{0, 0, film.width, film.height};
+  return film.crop ? intersection(frame, *film.crop) : frame;
+}
+
 enum class SamplerName { sobol, independent };
 
 struct SamplingDesc {

@@ -146,9 +146,4 @@ PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& 
   return sample_pixel(pixel, sample, *sampler, work);
 }
 
-PixelRect render_window(const FilmDesc& film) {
-  const PixelRect frame{0, 0, film.width, film.height};
-  return film.crop ? intersection(frame, *film.crop) : frame;
-}
-
 }  // namespace hyades::core

@@ -72,7 +72,4 @@ class FrameRenderer {
   bool needs_time_ = false;
 };
 
-/// The part of the frame that a job renders: its crop, or everything.
-PixelRect render_window(const FilmDesc& film);
-
 }  // namespace hyades::core

@@ -28,6 +28,7 @@ class SimulatedWorld {
     options_.lease_time = std::chrono::seconds(5);
     options_.copy_after = chance(0.5) ? Duration{0} : std::chrono::milliseconds(number(500, 4000));
     options_.unit_time = std::chrono::milliseconds(number(1, 3000));
+    options_.class_patience = chance(0.5) ? Duration{0} : std::chrono::seconds(number(1, 10));
     fault_rate_ = chance(0.15) ? 0 : 0.15 * uniform();
     faults_end_ = TimePoint(std::chrono::seconds(number(5, 60)));
     const int classes = number(1, 2);
@@ -68,6 +69,7 @@ class SimulatedWorld {
   uint64_t adopted = 0;
   uint64_t copies_revoked = 0;
   uint64_t overlaps = 0;
+  uint64_t frames_restarted = 0;
 
  private:
   [[noreturn]] static void fail(const std::string& what) { throw what; }
@@ -92,6 +94,7 @@ class SimulatedWorld {
     plan.priority = number(0, 2);
     plan.owner = chance(0.5) ? "eve" : "fay";
     plan.frames_in_flight = static_cast<uint32_t>(number(1, 3));
+    plan.max_workers = chance(0.3) ? static_cast<uint32_t>(number(1, 3)) : 0;
     plan.shuffle = static_cast<uint64_t>(number(0, 1));
     for (const int32_t f : plan.frames) {
       SimFrame& frame = job.frames[f];
@@ -135,6 +138,7 @@ class SimulatedWorld {
     ++restarts;
     scheduler_.reset();
     ++generation_;
+    storing_.clear();
     for (SimWorker& w : workers_) w.connected = false;
     after(std::chrono::milliseconds(number(1, 5000)), [this] {
       start_coordinator();
@@ -194,13 +198,38 @@ class SimulatedWorld {
   }
 
   void act(const Persist& a) {
+    ++storing_[frame_of(a.record)];
+    store_later(a);
+  }
+
+  static std::pair<JobId, int32_t> frame_of(const Record& record) {
+    if (const auto* unit = std::get_if<UnitRecord>(&record)) {
+      return {unit->job, unit->accepted.unit.frame};
+    }
+    if (const auto* failed = std::get_if<FrameFailedRecord>(&record)) {
+      return {failed->job, failed->failed.frame};
+    }
+    if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
+      return {done->job, done->frame};
+    }
+    const auto& again = std::get<FrameRestartedRecord>(record);
+    return {again.job, again.frame};
+  }
+
+  void store_later(const Persist& a) {
     const bool refuse = fault();
     after(delay(), [this, a, refuse, g = generation_] {
       if (g != generation_) return;  // it died before the bytes were on the disk
+      // A job's log keeps order; it matters only where earlier records become void.
+      if (std::holds_alternative<FrameRestartedRecord>(a.record) &&
+          storing_[frame_of(a.record)] > 1) {
+        return store_later(a);
+      }
       if (!refuse) store(a.record);
       // Durable now; but nobody hears of it if the coordinator dies before the next line runs.
       after(delay(), [this, a, refuse, g] {
         if (g != generation_) return;
+        --storing_[frame_of(a.record)];
         if (refuse) {
           tell(PersistFailed{a.id, "disk full"});
         } else {
@@ -220,6 +249,15 @@ class SimulatedWorld {
       jobs_.at(done->job).stored.finished.push_back(done->frame);
     } else if (const auto* failed = std::get_if<FrameFailedRecord>(&record)) {
       jobs_.at(failed->job).stored.failed.push_back(failed->failed);
+    } else {
+      const auto& again = std::get<FrameRestartedRecord>(record);
+      SimJob& job = jobs_.at(again.job);
+      std::erase_if(job.stored.failed,
+                    [&](const FailedFrame& f) { return f.frame == again.frame; });
+      std::erase_if(job.stored.accepted,
+                    [&](const AcceptedUnit& u) { return u.unit.frame == again.frame; });
+      std::erase_if(job.stored_units,
+                    [&](const UnitName& u) { return std::get<0>(u) == again.frame; });
     }
   }
 
@@ -268,6 +306,14 @@ class SimulatedWorld {
       fail("a good frame failed: " + a.reason);
     }
     frame.over = true;
+  }
+
+  void act(const FrameRestarted& a) {
+    ++frames_restarted;
+    SimFrame& frame = frame_of(a.job, a.frame);
+    frame.batches.clear();
+    frame.sum = 0;
+    frame.over = false;
   }
 
   void act(const JobEnded& a) {
@@ -448,6 +494,8 @@ class SimulatedWorld {
         ++kills;
         ++w.life;
         w.held.clear();
+        // It comes back with another build.
+        if (options_.class_patience > Duration{0} && chance(0.3)) w.name += "'";
       }
       // The coordinator notices now, later, or not before it is back.
       const uint64_t session = w.session;
@@ -465,6 +513,16 @@ class SimulatedWorld {
       } else {
         tell(JobResumed{job->first});
       }
+    }
+    if (chance(fault_rate_ / 4) && !job->second.ended) {
+      tell(JobReprioritised{job->first, job->second.plan.priority = number(0, 2)});
+    }
+    if (chance(fault_rate_ / 8) && !job->second.ended) tell(FramesRetried{job->first});
+    if (chance(fault_rate_ / 2)) {
+      tell(WorkerBarred{WorkerId{i}, true});
+      after(std::chrono::milliseconds(number(10, 20000)), [this, i] {
+        tell(WorkerBarred{WorkerId{i}, false});
+      });
     }
     if (chance(fault_rate_ / 20) && !job->second.ended && scheduler_) {
       job->second.cancelled = true;
@@ -492,6 +550,7 @@ class SimulatedWorld {
   std::unique_ptr<Scheduler> scheduler_;
   std::vector<SimWorker> workers_;
   std::map<JobId, SimJob> jobs_;
+  std::map<std::pair<JobId, int32_t>, int> storing_;  ///< records on their way to the disk
 };
 
 }  // namespace hyades::coordinator

@@ -1,0 +1,130 @@
+// `hyades coordinator`: owns jobs, leases units, merges films. It links no renderer.
+
+#include <unistd.h>
+
+#include <climits>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/server.h"
+#include "core/base/atomic_file.h"
+
+namespace {
+
+using hyades::coordinator::Brain;
+using hyades::coordinator::BrainOptions;
+using hyades::coordinator::Duration;
+using hyades::coordinator::Server;
+
+constexpr int kBadArguments = 2;
+
+/// The folder of this program; its fellow programs lie beside it.
+std::string own_folder() {
+  char path[PATH_MAX];
+  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
+  if (length <= 0) return {};
+  const std::string self(path, static_cast<size_t>(length));
+  return self.substr(0, self.rfind('/') + 1);
+}
+
+Duration seconds(double value) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
+}
+
+struct Arguments {
+  BrainOptions brain;
+  hyades::farm::Listen listen;
+  double unit_seconds = 5;
+  double lease_seconds = 30;
+  double class_patience = 300;
+};
+
+int serve(const Arguments& arguments) {
+  // Signals are waited for below; every thread inherits that they are blocked.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  auto brain = Brain::open(arguments.brain);
+  if (!brain) {
+    std::fprintf(stderr, "hyades coordinator: %s\n", brain.error().message.c_str());
+    return 1;
+  }
+  {
+    auto server = Server::start(arguments.listen, **brain);
+    if (!server) {
+      std::fprintf(stderr, "hyades coordinator: %s\n", server.error().message.c_str());
+      return 1;
+    }
+    const std::string address = (*server)->address() + "\n";
+    const auto noted = hyades::core::write_file(arguments.brain.folder + "/address",
+                                                std::as_bytes(std::span(address)));
+    if (!noted) {
+      std::fprintf(stderr, "hyades coordinator: %s\n", noted.error().message.c_str());
+      return 1;
+    }
+    std::printf("listening on %s", address.c_str());
+    std::fflush(stdout);
+    int signal = 0;
+    sigwait(&signals, &signal);
+    (*brain)->stop();
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Owns jobs, leases their units to workers, merges the films and writes the outputs.",
+               "hyades coordinator");
+  app.add_option("--data", arguments.brain.folder, "folder for everything that is kept")
+      ->required();
+  app.add_option("--listen", arguments.listen.address, "HOST:PORT; port 0 takes a free one")
+      ->capture_default_str();
+  app.add_option("--tls-cert", arguments.listen.cert_file, "certificate (PEM): TLS");
+  app.add_option("--tls-key", arguments.listen.key_file, "its private key (PEM)");
+  app.add_option("--tls-ca", arguments.listen.ca_file,
+                 "callers must show a certificate signed by this one (PEM)");
+  app.add_option("--token-file", arguments.listen.token_file,
+                 "file with the token that every call has to carry");
+  app.add_flag("--insecure", arguments.listen.insecure,
+               "plaintext, or no token, also beyond this machine");
+  app.add_option("--unit-seconds", arguments.unit_seconds, "what one thread shall take for a unit")
+      ->check(CLI::Range(0.01, 3600.0))
+      ->capture_default_str();
+  app.add_option("--lease-seconds", arguments.lease_seconds,
+                 "a worker that is silent for so long loses its units")
+      ->check(CLI::Range(1.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--class-patience", arguments.class_patience,
+                 "seconds after which a frame begins again whose class of workers has vanished")
+      ->check(CLI::Range(0.1, 1e6))
+      ->capture_default_str();
+  app.footer(
+      "examples:\n"
+      "  hyades coordinator --data /var/lib/hyades\n"
+      "  hyades coordinator --data farm --listen 0.0.0.0:7700 --tls-cert c.pem --tls-key k.pem "
+      "--token-file token\n"
+      "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
+      "wrong arguments");
+  // argv[1] is the word "coordinator".
+  try {
+    app.parse(argc > 1 ? argc - 1 : argc, argc > 1 ? argv + 1 : argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : kBadArguments;
+  }
+  arguments.brain.finisher = own_folder() + "hyades-film";
+  arguments.brain.unit_time = seconds(arguments.unit_seconds);
+  arguments.brain.lease_time = seconds(arguments.lease_seconds);
+  arguments.brain.class_patience = seconds(arguments.class_patience);
+  return serve(arguments);
+}

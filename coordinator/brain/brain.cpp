@@ -1,0 +1,367 @@
+// Events in, actions out.
+#include "coordinator/brain/brain.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/keeper_owner.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+v1::LeaseId to_wire(const LeaseId& lease) {
+  v1::LeaseId wire;
+  wire.set_incarnation(lease.incarnation);
+  wire.set_number(lease.number);
+  return wire;
+}
+
+v1::LeasedUnit to_wire(const LeaseId& lease, JobId job, const core::Unit& unit) {
+  v1::LeasedUnit wire;
+  *wire.mutable_lease() = to_wire(lease);
+  wire.set_job(static_cast<uint64_t>(job));
+  *wire.mutable_unit() = farm::to_wire(unit);
+  return wire;
+}
+
+v1::Rejected::Reason to_wire(RejectReason reason) {
+  switch (reason) {
+    case RejectReason::unknown:
+      return v1::Rejected::REASON_UNKNOWN;
+    case RejectReason::malformed:
+      return v1::Rejected::REASON_MALFORMED;
+    case RejectReason::overlap:
+      return v1::Rejected::REASON_OVERLAP;
+    case RejectReason::conflict:
+      return v1::Rejected::REASON_CONFLICT;
+    case RejectReason::not_now:
+      return v1::Rejected::REASON_NOT_NOW;
+  }
+  return v1::Rejected::REASON_UNSPECIFIED;
+}
+
+constexpr uint32_t kRetryAfterMs = 1000;
+
+}  // namespace
+
+int64_t wall_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::vector<Action> Brain::tell(const Event& event, Delivery* delivery) {
+  std::vector<Action> later;
+  for (const Action& action : scheduler_.handle(event, std::chrono::steady_clock::now())) {
+    act(action, delivery, later);
+  }
+  return later;
+}
+
+/// Does what can be done under the lock; the rest goes to `later`.
+void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& later) {
+  if (const auto* lease = std::get_if<Lease>(&action)) {
+    send_lease(*lease);
+  } else if (const auto* ack = std::get_if<Acknowledge>(&action)) {
+    v1::CoordinatorMessage message;
+    *message.mutable_acknowledge()->mutable_unit() = to_wire(ack->lease, ack->job, ack->unit);
+    send(ack->worker, std::move(message));
+  } else if (const auto* revoke = std::get_if<Revoke>(&action)) {
+    v1::CoordinatorMessage message;
+    *message.mutable_stop()->mutable_unit() = to_wire(revoke->lease, revoke->job, revoke->unit);
+    send(revoke->worker, std::move(message));
+  } else if (const auto* reject = std::get_if<Reject>(&action)) {
+    v1::CoordinatorMessage message;
+    v1::Rejected& rejected = *message.mutable_rejected();
+    *rejected.mutable_unit() = to_wire(reject->lease, reject->job, reject->unit);
+    rejected.set_reason(to_wire(reject->reason));
+    if (reject->reason == RejectReason::not_now) rejected.set_retry_after_ms(kRetryAfterMs);
+    send(reject->worker, std::move(message));
+  } else if (const auto* conflict = std::get_if<Conflict>(&action)) {
+    if (JobDesk* desk = desk_of(conflict->job)) {
+      note(*desk, v1::LOG_LEVEL_ERROR, conflict->unit.frame, {},
+           fmt::format("workers {} and {} rendered tile {},{} batches {}-{} to different bits",
+                       static_cast<uint64_t>(conflict->first),
+                       static_cast<uint64_t>(conflict->second), conflict->unit.tile.x0,
+                       conflict->unit.tile.y0, conflict->unit.batches.first,
+                       conflict->unit.batches.end() - 1));
+    }
+  } else if (const auto* record = std::get_if<Persist>(&action)) {
+    persist(*record, delivery);
+  } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
+    // The film takes memory only as units come in.
+    for (const Action& next :
+         scheduler_.handle(FrameOpened{open->job, open->frame}, std::chrono::steady_clock::now())) {
+      act(next, delivery, later);
+    }
+  } else {
+    later.push_back(action);
+  }
+}
+
+void Brain::persist(const Persist& persist, Delivery* delivery) {
+  const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  if (const auto* unit = std::get_if<UnitRecord>(&persist.record)) {
+    desk->keeper->keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
+                                 std::move(delivery->record));
+  } else if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {
+    desk->keeper->keep_finished(persist.id, done->frame);
+  } else if (const auto* again = std::get_if<FrameRestartedRecord>(&persist.record)) {
+    chore([this, job, id = persist.id, frame = again->frame] {
+      while (!store_->forget_frame(static_cast<uint64_t>(job), frame) && !stop_) {
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+      }
+      const std::lock_guard lock(mutex_);
+      if (JobDesk* still = desk_of(job)) still->keeper->begin_again(id, frame);
+    });
+  } else if (const auto* failed = std::get_if<FrameFailedRecord>(&persist.record)) {
+    const FrameNote& note = desk->frames[failed->failed.frame];
+    StoredFrame frame{failed->failed.frame, false, failed->failed.reason, note.worker_class,
+                      note.restarts};
+    chore([this, job, id = persist.id, frame] {
+      const core::Status stored = store_->frame_over(static_cast<uint64_t>(job), frame, {});
+      const std::lock_guard lock(mutex_);
+      JobDesk* still = desk_of(job);
+      if (still == nullptr) return;
+      // Where it could not be stored the frame fails again after a restart, if it must.
+      if (!stored) still->trouble = stored.error().message;
+      still->keeper->keep_failed(id);
+    });
+  }
+}
+
+void Brain::send(WorkerId worker, v1::CoordinatorMessage message) {
+  const auto seat = seats_.find(worker);
+  if (seat != seats_.end() && seat->second.link) seat->second.link->send(std::move(message));
+}
+
+void Brain::send_lease(const Lease& lease) {
+  const auto found = seats_.find(lease.worker);
+  JobDesk* desk = desk_of(lease.job);
+  if (found == seats_.end() || desk == nullptr) return;
+  Seat& seat = found->second;
+  if (seat.briefed.insert(lease.job).second) {
+    v1::CoordinatorMessage message;
+    v1::JobBrief& brief = *message.mutable_job();
+    brief.set_job(static_cast<uint64_t>(lease.job));
+    *brief.mutable_spec() = desk->spec;
+    brief.set_key(farm::to_wire(desk->key));
+    send(lease.worker, std::move(message));
+  }
+  v1::CoordinatorMessage message;
+  v1::Lease& wire = *message.mutable_lease();
+  *wire.mutable_lease() = to_wire(lease.lease);
+  wire.set_job(static_cast<uint64_t>(lease.job));
+  for (const core::Unit& unit : lease.units) *wire.add_units() = farm::to_wire(unit);
+  wire.set_adopted(lease.adopted);
+  wire.set_deadline_ms(static_cast<uint64_t>(
+      std::chrono::duration_cast<std::chrono::milliseconds>(options_.lease_time).count()));
+  send(lease.worker, std::move(message));
+
+  const int32_t number = lease.units.front().frame;
+  FrameNote& frame = desk->touch(number);
+  if (frame.state == v1::FRAME_STATE_WAITING) {
+    frame.state = v1::FRAME_STATE_RENDERING;
+    note(*desk, v1::LOG_LEVEL_INFO, number, seat.hello.name(), "begun");
+  }
+  if (frame.worker_class.empty()) frame.worker_class = seat.hello.worker_class();
+}
+
+void Brain::carry_out(const std::vector<Action>& actions) {
+  for (const Action& action : actions) {
+    if (const auto* merge = std::get_if<Merge>(&action)) {
+      merged(merge->job, *merge);
+    } else if (const auto* finish = std::get_if<FinishFrame>(&action)) {
+      finish_frame(*finish);
+    } else if (const auto* done = std::get_if<FrameDone>(&action)) {
+      frame_done(done->job, done->frame);
+    } else if (const auto* failed = std::get_if<FrameFailed>(&action)) {
+      frame_failed(failed->job, failed->frame, failed->reason);
+    } else if (const auto* again = std::get_if<FrameRestarted>(&action)) {
+      frame_restarted(again->job, again->frame);
+    } else if (const auto* ended = std::get_if<JobEnded>(&action)) {
+      job_ended(*ended);
+    }
+  }
+}
+
+/// On the keeper's thread, as the film is at hand there.
+void Brain::merged(JobId job, const Merge& merge) {
+  FilmKeeper* keeper = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    if (JobDesk* desk = desk_of(job)) keeper = desk->keeper.get();
+  }
+  if (keeper == nullptr) return;
+  const core::Status status = keeper->merge(merge.record);
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  if (!status) {
+    // Checked when it arrived: this is a bug, and better a stuck frame than a wrong one.
+    note(*desk, v1::LOG_LEVEL_ERROR, merge.unit.frame, {},
+         "a film cannot be merged: " + status.error().message);
+    return;
+  }
+  uint64_t samples = 0;
+  for (uint32_t b = merge.unit.batches.first; b < merge.unit.batches.end(); ++b) {
+    samples += core::samples_in_batch(b, desk->read.job.sampling.samples);
+  }
+  samples *= static_cast<uint64_t>(merge.unit.tile.area());
+  desk->touch(merge.unit.frame).samples_done += samples;
+  desk->samples_done += samples;
+}
+
+/// On the keeper's thread, or before it runs.
+void Brain::finish_frame(const FinishFrame& finish) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(finish.job);
+  if (desk == nullptr) return;
+  auto& film = desk->complete[finish.frame];
+  if (!film) film = desk->keeper->film(finish.frame);
+  desk->touch(finish.frame).state = v1::FRAME_STATE_FINISHING;
+  to_finish_.push_back({finish.job, finish.frame, film});
+  finish_wake_.notify_one();
+}
+
+void Brain::frame_done(JobId job, int32_t frame) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  desk->keeper->forget(frame, true);
+  desk->complete.erase(frame);
+  desk->touch(frame).state = v1::FRAME_STATE_DONE;
+  ++desk->stored.frames_done;
+  note(*desk, v1::LOG_LEVEL_INFO, frame, {}, "done");
+}
+
+void Brain::frame_failed(JobId job, int32_t frame, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  desk->keeper->forget(frame, false);
+  desk->complete.erase(frame);
+  FrameNote& noted = desk->touch(frame);
+  noted.state = v1::FRAME_STATE_FAILED;
+  noted.reason = reason;
+  desk->samples_done -= std::exchange(noted.samples_done, 0);
+  ++desk->stored.frames_failed;
+  note(*desk, v1::LOG_LEVEL_ERROR, frame, {}, "failed: " + reason);
+}
+
+void Brain::frame_restarted(JobId job, int32_t frame) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  FrameNote& noted = desk->touch(frame);
+  if (noted.state == v1::FRAME_STATE_FAILED) --desk->stored.frames_failed;
+  noted.state = v1::FRAME_STATE_WAITING;
+  noted.reason.clear();
+  noted.worker_class.clear();
+  ++noted.restarts;
+  desk->samples_done -= std::exchange(noted.samples_done, 0);
+  note(*desk, v1::LOG_LEVEL_WARNING, frame, {}, "is rendered again from its beginning");
+}
+
+/// The job leaves memory once its end is stored.
+void Brain::job_ended(const JobEnded& ended) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(ended.job);
+  if (desk == nullptr || desk->ending) return;
+  desk->ending = true;
+  StoredJob& stored = desk->stored;
+  stored.state = ended.cancelled    ? StoredState::cancelled
+                 : ended.failed > 0 ? StoredState::failed
+                                    : StoredState::done;
+  stored.frames_done = ended.done;
+  stored.frames_failed = ended.failed;
+  stored.ended_ms = wall_ms();
+  stored.reason.clear();
+  for (const auto& [number, frame] : desk->frames) {
+    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
+      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
+    }
+  }
+  note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
+       fmt::format("ended: {} frames done, {} failed{}", ended.done, ended.failed,
+                   ended.cancelled ? ", cancelled" : ""));
+  for (auto& [id, seat] : seats_) {
+    if (seat.briefed.erase(ended.job) == 0) continue;
+    v1::CoordinatorMessage message;
+    message.mutable_over()->set_job(static_cast<uint64_t>(ended.job));
+    send(id, std::move(message));
+  }
+  chore([this, id = ended.job] {
+    std::unique_lock held(mutex_);
+    JobDesk* over = desk_of(id);
+    const StoredJob job = over->stored;
+    const std::vector<StoredLine> lines = std::exchange(over->lines, {});
+    held.unlock();
+    (void)store_->add_lines(job.id, lines);
+    while (!store_->update_job(job) && !stop_) {
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    }
+    held.lock();
+    auto node = desks_.extract(id);
+    for (auto& [number, watch] : watches_) {
+      if (watch.job == job.id) chore(watch.poke);
+    }
+    held.unlock();
+    node = {};  // waits for the keeper's thread
+    // Films of frames that failed stay, should they be taken up again.
+    std::error_code ignored;
+    if (job.state == StoredState::done) {
+      std::filesystem::remove_all(films_folder(job.id), ignored);
+    }
+  });
+}
+
+void Brain::persisted(JobId, RecordId record) {
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    later = tell(Persisted{record});
+  }
+  carry_out(later);
+}
+
+void Brain::not_persisted(JobId job, RecordId record, const std::string& reason) {
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    if (JobDesk* desk = desk_of(job)) {
+      desk->trouble = "films cannot be stored: " + reason;
+      desk->touch();
+    }
+    later = tell(PersistFailed{record, reason});
+  }
+  carry_out(later);
+}
+
+void Brain::storage_failed(JobId job, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  if (JobDesk* desk = desk_of(job)) {
+    desk->trouble = "films cannot be stored: " + reason;
+    desk->touch();
+    note(*desk, v1::LOG_LEVEL_ERROR, std::nullopt, {}, desk->trouble);
+  }
+}
+
+JobDesk* Brain::desk_of(JobId job) {
+  const auto found = desks_.find(job);
+  return found == desks_.end() ? nullptr : found->second.get();
+}
+
+void Brain::note(JobDesk& desk, v1::LogLevel level, std::optional<int32_t> frame,
+                 const std::string& worker, const std::string& text) {
+  desk.lines.push_back({wall_ms(), level, frame, worker, text});
+  desk.touch();
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,123 @@
+// What operators ask for.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "core/base/version.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+
+void Brain::info(v1::InfoResponse& response) {
+  const std::lock_guard lock(mutex_);
+  response.set_protocol(farm::kProtocol);
+  response.set_oldest_protocol(farm::kOldestProtocol);
+  response.set_version(core::kVersion);
+  response.set_incarnation(incarnation_);
+  response.set_started_ms(started_ms_);
+  for (const auto& [id, seat] : seats_) {
+    if (!seat.joined) continue;
+    response.set_workers(response.workers() + 1);
+    response.set_threads(response.threads() + seat.hello.threads());
+  }
+  response.set_jobs(static_cast<uint32_t>(desks_.size()));
+  for (const auto& [id, desk] : desks_) {
+    if (!desk->trouble.empty()) response.set_trouble(desk->trouble);
+  }
+}
+
+v1::Worker Brain::describe(const Seat& seat) const {
+  v1::Worker wire;
+  wire.set_id(static_cast<uint64_t>(seat.id));
+  wire.set_name(seat.hello.name());
+  wire.set_host(seat.hello.host());
+  wire.set_worker_class(seat.hello.worker_class());
+  wire.set_build(seat.hello.build());
+  wire.set_threads(seat.hello.threads());
+  wire.set_state(seat.state);
+  wire.set_reason(seat.reason);
+  wire.set_leased(scheduler_.leased_units(seat.id));
+  wire.set_units_done(seat.units_done);
+  wire.set_units_failed(seat.units_failed);
+  wire.set_samples_done(seat.samples_done);
+  wire.set_joined_ms(seat.joined_ms);
+  wire.set_heard_ms(seat.heard_ms);
+  wire.set_memory_bytes(seat.memory);
+  return wire;
+}
+
+void Brain::workers(v1::WorkersResponse& response) {
+  std::vector<v1::Worker> workers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, seat] : seats_) workers.push_back(describe(seat));
+  }
+  std::sort(workers.begin(), workers.end(), [](const v1::Worker& a, const v1::Worker& b) {
+    return a.name() != b.name() ? a.name() < b.name() : a.id() < b.id();
+  });
+  for (v1::Worker& worker : workers) *response.add_workers() = std::move(worker);
+}
+
+/// By number or by name; with the lock. Null where `status` says why.
+Brain::Seat* Brain::find_worker(const std::string& text, grpc::Status& status) {
+  Seat* found = nullptr;
+  for (auto& [id, seat] : seats_) {
+    if (std::to_string(static_cast<uint64_t>(id)) == text) return &seat;
+    if (seat.hello.name() != text) continue;
+    if (found != nullptr) {
+      status = {grpc::StatusCode::FAILED_PRECONDITION,
+                "several workers are called '" + text + "': give the id"};
+      return nullptr;
+    }
+    found = &seat;
+  }
+  if (found == nullptr) {
+    status = {grpc::StatusCode::NOT_FOUND, "there is no worker '" + text + "'"};
+  }
+  return found;
+}
+
+grpc::Status Brain::drain_worker(const v1::WorkerRequest& request, v1::Worker& now) {
+  return steer_worker(request, now, [&](Seat& seat) {
+    v1::CoordinatorMessage message;
+    message.mutable_drain()->set_reason(request.reason());
+    send(seat.id, std::move(message));
+    if (seat.state == v1::WORKER_STATE_ACTIVE) seat.state = v1::WORKER_STATE_DRAINING;
+    return tell(WorkerBarred{seat.id, true});
+  });
+}
+
+grpc::Status Brain::quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now) {
+  return steer_worker(request, now, [&](Seat& seat) {
+    seat.state = v1::WORKER_STATE_QUARANTINED;
+    return tell(WorkerBarred{seat.id, true});
+  });
+}
+
+grpc::Status Brain::release_worker(const v1::WorkerRequest& request, v1::Worker& now) {
+  return steer_worker(request, now, [&](Seat& seat) {
+    if (seat.state != v1::WORKER_STATE_QUARANTINED) return std::vector<Action>();
+    seat.state = seat.joined ? v1::WORKER_STATE_ACTIVE : v1::WORKER_STATE_GONE;
+    return tell(WorkerBarred{seat.id, false});
+  });
+}
+
+grpc::Status Brain::steer_worker(const v1::WorkerRequest& request, v1::Worker& now,
+                                 const std::function<std::vector<Action>(Seat&)>& what) {
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    grpc::Status status;
+    Seat* seat = find_worker(request.worker(), status);
+    if (seat == nullptr) return status;
+    seat->reason = request.reason().substr(0, 4000);
+    later = what(*seat);
+    now = describe(*seat);
+  }
+  carry_out(later);
+  return grpc::Status::OK;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,223 @@
+// What clients want done with jobs.
+#include <cstdlib>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr size_t kLongestName = 200;
+constexpr int kMostPriority = 1'000'000;
+
+grpc::Status failed(const core::Error& error) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
+}
+
+grpc::Status wrong(const std::string& message) {
+  return {grpc::StatusCode::INVALID_ARGUMENT, message};
+}
+
+}  // namespace
+
+grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse& response) {
+  const std::string& key = request.idempotency_key();
+  if (!key.empty() && (key.size() < 16 || key.size() > 64)) {
+    return wrong("idempotency_key has to have 16 to 64 characters");
+  }
+  if (request.owner().size() > kLongestName) return wrong("owner: at most 200 characters");
+  if (std::abs(int64_t{request.priority()}) > kMostPriority) {
+    return wrong("priority: expected -1000000 to 1000000");
+  }
+  const auto files = files_of(request.spec());
+  if (!files) return wrong(files.error().message);
+  v1::ErrorDetail missing;
+  for (const v1::JobFile& file : request.spec().files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (!assets_->contains(core::to_hex(*digest), file.size())) missing.add_missing(file.sha256());
+  }
+  if (missing.missing_size() > 0) {
+    return farm::wire_status(
+        grpc::StatusCode::FAILED_PRECONDITION,
+        fmt::format("{} of the job's files are not here yet", missing.missing_size()), missing);
+  }
+  StoredJob stored;
+  stored.key = key;
+  stored.spec = request.spec().SerializeAsString();
+  stored.owner = request.owner();
+  stored.priority = request.priority();
+  stored.max_workers = request.max_workers();
+  stored.submitted_ms = wall_ms();
+  auto desk = make_desk(stored, request.spec(), *assets_);
+  if (!desk) return wrong(desk.error().message);
+
+  const std::lock_guard one(submit_mutex_);
+  const auto added = store_->add_job((*desk)->stored);
+  if (!added) return failed(added.error());
+  response.set_existed(added->existed);
+  if (!added->existed) {
+    (*desk)->id = JobId{added->id};
+    (*desk)->stored.id = added->id;
+    {
+      const std::lock_guard lock(mutex_);
+      note(**desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
+           fmt::format("submitted by {}: {} frames",
+                       stored.owner.empty() ? "nobody in particular" : stored.owner,
+                       (*desk)->numbers.size()));
+    }
+    if (core::Status started = start(std::move(*desk), false, {}); !started) {
+      // Nothing was promised yet.
+      (void)store_->remove_job(added->id);
+      return failed(started.error());
+    }
+  }
+  v1::GetJobResponse now;
+  const grpc::Status got = get(added->id, now);
+  *response.mutable_job() = now.job();
+  return got;
+}
+
+grpc::Status Brain::pause(uint64_t id, v1::Job& now) { return set_paused(id, true, now); }
+
+grpc::Status Brain::resume(uint64_t id, v1::Job& now) { return set_paused(id, false, now); }
+
+grpc::Status Brain::set_paused(uint64_t id, bool paused, v1::Job& now) {
+  return change(id, now, [&](JobDesk& desk, std::vector<Action>& later) {
+    const StoredState wanted = paused ? StoredState::paused : StoredState::running;
+    if (desk.stored.state == wanted) return;
+    desk.stored.state = wanted;
+    note(desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, paused ? "paused" : "resumed");
+    later = paused ? tell(JobPaused{desk.id}) : tell(JobResumed{desk.id});
+  });
+}
+
+grpc::Status Brain::set_priority(uint64_t id, int priority, v1::Job& now) {
+  if (std::abs(int64_t{priority}) > kMostPriority) {
+    return wrong("priority: expected -1000000 to 1000000");
+  }
+  return change(id, now, [&](JobDesk& desk, std::vector<Action>& later) {
+    if (desk.stored.priority == priority) return;
+    desk.stored.priority = priority;
+    note(desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, fmt::format("priority {}", priority));
+    later = tell(JobReprioritised{desk.id, priority});
+  });
+}
+
+/// Changes an open job and stores it before it answers.
+grpc::Status Brain::change(uint64_t id, v1::Job& now,
+                           const std::function<void(JobDesk&, std::vector<Action>&)>& what) {
+  std::vector<Action> later;
+  StoredJob stored;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    if (desk == nullptr || desk->ending) return not_open(id);
+    what(*desk, later);
+    now = describe(*desk);
+    stored = desk->stored;
+  }
+  carry_out(later);
+  if (core::Status done = store_->update_job(stored); !done) return failed(done.error());
+  return grpc::Status::OK;
+}
+
+grpc::Status Brain::cancel(uint64_t id, v1::Job& now) {
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    if (desk == nullptr) return not_open(id);
+    later = tell(JobCancelled{desk->id});
+  }
+  carry_out(later);
+  // The end is stored by the chores; to answer is to promise.
+  for (;;) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (stop_) return {grpc::StatusCode::UNAVAILABLE, "the coordinator stops"};
+      if (desk_of(id) == nullptr) break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  v1::GetJobResponse got;
+  const grpc::Status status = get(id, got);
+  now = got.job();
+  return status;
+}
+
+grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
+  const std::lock_guard one(submit_mutex_);
+  std::vector<Action> later;
+  bool open = false;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    open = desk != nullptr && !desk->ending;
+    if (open) {
+      note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, "failed frames are taken up again");
+      later = tell(FramesRetried{desk->id});
+      now = describe(*desk);
+    }
+  }
+  carry_out(later);
+  if (open) return grpc::Status::OK;
+  auto stored = store_->job(id);
+  if (!stored) return failed(stored.error());
+  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  StoredJob& job = **stored;
+  if (job.state != StoredState::failed && job.state != StoredState::cancelled) {
+    return {grpc::StatusCode::FAILED_PRECONDITION,
+            fmt::format("job {} is done: there is nothing to take up again", id)};
+  }
+  const auto frames = store_->frames(id);
+  if (!frames) return failed(frames.error());
+  for (const StoredFrame& frame : *frames) {
+    if (frame.done) continue;
+    if (auto gone = store_->forget_frame(id, frame.frame); !gone) return failed(gone.error());
+  }
+  job.state = StoredState::running;
+  job.ended_ms = 0;
+  job.reason.clear();
+  if (core::Status noted = store_->update_job(job); !noted) return failed(noted.error());
+  if (core::Status taken = take_up(id); !taken) {
+    return {grpc::StatusCode::FAILED_PRECONDITION, taken.error().message};
+  }
+  v1::GetJobResponse got;
+  const grpc::Status status = get(id, got);
+  now = got.job();
+  return status;
+}
+
+grpc::Status Brain::remove(uint64_t id) {
+  const std::lock_guard one(submit_mutex_);
+  {
+    const std::lock_guard lock(mutex_);
+    if (desk_of(id) != nullptr) {
+      return {grpc::StatusCode::FAILED_PRECONDITION,
+              fmt::format("job {} has not ended: cancel it first", id)};
+    }
+  }
+  const auto stored = store_->job(id);
+  if (!stored) return failed(stored.error());
+  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  if (core::Status removed = store_->remove_job(id); !removed) return failed(removed.error());
+  std::error_code ignored;
+  std::filesystem::remove_all(films_folder(id), ignored);
+  std::filesystem::remove_all(output_folder(id), ignored);
+  return grpc::Status::OK;
+}
+
+/// NOT_FOUND, or FAILED_PRECONDITION for a job that has ended; with the lock.
+grpc::Status Brain::not_open(uint64_t id) {
+  const auto stored = store_->job(id);
+  if (!stored) return failed(stored.error());
+  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} has ended", id)};
+}
+
+}  // namespace hyades::coordinator

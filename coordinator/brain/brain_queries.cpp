@@ -1,0 +1,225 @@
+// What clients want to know of jobs.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kMostListed = 1000;
+
+grpc::Status failed(const core::Error& error) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
+}
+
+grpc::Status no_job(uint64_t id) {
+  return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+}
+
+v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
+  v1::Frame wire;
+  wire.set_frame(frame.frame);
+  wire.set_state(frame.done ? v1::FRAME_STATE_DONE : v1::FRAME_STATE_FAILED);
+  wire.set_samples(job.frames > 0 ? job.samples / job.frames : 0);
+  wire.set_samples_done(frame.done ? wire.samples() : 0);
+  wire.set_reason(frame.reason);
+  wire.set_worker_class(frame.worker_class);
+  wire.set_restarts(frame.restarts);
+  return wire;
+}
+
+}  // namespace
+
+v1::Job Brain::describe(const JobDesk& desk) const {
+  return desk.describe(scheduler_.leased_units(desk.id));
+}
+
+grpc::Status Brain::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
+  const uint32_t limit =
+      request.limit() == 0 ? kMostListed : std::min(request.limit(), kMostListed);
+  const auto jobs = store_->list(request.ended(), request.owner(), request.before(), limit);
+  if (!jobs) return failed(jobs.error());
+  const std::lock_guard lock(mutex_);
+  for (const StoredJob& job : *jobs) {
+    const JobDesk* desk = desk_of(job.id);
+    *response.add_jobs() = desk != nullptr ? describe(*desk) : coordinator::describe(job);
+  }
+  if (jobs->size() == limit) response.set_next_before(jobs->back().id);
+  return grpc::Status::OK;
+}
+
+grpc::Status Brain::get(uint64_t id, v1::GetJobResponse& response) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const JobDesk* desk = desk_of(id)) {
+      *response.mutable_job() = describe(*desk);
+      for (const int32_t number : desk->numbers) {
+        *response.add_frames() = desk->describe_frame(number, desk->frames.at(number));
+      }
+      return grpc::Status::OK;
+    }
+  }
+  const auto stored = store_->job(id);
+  if (!stored) return failed(stored.error());
+  if (!*stored) return no_job(id);
+  *response.mutable_job() = coordinator::describe(**stored);
+  const auto frames = store_->frames(id);
+  if (!frames) return failed(frames.error());
+  for (const StoredFrame& frame : *frames) {
+    *response.add_frames() = describe_over(frame, **stored);
+    if ((*stored)->state != StoredState::done && frame.done) {
+      response.mutable_job()->set_samples_done(response.job().samples_done() +
+                                               response.frames().rbegin()->samples());
+    }
+  }
+  return grpc::Status::OK;
+}
+
+grpc::Status Brain::changes(uint64_t id, uint64_t& version, v1::WatchEvent& event, bool& ended) {
+  ended = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (const JobDesk* desk = desk_of(id)) {
+      *event.mutable_job() = describe(*desk);
+      // Until its end is stored, it has not ended for anybody.
+      if (desk->ending) event.mutable_job()->set_state(v1::JOB_STATE_RUNNING);
+      for (const int32_t number : desk->numbers) {
+        const FrameNote& note = desk->frames.at(number);
+        if (version != 0 && note.version <= version) continue;
+        *event.add_changed() = desk->describe_frame(number, note);
+      }
+      version = desk->version;
+      return grpc::Status::OK;
+    }
+  }
+  v1::GetJobResponse over;
+  const grpc::Status status = get(id, over);
+  if (!status.ok()) return status;
+  *event.mutable_job() = over.job();
+  *event.mutable_changed() = over.frames();
+  ended = true;
+  return grpc::Status::OK;
+}
+
+uint64_t Brain::watch(uint64_t job, std::function<void()> poke) {
+  const std::lock_guard lock(mutex_);
+  watches_.emplace(next_watch_, Watch{job, 0, std::move(poke)});
+  return next_watch_++;
+}
+
+void Brain::unwatch(uint64_t number) {
+  const std::lock_guard lock(mutex_);
+  watches_.erase(number);
+}
+
+grpc::Status Brain::film(uint64_t id, int32_t frame,
+                         std::function<void(const grpc::Status&, const core::FilmInfo&,
+                                            std::shared_ptr<const core::Film>)>
+                             then) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(id);
+  if (desk == nullptr || desk->ending) return not_open(id);
+  const auto noted = desk->frames.find(frame);
+  if (noted == desk->frames.end()) {
+    return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no frame {}", id, frame)};
+  }
+  if (noted->second.state == v1::FRAME_STATE_DONE) {
+    return {grpc::StatusCode::FAILED_PRECONDITION,
+            fmt::format("frame {} is done: its film is not kept", frame)};
+  }
+  core::FilmInfo info = desk->film_info(frame);
+  info.worker_class = noted->second.worker_class;
+  // The keeper's thread copies, as only it may look at films while they grow; what follows takes
+  // its time, which should not be the keeper's.
+  desk->keeper->call([this, keeper = desk->keeper.get(), frame, info, then = std::move(then)] {
+    const auto film = keeper->film(frame);
+    const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
+    const std::lock_guard held(mutex_);
+    chore([copy, info, then] {
+      then(copy ? grpc::Status::OK
+                : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                                    "nothing of the frame is there yet", std::chrono::seconds(1)),
+           info, copy);
+    });
+  });
+  return grpc::Status::OK;
+}
+
+grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(id);
+  const auto say = [&](std::string text) { response.add_reasons(std::move(text)); };
+  if (desk == nullptr) {
+    const auto stored = store_->job(id);
+    if (!stored) return failed(stored.error());
+    if (!*stored) return no_job(id);
+    switch ((*stored)->state) {
+      case StoredState::done:
+        say("it is done");
+        break;
+      case StoredState::cancelled:
+        say("it was cancelled; 'retry' takes it up again");
+        break;
+      default:
+        say("it is over, but not all of it is done: " + (*stored)->reason +
+            "; 'retry' takes it up again");
+    }
+    return grpc::Status::OK;
+  }
+  if (!desk->trouble.empty()) say(desk->trouble);
+  if (desk->stored.state == StoredState::paused) say("it is paused; 'resume' lets it go on");
+  uint32_t active = 0;
+  std::map<std::string, uint32_t> classes;
+  for (const auto& [worker, seat] : seats_) {
+    if (!seat.joined || seat.state != v1::WORKER_STATE_ACTIVE) continue;
+    ++active;
+    ++classes[seat.hello.worker_class()];
+  }
+  if (active == 0) say("no worker is there that could take units");
+  uint32_t waiting = 0;
+  uint32_t orphans = 0;
+  for (const auto& [number, note] : desk->frames) {
+    if (note.state == v1::FRAME_STATE_FINISHING) {
+      say(fmt::format("frame {} is rendered; its outputs are being made", number));
+    } else if (note.state == v1::FRAME_STATE_FAILED) {
+      say(fmt::format("frame {} failed: {}", number, note.reason));
+    } else if (note.state == v1::FRAME_STATE_WAITING) {
+      ++waiting;
+    } else if (note.state == v1::FRAME_STATE_RENDERING && active > 0 &&
+               !note.worker_class.empty() && !classes.contains(note.worker_class)) {
+      ++orphans;
+      say(fmt::format(
+          "frame {} was begun by workers of class {}, and none of them is there; it "
+          "begins again with another class {} s after the last one went",
+          number, note.worker_class.substr(0, 12),
+          std::chrono::duration_cast<std::chrono::seconds>(options_.class_patience).count()));
+    }
+  }
+  const uint32_t leased = scheduler_.leased_units(desk->id);
+  if (leased > 0) {
+    say(fmt::format("{} units are being rendered", leased));
+    if (desk->stored.max_workers > 0) {
+      say(fmt::format("at most {} workers may render it at once", desk->stored.max_workers));
+    }
+  } else if (active > 0 && orphans == 0 && desk->stored.state == StoredState::running) {
+    for (const auto& [other, rival] : desks_) {
+      if (other != desk->id && rival->stored.priority >= desk->stored.priority &&
+          scheduler_.leased_units(other) > 0) {
+        say(fmt::format("job {} ({}, priority {}) has the workers now", rival->stored.id,
+                        rival->stored.name, rival->stored.priority));
+      }
+    }
+    if (std::chrono::steady_clock::now() < adopting_until_) {
+      say("the coordinator has just started and waits for its workers to come back");
+    }
+  }
+  if (waiting > 0) say(fmt::format("{} frames wait for their turn", waiting));
+  if (response.reasons().empty()) say("nothing stands in its way");
+  return grpc::Status::OK;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,302 @@
+// What workers say.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "core/base/version.h"
+#include "core/film/film_codec.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr size_t kLongestText = 4000;
+constexpr int kMostNotes = 8;
+constexpr uint32_t kMostThreads = 4096;
+constexpr uint32_t kCrowdedRetryMs = 500;
+/// Of a decoded film, besides its pixels.
+constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
+
+std::string cut(const std::string& text) { return text.substr(0, kLongestText); }
+
+LeaseId from_wire(const v1::LeaseId& wire) { return {wire.incarnation(), wire.number()}; }
+
+uint64_t milliseconds(Duration d) {
+  return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(d).count());
+}
+
+/// What makes a Hello useless, or nothing.
+std::string complaint(const v1::Hello& hello) {
+  if (hello.protocol() < farm::kOldestProtocol) {
+    return fmt::format(
+        "the worker speaks protocol {}, this coordinator {} to {}: update the worker",
+        hello.protocol(), farm::kOldestProtocol, farm::kProtocol);
+  }
+  if (hello.worker_id().size() < 16 || hello.worker_id().size() > 64) {
+    return "worker_id has to have 16 to 64 characters";
+  }
+  if (hello.name().empty() || hello.name().size() > 200 || hello.host().size() > 200 ||
+      hello.build().size() > 200 || hello.tags_size() > 100) {
+    return "a worker needs a name; names, host and build have at most 200 characters, tags are 100";
+  }
+  if (hello.worker_class().empty() || hello.worker_class().size() > 64) {
+    return "a worker needs a class of at most 64 characters";
+  }
+  if (hello.threads() < 1 || hello.threads() > kMostThreads) return "threads: expected 1 to 4096";
+  return {};
+}
+
+}  // namespace
+
+grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
+                           WorkerId& worker) {
+  if (const std::string wrong = complaint(hello); !wrong.empty()) {
+    return {hello.protocol() < farm::kOldestProtocol ? grpc::StatusCode::FAILED_PRECONDITION
+                                                     : grpc::StatusCode::INVALID_ARGUMENT,
+            wrong};
+  }
+  WorkerJoined joined;
+  joined.threads = hello.threads();
+  joined.worker_class = hello.worker_class();
+  for (const v1::LeasedUnit& held : hello.in_hand()) {
+    const auto unit = farm::from_wire(held.unit());
+    if (!unit) return {grpc::StatusCode::INVALID_ARGUMENT, unit.error().message};
+    joined.in_hand.push_back({from_wire(held.lease()), JobId{held.job()}, *unit});
+  }
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto [known, fresh] = worker_ids_.try_emplace(hello.worker_id(), WorkerId{next_worker_});
+    if (fresh) ++next_worker_;
+    worker = known->second;
+    Seat& seat = seats_[worker];
+    if (seat.link) {
+      seat.link->close({grpc::StatusCode::ABORTED, "the worker has a newer stream"});
+    }
+    seat.id = worker;
+    seat.hello = hello;
+    seat.hello.clear_in_hand();
+    seat.link = link;
+    seat.briefed.clear();
+    if (seat.state != v1::WORKER_STATE_QUARANTINED) seat.state = v1::WORKER_STATE_ACTIVE;
+    seat.lost_at.reset();
+    seat.leaving = false;
+    seat.held_wish = 0;
+    seat.heard = std::chrono::steady_clock::now();
+    seat.heard_ms = wall_ms();
+    if (seat.joined_ms == 0) seat.joined_ms = seat.heard_ms;
+
+    v1::CoordinatorMessage message;
+    v1::Welcome& welcome = *message.mutable_welcome();
+    welcome.set_protocol(farm::kProtocol);
+    welcome.set_incarnation(incarnation_);
+    welcome.set_heartbeat_ms(static_cast<uint32_t>(milliseconds(options_.lease_time) / 6));
+    welcome.set_lease_ms(static_cast<uint32_t>(milliseconds(options_.lease_time)));
+    welcome.set_max_message_bytes(farm::kMaxResultBytes);
+    welcome.set_version(core::kVersion);
+    welcome.set_name(hello.name());
+    link->send(std::move(message));
+
+    joined.worker = worker;
+    seat.joined = true;
+    later = tell(joined);
+    if (seat.state == v1::WORKER_STATE_QUARANTINED) {
+      for (Action& action : tell(WorkerBarred{worker, true})) later.push_back(std::move(action));
+    }
+    want(seat, hello.want(), later);
+  }
+  carry_out(later);
+  return grpc::Status::OK;
+}
+
+void Brain::detach(WorkerId worker, const WorkerLink* link) {
+  const std::lock_guard lock(mutex_);
+  Seat* seat = seat_of(worker, link);
+  if (seat == nullptr) return;
+  seat->link.reset();
+  seat->lost_at = std::chrono::steady_clock::now();
+}
+
+/// The worker's seat, if `link` is its newest stream.
+Brain::Seat* Brain::seat_of(WorkerId worker, const WorkerLink* link) {
+  const auto seat = seats_.find(worker);
+  return seat == seats_.end() || seat->second.link.get() != link ? nullptr : &seat->second;
+}
+
+void Brain::want(Seat& seat, uint32_t units, std::vector<Action>& later) {
+  if (units == 0 || seat.leaving) return;
+  if (std::chrono::steady_clock::now() < adopting_until_) {
+    seat.held_wish = std::min(seat.held_wish + std::min(units, kMostThreads), kMostThreads);
+    return;
+  }
+  for (Action& action : tell(WorkRequested{seat.id, units})) later.push_back(std::move(action));
+}
+
+void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMessage& message) {
+  if (message.has_result()) return on_result(worker, link, message.result());
+  std::vector<Action> later;
+  const auto say = [&](const Event& event) {
+    for (Action& action : tell(event)) later.push_back(std::move(action));
+  };
+  {
+    const std::lock_guard lock(mutex_);
+    Seat* seat = seat_of(worker, link);
+    if (seat == nullptr) return;
+    seat->heard = std::chrono::steady_clock::now();
+    seat->heard_ms = wall_ms();
+    if (message.has_request()) {
+      want(*seat, message.request().units(), later);
+    } else if (message.has_heartbeat()) {
+      WorkerAlive alive{worker, {}};
+      for (const v1::LeaseProgress& lease : message.heartbeat().leases()) {
+        alive.leases.push_back(from_wire(lease.lease()));
+      }
+      seat->memory = message.heartbeat().memory_bytes();
+      say(alive);
+    } else if (message.has_failure()) {
+      const v1::UnitFailure& failure = message.failure();
+      const auto unit = farm::from_wire(failure.unit().unit());
+      if (unit) {
+        const JobId job{failure.unit().job()};
+        ++seat->units_failed;
+        if (JobDesk* desk = desk_of(job)) {
+          note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
+               fmt::format("tile {},{} batches {}-{} failed: {}", unit->tile.x0, unit->tile.y0,
+                           unit->batches.first, unit->batches.end() - 1, cut(failure.reason())));
+        }
+        say(UnitFailed{worker, from_wire(failure.unit().lease()), job, *unit,
+                       cut(failure.reason())});
+      }
+      want(*seat, failure.want(), later);
+    } else if (message.has_returned()) {
+      for (const v1::LeasedUnit& returned : message.returned().units()) {
+        const auto unit = farm::from_wire(returned.unit());
+        if (!unit) continue;
+        say(UnitReturned{worker, from_wire(returned.lease()), JobId{returned.job()}, *unit});
+      }
+    } else if (message.has_leaving()) {
+      seat->leaving = true;
+      seat->held_wish = 0;
+      seat->reason = cut(message.leaving().reason());
+      if (seat->state == v1::WORKER_STATE_ACTIVE) seat->state = v1::WORKER_STATE_DRAINING;
+      say(WorkerBarred{worker, true});
+    }
+  }
+  carry_out(later);
+}
+
+void Brain::reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result,
+                   v1::Rejected::Reason reason, const std::string& text, uint32_t retry_after_ms) {
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    Seat* seat = seat_of(worker, link);
+    if (seat == nullptr) return;
+    v1::CoordinatorMessage message;
+    v1::Rejected& rejected = *message.mutable_rejected();
+    *rejected.mutable_unit()->mutable_lease() = result.lease();
+    rejected.mutable_unit()->set_job(result.job());
+    *rejected.mutable_unit()->mutable_unit() = result.unit();
+    rejected.set_reason(reason);
+    rejected.set_text(text);
+    rejected.set_retry_after_ms(retry_after_ms);
+    seat->link->send(std::move(message));
+    if (reason != v1::Rejected::REASON_NOT_NOW) {
+      if (JobDesk* desk = desk_of(result.job())) {
+        note(*desk, v1::LOG_LEVEL_WARNING, result.unit().frame(), seat->hello.name(),
+             "a film was refused: " + text);
+      }
+      if (const auto unit = farm::from_wire(result.unit())) {
+        later = tell(UnitReturned{worker, from_wire(result.lease()), JobId{result.job()}, *unit});
+      }
+    }
+    want(*seat, result.want(), later);
+  }
+  carry_out(later);
+}
+
+void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result) {
+  using Rejected = v1::Rejected;
+  const JobId job{result.job()};
+  core::FilmLayout layout;
+  FrameKey key{};
+  Delivery delivery;
+  {
+    const std::lock_guard lock(mutex_);
+    Seat* seat = seat_of(worker, link);
+    if (seat == nullptr) return;
+    seat->heard = std::chrono::steady_clock::now();
+    seat->heard_ms = wall_ms();
+    delivery.unit.worker_class = seat->hello.worker_class();
+    if (const JobDesk* desk = desk_of(job)) {
+      layout = desk->layout;
+      key = desk->key;
+    }
+  }
+  // Without the lock: what depends on the bytes alone.
+  const auto unit = farm::from_wire(result.unit());
+  const auto digest = farm::digest_from_wire(result.digest());
+  if (!unit || !digest) {
+    return reject(worker, link, result, Rejected::REASON_MALFORMED,
+                  !unit ? unit.error().message : digest.error().message, 0);
+  }
+  if (layout.channels.empty()) {
+    return reject(worker, link, result, Rejected::REASON_UNKNOWN, "there is no such job", 0);
+  }
+  const auto area = static_cast<uint64_t>(unit->tile.area());
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(result.film()));
+  auto film = core::decode_film(
+      bytes, {area * layout.channels.size() * sizeof(core::Fixed128) + kFilmOverhead});
+  if (!film) {
+    return reject(worker, link, result, Rejected::REASON_DAMAGED, film.error().message, 0);
+  }
+  if (film->layout() != layout || film->window() != unit->tile ||
+      film->coverage().volume() != area * unit->batches.count ||
+      !film->coverage().contains({unit->tile, unit->batches})) {
+    return reject(worker, link, result, Rejected::REASON_MALFORMED,
+                  "the film is not of the unit that it is said to be of", 0);
+  }
+  if (film->digest() != core::to_hex(*digest)) {
+    return reject(worker, link, result, Rejected::REASON_DAMAGED,
+                  "the film is not what its digest says", 0);
+  }
+  delivery.unit.unit = *unit;
+  delivery.unit.digest = *digest;
+  delivery.record = encode_delivered(delivery.unit, key, bytes);
+  delivery.film = std::move(*film);
+
+  std::vector<Action> later;
+  enum class Verdict : uint8_t { taken, crowded, quarantined } verdict = Verdict::taken;
+  {
+    const std::lock_guard lock(mutex_);
+    Seat* seat = seat_of(worker, link);
+    if (seat == nullptr) return;
+    JobDesk* desk = desk_of(job);
+    if (seat->state == v1::WORKER_STATE_QUARANTINED) {
+      verdict = Verdict::quarantined;
+    } else if (desk != nullptr && desk->keeper->crowded()) {
+      verdict = Verdict::crowded;
+    } else {
+      ++seat->units_done;
+      seat->samples_done += result.samples();
+      for (int i = 0; desk != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
+        note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(), cut(result.notes(i)));
+      }
+      const Duration took{static_cast<int64_t>(std::min<uint64_t>(result.render_ns(), INT64_MAX))};
+      later = tell(ResultArrived{worker, from_wire(result.lease()), job, *unit, *digest, took},
+                   &delivery);
+      want(*seat, result.want(), later);
+    }
+  }
+  carry_out(later);
+  if (verdict == Verdict::crowded) {
+    reject(worker, link, result, Rejected::REASON_NOT_NOW, "more films wait for the disk than may",
+           kCrowdedRetryMs);
+  } else if (verdict == Verdict::quarantined) {
+    reject(worker, link, result, Rejected::REASON_UNKNOWN, "the worker is quarantined", 0);
+  }
+}
+
+}  // namespace hyades::coordinator

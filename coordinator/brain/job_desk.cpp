@@ -1,0 +1,202 @@
+#include "coordinator/brain/job_desk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/base/version.h"
+#include "core/job/layers.h"
+#include "core/job/render_key.h"
+#include "farm/manifest_resolver.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr double kSmoothing = 10;  // seconds
+constexpr int kMostFiles = 100'000;
+constexpr size_t kLongestPath = 4096;
+constexpr uint32_t kMostSamples = 1U << 24U;
+constexpr int64_t kMostFrames = 1'000'000;
+
+/// The frames that the spec asks for, in order; an error where the document does not have them.
+core::Result<std::vector<int32_t>> frames_of(const v1::JobSpec& spec, const core::Job& job) {
+  std::vector<int32_t> numbers;
+  std::set<int32_t> seen;
+  const auto add = [&](int64_t first, int64_t last, int64_t step) -> core::Status {
+    if (step < 1 || first > last || first < job.frames.first || last > job.frames.last) {
+      return core::Error{
+          fmt::format("frames {}-{} (step {}): expected frames within the job's {}-{}", first, last,
+                      step, job.frames.first, job.frames.last)};
+    }
+    for (int64_t f = first; f <= last; f += step) {
+      const auto number = static_cast<int32_t>(f);
+      if (seen.insert(number).second) numbers.push_back(number);
+      if (std::ssize(numbers) > kMostFrames) return core::Error{"more than a million frames"};
+    }
+    return {};
+  };
+  if (spec.frames().empty()) {
+    if (auto added = add(job.frames.first, job.frames.last, job.frames.step); !added) {
+      return added.error();
+    }
+  }
+  for (const v1::FrameRange& range : spec.frames()) {
+    const int64_t step = range.step() == 0 ? 1 : range.step();
+    if (auto added = add(range.first(), range.last(), step); !added) return added.error();
+  }
+  return numbers;
+}
+
+/// What names the bits of all films of this spec.
+Digest key_of(const v1::JobSpec& spec, const core::LayerSet& layers) {
+  std::string text = fmt::format("{} {} {}{}{}\n", spec.document(), spec.samples(), layers.depth,
+                                 layers.albedo, layers.normal);
+  std::vector<std::string> files;
+  for (const v1::JobFile& file : spec.files()) files.push_back(file.path() + '\0' + file.sha256());
+  std::sort(files.begin(), files.end());
+  for (const std::string& file : files) text += file + '\n';
+  return core::sha256(text);
+}
+
+}  // namespace
+
+void Speed::note(uint64_t done, TimePoint now) {
+  if (last_ != TimePoint{}) {
+    const double passed = std::chrono::duration<double>(now - last_).count();
+    if (passed <= 0) return;
+    const double keep = std::exp(-passed / kSmoothing);
+    const double recent = done > done_ ? static_cast<double>(done - done_) / passed : 0.0;
+    rate_ = rate_ == 0 ? recent : keep * rate_ + (1 - keep) * recent;
+  }
+  last_ = now;
+  done_ = done;
+}
+
+FrameNote& JobDesk::touch(int32_t frame) {
+  FrameNote& note = frames[frame];
+  note.version = ++version;
+  return note;
+}
+
+v1::Job describe(const StoredJob& job) {
+  v1::Job wire;
+  wire.set_id(job.id);
+  wire.set_name(job.name);
+  wire.set_owner(job.owner);
+  wire.set_priority(job.priority);
+  wire.set_max_workers(job.max_workers);
+  wire.set_state(static_cast<v1::JobState>(job.state));  // the numbers are the same
+  wire.set_frames(job.frames);
+  wire.set_frames_done(job.frames_done);
+  wire.set_frames_failed(job.frames_failed);
+  wire.set_samples(job.samples);
+  if (job.state == StoredState::done) wire.set_samples_done(job.samples);
+  wire.set_seconds_left(-1);
+  wire.set_submitted_ms(job.submitted_ms);
+  wire.set_ended_ms(job.ended_ms);
+  wire.set_reason(job.reason);
+  return wire;
+}
+
+v1::Job JobDesk::describe(uint32_t leased) const {
+  v1::Job wire = coordinator::describe(stored);
+  wire.set_samples_done(samples_done);
+  wire.set_leased(leased);
+  wire.set_samples_per_second(speed.per_second());
+  if (speed.per_second() > 0) {
+    wire.set_seconds_left(
+        static_cast<double>(stored.samples - std::min(samples_done, stored.samples)) /
+        speed.per_second());
+  }
+  if (!trouble.empty()) wire.set_reason(trouble);
+  return wire;
+}
+
+v1::Frame JobDesk::describe_frame(int32_t number, const FrameNote& note) const {
+  v1::Frame wire;
+  wire.set_frame(number);
+  wire.set_state(note.state);
+  wire.set_samples(samples_per_frame);
+  wire.set_samples_done(note.samples_done);
+  wire.set_reason(note.reason);
+  wire.set_worker_class(note.worker_class);
+  wire.set_restarts(note.restarts);
+  return wire;
+}
+
+core::FilmInfo JobDesk::film_info(int32_t frame) const {
+  const core::Job& job = read.job;
+  core::FilmInfo info;
+  info.job_name = job.name;
+  info.render_key = core::render_key(job, frame, read.assets);
+  info.frame = frame;
+  info.width = job.film.width;
+  info.height = job.film.height;
+  info.crop = region;
+  info.samples = job.sampling.samples;
+  info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
+  return info;
+}
+
+core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec) {
+  if (spec.files_size() > kMostFiles) {
+    return core::Error{fmt::format("{} files: at most {}", spec.files_size(), kMostFiles)};
+  }
+  std::vector<core::AssetRecord> records;
+  std::set<std::string> paths;
+  for (const v1::JobFile& file : spec.files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (!digest) return digest.error().in(file.path());
+    if (file.path().empty() || file.path().size() > kLongestPath) {
+      return core::Error{"a file without a path, or with one of more than 4096 bytes"};
+    }
+    if (!paths.insert(file.path()).second) return core::Error{file.path() + ": named twice"};
+    records.push_back({file.path(), core::to_hex(*digest), file.size()});
+  }
+  if (!paths.contains(spec.document())) {
+    return core::Error{"the document '" + spec.document() + "' is not among the job's files"};
+  }
+  return records;
+}
+
+core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const v1::JobSpec& spec,
+                                                 farm::ContentStore& assets) {
+  auto records = files_of(spec);
+  if (!records) return records.error();
+  farm::ManifestResolver files(*records, assets);
+  auto read = farm::read_job(spec.document(), spec.document(), files);
+  if (!read) return read.error();
+  auto desk = std::make_unique<JobDesk>(stored, spec);
+  desk->read = std::move(*read);
+  core::Job& job = desk->read.job;
+  if (spec.samples() > kMostSamples) {
+    return core::Error{fmt::format("{} samples: at most {}", spec.samples(), kMostSamples)};
+  }
+  if (spec.samples() > 0) job.sampling.samples = spec.samples();
+  for (const core::OutputDesc& output : job.outputs) {
+    const std::filesystem::path path = std::filesystem::path(output.file).lexically_normal();
+    if (path.is_absolute() || path.empty() || *path.begin() == "..") {
+      return core::Error{"output '" + output.file + "': a farm writes below the job's folder only"};
+    }
+  }
+  auto numbers = frames_of(spec, job);
+  if (!numbers) return numbers.error();
+  desk->numbers = std::move(*numbers);
+  desk->region = core::render_window(job.film);
+  const core::LayerSet layers = core::needed_layers(job);
+  desk->layout = core::make_film_layout(layers);
+  desk->samples_per_frame =
+      static_cast<uint64_t>(desk->region.area()) * uint64_t{job.sampling.samples};
+  desk->key = key_of(spec, layers);
+  for (const int32_t frame : desk->numbers) desk->frames[frame];
+  desk->stored.name = job.name;
+  desk->stored.frames = static_cast<uint32_t>(desk->numbers.size());
+  desk->stored.samples = desk->samples_per_frame * desk->numbers.size();
+  return desk;
+}
+
+}  // namespace hyades::coordinator

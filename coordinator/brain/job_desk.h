@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coordinator/local/film_keeper.h"
+#include "coordinator/scheduler/ids.h"
+#include "coordinator/state/job_store.h"
+#include "core/film/film_info.h"
+#include "farm/content_store.h"
+#include "farm/job_package.h"
+#include "hyades/v1/common.pb.h"
+#include "hyades/v1/jobs.pb.h"
+
+namespace hyades::coordinator {
+
+/// A frame of an open job, for those who ask.
+struct FrameNote {
+  v1::FrameState state = v1::FRAME_STATE_WAITING;
+  uint64_t samples_done = 0;  ///< durable
+  std::string reason;
+  std::string worker_class;
+  uint32_t restarts = 0;
+  uint64_t version = 0;  ///< of the job when this last changed
+};
+
+/// How fast samples become durable, smoothed over some ten seconds.
+class Speed {
+ public:
+  /// `done` in all so far, at `now`.
+  void note(uint64_t done, TimePoint now);
+  double per_second() const { return rate_; }
+
+ private:
+  TimePoint last_;
+  uint64_t done_ = 0;
+  double rate_ = 0;
+};
+
+/// All that the coordinator has in memory of a job that has not ended. Guarded by the brain's lock,
+/// except for what never changes, and the keeper.
+struct JobDesk {
+  JobDesk(StoredJob stored_, v1::JobSpec spec_)
+      : spec(std::move(spec_)), stored(std::move(stored_)) {}
+
+  // Never changes.
+  JobId id{};
+  v1::JobSpec spec;
+  farm::ReadJob read;            ///< the job as its document says, with the spec's samples
+  std::vector<int32_t> numbers;  ///< of its frames, in order
+  core::PixelRect region;
+  core::FilmLayout layout;
+  uint64_t samples_per_frame = 0;
+  Digest key{};  ///< JobBrief.key
+
+  std::unique_ptr<FilmKeeper::Owner> owner;  ///< reports to the brain
+  std::unique_ptr<FilmKeeper> keeper;
+  /// Complete films until their frame is over.
+  std::map<int32_t, std::shared_ptr<const core::Film>> complete;
+
+  StoredJob stored;
+  std::map<int32_t, FrameNote> frames;
+  uint64_t samples_done = 0;
+  uint64_t version = 1;  ///< grows with every change
+  Speed speed;
+  std::vector<StoredLine> lines;  ///< not stored yet
+  std::string trouble;            ///< why its films cannot be stored
+  bool ending = false;            ///< the scheduler has let go of it
+
+  FrameNote& touch(int32_t frame);
+  void touch() { ++version; }
+  v1::Job describe(uint32_t leased) const;
+  v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
+  core::FilmInfo film_info(int32_t frame) const;
+};
+
+/// A stored job as the wire shows it.
+v1::Job describe(const StoredJob& job);
+
+/// Reads what `stored` says out of `files`; an error holds every complaint about the document.
+core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const v1::JobSpec& spec,
+                                                 farm::ContentStore& assets);
+
+/// The records of a spec's files; an error where they are not what the wire allows.
+core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec);
+
+}  // namespace hyades::coordinator

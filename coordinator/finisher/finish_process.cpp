@@ -1,0 +1,93 @@
+#include "coordinator/finisher/finish_process.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include <fmt/format.h>
+
+namespace hyades::coordinator {
+namespace {
+
+/// Nobody tone-maps for longer.
+constexpr std::chrono::minutes kLongest{10};
+constexpr size_t kLongestComplaint = 1000;
+
+/// The end of what the process has said.
+std::string complaint(const std::string& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  std::string said = text.str();
+  while (!said.empty() && said.back() == '\n') said.pop_back();
+  return said.size() > kLongestComplaint ? said.substr(said.size() - kLongestComplaint) : said;
+}
+
+core::Status run(const std::string& program, const std::string& folder,
+                 const std::atomic<bool>& stop) {
+  const std::string said = folder + "/said.txt";
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT, 0600);
+  std::string word = "finish";
+  std::string name = program;
+  std::string where = folder;
+  char* argv[] = {name.data(), word.data(), where.data(), nullptr};
+  pid_t child = 0;
+  const int failed = posix_spawn(&child, program.c_str(), &files, nullptr, argv, environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (failed != 0) {
+    return core::Error{program + " could not be started: " + std::strerror(failed)};
+  }
+  const auto deadline = std::chrono::steady_clock::now() + kLongest;
+  bool ended = false;
+  int status = 0;
+  for (auto nap = std::chrono::microseconds(500); waitpid(child, &status, WNOHANG) == 0;) {
+    if (!ended && (stop || std::chrono::steady_clock::now() > deadline)) {
+      kill(child, SIGKILL);
+      ended = true;
+    }
+    std::this_thread::sleep_for(nap);
+    nap = std::min(2 * nap, std::chrono::microseconds(20'000));
+  }
+  if (ended) return core::Error{stop ? "the coordinator stops" : "finishing took too long"};
+  if (WIFSIGNALED(status)) {
+    return core::Error{fmt::format("the finisher was ended by signal {}", WTERMSIG(status))};
+  }
+  if (WEXITSTATUS(status) != 0) {
+    const std::string why = complaint(said);
+    return core::Error{why.empty() ? fmt::format("the finisher failed ({})", WEXITSTATUS(status))
+                                   : why};
+  }
+  return {};
+}
+
+}  // namespace
+
+core::Result<std::vector<FinishedFile>> run_finisher(const std::string& program,
+                                                     const std::string& folder,
+                                                     const FinishTask& task, const core::Film& film,
+                                                     const std::atomic<bool>& stop) {
+  std::error_code failed;
+  std::filesystem::remove_all(folder, failed);
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return core::Error{folder + ": cannot be made: " + failed.message()};
+  core::Status done = write_finish_task(folder, task, film);
+  if (done) done = run(program, folder, stop);
+  core::Result<std::vector<FinishedFile>> files = core::Error{};
+  if (done) files = read_finish_result(folder);
+  std::filesystem::remove_all(folder, failed);
+  if (!done) return done.error();
+  return files;
+}
+
+}  // namespace hyades::coordinator

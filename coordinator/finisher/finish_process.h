@@ -1,0 +1,21 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "coordinator/finisher/finish_task.h"
+
+namespace hyades::coordinator {
+
+/// Runs `program finish FOLDER` on the task, in `folder`, which is emptied before and removed
+/// after. Blocks; when `stop` becomes true the process is ended and an error returned. The outputs
+/// are durable on return.
+core::Result<std::vector<FinishedFile>> run_finisher(const std::string& program,
+                                                     const std::string& folder,
+                                                     const FinishTask& task, const core::Film& film,
+                                                     const std::atomic<bool>& stop);
+
+}  // namespace hyades::coordinator

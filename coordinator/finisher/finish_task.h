@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/film/film.h"
+#include "core/film/film_info.h"
+#include "core/job/job.h"
+
+namespace hyades::coordinator {
+
+// Finishing a frame (tone map, encode, write) is work for a process of its own, so that neither its
+// memory nor a crash is the coordinator's. The two speak through a folder: the coordinator writes
+// task.json and film.bin, starts `PROGRAM finish FOLDER`, and reads result.json.
+
+/// What is to be made of a film.
+struct FinishTask {
+  core::FilmInfo info;
+  std::vector<core::OutputDesc> outputs;
+  std::string folder;  ///< where outputs go
+};
+
+/// A file that was made.
+struct FinishedFile {
+  std::string path;  ///< below FinishTask::folder
+  uint64_t size = 0;
+  std::string sha256;  ///< hexadecimal
+};
+
+core::Status write_finish_task(const std::string& folder, const FinishTask& task,
+                               const core::Film& film);
+core::Result<FinishTask> read_finish_task(const std::string& folder);
+core::Result<core::Film> read_finish_film(const std::string& folder);
+core::Status write_finish_result(const std::string& folder, const std::vector<FinishedFile>& files);
+core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& folder);
+
+}  // namespace hyades::coordinator

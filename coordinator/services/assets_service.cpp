@@ -1,0 +1,161 @@
+#include "coordinator/services/assets_service.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/services/file_stream.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr int kMostAsked = 10'000;
+
+grpc::Status invalid(const std::string& message) {
+  return {grpc::StatusCode::INVALID_ARGUMENT, message};
+}
+
+/// Takes one file in. Writes as it reads, so that a client is never faster than the disk.
+class Uploading final : public grpc::ServerReadReactor<v1::UploadPart> {
+ public:
+  Uploading(farm::ContentStore& store, const grpc::Status& admitted) : store_(store) {
+    if (admitted.ok()) {
+      StartRead(&part_);
+    } else {
+      Finish(admitted);
+    }
+  }
+
+  void OnReadDone(bool ok) override {
+    if (!ok) {
+      finish(writer_ ? incomplete() : invalid("an upload begins with the file's digest and size"));
+      return;
+    }
+    if (const grpc::Status taken = take(); !taken.ok()) {
+      finish(taken);
+    } else if (done_) {
+      finish(grpc::Status::OK);
+    } else {
+      StartRead(&part_);
+    }
+  }
+
+  void OnDone() override { delete this; }
+
+ private:
+  void finish(const grpc::Status& status) {
+    writer_.reset();  // what has come is there before the answer is
+    Finish(status);
+  }
+
+  grpc::Status incomplete() const {
+    return {grpc::StatusCode::ABORTED, fmt::format("{} of {} bytes have come: go on from there",
+                                                   writer_->offset(), writer_->size())};
+  }
+
+  grpc::Status begin() {
+    const auto digest = farm::digest_from_wire(part_.sha256());
+    if (!digest) return invalid(digest.error().message);
+    const std::string name = core::to_hex(*digest);
+    if (store_.contains(name, part_.size())) {
+      done_ = true;
+      return grpc::Status::OK;
+    }
+    auto writer = store_.write(name, part_.size());
+    if (!writer) {
+      return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
+                               std::chrono::seconds(10));
+    }
+    writer_.emplace(std::move(*writer));
+    return grpc::Status::OK;
+  }
+
+  grpc::Status take() {
+    if (!writer_) {
+      if (const grpc::Status begun = begin(); !begun.ok() || done_) return begun;
+    }
+    std::span<const std::byte> data = std::as_bytes(std::span(part_.chunk().data()));
+    if (data.size() > farm::kMaxChunkBytes) return invalid("a chunk has at most 1 MiB");
+    const uint64_t offset = part_.chunk().offset();
+    if (offset > writer_->offset()) {
+      return {grpc::StatusCode::OUT_OF_RANGE,
+              fmt::format("bytes from {} on are missing", writer_->offset())};
+    }
+    // What is here already comes again where the client did not know of it.
+    const uint64_t known = std::min<uint64_t>(writer_->offset() - offset, data.size());
+    data = data.subspan(known);
+    if (data.size() > writer_->size() - writer_->offset()) {
+      return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
+    }
+    if (auto written = writer_->append(data); !written) {
+      return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, written.error().message,
+                               std::chrono::seconds(10));
+    }
+    if (writer_->offset() < writer_->size()) return grpc::Status::OK;
+    if (auto whole = writer_->commit(); !whole) {
+      return {grpc::StatusCode::DATA_LOSS, whole.error().message};
+    }
+    done_ = true;
+    return grpc::Status::OK;
+  }
+
+  farm::ContentStore& store_;
+  v1::UploadPart part_;
+  std::optional<farm::ContentWriter> writer_;
+  bool done_ = false;
+};
+
+}  // namespace
+
+grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context,
+                                                     const v1::FindMissingRequest* request,
+                                                     v1::FindMissingResponse* response) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const auto answer = [&]() -> grpc::Status {
+    if (const grpc::Status admitted = admission_.check(*context); !admitted.ok()) return admitted;
+    if (request->files_size() > kMostAsked) return invalid("at most 10,000 files at a time");
+    std::set<std::string> seen;
+    for (const v1::JobFile& file : request->files()) {
+      const auto digest = farm::digest_from_wire(file.sha256());
+      if (!digest) return invalid(digest.error().message);
+      const std::string name = core::to_hex(*digest);
+      if (!seen.insert(name).second || store_.contains(name, file.size())) continue;
+      auto* missing = response->add_missing();
+      missing->set_sha256(file.sha256());
+      if (const auto writer = store_.write(name, file.size()))
+        missing->set_offset(writer->offset());
+    }
+    return grpc::Status::OK;
+  };
+  reactor->Finish(answer());
+  return reactor;
+}
+
+grpc::ServerReadReactor<v1::UploadPart>* AssetsService::Upload(Context* context,
+                                                               v1::UploadResponse*) {
+  return new Uploading(store_, admission_.check(*context));
+}
+
+grpc::ServerWriteReactor<v1::Chunk>* AssetsService::Download(Context* context,
+                                                             const v1::DownloadRequest* request) {
+  const auto refuse = [](grpc::Status status) { return new Refusal<v1::Chunk>(std::move(status)); };
+  const grpc::Status admitted = admission_.check(*context);
+  if (!admitted.ok()) return refuse(admitted);
+  const auto digest = farm::digest_from_wire(request->sha256());
+  if (!digest) return refuse(invalid(digest.error().message));
+  auto bytes = store_.read(core::to_hex(*digest));
+  if (!bytes) return refuse({grpc::StatusCode::NOT_FOUND, bytes.error().message});
+  if (request->offset() > bytes->size()) {
+    return refuse(
+        {grpc::StatusCode::OUT_OF_RANGE, fmt::format("the file has {} bytes", bytes->size())});
+  }
+  return new FileStream(std::move(*bytes), request->offset());
+}
+
+}  // namespace hyades::coordinator

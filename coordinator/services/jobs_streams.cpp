@@ -1,0 +1,283 @@
+// What of a job comes as a stream.
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "coordinator/services/file_stream.h"
+#include "coordinator/services/jobs_service.h"
+#include "core/base/assets.h"
+#include "core/film/film_codec.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kLinesAtOnce = 500;
+
+grpc::Status failed(const core::Error& error) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
+}
+
+/// Follows a job: wakes up whenever it has changed.
+template <class Message>
+class Follower : public Producer<Message> {
+ protected:
+  Follower(Brain& brain, uint64_t job) : brain_(brain), job_(job) {
+    watch_ = brain.watch(job, [poker = this->poker()] { poker->poke(); });
+  }
+  void over() override { brain_.unwatch(watch_); }
+
+  /// Whether nothing can come any more, or why the job cannot be followed.
+  grpc::Status ended(bool& ended) {
+    v1::WatchEvent event;
+    version_ = std::max<uint64_t>(version_, 1);
+    return brain_.changes(job_, version_, event, ended);
+  }
+
+  Brain& brain_;
+  const uint64_t job_;
+  uint64_t version_ = 0;
+
+ private:
+  uint64_t watch_ = 0;
+};
+
+class Watching final : public Follower<v1::WatchEvent> {
+ public:
+  Watching(Brain& brain, uint64_t job) : Follower(brain, job) {}
+
+ private:
+  Step next(v1::WatchEvent& event, grpc::Status& status) override {
+    if (ended_) return Step::end;
+    const uint64_t before = version_;
+    status = brain_.changes(job_, version_, event, ended_);
+    if (!status.ok()) return Step::end;
+    return ended_ || version_ != before ? Step::message : Step::wait;
+  }
+  bool ended_ = false;
+};
+
+class OutputList final : public Follower<v1::OutputFile> {
+ public:
+  OutputList(Brain& brain, const v1::OutputsRequest& request)
+      : Follower(brain, request.job()), request_(request) {}
+
+ private:
+  bool wanted(int32_t frame) const {
+    if (request_.frames().empty()) return true;
+    return std::any_of(request_.frames().begin(), request_.frames().end(),
+                       [&](const v1::FrameRange& r) {
+                         const int64_t step = r.step() > 0 ? r.step() : 1;
+                         return frame >= r.first() && frame <= r.last() &&
+                                (int64_t{frame} - r.first()) % step == 0;
+                       });
+  }
+
+  Step next(v1::OutputFile& message, grpc::Status& status) override {
+    for (;;) {
+      while (!ready_.empty()) {
+        const StoredOutput output = std::move(ready_.front());
+        ready_.pop_front();
+        if (!wanted(output.frame)) continue;
+        message.set_path(output.path);
+        message.set_frame(output.frame);
+        message.set_size(output.size);
+        message.set_sha256(output.sha256);
+        return Step::message;
+      }
+      if (last_) return Step::end;
+      bool over = false;
+      status = ended(over);
+      if (!status.ok()) return Step::end;
+      auto outputs = brain_.store().outputs(job_, seen_);
+      if (!outputs) {
+        status = failed(outputs.error());
+        return Step::end;
+      }
+      seen_ += outputs->size();
+      ready_.insert(ready_.end(), outputs->begin(), outputs->end());
+      last_ = over || !request_.follow();
+      if (ready_.empty() && !last_) return Step::wait;
+    }
+  }
+
+  const v1::OutputsRequest request_;
+  std::deque<StoredOutput> ready_;
+  uint64_t seen_ = 0;
+  bool last_ = false;
+};
+
+class LogLines final : public Follower<v1::LogLine> {
+ public:
+  LogLines(Brain& brain, const v1::LogsRequest& request)
+      : Follower(brain, request.job()), request_(request) {
+    frames_.insert(request.frames().begin(), request.frames().end());
+  }
+
+ private:
+  Step next(v1::LogLine& message, grpc::Status& status) override {
+    for (;;) {
+      while (!ready_.empty()) {
+        const StoredLine line = std::move(ready_.front());
+        ready_.pop_front();
+        if (!frames_.empty() && (!line.frame || !frames_.contains(*line.frame))) continue;
+        message.set_time_ms(line.time_ms);
+        message.set_level(static_cast<v1::LogLevel>(line.level));
+        message.set_of_frame(line.frame.has_value());
+        message.set_frame(line.frame.value_or(0));
+        message.set_worker(line.worker);
+        message.set_text(line.text);
+        return Step::message;
+      }
+      if (last_) return Step::end;
+      bool over = false;
+      status = ended(over);
+      if (!status.ok()) return Step::end;
+      auto lines = brain_.store().lines(job_, seen_, kLinesAtOnce);
+      if (!lines) {
+        status = failed(lines.error());
+        return Step::end;
+      }
+      seen_ += lines->size();
+      ready_.insert(ready_.end(), lines->begin(), lines->end());
+      if (!ready_.empty()) continue;
+      last_ = over || !request_.follow();
+      if (!last_) return Step::wait;
+    }
+  }
+
+  const v1::LogsRequest request_;
+  std::set<int32_t> frames_;
+  std::deque<StoredLine> ready_;
+  uint64_t seen_ = 0;
+  bool last_ = false;
+};
+
+class FilmStream final : public Producer<v1::FilmPart> {
+ public:
+  FilmStream(Brain& brain, const v1::FilmRequest& request) : found_(std::make_shared<Found>()) {
+    // The stream may be over before the film is found.
+    const grpc::Status asked = brain.film(
+        request.job(), request.frame(),
+        [found = found_, poker = poker()](const grpc::Status& status, const core::FilmInfo& info,
+                                          std::shared_ptr<const core::Film> film) {
+          found->status = status;
+          found->info = info;
+          found->film = std::move(film);
+          found->there = true;
+          poker->poke();
+        });
+    if (!asked.ok()) {
+      found_->status = asked;
+      found_->there = true;
+    }
+    begin();
+  }
+
+ private:
+  struct Found {
+    std::atomic<bool> there{false};
+    grpc::Status status;
+    core::FilmInfo info;
+    std::shared_ptr<const core::Film> film;
+  };
+
+  Step next(v1::FilmPart& part, grpc::Status& status) override {
+    if (!found_->there) return Step::wait;
+    if (!found_->status.ok()) {
+      status = found_->status;
+      return Step::end;
+    }
+    if (found_->film) {
+      bytes_ = core::encode_film(*found_->film);
+      found_->film.reset();
+      *part.mutable_header() = farm::to_wire(found_->info);
+      part.mutable_header()->set_size(bytes_.size());
+      return Step::message;
+    }
+    if (offset_ >= bytes_.size()) return Step::end;
+    const uint64_t count = std::min<uint64_t>(farm::kMaxChunkBytes, bytes_.size() - offset_);
+    part.mutable_chunk()->set_offset(offset_);
+    part.mutable_chunk()->set_data(bytes_.data() + offset_, count);
+    offset_ += count;
+    return Step::message;
+  }
+
+  const std::shared_ptr<Found> found_;
+  std::vector<std::byte> bytes_;
+  uint64_t offset_ = 0;
+};
+
+}  // namespace
+
+grpc::ServerWriteReactor<v1::WatchEvent>* JobsService::Watch(Context* context,
+                                                             const v1::WatchRequest* request) {
+  const grpc::Status admitted = admission_.check(*context);
+  if (!admitted.ok()) return new Refusal<v1::WatchEvent>(admitted);
+  auto* stream = new Watching(brain_, request->job());
+  stream->begin();
+  return stream;
+}
+
+grpc::ServerWriteReactor<v1::OutputFile>* JobsService::Outputs(Context* context,
+                                                               const v1::OutputsRequest* request) {
+  const grpc::Status admitted = admission_.check(*context);
+  if (!admitted.ok()) return new Refusal<v1::OutputFile>(admitted);
+  auto* stream = new OutputList(brain_, *request);
+  stream->begin();
+  return stream;
+}
+
+grpc::ServerWriteReactor<v1::LogLine>* JobsService::Logs(Context* context,
+                                                         const v1::LogsRequest* request) {
+  const grpc::Status admitted = admission_.check(*context);
+  if (!admitted.ok()) return new Refusal<v1::LogLine>(admitted);
+  auto* stream = new LogLines(brain_, *request);
+  stream->begin();
+  return stream;
+}
+
+grpc::ServerWriteReactor<v1::Chunk>* JobsService::Fetch(Context* context,
+                                                        const v1::FetchRequest* request) {
+  const auto refuse = [](grpc::Status status) { return new Refusal<v1::Chunk>(std::move(status)); };
+  const grpc::Status admitted = admission_.check(*context);
+  if (!admitted.ok()) return refuse(admitted);
+  // The path is looked up among the job's outputs and never taken for one of the file system's.
+  const auto output = brain_.store().output(request->job(), request->path());
+  if (!output) return refuse(failed(output.error()));
+  if (!*output) {
+    return refuse({grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no output '{}' (yet)",
+                                                            request->job(), request->path())});
+  }
+  if (!request->sha256().empty() && request->sha256() != (*output)->sha256) {
+    return refuse({grpc::StatusCode::FAILED_PRECONDITION,
+                   request->path() + " has been rendered again: fetch it from its beginning"});
+  }
+  auto bytes = core::map_file(brain_.output_folder(request->job()) + "/" + (*output)->path);
+  if (!bytes || bytes->size() != (*output)->size) {
+    return refuse(
+        {grpc::StatusCode::DATA_LOSS, request->path() + " is damaged on the coordinator's disk"});
+  }
+  if (request->offset() > bytes->size()) {
+    return refuse({grpc::StatusCode::OUT_OF_RANGE,
+                   fmt::format("{} has {} bytes", request->path(), bytes->size())});
+  }
+  return new FileStream(std::move(*bytes), request->offset());
+}
+
+grpc::ServerWriteReactor<v1::FilmPart>* JobsService::Film(Context* context,
+                                                          const v1::FilmRequest* request) {
+  const grpc::Status admitted = admission_.check(*context);
+  if (!admitted.ok()) return new Refusal<v1::FilmPart>(admitted);
+  return new FilmStream(brain_, *request);
+}
+
+}  // namespace hyades::coordinator

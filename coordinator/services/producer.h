@@ -1,0 +1,119 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include <grpcpp/support/server_callback.h>
+#include <grpcpp/support/status.h>
+
+namespace hyades::coordinator {
+
+/// Lets others wake a stream that may be over already.
+class Poker {
+ public:
+  virtual ~Poker() = default;
+  virtual void poke() = 0;
+};
+
+/// A stream of messages to a client, produced as fast as it reads: next() is called again when the
+/// last message is on its way, or, after it had nothing, when somebody pokes. Deletes itself.
+template <class Message>
+class Producer : public grpc::ServerWriteReactor<Message> {
+ public:
+  enum class Step { message, wait, end };
+
+  /// To be called once, when everything is set up.
+  void begin() { handle_->poke(); }
+
+  void OnWriteDone(bool ok) override {
+    if (ok) {
+      advance();
+    } else {
+      this->Finish({grpc::StatusCode::CANCELLED, "the client is gone"});
+    }
+  }
+  void OnCancel() override {
+    {
+      const std::lock_guard lock(mutex_);
+      cancelled_ = true;
+    }
+    poke();
+  }
+  void OnDone() override {
+    handle_->drop();
+    over();
+    delete this;
+  }
+
+ protected:
+  Producer() : handle_(std::make_shared<Handle>(this)) {}
+
+  /// Puts the next message, or, where it says end, the status. Never called twice at once.
+  virtual Step next(Message& message, grpc::Status& status) = 0;
+  /// The call is over: nobody may poke any more.
+  virtual void over() {}
+
+  std::shared_ptr<Poker> poker() const { return handle_; }
+
+ private:
+  class Handle final : public Poker {
+   public:
+    explicit Handle(Producer* producer) : producer_(producer) {}
+    void poke() override {
+      const std::lock_guard lock(mutex_);
+      if (producer_ != nullptr) producer_->poke();
+    }
+    void drop() {
+      const std::lock_guard lock(mutex_);
+      producer_ = nullptr;
+    }
+
+   private:
+    std::mutex mutex_;
+    Producer* producer_;
+  };
+
+  void poke() {
+    {
+      const std::lock_guard lock(mutex_);
+      poked_ = true;
+      if (busy_) return;
+      busy_ = true;
+    }
+    advance();
+  }
+
+  void advance() {
+    for (;;) {
+      grpc::Status status;
+      bool cancelled = false;
+      {
+        const std::lock_guard lock(mutex_);
+        poked_ = false;
+        cancelled = cancelled_;
+      }
+      Step step = Step::end;
+      message_.Clear();
+      if (cancelled) {
+        status = {grpc::StatusCode::CANCELLED, "the client is gone"};
+      } else {
+        step = next(message_, status);
+      }
+      if (step == Step::message) return this->StartWrite(&message_);
+      if (step == Step::end) return this->Finish(status);
+      const std::lock_guard lock(mutex_);
+      if (poked_) continue;
+      busy_ = false;
+      return;
+    }
+  }
+
+  const std::shared_ptr<Handle> handle_;
+  Message message_;
+  std::mutex mutex_;
+  bool busy_ = false;   ///< next() or a write is going on, or all is over
+  bool poked_ = false;  ///< since next() was last called
+  bool cancelled_ = false;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,78 @@
+#include "coordinator/services/server.h"
+
+#include <chrono>
+
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+
+#include "coordinator/services/admission.h"
+#include "coordinator/services/assets_service.h"
+#include "coordinator/services/farm_service.h"
+#include "coordinator/services/jobs_service.h"
+#include "coordinator/services/work_service.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr int kKeepaliveMs = 20'000;
+constexpr int kKeepaliveTimeoutMs = 10'000;
+constexpr int kLeastPingIntervalMs = 5'000;
+constexpr std::chrono::milliseconds kLastWords{200};
+
+}  // namespace
+
+struct Server::Parts {
+  Parts(Brain& brain, std::string token)
+      : admission(std::move(token)),
+        work(brain, admission),
+        jobs(brain, admission),
+        assets(brain.assets(), admission),
+        farm(brain, admission) {}
+
+  Admission admission;
+  WorkService work;
+  JobsService jobs;
+  AssetsService assets;
+  FarmService farm;
+  std::unique_ptr<grpc::Server> server;
+};
+
+Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+Server::~Server() {
+  parts_->server->Shutdown(std::chrono::system_clock::now() + kLastWords);
+  parts_->server->Wait();
+}
+
+core::Result<std::unique_ptr<Server>> Server::start(const farm::Listen& listen, Brain& brain) {
+  const auto credentials = farm::server_credentials(listen);
+  if (!credentials) return credentials.error();
+  auto token = farm::read_token(listen.token_file);
+  if (!token) return token.error();
+  auto parts = std::make_unique<Parts>(brain, std::move(*token));
+  grpc::ServerBuilder builder;
+  int port = 0;
+  builder.AddListeningPort(listen.address, *credentials, &port);
+  builder.RegisterService(&parts->work);
+  builder.RegisterService(&parts->jobs);
+  builder.RegisterService(&parts->assets);
+  builder.RegisterService(&parts->farm);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(farm::kMaxResultBytes));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
+                             kLeastPingIntervalMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  // A second coordinator on the same port is a mistake, not a cluster.
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  parts->server = builder.BuildAndStart();
+  if (!parts->server || port == 0) {
+    return core::Error{listen.address + ": cannot listen there (is the address taken?)"};
+  }
+  std::unique_ptr<Server> server(new Server(std::move(parts)));
+  server->address_ = listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
+  return server;
+}
+
+}  // namespace hyades::coordinator

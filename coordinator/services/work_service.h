@@ -1,0 +1,21 @@
+#pragma once
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/admission.h"
+#include "hyades/v1/work.grpc.pb.h"
+
+namespace hyades::coordinator {
+
+/// One stream per worker (work_service.cpp).
+class WorkService final : public v1::Work::CallbackService {
+ public:
+  WorkService(Brain& brain, const Admission& admission) : brain_(brain), admission_(admission) {}
+  grpc::ServerBidiReactor<v1::WorkerMessage, v1::CoordinatorMessage>* Attend(
+      grpc::CallbackServerContext* context) override;
+
+ private:
+  Brain& brain_;
+  const Admission& admission_;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace hyades::coordinator {
+
+/// The life of a job, as stored; the numbers are those of the file.
+enum class StoredState : int { running = 1, paused = 2, done = 3, failed = 4, cancelled = 5 };
+
+constexpr bool has_ended(StoredState state) { return state >= StoredState::done; }
+
+/// A job as it is kept over restarts.
+struct StoredJob {
+  uint64_t id = 0;   ///< 0: not stored yet
+  std::string key;   ///< the client's idempotency key, or empty
+  std::string spec;  ///< v1::JobSpec, serialised: the store does not look into it
+  std::string name;
+  std::string owner;
+  int priority = 0;
+  uint32_t max_workers = 0;
+  StoredState state = StoredState::running;
+  uint32_t frames = 0;
+  uint32_t frames_done = 0;
+  uint32_t frames_failed = 0;
+  uint64_t samples = 0;  ///< of all frames
+  int64_t submitted_ms = 0;
+  int64_t ended_ms = 0;
+  std::string reason;
+};
+
+/// A frame that is over. Others are not stored: their films tell.
+struct StoredFrame {
+  int32_t frame = 0;
+  bool done = false;   ///< finished; else failed
+  std::string reason;  ///< why it failed
+  std::string worker_class;
+  uint32_t restarts = 0;
+};
+
+/// A file that a finished frame has written.
+struct StoredOutput {
+  std::string path;  ///< below the job's output folder
+  int32_t frame = 0;
+  uint64_t size = 0;
+  std::string sha256;  ///< 32 bytes
+};
+
+/// A line of a job's history.
+struct StoredLine {
+  int64_t time_ms = 0;
+  int level = 1;  ///< v1::LogLevel
+  std::optional<int32_t> frame;
+  std::string worker;
+  std::string text;
+};
+
+/// What the coordinator keeps over restarts besides films and assets. What a function has written
+/// is durable when it returns, log lines excepted, which may lag behind. Thread-safe.
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+
+  /// Counts a start of the coordinator: 1, 2, ...
+  virtual core::Result<uint64_t> next_incarnation() = 0;
+
+  /// Stores a new job and returns its id; or, where a job has the same (not empty) key already,
+  /// that one's id and `existed`.
+  struct Added {
+    uint64_t id = 0;
+    bool existed = false;
+  };
+  virtual core::Result<Added> add_job(const StoredJob& job) = 0;
+  /// Stores everything about the job but key and spec.
+  virtual core::Status update_job(const StoredJob& job) = 0;
+  /// Forgets the job, its frames, outputs and lines.
+  virtual core::Status remove_job(uint64_t id) = 0;
+  /// The ids of jobs that have not ended, oldest first.
+  virtual core::Result<std::vector<uint64_t>> open_jobs() = 0;
+  /// Nothing where there is no such job.
+  virtual core::Result<std::optional<StoredJob>> job(uint64_t id) = 0;
+  /// Jobs with ids below `before` (0: all), the newest first, without their specs.
+  virtual core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner,
+                                                    uint64_t before, uint32_t limit) = 0;
+
+  /// Replaces what is known of the frame, and of its outputs.
+  virtual core::Status frame_over(uint64_t job, const StoredFrame& frame,
+                                  const std::vector<StoredOutput>& outputs) = 0;
+  /// The frame is to be rendered (again).
+  virtual core::Status forget_frame(uint64_t job, int32_t frame) = 0;
+  virtual core::Result<std::vector<StoredFrame>> frames(uint64_t job) = 0;
+  /// In the order in which they were finished; those after the first `skip`.
+  virtual core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t skip) = 0;
+  virtual core::Result<std::optional<StoredOutput>> output(uint64_t job,
+                                                           const std::string& path) = 0;
+
+  virtual core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) = 0;
+  /// Lines after the first `skip`, at most `limit`.
+  virtual core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t skip,
+                                                      uint32_t limit) = 0;
+};
+
+/// The store in a SQLite file (WAL, synchronous=FULL). A file of an older schema is brought to this
+/// one, step by step, each in a transaction; one of a newer schema is refused.
+core::Result<std::unique_ptr<JobStore>> open_sqlite_job_store(const std::string& path);
+
+}  // namespace hyades::coordinator

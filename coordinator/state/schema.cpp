@@ -1,0 +1,95 @@
+// The schema's history. A step is never changed once it has been released; a change is a new step.
+#include <array>
+
+#include <fmt/format.h>
+
+#include "coordinator/state/database.h"
+#include "core/base/failpoint.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// Step i brings a file from version i to version i + 1 (kept in user_version).
+constexpr std::array kSteps = {
+    R"(
+CREATE TABLE starts (incarnation INTEGER PRIMARY KEY);
+CREATE TABLE jobs (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,  -- never used twice: films and logs are named by it
+  key TEXT UNIQUE,
+  spec BLOB NOT NULL,
+  name TEXT NOT NULL,
+  owner TEXT NOT NULL,
+  priority INTEGER NOT NULL,
+  max_workers INTEGER NOT NULL,
+  state INTEGER NOT NULL,
+  frames INTEGER NOT NULL,
+  frames_done INTEGER NOT NULL,
+  frames_failed INTEGER NOT NULL,
+  samples INTEGER NOT NULL,
+  submitted_ms INTEGER NOT NULL,
+  ended_ms INTEGER NOT NULL,
+  reason TEXT NOT NULL);
+CREATE INDEX open_jobs ON jobs (id) WHERE state < 3;
+CREATE TABLE frames (
+  job INTEGER NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+  frame INTEGER NOT NULL,
+  done INTEGER NOT NULL,
+  reason TEXT NOT NULL,
+  class TEXT NOT NULL,
+  restarts INTEGER NOT NULL,
+  PRIMARY KEY (job, frame)) WITHOUT ROWID;
+CREATE TABLE outputs (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  job INTEGER NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+  path TEXT NOT NULL,
+  frame INTEGER NOT NULL,
+  size INTEGER NOT NULL,
+  sha256 BLOB NOT NULL,
+  UNIQUE (job, path));
+CREATE INDEX outputs_of_job ON outputs (job, number);
+CREATE TABLE lines (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  job INTEGER NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+  time_ms INTEGER NOT NULL,
+  level INTEGER NOT NULL,
+  frame INTEGER,
+  worker TEXT NOT NULL,
+  text TEXT NOT NULL);
+CREATE INDEX lines_of_job ON lines (job, number);
+)",
+};
+
+}  // namespace
+
+const int kSchemaVersion = static_cast<int>(kSteps.size());
+
+core::Status migrate(sqlite3* db) {
+  Query read(db, "PRAGMA user_version");
+  const int64_t version = read.next() ? read.integer(0) : 0;
+  if (core::Status known = read.run(); !known) return known;
+  if (version > kSchemaVersion) {
+    return core::Error{fmt::format(
+        "was written by a newer Hyades (schema {}, this one knows up to {}); use that one", version,
+        kSchemaVersion)};
+  }
+  for (int64_t step = version; step < kSchemaVersion; ++step) {
+    Transaction transaction(db);
+    if (core::Status begun = transaction.status(); !begun) return begun;
+    char* error = nullptr;
+    if (sqlite3_exec(db, kSteps[static_cast<size_t>(step)], nullptr, nullptr, &error) !=
+        SQLITE_OK) {
+      const std::string why = error;
+      sqlite3_free(error);
+      return core::Error{fmt::format("schema {} could not be made: {}", step + 1, why)};
+    }
+    core::failpoint("mid-migration");
+    if (core::Status noted = Query(db, fmt::format("PRAGMA user_version={}", step + 1)).run();
+        !noted) {
+      return noted;
+    }
+    if (core::Status done = transaction.commit(); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,280 @@
+#include <mutex>
+
+#include "coordinator/state/database.h"
+#include "coordinator/state/job_store.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr std::string_view kJobColumns =
+    "id, key, name, owner, priority, max_workers, state, frames, frames_done, frames_failed, "
+    "samples, submitted_ms, ended_ms, reason";
+
+StoredJob read_job(const Query& row) {
+  StoredJob job;
+  job.id = static_cast<uint64_t>(row.integer(0));
+  job.key = row.bytes(1);
+  job.name = row.bytes(2);
+  job.owner = row.bytes(3);
+  job.priority = static_cast<int>(row.integer(4));
+  job.max_workers = static_cast<uint32_t>(row.integer(5));
+  job.state = static_cast<StoredState>(row.integer(6));
+  job.frames = static_cast<uint32_t>(row.integer(7));
+  job.frames_done = static_cast<uint32_t>(row.integer(8));
+  job.frames_failed = static_cast<uint32_t>(row.integer(9));
+  job.samples = static_cast<uint64_t>(row.integer(10));
+  job.submitted_ms = row.integer(11);
+  job.ended_ms = row.integer(12);
+  job.reason = row.bytes(13);
+  return job;
+}
+
+StoredOutput read_output(const Query& row) {
+  return {row.bytes(0), static_cast<int32_t>(row.integer(1)), static_cast<uint64_t>(row.integer(2)),
+          row.bytes(3)};
+}
+
+int64_t number(uint64_t value) { return static_cast<int64_t>(value); }
+
+class SqliteJobStore final : public JobStore {
+ public:
+  explicit SqliteJobStore(Database db) : db_(std::move(db)) {}
+
+  core::Result<uint64_t> next_incarnation() override {
+    const std::lock_guard lock(mutex_);
+    if (core::Status done = query("INSERT INTO starts DEFAULT VALUES").run(); !done) {
+      return done.error();
+    }
+    return static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get()));
+  }
+
+  core::Result<Added> add_job(const StoredJob& job) override {
+    const std::lock_guard lock(mutex_);
+    if (!job.key.empty()) {
+      Query known(db_.get(), "SELECT id FROM jobs WHERE key = ?");
+      known.bind(job.key);
+      if (known.next()) return Added{static_cast<uint64_t>(known.integer(0)), true};
+      if (core::Status status = known.status(); !status) return status.error();
+    }
+    Query insert(db_.get(),
+                 "INSERT INTO jobs (key, spec, name, owner, priority, max_workers, state, frames, "
+                 "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason) "
+                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    if (job.key.empty()) {
+      insert.bind_null();
+    } else {
+      insert.bind(job.key);
+    }
+    insert.bind_blob(job.spec).bind(job.name).bind(job.owner);
+    bind_changing(insert, job);
+    if (core::Status done = insert.run(); !done) return done.error();
+    return Added{static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get())), false};
+  }
+
+  core::Status update_job(const StoredJob& job) override {
+    const std::lock_guard lock(mutex_);
+    Query update(db_.get(),
+                 "UPDATE jobs SET priority = ?, max_workers = ?, state = ?, frames = ?, "
+                 "frames_done = ?, frames_failed = ?, samples = ?, submitted_ms = ?, "
+                 "ended_ms = ?, reason = ? WHERE id = ?");
+    bind_changing(update, job);
+    return update.bind(number(job.id)).run();
+  }
+
+  core::Status remove_job(uint64_t id) override {
+    const std::lock_guard lock(mutex_);
+    return query("DELETE FROM jobs WHERE id = ?").bind(number(id)).run();
+  }
+
+  core::Result<std::vector<uint64_t>> open_jobs() override {
+    const std::lock_guard lock(mutex_);
+    std::vector<uint64_t> ids;
+    Query rows(db_.get(), "SELECT id FROM jobs WHERE state < 3 ORDER BY id");
+    while (rows.next()) ids.push_back(static_cast<uint64_t>(rows.integer(0)));
+    if (core::Status status = rows.status(); !status) return status.error();
+    return ids;
+  }
+
+  core::Result<std::optional<StoredJob>> job(uint64_t id) override {
+    const std::lock_guard lock(mutex_);
+    Query row(db_.get(), "SELECT " + std::string(kJobColumns) + ", spec FROM jobs WHERE id = ?");
+    row.bind(number(id));
+    if (!row.next()) {
+      if (core::Status status = row.status(); !status) return status.error();
+      return std::optional<StoredJob>();
+    }
+    StoredJob job = read_job(row);
+    job.spec = row.bytes(14);
+    return std::optional(std::move(job));
+  }
+
+  core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner, uint64_t before,
+                                            uint32_t limit) override {
+    const std::lock_guard lock(mutex_);
+    // Without those that have ended the partial index does the work.
+    Query rows(db_.get(), "SELECT " + std::string(kJobColumns) + " FROM jobs WHERE id < ?" +
+                              (ended ? "" : " AND state < 3") +
+                              (owner.empty() ? "" : " AND owner = ?") +
+                              " ORDER BY id DESC LIMIT ?");
+    rows.bind(before == 0 ? INT64_MAX : number(before));
+    if (!owner.empty()) rows.bind(owner);
+    rows.bind(int64_t{limit});
+    std::vector<StoredJob> jobs;
+    while (rows.next()) jobs.push_back(read_job(rows));
+    if (core::Status status = rows.status(); !status) return status.error();
+    return jobs;
+  }
+
+  core::Status frame_over(uint64_t job, const StoredFrame& frame,
+                          const std::vector<StoredOutput>& outputs) override {
+    const std::lock_guard lock(mutex_);
+    Transaction transaction(db_.get());
+    if (core::Status done = delete_frame(job, frame.frame); !done) return done;
+    core::Status done = query(
+                            "INSERT INTO frames (job, frame, done, reason, class, restarts) "
+                            "VALUES (?, ?, ?, ?, ?, ?)")
+                            .bind(number(job))
+                            .bind(int64_t{frame.frame})
+                            .bind(int64_t{frame.done})
+                            .bind(frame.reason)
+                            .bind(frame.worker_class)
+                            .bind(int64_t{frame.restarts})
+                            .run();
+    for (const StoredOutput& output : outputs) {
+      if (!done) return done;
+      done = query(
+                 "INSERT OR REPLACE INTO outputs (job, path, frame, size, sha256) "
+                 "VALUES (?, ?, ?, ?, ?)")
+                 .bind(number(job))
+                 .bind(output.path)
+                 .bind(int64_t{output.frame})
+                 .bind(number(output.size))
+                 .bind_blob(output.sha256)
+                 .run();
+    }
+    return done ? transaction.commit() : done;
+  }
+
+  core::Status forget_frame(uint64_t job, int32_t frame) override {
+    const std::lock_guard lock(mutex_);
+    Transaction transaction(db_.get());
+    if (core::Status done = delete_frame(job, frame); !done) return done;
+    return transaction.commit();
+  }
+
+  core::Result<std::vector<StoredFrame>> frames(uint64_t job) override {
+    const std::lock_guard lock(mutex_);
+    Query rows(db_.get(),
+               "SELECT frame, done, reason, class, restarts FROM frames WHERE job = ? "
+               "ORDER BY frame");
+    rows.bind(number(job));
+    std::vector<StoredFrame> frames;
+    while (rows.next()) {
+      frames.push_back({static_cast<int32_t>(rows.integer(0)), rows.integer(1) != 0, rows.bytes(2),
+                        rows.bytes(3), static_cast<uint32_t>(rows.integer(4))});
+    }
+    if (core::Status status = rows.status(); !status) return status.error();
+    return frames;
+  }
+
+  core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t skip) override {
+    const std::lock_guard lock(mutex_);
+    Query rows(db_.get(),
+               "SELECT path, frame, size, sha256 FROM outputs WHERE job = ? ORDER BY number "
+               "LIMIT -1 OFFSET ?");
+    rows.bind(number(job)).bind(number(skip));
+    std::vector<StoredOutput> outputs;
+    while (rows.next()) outputs.push_back(read_output(rows));
+    if (core::Status status = rows.status(); !status) return status.error();
+    return outputs;
+  }
+
+  core::Result<std::optional<StoredOutput>> output(uint64_t job, const std::string& path) override {
+    const std::lock_guard lock(mutex_);
+    Query row(db_.get(),
+              "SELECT path, frame, size, sha256 FROM outputs WHERE job = ? AND path = ?");
+    row.bind(number(job)).bind(path);
+    if (row.next()) return std::optional(read_output(row));
+    if (core::Status status = row.status(); !status) return status.error();
+    return std::optional<StoredOutput>();
+  }
+
+  core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
+    const std::lock_guard lock(mutex_);
+    Transaction transaction(db_.get());
+    for (const StoredLine& line : lines) {
+      Query insert(db_.get(),
+                   "INSERT INTO lines (job, time_ms, level, frame, worker, text) "
+                   "VALUES (?, ?, ?, ?, ?, ?)");
+      insert.bind(number(job)).bind(line.time_ms).bind(int64_t{line.level});
+      if (line.frame) {
+        insert.bind(int64_t{*line.frame});
+      } else {
+        insert.bind_null();
+      }
+      if (core::Status done = insert.bind(line.worker).bind(line.text).run(); !done) return done;
+    }
+    return transaction.commit();
+  }
+
+  core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t skip,
+                                              uint32_t limit) override {
+    const std::lock_guard lock(mutex_);
+    Query rows(db_.get(),
+               "SELECT time_ms, level, frame, worker, text FROM lines WHERE job = ? "
+               "ORDER BY number LIMIT ? OFFSET ?");
+    rows.bind(number(job)).bind(int64_t{limit}).bind(number(skip));
+    std::vector<StoredLine> lines;
+    while (rows.next()) {
+      StoredLine line;
+      line.time_ms = rows.integer(0);
+      line.level = static_cast<int>(rows.integer(1));
+      if (!rows.is_null(2)) line.frame = static_cast<int32_t>(rows.integer(2));
+      line.worker = rows.bytes(3);
+      line.text = rows.bytes(4);
+      lines.push_back(std::move(line));
+    }
+    if (core::Status status = rows.status(); !status) return status.error();
+    return lines;
+  }
+
+ private:
+  /// Short-lived: SQLite prepares such statements in some ten microseconds.
+  Query query(std::string_view sql) { return {db_.get(), sql}; }
+
+  static void bind_changing(Query& query, const StoredJob& job) {
+    query.bind(int64_t{job.priority})
+        .bind(int64_t{job.max_workers})
+        .bind(static_cast<int64_t>(job.state))
+        .bind(int64_t{job.frames})
+        .bind(int64_t{job.frames_done})
+        .bind(int64_t{job.frames_failed})
+        .bind(number(job.samples))
+        .bind(job.submitted_ms)
+        .bind(job.ended_ms)
+        .bind(job.reason);
+  }
+
+  core::Status delete_frame(uint64_t job, int32_t frame) {
+    for (const char* sql : {"DELETE FROM frames WHERE job = ? AND frame = ?",
+                            "DELETE FROM outputs WHERE job = ? AND frame = ?"}) {
+      if (core::Status done = query(sql).bind(number(job)).bind(int64_t{frame}).run(); !done) {
+        return done;
+      }
+    }
+    return {};
+  }
+
+  std::mutex mutex_;
+  Database db_;
+};
+
+}  // namespace
+
+core::Result<std::unique_ptr<JobStore>> open_sqlite_job_store(const std::string& path) {
+  auto db = open_database(path);
+  if (!db) return db.error();
+  return std::unique_ptr<JobStore>(std::make_unique<SqliteJobStore>(std::move(*db)));
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,222 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/server.h"
+#include "core/base/hash.h"
+#include "core/image/read_image.h"
+#include "core/job/layers.h"
+#include "farm/channel.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+#include "hyades/v1/assets.grpc.pb.h"
+#include "hyades/v1/farm.grpc.pb.h"
+#include "hyades/v1/jobs.grpc.pb.h"
+#include "tests/coordinator/services/scripted_worker.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::coordinator {
+
+using namespace std::chrono_literals;
+
+/// Waits until `what` holds, a minute at most.
+inline bool eventually(const std::function<bool()>& what) {
+  for (int i = 0; i < 12'000; ++i) {
+    if (what()) return true;
+    std::this_thread::sleep_for(5ms);
+  }
+  return false;
+}
+
+/// A coordinator in this process, over real gRPC, and a client of it.
+class FarmWorld {
+ public:
+  static constexpr int kWidth = 80;
+  static constexpr int kHeight = 48;
+  static constexpr uint32_t kSamples = 40;
+
+  FarmWorld() {
+    options.folder = folder.file("data");
+    options.finisher = HYADES_FILM_PROGRAM;
+    options.reconnect_time = 200ms;
+    options.adoption_time = 200ms;
+  }
+  ~FarmWorld() { stop(); }
+
+  void start() {
+    auto opened = Brain::open(options);
+    ASSERT_TRUE(opened.ok()) << (opened ? "" : opened.error().message);
+    brain = std::move(*opened);
+    farm::Listen listen = how;
+    listen.address = address.empty() ? "127.0.0.1:0" : address;
+    auto listening = Server::start(listen, *brain);
+    ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
+    server = std::move(*listening);
+    address = server->address();
+    farm::Peer peer;
+    peer.address = address;
+    channel = *farm::connect(peer);
+    jobs = v1::Jobs::NewStub(channel);
+    assets = v1::Assets::NewStub(channel);
+    farm_ = v1::Farm::NewStub(channel);
+  }
+
+  /// Orderly; a killed process is for the tests of whole processes.
+  void stop() {
+    if (brain) brain->stop();
+    server.reset();
+    brain.reset();
+  }
+
+  static std::string document(int last_frame) {
+    return "hyades: 1\nname: balls\nframes: {range: 1-" + std::to_string(last_frame) +
+           "}\nfilm: {size: [80, 48]}\nsampling: {samples: 40}\nenvironment: {color: 1}\n"
+           "objects: {ball: {shape: sphere, radius: 1, material: clay}}\n"
+           "materials: {clay: {type: lambert, color: 0.5}}\n"
+           "outputs: [{file: balls.####.exr}, {file: balls.####.png}]\n";
+  }
+
+  std::unique_ptr<grpc::ClientContext> context(std::chrono::milliseconds timeout = 20s) const {
+    auto c = std::make_unique<grpc::ClientContext>();
+    farm::prepare(*c, token, timeout);
+    return c;
+  }
+
+  grpc::Status upload(std::string_view text) const {
+    v1::UploadResponse response;
+    const auto c = context();
+    const auto writer = assets->Upload(c.get(), &response);
+    v1::UploadPart part;
+    part.set_sha256(farm::to_wire(core::sha256(text)));
+    part.set_size(text.size());
+    part.mutable_chunk()->set_data(std::string(text));
+    writer->Write(part);
+    writer->WritesDone();
+    return writer->Finish();
+  }
+
+  static v1::SubmitRequest request(const std::string& text) {
+    v1::SubmitRequest request;
+    v1::JobFile& file = *request.mutable_spec()->add_files();
+    file.set_path("job.yaml");
+    file.set_sha256(farm::to_wire(core::sha256(text)));
+    file.set_size(text.size());
+    request.mutable_spec()->set_document("job.yaml");
+    request.set_owner("ada");
+    return request;
+  }
+
+  /// Uploads and submits; the job's id.
+  uint64_t submit(int last_frame, const std::function<void(v1::SubmitRequest&)>& change = {}) {
+    const std::string text = document(last_frame);
+    EXPECT_TRUE(upload(text).ok());
+    v1::SubmitRequest asked = request(text);
+    if (change) change(asked);
+    v1::SubmitResponse response;
+    const grpc::Status status = jobs->Submit(context().get(), asked, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response.job().id();
+  }
+
+  v1::GetJobResponse get(uint64_t job) const {
+    v1::GetJobRequest request;
+    request.set_job(job);
+    v1::GetJobResponse response;
+    const grpc::Status status = jobs->Get(context().get(), request, &response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response;
+  }
+
+  bool wait_for(uint64_t job, v1::JobState state) const {
+    return eventually([&] { return get(job).job().state() == state; });
+  }
+
+  ScriptedWorker::Script script(int number = 1) const {
+    ScriptedWorker::Script script;
+    script.id = "scripted-worker-" + std::to_string(1000 + number);
+    script.name = "scripted/" + std::to_string(number);
+    script.layout = core::make_film_layout({});
+    script.samples = kSamples;
+    script.token = token;
+    return script;
+  }
+
+  /// The bytes of a finished file, in two pieces.
+  std::string fetch(uint64_t job, const std::string& path) const {
+    std::string bytes;
+    for (int i = 0; i < 2; ++i) {
+      v1::FetchRequest request;
+      request.set_job(job);
+      request.set_path(path);
+      request.set_offset(bytes.size());
+      const auto c = context();
+      const auto reader = jobs->Fetch(c.get(), request);
+      v1::Chunk chunk;
+      while (reader->Read(&chunk)) {
+        EXPECT_EQ(chunk.offset(), bytes.size());
+        bytes += chunk.data();
+        if (i == 0) {
+          bytes.resize(bytes.size() / 2);
+          c->TryCancel();
+        }
+      }
+      const grpc::Status status = reader->Finish();
+      EXPECT_TRUE(i == 0 || status.ok()) << status.error_message();
+    }
+    return bytes;
+  }
+
+  /// The pixels of frame `frame` of a job are those of the oracle, to the last bit.
+  void expect_truth(uint64_t job, int32_t frame) const {
+    char name[32];
+    std::snprintf(name, sizeof name, "balls.%04d.exr", frame);
+    const std::string path = folder.file(name);
+    const std::string bytes = fetch(job, name);
+    ASSERT_FALSE(bytes.empty());
+    FILE* file = std::fopen(path.c_str(), "wb");
+    std::fwrite(bytes.data(), 1, bytes.size(), file);
+    std::fclose(file);
+    const auto got = core::read_image_file(path);
+    ASSERT_TRUE(got.ok()) << got.error().message;
+    const core::Image truth =
+        fake_film({frame, {0, 0, kWidth, kHeight}, {0, core::batch_count(kSamples)}}, kSamples,
+                  core::make_film_layout({}))
+            .normalised();
+    ASSERT_EQ(got->width, truth.width);
+    ASSERT_EQ(got->height, truth.height);
+    for (const char* name_of : {"R", "G", "B"}) {
+      const int a = got->find_channel(name_of);
+      const int b = truth.find_channel(name_of);
+      ASSERT_GE(a, 0);
+      for (int y = 0; y < truth.height; ++y) {
+        for (int x = 0; x < truth.width; ++x) {
+          ASSERT_EQ(got->at(x, y, a), truth.at(x, y, b)) << name_of << " " << x << " " << y;
+        }
+      }
+    }
+  }
+
+  test::TempFolder folder;
+  BrainOptions options;
+  farm::Listen how;
+  std::string token;
+  std::string address;
+  std::unique_ptr<Brain> brain;
+  std::unique_ptr<Server> server;
+  std::shared_ptr<grpc::Channel> channel;
+  std::unique_ptr<v1::Jobs::Stub> jobs;
+  std::unique_ptr<v1::Assets::Stub> assets;
+  std::unique_ptr<v1::Farm::Stub> farm_;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,227 @@
+#pragma once
+
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/film/film.h"
+#include "core/film/film_codec.h"
+#include "farm/channel.h"
+#include "farm/wire.h"
+#include "hyades/v1/work.grpc.pb.h"
+#include "tests/coordinator/services/fake_films.h"
+
+namespace hyades::coordinator {
+
+/// A worker without light over real gRPC: takes leases, renders fake films, delivers them, keeps
+/// what is not acknowledged over reconnects. Its thread ends with the object.
+class ScriptedWorker {
+ public:
+  struct Script {
+    std::string id = "scripted-worker-0001";
+    std::string name = "scripted/1";
+    std::string worker_class = "class-a";
+    std::string token;
+    uint32_t threads = 2;
+    core::FilmLayout layout;
+    uint32_t samples = 0;
+    std::chrono::milliseconds unit_time{0};
+    /// What happens to a unit; true: it is delivered as usual.
+    std::function<bool(ScriptedWorker&, const v1::LeasedUnit&)> meddle;
+    /// Changes a film before it is delivered.
+    std::function<void(core::Film&)> corrupt;
+    bool reconnect = true;
+  };
+
+  ScriptedWorker(const std::string& address, Script script)
+      : address_(address), script_(std::move(script)), thread_([this] { live(); }) {}
+
+  /// As kill -9: the connection breaks, and nobody comes back.
+  ~ScriptedWorker() {
+    over_ = true;
+    {
+      const std::lock_guard lock(mutex_);
+      if (context_) context_->TryCancel();
+    }
+    thread_.join();
+  }
+
+  uint64_t delivered() const { return delivered_; }
+  uint64_t acknowledged() const { return acknowledged_; }
+  uint64_t adopted() const { return adopted_; }
+  uint64_t stopped() const { return stopped_; }
+  uint64_t streams() const { return streams_; }
+  bool drained() const { return drained_; }
+  std::vector<v1::Rejected> rejections() const {
+    const std::lock_guard lock(mutex_);
+    return rejections_;
+  }
+  grpc::Status last_status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+  }
+  size_t unacknowledged() const {
+    const std::lock_guard lock(mutex_);
+    return kept_.size();
+  }
+
+  /// Writes a message, by the worker's own thread only.
+  void write(const v1::WorkerMessage& message) { stream_->Write(message); }
+
+ private:
+  using Stream = grpc::ClientReaderWriter<v1::WorkerMessage, v1::CoordinatorMessage>;
+
+  static std::string key(const v1::LeasedUnit& unit) {
+    return std::to_string(unit.job()) + "/" + unit.unit().SerializeAsString();
+  }
+
+  void live() {
+    while (!over_) {
+      attend();
+      if (!script_.reconnect) return;
+      for (int i = 0; i < 5 && !over_; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    }
+  }
+
+  void attend() {
+    farm::Peer peer;
+    peer.address = address_;
+    const auto channel = farm::connect(peer);
+    const auto stub = v1::Work::NewStub(*channel);
+    auto context = std::make_unique<grpc::ClientContext>();
+    farm::prepare(*context, script_.token, std::chrono::milliseconds(0));
+    {
+      const std::lock_guard lock(mutex_);
+      context_ = std::move(context);
+      if (over_) return;
+    }
+    stream_ = stub->Attend(context_.get());
+    v1::WorkerMessage message;
+    v1::Hello& hello = *message.mutable_hello();
+    hello.set_protocol(farm::kProtocol);
+    hello.set_worker_id(script_.id);
+    hello.set_name(script_.name);
+    hello.set_worker_class(script_.worker_class);
+    hello.set_threads(script_.threads);
+    hello.set_want(script_.threads);
+    for (const auto& [name, result] : kept_) {
+      v1::LeasedUnit& held = *hello.add_in_hand();
+      *held.mutable_lease() = result.lease();
+      held.set_job(result.job());
+      *held.mutable_unit() = result.unit();
+    }
+    v1::CoordinatorMessage reply;
+    if (stream_->Write(message) && stream_->Read(&reply) && reply.has_welcome()) {
+      ++streams_;
+      for (const auto& [name, result] : kept_) {
+        v1::WorkerMessage again;
+        *again.mutable_result() = result;
+        again.mutable_result()->set_want(0);
+        stream_->Write(again);
+      }
+      while (!over_ && stream_->Read(&reply)) on(reply);
+    }
+    stream_->WritesDone();
+    const grpc::Status status = stream_->Finish();
+    const std::lock_guard lock(mutex_);
+    status_ = status;
+  }
+
+  void on(const v1::CoordinatorMessage& message) {
+    if (message.has_lease()) {
+      for (const v1::Unit& unit : message.lease().units()) {
+        v1::LeasedUnit leased;
+        *leased.mutable_lease() = message.lease().lease();
+        leased.set_job(message.lease().job());
+        *leased.mutable_unit() = unit;
+        if (message.lease().adopted()) {
+          ++adopted_;
+          continue;
+        }
+        if (script_.meddle && !script_.meddle(*this, leased)) continue;
+        deliver(leased);
+      }
+    } else if (message.has_acknowledge()) {
+      const std::lock_guard lock(mutex_);
+      kept_.erase(key(message.acknowledge().unit()));
+      ++acknowledged_;
+    } else if (message.has_rejected()) {
+      {
+        const std::lock_guard lock(mutex_);
+        rejections_.push_back(message.rejected());
+        if (message.rejected().reason() != v1::Rejected::REASON_NOT_NOW) {
+          kept_.erase(key(message.rejected().unit()));
+          return;
+        }
+      }
+      std::this_thread::sleep_for(
+          std::chrono::milliseconds(std::min(50U, message.rejected().retry_after_ms())));
+      const auto kept = kept_.find(key(message.rejected().unit()));
+      if (kept == kept_.end()) return;
+      v1::WorkerMessage again;
+      *again.mutable_result() = kept->second;
+      again.mutable_result()->set_want(0);
+      write(again);
+    } else if (message.has_stop()) {
+      ++stopped_;
+    } else if (message.has_drain()) {
+      drained_ = true;
+    }
+  }
+
+  void deliver(const v1::LeasedUnit& leased) {
+    std::this_thread::sleep_for(script_.unit_time);
+    if (over_) return;
+    const auto unit = farm::from_wire(leased.unit());
+    core::Film film = fake_film(*unit, script_.samples, script_.layout);
+    if (script_.corrupt) script_.corrupt(film);
+    v1::WorkerMessage message;
+    v1::UnitResult& result = *message.mutable_result();
+    *result.mutable_lease() = leased.lease();
+    result.set_job(leased.job());
+    *result.mutable_unit() = leased.unit();
+    const std::vector<std::byte> bytes = core::encode_film(film);
+    result.set_film(bytes.data(), bytes.size());
+    result.set_digest(farm::to_wire(*farm::digest_from_hex(film.digest())));
+    result.set_render_ns(1'000'000);
+    result.set_want(1);
+    {
+      const std::lock_guard lock(mutex_);
+      kept_[key(leased)] = result;
+    }
+    ++delivered_;
+    write(message);
+  }
+
+  const std::string address_;
+  const Script script_;
+  std::atomic<bool> over_{false};
+  std::atomic<uint64_t> delivered_{0};
+  std::atomic<uint64_t> acknowledged_{0};
+  std::atomic<uint64_t> adopted_{0};
+  std::atomic<uint64_t> stopped_{0};
+  std::atomic<uint64_t> streams_{0};
+  std::atomic<bool> drained_{false};
+  mutable std::mutex mutex_;
+  std::unique_ptr<grpc::ClientContext> context_;
+  std::map<std::string, v1::UnitResult> kept_;
+  std::vector<v1::Rejected> rejections_;
+  grpc::Status status_;
+  std::unique_ptr<Stream> stream_;
+  std::thread thread_;
+};
+
+}  // namespace hyades::coordinator

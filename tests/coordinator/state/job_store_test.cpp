@@ -1,0 +1,128 @@
+#include "coordinator/state/job_store.h"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include "coordinator/state/database.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::coordinator {
+namespace {
+
+StoredJob some_job(const std::string& key, const std::string& owner) {
+  StoredJob job;
+  job.key = key;
+  job.spec = std::string("spec\0bytes", 10);
+  job.name = "balls";
+  job.owner = owner;
+  job.priority = -3;
+  job.max_workers = 5;
+  job.frames = 7;
+  job.samples = 1'000'000'000'000;
+  job.submitted_ms = 42;
+  return job;
+}
+
+std::unique_ptr<JobStore> open(const std::string& path) {
+  auto store = open_sqlite_job_store(path);
+  EXPECT_TRUE(store.ok()) << (store ? "" : store.error().message);
+  return store ? std::move(*store) : nullptr;
+}
+
+TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("state.db");
+  {
+    auto store = open(path);
+    EXPECT_EQ(*store->next_incarnation(), 1U);
+    const auto added = store->add_job(some_job("key", "ada"));
+    ASSERT_TRUE(added.ok());
+    EXPECT_EQ(added->id, 1U);
+    EXPECT_FALSE(added->existed);
+    ASSERT_TRUE(
+        store->frame_over(1, {3, true, "", "class", 2}, {{"b.0003.exr", 3, 9, "sha"}}).ok());
+    ASSERT_TRUE(store->frame_over(1, {4, false, "why", "class", 0}, {}).ok());
+    ASSERT_TRUE(
+        store->add_lines(1, {{5, 2, 3, "w", "text"}, {6, 1, std::nullopt, "", "more"}}).ok());
+  }
+  auto store = open(path);
+  EXPECT_EQ(*store->next_incarnation(), 2U);
+  EXPECT_EQ(*store->open_jobs(), std::vector<uint64_t>{1});
+  const auto job = store->job(1);
+  ASSERT_TRUE(job.ok() && job->has_value());
+  const StoredJob expected = some_job("key", "ada");
+  EXPECT_EQ((*job)->spec, expected.spec);
+  EXPECT_EQ((*job)->name, expected.name);
+  EXPECT_EQ((*job)->owner, expected.owner);
+  EXPECT_EQ((*job)->priority, expected.priority);
+  EXPECT_EQ((*job)->max_workers, expected.max_workers);
+  EXPECT_EQ((*job)->samples, expected.samples);
+  EXPECT_EQ((*job)->state, StoredState::running);
+  const auto frames = store->frames(1);
+  ASSERT_EQ(frames->size(), 2U);
+  EXPECT_TRUE(frames->at(0).done);
+  EXPECT_EQ(frames->at(0).restarts, 2U);
+  EXPECT_EQ(frames->at(1).reason, "why");
+  const auto outputs = store->outputs(1, 0);
+  ASSERT_EQ(outputs->size(), 1U);
+  EXPECT_EQ(outputs->at(0).sha256, "sha");
+  EXPECT_TRUE(store->output(1, "b.0003.exr")->has_value());
+  EXPECT_FALSE(store->output(1, "../state.db")->has_value());
+  const auto lines = store->lines(1, 0, 10);
+  ASSERT_EQ(lines->size(), 2U);
+  EXPECT_EQ(lines->at(0).frame, 3);
+  EXPECT_EQ(lines->at(1).text, "more");
+  EXPECT_EQ(store->lines(1, 1, 10)->size(), 1U);
+}
+
+TEST(JobStore, OneKeyOneJob) {
+  const test::TempFolder folder;
+  auto store = open(folder.file("state.db"));
+  EXPECT_EQ(store->add_job(some_job("a-key", "ada"))->id, 1U);
+  const auto again = store->add_job(some_job("a-key", "bob"));
+  EXPECT_EQ(again->id, 1U);
+  EXPECT_TRUE(again->existed);
+  EXPECT_EQ(store->add_job(some_job("", "ada"))->id, 2U);
+  EXPECT_EQ(store->add_job(some_job("", "ada"))->id, 3U);
+}
+
+TEST(JobStore, ListsTheNewestFirst) {
+  const test::TempFolder folder;
+  auto store = open(folder.file("state.db"));
+  for (int i = 0; i < 5; ++i) (void)store->add_job(some_job("", i % 2 ? "bob" : "ada"));
+  StoredJob over = **store->job(3);
+  over.state = StoredState::done;
+  ASSERT_TRUE(store->update_job(over).ok());
+  const auto ids = [](const core::Result<std::vector<StoredJob>>& jobs) {
+    std::vector<uint64_t> found;
+    for (const StoredJob& job : *jobs) found.push_back(job.id);
+    return found;
+  };
+  EXPECT_EQ(ids(store->list(false, "", 0, 10)), (std::vector<uint64_t>{5, 4, 2, 1}));
+  EXPECT_EQ(ids(store->list(true, "ada", 0, 10)), (std::vector<uint64_t>{5, 3, 1}));
+  EXPECT_EQ(ids(store->list(true, "", 4, 2)), (std::vector<uint64_t>{3, 2}));
+  ASSERT_TRUE(store->remove_job(5).ok());
+  EXPECT_EQ(store->add_job(some_job("", "ada"))->id, 6U) << "ids are never used twice";
+}
+
+TEST(JobStore, ANewerSchemaIsRefused) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("state.db");
+  open(path).reset();
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version=999", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(db);
+  const auto refused = open_sqlite_job_store(path);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("newer"), std::string::npos) << refused.error().message;
+}
+
+TEST(JobStore, OneProcessAtATime) {
+  const test::TempFolder folder;
+  const auto store = open(folder.file("state.db"));
+  EXPECT_FALSE(open_sqlite_job_store(folder.file("state.db")).ok());
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
