@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "core/base/parallel.h"
 #include "core/base/version.h"
 #include "core/render/class_probe.h"
 #include "farm/content_store.h"
@@ -25,8 +26,9 @@ using namespace hyades;
 
 /// Where the worker leaves its end of the pipe.
 constexpr int kPipe = 3;
-/// What threads and libraries take besides scenes.
+/// What libraries take besides scenes, and what each thread's stack may.
 constexpr uint64_t kOverhead = uint64_t{256} << 20U;
+constexpr uint64_t kThreadOverhead = uint64_t{8} << 20U;
 
 int refuse(pipe::MessagePipe& parent, const std::string& reason) {
   pipe::FromRenderer message;
@@ -49,7 +51,9 @@ int main(int argc, char** argv) {
   // The worker decides when this process ends: a Ctrl-C reaches both.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
-  worker::limit_memory(memory == 0 ? 0 : memory + kOverhead);
+  // Scenes are built by as many threads as the machine has.
+  const auto all_threads = static_cast<uint64_t>(threads + core::hardware_threads());
+  worker::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);
 
   pipe::MessagePipe parent(kPipe);
   const auto measured = core::this_class();

@@ -80,7 +80,9 @@ TEST(Desk, FilmsSurviveALostStreamAndAreSentAgain) {
   EXPECT_EQ(hello.hello().in_hand_size(), 2);
   EXPECT_EQ(hello.hello().want(), 2U);
   world.welcome();
-  EXPECT_EQ(first(world.take_sent(), &Message::has_result).result().unit().tile().x0(), 0);
+  const Message again = first(world.take_sent(), &Message::has_result);
+  ASSERT_TRUE(again.has_result());
+  EXPECT_EQ(again.result().unit().tile().x0(), 0);
   world.lease(DeskWorld::unit(8, 31), true);
   world.film(world.token_of(8));
   EXPECT_EQ(first(world.take_sent(), &Message::has_result).result().lease().number(), 31U)
