@@ -88,6 +88,9 @@ struct FarmClient::State {
         break;
       case grpc::StatusCode::UNAVAILABLE:
       case grpc::StatusCode::DEADLINE_EXCEEDED:
+        // Where a time is named the coordinator has spoken itself: what is asked for is not there
+        // yet.
+        if (farm::detail_of(status).retry_after_ms() != 0) break;
         out.code = kNoAnswer;
         out.message = patience.was_reached()
                           ? fmt::format("the coordinator at {} answers no more ({})",
@@ -280,6 +283,32 @@ Outcome FarmClient::fetch(v1::FetchRequest request, uint64_t size,
   return state_->stream<v1::Chunk>(
       transfer_time(size), [&](grpc::ClientContext& c) { return state_->jobs->Fetch(&c, request); },
       on_chunk, stopped);
+}
+
+Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes) {
+  v1::FilmRequest request;
+  request.set_job(job);
+  request.set_frame(frame);
+  Outcome stopped;
+  return state_->stream<v1::FilmPart>(
+      transfer_time(farm::kMaxResultBytes),
+      [&](grpc::ClientContext& c) {
+        header.Clear();
+        bytes.clear();
+        return state_->jobs->Film(&c, request);
+      },
+      [&](const v1::FilmPart& part) {
+        if (part.has_header()) {
+          header = part.header();
+        } else if (part.chunk().offset() == bytes.size() &&
+                   part.chunk().data().size() <= header.size() - bytes.size()) {
+          bytes += part.chunk().data();
+        } else {
+          stopped = Failure{kFailed, "the coordinator sends a film in pieces that do not fit"};
+        }
+        return !stopped;
+      },
+      stopped);
 }
 
 Outcome FarmClient::logs(const v1::LogsRequest& request,

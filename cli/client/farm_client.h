@@ -54,6 +54,9 @@ class FarmClient {
   Outcome fetch(v1::FetchRequest request, uint64_t size,
                 const std::function<Outcome(const std::string&)>& on_bytes);
 
+  /// The merged film of a frame as it is now: what it belongs to, and its bytes (film_codec.h).
+  Outcome film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes);
+
   Outcome logs(const v1::LogsRequest& request,
                const std::function<void(const v1::LogLine&)>& on_line);
 

@@ -1,6 +1,8 @@
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,9 @@
 #include "cli/status_line.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
+#include "core/film/film_codec.h"
+#include "core/film/film_exr.h"
+#include "farm/wire.h"
 
 namespace hyades::cli {
 namespace {
@@ -20,6 +25,7 @@ struct Options {
   std::string job;
   std::string folder = ".";
   std::vector<int32_t> frames;
+  std::optional<int32_t> film;
   bool follow = false;
   bool list = false;
   bool quiet = false;
@@ -31,6 +37,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--output", options.folder, "folder for the files")->capture_default_str();
   app.add_option("--frame", options.frames, "only these frames")->delimiter(',');
   app.add_flag("--follow", options.follow, "stay, and bring each file as it is finished");
+  app.add_option("--film", options.film,
+                 "instead, this frame's film as it is now, also in mid-render (for 'hyades merge' "
+                 "or any EXR viewer)");
   app.add_flag("--list", options.list, "only tell which files there are");
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json, "print the files as JSON (field id: the path)");
@@ -49,6 +58,26 @@ Json to_json(const v1::OutputFile& file) {
           {"frame", file.frame()},
           {"size", file.size()},
           {"sha256", core::to_hex(digest)}};
+}
+
+/// Writes what there is of a frame's film to NAME.FRAME.film.exr.
+Outcome fetch_film(FarmClient& client, uint64_t id, const Options& options) {
+  v1::FilmHeader header;
+  std::string bytes;
+  if (auto failure = client.film(id, *options.film, header, bytes)) return failure;
+  auto info = farm::from_wire(header);
+  if (!info) return Failure{kFailed, info.error().in("the film that came").message};
+  auto film = core::decode_film(std::as_bytes(std::span(bytes)));
+  if (!film) return Failure{kFailed, film.error().in("the film that came").message};
+  const std::string name = fmt::format("{}.{:04}.film.exr", header.job_name(), *options.film);
+  if (!is_safe_output(name)) return Failure{kFailed, "the coordinator names a job that is no name"};
+  std::error_code failed;
+  std::filesystem::create_directories(options.folder, failed);
+  const std::string path = options.folder + "/" + name;
+  auto written = core::write_film_exr(path, {std::move(*info), std::move(*film)});
+  if (!written) return Failure{kFailed, written.error().message};
+  if (!options.quiet) std::fprintf(stderr, "wrote %s\n", path.c_str());
+  return std::nullopt;
 }
 
 /// One run of the command.
@@ -131,6 +160,10 @@ int fetch_command(int argc, char** argv) {
   if (!client) return kBadArguments;
   uint64_t id = 0;
   if (auto failure = find_job(*client, options.job, id)) return app.report(*failure);
+  if (options.film) {
+    const Outcome failure = fetch_film(*client, id, options);
+    return failure ? app.report(*failure) : kDone;
+  }
   FetchRun run(*client, options, id);
   const Outcome failure = run.run();
   run.print();
