@@ -128,8 +128,7 @@ grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context,
       if (!seen.insert(name).second || store_.contains(name, file.size())) continue;
       auto* missing = response->add_missing();
       missing->set_sha256(file.sha256());
-      if (const auto writer = store_.write(name, file.size()))
-        missing->set_offset(writer->offset());
+      missing->set_offset(std::min(store_.begun(name), file.size()));
     }
     return grpc::Status::OK;
   };
