@@ -35,7 +35,10 @@ v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
 }  // namespace
 
 v1::Job Brain::describe(const JobDesk& desk) const {
-  return desk.describe(scheduler_.leased_units(desk.id));
+  v1::Job job = desk.describe(scheduler_.leased_units(desk.id));
+  // Until its end is stored, it has not ended for anybody.
+  if (desk.ending) job.set_state(v1::JOB_STATE_RUNNING);
+  return job;
 }
 
 grpc::Status Brain::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
@@ -85,8 +88,6 @@ grpc::Status Brain::changes(uint64_t id, uint64_t& version, v1::WatchEvent& even
     const std::lock_guard lock(mutex_);
     if (const JobDesk* desk = desk_of(id)) {
       *event.mutable_job() = describe(*desk);
-      // Until its end is stored, it has not ended for anybody.
-      if (desk->ending) event.mutable_job()->set_state(v1::JOB_STATE_RUNNING);
       for (const int32_t number : desk->numbers) {
         const FrameNote& note = desk->frames.at(number);
         if (version != 0 && note.version <= version) continue;

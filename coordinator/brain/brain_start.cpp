@@ -10,6 +10,7 @@
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/keeper_owner.h"
 #include "coordinator/finisher/finish_process.h"
+#include "core/base/failpoint.h"
 #include "core/base/fp_mode.h"
 #include "farm/wire.h"
 
@@ -271,7 +272,9 @@ void Brain::finish_loop() {
         outputs.push_back({file.path, completed.frame, file.size,
                            digest ? farm::to_wire(*digest) : std::string()});
       }
+      core::failpoint("outputs-written");
       done = store_->frame_over(id, over, outputs);
+      core::failpoint("frame-stored");
     }
     lock.lock();
     if (stop_) return;

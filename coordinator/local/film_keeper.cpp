@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/failpoint.h"
 #include "core/film/film_codec.h"
 
 namespace hyades::coordinator {
@@ -299,7 +300,9 @@ core::Status FilmKeeper::merge(RecordId record) {
   }
   auto& whole = films_[settling_->frame];
   if (!whole) whole = std::make_shared<core::Film>(settling_->film.layout(), plan_.region);
-  return whole->merge(settling_->film);
+  const core::Status merged = whole->merge(settling_->film);
+  core::failpoint("mid-merge");
+  return merged;
 }
 
 std::shared_ptr<const core::Film> FilmKeeper::film(int32_t frame) const {

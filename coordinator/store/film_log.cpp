@@ -9,6 +9,7 @@
 
 #include "coordinator/store/log_names.h"
 #include "coordinator/store/segment.h"
+#include "core/base/failpoint.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -252,7 +253,9 @@ Status FilmLog::write_group(const std::vector<Pending>& group) {
     }
   }
   if (Status s = active_->write(small); !s) return s;
+  core::failpoint("log-written");
   if (Status s = active_->sync(); !s) return s;
+  core::failpoint("log-synced");
   active_bytes_ += bytes;
   return {};
 }

@@ -1,0 +1,244 @@
+// What people do with jobs and workers while they run, and what is refused.
+#include <gtest/gtest.h>
+
+#include "tests/coordinator/services/farm_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using namespace std::chrono_literals;
+
+v1::JobRequest about(uint64_t job) {
+  v1::JobRequest request;
+  request.set_job(job);
+  return request;
+}
+
+TEST(Steering, APausedJobRestsAlsoOverARestart) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(2);
+  v1::JobResponse now;
+  ASSERT_TRUE(world.jobs->Pause(world.context().get(), about(job), &now).ok());
+  EXPECT_EQ(now.job().state(), v1::JOB_STATE_PAUSED);
+  world.stop();
+  world.start();
+  EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_PAUSED);
+  const ScriptedWorker worker(world.address, world.script());
+  std::this_thread::sleep_for(500ms);
+  EXPECT_EQ(worker.delivered(), 0U);
+  ASSERT_TRUE(world.jobs->Resume(world.context().get(), about(job), &now).ok());
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  world.expect_truth(job, 2);
+}
+
+TEST(Steering, ACancelledJobCanBeTakenUpAgainAndDeleted) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(3);
+  v1::JobResponse now;
+  {
+    ScriptedWorker::Script script = world.script();
+    script.unit_time = 5ms;
+    const ScriptedWorker worker(world.address, script);
+    ASSERT_TRUE(eventually([&] { return worker.acknowledged() >= 8; }));
+    ASSERT_TRUE(world.jobs->Cancel(world.context().get(), about(job), &now).ok());
+  }
+  EXPECT_EQ(now.job().state(), v1::JOB_STATE_CANCELLED);
+  const grpc::Status late = world.jobs->Pause(world.context().get(), about(job), &now);
+  EXPECT_EQ(late.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  ASSERT_TRUE(world.jobs->Retry(world.context().get(), about(job), &now).ok());
+  EXPECT_GT(now.job().samples_done(), 0U) << "its films are still there";
+  const ScriptedWorker worker(world.address, world.script(2));
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  for (int frame = 1; frame <= 3; ++frame) world.expect_truth(job, frame);
+  v1::DeleteJobResponse gone;
+  ASSERT_TRUE(world.jobs->Delete(world.context().get(), about(job), &gone).ok());
+  v1::GetJobRequest get;
+  get.set_job(job);
+  v1::GetJobResponse nothing;
+  EXPECT_EQ(world.jobs->Get(world.context().get(), get, &nothing).error_code(),
+            grpc::StatusCode::NOT_FOUND);
+}
+
+TEST(Steering, AUnitThatFailsThreeTimesFailsItsFrameAndRetryMendsIt) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(2);
+  {
+    ScriptedWorker::Script script = world.script();
+    script.meddle = [](ScriptedWorker& worker, const v1::LeasedUnit& unit) {
+      if (unit.unit().frame() != 1) return true;
+      v1::WorkerMessage message;
+      *message.mutable_failure()->mutable_unit() = unit;
+      message.mutable_failure()->set_reason("the scene does not load");
+      message.mutable_failure()->set_want(1);
+      worker.write(message);
+      return false;
+    };
+    const ScriptedWorker worker(world.address, script);
+    ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_FAILED));
+  }
+  const v1::GetJobResponse over = world.get(job);
+  EXPECT_EQ(over.job().frames_done(), 1U);
+  EXPECT_EQ(over.job().frames_failed(), 1U);
+  EXPECT_NE(over.job().reason().find("does not load"), std::string::npos) << over.job().reason();
+  v1::JobResponse now;
+  ASSERT_TRUE(world.jobs->Retry(world.context().get(), about(job), &now).ok());
+  const ScriptedWorker worker(world.address, world.script(2));
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  world.expect_truth(job, 1);
+  world.expect_truth(job, 2);
+}
+
+TEST(Steering, AFrameWhoseClassHasVanishedBeginsAgain) {
+  FarmWorld world;
+  world.options.class_patience = 400ms;
+  world.start();
+  const uint64_t job = world.submit(1);
+  {
+    ScriptedWorker::Script script = world.script();
+    script.unit_time = 10ms;
+    const ScriptedWorker worker(world.address, script);
+    ASSERT_TRUE(eventually([&] { return worker.acknowledged() >= 2; }));
+  }
+  ScriptedWorker::Script script = world.script(2);
+  script.worker_class = "class-b";
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  EXPECT_EQ(world.get(job).frames(0).worker_class(), "class-b");
+  EXPECT_EQ(world.get(job).frames(0).restarts(), 1U);
+  world.expect_truth(job, 1);
+}
+
+TEST(Steering, DamagedAndForeignFilmsAreRefused) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  {
+    ScriptedWorker::Script script = world.script();
+    script.meddle = [](ScriptedWorker& worker, const v1::LeasedUnit& unit) {
+      v1::WorkerMessage message;
+      v1::UnitResult& result = *message.mutable_result();
+      *result.mutable_lease() = unit.lease();
+      result.set_job(unit.job());
+      *result.mutable_unit() = unit.unit();
+      result.set_film("this is no film");
+      result.set_digest(std::string(32, 'x'));
+      worker.write(message);
+      return false;
+    };
+    const ScriptedWorker worker(world.address, script);
+    ASSERT_TRUE(eventually([&] { return !worker.rejections().empty(); }));
+    EXPECT_EQ(worker.rejections().front().reason(), v1::Rejected::REASON_DAMAGED);
+  }
+  const ScriptedWorker worker(world.address, world.script(2));
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  world.expect_truth(job, 1);
+}
+
+TEST(Steering, AQuarantinedWorkerGetsNothingUntilItIsReleased) {
+  FarmWorld world;
+  world.start();
+  ScriptedWorker::Script script = world.script();
+  script.unit_time = 2ms;
+  const ScriptedWorker worker(world.address, script);
+  v1::WorkerRequest request;
+  request.set_worker("scripted/1");
+  request.set_reason("smells of smoke");
+  v1::WorkerResponse now;
+  ASSERT_TRUE(eventually(
+      [&] { return world.farm_->QuarantineWorker(world.context().get(), request, &now).ok(); }));
+  EXPECT_EQ(now.worker().state(), v1::WORKER_STATE_QUARANTINED);
+  const uint64_t job = world.submit(1);
+  std::this_thread::sleep_for(400ms);
+  EXPECT_EQ(worker.delivered(), 0U);
+  ASSERT_TRUE(world.farm_->ReleaseWorker(world.context().get(), request, &now).ok());
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  ASSERT_TRUE(world.farm_->DrainWorker(world.context().get(), request, &now).ok());
+  EXPECT_TRUE(eventually([&] { return worker.drained(); }));
+}
+
+TEST(Steering, SubmittingTwiceMakesOneJobAndMissingFilesAreNamed) {
+  FarmWorld world;
+  world.start();
+  const std::string text = FarmWorld::document(1);
+  v1::SubmitRequest request = FarmWorld::request(text);
+  request.set_idempotency_key("0123456789abcdef");
+  v1::SubmitResponse response;
+  const grpc::Status early = world.jobs->Submit(world.context().get(), request, &response);
+  EXPECT_EQ(early.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  ASSERT_EQ(farm::detail_of(early).missing_size(), 1);
+  EXPECT_EQ(farm::detail_of(early).missing(0), farm::to_wire(core::sha256(text)));
+  ASSERT_TRUE(world.upload(text).ok());
+  ASSERT_TRUE(world.jobs->Submit(world.context().get(), request, &response).ok());
+  EXPECT_FALSE(response.existed());
+  const uint64_t id = response.job().id();
+  ASSERT_TRUE(world.jobs->Submit(world.context().get(), request, &response).ok());
+  EXPECT_TRUE(response.existed());
+  EXPECT_EQ(response.job().id(), id);
+
+  const std::string bad = "hyades: 1\nfilm: {size: [80, 48]}\nobjets: {}\n";
+  ASSERT_TRUE(world.upload(bad).ok());
+  const grpc::Status refused =
+      world.jobs->Submit(world.context().get(), FarmWorld::request(bad), &response);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_NE(refused.error_message().find("job.yaml:3"), std::string::npos)
+      << refused.error_message();
+}
+
+TEST(Steering, WithoutTheTokenNothingGoes) {
+  FarmWorld world;
+  const std::string file = world.folder.file("token");
+  FILE* out = std::fopen(file.c_str(), "w");
+  std::fputs("a-token-of-some-length\n", out);
+  std::fclose(out);
+  world.how.token_file = file;
+  world.start();
+  v1::InfoResponse info;
+  EXPECT_EQ(world.farm_->Info(world.context().get(), {}, &info).error_code(),
+            grpc::StatusCode::UNAUTHENTICATED);
+  ScriptedWorker::Script script = world.script();
+  script.reconnect = false;
+  {
+    const ScriptedWorker worker(world.address, script);
+    EXPECT_TRUE(eventually(
+        [&] { return worker.last_status().error_code() == grpc::StatusCode::UNAUTHENTICATED; }));
+  }
+  world.token = "a-token-of-some-length";
+  EXPECT_TRUE(world.farm_->Info(world.context().get(), {}, &info).ok());
+  grpc::ClientContext old;
+  old.AddMetadata(farm::kTokenKey, "Bearer " + world.token);
+  EXPECT_EQ(world.farm_->Info(&old, {}, &info).error_code(), grpc::StatusCode::FAILED_PRECONDITION)
+      << "a caller that does not tell its protocol";
+}
+
+TEST(Steering, TheFilmOfAFrameCanBeSeenInMidRender) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  ScriptedWorker::Script script = world.script();
+  std::atomic<int> units{0};
+  script.meddle = [&](ScriptedWorker&, const v1::LeasedUnit&) { return ++units <= 5; };
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return worker.acknowledged() >= 5; }));
+  v1::FilmRequest request;
+  request.set_job(job);
+  request.set_frame(1);
+  const auto context = world.context();
+  const auto reader = world.jobs->Film(context.get(), request);
+  v1::FilmPart part;
+  ASSERT_TRUE(reader->Read(&part));
+  ASSERT_TRUE(part.has_header());
+  std::string bytes;
+  const uint64_t size = part.header().size();
+  while (reader->Read(&part)) bytes += part.chunk().data();
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_EQ(bytes.size(), size);
+  const auto film = core::decode_film(std::as_bytes(std::span(bytes)));
+  ASSERT_TRUE(film.ok());
+  EXPECT_GT(film->coverage().volume(), 0U);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
