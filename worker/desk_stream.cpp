@@ -82,7 +82,9 @@ void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
       drop(item);
     }
   } else if (message.has_drain()) {
-    leave("drained: " + message.drain().reason(), false);
+    const std::string& why = message.drain().reason();
+    if (!leaving_) ports_.note("drained: what is leased is finished");
+    leave(why.empty() ? "drained" : "drained: " + why, false);
   } else if (message.has_over()) {
     const auto job = jobs_.find(message.over().job());
     if (job != jobs_.end()) {
