@@ -152,6 +152,7 @@ class Brain {
                       const std::function<void(JobDesk&, std::vector<Action>&)>& what);
   core::Status take_up_jobs();
   core::Status take_up(uint64_t id);
+  core::Result<std::set<int32_t>> frames_without_outputs(uint64_t id) const;
   core::Status start(std::unique_ptr<JobDesk> desk, bool resume, RestoredJob restored);
 
   // brain.cpp: events in, actions out; with the lock.

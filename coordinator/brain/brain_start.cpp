@@ -136,8 +136,17 @@ core::Status Brain::take_up(uint64_t id) {
   RestoredJob restored;
   const auto frames = store_->frames(id);
   if (!frames) return frames.error();
+  const auto damaged = frames_without_outputs(id);
+  if (!damaged) return damaged.error();
   for (const StoredFrame& frame : *frames) {
     FrameNote& note = (*desk)->frames[frame.frame];
+    if (damaged->contains(frame.frame)) {
+      if (auto gone = store_->forget_frame(id, frame.frame); !gone) return gone;
+      note.restarts = frame.restarts + 1;
+      this->note(**desk, v1::LOG_LEVEL_WARNING, frame.frame, {},
+                 "its outputs are gone or damaged: it is rendered again");
+      continue;
+    }
     note.worker_class = frame.worker_class;
     note.restarts = frame.restarts;
     if (frame.done) {
@@ -154,6 +163,19 @@ core::Status Brain::take_up(uint64_t id) {
   (*desk)->stored.frames_done = static_cast<uint32_t>(restored.finished.size());
   (*desk)->stored.frames_failed = static_cast<uint32_t>(restored.failed.size());
   return start(std::move(*desk), true, std::move(restored));
+}
+
+/// Finished frames of which a file is missing or has another size than when it was written.
+core::Result<std::set<int32_t>> Brain::frames_without_outputs(uint64_t id) const {
+  const auto outputs = store_->outputs(id, 0);
+  if (!outputs) return outputs.error();
+  std::set<int32_t> damaged;
+  for (const StoredOutput& output : *outputs) {
+    std::error_code failed;
+    const auto size = std::filesystem::file_size(output_folder(id) + "/" + output.path, failed);
+    if (failed || size != output.size) damaged.insert(output.frame);
+  }
+  return damaged;
 }
 
 /// Opens the job's films and hands it to the scheduler.

@@ -1,6 +1,8 @@
 // Submit, lease, render, deliver, merge, finish, fetch: over real gRPC.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "tests/coordinator/services/farm_world.h"
 
 namespace hyades::coordinator {
@@ -63,6 +65,26 @@ TEST(Spine, ARestartedCoordinatorTakesItsJobsUpAgain) {
   v1::InfoResponse info;
   ASSERT_TRUE(world.farm_->Info(world.context().get(), {}, &info).ok());
   EXPECT_EQ(info.incarnation(), 4U);
+}
+
+TEST(Spine, OutputsThatAreDamagedBetweenTwoLivesAreMadeAgain) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(8);
+  ScriptedWorker::Script script = world.script();
+  script.unit_time = std::chrono::milliseconds(10);
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return world.get(job).job().frames_done() >= 2; }));
+  world.stop();
+  const std::string outputs = world.options.folder + "/outputs/" + std::to_string(job) + "/";
+  std::filesystem::remove(outputs + "balls.0001.png");
+  std::filesystem::resize_file(outputs + "balls.0002.exr", 100);
+  world.start();
+  EXPECT_EQ(world.get(job).frames(0).restarts(), 1U);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  world.expect_truth(job, 1);
+  world.expect_truth(job, 2);
+  EXPECT_FALSE(world.fetch(job, "balls.0001.png").empty());
 }
 
 TEST(Spine, WatchTellsTheWholeStory) {
