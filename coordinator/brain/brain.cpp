@@ -91,7 +91,7 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
                        conflict->unit.batches.end() - 1));
     }
   } else if (const auto* record = std::get_if<Persist>(&action)) {
-    persist(*record, delivery);
+    persist(*record, delivery, later);
   } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
     // The film takes memory only as units come in.
     for (const Action& next :
@@ -103,10 +103,18 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
   }
 }
 
-void Brain::persist(const Persist& persist, Delivery* delivery) {
+void Brain::persist(const Persist& persist, Delivery* delivery, std::vector<Action>& later) {
   const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
+  if (core::Status kept = ensure_keeper(*desk); !kept) {
+    desk->trouble = "films cannot be stored: " + kept.error().message;
+    for (const Action& next : scheduler_.handle(PersistFailed{persist.id, kept.error().message},
+                                                std::chrono::steady_clock::now())) {
+      act(next, nullptr, later);
+    }
+    return;
+  }
   if (const auto* unit = std::get_if<UnitRecord>(&persist.record)) {
     desk->keeper->keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
                                  std::move(delivery->record));
@@ -322,10 +330,14 @@ void Brain::job_ended(const JobEnded& ended) {
   });
 }
 
-void Brain::persisted(JobId, RecordId record) {
+void Brain::persisted(JobId job, RecordId record) {
   std::vector<Action> later;
   {
     const std::lock_guard lock(mutex_);
+    if (JobDesk* desk = desk_of(job); desk != nullptr && !desk->trouble.empty()) {
+      desk->trouble.clear();
+      desk->touch();
+    }
     later = tell(Persisted{record});
   }
   carry_out(later);

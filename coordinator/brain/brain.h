@@ -153,14 +153,17 @@ class Brain {
   core::Status take_up_jobs();
   core::Status take_up(uint64_t id);
   core::Result<std::set<int32_t>> frames_without_outputs(uint64_t id) const;
-  core::Status start(std::unique_ptr<JobDesk> desk, bool resume, RestoredJob restored);
+  core::Status start(std::unique_ptr<JobDesk> desk, RestoredJob restored);
+  std::unique_ptr<FilmKeeper> make_keeper(JobDesk& desk, bool resume);
+  core::Status ensure_keeper(JobDesk& desk);
+  void restore_films(JobDesk& desk, const LogContents& contents, RestoredJob& restored);
 
   // brain.cpp: events in, actions out; with the lock.
   std::vector<Action> tell(const Event& event, Delivery* delivery = nullptr);
   void act(const Action& action, Delivery* delivery, std::vector<Action>& later);
   void send_lease(const Lease& lease);
   void send(WorkerId worker, v1::CoordinatorMessage message);
-  void persist(const Persist& persist, Delivery* delivery);
+  void persist(const Persist& persist, Delivery* delivery, std::vector<Action>& later);
   // Without the lock.
   void carry_out(const std::vector<Action>& actions);
   void merged(JobId job, const Merge& merge);

@@ -70,7 +70,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
                        stored.owner.empty() ? "nobody in particular" : stored.owner,
                        (*desk)->numbers.size()));
     }
-    if (core::Status started = start(std::move(*desk), false, {}); !started) {
+    if (core::Status started = start(std::move(*desk), {}); !started) {
       // Nothing was promised yet.
       (void)store_->remove_job(added->id);
       return failed(started.error());

@@ -132,6 +132,10 @@ grpc::Status Brain::film(uint64_t id, int32_t frame,
     return {grpc::StatusCode::FAILED_PRECONDITION,
             fmt::format("frame {} is done: its film is not kept", frame)};
   }
+  if (!desk->keeper) {
+    return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "nothing of the frame is there yet",
+                             std::chrono::seconds(1));
+  }
   core::FilmInfo info = desk->film_info(frame);
   info.worker_class = noted->second.worker_class;
   // The keeper's thread copies, as only it may look at films while they grow; what follows takes

@@ -162,7 +162,7 @@ core::Status Brain::take_up(uint64_t id) {
   }
   (*desk)->stored.frames_done = static_cast<uint32_t>(restored.finished.size());
   (*desk)->stored.frames_failed = static_cast<uint32_t>(restored.failed.size());
-  return start(std::move(*desk), true, std::move(restored));
+  return start(std::move(*desk), std::move(restored));
 }
 
 /// Finished frames of which a file is missing or has another size than when it was written.
@@ -178,27 +178,12 @@ core::Result<std::set<int32_t>> Brain::frames_without_outputs(uint64_t id) const
   return damaged;
 }
 
-/// Opens the job's films and hands it to the scheduler.
-core::Status Brain::start(std::unique_ptr<JobDesk> owned, bool resume, RestoredJob restored) {
-  JobDesk& desk = *owned;
-  LocalPlan plan;
-  plan.frames = desk.numbers;
-  plan.region = desk.region;
-  plan.samples = desk.read.job.sampling.samples;
-  plan.max_waiting_bytes = kWaitingBytes;
-  LocalLog place;
-  place.folder = films_folder(desk.stored.id);
-  place.frame_key = [key = desk.key](int32_t) { return key; };
-  place.resume = resume;
-  desk.owner = std::make_unique<KeeperOwner>(*this, desk.id);
-  desk.keeper = std::make_unique<FilmKeeper>(plan, place, *desk.owner);
-  auto contents = desk.keeper->open();
-  if (!contents) return contents.error();
-  for (const std::string& problem : contents->problems) {
+/// What of the films in a job's log counts.
+void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJob& restored) {
+  for (const std::string& problem : contents.problems) {
     note(desk, v1::LOG_LEVEL_WARNING, std::nullopt, {}, "films: " + problem);
   }
-  const int32_t tile_size = contents->cut.tile_size > 0 ? contents->cut.tile_size : kTileSize;
-  for (const auto& [number, units] : contents->units) {
+  for (const auto& [number, units] : contents.units) {
     FrameNote& frame = desk.frames[number];
     if (frame.state != v1::FRAME_STATE_WAITING) {
       desk.keeper->forget(number, frame.state == v1::FRAME_STATE_DONE);
@@ -209,24 +194,62 @@ core::Status Brain::start(std::unique_ptr<JobDesk> owned, bool resume, RestoredJ
     for (const AcceptedUnit& unit : units) {
       uint64_t samples = 0;
       for (uint32_t b = unit.unit.batches.first; b < unit.unit.batches.end(); ++b) {
-        samples += core::samples_in_batch(b, plan.samples);
+        samples += core::samples_in_batch(b, desk.read.job.sampling.samples);
       }
       frame.samples_done += samples * static_cast<uint64_t>(unit.unit.tile.area());
       restored.accepted.push_back(unit);
     }
     desk.samples_done += frame.samples_done;
   }
-  for (const auto& [frame, finished] : contents->finished) {
+  for (const auto& [frame, finished] : contents.finished) {
     if (desk.frames[frame].state != v1::FRAME_STATE_DONE) desk.keeper->reopen(frame);
   }
-  if (auto started = desk.keeper->start(tile_size); !started) return started;
+}
 
+/// A keeper of the job's films, not opened yet.
+std::unique_ptr<FilmKeeper> Brain::make_keeper(JobDesk& desk, bool resume) {
+  LocalPlan plan;
+  plan.frames = desk.numbers;
+  plan.region = desk.region;
+  plan.samples = desk.read.job.sampling.samples;
+  plan.max_waiting_bytes = kWaitingBytes;
+  LocalLog place;
+  place.folder = films_folder(desk.stored.id);
+  place.frame_key = [key = desk.key](int32_t) { return key; };
+  place.resume = resume;
+  if (!desk.owner) desk.owner = std::make_unique<KeeperOwner>(*this, desk.id);
+  return std::make_unique<FilmKeeper>(plan, place, *desk.owner);
+}
+
+/// A job gets its log and threads with its first film, so that those that wait cost little; with
+/// the lock, for some milliseconds once.
+core::Status Brain::ensure_keeper(JobDesk& desk) {
+  if (desk.keeper) return {};
+  auto keeper = make_keeper(desk, false);
+  if (auto opened = keeper->open(); !opened) return opened.error();
+  if (auto started = keeper->start(kTileSize); !started) return started;
+  desk.keeper = std::move(keeper);
+  return {};
+}
+
+/// Reads the films that are there, and hands the job to the scheduler.
+core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) {
+  JobDesk& desk = *owned;
+  int32_t tile_size = kTileSize;
+  if (std::filesystem::exists(films_folder(desk.stored.id))) {
+    desk.keeper = make_keeper(desk, true);
+    auto contents = desk.keeper->open();
+    if (!contents) return contents.error();
+    if (contents->cut.tile_size > 0) tile_size = contents->cut.tile_size;
+    restore_films(desk, *contents, restored);
+    if (auto started = desk.keeper->start(tile_size); !started) return started;
+  }
   JobAdded added;
   added.job = desk.id;
   added.plan.frames = desk.numbers;
   added.plan.region = desk.region;
   added.plan.tile_size = tile_size;
-  added.plan.batches = core::batch_count(plan.samples);
+  added.plan.batches = core::batch_count(desk.read.job.sampling.samples);
   added.plan.priority = desk.stored.priority;
   added.plan.owner = desk.stored.owner;
   added.plan.max_workers = desk.stored.max_workers;

@@ -276,7 +276,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
     JobDesk* desk = desk_of(job);
     if (seat->state == v1::WORKER_STATE_QUARANTINED) {
       verdict = Verdict::quarantined;
-    } else if (desk != nullptr && desk->keeper->crowded()) {
+    } else if (desk != nullptr && desk->keeper && desk->keeper->crowded()) {
       verdict = Verdict::crowded;
     } else {
       ++seat->units_done;

@@ -57,7 +57,7 @@ struct JobDesk {
   Digest key{};  ///< JobBrief.key
 
   std::unique_ptr<FilmKeeper::Owner> owner;  ///< reports to the brain
-  std::unique_ptr<FilmKeeper> keeper;
+  std::unique_ptr<FilmKeeper> keeper;        ///< null until there is a film
   /// Complete films until their frame is over.
   std::map<int32_t, std::shared_ptr<const core::Film>> complete;
 
