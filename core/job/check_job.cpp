@@ -21,6 +21,8 @@ constexpr int kMostMoments = 1000;                    ///< at which expressions 
 /// Textures made of textures, materials of materials, groups of groups: readers of a job may use
 /// recursion this deep (and about 20 groups written in place, see kMaxYamlDepth).
 constexpr int kLongestChain = 32;
+/// What one lookup of a texture or a material may cost: each use of another counts.
+constexpr uint64_t kMostParts = 4096;
 
 template <class Desc>
 std::vector<std::string> names_of(const std::vector<Desc>& list) {
@@ -47,10 +49,25 @@ void check_names(ReadContext& context) {
   }
 }
 
+/// Complains about the first thing that is made of too many others, each counted as often as it is
+/// used: chains need not be long to be endless in effect.
+template <class Desc>
+void check_parts(ReadContext& context, const std::vector<Desc>& list, ReferenceGraph& graph,
+                 const char* noun) {
+  for (const Desc& desc : list) {
+    if (graph.unfolded(desc.name) <= kMostParts) continue;
+    context.complain(desc.where, fmt::format("{} '{}' is made of more than {} others, each counted "
+                                             "as often as it is used",
+                                             noun, desc.name, kMostParts));
+    return;
+  }
+}
+
 void check_texture_cycles(ReadContext& context) {
   const Job& job = context.job;
   ReferenceGraph graph(names_of(job.textures));
   for (size_t i = 0; i < job.textures.size(); ++i) {
+    graph.weigh(i, 1);
     graph.add(i, job.textures[i].a.texture);
     graph.add(i, job.textures[i].b.texture);
   }
@@ -64,13 +81,16 @@ void check_texture_cycles(ReadContext& context) {
     context.complain(job.textures[*i].where,
                      fmt::format("texture '{}' is made of more than {} others in a row",
                                  job.textures[*i].name, kLongestChain));
+    return;
   }
+  check_parts(context, job.textures, graph, "texture");
 }
 
 void check_material_cycles(ReadContext& context) {
   const Job& job = context.job;
   ReferenceGraph graph(names_of(job.materials));
   for (size_t i = 0; i < job.materials.size(); ++i) {
+    graph.weigh(i, 1);
     graph.add(i, job.materials[i].first);
     graph.add(i, job.materials[i].second);
   }
@@ -84,7 +104,9 @@ void check_material_cycles(ReadContext& context) {
     context.complain(job.materials[*i].where,
                      fmt::format("material '{}' is mixed of more than {} others in a row",
                                  job.materials[*i].name, kLongestChain));
+    return;
   }
+  check_parts(context, job.materials, graph, "material");
 }
 
 /// Calls `visit` with the name of every group that `objects` place and how many groups written in

@@ -106,6 +106,17 @@ TEST(HostileJob, LongChains) {
       chain("hyades: 1\nmaterials:\n", "  xI: {type: mix, first: xN, second: xN}\n", 40);
   expect_refused(materials + "  x40: {type: mirror}\n",
                  "job.yaml:10:7: material 'x7' is mixed of more than 32 others in a row");
+  // Short chains that fan out: 2^k lookups.
+  const std::string scales =
+      chain("hyades: 1\ntextures:\n", "  xI: {type: scale, input: xN, factor: xN}\n", 14);
+  expect_refused(scales + "  x14: {type: constant, value: 1}\n",
+                 "job.yaml:3:7: texture 'x0' is made of more than 4096 others, each counted as "
+                 "often as it is used");
+  const std::string mixes =
+      chain("hyades: 1\nmaterials:\n", "  xI: {type: mix, first: xN, second: xN}\n", 14);
+  expect_refused(mixes + "  x14: {type: mirror}\n",
+                 "job.yaml:3:7: material 'x0' is made of more than 4096 others, each counted as "
+                 "often as it is used");
   const std::string groups = chain(
       "hyades: 1\ngroups:\n",
       "  xI: {objects: {a: {group: {objects: {b: {group: {objects: {c: {instance: xN}}}}}}}}}\n",
