@@ -22,8 +22,9 @@ class Producer : public grpc::ServerWriteReactor<Message> {
  public:
   enum class Step { message, wait, end };
 
-  /// To be called once, when everything is set up.
-  void begin() { handle_->poke(); }
+  /// To be called once, by the service's method or the last constructor: when everything is set up.
+  /// gRPC reports nothing, so the end neither, before the method has returned.
+  void begin() { advance(); }
 
   void OnWriteDone(bool ok) override {
     if (ok) {
@@ -111,7 +112,7 @@ class Producer : public grpc::ServerWriteReactor<Message> {
   const std::shared_ptr<Handle> handle_;
   Message message_;
   std::mutex mutex_;
-  bool busy_ = false;   ///< next() or a write is going on, or all is over
+  bool busy_ = true;    ///< not begun, next() or a write is going on, or all is over
   bool poked_ = false;  ///< since next() was last called
   bool cancelled_ = false;
 };
