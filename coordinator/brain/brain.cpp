@@ -226,7 +226,7 @@ void Brain::merged(JobId job, const Merge& merge) {
   desk->samples_done += samples;
 }
 
-/// On the keeper's thread, or before it runs.
+/// On the keeper's thread, unless the film is among the complete ones already.
 void Brain::finish_frame(const FinishFrame& finish) {
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(finish.job);

@@ -200,6 +200,10 @@ void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJo
       restored.accepted.push_back(unit);
     }
     desk.samples_done += frame.samples_done;
+    // Will be finished at once, by another thread than the keeper's, which runs by then.
+    if (frame.samples_done == desk.samples_per_frame) {
+      desk.complete[number] = desk.keeper->film(number);
+    }
   }
   for (const auto& [frame, finished] : contents.finished) {
     if (desk.frames[frame].state != v1::FRAME_STATE_DONE) desk.keeper->reopen(frame);
