@@ -38,7 +38,7 @@ int scaling(const std::string& path, int most_threads, uint32_t samples) {
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, job.frames.first, cache);
   if (!scene) {
-    std::fprintf(stderr, "%s: %s\n", path.c_str(), scene.error().message.c_str());
+    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
     return 1;
   }
   std::printf("%s: %s triangles, %d x %d, %u samples; scene ready after %.3f s\n\n",

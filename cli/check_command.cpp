@@ -61,7 +61,7 @@ int check_command(int argc, char** argv) {
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, job.frames.first, cache);
   if (!scene) {
-    std::fprintf(stderr, "%s: %s\n", path.c_str(), scene.error().message.c_str());
+    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
     return kBadInput;
   }
   const core::PixelRect window = core::render_window(job.film);

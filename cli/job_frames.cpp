@@ -14,6 +14,7 @@
 #include "core/job/render_key.h"
 #include "core/render/class_probe.h"
 #include "core/scene/build_scene.h"
+#include "core/scene/scene_files.h"
 
 namespace hyades::cli {
 namespace {
@@ -59,9 +60,11 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
       assets_(loaded.assets->records()),
       cache_(*loaded.assets) {}
 
+core::Status JobFrames::load_files() { return core::load_files(loaded_.job, cache_); }
+
 core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {
   auto scene = core::build_scene(loaded_.job, frame, cache_);
-  if (!scene) return scene.error().in(fmt::format("frame {}", frame));
+  if (!scene) return scene.error();
   return std::shared_ptr<const coordinator::FrameWork>(
       std::make_shared<Work>(*this, frame, *scene));
 }

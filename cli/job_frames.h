@@ -38,6 +38,9 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
 
   JobFrames(LoadedJob& loaded, Options options);
 
+  /// Loads the files that all frames share. The error names every one that is broken.
+  core::Status load_files();
+
   core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(int32_t frame) override;
   core::Status finish(int32_t frame, const core::Film& film) override;
   bool outputs_exist(int32_t frame) override;

@@ -202,6 +202,15 @@ int render_command(int argc, char** argv) {
   const auto numbers = select_frames(job, options.frames);
   if (!numbers) return kBadInput;
 
+  const core::PixelRect window = window_of(options, job);
+  const std::string kept = options.folder + "/.hyades/" + job.name;
+  const OutputNote note(kept + ".outputs", job);
+  JobFrames frames(*loaded, {options.folder, options.film, window, note.still_true()});
+  // No frame could be rendered without them.
+  if (const auto files = frames.load_files(); !files) {
+    std::fprintf(stderr, "%s\n", files.error().message.c_str());
+    return kBadInput;
+  }
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
   if (failed) {
@@ -209,10 +218,6 @@ int render_command(int argc, char** argv) {
                  failed.message().c_str());
     return 1;
   }
-  const core::PixelRect window = window_of(options, job);
-  const std::string kept = options.folder + "/.hyades/" + job.name;
-  const OutputNote note(kept + ".outputs", job);
-  JobFrames frames(*loaded, {options.folder, options.film, window, note.still_true()});
   coordinator::LocalPlan plan;
   plan.frames = *numbers;
   plan.region = window;

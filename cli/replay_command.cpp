@@ -51,7 +51,7 @@ int replay_command(int argc, char** argv) {
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, frame, cache);
   if (!scene) {
-    std::fprintf(stderr, "%s: %s\n", path.c_str(), scene.error().message.c_str());
+    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
     return 1;
   }
   const core::FrameRenderer renderer(*scene, job, frame, {});

@@ -185,6 +185,7 @@ struct LightDesc {
 };
 
 struct EnvironmentDesc {
+  SourceLocation where;
   std::string image;               ///< lat-long map; empty = constant colour
   Animated<Rgb> color{Rgb(1.0F)};  ///< constant colour, or a tint of the image
   Animated<float> rotate_y{0.0F};  ///< degrees

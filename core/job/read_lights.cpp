@@ -60,6 +60,7 @@ void read_lights(MapReader& top) {
 void read_environment(MapReader& top, Job& job) {
   top.map("environment", "environment", [&](MapReader& reader) {
     EnvironmentDesc environment;
+    environment.where = reader.where();
     reader.file("image", environment.image);
     reader.color("color", environment.color, kNotNegative);
     reader.animated("rotate_y", environment.rotate_y, kAnyNumber);

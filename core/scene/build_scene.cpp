@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/elementary.h"
+#include "core/geometry/placement_check.h"
 #include "core/scene/appearance.h"
 #include "core/scene/flatten.h"
 #include "core/scene/light_makers.h"
@@ -33,7 +34,7 @@ class SceneBuilder {
         looks_(job, time_, cache) {}
 
   Result<std::shared_ptr<const Scene>> build() {
-    load_files(job_, cache_);
+    if (auto done = load_files(job_, cache_); !done) return done.error();
     if (auto done = add_objects(); !done) return done.error();
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
@@ -52,7 +53,7 @@ class SceneBuilder {
     placements.reserve(flat->size());
     for (const FlatObject& object : *flat) {
       auto material = looks_.material(object.material);
-      if (!material) return material.error().in("object '" + object.name + "'");
+      if (!material) return at(object, material.error());
       scene_->objects.push_back({*material, SceneObject::kNoLight, object.name});
       placements.push_back(object.placement);
       placements.back().blocks_light = !(*material)->is_null();
@@ -60,12 +61,27 @@ class SceneBuilder {
         scene_->triangles += object.placement.shape.mesh->triangles.size();
     }
     auto world = cache_.world(std::move(placements));
-    if (!world) return world.error();
+    if (!world) return blame(*flat, world.error());
     scene_->world = *world;
     for (uint32_t i = 0; i < flat->size(); ++i) {
       if ((*flat)[i].emit) scene_->objects[i].light = add_emitter(i, *(*flat)[i].emit);
     }
     return {};
+  }
+
+  static Error at(const FlatObject& object, const Error& error) {
+    const Error named = error.in("object '" + object.name + "'");
+    return {Diagnostic{object.desc->where, named.message}.to_string()};
+  }
+
+  /// The error of a world, which knows objects only by number, in the job's words.
+  Error blame(const std::vector<FlatObject>& objects, const Error& error) const {
+    for (const FlatObject& object : objects) {
+      if (const Status good = check_placement(object.placement); !good) {
+        return at(object, good.error());
+      }
+    }
+    return job_.file.empty() ? error : error.in(job_.file);
   }
 
   uint32_t add_emitter(uint32_t object, const EmitDesc& emit) {
@@ -88,7 +104,7 @@ class SceneBuilder {
     const LightSetting setting{time_, job_.units, world_radius(*scene_->world)};
     for (const LightDesc& desc : job_.lights) {
       auto light = make_light(desc, setting);
-      if (!light) return light.error();
+      if (!light) return Error{Diagnostic{desc.where, light.error().message}.to_string()};
       add_light(*light);
     }
     return {};
@@ -103,7 +119,10 @@ class SceneBuilder {
       add_light(make_environment_light(nullptr, 0.0F, scale, radius));
     } else {
       auto map = cache_.environment_map(sky.image);
-      if (!map) return map.error().in("environment");
+      if (!map) {
+        const Error error = map.error().in("environment");
+        return Error{Diagnostic{sky.where, error.message}.to_string()};
+      }
       const float turn = sky.rotate_y.at(time_) * kRadians;
       add_light(make_environment_map_light(*map, turn, scale, radius));
     }

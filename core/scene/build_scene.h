@@ -10,7 +10,8 @@
 namespace hyades::core {
 
 /// The scene of `frame`: a validated job at that moment, its lengths turned into metres, files
-/// loaded through `cache`. Errors name the object, texture or file and what is wrong with it.
+/// loaded through `cache`. Errors name the object, texture or file, what is wrong with it, and
+/// where it stands in the job; files that cannot be loaded are all named, a line each.
 Result<std::shared_ptr<const Scene>> build_scene(const Job& job, int32_t frame, SceneCache& cache);
 
 }  // namespace hyades::core

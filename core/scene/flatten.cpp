@@ -41,7 +41,9 @@ class Flattener {
     if (object.shape == "group") return add_all(object.children, name + "/", material, visible);
     if (object.shape == "instance") {
       const auto group = groups_.find(object.instance_of);
-      if (group == groups_.end()) return Error{"there is no group '" + object.instance_of + "'"};
+      if (group == groups_.end()) {
+        return at(object, Error{"there is no group '" + object.instance_of + "'"});
+      }
       return add_all(group->second->objects, name + "/", material, visible);
     }
     if (flat_.size() >= kMaxPlacements) {
@@ -49,8 +51,9 @@ class Flattener {
                    " objects"};
     }
     auto shape = make_shape(object, cache_);
-    if (!shape) return shape.error().in("object '" + name + "'");
+    if (!shape) return at(object, shape.error().in("object '" + name + "'"));
     FlatObject flat;
+    flat.desc = &object;
     flat.name = name;
     flat.material = material;
     flat.emit = object.emit;
@@ -64,11 +67,16 @@ class Flattener {
     return {};
   }
 
+  static Error at(const ObjectDesc& object, const Error& error) {
+    return {Diagnostic{object.where, error.message}.to_string()};
+  }
+
   /// The two discs that close a cylinder.
   void add_caps(const ObjectDesc& object, const std::string& name, const std::string& material,
                 bool visible) {
     for (const bool top : {false, true}) {
       FlatObject cap;
+      cap.desc = &object;
       cap.name = name + (top ? "/top" : "/bottom");
       cap.material = material;
       cap.emit = object.emit;

@@ -13,7 +13,8 @@ namespace hyades::core {
 /// An object of the job after groups and instances have been flattened: one shape, its place, its
 /// looks.
 struct FlatObject {
-  std::string name;      ///< "tree1/trunk"
+  const ObjectDesc* desc = nullptr;  ///< in the job
+  std::string name;                  ///< "tree1/trunk"
   std::string material;  ///< name; inherited from the enclosing group where the object has none
   std::optional<EmitDesc> emit;
   Placement placement;  ///< in metres

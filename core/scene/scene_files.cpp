@@ -1,7 +1,10 @@
 #include "core/scene/scene_files.h"
 
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "core/scene/shape_makers.h"
@@ -46,7 +49,8 @@ class Walk {
     if (object.shape != "mesh") return;
     const auto normals = mesh_normals_of(object);
     if (normals && seen_meshes_.insert({object.mesh, *normals}).second) {
-      files_.meshes.emplace_back(object.mesh, *normals);
+      files_.meshes.push_back(
+          {object.mesh, *normals, "object '" + object.name + "'", object.where});
     }
   }
 
@@ -71,7 +75,7 @@ class Walk {
     if (!texture.file.empty()) {
       const auto space = color_space_of(texture);
       if (space && seen_images_.insert({texture.file, *space}).second) {
-        files_.images.emplace_back(texture.file, *space);
+        files_.images.push_back({texture.file, *space, "texture '" + name + "'", texture.where});
       }
     }
     visit_texture(texture.a.texture);
@@ -93,21 +97,36 @@ class Walk {
 
 SceneFiles files_of_scene(const Job& job) { return Walk(job).take(); }
 
-void load_files(const Job& job, SceneCache& cache) {
+Status load_files(const Job& job, SceneCache& cache) {
   const SceneFiles files = files_of_scene(job);
   const size_t meshes = files.meshes.size();
   const size_t images = files.images.size();
   const size_t count = meshes + images + (files.sky.empty() ? 0 : 1);
-  // Errors come again, and are told, when the scene is built.
-  (void)parallel_for(count, 0, [&](size_t i) {
+  std::vector<std::optional<Diagnostic>> failures(count);
+  const auto note = [&](size_t i, const auto& loaded, const std::string& user,
+                        const SourceLocation& where) {
+    if (!loaded) failures[i] = {where, loaded.error().in(user).message};
+  };
+  const Status all = parallel_for(count, 0, [&](size_t i) {
     if (i < meshes) {
-      (void)cache.mesh(files.meshes[i].first, files.meshes[i].second);
+      const auto& mesh = files.meshes[i];
+      note(i, cache.mesh(mesh.file, mesh.how), mesh.user, mesh.where);
     } else if (i < meshes + images) {
-      (void)cache.image(files.images[i - meshes].first, files.images[i - meshes].second);
+      const auto& image = files.images[i - meshes];
+      note(i, cache.image(image.file, image.how), image.user, image.where);
     } else {
-      (void)cache.environment_map(files.sky);
+      note(i, cache.environment_map(files.sky), "environment", job.environment->where);
     }
   });
+  if (!all) return all;
+  Diagnostics diagnostics;
+  for (auto& failure : failures) {
+    if (failure) diagnostics.add(failure->where, std::move(failure->message));
+  }
+  if (diagnostics.empty()) return {};
+  std::string text = diagnostics.to_string();
+  text.pop_back();  // the last line's end
+  return Error{std::move(text)};
 }
 
 }  // namespace hyades::core

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/job/job.h"
@@ -9,19 +8,28 @@
 
 namespace hyades::core {
 
-/// The files that a scene of a job is made of, as the cache is asked for them; each once, in the
-/// order in which building asks.
+/// A file as the cache is asked for it, and who asks first.
+template <class How>
+struct SceneFile {
+  std::string file;
+  How how;               ///< MeshNormals or ColorSpace
+  std::string user;      ///< "object 'vase'", for messages
+  SourceLocation where;  ///< of that user
+};
+
+/// The files that a scene of a job is made of; each once, in the order in which building asks.
 struct SceneFiles {
-  std::vector<std::pair<std::string, MeshNormals>> meshes;
-  std::vector<std::pair<std::string, ColorSpace>> images;
+  std::vector<SceneFile<MeshNormals>> meshes;
+  std::vector<SceneFile<ColorSpace>> images;
   std::string sky;  ///< empty: none
 };
 
 /// Those of what the scene shows: groups, materials and textures that nothing uses do not count.
 SceneFiles files_of_scene(const Job& job);
 
-/// Loads them into `cache`, several at once. What cannot be loaded is left to who builds the scene:
-/// it meets the errors in the order of the document, whatever came first here.
-void load_files(const Job& job, SceneCache& cache);
+/// Loads them into `cache`, several at once. The error lists all that cannot be loaded, a line each
+/// ("job.yaml:7:3: object 'vase': vase.obj: line 4: ..."), in the order of the document, whatever
+/// failed first.
+Status load_files(const Job& job, SceneCache& cache);
 
 }  // namespace hyades::core

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -23,6 +24,8 @@ using testing::Pair;
 
 constexpr std::chrono::seconds kLong{20};
 constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+MATCHER_P2(Asked, file, how, "") { return arg.file == file && arg.how == how; }
 
 /// Counts who opens what; `meet` files wait in open() until all of them are being opened.
 class WatchedAssets : public MemoryAssets {
@@ -102,10 +105,10 @@ environment: {image: sky.hdr}
                          assets);
   const SceneFiles files = files_of_scene(job);
   EXPECT_THAT(files.meshes,
-              ElementsAre(Pair("a.obj", MeshNormals::file), Pair("b.obj", MeshNormals::flat)));
-  EXPECT_THAT(files.images, ElementsAre(Pair("leaf.png", ColorSpace::automatic),
-                                        Pair("bark.png", ColorSpace::linear),
-                                        Pair("bump.png", ColorSpace::automatic)));
+              ElementsAre(Asked("a.obj", MeshNormals::file), Asked("b.obj", MeshNormals::flat)));
+  EXPECT_THAT(files.images, ElementsAre(Asked("leaf.png", ColorSpace::automatic),
+                                        Asked("bark.png", ColorSpace::linear),
+                                        Asked("bump.png", ColorSpace::automatic)));
   EXPECT_EQ(files.sky, "sky.hdr");
 }
 
@@ -115,7 +118,7 @@ TEST(SceneFiles, LoadSeveralAtOnce) {
   for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
   const Job job = job_of_meshes(8);
   SceneCache cache(assets);
-  load_files(job, cache);
+  ASSERT_TRUE(load_files(job, cache));
   EXPECT_FALSE(assets.somebody_was_alone());
   const auto scene = build_scene(job, 1, cache);
   ASSERT_TRUE(scene);
@@ -138,7 +141,60 @@ TEST(SceneFiles, ErrorsComeInTheOrderOfTheDocument) {
     const auto scene = build_scene(job, 1, cache);
     ASSERT_FALSE(scene);
     EXPECT_THAT(scene.error().message, testing::StartsWith("object 'o3': m3.obj"));
+    EXPECT_THAT(scene.error().message, testing::HasSubstr("\nobject 'o5': m5.obj"));
   }
+}
+
+TEST(SceneFiles, EveryBrokenOneIsNamedWithItsPlaceInTheDocument) {
+  MemoryAssets assets;
+  assets.add("good.obj", kTriangle);
+  assets.add("idx.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  assets.add("nan.obj", "v 0 nan 0\n");
+  assets.add("bark.png", "no picture");
+  assets.add("sky.hdr", "no picture");
+  // In the order of the document, though the sky and the picture are asked for last.
+  const Job job = parsed(R"yaml(
+environment: {image: sky.hdr}
+textures: {bark: {type: image, file: bark.png}}
+materials: {wood: {type: lambert, color: bark}}
+objects:
+  fine: {mesh: good.obj}
+  a: {mesh: idx.obj, material: wood}
+  again: {mesh: idx.obj}
+  b: {mesh: nan.obj}
+)yaml",
+                         assets);
+  SceneCache cache(assets);
+  const auto scene = build_scene(job, 1, cache);
+  ASSERT_FALSE(scene);
+  const std::string said = scene.error().message + "\n";
+  EXPECT_THAT(said,
+              testing::MatchesRegex("files.yaml:3:[0-9]+: environment: sky.hdr: .*\n"
+                                    "files.yaml:4:[0-9]+: texture 'bark': bark.png: .*\n"
+                                    "files.yaml:8:[0-9]+: object 'a': idx.obj: line 4: .*\n"
+                                    "files.yaml:10:[0-9]+: object 'b': nan.obj: line 1: .*\n"));
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 4) << said;
+}
+
+TEST(SceneErrors, NameTheObjectAndItsPlaceInTheDocument) {
+  MemoryAssets assets;
+  const Job job = parsed(R"yaml(
+groups:
+  pair:
+    objects:
+      near: {shape: sphere}
+      far: {shape: rectangle, at: [3e12, 0, 0]}
+objects:
+  ground: {shape: rectangle}
+  one: {instance: pair}
+)yaml",
+                         assets);
+  SceneCache cache(assets);
+  const auto scene = build_scene(job, 1, cache);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().message,
+              testing::MatchesRegex("files.yaml:7:[0-9]+: object 'one/far': it reaches beyond a "
+                                    "distance of 1e12"));
 }
 
 TEST(SceneFiles, OneThatIsBeingLoadedHoldsUpNoOther) {
