@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <set>
 #include <span>
 
 #include "core/base/text.h"
+#include "core/job/check_frame.h"
 #include "core/job/reference_graph.h"
 
 namespace hyades::core {
@@ -17,7 +17,8 @@ namespace {
 
 constexpr uint64_t kMostObjects = uint64_t{1} << 22;  ///< once all groups are unfolded
 constexpr size_t kMostCandidates = 10'000;            ///< for 'did you mean'
-constexpr int kMostMoments = 1000;                    ///< at which expressions are tried
+constexpr int kMostFrames = 1000;                     ///< at which animated values are tried
+constexpr size_t kMostChecks = 2'000'000;             ///< of animated values
 /// Textures made of textures, materials of materials, groups of groups: readers of a job may use
 /// recursion this deep (and about 20 groups written in place, see kMaxYamlDepth).
 constexpr int kLongestChain = 32;
@@ -168,10 +169,10 @@ void check_files(ReadContext& context, AssetResolver& assets) {
   }
 }
 
-/// Up to kMostMoments of the job's frames, evenly spread, first and last included.
+/// Up to kMostFrames of the job's frames, evenly spread, first and last included.
 std::vector<int32_t> sample_frames(const FramesDesc& frames) {
   const int64_t count = (int64_t{frames.last} - frames.first) / frames.step + 1;
-  const int64_t tried = std::min<int64_t>(count, kMostMoments);
+  const int64_t tried = std::min<int64_t>(count, kMostFrames);
   std::vector<int32_t> result;
   for (int64_t i = 0; i < tried; ++i) {
     const int64_t index = tried > 1 ? i * (count - 1) / (tried - 1) : 0;
@@ -180,22 +181,30 @@ std::vector<int32_t> sample_frames(const FramesDesc& frames) {
   return result;
 }
 
-void check_expressions(ReadContext& context) {
-  if (context.expressions.empty()) return;
-  const std::vector<int32_t> frames = sample_frames(context.job.frames);
-  // Bounded in all: very many expressions are tried at fewer frames each.
-  const size_t budget = 2'000'000;
-  const size_t stride = 1 + context.expressions.size() * frames.size() / budget;
-  for (const ExpressionUse& use : context.expressions) {
+/// Complains about the first of `frames` at which each check fails.
+template <class Check>
+void check_values(ReadContext& context, const std::vector<Check>& checks,
+                  const std::vector<int32_t>& frames, size_t stride) {
+  for (const Check& check : checks) {
     for (size_t i = 0; i < frames.size(); i += stride) {
-      const double value = use.expression->evaluate(context.job.time_of(frames[i]));
-      if (use.range.contains(value)) continue;
-      const std::string shown = std::isnan(value) ? "not a number" : fmt::format("{:.6g}", value);
-      context.complain(use.where, fmt::format("{} is {} at frame {}, expected {}", use.label, shown,
-                                              frames[i], use.range.describe()));
-      break;
+      if (const auto complaint = complaint_at(context.job, frames[i], check)) {
+        context.complain(complaint->where, complaint->message);
+        break;
+      }
+      if (is_constant(check)) break;
     }
   }
+}
+
+void check_frames(ReadContext& context) {
+  const ValueChecks& checks = context.job.checks;
+  const std::vector<int32_t> frames = sample_frames(context.job.frames);
+  // Bounded in all: very many checks are tried at fewer frames each.
+  const size_t moments = context.job.frames.shutter > 0.0F ? kShutterMoments : 1;
+  const size_t each_frame = (checks.numbers.size() + checks.vectors.size()) * moments;
+  const size_t stride = 1 + each_frame * frames.size() / kMostChecks;
+  check_values(context, checks.numbers, frames, stride);
+  check_values(context, checks.vectors, frames, stride);
 }
 
 }  // namespace
@@ -206,7 +215,7 @@ void check_job(ReadContext& context, AssetResolver& assets) {
   check_material_cycles(context);
   check_groups(context);
   check_files(context, assets);
-  check_expressions(context);
+  check_frames(context);
 }
 
 }  // namespace hyades::core

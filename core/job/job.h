@@ -9,6 +9,7 @@
 #include "core/base/rect.h"
 #include "core/job/animated.h"
 #include "core/job/source.h"
+#include "core/job/value_checks.h"
 
 /// A job as plain structs: what the YAML says, validated, with defaults filled in and names still
 /// names. The in-class defaults are the documented ones (docs/job.md). Lengths are in metres after
@@ -220,6 +221,7 @@ struct Job {
   std::vector<LightDesc> lights;
   std::optional<EnvironmentDesc> environment;
   std::vector<OutputDesc> outputs;
+  ValueChecks checks;  ///< what its animated values must keep to at every frame (check_frame)
 
   /// The moment at which frame `frame`'s shutter is open for fraction `shutter_time` (0..1).
   JobTime time_of(int32_t frame, float shutter_time = 0.0F) const {

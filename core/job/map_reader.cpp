@@ -201,6 +201,26 @@ void MapReader::animated(std::string_view key, Animated<Vec3>& target, const Ran
   if (node != nullptr) read_animated_vector({context_, std::string(key), range}, *node, target);
 }
 
+void MapReader::direction(std::string_view key, Animated<Vec3>& target) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  const std::string name(key);
+  if (!read_animated_vector({context_, name, kAnyNumber}, *node, target)) return;
+  context_.job.checks.vectors.push_back({target, Animated<Vec3>(Vec3(0.0F)), node->where,
+                                         name + " is", "a direction, not [0, 0, 0]",
+                                         context_.in_shutter});
+}
+
+void MapReader::keep_apart(std::string_view a_key, const Animated<Vec3>& a, std::string_view b_key,
+                           const Animated<Vec3>& b) {
+  const YamlEntry* entry = map_.find(b_key);
+  if (entry == nullptr) entry = map_.find(a_key);
+  if (entry == nullptr) return;  // defaults are apart
+  context_.job.checks.vectors.push_back({a, b, entry->value->where,
+                                         fmt::format("{} and {} are both", a_key, b_key),
+                                         "two points", context_.in_shutter});
+}
+
 void MapReader::animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range) {
   const YamlNode* node = find(key);
   if (node != nullptr) read_animated_scale({context_, std::string(key), range}, *node, target);

@@ -56,7 +56,12 @@ class MapReader {
 
   void animated(std::string_view key, Animated<float>& target, const Range& range);
   void animated(std::string_view key, Animated<Vec3>& target, const Range& range);
-  /// As above; a single number stands for all three, and [x, y] leaves z as it is.
+  /// As above; complains where it is [0, 0, 0] at a frame.
+  void direction(std::string_view key, Animated<Vec3>& target);
+  /// Complains where two points that were read already are the same at a frame.
+  void keep_apart(std::string_view a_key, const Animated<Vec3>& a, std::string_view b_key,
+                  const Animated<Vec3>& b);
+  /// A vector; a single number stands for all three, and [x, y] leaves z as it is.
   void animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range);
   void color(std::string_view key, Animated<Rgb>& target, const Range& range);
   void color_input(std::string_view key, ColorInput& target, const Range& range);

@@ -44,15 +44,12 @@ void read_focus(MapReader& reader, CameraDesc& camera) {
 void read_perspective(MapReader& reader, CameraDesc& camera) {
   reader.animated("look_from", camera.look_from, kAnyNumber);
   reader.animated("look_at", camera.look_at, kAnyNumber);
-  reader.animated("up", camera.up, kAnyNumber);
+  reader.direction("up", camera.up);
   reader.animated("fov", camera.fov, {0.0, 180.0, true, true});
   reader.map("aperture", "camera.aperture",
              [&](MapReader& aperture) { read_aperture(aperture, camera); });
   read_focus(reader, camera);
-  if (camera.look_from.is_constant() && camera.look_at.is_constant() &&
-      camera.look_from.constant == camera.look_at.constant && !reader.listing()) {
-    reader.complain(reader.where(), "look_from and look_at are the same point");
-  }
+  reader.keep_apart("look_from", camera.look_from, "look_at", camera.look_at);
 }
 
 const std::array<TypeRow<CameraDesc>, 3> kCameras = {{
@@ -65,7 +62,9 @@ const std::array<TypeRow<CameraDesc>, 3> kCameras = {{
 
 void read_camera(MapReader& top, CameraDesc& camera) {
   top.map("camera", "camera", [&](MapReader& reader) {
+    reader.context().in_shutter = true;
     read_by_type<CameraDesc>(reader, "type", "camera", camera, kCameras);
+    reader.context().in_shutter = false;
   });
 }
 

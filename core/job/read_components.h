@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/job/expression.h"
 #include "core/job/map_reader.h"
@@ -47,9 +48,10 @@ bool read_keys(const ValueSite& site, const YamlNode& node, Animated<T>& target,
     Animated<T> value = target;
     value.keys.clear();
     value.expressions.fill(nullptr);
-    const size_t expressions = site.context.expressions.size();
+    std::vector<NumberCheck>& checks = site.context.job.checks.numbers;
+    const size_t checked = checks.size();
     const bool readable = read(site, *entry.value, value);
-    site.context.expressions.resize(expressions);
+    checks.resize(checked);
     if (!readable) {
       good = false;
     } else if (!value.is_constant()) {

@@ -10,18 +10,6 @@ constexpr uint64_t kMaxVisits = uint64_t{1} << 22;
 
 }  // namespace
 
-std::string Range::describe(const std::string& noun) const {
-  const bool bounded_low = low > -1e18;
-  const bool bounded_high = high < 1e18;
-  if (!bounded_low && !bounded_high) return noun;
-  if (!bounded_high) {
-    return low_open ? fmt::format("{} above {}", noun, low) : fmt::format("{} >= {}", noun, low);
-  }
-  if (low_open && high_open) return fmt::format("{} above {} and below {}", noun, low, high);
-  if (low_open) return fmt::format("{} above {}, at most {}", noun, low, high);
-  return fmt::format("{} from {} to {}", noun, low, high);
-}
-
 void ReadContext::complain(const SourceLocation& where, const std::string& message) {
   const Diagnostic complaint{where, message};
   if (diagnostics.full()) return;

@@ -3,38 +3,17 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "core/base/assets.h"
-#include "core/job/animated.h"
 #include "core/job/job.h"
 #include "core/job/job_keys.h"
 #include "core/job/source.h"
 #include "core/job/yaml_tree.h"
 
 namespace hyades::core {
-
-/// The numbers that a key accepts.
-struct Range {
-  double low = -1e18;  ///< squares of lengths still fit into a float
-  double high = 1e18;
-  bool low_open = false;   ///< low itself is refused
-  bool high_open = false;  ///< high itself is refused
-
-  bool contains(double x) const {
-    return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
-  }
-  /// "a number", "a number from 0 to 1", "a number above 0 and below 180".
-  std::string describe(const std::string& noun = "a number") const;
-};
-
-inline constexpr Range kAnyNumber{};
-inline constexpr Range kPositive{0.0, 1e18, true, false};
-inline constexpr Range kNotNegative{0.0, 1e18};
-inline constexpr Range kUnitInterval{0.0, 1.0};
 
 /// What a name in a job may stand for.
 enum class NameKind { texture, material, group, object };
@@ -54,14 +33,6 @@ struct FileUse {
   std::string label;
 };
 
-/// An expression whose values over the job's frames must lie in a range.
-struct ExpressionUse {
-  std::shared_ptr<const Expression> expression;
-  Range range;
-  SourceLocation where;
-  std::string label;
-};
-
 /// What all readers of one job share.
 struct ReadContext {
   ReadContext(Job& target, Diagnostics& complaints) : job(target), diagnostics(complaints) {}
@@ -73,7 +44,7 @@ struct ReadContext {
   std::array<std::vector<std::string>, 4> given;
   std::vector<NameUse> names;
   std::vector<FileUse> files;
-  std::vector<ExpressionUse> expressions;
+  bool in_shutter = false;  ///< what is read now counts all the while the shutter is open
   /// Display name of an included file -> its path relative to the job's folder.
   std::map<std::string, std::string> included;
   std::set<JobKey>* listing = nullptr;  ///< set: only collect which keys the readers know

@@ -17,18 +17,16 @@ void read_spot(MapReader& reader, LightDesc& light) {
   light.angle = Animated<float>(30.0F);
   read_point(reader, light);
   reader.animated("look_at", light.look_at, kAnyNumber);
+  reader.keep_apart("at", light.at, "look_at", light.look_at);
   reader.animated("angle", light.angle, {0.0, 90.0, true});
   reader.animated("blend", light.blend, kUnitInterval);
 }
 
 void read_sun(MapReader& reader, LightDesc& light) {
-  reader.animated("direction", light.direction, kAnyNumber);
+  reader.direction("direction", light.direction);
   reader.color("color", light.color, kNotNegative);
   reader.animated("irradiance", light.irradiance, kNotNegative);
   reader.animated("angle", light.angle, {0.0, 90.0});
-  if (light.direction.is_constant() && light.direction.constant == Vec3(0.0F)) {
-    reader.mismatch("direction", *reader.find("direction"), "a direction, not [0, 0, 0]");
-  }
 }
 
 const std::array<TypeRow<LightDesc>, 3> kTypes = {{

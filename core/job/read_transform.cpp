@@ -31,12 +31,8 @@ void read_rotation(MapReader& reader, TransformStep& step) {
   reader.map("rotate", "transform.rotate", [&](MapReader& map) {
     map.require("axis", "[x, y, z]");
     map.require("angle", "degrees");
-    map.animated("axis", step.vector, kAnyNumber);
+    map.direction("axis", step.vector);
     map.animated("angle", step.angle, kAnyNumber);
-    const bool zero = step.vector.is_constant() && step.vector.constant == Vec3(0.0F);
-    if (zero && map.has("axis")) {
-      map.mismatch("axis", *map.find("axis"), "a direction, not [0, 0, 0]");
-    }
   });
 }
 
@@ -93,9 +89,7 @@ void read_list(MapReader& reader, const YamlNode& list, TransformList& steps) {
   }
 }
 
-}  // namespace
-
-void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
+void read_placing(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
   reader.animated("at", at, kAnyNumber);
   const YamlNode* node = reader.find("transform");
   if (reader.listing()) {
@@ -110,6 +104,14 @@ void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at)
   } else {
     reader.mismatch("transform", *node, "a list of steps, such as [{scale: 2}, {rotate_y: 45}]");
   }
+}
+
+}  // namespace
+
+void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
+  reader.context().in_shutter = true;
+  read_placing(reader, steps, at);
+  reader.context().in_shutter = false;
 }
 
 }  // namespace hyades::core

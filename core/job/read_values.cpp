@@ -12,15 +12,6 @@ namespace hyades::core {
 
 namespace {
 
-/// Also refuses what leaves an open range by being rounded to float (1e-60 is above 0, its float
-/// is not).
-bool fits(const Range& range, double value) {
-  const auto rounded = static_cast<float>(value);
-  if (!range.contains(value)) return false;
-  if (range.low_open && !(rounded > static_cast<float>(range.low))) return false;
-  return !range.high_open || rounded < static_cast<float>(range.high);
-}
-
 bool is_expression(const YamlNode& node) {
   return node.kind == YamlNode::Kind::scalar && node.scalar.starts_with('=');
 }
@@ -115,7 +106,8 @@ bool read_component(const ValueSite& site, const YamlNode& node, float& constant
       return false;
     }
     expression = *compiled;
-    site.context.expressions.push_back({expression, site.range, node.where, site.label});
+    site.context.job.checks.numbers.push_back(
+        {expression, site.range, node.where, site.label, site.context.in_shutter});
     return true;
   }
   if (!read_number(site, node, constant)) return false;
@@ -127,7 +119,7 @@ bool read_number(const ValueSite& site, const YamlNode& node, float& target) {
   double value = 0.0;
   const bool number =
       node.kind == YamlNode::Kind::scalar && !node.quoted && parse_number(node.scalar, value);
-  if (!number || !fits(site.range, value)) {
+  if (!number || !site.range.contains(value)) {
     const char* const size = number && std::abs(value) > 1e18 ? ", no larger than 1e18" : "";
     complain_mismatch(site, node, site.range.describe() + size);
     return false;

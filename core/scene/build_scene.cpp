@@ -5,6 +5,7 @@
 
 #include "core/base/elementary.h"
 #include "core/geometry/placement_check.h"
+#include "core/job/check_frame.h"
 #include "core/scene/appearance.h"
 #include "core/scene/flatten.h"
 #include "core/scene/light_makers.h"
@@ -204,6 +205,7 @@ class SceneBuilder {
 }  // namespace
 
 Result<std::shared_ptr<const Scene>> build_scene(const Job& job, int32_t frame, SceneCache& cache) {
+  if (auto kept = check_frame(job, frame); !kept) return kept.error();
   return SceneBuilder(job, frame, cache).build();
 }
 

@@ -237,7 +237,41 @@ TEST(Complaints, KeysThatExcludeEachOther) {
             "job.yaml:2:41: metal and the measured eta and k are both there, expected one of "
             "them\n");
   EXPECT_EQ(complaints("camera: {look_from: [1, 2, 3], look_at: [1, 2, 3]}\n"),
-            "job.yaml:2:9: look_from and look_at are the same point\n");
+            "job.yaml:2:41: look_from and look_at are both [1, 2, 3], expected two points\n");
+}
+
+TEST(Complaints, DirectionsThatAreNone) {
+  EXPECT_EQ(complaints("camera: {up: [0, 0, 0]}\n"),
+            "job.yaml:2:14: up is [0, 0, 0], expected a direction, not [0, 0, 0]\n");
+  EXPECT_EQ(complaints("lights: {s: {type: sun, direction: [1e-30, 0, 0]}}\n"),
+            "job.yaml:2:36: direction is [1e-30, 0, 0], expected a direction, not [0, 0, 0]\n");
+  EXPECT_EQ(complaints("lights: {s: {type: spot, at: [0, -1, 0]}}\n"),
+            "job.yaml:2:30: at and look_at are both [0, -1, 0], expected two points\n");
+}
+
+TEST(Complaints, DirectionsThatAreNoneAtAFrame) {
+  EXPECT_EQ(complaints("frames: 1-2\n"
+                       "lights: {s: {type: sun, direction: [0, \"= frame == 2 ? 0 : -1\", 0]}}\n"),
+            "job.yaml:3:36: direction is [0, 0, 0] at frame 2, expected a direction, not "
+            "[0, 0, 0]\n");
+  EXPECT_EQ(complaints("frames: 1-2\nobjects: {a: {shape: box, transform: [{rotate: {axis: "
+                       "[\"= frame == 2 ? 0 : 1\", 0, 0], angle: 30}}]}}\n"),
+            "job.yaml:3:55: axis is [0, 0, 0] at frame 2, expected a direction, not [0, 0, 0]\n");
+  EXPECT_EQ(complaints("frames: 1-2\ncamera: {look_from: [0, 0, 5], look_at: [0, 0, \"= frame == "
+                       "2 ? 5 : 0\"]}\n"),
+            "job.yaml:3:41: look_from and look_at are both [0, 0, 5] at frame 2, expected two "
+            "points\n");
+  EXPECT_EQ(complaints("frames: 1-2\ncamera: {look_from: [0, 0, 5], look_at: {keys: {1: [0, 0, 0], "
+                       "3: [0, 0, 10]}}}\n"),
+            "job.yaml:3:41: look_from and look_at are both [0, 0, 5] at frame 2, expected two "
+            "points\n");
+}
+
+TEST(Complaints, CameraAndTransformsCountWhileTheShutterIsOpen) {
+  const std::string frames = "frames: {range: 1-2, shutter: 0.5}\n";
+  EXPECT_EQ(complaints(frames + "camera: {fov: \"= frame == 2.25 ? 200 : 40\"}\n"),
+            "job.yaml:3:15: fov is 200 at frame 2.25, expected a number above 0 and below 180\n");
+  EXPECT_EQ(complaints(frames + "lights: {p: {type: point, power: \"= 2 - frame\"}}\n"), "");
 }
 
 TEST(Complaints, Outputs) {
@@ -268,7 +302,7 @@ TEST(Complaints, Transforms) {
             "scale, rotate_x, rotate_y, rotate_z, rotate or matrix\n");
   EXPECT_EQ(complaints("objects: {a: {shape: box, transform: [{rotate: {axis: [0, 0, 0], angle: "
                        "1}}]}}\n"),
-            "job.yaml:2:55: axis is a list of 3, expected a direction, not [0, 0, 0]\n");
+            "job.yaml:2:55: axis is [0, 0, 0], expected a direction, not [0, 0, 0]\n");
 }
 
 TEST(Complaints, VersionAndNames) {
