@@ -1,7 +1,10 @@
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdio>
 #include <string>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/load_job.h"
@@ -34,6 +37,26 @@ double seconds_per_sample(const core::FrameRenderer& renderer, const core::Pixel
     seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   }
   return seconds / static_cast<double>(samples);
+}
+
+/// "1,234,567", or "4.5e+22" of what is beyond exact counting.
+std::string samples_in_words(double samples) {
+  if (samples < 1e15) return core::format_count(static_cast<uint64_t>(samples));
+  return fmt::format("{:.2g}", samples);
+}
+
+/// Years from one year on.
+std::string duration_in_words(double hours) {
+  const double years = hours / (24.0 * 365.25);
+  if (years < 1.0) return core::format_duration(hours * 3600.0);
+  return years < 1000.0 ? fmt::format("{:.1f} years", years) : fmt::format("{:.3g} years", years);
+}
+
+/// Bytes; 0: not known.
+uint64_t machine_memory() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  const long size = ::sysconf(_SC_PAGESIZE);
+  return pages > 0 && size > 0 ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(size) : 0;
 }
 
 }  // namespace
@@ -69,7 +92,9 @@ int check_command(int argc, char** argv) {
   const core::FrameRenderer renderer(*scene, job, job.frames.first, layers);
   const int64_t frames = (int64_t{job.frames.last} - job.frames.first) / job.frames.step + 1;
   const uint64_t pixels = static_cast<uint64_t>(window.area());
-  const uint64_t samples = pixels * job.sampling.samples * static_cast<uint64_t>(frames);
+  // In double: the largest jobs have more than 64 bits can count.
+  const double samples =
+      static_cast<double>(pixels) * job.sampling.samples * static_cast<double>(frames);
   const uint64_t batches = core::batch_count(job.sampling.samples);
   const uint64_t film = pixels * renderer.layout().channels.size() * sizeof(core::Fixed128);
 
@@ -82,19 +107,22 @@ int check_command(int argc, char** argv) {
               core::format_count((*scene)->objects.size()).c_str(),
               core::format_count((*scene)->triangles).c_str(), (*scene)->lights.size());
   std::printf("  samples    %u per pixel, %s in all\n", job.sampling.samples,
-              core::format_count(samples).c_str());
+              samples_in_words(samples).c_str());
   std::printf("  batches    %s per frame, of %u samples of a pixel each\n",
               core::format_count(batches).c_str(), core::kBatchSamples);
+  const uint64_t memory = (*scene)->world->memory() + (*scene)->texture_memory + film;
   std::printf(
       "  memory     about %s (geometry %s, textures %s, film %s)\n",
-      core::format_bytes((*scene)->world->memory() + (*scene)->texture_memory + film).c_str(),
-      core::format_bytes((*scene)->world->memory()).c_str(),
+      core::format_bytes(memory).c_str(), core::format_bytes((*scene)->world->memory()).c_str(),
       core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(film).c_str());
+  if (const uint64_t here = machine_memory(); here > 0 && memory > here) {
+    std::printf("  warning    this machine has %s of memory only\n",
+                core::format_bytes(here).c_str());
+  }
   if (!no_probe && pixels > 0) {
-    const double hours = seconds_per_sample(renderer, window, job.frames.first) *
-                         static_cast<double>(samples) / 3600.0;
+    const double hours = seconds_per_sample(renderer, window, job.frames.first) * samples / 3600.0;
     std::printf("  cost       about %s of one core like this one (%.3g core-hours)\n",
-                core::format_duration(hours * 3600.0).c_str(), hours);
+                duration_in_words(hours).c_str(), hours);
   }
   return 0;
 }

@@ -6,11 +6,13 @@
 #include <fmt/format.h>
 
 #include "core/base/hash.h"
+#include "core/base/leftovers.h"
 #include "core/base/version.h"
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/picture.h"
 #include "core/job/layers.h"
+#include "core/job/output_path.h"
 #include "core/job/render_key.h"
 #include "core/render/class_probe.h"
 #include "core/scene/build_scene.h"
@@ -60,6 +62,17 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
       assets_(loaded.assets->records()),
       cache_(*loaded.assets) {}
 
+core::Status JobFrames::check_film_names() const {
+  if (!options_.write_films) return {};
+  for (const core::OutputDesc& output : loaded_.job.outputs) {
+    if (!core::same_output_path(output.file, film_file())) continue;
+    const std::string message = fmt::format(
+        "file is '{}', where --film writes the film, expected another name", output.file);
+    return core::Error{core::Diagnostic{output.where, message}.to_string()};
+  }
+  return {};
+}
+
 core::Status JobFrames::load_files() { return core::load_files(loaded_.job, cache_); }
 
 core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {
@@ -93,10 +106,48 @@ std::vector<std::string> JobFrames::output_paths(int32_t frame) const {
   return paths;
 }
 
+void JobFrames::remove_leftovers(const std::vector<int32_t>& frames,
+                                 std::filesystem::file_time_type before) const {
+  // By folder: the leftovers in it, of any target. Mostly none, and then a long range of frames is
+  // walked for its folders only, if these bear frame numbers.
+  std::map<std::filesystem::path, std::vector<core::Leftover>> leftovers;
+  bool any = false;
+  const auto look_into = [&](const std::filesystem::path& folder) {
+    const auto [entry, fresh] = leftovers.try_emplace(folder);
+    if (fresh) entry->second = core::find_leftovers(folder.string(), before);
+    any = any || !entry->second.empty();
+  };
+  const auto& outputs = loaded_.job.outputs;
+  const bool numbered_folders = std::any_of(outputs.begin(), outputs.end(), [](const auto& o) {
+    return std::filesystem::path(o.file).parent_path().string().find('#') != std::string::npos;
+  });
+  for (size_t i = 0; i < (numbered_folders ? frames.size() : std::min<size_t>(frames.size(), 1));
+       ++i) {
+    for (const std::string& path : output_paths(frames[i])) {
+      look_into(std::filesystem::path(path).parent_path());
+    }
+  }
+  if (!any) return;
+  for (const int32_t frame : frames) {
+    for (const std::string& path : output_paths(frame)) {
+      const std::filesystem::path target(path);
+      const std::string name = target.filename().string().substr(0, core::kNameInTemporary);
+      for (const core::Leftover& leftover : leftovers[target.parent_path()]) {
+        std::error_code ignored;
+        if (leftover.target == name) std::filesystem::remove(leftover.path, ignored);
+      }
+    }
+  }
+}
+
+std::string JobFrames::film_file() const {
+  const bool several = loaded_.job.frames.last > loaded_.job.frames.first;
+  return loaded_.job.name + (several ? ".####.film.exr" : ".film.exr");
+}
+
 std::string JobFrames::film_path(int32_t frame) const {
   core::OutputDesc film;
-  const bool several = loaded_.job.frames.last > loaded_.job.frames.first;
-  film.file = loaded_.job.name + (several ? ".####.film.exr" : ".film.exr");
+  film.file = film_file();
   return core::output_path(film, options_.folder, frame);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <string>
@@ -38,6 +39,9 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
 
   JobFrames(LoadedJob& loaded, Options options);
 
+  /// An error where the frames' films and an output of the job would be the same file.
+  core::Status check_film_names() const;
+
   /// Loads the files that all frames share. The error names every one that is broken.
   core::Status load_files();
 
@@ -51,11 +55,16 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// Names the pixels and layers of a frame: films of another key are never mixed in. Thread-safe.
   coordinator::FrameKey frame_key(int32_t frame);
 
+  /// Removes what a killed process was writing before `before` of the outputs of `frames`.
+  void remove_leftovers(const std::vector<int32_t>& frames,
+                        std::filesystem::file_time_type before) const;
+
   RunTotals totals() const;
 
  private:
   class Work;
   core::FilmInfo film_info(int32_t frame) const;
+  std::string film_file() const;
   std::string film_path(int32_t frame) const;
   void note(int32_t frame, const core::RenderCounters& counters);
 

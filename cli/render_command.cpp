@@ -194,6 +194,7 @@ int report(const RenderOptions& options, const JobFrames& frames,
 
 /// `hyades render job.yaml`.
 int render_command(int argc, char** argv) {
+  const auto begin = std::filesystem::file_time_type::clock::now();
   RenderOptions options;
   if (const auto status = parse_arguments(argc, argv, options)) return *status;
   auto loaded = load(options);
@@ -206,6 +207,10 @@ int render_command(int argc, char** argv) {
   const std::string kept = options.folder + "/.hyades/" + job.name;
   const OutputNote note(kept + ".outputs", job);
   JobFrames frames(*loaded, {options.folder, options.film, window, note.still_true()});
+  if (const auto names = frames.check_film_names(); !names) {
+    std::fprintf(stderr, "%s\n", names.error().message.c_str());
+    return kBadInput;
+  }
   // No frame could be rendered without them.
   if (const auto files = frames.load_files(); !files) {
     std::fprintf(stderr, "%s\n", files.error().message.c_str());
@@ -238,6 +243,8 @@ int render_command(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", started.error().message.c_str());
     return 1;
   }
+  // The log is ours now, so nobody else writes these files.
+  frames.remove_leftovers(*numbers, begin);
   note.write();
   for (const std::string& problem : run.log_problems())
     std::fprintf(stderr, "%s\n", problem.c_str());

@@ -14,6 +14,7 @@
 
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/leftovers.h"
 
 namespace hyades::core {
 namespace {
@@ -56,7 +57,7 @@ std::string temporary_name(const std::filesystem::path& target) {
   static std::atomic<uint64_t> counter{0};
   const uint64_t unique = hash_combine(process, counter++);
   // Names may have 255 bytes; the part that makes this one unique needs some of them.
-  const std::string base = target.filename().string().substr(0, 200);
+  const std::string base = target.filename().string().substr(0, kNameInTemporary);
   return (target.parent_path() / fmt::format(".{}.{:016x}.tmp", base, unique)).string();
 }
 

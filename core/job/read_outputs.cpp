@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 #include "core/base/text.h"
 #include "core/job/output_names.h"
@@ -80,6 +81,13 @@ void check_inside_folder(MapReader& reader, const SourceLocation& where, const s
   if (file.starts_with('/') || padded.find("/../") != std::string::npos) {
     reader.complain(where, fmt::format("file is '{}', expected a path below the output folder "
                                        "(no '..', not absolute); --output chooses the folder",
+                                       file));
+    return;
+  }
+  const std::filesystem::path path = std::filesystem::path(file).lexically_normal();
+  if (path.begin() != path.end() && *path.begin() == ".hyades") {
+    reader.complain(where, fmt::format("file is '{}', expected another folder: what is in .hyades "
+                                       "is removed with the run's log",
                                        file));
   }
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hyades::core {
+
+/// Of a target's name, so many bytes at most are part of the name of its temporary
+/// (".NAME.16 hex digits.tmp", see replace_file).
+inline constexpr size_t kNameInTemporary = 200;
+
+/// A file that replace_file was writing when its process was killed.
+struct Leftover {
+  std::string path;
+  std::string target;  ///< name of what it was to replace, its first kNameInTemporary bytes
+};
+
+/// Those in `folder` (not below) that were last written before `before`. None where it cannot be
+/// listed.
+std::vector<Leftover> find_leftovers(const std::string& folder,
+                                     std::filesystem::file_time_type before);
+
+}  // namespace hyades::core
