@@ -90,6 +90,10 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
                        conflict->unit.tile.y0, conflict->unit.batches.first,
                        conflict->unit.batches.end() - 1));
     }
+  } else if (const auto* odd = std::get_if<Quarantine>(&action)) {
+    if (const auto seat = seats_.find(odd->worker); seat != seats_.end()) {
+      set_quarantine(seat->second, odd->reason);
+    }
   } else if (const auto* record = std::get_if<Persist>(&action)) {
     persist(*record, delivery, later);
   } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
@@ -120,6 +124,8 @@ void Brain::persist(const Persist& persist, Delivery* delivery, std::vector<Acti
                                  std::move(delivery->record));
   } else if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {
     desk->keeper->keep_finished(persist.id, done->frame);
+  } else if (const auto* voided = std::get_if<TileVoidedRecord>(&persist.record)) {
+    desk->keeper->void_tile(persist.id, voided->frame, voided->tile);
   } else if (const auto* again = std::get_if<FrameRestartedRecord>(&persist.record)) {
     chore([this, job, id = persist.id, frame = again->frame] {
       while (!store_->forget_frame(static_cast<uint64_t>(job), frame) && !stop_) {
@@ -193,6 +199,10 @@ void Brain::carry_out(const std::vector<Action>& actions) {
       frame_failed(failed->job, failed->frame, failed->reason);
     } else if (const auto* again = std::get_if<FrameRestarted>(&action)) {
       frame_restarted(again->job, again->frame);
+    } else if (const auto* voided = std::get_if<TileVoided>(&action)) {
+      tile_voided(*voided);
+    } else if (const auto* reopened = std::get_if<FrameReopened>(&action)) {
+      frame_reopened(reopened->job, reopened->frame);
     } else if (const auto* ended = std::get_if<JobEnded>(&action)) {
       job_ended(*ended);
     }
@@ -217,13 +227,49 @@ void Brain::merged(JobId job, const Merge& merge) {
          "a film cannot be merged: " + status.error().message);
     return;
   }
-  uint64_t samples = 0;
-  for (uint32_t b = merge.unit.batches.first; b < merge.unit.batches.end(); ++b) {
-    samples += core::samples_in_batch(b, desk->read.job.sampling.samples);
-  }
-  samples *= static_cast<uint64_t>(merge.unit.tile.area());
+  const uint64_t samples = samples_of(*desk, merge.unit.tile, merge.unit.batches);
   desk->touch(merge.unit.frame).samples_done += samples;
   desk->samples_done += samples;
+}
+
+uint64_t Brain::samples_of(const JobDesk& desk, const core::PixelRect& tile,
+                           const core::BatchRange& batches) const {
+  uint64_t samples = 0;
+  for (uint32_t b = batches.first; b < batches.end(); ++b) {
+    samples += core::samples_in_batch(b, desk.read.job.sampling.samples);
+  }
+  return samples * static_cast<uint64_t>(tile.area());
+}
+
+/// The keeper has taken the tile out of the film.
+void Brain::tile_voided(const TileVoided& voided) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(voided.job);
+  if (desk == nullptr) return;
+  uint64_t samples = 0;
+  for (const core::BatchRange& batches : voided.batches) {
+    samples += samples_of(*desk, voided.tile, batches);
+  }
+  FrameNote& frame = desk->touch(voided.frame);
+  samples = std::min(samples, frame.samples_done);
+  frame.samples_done -= samples;
+  desk->samples_done -= samples;
+  note(*desk, v1::LOG_LEVEL_WARNING, voided.frame, {},
+       fmt::format("tile {},{} is rendered again: a quarantined worker had a part in it",
+                   voided.tile.x0, voided.tile.y0));
+}
+
+/// What the finisher has made is of a film in doubt.
+void Brain::frame_reopened(JobId job, int32_t frame) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  desk->complete.erase(frame);
+  desk->touch(frame).state = v1::FRAME_STATE_RENDERING;
+  note(*desk, v1::LOG_LEVEL_WARNING, frame, {},
+       "is not done: a unit that was rendered differently twice is rendered once more");
+  // Should this be lost, or come after the frame is done again, it is rendered again or stays.
+  chore([this, id = static_cast<uint64_t>(job), frame] { (void)store_->forget_frame(id, frame); });
 }
 
 /// On the keeper's thread, unless the film is among the complete ones already.

@@ -172,6 +172,8 @@ class Brain {
   void frame_failed(JobId job, int32_t frame, const std::string& reason);
   void frame_restarted(JobId job, int32_t frame);
   void job_ended(const JobEnded& ended);
+  void tile_voided(const TileVoided& voided);
+  void frame_reopened(JobId job, int32_t frame);
 
   // Keepers' threads.
   void persisted(JobId job, RecordId record);
@@ -204,6 +206,11 @@ class Brain {
   grpc::Status steer_worker(const v1::WorkerRequest& request, v1::Worker& now,
                             const std::function<std::vector<Action>(Seat&)>& what);
   Seat* find_worker(const std::string& text, grpc::Status& status);
+  void set_quarantine(Seat& seat, const std::string& reason);
+  void end_quarantine(Seat& seat);
+  void store_quarantine(std::function<core::Status()> what);
+  uint64_t samples_of(const JobDesk& desk, const core::PixelRect& tile,
+                      const core::BatchRange& batches) const;
 
   const BrainOptions options_;
   const std::unique_ptr<JobStore> store_;
@@ -219,6 +226,7 @@ class Brain {
   std::map<WorkerId, Seat> seats_;
   std::map<std::string, WorkerId> worker_ids_;  ///< by what they call themselves
   uint64_t next_worker_ = 1;
+  std::map<std::string, std::string> quarantines_;  ///< by worker_id: the reason; as stored
   std::map<uint64_t, Watch> watches_;
   uint64_t next_watch_ = 1;
 

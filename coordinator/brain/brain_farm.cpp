@@ -89,9 +89,31 @@ grpc::Status Brain::drain_worker(const v1::WorkerRequest& request, v1::Worker& n
   });
 }
 
+/// With the lock. The scheduler is told by whoever knows more.
+void Brain::set_quarantine(Seat& seat, const std::string& reason) {
+  seat.state = v1::WORKER_STATE_QUARANTINED;
+  seat.reason = reason;
+  const std::string worker = seat.hello.worker_id();
+  quarantines_[worker] = reason;
+  store_quarantine([this, worker, reason] { return store_->quarantine({worker, reason}); });
+}
+
+void Brain::end_quarantine(Seat& seat) {
+  seat.state = seat.joined ? v1::WORKER_STATE_ACTIVE : v1::WORKER_STATE_GONE;
+  const std::string worker = seat.hello.worker_id();
+  quarantines_.erase(worker);
+  store_quarantine([this, worker] { return store_->end_quarantine(worker); });
+}
+
+void Brain::store_quarantine(std::function<core::Status()> what) {
+  chore([this, what = std::move(what)] {
+    while (!what() && !stop_) std::this_thread::sleep_for(std::chrono::seconds(1));
+  });
+}
+
 grpc::Status Brain::quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now) {
   return steer_worker(request, now, [&](Seat& seat) {
-    seat.state = v1::WORKER_STATE_QUARANTINED;
+    set_quarantine(seat, seat.reason);
     return tell(WorkerBarred{seat.id, true});
   });
 }
@@ -99,7 +121,7 @@ grpc::Status Brain::quarantine_worker(const v1::WorkerRequest& request, v1::Work
 grpc::Status Brain::release_worker(const v1::WorkerRequest& request, v1::Worker& now) {
   return steer_worker(request, now, [&](Seat& seat) {
     if (seat.state != v1::WORKER_STATE_QUARANTINED) return std::vector<Action>();
-    seat.state = seat.joined ? v1::WORKER_STATE_ACTIVE : v1::WORKER_STATE_GONE;
+    end_quarantine(seat);
     return tell(WorkerBarred{seat.id, false});
   });
 }

@@ -204,6 +204,12 @@ grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
           std::chrono::duration_cast<std::chrono::seconds>(options_.class_patience).count()));
     }
   }
+  if (const uint32_t disputed = scheduler_.disputed_units(desk->id); disputed > 0) {
+    say(
+        fmt::format("{} units were rendered differently by two workers of one class and wait for "
+                    "another worker of it to say who is right",
+                    disputed));
+  }
   const uint32_t leased = scheduler_.leased_units(desk->id);
   if (leased > 0) {
     say(fmt::format("{} units are being rendered", leased));

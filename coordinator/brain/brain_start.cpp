@@ -53,6 +53,11 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
   if (!incarnation) return incarnation.error();
   std::unique_ptr<Brain> brain(
       new Brain(options, std::move(*store), std::move(*assets), *incarnation));
+  const auto quarantines = brain->store_->quarantines();
+  if (!quarantines) return quarantines.error();
+  for (const StoredQuarantine& kept : *quarantines) {
+    brain->quarantines_[kept.worker] = kept.reason;
+  }
   if (auto taken = brain->take_up_jobs(); !taken) return taken.error();
   Brain& b = *brain;
   b.threads_.emplace_back([&b] { b.clock_loop(); });

@@ -80,7 +80,12 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
     seat.hello.clear_in_hand();
     seat.link = link;
     seat.briefed.clear();
-    if (seat.state != v1::WORKER_STATE_QUARANTINED) seat.state = v1::WORKER_STATE_ACTIVE;
+    if (const auto kept = quarantines_.find(hello.worker_id()); kept != quarantines_.end()) {
+      seat.state = v1::WORKER_STATE_QUARANTINED;
+      seat.reason = kept->second;
+    } else {
+      seat.state = v1::WORKER_STATE_ACTIVE;
+    }
     seat.lost_at.reset();
     seat.leaving = false;
     seat.held_wish = 0;

@@ -151,6 +151,16 @@ void FilmKeeper::begin_again(RecordId record, int32_t frame) {
   push(std::move(item), false);
 }
 
+void FilmKeeper::void_tile(RecordId record, int32_t frame, const core::PixelRect& tile) {
+  Item item;
+  item.record = record;
+  item.kind = Item::Kind::tile_voided;
+  item.frame = frame;
+  item.tile = tile;
+  if (log_) item.bytes = encode_tile_voided(frame, tile);
+  push(std::move(item), false);
+}
+
 void FilmKeeper::call(std::function<void()> what) {
   Item item;
   item.kind = Item::Kind::call;
@@ -277,6 +287,15 @@ void FilmKeeper::settle(uint64_t durable) {
       films_.erase(item.frame);
       classes_.erase(item.frame);
       finished_.erase(item.frame);
+    }
+    if (item.kind == Item::Kind::tile_voided) {
+      if (const auto whole = films_.find(item.frame); whole != films_.end()) {
+        // Whoever looks at the film meanwhile keeps what was there.
+        if (whole->second.use_count() > 1) {
+          whole->second = std::make_shared<core::Film>(*whole->second);
+        }
+        whole->second->erase(item.tile);
+      }
     }
     if (!item.worker_class.empty()) classes_[item.frame] = item.worker_class;
     if (item.kind == Item::Kind::finished) {

@@ -63,6 +63,8 @@ class FilmKeeper {
                       std::vector<std::byte> bytes);
   /// All films of the frame that were handed over before are void.
   void begin_again(RecordId record, int32_t frame);
+  /// All films of the frame's tile that were handed over before are void.
+  void void_tile(RecordId record, int32_t frame, const core::PixelRect& tile);
   void keep_finished(RecordId record, int32_t frame);
   void keep_failed(RecordId record);
   /// From now on keep() does not wait any more.
@@ -86,10 +88,11 @@ class FilmKeeper {
 
  private:
   struct Item {
-    enum class Kind : uint8_t { film, finished, failed, begun_again, call };
+    enum class Kind : uint8_t { film, finished, failed, begun_again, tile_voided, call };
     RecordId record{};
     Kind kind = Kind::film;
     int32_t frame = 0;
+    core::PixelRect tile;
     core::Film film;
     std::string worker_class;
     std::vector<std::byte> bytes;

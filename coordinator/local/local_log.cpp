@@ -14,7 +14,14 @@ namespace hyades::coordinator {
 namespace {
 
 /// The first byte of every record.
-enum class Kind : uint8_t { cut = 1, unit = 2, finished = 3, delivered = 4, begun_again = 5 };
+enum class Kind : uint8_t {
+  cut = 1,
+  unit = 2,
+  finished = 3,
+  delivered = 4,
+  begun_again = 5,
+  tile_voided = 6
+};
 constexpr uint8_t kVersion = 2;
 
 // Numbers are little-endian, 32 bits.
@@ -80,6 +87,8 @@ class Reader {
         contents_.films.erase(static_cast<int32_t>(get(record, kHead)));
         contents_.units.erase(static_cast<int32_t>(get(record, kHead)));
         return {};
+      case Kind::tile_voided:
+        return read_tile_voided(record.subspan(kHead));
     }
     return core::Error{"a record of an unknown kind"};
   }
@@ -131,6 +140,22 @@ class Reader {
     for (const core::Unit& unit : units) {
       contents_.units[frame].push_back({unit, units.size() == 1 ? digest : Digest{}, worker_class});
     }
+    return {};
+  }
+
+  core::Status read_tile_voided(std::span<const std::byte> bytes) {
+    if (bytes.size() != 4 + 16) return core::Error{"a record has a wrong length"};
+    const auto frame = static_cast<int32_t>(get(bytes, 0));
+    const core::PixelRect tile = get_rect(bytes, 4);
+    const auto film = contents_.films.find(frame);
+    if (film == contents_.films.end()) return {};
+    film->second->erase(tile);
+    const auto units = contents_.units.find(frame);
+    if (units != contents_.units.end()) {
+      std::erase_if(units->second, [&](const AcceptedUnit& u) { return u.unit.tile == tile; });
+      if (units->second.empty()) contents_.units.erase(units);
+    }
+    if (film->second->coverage().volume() == 0) contents_.films.erase(film);
     return {};
   }
 
@@ -228,6 +253,13 @@ std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey
 std::vector<std::byte> encode_begun_again(int32_t frame) {
   std::vector<std::byte> out = begin(Kind::begun_again);
   put(out, static_cast<uint32_t>(frame));
+  return out;
+}
+
+std::vector<std::byte> encode_tile_voided(int32_t frame, const core::PixelRect& tile) {
+  std::vector<std::byte> out = begin(Kind::tile_voided);
+  put(out, static_cast<uint32_t>(frame));
+  put(out, tile);
   return out;
 }
 

@@ -44,6 +44,8 @@ std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey
                                         std::span<const std::byte> film);
 /// All films of the frame before this record are void.
 std::vector<std::byte> encode_begun_again(int32_t frame);
+/// All films of the frame's tile before this record are void.
+std::vector<std::byte> encode_tile_voided(int32_t frame, const core::PixelRect& tile);
 std::vector<std::byte> encode_finished(int32_t frame, const FinishedRecord& finished);
 
 /// What a log holds.

@@ -92,6 +92,9 @@ class LocalRun : private FilmKeeper::Owner {
   void act(const Revoke&) {}
   void act(const Acknowledge&) {}
   void act(const Conflict&) {}
+  void act(const Quarantine&) {}
+  void act(const TileVoided&) {}
+  void act(const FrameReopened&) {}
   void act(const FrameRestarted&) {}
   void end_locked(const std::string& error);
   uint64_t samples_of(const core::Unit& unit) const;

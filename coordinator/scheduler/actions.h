@@ -54,8 +54,14 @@ struct FrameRestartedRecord {
   JobId job{};
   int32_t frame = 0;
 };
-using Record =
-    std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord, FrameRestartedRecord>;
+/// All films of the tile before this record are void: one of them is wrong, or may be.
+struct TileVoidedRecord {
+  JobId job{};
+  int32_t frame = 0;
+  core::PixelRect tile;
+};
+using Record = std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord,
+                            FrameRestartedRecord, TileVoidedRecord>;
 
 /// Make this durable; answered by Persisted or PersistFailed. For a unit that means the film that
 /// came with the result now being handled.
@@ -96,12 +102,36 @@ struct Reject {
   RejectReason reason{};
 };
 
-/// Two renderings of one unit differ: a machine is broken, or a unit is not a pure function.
+/// Two renderings of one unit differ: a machine is broken, or a unit is not a pure function. Others
+/// will render it until two agree.
 struct Conflict {
   JobId job{};
   core::Unit unit;
   WorkerId first{};
   WorkerId second{};
+};
+
+/// The worker rendered a unit to other bits than two others did, who agree: nothing it says is
+/// believed, and it gets nothing, until WorkerBarred ends that.
+struct Quarantine {
+  WorkerId worker{};
+  std::string reason;
+};
+
+/// The films of the tile are void, and that is durable: take out all that the frame's film holds of
+/// it. They are rendered again.
+struct TileVoided {
+  JobId job{};
+  int32_t frame = 0;
+  core::PixelRect tile;
+  std::vector<core::BatchRange> batches;  ///< that counted
+};
+
+/// The outputs that FinishFrame asked for do not count: a film is in doubt. There will be another
+/// FinishFrame.
+struct FrameReopened {
+  JobId job{};
+  int32_t frame = 0;
 };
 
 /// Every batch of the frame is merged: make its outputs; answered by FinishDone or FinishFailed.
@@ -136,6 +166,7 @@ struct JobEnded {
 };
 
 using Action = std::variant<OpenFrame, Lease, Revoke, Persist, Merge, Acknowledge, Reject, Conflict,
-                            FinishFrame, FrameDone, FrameFailed, FrameRestarted, JobEnded>;
+                            Quarantine, TileVoided, FrameReopened, FinishFrame, FrameDone,
+                            FrameFailed, FrameRestarted, JobEnded>;
 
 }  // namespace hyades::coordinator

@@ -41,6 +41,7 @@ void FrameState::made_durable(const Extent& e) {
 }
 
 void FrameState::unhold(const Extent& e) {
+  end_dispute(e);
   std::erase_if(records_[e.tile], [&](const HeldRecord& r) { return r.batches == e.batches; });
   held_.clear(e.tile, e.batches);
   free_ += BatchMap::count_free(held_, leased_, e.tile, e.batches);

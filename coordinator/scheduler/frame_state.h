@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -44,7 +45,20 @@ struct HeldRecord {
   core::BatchRange batches;
   Digest digest{};
   WorkerId worker{};
-  RecordId pending{};  ///< 0 once durable
+  RecordId pending{};     ///< 0 once durable
+  bool verified = false;  ///< another worker rendered the same bits
+};
+
+/// What a worker rendered a unit to.
+struct Opinion {
+  WorkerId worker{};  ///< 0: not known any more; it counts for nobody
+  Digest digest{};
+};
+
+/// A held unit of which two renderings differ, until two workers agree.
+struct Dispute {
+  Extent extent;
+  std::vector<Opinion> opinions;
 };
 
 /// The books of one frame (invariant 3). Every batch of every tile is free, leased, or held, and
@@ -56,8 +70,8 @@ class FrameState {
   uint64_t total() const { return total_; }
   uint64_t free() const { return free_; }  ///< tile-batches neither leased nor held
   uint64_t durable() const { return durable_; }
-  bool complete() const { return durable_ == total_; }
-  bool all_held() const { return free_ == 0 && assignments_.empty(); }
+  bool complete() const { return durable_ == total_ && settled(); }
+  bool all_held() const { return free_ == 0 && assignments_.empty() && disputes_.empty(); }
   bool any_assigned() const { return !assignments_.empty(); }
   size_t holders() const;  ///< of all assignments together
 
@@ -105,6 +119,31 @@ class FrameState {
   /// Notes the failure and returns how often this unit has failed.
   uint32_t blame(const Extent& e, WorkerId worker);
 
+  // Conflicts (frame_disputes.cpp).
+
+  /// Whether no film is in doubt.
+  bool settled() const { return disputes_.empty() && voiding_.empty(); }
+  size_t disputes() const { return disputes_.size(); }
+  Dispute* find_dispute(const Extent& e);
+  Dispute& open_dispute(const Extent& e, const Opinion& first);
+  void end_dispute(const Extent& e);
+  /// A disputed unit that nobody renders, for a worker without an opinion of it that may try it.
+  std::optional<Extent> next_check(WorkerId worker, const MayTry& may_try) const;
+  /// Whether there is a disputed unit that nobody renders.
+  bool check_waits() const;
+  /// Another worker agreed on the film that is held.
+  void verify(const Extent& e);
+  /// Tiles that hold films of this worker on which no other agreed, in order.
+  std::vector<uint32_t> unverified_tiles(WorkerId worker) const;
+  /// The films of the tile do not count any more once that is durable; until then it takes none.
+  void doubt_tile(uint32_t tile);
+  bool in_doubt(uint32_t tile) const { return voiding_.contains(tile); }
+  /// The tiles in doubt that it has not named before, in order.
+  std::vector<uint32_t> newly_doubted();
+  /// Its films do not count: all that is held of the tile is free again.
+  /// Returns the runs that did.
+  std::vector<core::BatchRange> void_tile(uint32_t tile);
+
   /// What is wrong with the books, or nothing. Slow; for tests and audits.
   std::string audit() const;
 
@@ -121,6 +160,8 @@ class FrameState {
   void unlease_bits(const Extent& e);
   const Blame* find_blame(const Extent& e) const;
 
+  bool being_checked(const Extent& e) const { return leased_.count(e.tile, e.batches) != 0; }
+
   uint32_t batches_;
   uint64_t total_;
   uint64_t free_;
@@ -132,8 +173,10 @@ class FrameState {
   std::deque<Extent> open_;
   std::vector<Extent> suspects_;  ///< failed units that wait for another try
   std::vector<Blame> blamed_;
+  std::vector<Dispute> disputes_;     ///< oldest first
+  std::map<uint32_t, bool> voiding_;  ///< tiles in doubt, and whether newly_doubted() named them
   std::unordered_map<uint64_t, Assignment> assignments_;           ///< looked up, never walked
-  std::unordered_map<uint32_t, std::vector<HeldRecord>> records_;  ///< by tile; never walked
+  std::unordered_map<uint32_t, std::vector<HeldRecord>> records_;  ///< by tile; no order
 };
 
 }  // namespace hyades::coordinator

@@ -22,7 +22,8 @@ void Scheduler::on(const WorkerJoined& e) {
   worker.threads = e.threads;
   worker.worker_class = intern_class(e.worker_class);
   threads_ += worker.threads;
-  count_class(worker.worker_class, 1);
+  worker.barred = quarantined_.contains(e.worker);
+  if (!worker.barred) count_class(worker.worker_class, 1);
   for (const UnitInHand& held : e.in_hand) adopt(e.worker, worker, held);
   for (const auto& [id, job] : jobs_) open_frames(*job);
 }
@@ -31,7 +32,8 @@ void Scheduler::adopt(WorkerId id, Worker& worker, const UnitInHand& held) {
   JobState* job = find_job(held.job);
   FrameSlot* slot = job ? job->slot(held.unit.frame) : nullptr;
   const auto extent = job ? extent_of(*job, held.unit) : std::nullopt;
-  if (slot == nullptr || !extent || slot->phase != FramePhase::rendering ||
+  if (slot == nullptr || !extent || quarantined_.contains(id) ||
+      slot->phase != FramePhase::rendering ||
       (slot->worker_class != 0 && slot->worker_class != worker.worker_class) ||
       !slot->books->all_free(*extent)) {
     say(Revoke{id, held.lease, held.job, held.unit});
@@ -63,6 +65,7 @@ void Scheduler::on(const WorkerAlive& e) {
 }
 
 void Scheduler::on(const WorkerBarred& e) {
+  if (!e.barred) quarantined_.erase(e.worker);
   Worker* worker = find_worker(e.worker);
   if (worker == nullptr || worker->barred == e.barred) return;
   worker->barred = e.barred;
@@ -209,6 +212,7 @@ bool Scheduler::grant_from(JobState& job, WorkerId id, Worker& worker) {
     FrameSlot& slot = job.slots[index];
     if (slot.phase != FramePhase::rendering) continue;
     if (slot.worker_class != 0 && slot.worker_class != worker.worker_class) continue;
+    if (grant_check(job, index, id, worker, allowed)) return true;
     if (!slot.books->has_work(allowed)) continue;
     std::vector<Extent> extents;
     const LeaseId next{options_.incarnation, next_lease_};

@@ -20,16 +20,24 @@ void Scheduler::on(const ResultArrived& e) {
       slot->phase == FramePhase::opening) {
     return reject(RejectReason::not_now);
   }
+  if (quarantined_.contains(e.worker)) return reject(RejectReason::unknown);
   FrameState& books = *slot->books;
+  // Its films are about to be void; this one may count then.
+  if (books.in_doubt(extent->tile)) return reject(RejectReason::not_now);
   if (const HeldRecord* held = books.find_held(*extent)) {
     // After a restart what was merged has no digest any more.
     if (held->digest != Digest{} && held->digest != e.digest) {
+      if (slot->worker_class != worker->worker_class) return reject(RejectReason::unknown);
       say(Conflict{e.job, e.unit, held->worker, e.worker});
-      reject(RejectReason::conflict);
-    } else if (held->pending == RecordId{}) {
-      say(Acknowledge{e.worker, e.lease, e.job, e.unit});
+      const bool right = weigh(*job, *slot, *extent, e);
+      reject(right ? RejectReason::not_now : RejectReason::conflict);
     } else {
-      pending_.at(held->pending).waiters.push_back({e.worker, e.lease});
+      if (held->pending == RecordId{}) {
+        say(Acknowledge{e.worker, e.lease, e.job, e.unit});
+      } else {
+        pending_.at(held->pending).waiters.push_back({e.worker, e.lease});
+      }
+      if (held->digest != Digest{}) weigh(*job, *slot, *extent, e);
     }
   } else if (books.any_held(*extent)) {
     reject(RejectReason::overlap);
@@ -118,6 +126,9 @@ void Scheduler::on(const Persisted& e) {
     if (job != nullptr) frame_restarted(*job, *job->slot(again->frame));
     return;
   }
+  if (const auto* voided = std::get_if<TileVoidedRecord>(&pending.record)) {
+    return tile_voided(*voided);
+  }
   JobState* job = find_job(finished ? finished->job : failed->job);
   if (job == nullptr) return;
   FrameSlot& slot = *job->slot(finished ? finished->frame : failed->failed.frame);
@@ -165,7 +176,12 @@ void Scheduler::on(const PersistFailed& e) {
 void Scheduler::retry_persisting() {
   if (now_ < storage_blocked_until_) return;
   for (const RecordId id : std::exchange(to_persist_again_, {})) {
-    say(Persist{id, pending_.at(id).record});
+    const Record& record = pending_.at(id).record;
+    if (still_wanted(record)) {
+      say(Persist{id, record});
+    } else {
+      pending_.erase(id);
+    }
   }
 }
 

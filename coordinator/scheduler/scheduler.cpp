@@ -145,6 +145,7 @@ void Scheduler::on(const FinishDone& e) {
   JobState* job = find_job(e.job);
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
+  if (!slot->books->settled()) return reopen_frame(*job, *slot);
   slot->phase = FramePhase::closing;
   persist(FrameFinishedRecord{job->id, slot->frame}, {});
 }
@@ -153,6 +154,7 @@ void Scheduler::on(const FinishFailed& e) {
   JobState* job = find_job(e.job);
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
+  if (!slot->books->settled()) return reopen_frame(*job, *slot);
   if (++slot->finish_attempts < job->plan.max_attempts) {
     say(FinishFrame{job->id, slot->frame});
   } else {
@@ -326,7 +328,8 @@ void Scheduler::update_ready(JobState& job) {
   bool ready = false;
   for (const uint32_t i : job.in_flight) {
     const FrameSlot& slot = job.slots[i];
-    ready |= slot.phase == FramePhase::rendering && slot.books->free() > 0;
+    ready |= slot.phase == FramePhase::rendering &&
+             (slot.books->free() > 0 || slot.books->check_waits());
   }
   ready = ready && !job.paused;
   if (ready) work_appeared_ = true;
@@ -382,6 +385,17 @@ std::optional<TimePoint> Scheduler::next_wake() const {
 uint32_t Scheduler::leased_units(JobId id) const {
   const auto job = jobs_.find(id);
   return job == jobs_.end() ? 0 : static_cast<uint32_t>(job->second->running);
+}
+
+uint32_t Scheduler::disputed_units(JobId id) const {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end()) return 0;
+  size_t units = 0;
+  for (const uint32_t i : job->second->in_flight) {
+    const FrameSlot& slot = job->second->slots[i];
+    if (slot.books) units += slot.books->disputes();
+  }
+  return static_cast<uint32_t>(units);
 }
 
 uint32_t Scheduler::leased_units(WorkerId id) const {

@@ -54,6 +54,10 @@ class Scheduler {
   /// How many units the worker has.
   uint32_t leased_units(WorkerId worker) const;
 
+  /// How many units of the job, rendered differently by two workers, wait for one who has not
+  /// rendered them.
+  uint32_t disputed_units(JobId job) const;
+
   /// What is wrong with the books, or nothing. Slow; for tests and audits.
   std::string audit() const;
 
@@ -162,6 +166,17 @@ class Scheduler {
   void persist(Record record, Pending pending);
   void retry_persisting();
 
+  // conflicts.cpp: renderings that differ.
+  bool weigh(JobState& job, FrameSlot& slot, const Extent& extent, const ResultArrived& e);
+  void decide(JobState& job, FrameSlot& slot, const Dispute& dispute, const ResultArrived& e);
+  bool grant_check(JobState& job, uint32_t slot, WorkerId id, Worker& worker,
+                   const MayTry& may_try);
+  void quarantine(WorkerId id, const std::string& reason);
+  void void_doubted(JobState& job, FrameSlot& slot);
+  void tile_voided(const TileVoidedRecord& record);
+  bool still_wanted(const Record& record);
+  void reopen_frame(JobState& job, FrameSlot& slot);
+
   // Shared.
   JobState* find_job(JobId id);
   Worker* find_worker(WorkerId id);
@@ -186,6 +201,7 @@ class Scheduler {
   std::set<ShareOrder> ready_shares_;
 
   std::unordered_map<WorkerId, Worker> workers_;  ///< looked up, never walked
+  std::set<WorkerId> quarantined_;                ///< by their films; stays when they go and come
   std::map<uint64_t, WorkerId> waiting_;          ///< those with a wish, longest waiting first
   uint64_t next_waiting_ = 1;
   bool work_appeared_ = false;           ///< since the waiting were last served

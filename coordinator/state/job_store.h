@@ -60,6 +60,12 @@ struct StoredLine {
   std::string text;
 };
 
+/// A worker that gets no units, over restarts of the coordinator too.
+struct StoredQuarantine {
+  std::string worker;  ///< what it calls itself (v1::Hello.worker_id)
+  std::string reason;
+};
+
 /// What the coordinator keeps over restarts besides films and assets. What a function has written
 /// is durable when it returns, log lines excepted, which may lag behind. Thread-safe.
 class JobStore {
@@ -98,6 +104,11 @@ class JobStore {
   virtual core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t skip) = 0;
   virtual core::Result<std::optional<StoredOutput>> output(uint64_t job,
                                                            const std::string& path) = 0;
+
+  /// Replaces what is known of the worker.
+  virtual core::Status quarantine(const StoredQuarantine& worker) = 0;
+  virtual core::Status end_quarantine(const std::string& worker) = 0;
+  virtual core::Result<std::vector<StoredQuarantine>> quarantines() = 0;
 
   virtual core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) = 0;
   /// Lines after the first `skip`, at most `limit`.

@@ -57,6 +57,9 @@ CREATE TABLE lines (
   text TEXT NOT NULL);
 CREATE INDEX lines_of_job ON lines (job, number);
 )",
+    R"(
+CREATE TABLE quarantines (worker TEXT PRIMARY KEY, reason TEXT NOT NULL) WITHOUT ROWID;
+)",
 };
 
 }  // namespace

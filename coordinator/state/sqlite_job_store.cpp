@@ -199,6 +199,28 @@ class SqliteJobStore final : public JobStore {
     return std::optional<StoredOutput>();
   }
 
+  core::Status quarantine(const StoredQuarantine& worker) override {
+    const std::lock_guard lock(mutex_);
+    return query("INSERT OR REPLACE INTO quarantines (worker, reason) VALUES (?, ?)")
+        .bind(worker.worker)
+        .bind(worker.reason)
+        .run();
+  }
+
+  core::Status end_quarantine(const std::string& worker) override {
+    const std::lock_guard lock(mutex_);
+    return query("DELETE FROM quarantines WHERE worker = ?").bind(worker).run();
+  }
+
+  core::Result<std::vector<StoredQuarantine>> quarantines() override {
+    const std::lock_guard lock(mutex_);
+    std::vector<StoredQuarantine> workers;
+    Query rows(db_.get(), "SELECT worker, reason FROM quarantines ORDER BY worker");
+    while (rows.next()) workers.push_back({rows.bytes(0), rows.bytes(1)});
+    if (core::Status status = rows.status(); !status) return status.error();
+    return workers;
+  }
+
   core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
     const std::lock_guard lock(mutex_);
     Transaction transaction(db_.get());

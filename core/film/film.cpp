@@ -116,6 +116,33 @@ Status Film::merge(const Film& other) {
   return {};
 }
 
+void Film::erase(const PixelRect& tile) {
+  const PixelRect gone = intersection(window_, tile);
+  if (gone.empty()) return;
+  for (size_t c = 0; c < planes_.size(); ++c) {
+    const bool sums = layout_.channels[c].rule == MergeRule::sum;
+    for (int y = gone.y0; y < gone.y1; ++y) {
+      Fixed128* const row = planes_[c].data() + offset(gone.x0, y);
+      std::fill_n(row, gone.width(), sums ? Fixed128{} : min_bits(kInfinity));
+    }
+  }
+  Coverage left;
+  for (const CoverageBox& box : coverage_.boxes()) {
+    const PixelRect& all = box.tile;
+    const PixelRect cut = intersection(all, gone);
+    if (cut.empty()) {
+      left.add(box);
+      continue;
+    }
+    // Above, below, left and right of what goes; an empty box adds nothing.
+    left.add({{all.x0, all.y0, all.x1, cut.y0}, box.batches});
+    left.add({{all.x0, cut.y1, all.x1, all.y1}, box.batches});
+    left.add({{all.x0, cut.y0, cut.x0, cut.y1}, box.batches});
+    left.add({{cut.x1, cut.y0, all.x1, cut.y1}, box.batches});
+  }
+  coverage_ = std::move(left);
+}
+
 Fixed128 Film::sum(int x, int y, int channel) const {
   return planes_[static_cast<size_t>(channel)][offset(x, y)];
 }

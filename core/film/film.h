@@ -38,6 +38,9 @@ class Film {
   /// the layouts differ or a batch of a pixel is in both (the message names tile and batches).
   Status merge(const Film& other);
 
+  /// Takes out all that the film holds of the pixels of `tile`, as if it had never been there.
+  void erase(const PixelRect& tile);
+
   /// The exact sum of a pixel's channel (min channels: the minimum, +inf where nothing was hit).
   Fixed128 sum(int x, int y, int channel) const;
   float minimum(int x, int y, int channel) const;

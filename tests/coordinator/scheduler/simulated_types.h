@@ -37,15 +37,25 @@ struct SimWorker {
   uint64_t session = 0;
   uint64_t life = 0;  ///< what was begun in an earlier life is lost
   int asked = 0;
+  bool corrupt = false;  ///< its films are wrong
+  /// The coordinator (by generation) that found it out; 0: none.
+  uint64_t quarantined_by = 0;
   std::map<uint64_t, UnitHeld> held;  ///< by order of arrival
 };
 
 /// Names a unit within its job: frame, corner of the tile, batches.
 using UnitName = std::tuple<int32_t, int32_t, int32_t, uint32_t, uint32_t>;
 
+/// A batch that has been merged.
+struct SimBatch {
+  uint64_t value = 0;
+  uint8_t corrupted_by = 0;  ///< number of the worker, or 0
+  uint64_t generation = 0;   ///< of the coordinator that took it; 0: an earlier one
+};
+
 /// What the merger holds of a frame, and what shall go wrong with it.
 struct SimFrame {
-  std::set<std::tuple<int32_t, int32_t, uint32_t>> batches;  ///< that have been merged
+  std::map<std::tuple<int32_t, int32_t, uint32_t>, SimBatch> batches;  ///< that have been merged
   uint64_t sum = 0;
   bool poisoned = false;
   bool refused = false;

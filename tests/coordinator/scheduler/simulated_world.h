@@ -20,8 +20,9 @@ namespace hyades::coordinator {
 /// A small farm in which everything goes wrong: the real scheduler under a simulated network, clock
 /// and store, driven by one seed. Messages are delayed, reordered, doubled and dropped; workers die
 /// or lose the connection; the coordinator dies and comes back with what its store holds; the store
-/// refuses; units and finishing fail; jobs are paused and cancelled; the clock jumps. After a while
-/// the faults end, and then every job must end too. Throws a std::string with what went wrong.
+/// refuses; some workers' films are wrong; units and finishing fail; jobs are paused and cancelled;
+/// the clock jumps. After a while the faults end, and then every job must end too. Throws a
+/// std::string with what went wrong.
 class SimulatedWorld {
  public:
   explicit SimulatedWorld(uint64_t seed) : random_(seed) {
@@ -38,6 +39,12 @@ class SimulatedWorld {
       w.name = "class " + std::to_string(i % static_cast<size_t>(classes));
       w.threads = number(1, 3);
       w.slowness = chance(0.1) ? 20 : 0.2 + 2 * uniform();
+    }
+    // Where two agree against one, the wrong one is found out: there must be enough of a class.
+    if (classes == 1 && workers > 2 && chance(0.5)) {
+      for (size_t i = 0; i < (workers > 4 ? 2U : 1U); ++i) workers_[i].corrupt = true;
+      corrupt_ = true;
+      if (chance(0.7)) options_.copy_after = std::chrono::milliseconds(number(20, 500));
     }
     const int jobs = number(1, 3);
     for (int i = 1; i <= jobs; ++i) make_job(JobId{static_cast<uint64_t>(i)});
@@ -70,6 +77,11 @@ class SimulatedWorld {
   uint64_t copies_revoked = 0;
   uint64_t overlaps = 0;
   uint64_t frames_restarted = 0;
+  uint64_t conflicts = 0;
+  uint64_t quarantines = 0;
+  uint64_t tiles_voided = 0;
+  uint64_t frames_reopened = 0;
+  uint64_t frames_wrong = 0;  ///< finished before anybody compared
 
  private:
   [[noreturn]] static void fail(const std::string& what) { throw what; }
@@ -119,6 +131,7 @@ class SimulatedWorld {
     ++options_.incarnation;
     scheduler_ = std::make_unique<Scheduler>(options_);
     woken_ = false;
+    records_.clear();
     for (auto& [id, job] : jobs_) {
       if (job.ended) continue;
       for (auto& [number, frame] : job.frames) {
@@ -128,7 +141,7 @@ class SimulatedWorld {
       }
       for (const int32_t f : job.stored.finished) job.frames[f].over = true;
       for (const FailedFrame& f : job.stored.failed) job.frames[f.frame].over = true;
-      for (const AcceptedUnit& a : job.stored.accepted) add_to_film(job, a.unit);
+      for (const AcceptedUnit& a : job.stored.accepted) add_to_film(job, a, 0);
       tell(JobAdded{id, job.plan, job.stored});
       if (job.paused) tell(JobPaused{id});
     }
@@ -139,6 +152,7 @@ class SimulatedWorld {
     scheduler_.reset();
     ++generation_;
     storing_.clear();
+    unsettled_.clear();
     for (SimWorker& w : workers_) w.connected = false;
     after(std::chrono::milliseconds(number(1, 5000)), [this] {
       start_coordinator();
@@ -150,6 +164,7 @@ class SimulatedWorld {
 
   void tell(const Event& event) {
     if (!scheduler_) return;
+    if (const auto* result = std::get_if<ResultArrived>(&event); result && refused(*result)) return;
     for (const Action& action : scheduler_->handle(event, now_)) {
       std::visit([this](const auto& a) { act(a); }, action);
     }
@@ -165,6 +180,15 @@ class SimulatedWorld {
     }
   }
 
+  /// Whether the coordinator takes nothing from the worker, because one before it had found it out.
+  bool refused(const ResultArrived& result) {
+    const uint64_t by = workers_[index_of(result.worker)].quarantined_by;
+    if (by == 0 || by == generation_ + 1) return false;
+    send(result.worker, [this, result](SimWorker& w) { drop(w, result.job, result.unit, {}); });
+    tell(UnitReturned{result.worker, result.lease, result.job, result.unit});
+    return true;
+  }
+
   void tell_later(const Event& event) {
     after(delay(), [this, event, g = generation_] {
       if (g == generation_) tell(event);
@@ -178,13 +202,16 @@ class SimulatedWorld {
 
   SimFrame& frame_of(JobId job, int32_t frame) { return jobs_.at(job).frames.at(frame); }
 
-  void add_to_film(SimJob& job, const core::Unit& unit) {
+  void add_to_film(SimJob& job, const AcceptedUnit& accepted, uint64_t generation) {
+    const core::Unit& unit = accepted.unit;
     SimFrame& frame = job.frames.at(unit.frame);
+    const uint8_t by = accepted.digest[1];
     for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
-      if (!frame.batches.insert({unit.tile.x0, unit.tile.y0, b}).second) {
+      const SimBatch batch{value_of(unit.frame, unit.tile, b) + by, by, generation};
+      if (!frame.batches.insert({{unit.tile.x0, unit.tile.y0, b}, batch}).second) {
         fail("a batch is counted twice");
       }
-      frame.sum += value_of(unit.frame, unit.tile, b);
+      frame.sum += batch.value;
     }
   }
 
@@ -198,6 +225,10 @@ class SimulatedWorld {
   }
 
   void act(const Persist& a) {
+    if (const auto* unit = std::get_if<UnitRecord>(&a.record)) {
+      records_[a.id] = unit->accepted;
+      unsettled_.insert({unit->job, a.id});
+    }
     ++storing_[frame_of(a.record)];
     store_later(a);
   }
@@ -212,6 +243,9 @@ class SimulatedWorld {
     if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
       return {done->job, done->frame};
     }
+    if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
+      return {voided->job, voided->frame};
+    }
     const auto& again = std::get<FrameRestartedRecord>(record);
     return {again.job, again.frame};
   }
@@ -225,11 +259,16 @@ class SimulatedWorld {
           storing_[frame_of(a.record)] > 1) {
         return store_later(a);
       }
+      if (const auto* voided = std::get_if<TileVoidedRecord>(&a.record);
+          voided && stores_unit_of(*voided)) {
+        return store_later(a);
+      }
       if (!refuse) store(a.record);
       // Durable now; but nobody hears of it if the coordinator dies before the next line runs.
       after(delay(), [this, a, refuse, g] {
         if (g != generation_) return;
         --storing_[frame_of(a.record)];
+        unsettled_.erase({frame_of(a.record).first, a.id});
         if (refuse) {
           tell(PersistFailed{a.id, "disk full"});
         } else {
@@ -237,6 +276,18 @@ class SimulatedWorld {
         }
       });
     });
+  }
+
+  /// Whether a film of the tile is still on its way to the disk, or was said to be and nobody knows
+  /// yet that it has arrived.
+  bool stores_unit_of(const TileVoidedRecord& voided) const {
+    for (const auto& [id, accepted] : records_) {
+      if (accepted.unit.frame == voided.frame && accepted.unit.tile == voided.tile &&
+          unsettled_.contains({voided.job, id})) {
+        return true;
+      }
+    }
+    return false;
   }
 
   void store(const Record& record) {
@@ -249,6 +300,13 @@ class SimulatedWorld {
       jobs_.at(done->job).stored.finished.push_back(done->frame);
     } else if (const auto* failed = std::get_if<FrameFailedRecord>(&record)) {
       jobs_.at(failed->job).stored.failed.push_back(failed->failed);
+    } else if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
+      SimJob& job = jobs_.at(voided->job);
+      std::erase_if(job.stored.accepted, [&](const AcceptedUnit& u) {
+        const bool there = u.unit.frame == voided->frame && u.unit.tile == voided->tile;
+        if (there) job.stored_units.erase(name(u.unit));
+        return there;
+      });
     } else {
       const auto& again = std::get<FrameRestartedRecord>(record);
       SimJob& job = jobs_.at(again.job);
@@ -268,7 +326,7 @@ class SimulatedWorld {
   void act(const Merge& a) {
     if (!is_stored(a.job, a.unit)) fail("a film is merged that is not durable");
     if (frame_of(a.job, a.unit.frame).over) fail("a film is merged into a frame that is over");
-    add_to_film(jobs_.at(a.job), a.unit);
+    add_to_film(jobs_.at(a.job), records_.at(a.record), generation_ + 1);
   }
 
   void act(const FinishFrame& a) {
@@ -281,7 +339,18 @@ class SimulatedWorld {
         oracle += value_of(a.frame, grid.tile(t), b);
       }
     }
-    if (frame.sum != oracle) fail("a film is finished that is not the frame's");
+    bool wrong = false;
+    for (const auto& [place, batch] : frame.batches) {
+      if (batch.corrupted_by == 0) continue;
+      wrong = true;
+      // It may never have been compared, or the coordinator that knew whose it was has died.
+      const uint64_t found_out_by = workers_[batch.corrupted_by - 1U].quarantined_by;
+      if (found_out_by != 0 && batch.generation == found_out_by) {
+        fail("a film is finished with what a worker did that had been found out");
+      }
+    }
+    frames_wrong += wrong;
+    if (!wrong && frame.sum != oracle) fail("a film is finished that is not the frame's");
     if (frame.unfinishable || fault()) {
       tell_later(FinishFailed{a.job, a.frame, "no room for a picture"});
     } else {
@@ -324,7 +393,28 @@ class SimulatedWorld {
     job.ended = true;
   }
 
-  void act(const Conflict&) { fail("a conflict between equal films"); }
+  void act(const Conflict&) {
+    ++conflicts;
+    if (!corrupt_) fail("a conflict between equal films");
+  }
+  void act(const Quarantine& a) {
+    ++quarantines;
+    SimWorker& w = workers_[index_of(a.worker)];
+    if (!w.corrupt) fail("a good worker is quarantined");
+    w.quarantined_by = generation_ + 1;
+  }
+  void act(const TileVoided& a) {
+    ++tiles_voided;
+    SimFrame& frame = frame_of(a.job, a.frame);
+    if (frame.over) fail("a tile of a frame that is over is voided");
+    std::erase_if(frame.batches, [&](const auto& entry) {
+      const auto& [place, batch] = entry;
+      if (std::get<0>(place) != a.tile.x0 || std::get<1>(place) != a.tile.y0) return false;
+      frame.sum -= batch.value;
+      return true;
+    });
+  }
+  void act(const FrameReopened&) { ++frames_reopened; }
 
   // What goes to workers.
   void act(const Lease& a) {
@@ -359,9 +449,13 @@ class SimulatedWorld {
 
   // Workers and the network.
 
+  // The scheduler's number 0 is nobody's.
+  static WorkerId id_of(size_t i) { return WorkerId{i + 1}; }
+  static size_t index_of(WorkerId id) { return static_cast<size_t>(id) - 1; }
+
   template <class Do>
   void send(WorkerId id, Do what) {
-    const auto i = static_cast<size_t>(id);
+    const size_t i = index_of(id);
     const int times = fault() ? number(0, 2) : 1;
     for (int t = 0; t < times; ++t) {
       after(delay(), [this, i, what, s = workers_[i].session] {
@@ -386,11 +480,12 @@ class SimulatedWorld {
     w.connected = true;
     ++w.session;
     w.asked = 0;
-    WorkerJoined hello{WorkerId{i}, static_cast<uint32_t>(w.threads), w.name, {}};
+    WorkerJoined hello{id_of(i), static_cast<uint32_t>(w.threads), w.name, {}};
     for (const auto& [order, held] : w.held) {
       hello.in_hand.push_back({held.lease, held.job, held.unit});
     }
     tell(hello);
+    if (w.quarantined_by != 0) tell(WorkerBarred{id_of(i), true});
     ask(i);
     heartbeat(i, w.session);
   }
@@ -398,7 +493,7 @@ class SimulatedWorld {
   void heartbeat(size_t i, uint64_t session) {
     SimWorker& w = workers_[i];
     if (!w.connected || w.session != session) return;
-    WorkerAlive alive{WorkerId{i}, {}};
+    WorkerAlive alive{id_of(i), {}};
     for (const auto& [order, held] : w.held) alive.leases.push_back(held.lease);
     send_up(i, alive);
     for (const auto& [order, held] : w.held) {
@@ -416,7 +511,7 @@ class SimulatedWorld {
     const int more = 2 * w.threads - busy - w.asked;
     if (more <= 0) return;
     w.asked += more;
-    send_up(i, WorkRequested{WorkerId{i}, static_cast<uint32_t>(more)});
+    send_up(i, WorkRequested{id_of(i), static_cast<uint32_t>(more)});
   }
 
   void take(SimWorker& w, const UnitHeld& unit) {
@@ -440,7 +535,7 @@ class SimulatedWorld {
                           held.unit.tile.y0 == jobs_[held.job].plan.region.y0;
     if (poisoned || (frame.bad_luck > 0 && fault())) {
       if (!poisoned) --frame.bad_luck;
-      send_up(i, UnitFailed{WorkerId{i}, held.lease, held.job, held.unit, "it hurt"});
+      send_up(i, UnitFailed{id_of(i), held.lease, held.job, held.unit, "it hurt"});
       w.held.erase(it);
     } else if (fault() && held.unit.batches.count > 1) {
       // It drains: half of the batches, the rest goes back.
@@ -451,7 +546,7 @@ class SimulatedWorld {
       deliver(i, half);
       w.held.emplace(order, half);
     } else if (fault()) {
-      send_up(i, UnitReturned{WorkerId{i}, held.lease, held.job, held.unit});
+      send_up(i, UnitReturned{id_of(i), held.lease, held.job, held.unit});
       w.held.erase(it);
     } else {
       held.rendered = true;
@@ -463,7 +558,8 @@ class SimulatedWorld {
   void deliver(size_t i, const UnitHeld& held) {
     Digest digest{};
     digest[0] = static_cast<uint8_t>(held.unit.frame);
-    send_up(i, ResultArrived{WorkerId{i}, held.lease, held.job, held.unit, digest,
+    if (workers_[i].corrupt) digest[1] = static_cast<uint8_t>(i + 1);
+    send_up(i, ResultArrived{id_of(i), held.lease, held.job, held.unit, digest,
                              std::chrono::milliseconds(50) * held.unit.batches.count});
   }
 
@@ -495,12 +591,12 @@ class SimulatedWorld {
         ++w.life;
         w.held.clear();
         // It comes back with another build.
-        if (options_.class_patience > Duration{0} && chance(0.3)) w.name += "'";
+        if (options_.class_patience > Duration{0} && !corrupt_ && chance(0.3)) w.name += "'";
       }
       // The coordinator notices now, later, or not before it is back.
       const uint64_t session = w.session;
       after(delay(), [this, i, session] {
-        if (workers_[i].session == session) tell(WorkerLost{WorkerId{i}});
+        if (workers_[i].session == session) tell(WorkerLost{id_of(i)});
       });
       after(std::chrono::milliseconds(number(10, 8000)), [this, i] { connect(i); });
     }
@@ -519,9 +615,9 @@ class SimulatedWorld {
     }
     if (chance(fault_rate_ / 8) && !job->second.ended) tell(FramesRetried{job->first});
     if (chance(fault_rate_ / 2)) {
-      tell(WorkerBarred{WorkerId{i}, true});
+      tell(WorkerBarred{id_of(i), true});
       after(std::chrono::milliseconds(number(10, 20000)), [this, i] {
-        tell(WorkerBarred{WorkerId{i}, false});
+        if (workers_[i].quarantined_by == 0) tell(WorkerBarred{id_of(i), false});
       });
     }
     if (chance(fault_rate_ / 20) && !job->second.ended && scheduler_) {
@@ -545,12 +641,15 @@ class SimulatedWorld {
   TimePoint now_;
   uint64_t serial_ = 0;
   uint64_t generation_ = 0;  ///< of coordinators
+  bool corrupt_ = false;     ///< some workers' films are wrong
   bool woken_ = false;       ///< a Tick is on its way
   std::priority_queue<Happening> events_;
   std::unique_ptr<Scheduler> scheduler_;
   std::vector<SimWorker> workers_;
   std::map<JobId, SimJob> jobs_;
   std::map<std::pair<JobId, int32_t>, int> storing_;  ///< records on their way to the disk
+  std::map<RecordId, AcceptedUnit> records_;          ///< of this coordinator
+  std::set<std::pair<JobId, RecordId>> unsettled_;    ///< films on their way to the disk
 };
 
 }  // namespace hyades::coordinator

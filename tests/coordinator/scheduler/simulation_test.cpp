@@ -25,6 +25,11 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   uint64_t adopted = 0;
   uint64_t revoked = 0;
   uint64_t overlaps = 0;
+  uint64_t conflicts = 0;
+  uint64_t quarantines = 0;
+  uint64_t voided = 0;
+  uint64_t reopened = 0;
+  uint64_t wrong = 0;
   for (uint64_t i = 0; i < worlds; ++i) {
     const uint64_t seed = only != 0 ? only : i + 1;
     SimulatedWorld world(seed);
@@ -41,6 +46,11 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
     adopted += world.adopted;
     revoked += world.copies_revoked;
     overlaps += world.overlaps;
+    conflicts += world.conflicts;
+    quarantines += world.quarantines;
+    voided += world.tiles_voided;
+    reopened += world.frames_reopened;
+    wrong += world.frames_wrong;
   }
   RecordProperty("restarts", std::to_string(restarts));
   RecordProperty("kills", std::to_string(kills));
@@ -52,6 +62,13 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
       static_cast<unsigned long long>(kills), static_cast<unsigned long long>(duplicates),
       static_cast<unsigned long long>(adopted), static_cast<unsigned long long>(revoked),
       static_cast<unsigned long long>(overlaps));
+  std::printf(
+      "%llu conflicts, %llu quarantines, %llu tiles voided, %llu frames reopened; %llu frames "
+      "wrong "
+      "that nobody had compared in time\n",
+      static_cast<unsigned long long>(conflicts), static_cast<unsigned long long>(quarantines),
+      static_cast<unsigned long long>(voided), static_cast<unsigned long long>(reopened),
+      static_cast<unsigned long long>(wrong));
   if (only != 0) return;
   // The worlds must have been bad enough to prove something.
   EXPECT_GE(done, worlds);
@@ -62,6 +79,10 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   EXPECT_GE(adopted, worlds / 2);
   EXPECT_GE(revoked, worlds);
   EXPECT_GE(overlaps, worlds / 100);
+  EXPECT_GE(conflicts, worlds / 20);
+  EXPECT_GE(quarantines, worlds / 50);
+  EXPECT_GE(voided, worlds / 20);
+  EXPECT_GE(reopened, 1U);
 }
 
 }  // namespace

@@ -78,6 +78,30 @@ class ScriptedWorker {
 
   /// Writes a message, by the worker's own thread only.
   void write(const v1::WorkerMessage& message) { stream_->Write(message); }
+  /// The same: renders a unit and delivers it.
+  void deliver(const v1::LeasedUnit& leased) {
+    std::this_thread::sleep_for(script_.unit_time);
+    if (over_) return;
+    const auto unit = farm::from_wire(leased.unit());
+    core::Film film = fake_film(*unit, script_.samples, script_.layout);
+    if (script_.corrupt) script_.corrupt(film);
+    v1::WorkerMessage message;
+    v1::UnitResult& result = *message.mutable_result();
+    *result.mutable_lease() = leased.lease();
+    result.set_job(leased.job());
+    *result.mutable_unit() = leased.unit();
+    const std::vector<std::byte> bytes = core::encode_film(film);
+    result.set_film(bytes.data(), bytes.size());
+    result.set_digest(farm::to_wire(*farm::digest_from_hex(film.digest())));
+    result.set_render_ns(1'000'000);
+    result.set_want(1);
+    {
+      const std::lock_guard lock(mutex_);
+      kept_[key(leased)] = result;
+    }
+    ++delivered_;
+    write(message);
+  }
 
  private:
   using Stream = grpc::ClientReaderWriter<v1::WorkerMessage, v1::CoordinatorMessage>;
@@ -180,30 +204,6 @@ class ScriptedWorker {
     } else if (message.has_drain()) {
       drained_ = true;
     }
-  }
-
-  void deliver(const v1::LeasedUnit& leased) {
-    std::this_thread::sleep_for(script_.unit_time);
-    if (over_) return;
-    const auto unit = farm::from_wire(leased.unit());
-    core::Film film = fake_film(*unit, script_.samples, script_.layout);
-    if (script_.corrupt) script_.corrupt(film);
-    v1::WorkerMessage message;
-    v1::UnitResult& result = *message.mutable_result();
-    *result.mutable_lease() = leased.lease();
-    result.set_job(leased.job());
-    *result.mutable_unit() = leased.unit();
-    const std::vector<std::byte> bytes = core::encode_film(film);
-    result.set_film(bytes.data(), bytes.size());
-    result.set_digest(farm::to_wire(*farm::digest_from_hex(film.digest())));
-    result.set_render_ns(1'000'000);
-    result.set_want(1);
-    {
-      const std::lock_guard lock(mutex_);
-      kept_[key(leased)] = result;
-    }
-    ++delivered_;
-    write(message);
   }
 
   const std::string address_;

@@ -75,6 +75,24 @@ TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
   EXPECT_EQ(store->lines(1, 1, 10)->size(), 1U);
 }
 
+TEST(JobStore, KeepsQuarantinesUntilTheyEnd) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("state.db");
+  {
+    auto store = open(path);
+    ASSERT_TRUE(store->quarantine({"worker-0001", "hot"}).ok());
+    ASSERT_TRUE(store->quarantine({"worker-0002", "odd"}).ok());
+    ASSERT_TRUE(store->quarantine({"worker-0001", "odd as well"}).ok());
+    ASSERT_TRUE(store->end_quarantine("worker-0002").ok());
+  }
+  auto store = open(path);
+  const auto kept = store->quarantines();
+  ASSERT_TRUE(kept.ok());
+  ASSERT_EQ(kept->size(), 1U);
+  EXPECT_EQ(kept->front().worker, "worker-0001");
+  EXPECT_EQ(kept->front().reason, "odd as well");
+}
+
 TEST(JobStore, OneKeyOneJob) {
   const test::TempFolder folder;
   auto store = open(folder.file("state.db"));

@@ -98,6 +98,27 @@ TEST(Film, AWrongContributionCanBeSubtracted) {
   }
 }
 
+TEST(Film, AnErasedTileHasNeverBeenThere) {
+  const FilmLayout layout = make_film_layout(kAllLayers);
+  const PixelRect window{0, 0, 12, 9};
+  Film film(layout, window);
+  Film without(layout, window);
+  for (const PixelRect& tile : {PixelRect{0, 0, 4, 9}, PixelRect{4, 0, 8, 4}, PixelRect{4, 4, 8, 9},
+                                PixelRect{8, 0, 12, 9}}) {
+    const Film part = render(layout, tile, {0, 3});
+    ASSERT_TRUE(film.merge(part).ok());
+    if (tile != PixelRect{4, 4, 8, 9}) {
+      ASSERT_TRUE(without.merge(part).ok());
+    }
+  }
+  film.erase({4, 4, 8, 9});
+  EXPECT_EQ(film.digest(), without.digest());
+  EXPECT_TRUE(film.check().ok());
+  // And it can be rendered again.
+  ASSERT_TRUE(film.merge(render(layout, {4, 4, 8, 9}, {0, 3})).ok());
+  EXPECT_NE(film.digest(), without.digest());
+}
+
 TEST(Film, RefusesWhatDoesNotFitAndChangesNothing) {
   const FilmLayout layout = make_film_layout(kAllLayers);
   const PixelRect window{0, 0, 32, 32};

@@ -1,0 +1,156 @@
+// Renderings of one unit that differ: others decide who is wrong, and what that one did is done
+// again.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/scheduler/scheduler.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// With so many different answers it is not the machines: the unit is no pure function.
+constexpr size_t kMostAnswers = 5;
+
+}  // namespace
+
+/// One more answer for a unit that is held. True where it is now known that it is right and what is
+/// held is wrong.
+bool Scheduler::weigh(JobState& job, FrameSlot& slot, const Extent& extent,
+                      const ResultArrived& e) {
+  FrameState& books = *slot.books;
+  const HeldRecord held = *books.find_held(extent);
+  Dispute* dispute = books.find_dispute(extent);
+  if (dispute == nullptr) {
+    if (held.digest == e.digest) {
+      // Who sends the same again agrees with nobody, and who it was before a restart is not known.
+      if (held.worker != WorkerId{} && held.worker != e.worker) books.verify(extent);
+      return false;
+    }
+    dispute = &books.open_dispute(extent, {held.worker, held.digest});
+  }
+  std::vector<Opinion>& opinions = dispute->opinions;
+  if (std::none_of(opinions.begin(), opinions.end(),
+                   [&](const Opinion& o) { return o.worker == e.worker; })) {
+    opinions.push_back({e.worker, e.digest});
+    const auto agree = std::count_if(opinions.begin(), opinions.end(), [&](const Opinion& o) {
+      return o.worker != WorkerId{} && o.digest == e.digest;
+    });
+    if (agree > 1) {
+      decide(job, slot, Dispute(*dispute), e);
+      return held.digest != e.digest;
+    }
+    if (opinions.size() >= kMostAnswers) {
+      const core::PixelRect tile = job.grid.tile(extent.tile);
+      fail_frame(job, slot,
+                 fmt::format("{} workers rendered tile {},{} batches {}-{} to {} different films",
+                             kMostAnswers, tile.x0, tile.y0, extent.batches.first,
+                             extent.batches.end() - 1, kMostAnswers));
+      return false;
+    }
+  }
+  update_ready(job);
+  return false;
+}
+
+/// Two workers agree, of whom `e` is the second: the others are wrong.
+void Scheduler::decide(JobState& job, FrameSlot& slot, const Dispute& dispute,
+                       const ResultArrived& e) {
+  FrameState& books = *slot.books;
+  const Extent extent = dispute.extent;
+  for (const Holder& holder : books.end_assignment(extent)) {
+    drop_from_lease(holder.lease, extent);
+    if (holder.lease != e.lease) say(Revoke{holder.worker, holder.lease, job.id, e.unit});
+  }
+  books.end_dispute(extent);
+  if (books.find_held(extent)->digest == e.digest) {
+    books.verify(extent);
+  } else {
+    books.doubt_tile(extent.tile);
+  }
+  for (const Opinion& o : dispute.opinions) {
+    if (o.digest == e.digest || o.worker == WorkerId{}) continue;
+    quarantine(o.worker,
+               fmt::format("rendered job {} frame {} tile {},{} batches {}-{} to other "
+                           "bits than two other workers",
+                           static_cast<uint64_t>(job.id), slot.frame, e.unit.tile.x0,
+                           e.unit.tile.y0, extent.batches.first, extent.batches.end() - 1));
+  }
+  void_doubted(job, slot);
+  update_ready(job);
+  complete_if_so(job, slot);
+}
+
+/// Gives the worker a disputed unit that it has not rendered.
+bool Scheduler::grant_check(JobState& job, uint32_t slot, WorkerId id, Worker& worker,
+                            const MayTry& may_try) {
+  FrameState& books = *job.slots[slot].books;
+  const auto extent = books.next_check(id, may_try);
+  if (!extent) return false;
+  books.assign(*extent, {id, {options_.incarnation, next_lease_}}, next_assignment_++);
+  --worker.wanted;
+  new_lease(id, worker, job, slot, false, {*extent});
+  update_ready(job);
+  return true;
+}
+
+/// Nothing more for the worker and nothing more from it; and what it gave to open frames, where no
+/// other agreed, is rendered again. A broken machine may err now and then, so that an earlier
+/// unit that was right says nothing of the next.
+void Scheduler::quarantine(WorkerId id, const std::string& reason) {
+  if (!quarantined_.insert(id).second) return;
+  say(Quarantine{id, reason});
+  if (Worker* worker = find_worker(id)) {
+    const std::vector<uint64_t> numbers = worker->leases;
+    for (const uint64_t number : numbers) release_lease(number, true);
+    if (!std::exchange(worker->barred, true)) count_class(worker->worker_class, -1);
+  }
+  for (const auto& [number, job] : jobs_) {
+    for (const uint32_t i : job->in_flight) {
+      FrameSlot& slot = job->slots[i];
+      if (!slot.books) continue;
+      for (const uint32_t tile : slot.books->unverified_tiles(id)) slot.books->doubt_tile(tile);
+      void_doubted(*job, slot);
+    }
+    update_ready(*job);
+  }
+}
+
+/// Has tiles in doubt voided; of a frame whose outputs are being made when that is over.
+void Scheduler::void_doubted(JobState& job, FrameSlot& slot) {
+  if (slot.phase != FramePhase::rendering) return;
+  for (const uint32_t tile : slot.books->newly_doubted()) {
+    persist(TileVoidedRecord{job.id, slot.frame, job.grid.tile(tile)}, {});
+  }
+}
+
+void Scheduler::tile_voided(const TileVoidedRecord& record) {
+  if (!still_wanted(record)) return;
+  JobState& job = *find_job(record.job);
+  auto batches = job.slot(record.frame)->books->void_tile(*job.grid.index_of(record.tile));
+  say(TileVoided{record.job, record.frame, record.tile, std::move(batches)});
+  update_ready(job);
+  open_frames(job);
+}
+
+/// Whether a record that could not be made durable still says something: a tile that has begun
+/// again with its frame must not be voided once more, for its films are new.
+bool Scheduler::still_wanted(const Record& record) {
+  const auto* voided = std::get_if<TileVoidedRecord>(&record);
+  if (voided == nullptr) return true;
+  JobState* job = find_job(voided->job);
+  const FrameSlot* slot = job ? job->slot(voided->frame) : nullptr;
+  return slot != nullptr && slot->phase == FramePhase::rendering &&
+         slot->books->in_doubt(*job->grid.index_of(voided->tile));
+}
+
+/// A conflict showed while the outputs were made: the frame goes on until it is settled.
+void Scheduler::reopen_frame(JobState& job, FrameSlot& slot) {
+  slot.phase = FramePhase::rendering;
+  say(FrameReopened{job.id, slot.frame});
+  void_doubted(job, slot);
+  update_ready(job);
+}
+
+}  // namespace hyades::coordinator

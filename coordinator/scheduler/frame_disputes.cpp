@@ -1,0 +1,89 @@
+// Films that differ, and films that are taken back.
+#include <algorithm>
+
+#include "coordinator/scheduler/frame_state.h"
+
+namespace hyades::coordinator {
+
+Dispute* FrameState::find_dispute(const Extent& e) {
+  const auto it = std::find_if(disputes_.begin(), disputes_.end(),
+                               [&](const Dispute& d) { return d.extent == e; });
+  return it == disputes_.end() ? nullptr : &*it;
+}
+
+Dispute& FrameState::open_dispute(const Extent& e, const Opinion& first) {
+  return disputes_.emplace_back(Dispute{e, {first}});
+}
+
+void FrameState::end_dispute(const Extent& e) {
+  std::erase_if(disputes_, [&](const Dispute& d) { return d.extent == e; });
+}
+
+std::optional<Extent> FrameState::next_check(WorkerId worker, const MayTry& may_try) const {
+  for (const Dispute& d : disputes_) {
+    const bool heard = std::any_of(d.opinions.begin(), d.opinions.end(),
+                                   [&](const Opinion& o) { return o.worker == worker; });
+    if (heard || being_checked(d.extent)) continue;
+    const Blame* blame = find_blame(d.extent);
+    if (blame == nullptr || may_try(blame->workers)) return d.extent;
+  }
+  return std::nullopt;
+}
+
+bool FrameState::check_waits() const {
+  return std::any_of(disputes_.begin(), disputes_.end(),
+                     [&](const Dispute& d) { return !being_checked(d.extent); });
+}
+
+void FrameState::verify(const Extent& e) {
+  for (HeldRecord& record : records_[e.tile]) {
+    if (record.batches == e.batches) record.verified = true;
+  }
+}
+
+std::vector<uint32_t> FrameState::unverified_tiles(WorkerId worker) const {
+  std::vector<uint32_t> tiles;
+  for (const auto& [tile, records] : records_) {
+    if (std::any_of(records.begin(), records.end(),
+                    [&](const HeldRecord& r) { return r.worker == worker && !r.verified; })) {
+      tiles.push_back(tile);
+    }
+  }
+  std::sort(tiles.begin(), tiles.end());
+  return tiles;
+}
+
+void FrameState::doubt_tile(uint32_t tile) {
+  voiding_.emplace(tile, false);
+  // All of it is rendered again: there is nothing left to quarrel about.
+  std::erase_if(disputes_, [&](const Dispute& d) { return d.extent.tile == tile; });
+}
+
+std::vector<uint32_t> FrameState::newly_doubted() {
+  std::vector<uint32_t> tiles;
+  for (auto& [tile, named] : voiding_) {
+    if (!named) tiles.push_back(tile);
+    named = true;
+  }
+  return tiles;
+}
+
+std::vector<core::BatchRange> FrameState::void_tile(uint32_t tile) {
+  voiding_.erase(tile);
+  const core::BatchRange all{0, batches_};
+  const auto records = records_.find(tile);
+  if (records == records_.end()) return {};
+  std::vector<core::BatchRange> voided;
+  for (const HeldRecord& record : records->second) {
+    if (record.pending == RecordId{}) durable_ -= record.batches.count;
+    voided.push_back(record.batches);
+  }
+  records_.erase(records);
+  const uint64_t before = BatchMap::count_free(held_, leased_, tile, all);
+  held_.clear(tile, all);
+  free_ += BatchMap::count_free(held_, leased_, tile, all) - before;
+  open_.push_back({tile, all});
+  return voided;
+}
+
+}  // namespace hyades::coordinator

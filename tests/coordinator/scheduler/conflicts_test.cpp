@@ -1,0 +1,172 @@
+// Two renderings of one unit that differ.
+#include "tests/coordinator/scheduler/scheduler_testing.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using Bench = SchedulerBench;
+
+constexpr WorkerId kCora{3};
+constexpr WorkerId kDora{4};
+constexpr WorkerId kEmil{5};
+
+/// A frame of two tiles of which Anna has rendered the first, and Bert the first too, otherwise.
+class Conflicts : public testing::Test {
+ protected:
+  void SetUp() override {
+    b.join(kAnna);
+    b.join(kBert);
+    b.add(small_plan({1}, 1));
+    b.tell(FrameOpened{kJob, 1});
+    anna_ = b.ask(kAnna);
+    deliver_durably(anna_, 1);
+    b.deliver(by(kBert), 0, 2);
+    EXPECT_EQ(b.only<Conflict>().first, kAnna);
+    EXPECT_EQ(b.only<Conflict>().second, kBert);
+    EXPECT_EQ(b.only<Reject>().reason, RejectReason::conflict);
+    EXPECT_TRUE(b.all<Quarantine>().empty());
+  }
+
+  Lease by(WorkerId worker) const {
+    Lease lease = anna_;
+    lease.worker = worker;
+    return lease;
+  }
+  void deliver_durably(const Lease& lease, uint8_t bits) {
+    b.deliver(lease, 0, bits);
+    b.tell(Persisted{b.only<Persist>().id});
+  }
+
+  Bench b;
+  Lease anna_;
+};
+
+TEST_F(Conflicts, AThirdWorkerIsAskedAndNeitherOfTheTwo) {
+  EXPECT_EQ(b.scheduler.disputed_units(kJob), 1U);
+  // They get the other tile, and then nothing: it waits.
+  const Lease other = b.ask(kAnna);
+  EXPECT_NE(other.units[0], anna_.units[0]);
+  b.tell(WorkRequested{kBert, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  deliver_durably(other, 1);
+  EXPECT_TRUE(b.all<FinishFrame>().empty());
+  b.join(kCora);
+  EXPECT_EQ(b.ask(kCora).units[0], anna_.units[0]);
+}
+
+TEST_F(Conflicts, TheSecondWasWrong) {
+  deliver_durably(b.ask(kAnna), 1);
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 1);
+  EXPECT_EQ(b.only<Quarantine>().worker, kBert);
+  EXPECT_EQ(b.only<Acknowledge>().worker, kCora);
+  EXPECT_TRUE(b.all<Persist>().empty());
+  EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+}
+
+TEST_F(Conflicts, TheFirstWasWrongAndAllItDidIsRenderedAgain) {
+  const Lease other = b.ask(kAnna);
+  deliver_durably(other, 1);
+  b.join(kCora);
+  const Lease check = b.ask(kCora);
+  b.deliver(check, 0, 2);
+  EXPECT_EQ(b.only<Quarantine>().worker, kAnna);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
+  const auto voids = b.all<Persist>();
+  ASSERT_EQ(voids.size(), 2U);
+  EXPECT_EQ(std::get<TileVoidedRecord>(voids[0].record).tile, anna_.units[0].tile);
+  EXPECT_EQ(std::get<TileVoidedRecord>(voids[1].record).tile, other.units[0].tile);
+  b.deliver(by(kBert), 0, 2);  // too early
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
+  b.tell(Persisted{voids[0].id});
+  EXPECT_EQ(b.only<TileVoided>().tile, anna_.units[0].tile);
+  b.tell(Persisted{voids[1].id});
+  deliver_durably(check, 2);  // sent again, it counts
+  EXPECT_EQ(b.all<Merge>().size(), 1U);
+  const Lease again = b.ask(kBert);
+  EXPECT_EQ(again.units[0], other.units[0]);
+  deliver_durably(again, 2);
+  EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+}
+
+TEST_F(Conflicts, WhatAnotherAgreedOnIsKept) {
+  const Lease other = b.ask(kAnna);
+  deliver_durably(other, 1);
+  Lease same = other;
+  same.worker = kBert;
+  b.deliver(same, 0, 1);
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 2);
+  EXPECT_EQ(std::get<TileVoidedRecord>(b.only<Persist>().record).tile, anna_.units[0].tile);
+}
+
+TEST_F(Conflicts, AQuarantinedWorkerIsNotBelievedAndGetsNothing) {
+  const Lease other = b.ask(kBert);
+  b.join(kCora);
+  b.tell(WorkRequested{kBert, 1});
+  b.deliver(b.ask(kCora), 0, 1);
+  EXPECT_EQ(b.only<Revoke>().lease, other.lease);
+  b.deliver(other, 0, 2);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::unknown);
+  b.join(kBert);
+  b.tell(WorkRequested{kBert, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(WorkerBarred{kBert, false});
+  EXPECT_EQ(b.all<Lease>().size(), 1U);
+}
+
+TEST_F(Conflicts, WhereThreeDifferAFourthDecides) {
+  b.join(kCora);
+  b.join(kDora);
+  b.deliver(b.ask(kCora), 0, 3);
+  EXPECT_TRUE(b.all<Quarantine>().empty());
+  b.deliver(b.ask(kDora), 0, 2);
+  const auto odd = b.all<Quarantine>();
+  ASSERT_EQ(odd.size(), 2U);
+  EXPECT_EQ(odd[0].worker, kAnna);
+  EXPECT_EQ(odd[1].worker, kCora);
+}
+
+TEST_F(Conflicts, FiveDifferentAnswersFailTheFrameAndBlameNobody) {
+  uint8_t bits = 3;
+  for (const WorkerId worker : {kCora, kDora, kEmil}) {
+    b.join(worker);
+    b.deliver(b.ask(worker), 0, bits++);
+    EXPECT_TRUE(b.all<Quarantine>().empty());
+  }
+  const auto failed = std::get<FrameFailedRecord>(b.only<Persist>().record);
+  EXPECT_EQ(failed.failed.reason, "5 workers rendered tile 0,0 batches 0-0 to 5 different films");
+}
+
+TEST_F(Conflicts, ThatShowWhileTheOutputsAreMadeAreStillDecided) {
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 1);
+  const Lease last = b.ask(kAnna);
+  deliver_durably(last, 1);
+  ASSERT_EQ(b.all<FinishFrame>().size(), 1U);
+  Lease late = last;
+  late.worker = kCora;
+  b.deliver(late, 0, 2);
+  EXPECT_EQ(b.all<Conflict>().size(), 1U);
+  b.tell(FinishDone{kJob, 1});
+  EXPECT_EQ(b.all<FrameReopened>().size(), 1U);
+  EXPECT_TRUE(b.all<Persist>().empty());
+  b.join(kDora);
+  b.deliver(b.ask(kDora), 0, 1);
+  EXPECT_EQ(b.only<Quarantine>().worker, kCora);
+  EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+}
+
+TEST_F(Conflicts, AVoidThatIsNotDurableIsTriedAgain) {
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 2);
+  const Persist first = b.only<Persist>();
+  b.tell(PersistFailed{first.id, "disk full"});
+  EXPECT_TRUE(b.all<TileVoided>().empty());
+  b.now = *b.scheduler.next_wake();
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Persist>().id, first.id);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
