@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -9,6 +7,7 @@
 
 #include "cli/load_job.h"
 #include "core/base/hash.h"
+#include "core/base/machine.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
 #include "core/render/frame_renderer.h"
@@ -50,13 +49,6 @@ std::string duration_in_words(double hours) {
   const double years = hours / (24.0 * 365.25);
   if (years < 1.0) return core::format_duration(hours * 3600.0);
   return years < 1000.0 ? fmt::format("{:.1f} years", years) : fmt::format("{:.3g} years", years);
-}
-
-/// Bytes; 0: not known.
-uint64_t machine_memory() {
-  const long pages = ::sysconf(_SC_PHYS_PAGES);
-  const long size = ::sysconf(_SC_PAGESIZE);
-  return pages > 0 && size > 0 ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(size) : 0;
 }
 
 }  // namespace
@@ -115,7 +107,7 @@ int check_command(int argc, char** argv) {
       "  memory     about %s (geometry %s, textures %s, film %s)\n",
       core::format_bytes(memory).c_str(), core::format_bytes((*scene)->world->memory()).c_str(),
       core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(film).c_str());
-  if (const uint64_t here = machine_memory(); here > 0 && memory > here) {
+  if (const uint64_t here = core::machine_memory(); here > 0 && memory > here) {
     std::printf("  warning    this machine has %s of memory only\n",
                 core::format_bytes(here).c_str());
   }

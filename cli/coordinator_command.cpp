@@ -1,8 +1,5 @@
 // `hyades coordinator`: owns jobs, leases units, merges films. It links no renderer.
 
-#include <unistd.h>
-
-#include <climits>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -14,6 +11,7 @@
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/server.h"
 #include "core/base/atomic_file.h"
+#include "core/base/machine.h"
 
 namespace {
 
@@ -23,15 +21,6 @@ using hyades::coordinator::Duration;
 using hyades::coordinator::Server;
 
 constexpr int kBadArguments = 2;
-
-/// The folder of this program; its fellow programs lie beside it.
-std::string own_folder() {
-  char path[PATH_MAX];
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-  if (length <= 0) return {};
-  const std::string self(path, static_cast<size_t>(length));
-  return self.substr(0, self.rfind('/') + 1);
-}
 
 Duration seconds(double value) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
@@ -122,7 +111,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kBadArguments;
   }
-  arguments.brain.finisher = own_folder() + "hyades-film";
+  arguments.brain.finisher = hyades::core::program_folder() + "hyades-film";
   arguments.brain.unit_time = seconds(arguments.unit_seconds);
   arguments.brain.lease_time = seconds(arguments.lease_seconds);
   arguments.brain.class_patience = seconds(arguments.class_patience);

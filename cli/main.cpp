@@ -4,13 +4,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <string>
 #include <vector>
 
 #include "cli/completion.h"
+#include "core/base/machine.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 
@@ -70,15 +70,6 @@ void print_help() {
       "\n'hyades COMMAND --help' tells more about a command. docs/job.md describes jobs.\n");
 }
 
-/// The folder of this program; its fellow programs lie beside it.
-std::string own_folder() {
-  char path[PATH_MAX];
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-  if (length <= 0) return {};
-  const std::string self(path, static_cast<size_t>(length));
-  return self.substr(0, self.rfind('/') + 1);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -95,7 +86,7 @@ int main(int argc, char** argv) {
   for (const Command& command : kCommands) {
     if (name == command.name) {
       if (command.program == nullptr) return hyades::cli::completion_command(argc - 1, argv + 1);
-      const std::string program = own_folder() + command.program;
+      const std::string program = hyades::core::program_folder() + command.program;
       execv(program.c_str(), argv);
       std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(),
                    std::strerror(errno));

@@ -1,7 +1,6 @@
 // `hyades worker`: works for a coordinator.
 #include <unistd.h>
 
-#include <climits>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -10,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/base/machine.h"
 #include "core/base/parallel.h"
 #include "worker/worker.h"
 
@@ -28,8 +28,7 @@ void on_signal(int signal) {
 
 /// What this machine or its container has, less a fifth for all else.
 uint64_t usable_memory() {
-  uint64_t bytes =
-      static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+  uint64_t bytes = hyades::core::machine_memory();
   uint64_t limit = 0;
   if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit && limit < bytes) bytes = limit;
   return bytes / 5 * 4;
@@ -43,14 +42,6 @@ std::string default_cache() {
   return std::string(home == nullptr ? "/var/tmp" : home) + "/.cache/hyades";
 }
 
-/// The program beside this one.
-std::string renderer_path() {
-  char path[PATH_MAX];
-  const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-  const std::string self(path, length > 0 ? static_cast<size_t>(length) : 0);
-  return self.substr(0, self.rfind('/') + 1) + "hyades-worker-render";
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -60,7 +51,7 @@ int main(int argc, char** argv) {
   options.memory = usable_memory();
   options.cache = default_cache();
   options.cache_size = uint64_t{16} << 30U;
-  options.renderer = renderer_path();
+  options.renderer = hyades::core::program_folder() + "hyades-worker-render";
   app.add_option("--coordinator", options.coordinator.address, "HOST:PORT")
       ->envname("HYADES_COORDINATOR")
       ->capture_default_str();

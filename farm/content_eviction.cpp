@@ -54,7 +54,7 @@ void list_files(const std::string& folder, std::vector<StoredFile>& files) {
 
 /// Removes `path` unless somebody holds a lock on it.
 bool remove_if_free(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+  const core::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   return file.valid() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) == 0;
 }
 
@@ -82,7 +82,7 @@ Status ContentStore::make_room(const std::string& name, uint64_t bytes) {
   }
   // One process at a time, so that two do not both evict for the same shortage.
   const std::string lock_path = options_.folder + "/lock";
-  const Descriptor lock(::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  const core::Descriptor lock(::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   if (!lock.valid() || ::flock(lock.get(), LOCK_EX) != 0) {
     return Error{"cannot lock " + lock_path + ": " + core::io_reason(errno)};
   }

@@ -34,7 +34,7 @@ Status make_folder(const std::string& path) {
 }
 
 Status sync_folder(const std::string& path) {
-  const Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const core::Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!folder.valid() || ::fsync(folder.get()) != 0) {
     return Error{"cannot write " + path + ": " + core::io_reason(errno)};
   }
@@ -114,7 +114,7 @@ Result<ContentPin> ContentStore::pin(const std::string& name) {
   if (!is_content_name(name)) return not_a_name(name);
   const std::string path = path_of(name);
   while (true) {
-    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+    core::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
     struct stat info {};
     if (!file.valid()) {
       const std::string why = errno == ENOENT ? "it is not here" : core::io_reason(errno);

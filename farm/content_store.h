@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "core/base/bytes.h"
+#include "core/base/descriptor.h"
 #include "core/base/result.h"
 #include "farm/content_writer.h"
-#include "farm/descriptor.h"
 
 namespace hyades::farm {
 
@@ -23,10 +23,10 @@ bool is_content_name(std::string_view name);
 /// of this process, however that comes).
 class ContentPin {
  public:
-  explicit ContentPin(Descriptor locked) : locked_(std::move(locked)) {}
+  explicit ContentPin(core::Descriptor locked) : locked_(std::move(locked)) {}
 
  private:
-  Descriptor locked_;
+  core::Descriptor locked_;
 };
 
 /// Files named by the SHA-256 of their bytes, in one folder. A file has its name only once all its

@@ -58,7 +58,7 @@ Status ContentWriter::take_partial() {
   const std::string common = store_->options_.folder + "/partial/" + name_;
   for (int attempt = 0; attempt < 100; ++attempt) {
     path_ = common;
-    file_ = Descriptor(::open(path_.c_str(), kOpenFlags, 0600));
+    file_ = core::Descriptor(::open(path_.c_str(), kOpenFlags, 0600));
     if (!file_.valid()) return write_failure(path_, errno);
     if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) {
       // Between opening and locking it the last writer may have finished or thrown it away.
@@ -67,7 +67,7 @@ Status ContentWriter::take_partial() {
     }
     if (errno != EWOULDBLOCK) return write_failure(path_, errno);
     path_ = fmt::format("{}.{}.{}", common, ::getpid(), attempt);
-    file_ = Descriptor(::open(path_.c_str(), kOpenFlags | O_EXCL, 0600));
+    file_ = core::Descriptor(::open(path_.c_str(), kOpenFlags | O_EXCL, 0600));
     if (file_.valid()) {
       resumable_ = false;
       if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) return write_failure(path_, errno);

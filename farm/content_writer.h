@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
+#include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/result.h"
-#include "farm/descriptor.h"
 
 namespace hyades::farm {
 
@@ -47,7 +47,7 @@ class ContentWriter {
   uint64_t offset_ = 0;
   std::string path_;       ///< of the unfinished file
   bool resumable_ = true;  ///< whether a later writer will find it
-  Descriptor file_;        ///< locked exclusively
+  core::Descriptor file_;  ///< locked exclusively
   core::Sha256Stream hash_;
 };
 

@@ -91,6 +91,10 @@ core::Result<core::FilmInfo> from_wire(const v1::FilmHeader& wire) {
   return info;
 }
 
+std::string hex_from_wire(const std::string& bytes) {
+  return core::to_hex({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+}
+
 core::Result<core::Sha256> digest_from_hex(const std::string& hex) {
   core::Sha256 digest{};
   const auto value = [](char c) {

@@ -26,6 +26,9 @@ inline constexpr uint64_t kMaxMessageBytes = uint64_t{16} << 20U;
 /// The most bytes of a WorkerMessage, which may hold a film.
 inline constexpr uint64_t kMaxResultBytes = uint64_t{256} << 20U;
 
+/// The most bytes of a text that is shown to people; longer ones are cut.
+inline constexpr size_t kMaxTextBytes = 4000;
+
 v1::PixelRect to_wire(const core::PixelRect& rect);
 v1::Unit to_wire(const core::Unit& unit);
 std::string to_wire(const core::Sha256& digest);
@@ -38,6 +41,9 @@ core::Result<core::Unit> from_wire(const v1::Unit& unit);
 /// An error where it has not 32 bytes.
 core::Result<core::Sha256> digest_from_wire(const std::string& bytes);
 core::Result<core::FilmInfo> from_wire(const v1::FilmHeader& header);
+
+/// Hexadecimal digits of a digest as it travels, whatever its length.
+std::string hex_from_wire(const std::string& bytes);
 
 /// 32 bytes from 64 hexadecimal digits, as Film::digest and AssetRecord give them.
 core::Result<core::Sha256> digest_from_hex(const std::string& hex);

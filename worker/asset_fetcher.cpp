@@ -10,6 +10,7 @@
 
 #include "core/base/hash.h"
 #include "farm/channel.h"
+#include "farm/wire.h"
 #include "hyades/v1/assets.grpc.pb.h"
 
 namespace hyades::worker {
@@ -23,10 +24,7 @@ constexpr milliseconds kLongestPause{5000};
 constexpr uint64_t kSlowest = 16;
 constexpr milliseconds kShortestDeadline{60'000};
 
-std::string name_of(const v1::JobFile& file) {
-  return core::to_hex(
-      {reinterpret_cast<const uint8_t*>(file.sha256().data()), file.sha256().size()});
-}
+std::string name_of(const v1::JobFile& file) { return farm::hex_from_wire(file.sha256()); }
 
 }  // namespace
 

@@ -172,12 +172,11 @@ void Desk::keep_film(Items::iterator found, const pipe::UnitFilm& film) {
 }
 
 void Desk::fail(Items::iterator item, const std::string& reason) {
-  constexpr size_t kLongestReason = 4000;
   ports_.note(fmt::format("a unit of frame {} of job {} failed: {}",
                           item->second.leased.unit().frame(), item->second.leased.job(), reason));
   v1::WorkerMessage message;
   *message.mutable_failure()->mutable_unit() = item->second.leased;
-  message.mutable_failure()->set_reason(reason.substr(0, kLongestReason));
+  message.mutable_failure()->set_reason(reason.substr(0, farm::kMaxTextBytes));
   drop(item);
   // Without a stream nobody hears it: the lease runs out, and the unit fails elsewhere.
   if (!welcomed_) return;

@@ -11,15 +11,15 @@
 
 #include <fmt/format.h>
 
+#include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
-#include "farm/descriptor.h"
 #include "farm/wire.h"
 
 namespace hyades::cli {
 
 namespace fs = std::filesystem;
-using farm::Descriptor;
+using core::Descriptor;
 
 namespace {
 

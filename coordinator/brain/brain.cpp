@@ -234,11 +234,7 @@ void Brain::merged(JobId job, const Merge& merge) {
 
 uint64_t Brain::samples_of(const JobDesk& desk, const core::PixelRect& tile,
                            const core::BatchRange& batches) const {
-  uint64_t samples = 0;
-  for (uint32_t b = batches.first; b < batches.end(); ++b) {
-    samples += core::samples_in_batch(b, desk.read.job.sampling.samples);
-  }
-  return samples * static_cast<uint64_t>(tile.area());
+  return core::samples_in(tile, batches, desk.read.job.sampling.samples);
 }
 
 /// The keeper has taken the tile out of the film.

@@ -134,7 +134,7 @@ grpc::Status Brain::steer_worker(const v1::WorkerRequest& request, v1::Worker& n
     grpc::Status status;
     Seat* seat = find_worker(request.worker(), status);
     if (seat == nullptr) return status;
-    seat->reason = request.reason().substr(0, 4000);
+    seat->reason = request.reason().substr(0, farm::kMaxTextBytes);
     later = what(*seat);
     now = describe(*seat);
   }

@@ -197,11 +197,8 @@ void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJo
     frame.state = v1::FRAME_STATE_RENDERING;
     frame.worker_class = units.front().worker_class;
     for (const AcceptedUnit& unit : units) {
-      uint64_t samples = 0;
-      for (uint32_t b = unit.unit.batches.first; b < unit.unit.batches.end(); ++b) {
-        samples += core::samples_in_batch(b, desk.read.job.sampling.samples);
-      }
-      frame.samples_done += samples * static_cast<uint64_t>(unit.unit.tile.area());
+      frame.samples_done +=
+          core::samples_in(unit.unit.tile, unit.unit.batches, desk.read.job.sampling.samples);
       restored.accepted.push_back(unit);
     }
     desk.samples_done += frame.samples_done;

@@ -12,14 +12,13 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr size_t kLongestText = 4000;
 constexpr int kMostNotes = 8;
 constexpr uint32_t kMostThreads = 4096;
 constexpr uint32_t kCrowdedRetryMs = 500;
 /// Of a decoded film, besides its pixels.
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
 
-std::string cut(const std::string& text) { return text.substr(0, kLongestText); }
+std::string cut(const std::string& text) { return text.substr(0, farm::kMaxTextBytes); }
 
 LeaseId from_wire(const v1::LeaseId& wire) { return {wire.incarnation(), wire.number()}; }
 

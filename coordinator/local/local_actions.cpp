@@ -79,11 +79,7 @@ void LocalRun::act(const JobEnded& /*ended*/) {
 }
 
 uint64_t LocalRun::samples_of(const core::Unit& unit) const {
-  uint64_t samples = 0;
-  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
-    samples += core::samples_in_batch(b, plan_.samples);
-  }
-  return samples * static_cast<uint64_t>(unit.tile.area());
+  return core::samples_in(unit.tile, unit.batches, plan_.samples);
 }
 
 void LocalRun::count_locked(const core::Unit& unit, bool done) {

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "coordinator/store/log_files.h"
+#include "core/base/descriptor.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -21,21 +22,6 @@ using core::Status;
 Error failed(const std::string& doing, const std::string& path, int error) {
   return {"cannot " + doing + " " + path + ": " + std::generic_category().message(error)};
 }
-
-/// An open descriptor.
-class Handle {
- public:
-  explicit Handle(int fd) : fd_(fd) {}
-  ~Handle() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 int open_retrying(const std::string& path, int flags) {
   int fd = -1;
@@ -51,7 +37,7 @@ class DiskWriter final : public LogWriter {
 
   Status write(std::span<const std::byte> bytes) override {
     while (!bytes.empty()) {
-      const ssize_t done = ::write(handle_.fd(), bytes.data(), bytes.size());
+      const ssize_t done = ::write(handle_.get(), bytes.data(), bytes.size());
       if (done < 0 && errno == EINTR) continue;
       if (done < 0) return failed("write", path_, errno);
       bytes = bytes.subspan(static_cast<size_t>(done));
@@ -61,13 +47,13 @@ class DiskWriter final : public LogWriter {
 
   Status sync() override {
     // Not repeated after EINTR or anything else: the kernel may have dropped the pages by then.
-    if (::fdatasync(handle_.fd()) != 0) return failed("sync", path_, errno);
+    if (::fdatasync(handle_.get()) != 0) return failed("sync", path_, errno);
     return {};
   }
 
  private:
   std::string path_;
-  Handle handle_;
+  core::Descriptor handle_;
 };
 
 class DiskReader final : public LogReader {
@@ -80,7 +66,7 @@ class DiskReader final : public LogReader {
   Status read(uint64_t offset, std::span<std::byte> into) override {
     while (!into.empty()) {
       const ssize_t done =
-          ::pread(handle_.fd(), into.data(), into.size(), static_cast<off_t>(offset));
+          ::pread(handle_.get(), into.data(), into.size(), static_cast<off_t>(offset));
       if (done < 0 && errno == EINTR) continue;
       if (done < 0) return failed("read", path_, errno);
       if (done == 0) return Error{"cannot read " + path_ + ": it ends too early"};
@@ -92,17 +78,17 @@ class DiskReader final : public LogReader {
 
  private:
   std::string path_;
-  Handle handle_;
+  core::Descriptor handle_;
   uint64_t size_;
 };
 
 class DiskLock final : public LogLock {
  public:
   explicit DiskLock(int fd) : handle_(fd) {}
-  int fd() const { return handle_.fd(); }
+  int fd() const { return handle_.get(); }
 
  private:
-  Handle handle_;  // closing it gives the flock back
+  core::Descriptor handle_;  // closing it gives the flock back
 };
 
 class DiskFiles final : public LogFiles {
@@ -123,10 +109,10 @@ class DiskFiles final : public LogFiles {
   }
 
   Status sync_folder(const std::string& folder) override {
-    const Handle handle(open_retrying(folder, O_RDONLY | O_DIRECTORY));
-    if (handle.fd() < 0) return failed("open", folder, errno);
+    const core::Descriptor handle(open_retrying(folder, O_RDONLY | O_DIRECTORY));
+    if (handle.get() < 0) return failed("open", folder, errno);
     // Some network file systems do not know how and say EINVAL; they keep names on their own.
-    if (::fsync(handle.fd()) != 0 && errno != EINVAL) return failed("sync", folder, errno);
+    if (::fsync(handle.get()) != 0 && errno != EINVAL) return failed("sync", folder, errno);
     return {};
   }
 
@@ -160,9 +146,9 @@ class DiskFiles final : public LogFiles {
   }
 
   Status sync_file(const std::string& path) override {
-    const Handle handle(open_retrying(path, O_RDONLY));
-    if (handle.fd() < 0) return failed("open", path, errno);
-    if (::fsync(handle.fd()) != 0) return failed("sync", path, errno);
+    const core::Descriptor handle(open_retrying(path, O_RDONLY));
+    if (handle.get() < 0) return failed("open", path, errno);
+    if (::fsync(handle.get()) != 0) return failed("sync", path, errno);
     return {};
   }
 
@@ -177,9 +163,9 @@ class DiskFiles final : public LogFiles {
   }
 
   Status truncate(const std::string& path, uint64_t size) override {
-    const Handle handle(open_retrying(path, O_WRONLY));
-    if (handle.fd() < 0) return failed("open", path, errno);
-    if (::ftruncate(handle.fd(), static_cast<off_t>(size)) != 0 || ::fsync(handle.fd()) != 0) {
+    const core::Descriptor handle(open_retrying(path, O_WRONLY));
+    if (handle.get() < 0) return failed("open", path, errno);
+    if (::ftruncate(handle.get(), static_cast<off_t>(size)) != 0 || ::fsync(handle.get()) != 0) {
       return failed("shorten", path, errno);
     }
     return {};

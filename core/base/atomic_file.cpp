@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
 #include "core/base/leftovers.h"
@@ -27,14 +28,6 @@ bool disk_is_full(const std::string& folder) {
   struct statvfs info {};
   return ::statvfs(folder.c_str(), &info) == 0 && info.f_bavail == 0;
 }
-
-/// Closes a descriptor at the end of its scope.
-struct Descriptor {
-  int fd = -1;
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-};
 
 /// Removes a file at the end of its scope unless `keep`.
 struct Temporary {
@@ -62,10 +55,10 @@ std::string temporary_name(const std::filesystem::path& target) {
 }
 
 Status sync_folder(const std::string& folder) {
-  const Descriptor handle{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  const Descriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // A folder that one may write to but not list cannot be synced by us: the rename still happened.
-  if (handle.fd < 0) return {};
-  if (::fsync(handle.fd) != 0 && errno != EINVAL && errno != ENOTSUP) {
+  if (!handle.valid()) return {};
+  if (::fsync(handle.get()) != 0 && errno != EINVAL && errno != ENOTSUP) {
     return failure(folder, errno);
   }
   return {};
@@ -104,11 +97,11 @@ Status replace_file(const std::string& path,
     return add_cause ? Error{message + " (" + full + ")"} : written.error();
   }
   {
-    const Descriptor handle{::open(temporary.path.c_str(), O_RDWR | O_CLOEXEC)};
-    if (handle.fd < 0) return failure(path, errno);
+    const Descriptor handle(::open(temporary.path.c_str(), O_RDWR | O_CLOEXEC));
+    if (!handle.valid()) return failure(path, errno);
     // Best effort: the new file keeps the old one's permissions.
-    if (exists && ::fchmod(handle.fd, old.st_mode & 07777) != 0) errno = 0;
-    if (::fsync(handle.fd) != 0) return failure(path, errno);
+    if (exists && ::fchmod(handle.get(), old.st_mode & 07777) != 0) errno = 0;
+    if (::fsync(handle.get()) != 0) return failure(path, errno);
   }
   if (::rename(temporary.path.c_str(), target.c_str()) != 0) return failure(path, errno);
   temporary.keep = true;
@@ -116,10 +109,10 @@ Status replace_file(const std::string& path,
 }
 
 Status write_in_place(const std::string& path, std::span<const std::byte> bytes) {
-  const Descriptor handle{::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
-  if (handle.fd < 0) return failure(path, errno);
+  const Descriptor handle(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (!handle.valid()) return failure(path, errno);
   while (!bytes.empty()) {
-    const ssize_t written = ::write(handle.fd, bytes.data(), bytes.size());
+    const ssize_t written = ::write(handle.get(), bytes.data(), bytes.size());
     if (written < 0) {
       if (errno == EINTR) continue;
       return failure(path, errno);

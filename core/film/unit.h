@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/base/rect.h"
@@ -38,6 +39,14 @@ constexpr uint32_t batch_count(uint32_t samples) {
 constexpr uint32_t samples_in_batch(uint32_t batch, uint32_t samples) {
   const uint32_t begin = batch * kBatchSamples;
   return begin >= samples ? 0 : (samples - begin < kBatchSamples ? samples - begin : kBatchSamples);
+}
+
+/// How many samples a unit takes where a pixel has `samples` in all.
+inline uint64_t samples_in(const PixelRect& tile, const BatchRange& batches, uint32_t samples) {
+  const auto until = [&](uint64_t batch) {
+    return std::min<uint64_t>(batch * kBatchSamples, samples);
+  };
+  return (until(batches.end()) - until(batches.first)) * static_cast<uint64_t>(tile.area());
 }
 
 }  // namespace hyades::core

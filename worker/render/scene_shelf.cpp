@@ -7,6 +7,7 @@
 #include "core/job/layers.h"
 #include "core/scene/build_scene.h"
 #include "farm/job_package.h"
+#include "farm/wire.h"
 #include "worker/render/process_memory.h"
 
 namespace hyades::worker {
@@ -15,10 +16,6 @@ namespace {
 /// Frames of one job that stay loaded while there is memory: one in work, one that comes next, one
 /// whose stragglers may still be leased.
 constexpr size_t kFramesKept = 3;
-
-std::string hex(const std::string& digest) {
-  return core::to_hex({reinterpret_cast<const uint8_t*>(digest.data()), digest.size()});
-}
 
 }  // namespace
 
@@ -78,7 +75,7 @@ core::Result<std::shared_ptr<SceneShelf::LoadedJob>> SceneShelf::read(
     const hyades::v1::JobSpec& spec) const {
   std::vector<core::AssetRecord> manifest;
   for (const hyades::v1::JobFile& file : spec.files()) {
-    manifest.push_back({file.path(), hex(file.sha256()), file.size()});
+    manifest.push_back({file.path(), farm::hex_from_wire(file.sha256()), file.size()});
   }
   auto loaded = std::make_shared<LoadedJob>();
   loaded->files = std::make_unique<farm::ManifestResolver>(manifest, store_);

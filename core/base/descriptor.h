@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace hyades::farm {
+namespace hyades::core {
 
 /// Owns a file descriptor; -1 is none.
 class Descriptor {
@@ -32,4 +32,4 @@ class Descriptor {
   int fd_ = -1;
 };
 
-}  // namespace hyades::farm
+}  // namespace hyades::core
