@@ -16,26 +16,25 @@
 namespace hyades::cli {
 namespace {
 
-constexpr double kProbeSeconds = 0.7;
+constexpr auto kProbeTime = std::chrono::milliseconds(700);
 
 /// Seconds of one core that a sample of `renderer` takes, measured on small patches scattered over
-/// the window.
+/// the window. What else the machine does is not counted.
 double seconds_per_sample(const core::FrameRenderer& renderer, const core::PixelRect& window,
                           int32_t frame) {
   using Clock = std::chrono::steady_clock;
   constexpr int kPatch = 4;
   const auto begin = Clock::now();
+  const double cpu_begin = core::thread_seconds();
   uint64_t samples = 0;
-  double seconds = 0.0;
-  for (uint64_t i = 0; seconds < kProbeSeconds; ++i) {
+  for (uint64_t i = 0; samples == 0 || Clock::now() - begin < kProbeTime; ++i) {
     const uint64_t h = core::mix64(i + 1);
     const int x = window.x0 + static_cast<int>(h % static_cast<uint64_t>(window.width()));
     const int y = window.y0 + static_cast<int>((h >> 32) % static_cast<uint64_t>(window.height()));
     const core::PixelRect patch = intersection(window, {x, y, x + kPatch, y + kPatch});
     samples += renderer.render({frame, patch, {0, 1}}).counters.samples;
-    seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   }
-  return seconds / static_cast<double>(samples);
+  return (core::thread_seconds() - cpu_begin) / static_cast<double>(samples);
 }
 
 /// "1,234,567", or "4.5e+22" of what is beyond exact counting.

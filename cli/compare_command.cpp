@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/finish/common_part.h"
 #include "core/finish/compare.h"
 #include "core/finish/picture.h"
 #include "core/image/read_image.h"
@@ -129,10 +130,11 @@ std::string verdict(const core::Comparison& comparison, const Options& options) 
 }
 
 int compare(const Options& options) {
-  const auto a = core::read_image_file(options.a);
+  auto a = core::read_image_file(options.a);
   if (!a) return fail(a.error().message);
-  const auto b = core::read_image_file(options.b);
+  auto b = core::read_image_file(options.b);
   if (!b) return fail(b.error().message);
+  if (const auto cut = core::cut_to_common_part(*a, *b); !cut) return fail(cut.error().message);
   const auto comparison = core::compare_images(*a, *b, options.compare);
   if (!comparison) return fail(comparison.error().message);
   if (options.least_p && !comparison->block_test) {

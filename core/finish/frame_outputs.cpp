@@ -15,7 +15,11 @@ Result<std::vector<std::string>> write_outputs(std::span<const OutputDesc> outpu
       {"hyades.class", info.worker_class},
       {"hyades.build", info.build},
   };
-  const Image picture = film.normalised();
+  Image picture = film.normalised();
+  const PixelRect& window = film.window();
+  if (window != PixelRect{0, 0, info.width, info.height}) {
+    picture.placement = {window.x0, window.y0, info.width, info.height};
+  }
   std::vector<std::string> paths;
   for (const OutputDesc& output : outputs) {
     paths.push_back(output_path(output, folder, info.frame));

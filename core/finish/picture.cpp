@@ -84,6 +84,7 @@ Result<Image> select_layers(const Image& normalised, std::span<const std::string
     }
   }
   Image image = make_image(normalised.width, normalised.height, std::move(names));
+  image.placement = normalised.placement;
   const size_t stride = normalised.channels.size();
   for (size_t i = 0; i < image.data.size(); ++i) {
     image.data[i] = normalised.data[i / sources.size() * stride + sources[i % sources.size()]];

@@ -30,6 +30,14 @@ bool is_alpha(const std::string& channel) {
   return channel == "A" || (channel.size() > 2 && channel.ends_with(".A"));
 }
 
+/// Where the data window lies in a display window that holds it; nowhere in particular where they
+/// are equal, or where pixels lie outside (overscan).
+FramePlace placement_in(const Imath::Box2i& display, const Imath::Box2i& data) {
+  if (data == display || !display.intersects(data.min) || !display.intersects(data.max)) return {};
+  const Imath::V2i place = data.min - display.min;
+  return {place.x, place.y, display.max.x - display.min.x + 1, display.max.y - display.min.y + 1};
+}
+
 Result<Image> decode(std::span<const std::byte> file, bool srgb, const ImageLimits& limits) {
   prepare_openexr();
   if (const Status header = check_exr_header(file, limits); !header) return header.error();
@@ -60,6 +68,7 @@ Result<Image> decode(std::span<const std::byte> file, bool srgb, const ImageLimi
                    [](const auto& a, const auto& b) { return rank(a) < rank(b); });
 
   Image image = make_image(static_cast<int>(width), static_cast<int>(height), names);
+  image.placement = placement_in(header.displayWindow(), window);
   const size_t pixel_bytes = names.size() * sizeof(float);
   Imf::FrameBuffer buffer;
   for (size_t c = 0; c < names.size(); ++c) {

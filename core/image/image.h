@@ -8,12 +8,24 @@
 
 namespace hyades::core {
 
+/// Where a picture lies in a larger frame, in pixels; frame_width 0: it is a whole frame.
+struct FramePlace {
+  int x = 0;  ///< of the left column
+  int y = 0;  ///< of the top row
+  int frame_width = 0;
+  int frame_height = 0;
+
+  bool in_frame() const { return frame_width > 0; }
+  friend bool operator==(const FramePlace&, const FramePlace&) = default;
+};
+
 /// Pixels in memory: interleaved float channels, row 0 on top.
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::string> channels;  ///< "R", "G", "B", "A", "Y", "albedo.R", ... in order
   std::vector<float> data;            ///< width * height * channels.size()
+  FramePlace placement;                ///< kept by EXR files (data and display window) only
 
   int channel_count() const { return static_cast<int>(channels.size()); }
   size_t index(int x, int y, int c) const {
@@ -30,5 +42,9 @@ struct Image {
 
 /// A black image.
 Image make_image(int width, int height, std::vector<std::string> channels);
+
+/// The part [x, x + width) x [y, y + height) of `image`, which must hold it, counted from its own
+/// first pixel.
+Image cut_out(const Image& image, int x, int y, int width, int height);
 
 }  // namespace hyades::core

@@ -44,10 +44,22 @@ half to_half(float value) {
   return half(value);
 }
 
+Imath::Box2i data_window(const Image& image) {
+  const Imath::V2i first(image.placement.x, image.placement.y);
+  return {first, first + Imath::V2i(image.width - 1, image.height - 1)};
+}
+
+Imath::Box2i display_window(const Image& image) {
+  const FramePlace& place = image.placement;
+  if (!place.in_frame()) return data_window(image);
+  return {{0, 0}, {place.frame_width - 1, place.frame_height - 1}};
+}
+
 void write(const std::string& path, const Image& image, const ImageMetadata& metadata,
            bool as_half) {
   prepare_openexr();
-  Imf::Header header(image.width, image.height);
+  const Imath::Box2i window = data_window(image);
+  Imf::Header header(display_window(image), window);
   header.compression() = Imf::ZIP_COMPRESSION;
   for (const auto& [name, value] : metadata) header.insert(name, Imf::StringAttribute(value));
   const Imf::PixelType type = as_half ? Imf::HALF : Imf::FLOAT;
@@ -65,8 +77,8 @@ void write(const std::string& path, const Image& image, const ImageMetadata& met
   Imf::FrameBuffer buffer;
   for (size_t c = 0; c < image.channels.size(); ++c) {
     buffer.insert(image.channels[c],
-                  Imf::Slice(type, const_cast<char*>(base + c * value_bytes), pixel_bytes,
-                             pixel_bytes * static_cast<size_t>(image.width)));
+                  Imf::Slice::Make(type, base + c * value_bytes, window, pixel_bytes,
+                                   pixel_bytes * static_cast<size_t>(image.width)));
   }
   Imf::OutputFile file(path.c_str(), header, 0);
   file.setFrameBuffer(buffer);

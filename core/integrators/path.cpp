@@ -141,8 +141,8 @@ class Path {
                       : power_heuristic(
                             light_pdf, surface.pdf(wo, sample->direction, TransportMode::radiance));
     if (work_.log != nullptr) {
-      work_.log->lines.push_back(
-          fmt::format("    chooses light {}, weight {:.4g}", chosen->index, weight));
+      work_.log->lines.push_back(fmt::format("    chooses light '{}', weight {:.4g}",
+                                             scene_.light_names[chosen->index], weight));
     }
     add(f * sample->radiance * (weight / light_pdf), depth_ + 1);
   }

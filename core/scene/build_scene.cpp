@@ -15,6 +15,7 @@ namespace hyades::core {
 namespace {
 
 constexpr float kRadians = kPi / 180.0F;
+constexpr const char* kSky = "environment";
 constexpr float kSensorHeight =
     0.024F;  // m, the short side of a 35 mm frame: what f-stops refer to
 
@@ -91,13 +92,15 @@ class SceneBuilder {
       const double area = surface_area(*scene_->world, object) * (emit.two_sided ? 2.0 : 1.0);
       radiance = area > 0.0 ? radiance * static_cast<float>(1.0 / (double{kPi} * area)) : Rgb(0.0F);
     }
-    return add_light(make_area_light(*scene_->world, object, radiance, emit.two_sided));
+    return add_light(make_area_light(*scene_->world, object, radiance, emit.two_sided),
+                     scene_->objects[object].name);
   }
 
-  uint32_t add_light(LightPtr light) {
+  uint32_t add_light(LightPtr light, const std::string& name) {
     const auto index = static_cast<uint32_t>(scene_->lights.size());
     if (light->is_infinite()) scene_->infinite_lights.push_back(index);
     scene_->lights.push_back(std::move(light));
+    scene_->light_names.push_back(name);
     return index;
   }
 
@@ -106,7 +109,7 @@ class SceneBuilder {
     for (const LightDesc& desc : job_.lights) {
       auto light = make_light(desc, setting);
       if (!light) return Error{Diagnostic{desc.where, light.error().message}.to_string()};
-      add_light(*light);
+      add_light(*light, desc.name);
     }
     return {};
   }
@@ -117,7 +120,7 @@ class SceneBuilder {
     const Rgb scale = sky.color.at(time_) * sky.strength.at(time_);
     const float radius = world_radius(*scene_->world);
     if (sky.image.empty()) {
-      add_light(make_environment_light(nullptr, 0.0F, scale, radius));
+      add_light(make_environment_light(nullptr, 0.0F, scale, radius), kSky);
     } else {
       auto map = cache_.environment_map(sky.image);
       if (!map) {
@@ -125,7 +128,7 @@ class SceneBuilder {
         return Error{Diagnostic{sky.where, error.message}.to_string()};
       }
       const float turn = sky.rotate_y.at(time_) * kRadians;
-      add_light(make_environment_map_light(*map, turn, scale, radius));
+      add_light(make_environment_map_light(*map, turn, scale, radius), kSky);
     }
     scene_->environment_visible = sky.visible_to_camera;
     return {};

@@ -26,6 +26,7 @@ struct Scene {
   std::shared_ptr<const World> world;
   std::vector<SceneObject> objects;  ///< by placement
   std::vector<LightPtr> lights;
+  std::vector<std::string> light_names;  ///< one each, as in the job, for messages
   std::vector<uint32_t>
       infinite_lights;  ///< indices in `lights` that rays find where they leave the world
   std::unique_ptr<LightSelector> selector;

@@ -7,12 +7,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <map>
 #include <mutex>
 
 #include "core/base/fp_mode.h"
+#include "core/base/machine.h"
 #include "core/geometry/embree.h"
 #include "core/job/parse.h"
 #include "core/render/render_frame.h"
@@ -267,14 +267,9 @@ void run(benchmark::State& state, size_t (*work)()) {
 
 /// CPU seconds of one operation: other processes then disturb less than by the clock on the wall.
 double seconds_each(size_t (*work)()) {
-  const auto now = [] {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  };
-  const double begin = now();
+  const double begin = thread_seconds();
   const size_t done = work();
-  return (now() - begin) / static_cast<double>(done);
+  return (thread_seconds() - begin) / static_cast<double>(done);
 }
 
 double median(std::vector<double> values) {

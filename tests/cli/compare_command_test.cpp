@@ -72,6 +72,29 @@ TEST_F(CompareCommand, VariancesDecideTheStatus) {
   EXPECT_EQ(run({write("plain.exr", 1.0F), b, "--least-p", "0.01"}), 2);
 }
 
+TEST_F(CompareCommand, CropsCompareWhereBothShowTheFrame) {
+  core::Image whole = core::make_image(8, 6, {"R", "G", "B"});
+  for (size_t i = 0; i < whole.data.size(); ++i) whole.data[i] = static_cast<float>(i);
+  core::Image part = core::cut_out(whole, 2, 1, 4, 3);
+  part.placement = {2, 1, 8, 6};
+  core::Image beside = core::cut_out(whole, 5, 1, 3, 3);
+  beside.placement = {5, 1, 8, 6};
+  core::Image away = core::cut_out(whole, 6, 4, 2, 2);
+  away.placement = {6, 4, 8, 6};
+  EXPECT_TRUE(core::write_exr(path("whole.exr"), whole).ok());
+  EXPECT_TRUE(core::write_exr(path("part.exr"), part).ok());
+  EXPECT_TRUE(core::write_exr(path("beside.exr"), beside).ok());
+  EXPECT_TRUE(core::write_exr(path("away.exr"), away).ok());
+  EXPECT_EQ(run({path("part.exr"), path("whole.exr")}), 0);
+  EXPECT_NE(out_.find("4 x 3 pixels, identical"), std::string::npos) << out_;
+  EXPECT_EQ(run({path("part.exr"), path("beside.exr")}), 0);
+  EXPECT_NE(out_.find("1 x 3 pixels, identical"), std::string::npos) << out_;
+  EXPECT_EQ(run({path("part.exr"), path("away.exr")}), 2);
+  EXPECT_NE(err_.find("different parts"), std::string::npos) << err_;
+  EXPECT_EQ(run({path("part.exr"), write("other.exr", 1.0F)}), 2);
+  EXPECT_NE(err_.find("8 x 6 and 32 x 32"), std::string::npos) << err_;
+}
+
 TEST_F(CompareCommand, JsonAndErrorImage) {
   const std::string a = write("a.exr", 2.0F);
   const std::string b = write("b.exr", 1.0F);

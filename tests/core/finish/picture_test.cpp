@@ -8,6 +8,7 @@
 
 #include "core/base/hash.h"
 #include "core/base/text.h"
+#include "core/finish/frame_outputs.h"
 #include "core/image/read_image.h"
 #include "core/job/parse.h"
 #include "tests/support/temp_folder.h"
@@ -98,6 +99,22 @@ TEST(Picture, ExrHoldsTheChosenLayers) {
       for (int x = 0; x < 8; ++x) EXPECT_EQ(back->at(x, y, i), film.at(x, y, source));
     }
   }
+}
+
+TEST(Picture, ACropKeepsItsPlaceInTheFrame) {
+  const TempFolder folder;
+  FilmInfo info;
+  info.frame = 1;
+  info.width = 20;
+  info.height = 10;
+  const std::vector<OutputDesc> outputs{output("crop.exr")};
+  const auto placement = [&](const PixelRect& window) {
+    const Film film(make_film_layout({}), window);
+    EXPECT_TRUE(write_outputs(outputs, folder.path().string(), info, film).ok());
+    return read_image_file(folder.file("crop.exr"))->placement;
+  };
+  EXPECT_EQ(placement({5, 7, 8, 9}), (FramePlace{5, 7, 20, 10}));
+  EXPECT_EQ(placement({0, 0, 20, 10}), FramePlace{});
 }
 
 TEST(Picture, EveryLayerCanBeWrittenAndMissingOnesAreNamed) {

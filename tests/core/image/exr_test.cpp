@@ -49,6 +49,22 @@ TEST(Exr, FloatRoundTripIsExact) {
   EXPECT_EQ(file.header().compression(), Imf::ZIP_COMPRESSION);
 }
 
+TEST(Exr, KeepsWhereAPictureLiesInItsFrame) {
+  const test::TempFolder folder;
+  Image image = make_image(3, 2, {"R", "G", "B"});
+  for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = static_cast<float>(i);
+  image.placement = {5, 7, 20, 10};
+  ASSERT_TRUE(write_exr(folder.file("crop.exr"), image).ok());
+  const auto read = read_image_file(folder.file("crop.exr"));
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read->placement, image.placement);
+  EXPECT_EQ(read->data, image.data);
+
+  const Imf::InputFile file(folder.file("crop.exr").c_str());
+  EXPECT_EQ(file.header().dataWindow(), Imath::Box2i({5, 7}, {7, 8}));
+  EXPECT_EQ(file.header().displayWindow(), Imath::Box2i({0, 0}, {19, 9}));
+}
+
 TEST(Exr, HalfKeepsElevenBitsAndFiniteStaysFinite) {
   const TempFolder folder;
   const std::string path = folder.file("a.exr");

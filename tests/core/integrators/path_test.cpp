@@ -247,7 +247,7 @@ lights: {bulb: {type: point, at: [0, 2, 0]}}
   down.origin = Vec3(0.0F, 1.0F, 0.0F);
   down.direction = Vec3(0.0F, -1.0F, 0.0F);
   trace(lit, down, 0, work);
-  EXPECT_THAT(direct.lines, Contains("    chooses light 0, weight 1"));
+  EXPECT_THAT(direct.lines, Contains("    chooses light 'bulb', weight 1"));
 }
 
 TEST(Integrators, AreMadeByName) {
