@@ -56,6 +56,12 @@ void AssetFetcher::fetch(uint64_t job, const v1::JobSpec& spec) {
 void AssetFetcher::release(uint64_t job) {
   std::vector<farm::ContentPin> released;  // let go of without the lock
   const std::lock_guard lock(mutex_);
+  std::erase_if(wanted_, [&](const Wanted& wanted) { return wanted.job == job; });
+  if (fetching_ == job) {
+    dropped_ = true;
+    if (call_ != nullptr) call_->TryCancel();
+    wake_.notify_all();
+  }
   if (const auto pins = pins_.find(job); pins != pins_.end()) {
     released = std::move(pins->second);
     pins_.erase(pins);
@@ -71,11 +77,15 @@ void AssetFetcher::loop() {
       if (stop_) return;
       wanted = std::move(wanted_.front());
       wanted_.pop_front();
+      fetching_ = wanted.job;
+      dropped_ = false;
     }
     const Outcome failed = fetch_all(wanted);
     {
       const std::lock_guard lock(mutex_);
       if (stop_) return;
+      fetching_.reset();
+      if (dropped_) continue;
     }
     if (failed) {
       owner_.files_failed(wanted.job, failed->reason, failed->final);
@@ -106,6 +116,7 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(const Wanted& wanted) {
     }
   }
   const std::lock_guard lock(mutex_);
+  if (unwanted()) return Failure{"no longer wanted"};  // the pins go
   pins_[wanted.job] = std::move(pins);
   return std::nullopt;
 }
@@ -121,10 +132,10 @@ AssetFetcher::Outcome AssetFetcher::fetch_patiently(const v1::JobFile& file) {
   }
 }
 
-/// Waits; false when the fetcher ends.
+/// Waits; false when the files are no longer wanted.
 bool AssetFetcher::pause(milliseconds time) {
   std::unique_lock lock(mutex_);
-  return !wake_.wait_for(lock, time, [this] { return stop_; });
+  return !wake_.wait_for(lock, time, [this] { return unwanted(); });
 }
 
 AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
@@ -135,7 +146,7 @@ AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
   farm::prepare(context, token_, std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
   {
     const std::lock_guard lock(mutex_);
-    if (stop_) return Failure{"stopped"};
+    if (unwanted()) return Failure{"no longer wanted"};
     call_ = &context;
   }
   v1::DownloadRequest request;

@@ -47,6 +47,7 @@ class AssetFetcher {
 
   /// All files of the job, which are then kept from eviction until release().
   void fetch(uint64_t job, const v1::JobSpec& spec);
+  /// The job's files are no longer wanted: what is under way is broken off and not reported.
   void release(uint64_t job);
 
  private:
@@ -66,6 +67,7 @@ class AssetFetcher {
   Outcome fetch_patiently(const v1::JobFile& file);
   Outcome download(const v1::JobFile& file);
   bool pause(std::chrono::milliseconds time);
+  bool unwanted() const { return stop_ || dropped_; }
 
   const std::shared_ptr<grpc::Channel> channel_;
   const std::string token_;
@@ -78,6 +80,8 @@ class AssetFetcher {
   // Guarded by mutex_.
   std::deque<Wanted> wanted_;
   std::map<uint64_t, std::vector<farm::ContentPin>> pins_;
+  std::optional<uint64_t> fetching_;     ///< the job whose files are being fetched
+  bool dropped_ = false;                 ///< it was released meanwhile
   grpc::ClientContext* call_ = nullptr;  ///< the download in progress
   bool stop_ = false;
 

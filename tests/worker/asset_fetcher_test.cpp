@@ -1,0 +1,117 @@
+#include "worker/asset_fetcher.h"
+
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+#include <gtest/gtest.h>
+
+#include "core/base/hash.h"
+#include "farm/wire.h"
+#include "hyades/v1/assets.grpc.pb.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::worker {
+namespace {
+
+using std::chrono::seconds;
+
+const std::string kSmall = "a small file";
+
+std::string digest_of(const std::string& bytes) { return farm::to_wire(core::sha256(bytes)); }
+
+/// Serves kSmall; of anything else a first byte, and then nothing until the caller goes.
+class StuckAssets : public v1::Assets::Service {
+ public:
+  grpc::Status Download(grpc::ServerContext* context, const v1::DownloadRequest* request,
+                        grpc::ServerWriter<v1::Chunk>* writer) override {
+    v1::Chunk chunk;
+    if (request->sha256() == digest_of(kSmall)) {
+      chunk.set_data(kSmall);
+      writer->Write(chunk);
+      return grpc::Status::OK;
+    }
+    chunk.set_data("x");
+    writer->Write(chunk);
+    std::unique_lock lock(mutex_);
+    stuck_ = true;
+    changed_.notify_all();
+    while (!context->IsCancelled()) changed_.wait_for(lock, std::chrono::milliseconds(5));
+    return grpc::Status::CANCELLED;
+  }
+
+  bool wait_until_stuck() {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, seconds(20), [this] { return stuck_; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool stuck_ = false;
+};
+
+class Reports : public AssetFetcher::Owner {
+ public:
+  void files_are_there(uint64_t job) override { add(job, "there"); }
+  void files_failed(uint64_t job, const std::string& reason, bool) override { add(job, reason); }
+
+  /// Waits for the first report.
+  std::vector<std::pair<uint64_t, std::string>> first() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, seconds(20), [this] { return !reports_.empty(); });
+    return reports_;
+  }
+
+ private:
+  void add(uint64_t job, const std::string& what) {
+    const std::lock_guard lock(mutex_);
+    reports_.emplace_back(job, what);
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::pair<uint64_t, std::string>> reports_;
+};
+
+v1::JobSpec spec_of(const std::string& bytes) {
+  v1::JobSpec spec;
+  v1::JobFile& file = *spec.add_files();
+  file.set_path("file");
+  file.set_size(bytes.size());
+  file.set_sha256(digest_of(bytes));
+  return spec;
+}
+
+TEST(AssetFetcher, AReleasedJobIsBrokenOffAndNotReported) {
+  StuckAssets assets;
+  int port = 0;
+  grpc::ServerBuilder builder;
+  builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+  builder.RegisterService(&assets);
+  const std::unique_ptr<grpc::Server> server = builder.BuildAndStart();
+  ASSERT_NE(server, nullptr);
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 0});
+  ASSERT_TRUE(store.ok());
+  Reports reports;
+  {
+    AssetFetcher fetcher(grpc::CreateChannel("127.0.0.1:" + std::to_string(port),
+                                             grpc::InsecureChannelCredentials()),
+                         "", **store, reports, seconds(60));
+    fetcher.fetch(1, spec_of("something large"));
+    fetcher.fetch(2, spec_of("something else that never comes"));
+    ASSERT_TRUE(assets.wait_until_stuck());
+    fetcher.release(2);
+    fetcher.release(1);
+    fetcher.fetch(3, spec_of(kSmall));
+    const std::vector<std::pair<uint64_t, std::string>> expected{{3, "there"}};
+    EXPECT_EQ(reports.first(), expected);
+  }
+  server->Shutdown(std::chrono::system_clock::now() + seconds(5));
+}
+
+}  // namespace
+}  // namespace hyades::worker
