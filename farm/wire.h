@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/base/hash.h"
 #include "core/base/rect.h"
@@ -21,8 +22,14 @@ inline constexpr uint32_t kOldestProtocol = 1;
 
 /// The most bytes of data in a Chunk.
 inline constexpr uint64_t kMaxChunkBytes = uint64_t{1} << 20U;
-/// The most bytes of any message but films.
+/// The most bytes of a message that names a job's files, or goes to a worker.
 inline constexpr uint64_t kMaxMessageBytes = uint64_t{16} << 20U;
+/// The most bytes of other requests.
+inline constexpr uint64_t kMaxRequestBytes = uint64_t{64} << 10U;
+/// The most bytes of a WorkerMessage without its film.
+inline constexpr uint64_t kMaxWorkerTalkBytes = uint64_t{1} << 20U;
+/// The most bytes of an UploadPart: a chunk and what goes with it.
+inline constexpr uint64_t kMaxPartBytes = kMaxChunkBytes + (uint64_t{1} << 10U);
 /// The most bytes of a WorkerMessage, which may hold a film.
 inline constexpr uint64_t kMaxResultBytes = uint64_t{256} << 20U;
 
@@ -44,6 +51,10 @@ core::Result<core::FilmInfo> from_wire(const v1::FilmHeader& header);
 
 /// Hexadecimal digits of a digest as it travels, whatever its length.
 std::string hex_from_wire(const std::string& bytes);
+
+/// `text` as a message may hold it for people: cut to kMaxTextBytes, and with '?' for what is not
+/// UTF-8 (a message with such a string could not be read by anybody).
+std::string wire_text(std::string_view text);
 
 /// 32 bytes from 64 hexadecimal digits, as Film::digest and AssetRecord give them.
 core::Result<core::Sha256> digest_from_hex(const std::string& hex);

@@ -176,7 +176,7 @@ void Desk::fail(Items::iterator item, const std::string& reason) {
                           item->second.leased.unit().frame(), item->second.leased.job(), reason));
   v1::WorkerMessage message;
   *message.mutable_failure()->mutable_unit() = item->second.leased;
-  message.mutable_failure()->set_reason(reason.substr(0, farm::kMaxTextBytes));
+  message.mutable_failure()->set_reason(farm::wire_text(reason));
   drop(item);
   // Without a stream nobody hears it: the lease runs out, and the unit fails elsewhere.
   if (!welcomed_) return;

@@ -299,7 +299,7 @@ void Brain::frame_failed(JobId job, int32_t frame, const std::string& reason) {
   desk->complete.erase(frame);
   FrameNote& noted = desk->touch(frame);
   noted.state = v1::FRAME_STATE_FAILED;
-  noted.reason = reason;
+  noted.reason = farm::wire_text(reason);
   desk->samples_done -= std::exchange(noted.samples_done, 0);
   ++desk->stored.frames_failed;
   note(*desk, v1::LOG_LEVEL_ERROR, frame, {}, "failed: " + reason);
@@ -351,7 +351,7 @@ void Brain::job_ended(const JobEnded& ended) {
     std::unique_lock held(mutex_);
     JobDesk* over = desk_of(id);
     const StoredJob job = over->stored;
-    const std::vector<StoredLine> lines = std::exchange(over->lines, {});
+    const std::vector<StoredLine> lines = over->take_lines();
     held.unlock();
     (void)store_->add_lines(job.id, lines);
     while (!store_->update_job(job) && !stop_) {
@@ -414,8 +414,7 @@ JobDesk* Brain::desk_of(JobId job) {
 
 void Brain::note(JobDesk& desk, v1::LogLevel level, std::optional<int32_t> frame,
                  const std::string& worker, const std::string& text) {
-  desk.lines.push_back({wall_ms(), level, frame, worker, text});
-  desk.touch();
+  desk.note({wall_ms(), level, frame, worker, farm::wire_text(text)});
 }
 
 }  // namespace hyades::coordinator

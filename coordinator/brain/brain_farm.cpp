@@ -82,7 +82,7 @@ Brain::Seat* Brain::find_worker(const std::string& text, grpc::Status& status) {
 grpc::Status Brain::drain_worker(const v1::WorkerRequest& request, v1::Worker& now) {
   return steer_worker(request, now, [&](Seat& seat) {
     v1::CoordinatorMessage message;
-    message.mutable_drain()->set_reason(request.reason());
+    message.mutable_drain()->set_reason(farm::wire_text(request.reason()));
     send(seat.id, std::move(message));
     if (seat.state == v1::WORKER_STATE_ACTIVE) seat.state = v1::WORKER_STATE_DRAINING;
     return tell(WorkerBarred{seat.id, true});
@@ -134,7 +134,7 @@ grpc::Status Brain::steer_worker(const v1::WorkerRequest& request, v1::Worker& n
     grpc::Status status;
     Seat* seat = find_worker(request.worker(), status);
     if (seat == nullptr) return status;
-    seat->reason = request.reason().substr(0, farm::kMaxTextBytes);
+    seat->reason = farm::wire_text(request.reason());
     later = what(*seat);
     now = describe(*seat);
   }

@@ -400,9 +400,12 @@ std::vector<Action> Brain::mind_workers(TimePoint now) {
 void Brain::mind_jobs(TimePoint now) {
   for (auto& [id, desk] : desks_) {
     desk->speed.note(desk->samples_done, now);
-    if (desk->lines.empty() || desk->ending) continue;
-    chore([this, number = desk->stored.id, lines = std::exchange(desk->lines, {})] {
-      (void)store_->add_lines(number, lines);
+    if (desk->lines.empty() || desk->storing_lines || desk->ending) continue;
+    desk->storing_lines = true;
+    chore([this, id = desk->id, lines = desk->take_lines()] {
+      (void)store_->add_lines(static_cast<uint64_t>(id), lines);
+      const std::lock_guard lock(mutex_);
+      if (JobDesk* still = desk_of(id)) still->storing_lines = false;
     });
   }
   for (auto& [number, watch] : watches_) {

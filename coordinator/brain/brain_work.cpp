@@ -18,8 +18,6 @@ constexpr uint32_t kCrowdedRetryMs = 500;
 /// Of a decoded film, besides its pixels.
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
 
-std::string cut(const std::string& text) { return text.substr(0, farm::kMaxTextBytes); }
-
 LeaseId from_wire(const v1::LeaseId& wire) { return {wire.incarnation(), wire.number()}; }
 
 uint64_t milliseconds(Duration d) {
@@ -168,10 +166,11 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
         if (JobDesk* desk = desk_of(job)) {
           note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
                fmt::format("tile {},{} batches {}-{} failed: {}", unit->tile.x0, unit->tile.y0,
-                           unit->batches.first, unit->batches.end() - 1, cut(failure.reason())));
+                           unit->batches.first, unit->batches.end() - 1,
+                           farm::wire_text(failure.reason())));
         }
         say(UnitFailed{worker, from_wire(failure.unit().lease()), job, *unit,
-                       cut(failure.reason())});
+                       farm::wire_text(failure.reason())});
       }
       want(*seat, failure.want(), later);
     } else if (message.has_returned()) {
@@ -183,7 +182,7 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
     } else if (message.has_leaving()) {
       seat->leaving = true;
       seat->held_wish = 0;
-      seat->reason = cut(message.leaving().reason());
+      seat->reason = farm::wire_text(message.leaving().reason());
       if (seat->state == v1::WORKER_STATE_ACTIVE) seat->state = v1::WORKER_STATE_DRAINING;
       say(WorkerBarred{worker, true});
     }
@@ -286,7 +285,8 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
       ++seat->units_done;
       seat->samples_done += result.samples();
       for (int i = 0; desk != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
-        note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(), cut(result.notes(i)));
+        note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
+             farm::wire_text(result.notes(i)));
       }
       const Duration took{static_cast<int64_t>(std::min<uint64_t>(result.render_ns(), INT64_MAX))};
       later = tell(ResultArrived{worker, from_wire(result.lease()), job, *unit, *digest, took},

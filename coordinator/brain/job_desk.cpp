@@ -18,6 +18,9 @@ namespace {
 
 constexpr double kSmoothing = 10;  // seconds
 constexpr int kMostFiles = 100'000;
+constexpr int kMostRanges = 10'000;
+constexpr size_t kLongestName = 200;
+constexpr size_t kMostLinesWaiting = 2000;
 constexpr size_t kLongestPath = 4096;
 constexpr uint32_t kMostSamples = 1U << 24U;
 constexpr int64_t kMostFrames = 1'000'000;
@@ -82,6 +85,24 @@ FrameNote& JobDesk::touch(int32_t frame) {
   return note;
 }
 
+void JobDesk::note(StoredLine line) {
+  touch();
+  if (lines.size() < kMostLinesWaiting) {
+    lines.push_back(std::move(line));
+  } else {
+    ++lines_dropped;
+  }
+}
+
+std::vector<StoredLine> JobDesk::take_lines() {
+  std::vector<StoredLine> taken = std::exchange(lines, {});
+  if (const uint64_t dropped = std::exchange(lines_dropped, 0); dropped > 0) {
+    taken.push_back({taken.back().time_ms, v1::LOG_LEVEL_WARNING, std::nullopt, "",
+                     fmt::format("{} lines were dropped: too many at once", dropped)});
+  }
+  return taken;
+}
+
 v1::Job describe(const StoredJob& job) {
   v1::Job wire;
   wire.set_id(job.id);
@@ -98,7 +119,7 @@ v1::Job describe(const StoredJob& job) {
   wire.set_seconds_left(-1);
   wire.set_submitted_ms(job.submitted_ms);
   wire.set_ended_ms(job.ended_ms);
-  wire.set_reason(job.reason);
+  wire.set_reason(farm::wire_text(job.reason));
   return wire;
 }
 
@@ -112,7 +133,7 @@ v1::Job JobDesk::describe(uint32_t leased) const {
         static_cast<double>(stored.samples - std::min(samples_done, stored.samples)) /
         speed.per_second());
   }
-  if (!trouble.empty()) wire.set_reason(trouble);
+  if (!trouble.empty()) wire.set_reason(farm::wire_text(trouble));
   return wire;
 }
 
@@ -122,7 +143,7 @@ v1::Frame JobDesk::describe_frame(int32_t number, const FrameNote& note) const {
   wire.set_state(note.state);
   wire.set_samples(samples_per_frame);
   wire.set_samples_done(note.samples_done);
-  wire.set_reason(note.reason);
+  wire.set_reason(farm::wire_text(note.reason));
   wire.set_worker_class(note.worker_class);
   wire.set_restarts(note.restarts);
   return wire;
@@ -145,6 +166,13 @@ core::FilmInfo JobDesk::film_info(int32_t frame) const {
 core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec) {
   if (spec.files_size() > kMostFiles) {
     return core::Error{fmt::format("{} files: at most {}", spec.files_size(), kMostFiles)};
+  }
+  if (spec.frames_size() > kMostRanges) {
+    return core::Error{
+        fmt::format("{} ranges of frames: at most {}", spec.frames_size(), kMostRanges)};
+  }
+  if (spec.name().size() > kLongestName) {
+    return core::Error{fmt::format("name: at most {} characters", kLongestName)};
   }
   std::vector<core::AssetRecord> records;
   std::set<std::string> paths;
@@ -177,7 +205,13 @@ core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const 
     return core::Error{fmt::format("{} samples: at most {}", spec.samples(), kMostSamples)};
   }
   if (spec.samples() > 0) job.sampling.samples = spec.samples();
+  if (farm::wire_text(job.name) != job.name || job.name.size() > kLongestName) {
+    return core::Error{fmt::format("name: expected at most {} bytes of UTF-8", kLongestName)};
+  }
   for (const core::OutputDesc& output : job.outputs) {
+    if (farm::wire_text(output.file) != output.file) {
+      return core::Error{"output '" + farm::wire_text(output.file) + "': expected UTF-8"};
+    }
     const std::filesystem::path path = std::filesystem::path(output.file).lexically_normal();
     if (path.is_absolute() || path.empty() || *path.begin() == "..") {
       return core::Error{"output '" + output.file + "': a farm writes below the job's folder only"};

@@ -67,11 +67,17 @@ struct JobDesk {
   uint64_t version = 1;  ///< grows with every change
   Speed speed;
   std::vector<StoredLine> lines;  ///< not stored yet
-  std::string trouble;            ///< why its films cannot be stored
-  bool ending = false;            ///< the scheduler has let go of it
+  uint64_t lines_dropped = 0;     ///< since lines were last taken: too many at once
+  bool storing_lines = false;
+  std::string trouble;  ///< why its films cannot be stored
+  bool ending = false;  ///< the scheduler has let go of it
 
   FrameNote& touch(int32_t frame);
   void touch() { ++version; }
+  /// A line for the job's log; dropped and counted where too many wait for the disk.
+  void note(StoredLine line);
+  /// The lines that wait, and a last one that tells of those dropped.
+  std::vector<StoredLine> take_lines();
   v1::Job describe(uint32_t leased) const;
   v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
   core::FilmInfo film_info(int32_t frame) const;

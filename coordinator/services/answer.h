@@ -1,19 +1,42 @@
 #pragma once
 
+#include <chrono>
+#include <mutex>
+
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
 #include "coordinator/services/admission.h"
+#include "coordinator/services/raw.h"
+#include "farm/wire_status.h"
 
 namespace hyades::coordinator {
 
-/// Answers a call that is admitted with the status that `what` returns.
-template <class What>
+/// Answers an admitted call with what `what` makes of the request, or its status. A request has at
+/// most `limit` bytes; of those larger than usual one at a time is looked at.
+template <class Request, class Response, class What>
 grpc::ServerUnaryReactor* answer(const Admission& admission, grpc::CallbackServerContext* context,
-                                 What what) {
+                                 const grpc::ByteBuffer* bytes, grpc::ByteBuffer* answer, What what,
+                                 uint64_t limit = farm::kMaxRequestBytes) {
+  const auto work = [&]() -> grpc::Status {
+    if (const grpc::Status admitted = admission.check(*context); !admitted.ok()) return admitted;
+    std::unique_lock<std::mutex> alone;
+    if (bytes->Length() > farm::kMaxRequestBytes) {
+      alone = admission.alone();
+      if (!alone) {
+        return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                                 "another large request is being looked at",
+                                 std::chrono::milliseconds(500));
+      }
+    }
+    Request request;
+    if (const grpc::Status read = parse(*bytes, limit, request); !read.ok()) return read;
+    Response response;
+    if (const grpc::Status done = what(request, response); !done.ok()) return done;
+    return serialise(response, *answer);
+  };
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  const grpc::Status admitted = admission.check(*context);
-  reactor->Finish(admitted.ok() ? what() : admitted);
+  reactor->Finish(work());
   return reactor;
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/services/answer.h"
 #include "coordinator/services/file_stream.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -22,11 +23,11 @@ grpc::Status invalid(const std::string& message) {
 }
 
 /// Takes one file in. Writes as it reads, so that a client is never faster than the disk.
-class Uploading final : public grpc::ServerReadReactor<v1::UploadPart> {
+class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
   Uploading(farm::ContentStore& store, const grpc::Status& admitted) : store_(store) {
     if (admitted.ok()) {
-      StartRead(&part_);
+      StartRead(&bytes_);
     } else {
       Finish(admitted);
     }
@@ -37,12 +38,16 @@ class Uploading final : public grpc::ServerReadReactor<v1::UploadPart> {
       finish(writer_ ? incomplete() : invalid("an upload begins with the file's digest and size"));
       return;
     }
-    if (const grpc::Status taken = take(); !taken.ok()) {
+    v1::UploadPart part;  // not kept: an emptied message holds on to its memory
+    grpc::Status taken = parse(bytes_, farm::kMaxPartBytes, part);
+    bytes_.Clear();
+    if (taken.ok()) taken = take(part);
+    if (!taken.ok()) {
       finish(taken);
     } else if (done_) {
       finish(grpc::Status::OK);
     } else {
-      StartRead(&part_);
+      StartRead(&bytes_);
     }
   }
 
@@ -59,15 +64,15 @@ class Uploading final : public grpc::ServerReadReactor<v1::UploadPart> {
                                                    writer_->offset(), writer_->size())};
   }
 
-  grpc::Status begin() {
-    const auto digest = farm::digest_from_wire(part_.sha256());
+  grpc::Status begin(const v1::UploadPart& part) {
+    const auto digest = farm::digest_from_wire(part.sha256());
     if (!digest) return invalid(digest.error().message);
     const std::string name = core::to_hex(*digest);
-    if (store_.contains(name, part_.size())) {
+    if (store_.contains(name, part.size())) {
       done_ = true;
       return grpc::Status::OK;
     }
-    auto writer = store_.write(name, part_.size());
+    auto writer = store_.write(name, part.size());
     if (!writer) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
                                std::chrono::seconds(10));
@@ -76,13 +81,13 @@ class Uploading final : public grpc::ServerReadReactor<v1::UploadPart> {
     return grpc::Status::OK;
   }
 
-  grpc::Status take() {
+  grpc::Status take(const v1::UploadPart& part) {
     if (!writer_) {
-      if (const grpc::Status begun = begin(); !begun.ok() || done_) return begun;
+      if (const grpc::Status begun = begin(part); !begun.ok() || done_) return begun;
     }
-    std::span<const std::byte> data = std::as_bytes(std::span(part_.chunk().data()));
+    std::span<const std::byte> data = std::as_bytes(std::span(part.chunk().data()));
     if (data.size() > farm::kMaxChunkBytes) return invalid("a chunk has at most 1 MiB");
-    const uint64_t offset = part_.chunk().offset();
+    const uint64_t offset = part.chunk().offset();
     if (offset > writer_->offset()) {
       return {grpc::StatusCode::OUT_OF_RANGE,
               fmt::format("bytes from {} on are missing", writer_->offset())};
@@ -106,55 +111,56 @@ class Uploading final : public grpc::ServerReadReactor<v1::UploadPart> {
   }
 
   farm::ContentStore& store_;
-  v1::UploadPart part_;
+  grpc::ByteBuffer bytes_;
   std::optional<farm::ContentWriter> writer_;
   bool done_ = false;
 };
 
 }  // namespace
 
-grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context,
-                                                     const v1::FindMissingRequest* request,
-                                                     v1::FindMissingResponse* response) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  const auto answer = [&]() -> grpc::Status {
-    if (const grpc::Status admitted = admission_.check(*context); !admitted.ok()) return admitted;
-    if (request->files_size() > kMostAsked) return invalid("at most 10,000 files at a time");
+grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context, const Bytes* asked,
+                                                     Bytes* said) {
+  const auto find = [&](const v1::FindMissingRequest& request, v1::FindMissingResponse& response) {
+    if (request.files_size() > kMostAsked) return invalid("at most 10,000 files at a time");
     std::set<std::string> seen;
-    for (const v1::JobFile& file : request->files()) {
+    for (const v1::JobFile& file : request.files()) {
       const auto digest = farm::digest_from_wire(file.sha256());
       if (!digest) return invalid(digest.error().message);
       const std::string name = core::to_hex(*digest);
       if (!seen.insert(name).second || store_.contains(name, file.size())) continue;
-      auto* missing = response->add_missing();
+      auto* missing = response.add_missing();
       missing->set_sha256(file.sha256());
       missing->set_offset(std::min(store_.begun(name), file.size()));
     }
     return grpc::Status::OK;
   };
-  reactor->Finish(answer());
-  return reactor;
+  return answer<v1::FindMissingRequest, v1::FindMissingResponse>(admission_, context, asked, said,
+                                                                 find, farm::kMaxMessageBytes);
 }
 
-grpc::ServerReadReactor<v1::UploadPart>* AssetsService::Upload(Context* context,
-                                                               v1::UploadResponse*) {
+grpc::ServerReadReactor<grpc::ByteBuffer>* AssetsService::Upload(Context* context, Bytes* said) {
+  (void)serialise(v1::UploadResponse(), *said);
   return new Uploading(store_, admission_.check(*context));
 }
 
-grpc::ServerWriteReactor<v1::Chunk>* AssetsService::Download(Context* context,
-                                                             const v1::DownloadRequest* request) {
-  const auto refuse = [](grpc::Status status) { return new Refusal<v1::Chunk>(std::move(status)); };
+grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* context,
+                                                                    const Bytes* asked) {
+  const auto refuse = [](const grpc::Status& status) { return new Refusal(status); };
   const grpc::Status admitted = admission_.check(*context);
   if (!admitted.ok()) return refuse(admitted);
-  const auto digest = farm::digest_from_wire(request->sha256());
+  v1::DownloadRequest request;
+  if (const grpc::Status read = parse(*asked, farm::kMaxRequestBytes, request); !read.ok()) {
+    return refuse(read);
+  }
+  const auto digest = farm::digest_from_wire(request.sha256());
   if (!digest) return refuse(invalid(digest.error().message));
   auto bytes = store_.read(core::to_hex(*digest));
   if (!bytes) return refuse({grpc::StatusCode::NOT_FOUND, bytes.error().message});
-  if (request->offset() > bytes->size()) {
+  if (request.offset() > bytes->size()) {
     return refuse(
         {grpc::StatusCode::OUT_OF_RANGE, fmt::format("the file has {} bytes", bytes->size())});
   }
-  return new FileStream(std::move(*bytes), request->offset());
+  return new FileStream(std::move(*bytes), request.offset());
 }
 
 }  // namespace hyades::coordinator

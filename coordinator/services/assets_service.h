@@ -6,19 +6,22 @@
 
 namespace hyades::coordinator {
 
+/// All methods of Assets by bytes (raw.h).
+using RawAssets =
+    v1::Assets::WithRawCallbackMethod_FindMissing<v1::Assets::WithRawCallbackMethod_Upload<
+        v1::Assets::WithRawCallbackMethod_Download<v1::Assets::Service>>>;
+
 /// Files by content (assets_service.cpp).
-class AssetsService final : public v1::Assets::CallbackService {
+class AssetsService final : public RawAssets {
  public:
   AssetsService(farm::ContentStore& store, const Admission& admission)
       : store_(store), admission_(admission) {}
 
   using Context = grpc::CallbackServerContext;
-  grpc::ServerUnaryReactor* FindMissing(Context* context, const v1::FindMissingRequest* request,
-                                        v1::FindMissingResponse* response) override;
-  grpc::ServerReadReactor<v1::UploadPart>* Upload(Context* context,
-                                                  v1::UploadResponse* response) override;
-  grpc::ServerWriteReactor<v1::Chunk>* Download(Context* context,
-                                                const v1::DownloadRequest* request) override;
+  using Bytes = grpc::ByteBuffer;
+  grpc::ServerUnaryReactor* FindMissing(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerReadReactor<Bytes>* Upload(Context* context, Bytes* said) override;
+  grpc::ServerWriteReactor<Bytes>* Download(Context* context, const Bytes* asked) override;
 
  private:
   farm::ContentStore& store_;

@@ -4,41 +4,48 @@
 
 namespace hyades::coordinator {
 
-grpc::ServerUnaryReactor* FarmService::Info(Context* context, const v1::InfoRequest*,
-                                            v1::InfoResponse* response) {
-  return answer(admission_, context, [&] {
-    brain_.info(*response);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked, Bytes* said) {
+  return answer<v1::InfoRequest, v1::InfoResponse>(
+      admission_, context, asked, said, [&](const v1::InfoRequest&, v1::InfoResponse& response) {
+        brain_.info(response);
+        return grpc::Status::OK;
+      });
 }
 
-grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const v1::WorkersRequest*,
-                                               v1::WorkersResponse* response) {
-  return answer(admission_, context, [&] {
-    brain_.workers(*response);
-    return grpc::Status::OK;
-  });
+grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* asked, Bytes* said) {
+  return answer<v1::WorkersRequest, v1::WorkersResponse>(
+      admission_, context, asked, said,
+      [&](const v1::WorkersRequest&, v1::WorkersResponse& response) {
+        brain_.workers(response);
+        return grpc::Status::OK;
+      });
 }
 
-grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context,
-                                                   const v1::WorkerRequest* request,
-                                                   v1::WorkerResponse* response) {
-  return answer(admission_, context,
-                [&] { return brain_.drain_worker(*request, *response->mutable_worker()); });
+grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context, const Bytes* asked,
+                                                   Bytes* said) {
+  return answer<v1::WorkerRequest, v1::WorkerResponse>(
+      admission_, context, asked, said,
+      [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
+        return brain_.drain_worker(request, *response.mutable_worker());
+      });
 }
 
-grpc::ServerUnaryReactor* FarmService::QuarantineWorker(Context* context,
-                                                        const v1::WorkerRequest* request,
-                                                        v1::WorkerResponse* response) {
-  return answer(admission_, context,
-                [&] { return brain_.quarantine_worker(*request, *response->mutable_worker()); });
+grpc::ServerUnaryReactor* FarmService::QuarantineWorker(Context* context, const Bytes* asked,
+                                                        Bytes* said) {
+  return answer<v1::WorkerRequest, v1::WorkerResponse>(
+      admission_, context, asked, said,
+      [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
+        return brain_.quarantine_worker(request, *response.mutable_worker());
+      });
 }
 
-grpc::ServerUnaryReactor* FarmService::ReleaseWorker(Context* context,
-                                                     const v1::WorkerRequest* request,
-                                                     v1::WorkerResponse* response) {
-  return answer(admission_, context,
-                [&] { return brain_.release_worker(*request, *response->mutable_worker()); });
+grpc::ServerUnaryReactor* FarmService::ReleaseWorker(Context* context, const Bytes* asked,
+                                                     Bytes* said) {
+  return answer<v1::WorkerRequest, v1::WorkerResponse>(
+      admission_, context, asked, said,
+      [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
+        return brain_.release_worker(request, *response.mutable_worker());
+      });
 }
 
 }  // namespace hyades::coordinator

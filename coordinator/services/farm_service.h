@@ -6,22 +6,25 @@
 
 namespace hyades::coordinator {
 
+/// All methods of Farm by bytes (raw.h).
+using RawFarm = v1::Farm::WithRawCallbackMethod_Info<v1::Farm::WithRawCallbackMethod_Workers<
+    v1::Farm::WithRawCallbackMethod_DrainWorker<v1::Farm::WithRawCallbackMethod_QuarantineWorker<
+        v1::Farm::WithRawCallbackMethod_ReleaseWorker<v1::Farm::Service>>>>>;
+
 /// What operators ask for (farm_service.cpp).
-class FarmService final : public v1::Farm::CallbackService {
+class FarmService final : public RawFarm {
  public:
   FarmService(Brain& brain, const Admission& admission) : brain_(brain), admission_(admission) {}
 
   using Context = grpc::CallbackServerContext;
-  grpc::ServerUnaryReactor* Info(Context* context, const v1::InfoRequest* request,
-                                 v1::InfoResponse* response) override;
-  grpc::ServerUnaryReactor* Workers(Context* context, const v1::WorkersRequest* request,
-                                    v1::WorkersResponse* response) override;
-  grpc::ServerUnaryReactor* DrainWorker(Context* context, const v1::WorkerRequest* request,
-                                        v1::WorkerResponse* response) override;
-  grpc::ServerUnaryReactor* QuarantineWorker(Context* context, const v1::WorkerRequest* request,
-                                             v1::WorkerResponse* response) override;
-  grpc::ServerUnaryReactor* ReleaseWorker(Context* context, const v1::WorkerRequest* request,
-                                          v1::WorkerResponse* response) override;
+  using Bytes = grpc::ByteBuffer;
+  grpc::ServerUnaryReactor* Info(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Workers(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* DrainWorker(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* QuarantineWorker(Context* context, const Bytes* asked,
+                                             Bytes* said) override;
+  grpc::ServerUnaryReactor* ReleaseWorker(Context* context, const Bytes* asked,
+                                          Bytes* said) override;
 
  private:
   Brain& brain_;

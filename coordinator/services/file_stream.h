@@ -11,18 +11,10 @@
 namespace hyades::coordinator {
 
 /// A stream that says no.
-template <class Message>
-class Refusal final : public Producer<Message> {
+class Refusal final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
-  explicit Refusal(grpc::Status status) : status_(std::move(status)) { this->begin(); }
-
- private:
-  using Step = typename Producer<Message>::Step;
-  Step next(Message&, grpc::Status& status) override {
-    status = status_;
-    return Step::end;
-  }
-  grpc::Status status_;
+  explicit Refusal(const grpc::Status& status) { Finish(status); }
+  void OnDone() override { delete this; }
 };
 
 /// Bytes from an offset on, in chunks.

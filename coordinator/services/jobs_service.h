@@ -6,42 +6,38 @@
 
 namespace hyades::coordinator {
 
+/// All methods of Jobs by bytes (raw.h).
+using RawJobs = v1::Jobs::WithRawCallbackMethod_Submit<v1::Jobs::WithRawCallbackMethod_List<
+    v1::Jobs::WithRawCallbackMethod_Get<v1::Jobs::WithRawCallbackMethod_Pause<
+        v1::Jobs::WithRawCallbackMethod_Resume<v1::Jobs::WithRawCallbackMethod_Cancel<
+            v1::Jobs::WithRawCallbackMethod_Retry<v1::Jobs::WithRawCallbackMethod_SetPriority<
+                v1::Jobs::WithRawCallbackMethod_Delete<v1::Jobs::WithRawCallbackMethod_Explain<
+                    v1::Jobs::WithRawCallbackMethod_Watch<v1::Jobs::WithRawCallbackMethod_Outputs<
+                        v1::Jobs::WithRawCallbackMethod_Fetch<v1::Jobs::WithRawCallbackMethod_Film<
+                            v1::Jobs::WithRawCallbackMethod_Logs<v1::Jobs::Service>>>>>>>>>>>>>>>;
+
 /// What clients ask about jobs (jobs_service.cpp, jobs_streams.cpp).
-class JobsService final : public v1::Jobs::CallbackService {
+class JobsService final : public RawJobs {
  public:
   JobsService(Brain& brain, const Admission& admission) : brain_(brain), admission_(admission) {}
 
   using Context = grpc::CallbackServerContext;
-  grpc::ServerUnaryReactor* Submit(Context* context, const v1::SubmitRequest* request,
-                                   v1::SubmitResponse* response) override;
-  grpc::ServerUnaryReactor* List(Context* context, const v1::ListJobsRequest* request,
-                                 v1::ListJobsResponse* response) override;
-  grpc::ServerUnaryReactor* Get(Context* context, const v1::GetJobRequest* request,
-                                v1::GetJobResponse* response) override;
-  grpc::ServerUnaryReactor* Pause(Context* context, const v1::JobRequest* request,
-                                  v1::JobResponse* response) override;
-  grpc::ServerUnaryReactor* Resume(Context* context, const v1::JobRequest* request,
-                                   v1::JobResponse* response) override;
-  grpc::ServerUnaryReactor* Cancel(Context* context, const v1::JobRequest* request,
-                                   v1::JobResponse* response) override;
-  grpc::ServerUnaryReactor* Retry(Context* context, const v1::JobRequest* request,
-                                  v1::JobResponse* response) override;
-  grpc::ServerUnaryReactor* SetPriority(Context* context, const v1::SetPriorityRequest* request,
-                                        v1::JobResponse* response) override;
-  grpc::ServerUnaryReactor* Delete(Context* context, const v1::JobRequest* request,
-                                   v1::DeleteJobResponse* response) override;
-  grpc::ServerUnaryReactor* Explain(Context* context, const v1::JobRequest* request,
-                                    v1::ExplainResponse* response) override;
-  grpc::ServerWriteReactor<v1::WatchEvent>* Watch(Context* context,
-                                                  const v1::WatchRequest* request) override;
-  grpc::ServerWriteReactor<v1::OutputFile>* Outputs(Context* context,
-                                                    const v1::OutputsRequest* request) override;
-  grpc::ServerWriteReactor<v1::Chunk>* Fetch(Context* context,
-                                             const v1::FetchRequest* request) override;
-  grpc::ServerWriteReactor<v1::FilmPart>* Film(Context* context,
-                                               const v1::FilmRequest* request) override;
-  grpc::ServerWriteReactor<v1::LogLine>* Logs(Context* context,
-                                              const v1::LogsRequest* request) override;
+  using Bytes = grpc::ByteBuffer;
+  grpc::ServerUnaryReactor* Submit(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* List(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Get(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Pause(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Resume(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Cancel(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Retry(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* SetPriority(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Delete(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* Explain(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerWriteReactor<Bytes>* Watch(Context* context, const Bytes* asked) override;
+  grpc::ServerWriteReactor<Bytes>* Outputs(Context* context, const Bytes* asked) override;
+  grpc::ServerWriteReactor<Bytes>* Fetch(Context* context, const Bytes* asked) override;
+  grpc::ServerWriteReactor<Bytes>* Film(Context* context, const Bytes* asked) override;
+  grpc::ServerWriteReactor<Bytes>* Logs(Context* context, const Bytes* asked) override;
 
  private:
   Brain& brain_;

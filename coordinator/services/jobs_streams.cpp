@@ -22,6 +22,20 @@ namespace {
 
 constexpr uint32_t kLinesAtOnce = 500;
 
+constexpr int kMostAsked = 10'000;
+
+grpc::Status too_many(const char* what) {
+  return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("at most {} {}", kMostAsked, what)};
+}
+
+/// A request of a caller that is admitted.
+template <class Request>
+grpc::Status take_in(const Admission& admission, const grpc::CallbackServerContext& context,
+                     const grpc::ByteBuffer& bytes, Request& request) {
+  const grpc::Status admitted = admission.check(context);
+  return admitted.ok() ? parse(bytes, farm::kMaxRequestBytes, request) : admitted;
+}
+
 grpc::Status failed(const core::Error& error) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
 }
@@ -146,7 +160,7 @@ class LogLines final : public Follower<v1::LogLine> {
         status = failed(lines.error());
         return Step::end;
       }
-      seen_ += lines->size();
+      if (!lines->empty()) seen_ = lines->back().number;
       ready_.insert(ready_.end(), lines->begin(), lines->end());
       if (!ready_.empty()) continue;
       last_ = over || !request_.follow();
@@ -157,7 +171,7 @@ class LogLines final : public Follower<v1::LogLine> {
   const v1::LogsRequest request_;
   std::set<int32_t> frames_;
   std::deque<StoredLine> ready_;
-  uint64_t seen_ = 0;
+  uint64_t seen_ = 0;  ///< the number of the last line
   bool last_ = false;
 };
 
@@ -218,66 +232,73 @@ class FilmStream final : public Producer<v1::FilmPart> {
 
 }  // namespace
 
-grpc::ServerWriteReactor<v1::WatchEvent>* JobsService::Watch(Context* context,
-                                                             const v1::WatchRequest* request) {
-  const grpc::Status admitted = admission_.check(*context);
-  if (!admitted.ok()) return new Refusal<v1::WatchEvent>(admitted);
-  auto* stream = new Watching(brain_, request->job());
+grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Watch(Context* context,
+                                                               const Bytes* asked) {
+  v1::WatchRequest request;
+  const grpc::Status taken = take_in(admission_, *context, *asked, request);
+  if (!taken.ok()) return new Refusal(taken);
+  auto* stream = new Watching(brain_, request.job());
   stream->begin();
   return stream;
 }
 
-grpc::ServerWriteReactor<v1::OutputFile>* JobsService::Outputs(Context* context,
-                                                               const v1::OutputsRequest* request) {
-  const grpc::Status admitted = admission_.check(*context);
-  if (!admitted.ok()) return new Refusal<v1::OutputFile>(admitted);
-  auto* stream = new OutputList(brain_, *request);
+grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Outputs(Context* context,
+                                                                 const Bytes* asked) {
+  v1::OutputsRequest request;
+  grpc::Status taken = take_in(admission_, *context, *asked, request);
+  if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("ranges of frames");
+  if (!taken.ok()) return new Refusal(taken);
+  auto* stream = new OutputList(brain_, request);
   stream->begin();
   return stream;
 }
 
-grpc::ServerWriteReactor<v1::LogLine>* JobsService::Logs(Context* context,
-                                                         const v1::LogsRequest* request) {
-  const grpc::Status admitted = admission_.check(*context);
-  if (!admitted.ok()) return new Refusal<v1::LogLine>(admitted);
-  auto* stream = new LogLines(brain_, *request);
+grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
+                                                              const Bytes* asked) {
+  v1::LogsRequest request;
+  grpc::Status taken = take_in(admission_, *context, *asked, request);
+  if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("frames");
+  if (!taken.ok()) return new Refusal(taken);
+  auto* stream = new LogLines(brain_, request);
   stream->begin();
   return stream;
 }
 
-grpc::ServerWriteReactor<v1::Chunk>* JobsService::Fetch(Context* context,
-                                                        const v1::FetchRequest* request) {
-  const auto refuse = [](grpc::Status status) { return new Refusal<v1::Chunk>(std::move(status)); };
-  const grpc::Status admitted = admission_.check(*context);
-  if (!admitted.ok()) return refuse(admitted);
+grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
+                                                               const Bytes* asked) {
+  v1::FetchRequest request;
+  const auto refuse = [](const grpc::Status& status) { return new Refusal(status); };
+  const grpc::Status taken = take_in(admission_, *context, *asked, request);
+  if (!taken.ok()) return refuse(taken);
   // The path is looked up among the job's outputs and never taken for one of the file system's.
-  const auto output = brain_.store().output(request->job(), request->path());
+  const auto output = brain_.store().output(request.job(), request.path());
   if (!output) return refuse(failed(output.error()));
   if (!*output) {
-    return refuse({grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no output '{}' (yet)",
-                                                            request->job(), request->path())});
+    return refuse({grpc::StatusCode::NOT_FOUND,
+                   fmt::format("job {} has no output '{}' (yet)", request.job(), request.path())});
   }
-  if (!request->sha256().empty() && request->sha256() != (*output)->sha256) {
+  if (!request.sha256().empty() && request.sha256() != (*output)->sha256) {
     return refuse({grpc::StatusCode::FAILED_PRECONDITION,
-                   request->path() + " has been rendered again: fetch it from its beginning"});
+                   request.path() + " has been rendered again: fetch it from its beginning"});
   }
-  auto bytes = core::map_file(brain_.output_folder(request->job()) + "/" + (*output)->path);
+  auto bytes = core::map_file(brain_.output_folder(request.job()) + "/" + (*output)->path);
   if (!bytes || bytes->size() != (*output)->size) {
     return refuse(
-        {grpc::StatusCode::DATA_LOSS, request->path() + " is damaged on the coordinator's disk"});
+        {grpc::StatusCode::DATA_LOSS, request.path() + " is damaged on the coordinator's disk"});
   }
-  if (request->offset() > bytes->size()) {
+  if (request.offset() > bytes->size()) {
     return refuse({grpc::StatusCode::OUT_OF_RANGE,
-                   fmt::format("{} has {} bytes", request->path(), bytes->size())});
+                   fmt::format("{} has {} bytes", request.path(), bytes->size())});
   }
-  return new FileStream(std::move(*bytes), request->offset());
+  return new FileStream(std::move(*bytes), request.offset());
 }
 
-grpc::ServerWriteReactor<v1::FilmPart>* JobsService::Film(Context* context,
-                                                          const v1::FilmRequest* request) {
-  const grpc::Status admitted = admission_.check(*context);
-  if (!admitted.ok()) return new Refusal<v1::FilmPart>(admitted);
-  return new FilmStream(brain_, *request);
+grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
+                                                              const Bytes* asked) {
+  v1::FilmRequest request;
+  const grpc::Status taken = take_in(admission_, *context, *asked, request);
+  if (!taken.ok()) return new Refusal(taken);
+  return new FilmStream(brain_, request);
 }
 
 }  // namespace hyades::coordinator

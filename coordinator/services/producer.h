@@ -6,6 +6,8 @@
 #include <grpcpp/support/server_callback.h>
 #include <grpcpp/support/status.h>
 
+#include "coordinator/services/raw.h"
+
 namespace hyades::coordinator {
 
 /// Lets others wake a stream that may be over already.
@@ -18,7 +20,7 @@ class Poker {
 /// A stream of messages to a client, produced as fast as it reads: next() is called again when the
 /// last message is on its way, or, after it had nothing, when somebody pokes. Deletes itself.
 template <class Message>
-class Producer : public grpc::ServerWriteReactor<Message> {
+class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
   enum class Step { message, wait, end };
 
@@ -30,7 +32,7 @@ class Producer : public grpc::ServerWriteReactor<Message> {
     if (ok) {
       advance();
     } else {
-      this->Finish({grpc::StatusCode::CANCELLED, "the client is gone"});
+      Finish({grpc::StatusCode::CANCELLED, "the client is gone"});
     }
   }
   void OnCancel() override {
@@ -99,9 +101,13 @@ class Producer : public grpc::ServerWriteReactor<Message> {
         status = {grpc::StatusCode::CANCELLED, "the client is gone"};
       } else {
         step = next(message_, status);
+        if (step == Step::message) {
+          status = serialise(message_, bytes_);
+          if (!status.ok()) step = Step::end;
+        }
       }
-      if (step == Step::message) return this->StartWrite(&message_);
-      if (step == Step::end) return this->Finish(status);
+      if (step == Step::message) return StartWrite(&bytes_);
+      if (step == Step::end) return Finish(status);
       const std::lock_guard lock(mutex_);
       if (poked_) continue;
       busy_ = false;
@@ -111,6 +117,7 @@ class Producer : public grpc::ServerWriteReactor<Message> {
 
   const std::shared_ptr<Handle> handle_;
   Message message_;
+  grpc::ByteBuffer bytes_;  ///< the message on its way
   std::mutex mutex_;
   bool busy_ = true;    ///< not begun, next() or a write is going on, or all is over
   bool poked_ = false;  ///< since next() was last called

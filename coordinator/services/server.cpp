@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include <grpcpp/resource_quota.h>
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 
@@ -19,6 +20,11 @@ constexpr int kKeepaliveMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
 constexpr int kLeastPingIntervalMs = 5'000;
 constexpr std::chrono::milliseconds kLastWords{200};
+/// What has come over all connections and is not dealt with yet: beyond it windows close, and then
+/// calls are broken off.
+constexpr size_t kMostReceivedBytes = size_t{512} << 20U;
+/// Calls at once on one connection; a worker has one and its downloads, a client one or two.
+constexpr int kMostCalls = 100;
 
 }  // namespace
 
@@ -64,6 +70,13 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Listen& listen, 
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS,
                              kLeastPingIntervalMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostCalls);
+  // A megabyte may be unpacked to a thousand: gRPC looks at the length only then. Films are packed
+  // by their own codec, which is told how much it may unpack.
+  builder.AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
+  builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
+  builder.SetResourceQuota(grpc::ResourceQuota("hyades").Resize(kMostReceivedBytes));
   // A second coordinator on the same port is a mistake, not a cluster.
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   parts->server = builder.BuildAndStart();

@@ -5,11 +5,18 @@
 #include <mutex>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "coordinator/services/raw.h"
+#include "coordinator/services/worker_bytes.h"
+#include "farm/wire.h"
+
 namespace hyades::coordinator {
 namespace {
 
-/// A worker that does not read for so long that this many messages wait is cut off.
+/// A worker that does not read for so long that this much waits for it is cut off.
 constexpr size_t kMostWaiting = 100'000;
+constexpr uint64_t kMostWaitingBytes = uint64_t{64} << 20U;
 
 /// The stream's writing side, which outlives the stream as long as the brain holds it.
 class Link final : public WorkerLink {
@@ -18,8 +25,9 @@ class Link final : public WorkerLink {
   class Wire {
    public:
     virtual ~Wire() = default;
-    virtual void write(const v1::CoordinatorMessage& message) = 0;
+    virtual void write(const grpc::ByteBuffer& message) = 0;
     virtual void finish(const grpc::Status& status) = 0;
+    virtual void cancel() = 0;
   };
 
   explicit Link(Wire& wire) : wire_(&wire) {}
@@ -27,10 +35,16 @@ class Link final : public WorkerLink {
   void send(v1::CoordinatorMessage message) override {
     const std::lock_guard lock(mutex_);
     if (wire_ == nullptr || closed_) return;
-    queue_.push_back(std::move(message));
-    if (queue_.size() > kMostWaiting) {
-      queue_.resize(writing_ ? 1 : 0);
+    const uint64_t size = message.ByteSizeLong();
+    queue_.push_back({std::move(message), size});
+    waiting_ += queue_.back().size;
+    // One message may be as large as it is: a large job's files.
+    const bool much = waiting_ > kMostWaitingBytes && queue_.size() > 2;
+    if (queue_.size() > kMostWaiting || much) {
+      queue_.clear();
+      waiting_ = 0;
       close_locked({grpc::StatusCode::RESOURCE_EXHAUSTED, "the worker does not read"});
+      wire_->cancel();  // or the message on its way would keep the stream open
     } else {
       proceed();
     }
@@ -44,8 +58,10 @@ class Link final : public WorkerLink {
   void written(bool ok) {
     const std::lock_guard lock(mutex_);
     writing_ = false;
-    if (!queue_.empty()) queue_.pop_front();
-    if (!ok) queue_.clear();
+    if (!ok) {
+      queue_.clear();
+      waiting_ = 0;
+    }
     if (wire_ != nullptr) proceed();
   }
 
@@ -68,7 +84,10 @@ class Link final : public WorkerLink {
     if (writing_) return;
     if (!queue_.empty()) {
       writing_ = true;
-      wire_->write(queue_.front());
+      (void)serialise(queue_.front().message, bytes_);  // fails for no message of ours
+      waiting_ -= queue_.front().size;
+      queue_.pop_front();
+      wire_->write(bytes_);
     } else if (closed_ && !finished_) {
       finished_ = true;
       wire_->finish(status_);
@@ -77,20 +96,26 @@ class Link final : public WorkerLink {
 
   std::mutex mutex_;
   Wire* wire_;
-  std::deque<v1::CoordinatorMessage> queue_;  ///< the first is being written while writing_
+  struct Waiting {
+    v1::CoordinatorMessage message;
+    uint64_t size = 0;
+  };
+  std::deque<Waiting> queue_;
+  uint64_t waiting_ = 0;    ///< bytes in queue_
+  grpc::ByteBuffer bytes_;  ///< the message that is being written
   bool writing_ = false;
   bool closed_ = false;
   bool finished_ = false;
   grpc::Status status_;
 };
 
-class Attendance final : public grpc::ServerBidiReactor<v1::WorkerMessage, v1::CoordinatorMessage>,
+class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                          public Link::Wire {
  public:
-  Attendance(Brain& brain, const grpc::Status& admitted)
-      : brain_(brain), link_(std::make_shared<Link>(*this)) {
+  Attendance(Brain& brain, grpc::CallbackServerContext& context, const grpc::Status& admitted)
+      : brain_(brain), context_(context), link_(std::make_shared<Link>(*this)) {
     if (admitted.ok()) {
-      StartRead(&message_);
+      StartRead(&bytes_);
     } else {
       link_->close(admitted);
     }
@@ -102,18 +127,23 @@ class Attendance final : public grpc::ServerBidiReactor<v1::WorkerMessage, v1::C
       link_->close(grpc::Status::OK);
       return;
     }
+    v1::WorkerMessage message;  // not kept: an emptied message holds on to its memory
+    if (const grpc::Status read = take(message); !read.ok()) {
+      link_->close(read);
+      return;
+    }
     if (!attached_) {
       grpc::Status status{grpc::StatusCode::INVALID_ARGUMENT, "a stream begins with Hello"};
-      if (message_.has_hello()) status = brain_.attach(message_.hello(), link_, worker_);
+      if (message.has_hello()) status = brain_.attach(message.hello(), link_, worker_);
       if (!status.ok()) {
         link_->close(status);
         return;
       }
       attached_ = true;
     } else {
-      brain_.receive(worker_, link_.get(), message_);
+      brain_.receive(worker_, link_.get(), message);
     }
-    StartRead(&message_);
+    StartRead(&bytes_);
   }
 
   void OnWriteDone(bool ok) override { link_->written(ok); }
@@ -125,21 +155,39 @@ class Attendance final : public grpc::ServerBidiReactor<v1::WorkerMessage, v1::C
   }
 
  private:
-  void write(const v1::CoordinatorMessage& message) override { StartWrite(&message); }
+  /// What has come, parsed: only what may be large may be.
+  grpc::Status take(v1::WorkerMessage& message) {
+    const auto besides = bytes_besides_film(bytes_);
+    if (besides && *besides > farm::kMaxWorkerTalkBytes) {
+      return {grpc::StatusCode::INVALID_ARGUMENT,
+              fmt::format("a worker's message has {} bytes besides a film: {} are the most",
+                          *besides, farm::kMaxWorkerTalkBytes)};
+    }
+    if (!besides) {
+      return {grpc::StatusCode::INVALID_ARGUMENT, "these bytes are not a worker's message"};
+    }
+    const grpc::Status read = parse(bytes_, farm::kMaxResultBytes, message);
+    bytes_.Clear();
+    return read;
+  }
+
+  void write(const grpc::ByteBuffer& message) override { StartWrite(&message); }
   void finish(const grpc::Status& status) override { Finish(status); }
+  void cancel() override { context_.TryCancel(); }
 
   Brain& brain_;
+  grpc::CallbackServerContext& context_;
   const std::shared_ptr<Link> link_;
-  v1::WorkerMessage message_;
+  grpc::ByteBuffer bytes_;
   WorkerId worker_{};
   bool attached_ = false;
 };
 
 }  // namespace
 
-grpc::ServerBidiReactor<v1::WorkerMessage, v1::CoordinatorMessage>* WorkService::Attend(
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* WorkService::Attend(
     grpc::CallbackServerContext* context) {
-  return new Attendance(brain_, admission_.check(*context));
+  return new Attendance(brain_, *context, admission_.check(*context));
 }
 
 }  // namespace hyades::coordinator

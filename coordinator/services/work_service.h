@@ -7,10 +7,10 @@
 namespace hyades::coordinator {
 
 /// One stream per worker (work_service.cpp).
-class WorkService final : public v1::Work::CallbackService {
+class WorkService final : public v1::Work::WithRawCallbackMethod_Attend<v1::Work::Service> {
  public:
   WorkService(Brain& brain, const Admission& admission) : brain_(brain), admission_(admission) {}
-  grpc::ServerBidiReactor<v1::WorkerMessage, v1::CoordinatorMessage>* Attend(
+  grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Attend(
       grpc::CallbackServerContext* context) override;
 
  private:

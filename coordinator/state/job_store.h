@@ -58,6 +58,7 @@ struct StoredLine {
   std::optional<int32_t> frame;
   std::string worker;
   std::string text;
+  uint64_t number = 0;  ///< grows from line to line, with gaps; the store gives it
 };
 
 /// A worker that gets no units, over restarts of the coordinator too.
@@ -65,6 +66,10 @@ struct StoredQuarantine {
   std::string worker;  ///< what it calls itself (v1::Hello.worker_id)
   std::string reason;
 };
+
+/// The most lines that are kept of a job; the oldest go first, in groups of kLinesDropped.
+inline constexpr uint64_t kMostLines = 50'000;
+inline constexpr uint64_t kLinesDropped = 5'000;
 
 /// What the coordinator keeps over restarts besides films and assets. What a function has written
 /// is durable when it returns, log lines excepted, which may lag behind. Thread-safe.
@@ -110,9 +115,10 @@ class JobStore {
   virtual core::Status end_quarantine(const std::string& worker) = 0;
   virtual core::Result<std::vector<StoredQuarantine>> quarantines() = 0;
 
+  /// Where the oldest lines had to go, the first that is left says so.
   virtual core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) = 0;
-  /// Lines after the first `skip`, at most `limit`.
-  virtual core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t skip,
+  /// Lines after number `after` (0: all), at most `limit`.
+  virtual core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t after,
                                                       uint32_t limit) = 0;
 };
 

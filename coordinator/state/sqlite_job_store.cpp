@@ -1,3 +1,4 @@
+#include <map>
 #include <mutex>
 
 #include "coordinator/state/database.h"
@@ -83,6 +84,7 @@ class SqliteJobStore final : public JobStore {
 
   core::Status remove_job(uint64_t id) override {
     const std::lock_guard lock(mutex_);
+    line_counts_.erase(id);
     return query("DELETE FROM jobs WHERE id = ?").bind(number(id)).run();
   }
 
@@ -236,16 +238,17 @@ class SqliteJobStore final : public JobStore {
       }
       if (core::Status done = insert.bind(line.worker).bind(line.text).run(); !done) return done;
     }
+    if (core::Status kept = drop_old_lines(job, lines.size()); !kept) return kept;
     return transaction.commit();
   }
 
-  core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t skip,
+  core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t after,
                                               uint32_t limit) override {
     const std::lock_guard lock(mutex_);
     Query rows(db_.get(),
-               "SELECT time_ms, level, frame, worker, text FROM lines WHERE job = ? "
-               "ORDER BY number LIMIT ? OFFSET ?");
-    rows.bind(number(job)).bind(int64_t{limit}).bind(number(skip));
+               "SELECT time_ms, level, frame, worker, text, number FROM lines "
+               "WHERE job = ? AND number > ? ORDER BY number LIMIT ?");
+    rows.bind(number(job)).bind(number(after)).bind(int64_t{limit});
     std::vector<StoredLine> lines;
     while (rows.next()) {
       StoredLine line;
@@ -254,6 +257,7 @@ class SqliteJobStore final : public JobStore {
       if (!rows.is_null(2)) line.frame = static_cast<int32_t>(rows.integer(2));
       line.worker = rows.bytes(3);
       line.text = rows.bytes(4);
+      line.number = static_cast<uint64_t>(rows.integer(5));
       lines.push_back(std::move(line));
     }
     if (core::Status status = rows.status(); !status) return status.error();
@@ -277,6 +281,37 @@ class SqliteJobStore final : public JobStore {
         .bind(job.reason);
   }
 
+  /// Within add_lines' transaction. Jobs' lines are counted once, and kept count of from there on.
+  core::Status drop_old_lines(uint64_t job, uint64_t added) {
+    const auto [counted, fresh] = line_counts_.try_emplace(job, 0);
+    if (fresh) {
+      Query count = query("SELECT COUNT(*) FROM lines WHERE job = ?");
+      count.bind(number(job));
+      if (count.next()) counted->second = static_cast<uint64_t>(count.integer(0));
+    } else {
+      counted->second += added;
+    }
+    if (counted->second <= kMostLines) return {};
+    // A transaction that is rolled back leaves a wrong count: it is taken again.
+    line_counts_.erase(counted);
+    if (core::Status done =
+            query("DELETE FROM lines WHERE job = ?1 AND number < (SELECT number FROM lines "
+                  "WHERE job = ?1 ORDER BY number DESC LIMIT 1 OFFSET ?2)")
+                .bind(number(job))
+                .bind(number(kMostLines - kLinesDropped - 1))
+                .run();
+        !done) {
+      return done;
+    }
+    return query(
+               "UPDATE lines SET level = 2, frame = NULL, worker = '', text = ?2 "
+               "WHERE number = (SELECT MIN(number) FROM lines WHERE job = ?1)")
+        .bind(number(job))
+        .bind("older lines were dropped: a job's log keeps the newest " +
+              std::to_string(kMostLines))
+        .run();
+  }
+
   core::Status delete_frame(uint64_t job, int32_t frame) {
     for (const char* sql : {"DELETE FROM frames WHERE job = ? AND frame = ?",
                             "DELETE FROM outputs WHERE job = ? AND frame = ?"}) {
@@ -289,6 +324,7 @@ class SqliteJobStore final : public JobStore {
 
   std::mutex mutex_;
   Database db_;
+  std::map<uint64_t, uint64_t> line_counts_;  ///< of jobs that had lines lately
 };
 
 }  // namespace

@@ -8,6 +8,18 @@
 namespace hyades::farm {
 namespace {
 
+TEST(Wire, TextsAreCutAndCanBeRead) {
+  EXPECT_EQ(wire_text("plain \xC3\xA4 \xE2\x82\xAC \xF0\x9F\x98\x80"),
+            "plain \xC3\xA4 \xE2\x82\xAC \xF0\x9F\x98\x80");
+  EXPECT_EQ(wire_text("\xFF|\xC3|\xC0\x80|\xED\xA0\x80|\xF4\x90\x80\x80|\xE2\x82"),
+            "?|?|\?\?|\?\?\?|\?\?\?\?|\?\?");
+  std::string long_text(kMaxTextBytes - 1, 'x');
+  EXPECT_EQ(wire_text(long_text + "\xC3\xA4"), long_text) << "no half characters";
+  v1::LogLine line;
+  line.set_text(wire_text(std::string(1, '\xFE') + long_text + "\xC3\xA4"));
+  EXPECT_TRUE(v1::LogLine().ParseFromString(line.SerializeAsString()));
+}
+
 TEST(Wire, UnitsAndFilmInfoComeBackAsTheyWent) {
   const core::Unit unit{-3, {32, 64, 64, 80}, {7, 9}};
   const auto back = from_wire(to_wire(unit));

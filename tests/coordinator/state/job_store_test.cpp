@@ -72,7 +72,33 @@ TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
   ASSERT_EQ(lines->size(), 2U);
   EXPECT_EQ(lines->at(0).frame, 3);
   EXPECT_EQ(lines->at(1).text, "more");
-  EXPECT_EQ(store->lines(1, 1, 10)->size(), 1U);
+  EXPECT_EQ(store->lines(1, lines->at(0).number, 10)->size(), 1U);
+}
+
+TEST(JobStore, OldLinesGoAndAreMissed) {
+  const test::TempFolder folder;
+  auto store = open(folder.file("state.db"));
+  ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
+  ASSERT_TRUE(store->add_job(some_job("", "bob")).ok());
+  ASSERT_TRUE(store->add_lines(2, {{1, 1, std::nullopt, "", "another job's"}}).ok());
+  const auto add = [&](uint64_t first, uint64_t count) {
+    std::vector<StoredLine> lines;
+    for (uint64_t i = first; i < first + count; ++i) {
+      lines.push_back({static_cast<int64_t>(i), 1, 7, "w", "line " + std::to_string(i)});
+    }
+    ASSERT_TRUE(store->add_lines(1, lines).ok());
+  };
+  add(0, kMostLines - 10);
+  EXPECT_EQ(store->lines(1, 0, 1)->at(0).text, "line 0");
+  add(kMostLines - 10, 10);
+  EXPECT_EQ(store->lines(1, 0, 1)->at(0).text, "line 0") << "there was room";
+  add(kMostLines, 1);
+  const auto lines = store->lines(1, 0, kMostLines);
+  ASSERT_EQ(lines->size(), kMostLines - kLinesDropped);
+  EXPECT_NE(lines->at(0).text.find("older lines were dropped"), std::string::npos);
+  EXPECT_EQ(lines->at(1).text, "line " + std::to_string(kLinesDropped + 2));
+  EXPECT_EQ(lines->back().text, "line " + std::to_string(kMostLines));
+  EXPECT_EQ(store->lines(2, 0, 10)->size(), 1U);
 }
 
 TEST(JobStore, KeepsQuarantinesUntilTheyEnd) {

@@ -1,0 +1,130 @@
+// What clients and workers may send, and what they are told beyond it.
+#include <gtest/gtest.h>
+
+#include "coordinator/services/worker_bytes.h"
+#include "tests/coordinator/services/farm_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using grpc::StatusCode;
+
+class Limits : public testing::Test {
+ protected:
+  void SetUp() override { world.start(); }
+
+  grpc::Status submit(const std::function<void(v1::SubmitRequest&)>& change) const {
+    v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1));
+    change(request);
+    v1::SubmitResponse response;
+    return world.jobs->Submit(world.context().get(), request, &response);
+  }
+
+  void expect_refused(const grpc::Status& status, StatusCode code, const std::string& words) const {
+    EXPECT_EQ(status.error_code(), code) << status.error_message();
+    EXPECT_NE(status.error_message().find(words), std::string::npos) << status.error_message();
+  }
+
+  FarmWorld world;
+};
+
+TEST_F(Limits, OfSubmit) {
+  ASSERT_TRUE(world.upload(FarmWorld::document(1)).ok());
+  const auto invalid = StatusCode::INVALID_ARGUMENT;
+  expect_refused(submit([](auto& r) { r.set_owner(std::string(201, 'o')); }), invalid, "owner");
+  expect_refused(submit([](auto& r) { r.set_idempotency_key("short"); }), invalid, "16 to 64");
+  expect_refused(submit([](auto& r) { r.set_priority(1'000'001); }), invalid, "priority");
+  expect_refused(submit([](auto& r) { r.mutable_spec()->set_name(std::string(201, 'n')); }),
+                 invalid, "name");
+  expect_refused(submit([](auto& r) { r.mutable_spec()->set_samples(1U << 25U); }), invalid,
+                 "samples");
+  expect_refused(submit([](auto& r) {
+                   for (int i = 0; i < 10'001; ++i) {
+                     auto* range = r.mutable_spec()->add_frames();
+                     range->set_first(1);
+                     range->set_last(1);
+                   }
+                 }),
+                 invalid, "10001 ranges");
+  expect_refused(
+      submit([](auto& r) { r.mutable_spec()->mutable_files(0)->set_path(std::string(4097, 'p')); }),
+      invalid, "4096");
+  expect_refused(submit([](auto& r) {
+                   const v1::JobFile file = r.spec().files(0);
+                   for (int i = 0; i < 100'000; ++i) *r.mutable_spec()->add_files() = file;
+                 }),
+                 invalid, "100001 files");
+  expect_refused(
+      submit([](auto& r) { r.mutable_spec()->set_document(std::string(17 << 20, 'd')); }), invalid,
+      "16777216");
+  EXPECT_TRUE(submit([](auto&) {}).ok()) << "the same without any of that";
+}
+
+TEST_F(Limits, OfOtherRequestsAreMuchLower) {
+  const uint64_t job = world.submit(1);
+  {
+    v1::WorkerRequest request;
+    request.set_worker(std::string(70'000, 'w'));
+    v1::WorkerResponse response;
+    expect_refused(world.farm_->DrainWorker(world.context().get(), request, &response),
+                   StatusCode::INVALID_ARGUMENT, "65536");
+  }
+  {
+    v1::LogsRequest request;
+    request.set_job(job);
+    for (int i = 0; i <= 10'000; ++i) request.add_frames(1);
+    const auto context = world.context();
+    const auto reader = world.jobs->Logs(context.get(), request);
+    v1::LogLine line;
+    EXPECT_FALSE(reader->Read(&line));
+    expect_refused(reader->Finish(), StatusCode::INVALID_ARGUMENT, "10000 frames");
+  }
+  {
+    const auto context = world.context();
+    v1::UploadResponse response;
+    const auto writer = world.assets->Upload(context.get(), &response);
+    v1::UploadPart part;
+    part.set_sha256(std::string(32, 'x'));
+    part.set_size(uint64_t{1} << 30U);
+    part.mutable_chunk()->set_data(std::string((1 << 20) + 2000, 'c'));
+    writer->Write(part);
+    writer->WritesDone();
+    expect_refused(writer->Finish(), StatusCode::INVALID_ARGUMENT, "are the most here");
+  }
+}
+
+TEST_F(Limits, OfWorkersHoldForAllButFilms) {
+  const auto stub = v1::Work::NewStub(world.channel);
+  grpc::ClientContext context;
+  farm::prepare(context, "", std::chrono::milliseconds(0));
+  const auto stream = stub->Attend(&context);
+  v1::WorkerMessage message;
+  message.mutable_hello()->set_name(std::string((1 << 20) + 100, 'n'));
+  stream->Write(message);
+  v1::CoordinatorMessage reply;
+  EXPECT_FALSE(stream->Read(&reply));
+  expect_refused(stream->Finish(), StatusCode::INVALID_ARGUMENT, "besides a film");
+}
+
+TEST(WorkerBytes, CountAllButTheFilm) {
+  const auto besides = [](const std::string& bytes) {
+    const grpc::Slice slice(bytes);
+    return bytes_besides_film(grpc::ByteBuffer(&slice, 1));
+  };
+  v1::WorkerMessage message;
+  message.mutable_result()->set_film(std::string(1'000'000, 'f'));
+  message.mutable_result()->set_job(7);
+  message.mutable_result()->add_notes("note");
+  const std::string whole = message.SerializeAsString();
+  EXPECT_EQ(besides(whole), whole.size() - 1'000'000);
+  EXPECT_FALSE(besides(whole.substr(0, whole.size() - 3))) << "cut off";
+  message.mutable_heartbeat()->set_memory_bytes(5);  // no film any more
+  EXPECT_EQ(besides(message.SerializeAsString()), message.ByteSizeLong());
+  message.mutable_hello()->set_name("x");
+  message.mutable_hello()->set_host(std::string(1000, 'h'));  // its field 4 is no film
+  EXPECT_EQ(besides(message.SerializeAsString()), message.ByteSizeLong());
+  EXPECT_EQ(besides(""), 0U);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
