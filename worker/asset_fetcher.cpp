@@ -11,6 +11,7 @@
 #include "core/base/hash.h"
 #include "farm/channel.h"
 #include "farm/wire.h"
+#include "farm/wire_status.h"
 #include "hyades/v1/assets.grpc.pb.h"
 
 namespace hyades::worker {
@@ -127,7 +128,7 @@ AssetFetcher::Outcome AssetFetcher::fetch_patiently(const v1::JobFile& file) {
   for (;;) {
     Outcome failed = download(file);
     if (!failed || !failed->again || std::chrono::steady_clock::now() >= give_up) return failed;
-    if (!pause(wait)) return failed;
+    if (!pause(std::max(wait, std::min(failed->retry_after, kLongestPause)))) return failed;
     wait = std::min(wait * 2, kLongestPause);
   }
 }
@@ -173,7 +174,8 @@ AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
   if (!status.ok()) {
     // Even a file that is not there may be uploaded again; and giving units back at once would only
     // bring them here again at once.
-    return Failure{file.path() + " cannot be fetched: " + status.error_message(), false, true};
+    return Failure{file.path() + " cannot be fetched: " + status.error_message(), false, true,
+                   milliseconds(farm::detail_of(status).retry_after_ms())};
   }
   if (auto done = writer->commit(); !done) {
     return Failure{done.error().in(file.path()).message, false, true};

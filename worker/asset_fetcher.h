@@ -58,7 +58,8 @@ class AssetFetcher {
   struct Failure {
     std::string reason;
     bool final = false;
-    bool again = false;  ///< the same may succeed soon
+    bool again = false;                        ///< the same may succeed soon
+    std::chrono::milliseconds retry_after{0};  ///< what the coordinator asked for
   };
   using Outcome = std::optional<Failure>;
 

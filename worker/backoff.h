@@ -16,12 +16,12 @@ class Backoff {
                    Duration limit = std::chrono::seconds(15))
       : first_(first), limit_(limit), next_(first), random_(std::random_device{}()) {}
 
-  /// Between a half and the whole of the current wait.
-  Duration next() {
+  /// Between a half and the whole of the current wait, after what the other side `asked` for.
+  Duration next(Duration asked = Duration(0)) {
     const Duration wait = next_;
     next_ = std::min(next_ * 2, limit_);
     const double share = std::uniform_real_distribution<double>(0.5, 1.0)(random_);
-    return std::chrono::duration_cast<Duration>(wait * share);
+    return asked + std::chrono::duration_cast<Duration>(wait * share);
   }
 
   /// After success.

@@ -9,6 +9,7 @@
 #include <grpcpp/client_context.h>
 
 #include "farm/channel.h"
+#include "farm/wire_status.h"
 #include "hyades/v1/work.grpc.pb.h"
 
 namespace hyades::worker {
@@ -93,7 +94,8 @@ class CoordinatorLink::Stream
       self = std::move(state->stream);
       state->stream.reset();
     }
-    state->owner->stream_ended(final, status.ok() ? "it was closed" : status.error_message());
+    state->owner->stream_ended(final, status.ok() ? "it was closed" : status.error_message(),
+                               std::chrono::milliseconds(farm::detail_of(status).retry_after_ms()));
     const std::lock_guard lock(state->mutex);
     --state->live;
     state->closed.notify_all();

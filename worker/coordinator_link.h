@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,7 +22,9 @@ class CoordinatorLink {
     virtual ~Owner() = default;
     virtual void stream_says(v1::CoordinatorMessage message) = 0;
     /// The stream is over. `final`: coming again would end the same way (wrong token, version).
-    virtual void stream_ended(bool final, const std::string& reason) = 0;
+    /// Otherwise the coordinator asks not to come before `retry_after` has passed.
+    virtual void stream_ended(bool final, const std::string& reason,
+                              std::chrono::milliseconds retry_after) = 0;
   };
 
   CoordinatorLink(std::shared_ptr<grpc::Channel> channel, std::string token, Owner& owner);

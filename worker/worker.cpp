@@ -38,6 +38,8 @@ constexpr std::chrono::seconds kHealthyLife{5};
 /// Deaths in a row before a first Ready that make the worker give up.
 constexpr int kMostStillbirths = 3;
 constexpr milliseconds kFetchPatience{60'000};
+/// However long a coordinator asks not to be called.
+constexpr milliseconds kLongestPause{60'000};
 /// How long the end of the stream may take when all is said.
 constexpr milliseconds kGoodbye{200};
 
@@ -210,8 +212,9 @@ class Worker : private DeskPorts,
     });
   }
 
-  void stream_ended(bool final, const std::string& reason) override {
-    post([this, final, reason] {
+  void stream_ended(bool final, const std::string& reason,
+                    std::chrono::milliseconds retry_after) override {
+    post([this, final, reason, retry_after] {
       streaming_ = false;
       desk_.stream_closed();
       if (final) {
@@ -219,7 +222,7 @@ class Worker : private DeskPorts,
         exit_status_ = 2;
         return;
       }
-      const Duration pause = backoff_.next();
+      const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestPause));
       connect_at_ = Clock::now() + pause;
       if (goodbye_by_ || reason == told_trouble_) return;
       note(fmt::format("no connection to {} ({}); trying again", options_.coordinator.address,
