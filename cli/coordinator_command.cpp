@@ -32,6 +32,8 @@ struct Arguments {
   double unit_seconds = 5;
   double lease_seconds = 30;
   double class_patience = 300;
+  double adoption_seconds = 2;
+  double compact_mb = 256;
 };
 
 int serve(const Arguments& arguments) {
@@ -98,6 +100,14 @@ int main(int argc, char** argv) {
                  "seconds after which a frame begins again whose class of workers has vanished")
       ->check(CLI::Range(0.1, 1e6))
       ->capture_default_str();
+  app.add_option("--adoption-seconds", arguments.adoption_seconds,
+                 "after a start, workers have so long to say what they hold before others get it")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  app.add_option("--compact-mb", arguments.compact_mb,
+                 "a job's film log is rewritten when it has grown by this much")
+      ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
   app.footer(
       "examples:\n"
       "  hyades coordinator --data /var/lib/hyades\n"
@@ -115,5 +125,7 @@ int main(int argc, char** argv) {
   arguments.brain.unit_time = seconds(arguments.unit_seconds);
   arguments.brain.lease_time = seconds(arguments.lease_seconds);
   arguments.brain.class_patience = seconds(arguments.class_patience);
+  arguments.brain.adoption_time = seconds(arguments.adoption_seconds);
+  arguments.brain.compact_bytes = static_cast<uint64_t>(arguments.compact_mb * 1e6);
   return serve(arguments);
 }

@@ -5,7 +5,6 @@
 
 #include "coordinator/finisher/finish_task.h"
 #include "core/base/assets.h"
-#include "core/base/failpoint.h"
 #include "core/base/fp_mode.h"
 #include "core/base/hash.h"
 #include "core/finish/frame_outputs.h"

@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "core/base/assets.h"
+#include "core/base/failpoint.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
 
@@ -141,6 +142,7 @@ Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size
 
 Status ContentStore::commit(ContentWriter& writer) {
   const std::string path = path_of(writer.name_);
+  core::failpoint("asset-written");
   if (::fsync(writer.file_.get()) != 0 || ::rename(writer.path_.c_str(), path.c_str()) != 0) {
     const Error error{"cannot write " + path + ": " + core::io_reason(errno)};
     // What a failed sync has kept cannot be known.

@@ -88,6 +88,8 @@ class Desk {
   bool leaving() const { return leaving_; }
   /// Whether nothing is in hand any more.
   bool empty() const { return items_.empty(); }
+  /// Units, those included whose films wait for their acknowledgement.
+  size_t in_hand() const { return items_.size(); }
   size_t unacknowledged() const { return kept_; }
   /// Whether the coordinator has said Welcome on the stream that is open.
   bool attended() const { return welcomed_; }

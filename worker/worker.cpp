@@ -225,8 +225,9 @@ class Worker : private DeskPorts,
       const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestPause));
       connect_at_ = Clock::now() + pause;
       if (goodbye_by_ || reason == told_trouble_) return;
-      note(fmt::format("no connection to {} ({}); trying again", options_.coordinator.address,
-                       reason));
+      note(fmt::format(
+          "no connection to {} ({}); {} units in hand, {} films not acknowledged; trying again",
+          options_.coordinator.address, reason, desk_.in_hand(), desk_.unacknowledged()));
       told_trouble_ = reason;
     });
   }

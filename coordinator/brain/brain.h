@@ -37,6 +37,8 @@ struct BrainOptions {
   Duration reconnect_time = std::chrono::seconds(3);
   /// After a restart no new units are leased for this long, so that workers can say what they hold.
   Duration adoption_time = std::chrono::seconds(2);
+  /// A job's film log is rewritten when it has grown by this much.
+  uint64_t compact_bytes = LocalLog{}.compact_bytes;
 };
 
 /// The coordinator without its network: the scheduler, and everything that happens because of it.

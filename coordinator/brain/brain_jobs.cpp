@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "core/base/failpoint.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -59,6 +60,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   const std::lock_guard one(submit_mutex_);
   const auto added = store_->add_job((*desk)->stored);
   if (!added) return failed(added.error());
+  core::failpoint("job-stored");
   response.set_existed(added->existed);
   if (!added->existed) {
     (*desk)->id = JobId{added->id};

@@ -223,6 +223,7 @@ std::unique_ptr<FilmKeeper> Brain::make_keeper(JobDesk& desk, bool resume) {
   place.folder = films_folder(desk.stored.id);
   place.frame_key = [key = desk.key](int32_t) { return key; };
   place.resume = resume;
+  place.compact_bytes = options_.compact_bytes;
   if (!desk.owner) desk.owner = std::make_unique<KeeperOwner>(*this, desk.id);
   return std::make_unique<FilmKeeper>(plan, place, *desk.owner);
 }

@@ -6,6 +6,7 @@
 #include "coordinator/store/film_log.h"
 #include "coordinator/store/log_names.h"
 #include "coordinator/store/segment.h"
+#include "core/base/failpoint.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -39,9 +40,11 @@ Status FilmLog::compact(uint64_t through, const std::function<Status(const Sink&
     return s;
   }
 
+  core::failpoint("snapshot-written");
   const std::lock_guard<std::mutex> hold(files_mutex_);
   if (Status s = files_.rename(unfinished, file); !s) return s;
   if (Status s = files_.sync_folder(folder_); !s) return s;
+  core::failpoint("snapshot-renamed");
   // The file being written ends here, so that it can go once its records are covered, too.
   active_.reset();
   const auto at = std::find_if(segments_.begin(), segments_.end(),

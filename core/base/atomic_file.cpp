@@ -13,6 +13,7 @@
 #include <filesystem>
 
 #include "core/base/descriptor.h"
+#include "core/base/failpoint.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
 #include "core/base/leftovers.h"
@@ -103,6 +104,7 @@ Status replace_file(const std::string& path,
     if (exists && ::fchmod(handle.get(), old.st_mode & 07777) != 0) errno = 0;
     if (::fsync(handle.get()) != 0) return failure(path, errno);
   }
+  failpoint("before-rename");
   if (::rename(temporary.path.c_str(), target.c_str()) != 0) return failure(path, errno);
   temporary.keep = true;
   return sync_folder(folder);
