@@ -207,7 +207,16 @@ Outcome FarmClient::list(const v1::ListJobsRequest& request, v1::ListJobsRespons
 Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
   v1::GetJobRequest request;
   request.set_job(job);
-  return state_->call(*state_->jobs, &v1::Jobs::Stub::Get, request, response);
+  response.Clear();
+  v1::GetJobResponse part;
+  do {
+    auto failure = state_->call(*state_->jobs, &v1::Jobs::Stub::Get, request, part);
+    if (failure) return failure;
+    response.mutable_job()->Swap(part.mutable_job());
+    response.mutable_frames()->MergeFrom(part.frames());
+    if (part.frames_size() > 0) request.set_after(part.frames().rbegin()->frame());
+  } while (part.more() && part.frames_size() > 0);
+  return std::nullopt;
 }
 
 Outcome FarmClient::act(Action action, uint64_t job, v1::JobResponse& response) {

@@ -65,6 +65,7 @@ class Watcher {
 
   void take(const v1::WatchEvent& event) {
     job_ = event.job();
+    more_ = event.more();
     for (const v1::Frame& frame : event.changed()) {
       if (frame.state() == v1::FRAME_STATE_FAILED) {
         failed_[frame.frame()] = frame.reason();
@@ -76,7 +77,7 @@ class Watcher {
     if (!has_ended(job_)) display_->update(progress_of(job_));
   }
 
-  bool ended() const { return has_ended(job_); }
+  bool ended() const { return has_ended(job_) && !more_; }
 
   /// Makes room for another line.
   void clear() {
@@ -118,6 +119,7 @@ class Watcher {
  private:
   bool quiet_;
   v1::Job job_;
+  bool more_ = false;                      ///< the last event was not all
   std::map<int32_t, std::string> failed_;  ///< reasons by frame
   std::unique_ptr<ProgressDisplay> display_;
 };

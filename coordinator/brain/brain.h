@@ -76,7 +76,8 @@ class Brain {
 
   grpc::Status submit(const v1::SubmitRequest& request, v1::SubmitResponse& response);
   grpc::Status list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
-  grpc::Status get(uint64_t job, v1::GetJobResponse& response);
+  /// The job, and its frames above `after` as far as they fit.
+  grpc::Status get(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response);
   grpc::Status pause(uint64_t job, v1::Job& now);
   grpc::Status resume(uint64_t job, v1::Job& now);
   grpc::Status cancel(uint64_t job, v1::Job& now);
@@ -89,9 +90,15 @@ class Brain {
                     std::function<void(const grpc::Status&, const core::FilmInfo&,
                                        std::shared_ptr<const core::Film>)>
                         then);
-  /// What has changed since `version` (0: everything), which becomes the present one. `ended`:
-  /// there will be no more.
-  grpc::Status changes(uint64_t job, uint64_t& version, v1::WatchEvent& event, bool& ended);
+  /// How far somebody has been told of a job's changes; at first of nothing.
+  struct ToldOf {
+    uint64_t version = 0;          ///< of the job: of all changes up to this one
+    uint64_t next_version = 0;     ///< while they do not fit into one event, and
+    std::optional<int32_t> after;  ///< the last frame that did
+    bool over = false;             ///< what is told is how the job has ended
+  };
+  /// What has changed since, as far as it fits. `ended`: there will be no other changes.
+  grpc::Status changes(uint64_t job, ToldOf& told, v1::WatchEvent& event, bool& ended);
   /// Calls `poke` (quickly, by another thread) whenever the job has changed, until unwatch.
   uint64_t watch(uint64_t job, std::function<void()> poke);
   void unwatch(uint64_t number);

@@ -79,7 +79,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
     }
   }
   v1::GetJobResponse now;
-  const grpc::Status got = get(added->id, now);
+  const grpc::Status got = get(added->id, std::nullopt, now);
   *response.mutable_job() = now.job();
   return got;
 }
@@ -147,7 +147,7 @@ grpc::Status Brain::cancel(uint64_t id, v1::Job& now) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   v1::GetJobResponse got;
-  const grpc::Status status = get(id, got);
+  const grpc::Status status = get(id, std::nullopt, got);
   now = got.job();
   return status;
 }
@@ -190,7 +190,7 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
     return {grpc::StatusCode::FAILED_PRECONDITION, taken.error().message};
   }
   v1::GetJobResponse got;
-  const grpc::Status status = get(id, got);
+  const grpc::Status status = get(id, std::nullopt, got);
   now = got.job();
   return status;
 }

@@ -11,6 +11,9 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr uint32_t kMostListed = 1000;
+/// Answers to those who read slowly, or never, lie in memory: they are kept short.
+constexpr size_t kMostFrameBytes = size_t{64} << 10U;
+constexpr uint32_t kMostFramesAtOnce = 2000;
 
 grpc::Status failed(const core::Error& error) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
@@ -30,6 +33,26 @@ v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
   wire.set_worker_class(frame.worker_class);
   wire.set_restarts(frame.restarts);
   return wire;
+}
+
+/// Frames as far as they fit into one message.
+class FramePage {
+ public:
+  explicit FramePage(google::protobuf::RepeatedPtrField<v1::Frame>& frames) : frames_(frames) {}
+  bool full() const { return bytes_ > kMostFrameBytes; }
+  void add(const v1::Frame& frame) {
+    bytes_ += frame.ByteSizeLong();
+    *frames_.Add() = frame;
+  }
+
+ private:
+  google::protobuf::RepeatedPtrField<v1::Frame>& frames_;
+  size_t bytes_ = 0;
+};
+
+std::map<int32_t, FrameNote>::const_iterator above(const std::map<int32_t, FrameNote>& frames,
+                                                   std::optional<int32_t> after) {
+  return after ? frames.upper_bound(*after) : frames.begin();
 }
 
 }  // namespace
@@ -55,13 +78,16 @@ grpc::Status Brain::list(const v1::ListJobsRequest& request, v1::ListJobsRespons
   return grpc::Status::OK;
 }
 
-grpc::Status Brain::get(uint64_t id, v1::GetJobResponse& response) {
+grpc::Status Brain::get(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response) {
+  FramePage page(*response.mutable_frames());
   {
     const std::lock_guard lock(mutex_);
     if (const JobDesk* desk = desk_of(id)) {
       *response.mutable_job() = describe(*desk);
-      for (const int32_t number : desk->numbers) {
-        *response.add_frames() = desk->describe_frame(number, desk->frames.at(number));
+      for (auto it = above(desk->frames, after); it != desk->frames.end(); ++it) {
+        response.set_more(page.full());
+        if (page.full()) break;
+        page.add(desk->describe_frame(it->first, it->second));
       }
       return grpc::Status::OK;
     }
@@ -70,38 +96,49 @@ grpc::Status Brain::get(uint64_t id, v1::GetJobResponse& response) {
   if (!stored) return failed(stored.error());
   if (!*stored) return no_job(id);
   *response.mutable_job() = coordinator::describe(**stored);
-  const auto frames = store_->frames(id);
+  const auto frames = store_->frames(id, after, kMostFramesAtOnce);
   if (!frames) return failed(frames.error());
+  response.set_more(frames->size() == kMostFramesAtOnce);
   for (const StoredFrame& frame : *frames) {
-    *response.add_frames() = describe_over(frame, **stored);
-    if ((*stored)->state != StoredState::done && frame.done) {
-      response.mutable_job()->set_samples_done(response.job().samples_done() +
-                                               response.frames().rbegin()->samples());
+    if (page.full()) {
+      response.set_more(true);
+      break;
     }
+    page.add(describe_over(frame, **stored));
   }
   return grpc::Status::OK;
 }
 
-grpc::Status Brain::changes(uint64_t id, uint64_t& version, v1::WatchEvent& event, bool& ended) {
+grpc::Status Brain::changes(uint64_t id, ToldOf& told, v1::WatchEvent& event, bool& ended) {
   ended = false;
   {
     const std::lock_guard lock(mutex_);
     if (const JobDesk* desk = desk_of(id)) {
       *event.mutable_job() = describe(*desk);
-      for (const int32_t number : desk->numbers) {
-        const FrameNote& note = desk->frames.at(number);
-        if (version != 0 && note.version <= version) continue;
-        *event.add_changed() = desk->describe_frame(number, note);
+      if (!told.after) told.next_version = desk->version;
+      FramePage page(*event.mutable_changed());
+      for (auto it = above(desk->frames, told.after); it != desk->frames.end(); ++it) {
+        if (told.version != 0 && it->second.version <= told.version) continue;
+        if (page.full()) {
+          event.set_more(true);
+          return grpc::Status::OK;
+        }
+        page.add(desk->describe_frame(it->first, it->second));
+        told.after = it->first;
       }
-      version = desk->version;
+      told.version = told.next_version;
+      told.after.reset();
       return grpc::Status::OK;
     }
   }
+  if (!std::exchange(told.over, true)) told.after.reset();
   v1::GetJobResponse over;
-  const grpc::Status status = get(id, over);
+  const grpc::Status status = get(id, told.after, over);
   if (!status.ok()) return status;
-  *event.mutable_job() = over.job();
-  *event.mutable_changed() = over.frames();
+  if (over.frames_size() > 0) told.after = over.frames().rbegin()->frame();
+  event.set_more(over.more());
+  event.mutable_job()->Swap(over.mutable_job());
+  event.mutable_changed()->Swap(over.mutable_frames());
   ended = true;
   return grpc::Status::OK;
 }

@@ -172,7 +172,7 @@ core::Status Brain::take_up(uint64_t id) {
 
 /// Finished frames of which a file is missing or has another size than when it was written.
 core::Result<std::set<int32_t>> Brain::frames_without_outputs(uint64_t id) const {
-  const auto outputs = store_->outputs(id, 0);
+  const auto outputs = store_->outputs(id, 0, UINT32_MAX);
   if (!outputs) return outputs.error();
   std::set<int32_t> damaged;
   for (const StoredOutput& output : *outputs) {

@@ -87,6 +87,12 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     }
     std::span<const std::byte> data = std::as_bytes(std::span(part.chunk().data()));
     if (data.size() > farm::kMaxChunkBytes) return invalid("a chunk has at most 1 MiB");
+    // A stream that goes on for ever says nothing, or the same again.
+    if (data.empty() && writer_->size() > 0) return invalid("a part without data");
+    received_ += data.size();
+    if (received_ > writer_->size()) {
+      return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
+    }
     const uint64_t offset = part.chunk().offset();
     if (offset > writer_->offset()) {
       return {grpc::StatusCode::OUT_OF_RANGE,
@@ -113,6 +119,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   farm::ContentStore& store_;
   grpc::ByteBuffer bytes_;
   std::optional<farm::ContentWriter> writer_;
+  uint64_t received_ = 0;  ///< on this stream
   bool done_ = false;
 };
 

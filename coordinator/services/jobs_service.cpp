@@ -25,7 +25,8 @@ grpc::ServerUnaryReactor* JobsService::Get(Context* context, const Bytes* asked,
   return answer<v1::GetJobRequest, v1::GetJobResponse>(
       admission_, context, asked, said,
       [&](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
-        return brain_.get(request.job(), response);
+        const auto after = request.has_after() ? std::optional(request.after()) : std::nullopt;
+        return brain_.get(request.job(), after, response);
       });
 }
 

@@ -20,7 +20,7 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint32_t kLinesAtOnce = 500;
+constexpr uint32_t kRowsAtOnce = 500;
 
 constexpr int kMostAsked = 10'000;
 
@@ -52,13 +52,13 @@ class Follower : public Producer<Message> {
   /// Whether nothing can come any more, or why the job cannot be followed.
   grpc::Status ended(bool& ended) {
     v1::WatchEvent event;
-    version_ = std::max<uint64_t>(version_, 1);
-    return brain_.changes(job_, version_, event, ended);
+    told_.version = std::max<uint64_t>(told_.version, 1);
+    return brain_.changes(job_, told_, event, ended);
   }
 
   Brain& brain_;
   const uint64_t job_;
-  uint64_t version_ = 0;
+  Brain::ToldOf told_;
 
  private:
   uint64_t watch_ = 0;
@@ -71,10 +71,13 @@ class Watching final : public Follower<v1::WatchEvent> {
  private:
   Step next(v1::WatchEvent& event, grpc::Status& status) override {
     if (ended_) return Step::end;
-    const uint64_t before = version_;
-    status = brain_.changes(job_, version_, event, ended_);
+    const Brain::ToldOf before = told_;
+    bool over = false;
+    status = brain_.changes(job_, told_, event, over);
     if (!status.ok()) return Step::end;
-    return ended_ || version_ != before ? Step::message : Step::wait;
+    ended_ = over && !event.more();
+    const bool news = over || before.after || event.more() || told_.version != before.version;
+    return news ? Step::message : Step::wait;
   }
   bool ended_ = false;
 };
@@ -111,21 +114,22 @@ class OutputList final : public Follower<v1::OutputFile> {
       bool over = false;
       status = ended(over);
       if (!status.ok()) return Step::end;
-      auto outputs = brain_.store().outputs(job_, seen_);
+      auto outputs = brain_.store().outputs(job_, seen_, kRowsAtOnce);
       if (!outputs) {
         status = failed(outputs.error());
         return Step::end;
       }
-      seen_ += outputs->size();
+      if (!outputs->empty()) seen_ = outputs->back().number;
       ready_.insert(ready_.end(), outputs->begin(), outputs->end());
+      if (!ready_.empty()) continue;
       last_ = over || !request_.follow();
-      if (ready_.empty() && !last_) return Step::wait;
+      if (!last_) return Step::wait;
     }
   }
 
   const v1::OutputsRequest request_;
   std::deque<StoredOutput> ready_;
-  uint64_t seen_ = 0;
+  uint64_t seen_ = 0;  ///< the number of the last one
   bool last_ = false;
 };
 
@@ -155,7 +159,7 @@ class LogLines final : public Follower<v1::LogLine> {
       bool over = false;
       status = ended(over);
       if (!status.ok()) return Step::end;
-      auto lines = brain_.store().lines(job_, seen_, kLinesAtOnce);
+      auto lines = brain_.store().lines(job_, seen_, kRowsAtOnce);
       if (!lines) {
         status = failed(lines.error());
         return Step::end;

@@ -48,7 +48,8 @@ struct StoredOutput {
   std::string path;  ///< below the job's output folder
   int32_t frame = 0;
   uint64_t size = 0;
-  std::string sha256;  ///< 32 bytes
+  std::string sha256;   ///< 32 bytes
+  uint64_t number = 0;  ///< grows in the order in which they were finished; the store gives it
 };
 
 /// A line of a job's history.
@@ -104,9 +105,16 @@ class JobStore {
                                   const std::vector<StoredOutput>& outputs) = 0;
   /// The frame is to be rendered (again).
   virtual core::Status forget_frame(uint64_t job, int32_t frame) = 0;
-  virtual core::Result<std::vector<StoredFrame>> frames(uint64_t job) = 0;
-  /// In the order in which they were finished; those after the first `skip`.
-  virtual core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t skip) = 0;
+  /// In order of their numbers, those above `after`, at most `limit`.
+  virtual core::Result<std::vector<StoredFrame>> frames(uint64_t job, std::optional<int32_t> after,
+                                                        uint32_t limit) = 0;
+  core::Result<std::vector<StoredFrame>> frames(uint64_t job) {
+    return frames(job, std::nullopt, UINT32_MAX);
+  }
+  /// In the order in which they were finished; those after number `after` (0: all), at most
+  /// `limit`.
+  virtual core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t after,
+                                                          uint32_t limit) = 0;
   virtual core::Result<std::optional<StoredOutput>> output(uint64_t job,
                                                            const std::string& path) = 0;
 

@@ -32,7 +32,7 @@ StoredJob read_job(const Query& row) {
 
 StoredOutput read_output(const Query& row) {
   return {row.bytes(0), static_cast<int32_t>(row.integer(1)), static_cast<uint64_t>(row.integer(2)),
-          row.bytes(3)};
+          row.bytes(3), static_cast<uint64_t>(row.integer(4))};
 }
 
 int64_t number(uint64_t value) { return static_cast<int64_t>(value); }
@@ -164,12 +164,14 @@ class SqliteJobStore final : public JobStore {
     return transaction.commit();
   }
 
-  core::Result<std::vector<StoredFrame>> frames(uint64_t job) override {
+  using JobStore::frames;
+  core::Result<std::vector<StoredFrame>> frames(uint64_t job, std::optional<int32_t> after,
+                                                uint32_t limit) override {
     const std::lock_guard lock(mutex_);
     Query rows(db_.get(),
-               "SELECT frame, done, reason, class, restarts FROM frames WHERE job = ? "
-               "ORDER BY frame");
-    rows.bind(number(job));
+               "SELECT frame, done, reason, class, restarts FROM frames "
+               "WHERE job = ? AND frame > ? ORDER BY frame LIMIT ?");
+    rows.bind(number(job)).bind(after ? int64_t{*after} : INT64_MIN).bind(int64_t{limit});
     std::vector<StoredFrame> frames;
     while (rows.next()) {
       frames.push_back({static_cast<int32_t>(rows.integer(0)), rows.integer(1) != 0, rows.bytes(2),
@@ -179,12 +181,13 @@ class SqliteJobStore final : public JobStore {
     return frames;
   }
 
-  core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t skip) override {
+  core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t after,
+                                                  uint32_t limit) override {
     const std::lock_guard lock(mutex_);
     Query rows(db_.get(),
-               "SELECT path, frame, size, sha256 FROM outputs WHERE job = ? ORDER BY number "
-               "LIMIT -1 OFFSET ?");
-    rows.bind(number(job)).bind(number(skip));
+               "SELECT path, frame, size, sha256, number FROM outputs "
+               "WHERE job = ? AND number > ? ORDER BY number LIMIT ?");
+    rows.bind(number(job)).bind(number(after)).bind(int64_t{limit});
     std::vector<StoredOutput> outputs;
     while (rows.next()) outputs.push_back(read_output(rows));
     if (core::Status status = rows.status(); !status) return status.error();
@@ -194,7 +197,7 @@ class SqliteJobStore final : public JobStore {
   core::Result<std::optional<StoredOutput>> output(uint64_t job, const std::string& path) override {
     const std::lock_guard lock(mutex_);
     Query row(db_.get(),
-              "SELECT path, frame, size, sha256 FROM outputs WHERE job = ? AND path = ?");
+              "SELECT path, frame, size, sha256, number FROM outputs WHERE job = ? AND path = ?");
     row.bind(number(job)).bind(path);
     if (row.next()) return std::optional(read_output(row));
     if (core::Status status = row.status(); !status) return status.error();

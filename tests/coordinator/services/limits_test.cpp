@@ -93,6 +93,74 @@ TEST_F(Limits, OfOtherRequestsAreMuchLower) {
   }
 }
 
+TEST_F(Limits, OfAnswersWhichComeInParts) {
+  constexpr int kFrames = 20'000;
+  const uint64_t job = world.submit(kFrames);
+  for (const bool over : {false, true}) {
+    if (over) {
+      v1::JobRequest request;
+      request.set_job(job);
+      v1::JobResponse response;
+      ASSERT_TRUE(world.jobs->Cancel(world.context().get(), request, &response).ok());
+    }
+    v1::GetJobRequest request;
+    request.set_job(job);
+    v1::GetJobResponse part;
+    int frames = 0;
+    do {
+      ASSERT_TRUE(world.jobs->Get(world.context().get(), request, &part).ok());
+      EXPECT_LT(part.ByteSizeLong(), 70'000U);
+      for (const v1::Frame& frame : part.frames()) {
+        EXPECT_EQ(frame.frame(), ++frames);
+        request.set_after(frame.frame());
+      }
+    } while (part.more());
+    EXPECT_EQ(frames, over ? 0 : kFrames);
+
+    v1::WatchRequest watch;
+    watch.set_job(job);
+    const auto context = world.context();
+    const auto reader = world.jobs->Watch(context.get(), watch);
+    v1::WatchEvent event;
+    frames = 0;
+    int events = 0;
+    do {
+      ASSERT_TRUE(reader->Read(&event));
+      EXPECT_LT(event.ByteSizeLong(), 70'000U);
+      EXPECT_EQ(event.job().id(), job);
+      for (const v1::Frame& frame : event.changed()) EXPECT_EQ(frame.frame(), ++frames);
+      ++events;
+    } while (event.more());
+    EXPECT_EQ(frames, over ? 0 : kFrames);
+    EXPECT_TRUE(over || events > 1) << "all of it fits into one: ask for more frames";
+  }
+}
+
+TEST_F(Limits, OfFramesThatAreNamedAgainAndAgain) {
+  ASSERT_TRUE(world.upload(FarmWorld::document(1000)).ok());
+  v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1000));
+  for (int i = 0; i < 5000; ++i) {
+    auto* range = request.mutable_spec()->add_frames();
+    range->set_first(1);
+    range->set_last(1000);
+  }
+  v1::SubmitResponse response;
+  expect_refused(world.jobs->Submit(world.context().get(), request, &response),
+                 StatusCode::INVALID_ARGUMENT, "more than a million frames");
+}
+
+TEST_F(Limits, OfTextsWhichHaveToBeReadable) {
+  std::string text = FarmWorld::document(1);
+  text.replace(text.find("balls"), 5, "b\xFFlls");
+  ASSERT_TRUE(world.upload(text).ok());
+  v1::SubmitResponse response;
+  const grpc::Status status =
+      world.jobs->Submit(world.context().get(), FarmWorld::request(text), &response);
+  EXPECT_EQ(status.error_code(), StatusCode::INVALID_ARGUMENT) << status.error_message();
+  v1::ListJobsResponse list;
+  EXPECT_TRUE(world.jobs->List(world.context().get(), {}, &list).ok()) << "nobody could read it";
+}
+
 TEST_F(Limits, OfWorkersHoldForAllButFilms) {
   const auto stub = v1::Work::NewStub(world.channel);
   grpc::ClientContext context;

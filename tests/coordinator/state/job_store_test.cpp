@@ -63,7 +63,7 @@ TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
   EXPECT_TRUE(frames->at(0).done);
   EXPECT_EQ(frames->at(0).restarts, 2U);
   EXPECT_EQ(frames->at(1).reason, "why");
-  const auto outputs = store->outputs(1, 0);
+  const auto outputs = store->outputs(1, 0, 100);
   ASSERT_EQ(outputs->size(), 1U);
   EXPECT_EQ(outputs->at(0).sha256, "sha");
   EXPECT_TRUE(store->output(1, "b.0003.exr")->has_value());
