@@ -1,5 +1,7 @@
 // `hyades coordinator`: owns jobs, leases units, merges films. It links no renderer.
 
+#include <sys/resource.h>
+
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -36,7 +38,16 @@ struct Arguments {
   double compact_mb = 256;
 };
 
+/// A thousand workers are a thousand open files; the usual limit is that, and the hard one is higher.
+void open_many_files() {
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+  files.rlim_cur = files.rlim_max;
+  (void)::setrlimit(RLIMIT_NOFILE, &files);
+}
+
 int serve(const Arguments& arguments) {
+  open_many_files();
   // Signals are waited for below; every thread inherits that they are blocked.
   sigset_t signals;
   sigemptyset(&signals);

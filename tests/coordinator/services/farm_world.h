@@ -62,7 +62,12 @@ class FarmWorld {
     auto listening = Server::start(listen, *brain);
     ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
     server = std::move(*listening);
-    address = server->address();
+    connect(server->address());
+  }
+
+  /// The client's side alone, where the coordinator is another process.
+  void connect(const std::string& where) {
+    address = where;
     farm::Peer peer;
     peer.address = address;
     channel = *farm::connect(peer);

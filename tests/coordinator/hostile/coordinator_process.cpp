@@ -1,0 +1,67 @@
+#include "tests/coordinator/hostile/coordinator_process.h"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+namespace hyades::test {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{20};
+constexpr int kLooks = 1000;
+
+}  // namespace
+
+CoordinatorProcess::CoordinatorProcess() {
+  const std::string data = folder_.file("data");
+  pid_ = ::fork();
+  if (pid_ == 0) {
+    ::execl(HYADES_COORDINATOR, "hyades-coordinator", "coordinator", "--data", data.c_str(),
+            "--listen", "127.0.0.1:0", nullptr);
+    ::_exit(127);
+  }
+  for (int i = 0; i < kLooks && address_.empty(); ++i) {
+    std::this_thread::sleep_for(kLook);
+    std::ifstream(data + "/address") >> address_;
+  }
+}
+
+CoordinatorProcess::~CoordinatorProcess() { end(); }
+
+uint64_t CoordinatorProcess::peak_mib() const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  for (std::string word; status >> word;) {
+    uint64_t kib = 0;
+    if (word == "VmHWM:" && status >> kib) return kib / 1024;
+  }
+  return UINT64_MAX;
+}
+
+bool CoordinatorProcess::alive() const {
+  siginfo_t info{};
+  return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         info.si_pid == 0;
+}
+
+int CoordinatorProcess::end() {
+  if (pid_ <= 0) return -1;
+  int status = 0;
+  ::kill(pid_, SIGTERM);
+  for (int i = 0; i < kLooks; ++i) {
+    if (::waitpid(pid_, &status, WNOHANG) == pid_) {
+      pid_ = -1;
+      return status;
+    }
+    std::this_thread::sleep_for(kLook);
+  }
+  ::kill(pid_, SIGKILL);
+  ::waitpid(pid_, &status, 0);
+  pid_ = -1;
+  return status;
+}
+
+}  // namespace hyades::test
