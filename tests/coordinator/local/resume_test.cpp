@@ -300,8 +300,8 @@ TEST(Resume, KilledAtRandomAgainAndAgain) {
       }
       ::_exit(ended ? 0 : 1);
     }
-    // Later kills come later, so that a slow machine gets on as well.
-    const int longest = 40'000 + kills * 4'000;
+    // Later kills come later, so that a slow machine (or a sanitizer) gets on as well.
+    const int longest = 40'000 + kills * kills * 400;
     std::this_thread::sleep_for(microseconds(std::uniform_int_distribution(0, longest)(random)));
     if (kills < 60) ::kill(child, SIGKILL);
     int status = 0;

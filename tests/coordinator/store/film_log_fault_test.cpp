@@ -147,8 +147,10 @@ TEST(FilmLogFaults, AFailedSyncIsNotBelievedTheSecondTime) {
 
 TEST(FilmLogFaults, AGroupThatWasWrittenTwiceCountsOnce) {
   FaultyFiles files;
+  FilmLogOptions options = options_with(files);
+  options.commit_delay = std::chrono::minutes(1);  // nothing is committed before it is asked for
   {
-    Opened opened = open_log(files);
+    Opened opened = open_log(options);
     ASSERT_TRUE(opened.log->append(record_of("one")));
     ASSERT_TRUE(opened.log->sync().ok());
     files.fail_next_sync();
