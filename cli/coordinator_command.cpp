@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include <google/protobuf/stubs/logging.h>
 #include <CLI/CLI.hpp>
 
 #include "coordinator/brain/brain.h"
@@ -38,7 +39,8 @@ struct Arguments {
   double compact_mb = 256;
 };
 
-/// A thousand workers are a thousand open files; the usual limit is that, and the hard one is higher.
+/// A thousand workers are a thousand open files; the usual limit is that, and the hard one is
+/// higher.
 void open_many_files() {
   rlimit files{};
   if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
@@ -48,6 +50,8 @@ void open_many_files() {
 
 int serve(const Arguments& arguments) {
   open_many_files();
+  // Who sends what is no message is told so; it does not fill the log.
+  google::protobuf::SetLogHandler(nullptr);
   // Signals are waited for below; every thread inherits that they are blocked.
   sigset_t signals;
   sigemptyset(&signals);

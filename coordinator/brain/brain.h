@@ -156,6 +156,7 @@ class Brain {
 
   Brain(BrainOptions options, std::unique_ptr<JobStore> store,
         std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation);
+  bool has_room_for(const JobDesk& job) const;
   grpc::Status set_paused(uint64_t id, bool paused, v1::Job& now);
   grpc::Status change(uint64_t id, v1::Job& now,
                       const std::function<void(JobDesk&, std::vector<Action>&)>& what);
@@ -190,6 +191,7 @@ class Brain {
   void storage_failed(JobId job, const std::string& reason);
 
   // Messages of workers.
+  bool has_seat();
   void on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result);
   void want(Seat& seat, uint32_t units, std::vector<Action>& later);
   void reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result,
@@ -245,7 +247,7 @@ class Brain {
   std::deque<std::function<void()>> chores_;
   std::condition_variable chores_wake_;
   bool chores_end_ = false;
-  std::mutex submit_mutex_;  ///< one submission at a time
+  std::timed_mutex submit_mutex_;  ///< one submission at a time
   std::vector<std::thread> threads_;
 };
 

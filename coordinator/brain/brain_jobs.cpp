@@ -15,9 +15,18 @@ namespace {
 
 constexpr size_t kLongestName = 200;
 constexpr int kMostPriority = 1'000'000;
+constexpr size_t kMostMissingTold = 100;  // an error travels in headers, which are short
+constexpr std::chrono::seconds kSubmitPatience{2};
+/// Of all open jobs together: what they have in memory.
+constexpr uint64_t kMostOpenFrames = 2'000'000;
+constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
 
 grpc::Status failed(const core::Error& error) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
+}
+
+grpc::Status overloaded(const char* why, std::chrono::milliseconds retry_after) {
+  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, why, retry_after);
 }
 
 grpc::Status wrong(const std::string& message) {
@@ -38,15 +47,18 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   const auto files = files_of(request.spec());
   if (!files) return wrong(files.error().message);
   v1::ErrorDetail missing;
+  size_t count = 0;
   for (const v1::JobFile& file : request.spec().files()) {
     const auto digest = farm::digest_from_wire(file.sha256());
-    if (!assets_->contains(core::to_hex(*digest), file.size())) missing.add_missing(file.sha256());
+    if (assets_->contains(core::to_hex(*digest), file.size())) continue;
+    if (++count <= kMostMissingTold) missing.add_missing(file.sha256());
   }
-  if (missing.missing_size() > 0) {
-    return farm::wire_status(
-        grpc::StatusCode::FAILED_PRECONDITION,
-        fmt::format("{} of the job's files are not here yet", missing.missing_size()), missing);
+  if (count > 0) {
+    return farm::wire_status(grpc::StatusCode::FAILED_PRECONDITION,
+                             fmt::format("{} of the job's files are not here yet", count), missing);
   }
+  const std::unique_lock one(submit_mutex_, kSubmitPatience);
+  if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
   StoredJob stored;
   stored.key = key;
   stored.spec = request.spec().SerializeAsString();
@@ -56,8 +68,10 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   stored.submitted_ms = wall_ms();
   auto desk = make_desk(stored, request.spec(), *assets_);
   if (!desk) return wrong(desk.error().message);
-
-  const std::lock_guard one(submit_mutex_);
+  if (!has_room_for(**desk)) {
+    return overloaded("the open jobs have as many frames or files as there may be",
+                      std::chrono::seconds(60));
+  }
   const auto added = store_->add_job((*desk)->stored);
   if (!added) return failed(added.error());
   core::failpoint("job-stored");
@@ -82,6 +96,18 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   const grpc::Status got = get(added->id, std::nullopt, now);
   *response.mutable_job() = now.job();
   return got;
+}
+
+/// Whether the memory that open jobs may take holds another one.
+bool Brain::has_room_for(const JobDesk& job) const {
+  const std::lock_guard lock(mutex_);
+  uint64_t frames = job.numbers.size();
+  uint64_t bytes = job.stored.spec.size();
+  for (const auto& [id, desk] : desks_) {
+    frames += desk->numbers.size();
+    bytes += desk->stored.spec.size();
+  }
+  return frames <= kMostOpenFrames && bytes <= kMostOpenSpecBytes;
 }
 
 grpc::Status Brain::pause(uint64_t id, v1::Job& now) { return set_paused(id, true, now); }

@@ -41,12 +41,13 @@ class FramePage {
   explicit FramePage(google::protobuf::RepeatedPtrField<v1::Frame>& frames) : frames_(frames) {}
   bool full() const { return bytes_ > kMostFrameBytes; }
   void add(const v1::Frame& frame) {
-    bytes_ += frame.ByteSizeLong();
+    bytes_ += frame.ByteSizeLong() + kEnvelope;
     *frames_.Add() = frame;
   }
 
  private:
   google::protobuf::RepeatedPtrField<v1::Frame>& frames_;
+  static constexpr size_t kEnvelope = 3;  // tag and length
   size_t bytes_ = 0;
 };
 

@@ -8,12 +8,15 @@
 #include "core/base/version.h"
 #include "core/film/film_codec.h"
 #include "farm/wire.h"
+#include "farm/wire_status.h"
 
 namespace hyades::coordinator {
 namespace {
 
 constexpr int kMostNotes = 8;
 constexpr uint32_t kMostThreads = 4096;
+constexpr size_t kMostTagBytes = 2000;
+constexpr size_t kMostWorkers = 20'000;
 constexpr uint32_t kCrowdedRetryMs = 500;
 /// Of a decoded film, besides its pixels.
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
@@ -35,9 +38,12 @@ std::string complaint(const v1::Hello& hello) {
     return "worker_id has to have 16 to 64 characters";
   }
   if (hello.name().empty() || hello.name().size() > 200 || hello.host().size() > 200 ||
-      hello.build().size() > 200 || hello.tags_size() > 100) {
-    return "a worker needs a name; names, host and build have at most 200 characters, tags are 100";
+      hello.build().size() > 200) {
+    return "a worker needs a name; names, host and build have at most 200 characters";
   }
+  size_t tags = 0;
+  for (const std::string& tag : hello.tags()) tags += tag.size() + 1;
+  if (tags > kMostTagBytes) return "a worker's tags have at most 2000 characters in all";
   if (hello.worker_class().empty() || hello.worker_class().size() > 64) {
     return "a worker needs a class of at most 64 characters";
   }
@@ -46,6 +52,19 @@ std::string complaint(const v1::Hello& hello) {
 }
 
 }  // namespace
+
+/// Whether another worker may come; with the lock. Where all seats are taken, one that is gone is
+/// forgotten sooner than others.
+bool Brain::has_seat() {
+  if (seats_.size() < kMostWorkers) return true;
+  const auto gone = std::find_if(seats_.begin(), seats_.end(), [](const auto& seat) {
+    return seat.second.lost_at && !seat.second.joined;
+  });
+  if (gone == seats_.end()) return false;
+  worker_ids_.erase(gone->second.hello.worker_id());
+  seats_.erase(gone);
+  return true;
+}
 
 grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
                            WorkerId& worker) {
@@ -65,6 +84,11 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
   std::vector<Action> later;
   {
     const std::lock_guard lock(mutex_);
+    if (!worker_ids_.contains(hello.worker_id()) && !has_seat()) {
+      return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                               fmt::format("there are {} workers already", kMostWorkers),
+                               std::chrono::seconds(10));
+    }
     const auto [known, fresh] = worker_ids_.try_emplace(hello.worker_id(), WorkerId{next_worker_});
     if (fresh) ++next_worker_;
     worker = known->second;

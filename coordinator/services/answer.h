@@ -7,10 +7,14 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "coordinator/services/admission.h"
+#include "coordinator/services/part_count.h"
 #include "coordinator/services/raw.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
+
+/// Messages in one request; a job with as many files as it may have has about half of that.
+inline constexpr uint64_t kMostParts = 200'000;
 
 /// Answers an admitted call with what `what` makes of the request, or its status. A request has at
 /// most `limit` bytes; of those larger than usual one at a time is looked at.
@@ -27,6 +31,11 @@ grpc::ServerUnaryReactor* answer(const Admission& admission, grpc::CallbackServe
         return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                  "another large request is being looked at",
                                  std::chrono::milliseconds(500));
+      }
+      if (!has_few_parts(*bytes, *Request::descriptor(), kMostParts)) {
+        return {grpc::StatusCode::INVALID_ARGUMENT,
+                fmt::format("more than {} parts in one request, or no {}", kMostParts,
+                            Request::descriptor()->name())};
       }
     }
     Request request;

@@ -167,7 +167,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* con
     return refuse(
         {grpc::StatusCode::OUT_OF_RANGE, fmt::format("the file has {} bytes", bytes->size())});
   }
-  return new FileStream(std::move(*bytes), request.offset());
+  return new FileStream(*context, std::move(*bytes), request.offset());
 }
 
 }  // namespace hyades::coordinator

@@ -20,7 +20,8 @@ class Refusal final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
 /// Bytes from an offset on, in chunks.
 class FileStream final : public Producer<v1::Chunk> {
  public:
-  FileStream(core::Bytes bytes, uint64_t offset) : bytes_(std::move(bytes)), offset_(offset) {
+  FileStream(grpc::CallbackServerContext& context, core::Bytes bytes, uint64_t offset)
+      : Producer(context), bytes_(std::move(bytes)), offset_(offset) {
     begin();
   }
 

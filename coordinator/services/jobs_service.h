@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/admission.h"
 #include "hyades/v1/jobs.grpc.pb.h"
@@ -42,6 +44,7 @@ class JobsService final : public RawJobs {
  private:
   Brain& brain_;
   const Admission& admission_;
+  std::atomic<int> films_{0};  ///< on their way
 };
 
 }  // namespace hyades::coordinator

@@ -23,6 +23,8 @@ namespace {
 constexpr uint32_t kRowsAtOnce = 500;
 
 constexpr int kMostAsked = 10'000;
+/// Films on their way at once: each is in memory as a whole.
+constexpr int kMostFilms = 4;
 
 grpc::Status too_many(const char* what) {
   return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("at most {} {}", kMostAsked, what)};
@@ -44,7 +46,8 @@ grpc::Status failed(const core::Error& error) {
 template <class Message>
 class Follower : public Producer<Message> {
  protected:
-  Follower(Brain& brain, uint64_t job) : brain_(brain), job_(job) {
+  Follower(grpc::CallbackServerContext& context, Brain& brain, uint64_t job)
+      : Producer<Message>(context), brain_(brain), job_(job) {
     watch_ = brain.watch(job, [poker = this->poker()] { poker->poke(); });
   }
   void over() override { brain_.unwatch(watch_); }
@@ -66,7 +69,8 @@ class Follower : public Producer<Message> {
 
 class Watching final : public Follower<v1::WatchEvent> {
  public:
-  Watching(Brain& brain, uint64_t job) : Follower(brain, job) {}
+  Watching(grpc::CallbackServerContext& context, Brain& brain, uint64_t job)
+      : Follower(context, brain, job) {}
 
  private:
   Step next(v1::WatchEvent& event, grpc::Status& status) override {
@@ -84,8 +88,8 @@ class Watching final : public Follower<v1::WatchEvent> {
 
 class OutputList final : public Follower<v1::OutputFile> {
  public:
-  OutputList(Brain& brain, const v1::OutputsRequest& request)
-      : Follower(brain, request.job()), request_(request) {}
+  OutputList(grpc::CallbackServerContext& context, Brain& brain, const v1::OutputsRequest& request)
+      : Follower(context, brain, request.job()), request_(request) {}
 
  private:
   bool wanted(int32_t frame) const {
@@ -135,8 +139,8 @@ class OutputList final : public Follower<v1::OutputFile> {
 
 class LogLines final : public Follower<v1::LogLine> {
  public:
-  LogLines(Brain& brain, const v1::LogsRequest& request)
-      : Follower(brain, request.job()), request_(request) {
+  LogLines(grpc::CallbackServerContext& context, Brain& brain, const v1::LogsRequest& request)
+      : Follower(context, brain, request.job()), request_(request) {
     frames_.insert(request.frames().begin(), request.frames().end());
   }
 
@@ -181,7 +185,11 @@ class LogLines final : public Follower<v1::LogLine> {
 
 class FilmStream final : public Producer<v1::FilmPart> {
  public:
-  FilmStream(Brain& brain, const v1::FilmRequest& request) : found_(std::make_shared<Found>()) {
+  /// `open` counts such streams.
+  FilmStream(grpc::CallbackServerContext& context, Brain& brain, const v1::FilmRequest& request,
+             std::atomic<int>& open)
+      : Producer(context), open_(open), found_(std::make_shared<Found>()) {
+    ++open_;
     // The stream may be over before the film is found.
     const grpc::Status asked = brain.film(
         request.job(), request.frame(),
@@ -199,6 +207,8 @@ class FilmStream final : public Producer<v1::FilmPart> {
     }
     begin();
   }
+
+  ~FilmStream() override { --open_; }
 
  private:
   struct Found {
@@ -229,6 +239,7 @@ class FilmStream final : public Producer<v1::FilmPart> {
     return Step::message;
   }
 
+  std::atomic<int>& open_;
   const std::shared_ptr<Found> found_;
   std::vector<std::byte> bytes_;
   uint64_t offset_ = 0;
@@ -241,7 +252,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Watch(Context* context,
   v1::WatchRequest request;
   const grpc::Status taken = take_in(admission_, *context, *asked, request);
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new Watching(brain_, request.job());
+  auto* stream = new Watching(*context, brain_, request.job());
   stream->begin();
   return stream;
 }
@@ -252,7 +263,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Outputs(Context* contex
   grpc::Status taken = take_in(admission_, *context, *asked, request);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("ranges of frames");
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new OutputList(brain_, request);
+  auto* stream = new OutputList(*context, brain_, request);
   stream->begin();
   return stream;
 }
@@ -263,7 +274,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
   grpc::Status taken = take_in(admission_, *context, *asked, request);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("frames");
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new LogLines(brain_, request);
+  auto* stream = new LogLines(*context, brain_, request);
   stream->begin();
   return stream;
 }
@@ -294,7 +305,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
     return refuse({grpc::StatusCode::OUT_OF_RANGE,
                    fmt::format("{} has {} bytes", request.path(), bytes->size())});
   }
-  return new FileStream(std::move(*bytes), request.offset());
+  return new FileStream(*context, std::move(*bytes), request.offset());
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
@@ -302,7 +313,12 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
   v1::FilmRequest request;
   const grpc::Status taken = take_in(admission_, *context, *asked, request);
   if (!taken.ok()) return new Refusal(taken);
-  return new FilmStream(brain_, request);
+  if (films_ >= kMostFilms) {
+    return new Refusal(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                                         "enough films are on their way to others",
+                                         std::chrono::seconds(2)));
+  }
+  return new FilmStream(*context, brain_, request, films_);
 }
 
 }  // namespace hyades::coordinator

@@ -1,14 +1,20 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 
+#include <grpcpp/alarm.h>
+#include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 #include <grpcpp/support/status.h>
 
 #include "coordinator/services/raw.h"
 
 namespace hyades::coordinator {
+
+/// What a stream waits for while its reader takes nothing; then it is broken off.
+inline constexpr std::chrono::milliseconds kReaderPatience{60'000};
 
 /// Lets others wake a stream that may be over already.
 class Poker {
@@ -18,7 +24,8 @@ class Poker {
 };
 
 /// A stream of messages to a client, produced as fast as it reads: next() is called again when the
-/// last message is on its way, or, after it had nothing, when somebody pokes. Deletes itself.
+/// last message is on its way, or, after it had nothing, when somebody pokes. Broken off where the
+/// client does not read. Deletes itself.
 template <class Message>
 class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
@@ -29,6 +36,7 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   void begin() { advance(); }
 
   void OnWriteDone(bool ok) override {
+    too_slow_.reset();
     if (ok) {
       advance();
     } else {
@@ -49,7 +57,9 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   }
 
  protected:
-  Producer() : handle_(std::make_shared<Handle>(this)) {}
+  explicit Producer(grpc::CallbackServerContext& context,
+                    std::chrono::milliseconds patience = kReaderPatience)
+      : handle_(std::make_shared<Handle>(this)), context_(context), patience_(patience) {}
 
   /// Puts the next message, or, where it says end, the status. Never called twice at once.
   virtual Step next(Message& message, grpc::Status& status) = 0;
@@ -65,6 +75,10 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
     void poke() override {
       const std::lock_guard lock(mutex_);
       if (producer_ != nullptr) producer_->poke();
+    }
+    void break_off() {
+      const std::lock_guard lock(mutex_);
+      if (producer_ != nullptr) producer_->context_.TryCancel();
     }
     void drop() {
       const std::lock_guard lock(mutex_);
@@ -106,7 +120,7 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
           if (!status.ok()) step = Step::end;
         }
       }
-      if (step == Step::message) return StartWrite(&bytes_);
+      if (step == Step::message) return write();
       if (step == Step::end) return Finish(status);
       const std::lock_guard lock(mutex_);
       if (poked_) continue;
@@ -115,7 +129,18 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
     }
   }
 
+  void write() {
+    too_slow_ = std::make_unique<grpc::Alarm>();
+    too_slow_->Set(std::chrono::system_clock::now() + patience_, [handle = handle_](bool rang) {
+      if (rang) handle->break_off();
+    });
+    StartWrite(&bytes_);
+  }
+
   const std::shared_ptr<Handle> handle_;
+  grpc::CallbackServerContext& context_;
+  const std::chrono::milliseconds patience_;
+  std::unique_ptr<grpc::Alarm> too_slow_;  ///< while a message is on its way
   Message message_;
   grpc::ByteBuffer bytes_;  ///< the message on its way
   std::mutex mutex_;

@@ -71,6 +71,18 @@ TEST_F(Hostile, PackedMessagesAreNotUnpacked) {
   expect_sane(kUsual);
 }
 
+TEST_F(Hostile, RequestsOfNothingButEmptyParts) {
+  std::string files;
+  for (int i = 0; i < 8'000'000; ++i) files += std::string("\x12\0", 2);
+  // A spec with eight million files, of two bytes each.
+  const std::string bytes = std::string("\x0a\x80\xc8\xd0\x07", 5) + files;
+  ASSERT_EQ(files.size(), 16'000'000U);
+  EXPECT_EQ(call("/hyades.v1.Jobs/Submit", bytes, 20s).error_code(),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  expect_served();
+  expect_sane(kUsual);
+}
+
 TEST_F(Hostile, AThousandIdleConnections) {
   std::vector<std::unique_ptr<test::RawHttp2>> peers;
   for (int i = 0; i < 1000; ++i) {

@@ -1,6 +1,11 @@
 // What clients and workers may send, and what they are told beyond it.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "coordinator/services/part_count.h"
 #include "coordinator/services/worker_bytes.h"
 #include "tests/coordinator/services/farm_world.h"
 
@@ -136,6 +141,22 @@ TEST_F(Limits, OfAnswersWhichComeInParts) {
   }
 }
 
+TEST_F(Limits, OfAllOpenJobsTogether) {
+  const uint64_t one = world.submit(1'000'000);
+  world.submit(999'999);
+  world.submit(1);
+  v1::SubmitResponse response;
+  const v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1));
+  const grpc::Status status = world.jobs->Submit(world.context().get(), request, &response);
+  expect_refused(status, StatusCode::RESOURCE_EXHAUSTED, "open jobs");
+  EXPECT_EQ(farm::detail_of(status).retry_after_ms(), 60'000U);
+  v1::JobRequest cancelled;
+  cancelled.set_job(one);
+  v1::JobResponse ignored;
+  ASSERT_TRUE(world.jobs->Cancel(world.context().get(), cancelled, &ignored).ok());
+  EXPECT_TRUE(world.jobs->Submit(world.context().get(), request, &response).ok());
+}
+
 TEST_F(Limits, OfFramesThatAreNamedAgainAndAgain) {
   ASSERT_TRUE(world.upload(FarmWorld::document(1000)).ok());
   v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1000));
@@ -172,6 +193,82 @@ TEST_F(Limits, OfWorkersHoldForAllButFilms) {
   v1::CoordinatorMessage reply;
   EXPECT_FALSE(stream->Read(&reply));
   expect_refused(stream->Finish(), StatusCode::INVALID_ARGUMENT, "besides a film");
+}
+
+TEST_F(Limits, AWorkerThatDoesNotReadIsCutOff) {
+  const auto stub = v1::Work::NewStub(world.channel);
+  grpc::ClientContext context;
+  farm::prepare(context, "", std::chrono::seconds(60));
+  const auto stream = stub->Attend(&context);
+  v1::WorkerMessage message;
+  v1::Hello& hello = *message.mutable_hello();
+  hello.set_protocol(farm::kProtocol);
+  hello.set_worker_id("a-worker-that-does-not-read");
+  hello.set_name("deaf");
+  hello.set_worker_class("class-a");
+  hello.set_threads(1);
+  ASSERT_TRUE(stream->Write(message));
+  message.mutable_result()->set_job(7);  // of no job: each is answered with words
+  int written = 0;
+  while (written < 1'000'000 && stream->Write(message)) ++written;
+  EXPECT_GT(written, 50'000) << "many answers may wait";
+  EXPECT_LT(written, 1'000'000) << "but not any number of them";
+  v1::CoordinatorMessage reply;
+  while (stream->Read(&reply)) {
+  }
+  EXPECT_FALSE(stream->Finish().ok());
+  EXPECT_NE(world.submit(1), 0U) << "others are served";
+}
+
+TEST_F(Limits, LargeRequestsAreLookedAtOneAtATime) {
+  v1::FindMissingRequest request;
+  for (int i = 0; i < 10'000; ++i) {
+    auto& file = *request.add_files();
+    file.set_sha256(farm::to_wire(core::sha256(std::to_string(i))));
+    file.set_size(1);
+  }
+  std::atomic<int> served{0};
+  std::atomic<int> sent_away{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 8; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 5; ++i) {
+        v1::FindMissingResponse response;
+        const auto status = world.assets->FindMissing(world.context().get(), request, &response);
+        if (status.ok()) {
+          ++served;
+          continue;
+        }
+        EXPECT_EQ(status.error_code(), StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
+        EXPECT_EQ(farm::detail_of(status).retry_after_ms(), 500U);
+        EXPECT_TRUE(farm::is_retryable(status));
+        ++sent_away;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(served, 0);
+  EXPECT_GT(sent_away, 0) << "nobody met another";
+}
+
+TEST(PartCount, CountsMessagesTextsAndWhatIsUnknown) {
+  const auto few = [](const std::string& bytes, const google::protobuf::Descriptor& type,
+                      uint64_t most) {
+    const grpc::Slice slice(bytes);
+    return has_few_parts(grpc::ByteBuffer(&slice, 1), type, most);
+  };
+  v1::SubmitRequest request;
+  for (int i = 0; i < 10; ++i) request.mutable_spec()->add_files()->set_path("a path");
+  const std::string bytes = request.SerializeAsString();
+  EXPECT_TRUE(few(bytes, *request.descriptor(), 11));
+  EXPECT_FALSE(few(bytes, *request.descriptor(), 10));
+  EXPECT_FALSE(few(bytes.substr(0, bytes.size() - 1), *request.descriptor(), 11)) << "cut off";
+  v1::Hello hello;
+  for (int i = 0; i < 10; ++i) hello.add_tags("");
+  EXPECT_TRUE(few(hello.SerializeAsString(), *hello.descriptor(), 10));
+  EXPECT_FALSE(few(hello.SerializeAsString(), *hello.descriptor(), 9));
+  EXPECT_FALSE(few(hello.SerializeAsString(), *v1::InfoRequest::descriptor(), 9)) << "unknown";
+  EXPECT_TRUE(few("", *hello.descriptor(), 0));
 }
 
 TEST(WorkerBytes, CountAllButTheFilm) {

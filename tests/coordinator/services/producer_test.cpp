@@ -1,8 +1,14 @@
 #include "coordinator/services/producer.h"
 
+#include <grpcpp/create_channel.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
 #include <gtest/gtest.h>
 
-#include "hyades/v1/common.pb.h"
+#include <thread>
+
+#include "farm/wire.h"
+#include "hyades/v1/assets.grpc.pb.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -10,12 +16,13 @@ namespace {
 /// Whoever wakes it may do so as soon as it is told of it, which is before the stream is made.
 class Woken : public Producer<v1::Chunk> {
  protected:
-  Woken() { poker()->poke(); }
+  explicit Woken(grpc::CallbackServerContext& context) : Producer(context) { poker()->poke(); }
 };
 
 class Counting final : public Woken {
  public:
   using Woken::poker;
+  explicit Counting(grpc::CallbackServerContext& context) : Woken(context) {}
   int asked = 0;
 
  private:
@@ -26,13 +33,63 @@ class Counting final : public Woken {
 };
 
 TEST(Producer, IsNotAskedBeforeItBegins) {
-  Counting stream;  // a stream that is asked here calls a pure virtual function
+  grpc::CallbackServerContext context;
+  Counting stream(context);  // a stream that is asked here calls a pure virtual function
   stream.poker()->poke();
   EXPECT_EQ(stream.asked, 0);
   stream.begin();
   EXPECT_EQ(stream.asked, 1);
   stream.poker()->poke();
   EXPECT_EQ(stream.asked, 2);
+}
+
+/// 64 MiB for anybody, of whom it expects to take something every 200 ms.
+class Chunks final : public Producer<v1::Chunk> {
+ public:
+  explicit Chunks(grpc::CallbackServerContext& context)
+      : Producer(context, std::chrono::milliseconds(200)) {
+    begin();
+  }
+
+ private:
+  Step next(v1::Chunk& chunk, grpc::Status&) override {
+    if (++sent_ > 64) return Step::end;
+    chunk.set_data(std::string(farm::kMaxChunkBytes, 'x'));
+    return Step::message;
+  }
+  int sent_ = 0;
+};
+
+class ChunkService final : public v1::Assets::WithRawCallbackMethod_Download<v1::Assets::Service> {
+ public:
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* Download(grpc::CallbackServerContext* context,
+                                                       const grpc::ByteBuffer*) override {
+    return new Chunks(*context);
+  }
+};
+
+TEST(Producer, BreaksOffWhereNobodyReads) {
+  ChunkService service;
+  grpc::ServerBuilder builder;
+  int port = 0;
+  builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+  builder.RegisterService(&service);
+  const auto server = builder.BuildAndStart();
+  const auto stub = v1::Assets::NewStub(
+      grpc::CreateChannel("127.0.0.1:" + std::to_string(port), grpc::InsecureChannelCredentials()));
+  for (const bool reads : {true, false}) {
+    grpc::ClientContext context;
+    const auto reader = stub->Download(&context, {});
+    v1::Chunk chunk;
+    int come = 0;
+    while (reader->Read(&chunk)) {
+      if (!reads && come == 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+      ++come;
+    }
+    const grpc::Status status = reader->Finish();
+    EXPECT_EQ(status.ok(), reads) << status.error_message();
+    EXPECT_EQ(come == 64, reads) << come;
+  }
 }
 
 }  // namespace
