@@ -17,7 +17,6 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr int32_t kTileSize = 32;
 constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;
 constexpr Duration kClock = std::chrono::milliseconds(50);
 constexpr Duration kPokeEvery = std::chrono::milliseconds(200);
@@ -234,7 +233,8 @@ core::Status Brain::ensure_keeper(JobDesk& desk) {
   if (desk.keeper) return {};
   auto keeper = make_keeper(desk, false);
   if (auto opened = keeper->open(); !opened) return opened.error();
-  if (auto started = keeper->start(kTileSize); !started) return started;
+  const int32_t tile_size = tile_size_of(desk.region, desk.read.job.sampling.samples);
+  if (auto started = keeper->start(tile_size); !started) return started;
   desk.keeper = std::move(keeper);
   return {};
 }
@@ -242,7 +242,7 @@ core::Status Brain::ensure_keeper(JobDesk& desk) {
 /// Reads the films that are there, and hands the job to the scheduler.
 core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) {
   JobDesk& desk = *owned;
-  int32_t tile_size = kTileSize;
+  int32_t tile_size = tile_size_of(desk.region, desk.read.job.sampling.samples);
   if (std::filesystem::exists(films_folder(desk.stored.id))) {
     desk.keeper = make_keeper(desk, true);
     auto contents = desk.keeper->open();

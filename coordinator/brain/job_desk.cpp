@@ -24,6 +24,10 @@ constexpr size_t kMostLinesWaiting = 2000;
 constexpr size_t kLongestPath = 4096;
 constexpr uint32_t kMostSamples = 1U << 24U;
 constexpr int64_t kMostFrames = 1'000'000;
+constexpr int32_t kSmallTile = 32;
+constexpr int32_t kLargeTile = 64;
+constexpr uint32_t kManySamples = 512;
+constexpr uint64_t kEnoughPieces = 512;  ///< of a frame, each one batch of a tile
 
 /// The frames that the spec asks for, in order; an error where the document does not have them.
 core::Result<std::vector<int32_t>> frames_of(const v1::JobSpec& spec, const core::Job& job) {
@@ -68,6 +72,14 @@ Digest key_of(const v1::JobSpec& spec, const core::LayerSet& layers) {
 }
 
 }  // namespace
+
+int32_t tile_size_of(const core::PixelRect& region, uint32_t samples) {
+  const auto along = [](int32_t pixels) { return (pixels + kLargeTile - 1) / kLargeTile; };
+  const uint64_t pieces = static_cast<uint64_t>(along(region.width())) *
+                          static_cast<uint64_t>(along(region.height())) *
+                          core::batch_count(samples);
+  return samples < kManySamples && pieces >= kEnoughPieces ? kLargeTile : kSmallTile;
+}
 
 void Speed::note(uint64_t done, TimePoint now) {
   if (last_ != TimePoint{}) {

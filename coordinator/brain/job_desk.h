@@ -83,6 +83,11 @@ struct JobDesk {
   core::FilmInfo film_info(int32_t frame) const;
 };
 
+/// Pixels along the side of a job's tiles, by its crop window and samples per pixel. Every unit
+/// costs the farm some milliseconds, and none is larger than a tile with all its samples: 64 where
+/// these are few, if the frame is still cut into enough pieces for many threads; else 32.
+int32_t tile_size_of(const core::PixelRect& region, uint32_t samples);
+
 /// A stored job as the wire shows it.
 v1::Job describe(const StoredJob& job);
 
