@@ -123,7 +123,8 @@ class Desk {
   void drop(Items::iterator item);
   void stop_rendering(Items::iterator item);
   void fence(TimePoint now);
-  void heartbeat();
+  void heartbeat(TimePoint now);
+  void echoed(uint64_t number);
   void send_result(const Item& item);
   void say_leaving();
   void top_up();
@@ -152,8 +153,12 @@ class Desk {
   Duration heartbeat_every_{std::chrono::seconds(5)};
   Duration lease_time_{std::chrono::seconds(30)};
   uint64_t max_message_bytes_ = uint64_t{64} << 20U;
-  std::optional<TimePoint> renewed_;  ///< when the leases were last renewed
+  /// When what last renewed the leases, as far as is known from the coordinator's answer, was sent.
+  std::optional<TimePoint> renewed_;
+  TimePoint hello_sent_;
   TimePoint last_heartbeat_;
+  uint64_t heartbeats_ = 0;
+  std::map<uint64_t, TimePoint> unanswered_;  ///< heartbeats on this stream: when they were sent
   bool leaving_ = false;
   bool handing_over_ = false;  ///< nothing more is rendered
   std::string leaving_reason_;

@@ -1,5 +1,6 @@
 // The desk's side of the stream: hello, leases, answers to films, heartbeats, leaving.
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,6 +24,8 @@ void Desk::stream_opened(TimePoint now) {
   open_ = true;
   welcomed_ = false;
   wished_ = 0;
+  hello_sent_ = now;
+  unanswered_.clear();
   if (!worker_class_.empty()) send_hello();
 }
 
@@ -57,7 +60,7 @@ void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
     lease_time_ = std::max(milliseconds(welcome.lease_ms()), kShortestLease);
     if (welcome.max_message_bytes() > 0) max_message_bytes_ = welcome.max_message_bytes();
     welcomed_ = true;
-    renewed_ = now;
+    renewed_ = hello_sent_;
     last_heartbeat_ = now;
     for (auto& [token, item] : items_) {
       if (item.state == Item::State::kept) send_result(item);
@@ -69,6 +72,7 @@ void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
     jobs_[id].spec = std::move(*message.mutable_job()->mutable_spec());
     jobs_[id].over = false;
   } else if (message.has_lease()) {
+    if (!renewed_) renewed_ = now;  // units were given up, and here are others
     take(message.lease());
   } else if (message.has_acknowledge()) {
     const auto item = find(message.acknowledge().unit());
@@ -85,6 +89,8 @@ void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
     const std::string& why = message.drain().reason();
     if (!leaving_) ports_.note("drained: what is leased is finished");
     leave(why.empty() ? "drained" : "drained: " + why, false);
+  } else if (message.has_echo()) {
+    echoed(message.echo().number());
   } else if (message.has_over()) {
     const auto job = jobs_.find(message.over().job());
     if (job != jobs_.end()) {
@@ -171,9 +177,8 @@ void Desk::tick(TimePoint now, bool flowing) {
   fence(now);
   if (!welcomed_) return;
   if (now - last_heartbeat_ >= heartbeat_every_ && flowing) {
-    heartbeat();
+    heartbeat(now);
     last_heartbeat_ = now;
-    renewed_ = now;
   }
   for (auto& [token, item] : items_) {
     if (!item.send_again || *item.send_again > now) continue;
@@ -183,8 +188,8 @@ void Desk::tick(TimePoint now, bool flowing) {
   top_up();
 }
 
-/// Out of contact for as long as a lease lasts, or asleep: whatever is not rendered yet was given
-/// to others by now.
+/// No answer for as long as a lease lasts (the network may be cut without a sign), or asleep:
+/// whatever is not rendered yet was given to others by now.
 void Desk::fence(TimePoint now) {
   if (!renewed_ || now - *renewed_ <= lease_time_) return;
   size_t dropped = 0;
@@ -201,9 +206,11 @@ void Desk::fence(TimePoint now) {
   }
 }
 
-void Desk::heartbeat() {
+void Desk::heartbeat(TimePoint now) {
   v1::WorkerMessage message;
   v1::Heartbeat& beat = *message.mutable_heartbeat();
+  beat.set_number(++heartbeats_);
+  unanswered_.emplace(heartbeats_, now);
   std::map<std::pair<uint64_t, uint64_t>, uint64_t> samples;  // by lease
   for (const auto& [token, item] : items_) {
     const v1::LeaseId& lease = item.leased.lease();
@@ -217,6 +224,13 @@ void Desk::heartbeat() {
   }
   beat.set_memory_bytes(renderer_memory_);
   ports_.send(std::move(message));
+}
+
+void Desk::echoed(uint64_t number) {
+  const auto sent = unanswered_.find(number);
+  if (sent == unanswered_.end()) return;
+  renewed_ = renewed_ ? std::max(*renewed_, sent->second) : sent->second;
+  unanswered_.erase(unanswered_.begin(), std::next(sent));
 }
 
 // ---- wishes ----

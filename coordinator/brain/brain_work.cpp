@@ -181,6 +181,9 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
       }
       seat->memory = message.heartbeat().memory_bytes();
       say(alive);
+      v1::CoordinatorMessage echo;
+      echo.mutable_echo()->set_number(message.heartbeat().number());
+      seat->link->send(std::move(echo));
     } else if (message.has_failure()) {
       const v1::UnitFailure& failure = message.failure();
       const auto unit = farm::from_wire(failure.unit().unit());

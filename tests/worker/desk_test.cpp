@@ -146,13 +146,44 @@ TEST(Desk, HeartbeatsNameEveryLeaseAndRenewThem) {
   for (int i = 0; i < 30; ++i) {
     world.now += milliseconds(1000);
     world.desk->tick(world.now, true);
-    EXPECT_EQ(first(world.take_sent(), &Message::has_heartbeat).heartbeat().leases_size(), 2);
+    const Message beat = first(world.take_sent(), &Message::has_heartbeat);
+    EXPECT_EQ(beat.heartbeat().leases_size(), 2);
+    world.echo(beat.heartbeat().number());
   }
   EXPECT_FALSE(world.stopped(world.token_of(8)));
   for (int i = 0; i < 12; ++i) {
     world.now += milliseconds(1000);
     world.desk->tick(world.now, false);  // nothing leaves this machine
   }
+  EXPECT_TRUE(world.stopped(world.token_of(8)));
+}
+
+TEST(Desk, HeartbeatsThatNobodyAnswersRenewNothing) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  const auto beat = [&] {
+    world.now += milliseconds(1000);
+    world.desk->tick(world.now, true);
+    return first(world.take_sent(), &Message::has_heartbeat).heartbeat().number();
+  };
+  const uint64_t answered_late = beat();
+  for (int i = 0; i < 4; ++i) beat();
+  world.echo(answered_late);
+  world.echo(answered_late);
+  world.echo(99);  // was never sent
+  for (int i = 0; i < 6; ++i) beat();
+  EXPECT_FALSE(world.stopped(world.token_of(0))) << "10 s after the answered one was sent";
+  beat();
+  EXPECT_TRUE(world.stopped(world.token_of(0))) << "the network is cut, and nothing says so";
+
+  // It has healed: what comes now is held for a lease's time again.
+  world.lease(DeskWorld::unit(8, 2));
+  world.desk->files_are_there(DeskWorld::kJob);
+  for (int i = 0; i < 10; ++i) beat();
+  EXPECT_FALSE(world.stopped(world.token_of(8)));
+  beat();
   EXPECT_TRUE(world.stopped(world.token_of(8)));
 }
 

@@ -90,6 +90,12 @@ class DeskWorld {
     desk->coordinator_says(message, now);
   }
 
+  void echo(uint64_t number) {
+    v1::CoordinatorMessage message;
+    message.mutable_echo()->set_number(number);
+    desk->coordinator_says(message, now);
+  }
+
   void started(uint64_t token) {
     pipe::FromRenderer message;
     message.mutable_started()->set_token(token);

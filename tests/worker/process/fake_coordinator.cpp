@@ -93,6 +93,10 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
       } else if (message.has_returned()) {
         books_.seen.returned += static_cast<size_t>(message.returned().units_size());
         for (const auto& unit : message.returned().units()) give_back(unit);
+      } else if (message.has_heartbeat()) {
+        v1::CoordinatorMessage echo;
+        echo.mutable_echo()->set_number(message.heartbeat().number());
+        stream->Write(echo);
       } else if (message.has_leaving()) {
         books_.seen.leavings.push_back(message.leaving());
       }
