@@ -111,8 +111,9 @@ struct Conflict {
   WorkerId second{};
 };
 
-/// The worker rendered a unit to other bits than two others did, who agree: nothing it says is
-/// believed, and it gets nothing, until WorkerBarred ends that.
+/// The worker rendered a unit to other bits than two others did, who agree; or it failed unit after
+/// unit that others could render. Nothing it says is believed, and it gets nothing, until
+/// WorkerBarred ends that.
 struct Quarantine {
   WorkerId worker{};
   std::string reason;

@@ -71,11 +71,13 @@ void Scheduler::decide(JobState& job, FrameSlot& slot, const Dispute& dispute,
   }
   for (const Opinion& o : dispute.opinions) {
     if (o.digest == e.digest || o.worker == WorkerId{}) continue;
-    quarantine(o.worker,
-               fmt::format("rendered job {} frame {} tile {},{} batches {}-{} to other "
-                           "bits than two other workers",
-                           static_cast<uint64_t>(job.id), slot.frame, e.unit.tile.x0,
-                           e.unit.tile.y0, extent.batches.first, extent.batches.end() - 1));
+    if (quarantine(o.worker,
+                   fmt::format("rendered job {} frame {} tile {},{} batches {}-{} to other "
+                               "bits than two other workers",
+                               static_cast<uint64_t>(job.id), slot.frame, e.unit.tile.x0,
+                               e.unit.tile.y0, extent.batches.first, extent.batches.end() - 1))) {
+      doubt_films_of(o.worker);
+    }
   }
   void_doubted(job, slot);
   update_ready(job);
@@ -95,17 +97,23 @@ bool Scheduler::grant_check(JobState& job, uint32_t slot, WorkerId id, Worker& w
   return true;
 }
 
-/// Nothing more for the worker and nothing more from it; and what it gave to open frames, where no
-/// other agreed, is rendered again. A broken machine may err now and then, so that an earlier
-/// unit that was right says nothing of the next.
-void Scheduler::quarantine(WorkerId id, const std::string& reason) {
-  if (!quarantined_.insert(id).second) return;
+/// Nothing more for the worker and nothing more from it. False where that is so already.
+bool Scheduler::quarantine(WorkerId id, const std::string& reason) {
+  if (!quarantined_.insert(id).second) return false;
   say(Quarantine{id, reason});
   if (Worker* worker = find_worker(id)) {
     const std::vector<uint64_t> numbers = worker->leases;
     for (const uint64_t number : numbers) release_lease(number, true);
     if (!std::exchange(worker->barred, true)) count_class(worker->worker_class, -1);
   }
+  // A unit that failed with others may now be theirs to try again.
+  work_appeared_ = true;
+  return true;
+}
+
+/// What the worker gave to open frames, where no other agreed, is rendered again. A broken machine
+/// may err now and then, so that an earlier unit that was right says nothing of the next.
+void Scheduler::doubt_films_of(WorkerId id) {
   for (const auto& [number, job] : jobs_) {
     for (const uint32_t i : job->in_flight) {
       FrameSlot& slot = job->slots[i];

@@ -79,6 +79,8 @@ struct WorkerJoined {
   uint32_t threads = 1;
   std::string worker_class;
   std::vector<UnitInHand> in_hand;
+  std::vector<std::string> tags = {};
+  uint64_t memory = 0;  ///< bytes for scenes; 0: it knows no limit
 };
 
 /// The worker can take `units` more. The wish stands until it is fulfilled.

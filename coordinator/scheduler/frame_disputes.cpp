@@ -25,14 +25,19 @@ std::optional<Extent> FrameState::next_check(WorkerId worker, const MayTry& may_
                                    [&](const Opinion& o) { return o.worker == worker; });
     if (heard || being_checked(d.extent)) continue;
     const Blame* blame = find_blame(d.extent);
-    if (blame == nullptr || may_try(blame->workers)) return d.extent;
+    if (blame == nullptr) return d.extent;
+    // Those who have said what they think are no help: who failed it may be the only one left.
+    std::vector<WorkerId> others = blame->workers;
+    for (const Opinion& o : d.opinions) others.push_back(o.worker);
+    if (may_try(others)) return d.extent;
   }
   return std::nullopt;
 }
 
-bool FrameState::check_waits() const {
-  return std::any_of(disputes_.begin(), disputes_.end(),
-                     [&](const Dispute& d) { return !being_checked(d.extent); });
+uint64_t FrameState::waiting_checks() const {
+  return static_cast<uint64_t>(
+      std::count_if(disputes_.begin(), disputes_.end(),
+                    [&](const Dispute& d) { return !being_checked(d.extent); }));
 }
 
 void FrameState::verify(const Extent& e) {

@@ -165,14 +165,30 @@ const FrameState::Blame* FrameState::find_blame(const Extent& e) const {
   return nullptr;
 }
 
-uint32_t FrameState::blame(const Extent& e, WorkerId worker) {
+uint32_t FrameState::blame(const Extent& e, WorkerId worker, const std::string& reason) {
   for (Blame& b : blamed_) {
     if (b.extent != e) continue;
     b.workers.push_back(worker);
+    b.reason = reason;
     return static_cast<uint32_t>(b.workers.size());
   }
-  blamed_.push_back({e, {worker}});
+  blamed_.push_back({e, {worker}, reason});
   return 1;
+}
+
+FrameState::Failures FrameState::take_blame(const Extent& e) {
+  const auto found =
+      std::find_if(blamed_.begin(), blamed_.end(), [&](const Blame& b) { return b.extent == e; });
+  if (found == blamed_.end() ||
+      std::find(suspects_.begin(), suspects_.end(), e) != suspects_.end()) {
+    return {};
+  }
+  Failures failures{std::move(found->workers), std::move(found->reason)};
+  blamed_.erase(found);
+  std::sort(failures.workers.begin(), failures.workers.end());
+  failures.workers.erase(std::unique(failures.workers.begin(), failures.workers.end()),
+                         failures.workers.end());
+  return failures;
 }
 
 std::string FrameState::audit() const {

@@ -117,7 +117,14 @@ class FrameState {
   // Blame.
 
   /// Notes the failure and returns how often this unit has failed.
-  uint32_t blame(const Extent& e, WorkerId worker);
+  uint32_t blame(const Extent& e, WorkerId worker, const std::string& reason);
+  /// Who failed this unit that has been rendered after all, each once, and how the last one failed.
+  /// Forgets it.
+  struct Failures {
+    std::vector<WorkerId> workers;
+    std::string reason;
+  };
+  Failures take_blame(const Extent& e);
 
   // Conflicts (frame_disputes.cpp).
 
@@ -129,8 +136,8 @@ class FrameState {
   void end_dispute(const Extent& e);
   /// A disputed unit that nobody renders, for a worker without an opinion of it that may try it.
   std::optional<Extent> next_check(WorkerId worker, const MayTry& may_try) const;
-  /// Whether there is a disputed unit that nobody renders.
-  bool check_waits() const;
+  /// Disputed units that nobody renders.
+  uint64_t waiting_checks() const;
   /// Another worker agreed on the film that is held.
   void verify(const Extent& e);
   /// Tiles that hold films of this worker on which no other agreed, in order.
@@ -151,6 +158,7 @@ class FrameState {
   struct Blame {
     Extent extent;
     std::vector<WorkerId> workers;
+    std::string reason;
   };
 
   static uint64_t key(const Extent& e) { return (uint64_t{e.tile} << 32) | e.batches.first; }

@@ -10,6 +10,19 @@
 
 namespace hyades::coordinator {
 
+/// In which order a job's frames get their samples.
+enum class FrameOrder : uint8_t {
+  sequential,   ///< one frame after the other
+  progressive,  ///< one batch of every frame in flight, then two, four, ...: all can be seen early
+};
+
+/// What a worker has to have to get units of a job.
+struct JobNeeds {
+  std::vector<std::string> tags;  ///< all of them
+  uint64_t memory = 0;            ///< bytes for scenes; 0: any
+  bool any() const { return !tags.empty() || memory > 0; }
+};
+
 /// What the scheduler knows of a job: no light, only how much there is to do and in which order.
 struct JobPlan {
   std::vector<int32_t> frames;  ///< in the order in which they are rendered; no number twice
@@ -23,6 +36,8 @@ struct JobPlan {
 
   /// Frames that may be opened, rendered or finished at once: each costs its film's memory.
   uint32_t frames_in_flight = 3;
+  FrameOrder order = FrameOrder::sequential;
+  JobNeeds needs;
   uint32_t max_workers = 0;   ///< that may have units of it at once; 0: no limit
   uint32_t max_attempts = 3;  ///< failures of one unit that fail its frame
 };

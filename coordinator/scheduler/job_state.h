@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -30,6 +31,8 @@ struct FrameSlot {
   FramePhase phase = FramePhase::waiting;
   uint32_t finish_attempts = 0;
   uint32_t worker_class = 0;  ///< interned; 0 until the first unit is leased
+  /// Since when nobody is there who may render it.
+  std::optional<TimePoint> orphaned;
   std::unique_ptr<FrameState> books;
   std::string reason;  ///< why it failed
 
@@ -47,6 +50,7 @@ struct JobState {
   uint64_t serial = 0;  ///< order of arrival
   uint32_t share = 0;   ///< index of its (priority, owner)
   JobPlan plan;
+  std::vector<uint32_t> tags;  ///< that a worker needs; interned, sorted
   TileGrid grid;
   std::vector<FrameSlot> slots;                     ///< in the order of plan.frames
   std::unordered_map<int32_t, uint32_t> by_number;  ///< frame number -> slot; never walked
@@ -56,6 +60,7 @@ struct JobState {
   std::map<WorkerId, uint32_t> workers;             ///< how many leases each has
   bool paused = false;
   bool ready = false;  ///< listed among those that have work
+  uint64_t offer = 0;  ///< free batches and disputed units when it was last looked at
 
   uint32_t frames_done = 0;
   uint32_t frames_failed = 0;

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "coordinator/scheduler/scheduler.h"
 
 namespace hyades::coordinator {
@@ -46,6 +48,7 @@ void Scheduler::on(const ResultArrived& e) {
   } else {
     slot->worker_class = worker->worker_class;
     accept(*job, *slot, *extent, e);
+    forgive_and_blame(*job, *slot, *extent, e.worker);
     learn_cost(*job, *extent, e.render_time);
   }
   end_unit(*job, *slot, *extent, e.lease);
@@ -76,6 +79,25 @@ void Scheduler::end_unit(JobState& job, FrameSlot& slot, const Extent& part, con
   update_ready(job);
 }
 
+/// A unit is rendered: its worker can, and those who failed it cannot blame the unit. Units that
+/// nobody can render are nobody's fault, so that a broken job puts no worker into quarantine.
+void Scheduler::forgive_and_blame(JobState& job, FrameSlot& slot, const Extent& extent,
+                                  WorkerId worker) {
+  strikes_.erase(worker);
+  const FrameState::Failures failures = slot.books->take_blame(extent);
+  for (const WorkerId failed : failures.workers) {
+    if (failed == worker) continue;
+    Strikes& strikes = strikes_[failed];
+    strikes.reason = failures.reason;
+    if (++strikes.count < options_.max_strikes) continue;
+    const std::string why =
+        fmt::format("failed {} units in a row that others could render, the last of job {}: {}",
+                    strikes.count, static_cast<uint64_t>(job.id), strikes.reason);
+    strikes_.erase(failed);
+    quarantine(failed, why);
+  }
+}
+
 void Scheduler::learn_cost(JobState& job, const Extent& extent, Duration render_time) {
   if (render_time <= Duration{0}) return;
   const double cost = std::chrono::duration<double>(render_time).count() / extent.batches.count;
@@ -99,7 +121,7 @@ void Scheduler::on(const UnitFailed& e) {
   if (slot == nullptr || !slot->books || !extent) return;
   const Assignment* assignment = slot->books->find_covering(*extent, e.lease);
   if (assignment == nullptr) return;
-  const uint32_t failures = slot->books->blame(assignment->extent, e.worker);
+  const uint32_t failures = slot->books->blame(assignment->extent, e.worker, e.reason);
   end_unit(*job, *slot, *extent, e.lease);
   if (failures >= job->plan.max_attempts) fail_frame(*job, *slot, e.reason);
 }

@@ -29,6 +29,7 @@ void Scheduler::on(const JobAdded& e) {
   job.serial = next_job_serial_++;
   job.share = share_of(e.plan.priority, e.plan.owner);
   job.plan = e.plan;
+  job.tags = intern_tags(e.plan.needs.tags);
   job.grid = TileGrid(e.plan.region, e.plan.tile_size, e.plan.shuffle);
   job.tile_cost.assign(job.grid.size(), 0.0F);
   for (const int32_t frame : e.plan.frames) {
@@ -108,6 +109,7 @@ void Scheduler::on(const JobReprioritised& e) {
   list_ready(*job, false);
   set_running(*job, -running);
   job->plan.priority = e.priority;
+  work_appeared_ = true;
   job->share = share_of(e.priority, job->plan.owner);
   set_running(*job, running);
   update_ready(*job);
@@ -176,7 +178,7 @@ void Scheduler::open_frames(JobState& job) {
         free += slot.books->free();
       }
     }
-    if (free > enough) return;
+    if (free > enough && job.plan.order == FrameOrder::sequential) return;
     while (job.next_slot < job.slots.size() &&
            job.slots[job.next_slot].phase != FramePhase::waiting) {
       ++job.next_slot;
@@ -226,6 +228,7 @@ void Scheduler::frame_restarted(JobState& job, FrameSlot& slot) {
   const auto index = static_cast<uint32_t>(&slot - job.slots.data());
   slot.phase = FramePhase::waiting;
   slot.worker_class = 0;
+  slot.orphaned.reset();
   slot.finish_attempts = 0;
   slot.reason.clear();
   std::erase(job.in_flight, index);
@@ -245,8 +248,13 @@ void Scheduler::restart_orphans() {
     for (const uint32_t i : in_flight) {
       FrameSlot& slot = job->slots[i];
       const uint32_t c = slot.worker_class;
-      if (slot.phase != FramePhase::rendering || c == 0 || class_workers_[c] > 0) continue;
-      if (now_ < class_gone_[c] + options_.class_patience || slot.books->all_held()) continue;
+      if (slot.phase != FramePhase::rendering || c == 0) continue;
+      if (class_workers_[c] > 0 && anybody_for(*job, c)) {
+        slot.orphaned.reset();
+        continue;
+      }
+      if (!slot.orphaned) slot.orphaned = class_workers_[c] > 0 ? now_ : class_gone_[c];
+      if (now_ < *slot.orphaned + options_.class_patience || slot.books->all_held()) continue;
       restart_frame(*job, slot);
     }
   }
@@ -323,17 +331,18 @@ void Scheduler::set_running(JobState& job, int64_t change) {
   if (!share.ready.empty()) ready_shares_.insert({-share.priority, share.running, index});
 }
 
-/// Lists the job among those that have work, or takes it off the list.
+/// Lists the job among those that have work, or takes it off the list. Those who wait are served
+/// again only where there is more than before: what was there did not suit them.
 void Scheduler::update_ready(JobState& job) {
-  bool ready = false;
+  uint64_t offer = 0;
   for (const uint32_t i : job.in_flight) {
     const FrameSlot& slot = job.slots[i];
-    ready |= slot.phase == FramePhase::rendering &&
-             (slot.books->free() > 0 || slot.books->check_waits());
+    if (job.paused || slot.phase != FramePhase::rendering) continue;
+    offer += slot.books->free() + slot.books->waiting_checks();
   }
-  ready = ready && !job.paused;
-  if (ready) work_appeared_ = true;
-  list_ready(job, ready);
+  if (offer > job.offer) work_appeared_ = true;
+  job.offer = offer;
+  list_ready(job, offer > 0);
 }
 
 void Scheduler::list_ready(JobState& job, bool ready) {
@@ -360,6 +369,26 @@ uint32_t Scheduler::intern_class(const std::string& name) {
     class_gone_.push_back(now_);
   }
   return it->second;
+}
+
+std::vector<uint32_t> Scheduler::intern_tags(const std::vector<std::string>& tags) {
+  std::vector<uint32_t> numbers;
+  for (const std::string& tag : tags) {
+    const auto next = static_cast<uint32_t>(tag_index_.size());
+    numbers.push_back(tag_index_.try_emplace(tag, next).first->second);
+  }
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
+/// Whether a worker of the class may get units of the job.
+bool Scheduler::anybody_for(const JobState& job, uint32_t worker_class) const {
+  if (!job.plan.needs.any()) return class_workers_[worker_class] > 0;
+  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
+    return !entry.second.barred && entry.second.worker_class == worker_class &&
+           suits(job, entry.second);
+  });
 }
 
 Scheduler::LeaseState* Scheduler::find_lease(const LeaseId& id) {

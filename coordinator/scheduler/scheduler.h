@@ -31,6 +31,12 @@ struct SchedulerOptions {
   /// A frame whose class of workers has been gone for this long begins again with another; 0:
   /// never.
   Duration class_patience{0};
+  /// A worker stays with scenes that it has loaded for this long though another job or frame would
+  /// be in turn; 0: never.
+  Duration affinity_time = std::chrono::seconds(20);
+  /// So many units that a worker has failed one after the other and others then rendered put it
+  /// into quarantine.
+  uint32_t max_strikes = 5;
   /// Nothing is leased for this long after something could not be made durable.
   Duration storage_retry = std::chrono::seconds(1);
 };
@@ -62,13 +68,29 @@ class Scheduler {
   std::string audit() const;
 
  private:
+  using Scene = std::pair<JobId, int32_t>;  ///< a job's frame
   struct Worker {
     uint32_t threads = 1;
     uint32_t worker_class = 0;
-    uint32_t wanted = 0;   ///< units it asked for and did not get yet
-    uint64_t waiting = 0;  ///< its key in waiting_, or 0
-    bool barred = false;   ///< gets nothing
+    std::vector<uint32_t> tags;  ///< interned, sorted
+    uint64_t memory = 0;         ///< 0: no limit
+    std::vector<Scene> scenes;   ///< that it should have in memory, the latest last
+    TimePoint in_turn;           ///< when it last got what was in turn
+    uint32_t wanted = 0;         ///< units it asked for and did not get yet
+    uint64_t waiting = 0;        ///< its key in waiting_, or 0
+    bool barred = false;         ///< gets nothing
     std::vector<uint64_t> leases;
+  };
+  /// A frame to get units of.
+  struct Place {
+    JobState* job = nullptr;
+    uint32_t slot = 0;
+    Scene scene() const { return {job->id, job->slots[slot].frame}; }
+  };
+  /// What a worker could not render and others could, without a unit of its own between.
+  struct Strikes {
+    uint32_t count = 0;
+    std::string reason;  ///< of the last
   };
   struct LeaseState {
     WorkerId worker{};
@@ -126,7 +148,7 @@ class Scheduler {
   void frame_over(JobState& job, FrameSlot& slot, FramePhase phase);
   void end_job_if_over(JobState& job);
 
-  // leasing.cpp: workers and leases.
+  // workers.cpp: workers that come and go.
   void on(const WorkerJoined& e);
   void on(const WorkRequested& e);
   void on(const WorkerAlive& e);
@@ -134,24 +156,35 @@ class Scheduler {
   void on(const WorkerLost& e);
   void on(const Tick& e);
   void adopt(WorkerId id, Worker& worker, const UnitInHand& held);
-  void expire_leases();
-  void dispatch();
-  bool grant(WorkerId id, Worker& worker);
-  bool grant_from(JobState& job, WorkerId id, Worker& worker);
-  bool grant_copy(WorkerId id, Worker& worker);
-  uint32_t run_length(const JobState& job, const FrameState& books, uint32_t tile) const;
-  bool may_try(WorkerId id, const Worker& worker, const std::vector<WorkerId>& blamed) const;
-  void new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t slot, bool adopted,
-                 std::vector<Extent> extents);
-  void note_copy_candidate(const JobState& job, uint32_t slot, const Assignment& assignment);
-  Assignment* live_copy_candidate(const CopyCandidate& c);
-  void release_lease(uint64_t number, bool revoke);
-  void drop_from_lease(const LeaseId& id, const Extent& e);
   void count_class(uint32_t worker_class, int change);
-  void leave_job(JobState& job, WorkerId worker);
-  bool may_join(const JobState& job, WorkerId worker) const;
   void set_waiting(WorkerId id, Worker& worker);
   void serve(WorkerId id, Worker& worker, bool copies);
+  void dispatch();
+
+  // granting.cpp: which unit a worker gets.
+  bool grant(WorkerId id, Worker& worker);
+  static bool suits(const JobState& job, const Worker& worker);
+  bool has_work_for(const JobState& job, const FrameSlot& slot, WorkerId id,
+                    const Worker& worker) const;
+  std::optional<uint32_t> find_frame(const JobState& job, WorkerId id, const Worker& worker) const;
+  std::optional<Place> find_loaded(WorkerId id, const Worker& worker, const JobState& first);
+  bool grant_from(const Place& place, WorkerId id, Worker& worker);
+  static void remember_scene(Worker& worker, const Scene& scene);
+  bool grant_copy(WorkerId id, Worker& worker);
+  uint32_t run_length(const JobState& job, const FrameState& books, uint32_t tile) const;
+  bool may_try(const JobState& job, WorkerId id, const Worker& worker,
+               const std::vector<WorkerId>& blamed) const;
+  void note_copy_candidate(const JobState& job, uint32_t slot, const Assignment& assignment);
+  Assignment* live_copy_candidate(const CopyCandidate& c);
+
+  // leasing.cpp: leases.
+  void new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t slot, bool adopted,
+                 std::vector<Extent> extents);
+  void expire_leases();
+  void release_lease(uint64_t number, bool revoke);
+  void drop_from_lease(const LeaseId& id, const Extent& e);
+  void leave_job(JobState& job, WorkerId worker);
+  bool may_join(const JobState& job, WorkerId worker) const;
 
   // results.cpp: films, and what is durable.
   void on(const ResultArrived& e);
@@ -162,6 +195,7 @@ class Scheduler {
   void unit_persisted(const UnitRecord& record, const Pending& pending, RecordId id);
   void accept(JobState& job, FrameSlot& slot, const Extent& extent, const ResultArrived& e);
   void end_unit(JobState& job, FrameSlot& slot, const Extent& part, const LeaseId& lease);
+  void forgive_and_blame(JobState& job, FrameSlot& slot, const Extent& extent, WorkerId worker);
   void learn_cost(JobState& job, const Extent& extent, Duration render_time);
   void persist(Record record, Pending pending);
   void retry_persisting();
@@ -171,7 +205,8 @@ class Scheduler {
   void decide(JobState& job, FrameSlot& slot, const Dispute& dispute, const ResultArrived& e);
   bool grant_check(JobState& job, uint32_t slot, WorkerId id, Worker& worker,
                    const MayTry& may_try);
-  void quarantine(WorkerId id, const std::string& reason);
+  bool quarantine(WorkerId id, const std::string& reason);
+  void doubt_films_of(WorkerId id);
   void void_doubted(JobState& job, FrameSlot& slot);
   void tile_voided(const TileVoidedRecord& record);
   bool still_wanted(const Record& record);
@@ -187,6 +222,8 @@ class Scheduler {
   void update_ready(JobState& job);
   void list_ready(JobState& job, bool ready);
   uint32_t intern_class(const std::string& name);
+  std::vector<uint32_t> intern_tags(const std::vector<std::string>& tags);
+  bool anybody_for(const JobState& job, uint32_t worker_class) const;
   LeaseState* find_lease(const LeaseId& id);
   void say(Action action) { actions_.push_back(std::move(action)); }
 
@@ -200,8 +237,9 @@ class Scheduler {
   std::map<std::pair<int, std::string>, uint32_t> share_index_;
   std::set<ShareOrder> ready_shares_;
 
-  std::unordered_map<WorkerId, Worker> workers_;  ///< looked up, never walked
-  std::set<WorkerId> quarantined_;                ///< by their films; stays when they go and come
+  std::unordered_map<WorkerId, Worker> workers_;  ///< looked up; walked only where order is nothing
+  std::set<WorkerId> quarantined_;                ///< by what they did; stays when they go and come
+  std::map<WorkerId, Strikes> strikes_;           ///< of those that failed last
   std::map<uint64_t, WorkerId> waiting_;          ///< those with a wish, longest waiting first
   uint64_t next_waiting_ = 1;
   bool work_appeared_ = false;           ///< since the waiting were last served
@@ -211,6 +249,7 @@ class Scheduler {
   TimePoint next_orphan_check_;
   std::map<std::string, uint32_t, std::less<>> class_index_;
   std::vector<std::string> class_names_;
+  std::map<std::string, uint32_t, std::less<>> tag_index_;
 
   std::unordered_map<uint64_t, LeaseState> leases_;  ///< by number; looked up, never walked
   uint64_t next_lease_ = 1;

@@ -54,6 +54,14 @@ TEST_F(Conflicts, AThirdWorkerIsAskedAndNeitherOfTheTwo) {
   EXPECT_EQ(b.ask(kCora).units[0], anna_.units[0]);
 }
 
+TEST_F(Conflicts, AThirdWorkerThatFailedOnceIsAskedAgainWhereThereIsNoOther) {
+  deliver_durably(b.ask(kAnna), 1);
+  b.join(kCora);
+  const Lease check = b.ask(kCora);
+  b.tell(UnitFailed{kCora, check.lease, kJob, check.units[0], "bad luck"});
+  EXPECT_EQ(b.ask(kCora).units, check.units) << "Anna and Bert have said what they think";
+}
+
 TEST_F(Conflicts, TheSecondWasWrong) {
   deliver_durably(b.ask(kAnna), 1);
   b.join(kCora);

@@ -132,7 +132,9 @@ TEST(Scheduler, AReturnedUnitIsNobodysFault) {
 }
 
 TEST(Scheduler, PriorityGoesFirstThenTheOwnerWhoHasLess) {
-  Bench b;
+  SchedulerOptions options;
+  options.affinity_time = Duration{0};
+  Bench b(options);
   b.join(kAnna);
   const auto add = [&](uint64_t id, int priority, const char* owner) {
     JobPlan plan = small_plan({1}, 4);

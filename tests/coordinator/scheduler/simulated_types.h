@@ -38,6 +38,9 @@ struct SimWorker {
   uint64_t life = 0;  ///< what was begun in an earlier life is lost
   int asked = 0;
   bool corrupt = false;  ///< its films are wrong
+  bool broken = false;   ///< it fails whatever it is given
+  std::vector<std::string> tags;
+  uint64_t memory = 0;
   /// The coordinator (by generation) that found it out; 0: none.
   uint64_t quarantined_by = 0;
   std::map<uint64_t, UnitHeld> held;  ///< by order of arrival

@@ -29,6 +29,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   uint64_t quarantines = 0;
   uint64_t voided = 0;
   uint64_t reopened = 0;
+  uint64_t struck = 0;
   uint64_t wrong = 0;
   for (uint64_t i = 0; i < worlds; ++i) {
     const uint64_t seed = only != 0 ? only : i + 1;
@@ -50,6 +51,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
     quarantines += world.quarantines;
     voided += world.tiles_voided;
     reopened += world.frames_reopened;
+    struck += world.struck_out;
     wrong += world.frames_wrong;
   }
   RecordProperty("restarts", std::to_string(restarts));
@@ -83,6 +85,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   EXPECT_GE(quarantines, worlds / 50);
   EXPECT_GE(voided, worlds / 20);
   EXPECT_GE(reopened, 1U);
+  EXPECT_GE(struck, worlds / 50);
 }
 
 }  // namespace

@@ -1,0 +1,221 @@
+// Which unit a worker gets next.
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <utility>
+
+#include "coordinator/scheduler/scheduler.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// How many of the oldest units are considered before a worker goes without a copy.
+constexpr size_t kCopySearch = 16;
+/// Scenes that a worker is taken to have in memory. Where it has fewer, it loads one again.
+constexpr size_t kScenesKept = 3;
+
+/// Which doubling of its samples a frame is in: 0 until every tile has had one batch, p until every
+/// tile has had 2^p.
+uint32_t pass_of(const FrameState& books, uint32_t tiles) {
+  return static_cast<uint32_t>(std::bit_width((books.total() - books.free()) / tiles));
+}
+
+}  // namespace
+
+/// Priorities first, then who has less, then the older job: who is first in turn for this worker.
+/// Where the worker has a scene of another frame in memory it may stay with that one, within
+/// bounds.
+bool Scheduler::grant(WorkerId id, Worker& worker) {
+  for (const auto& [priority, running, index] : ready_shares_) {
+    for (const auto& [serial, job] : shares_[index].ready) {
+      const auto slot = find_frame(*job, id, worker);
+      if (!slot) continue;
+      Place place{job, *slot};
+      const bool here = std::find(worker.scenes.begin(), worker.scenes.end(), place.scene()) !=
+                        worker.scenes.end();
+      if (!here) {
+        if (const auto loaded = find_loaded(id, worker, *job)) {
+          place = *loaded;
+        } else {
+          worker.in_turn = now_;
+        }
+      } else {
+        worker.in_turn = now_;
+      }
+      return grant_from(place, id, worker);
+    }
+  }
+  return false;
+}
+
+/// Whether the worker could render units of the job at all.
+bool Scheduler::suits(const JobState& job, const Worker& worker) {
+  const uint64_t memory = job.plan.needs.memory;
+  return (memory == 0 || worker.memory == 0 || worker.memory >= memory) &&
+         std::includes(worker.tags.begin(), worker.tags.end(), job.tags.begin(), job.tags.end());
+}
+
+/// Whether there is something of the frame for this worker.
+bool Scheduler::has_work_for(const JobState& job, const FrameSlot& slot, WorkerId id,
+                             const Worker& worker) const {
+  if (slot.phase != FramePhase::rendering) return false;
+  if (slot.worker_class != 0 && slot.worker_class != worker.worker_class) return false;
+  const auto judge = [&](const std::vector<WorkerId>& blamed) {
+    return may_try(job, id, worker, blamed);
+  };
+  const MayTry allowed = std::ref(judge);
+  return slot.books->has_work(allowed) || slot.books->next_check(id, allowed).has_value();
+}
+
+/// The frame of which the worker gets units next, in the job's own order.
+std::optional<uint32_t> Scheduler::find_frame(const JobState& job, WorkerId id,
+                                              const Worker& worker) const {
+  if (!may_join(job, id) || !suits(job, worker)) return std::nullopt;
+  std::optional<uint32_t> best;
+  uint32_t best_pass = 0;
+  for (const uint32_t index : job.in_flight) {
+    if (!has_work_for(job, job.slots[index], id, worker)) continue;
+    if (job.plan.order == FrameOrder::sequential) return index;
+    const uint32_t pass = pass_of(*job.slots[index].books, job.grid.size());
+    if (best && pass >= best_pass) continue;
+    best = index;
+    best_pass = pass;
+  }
+  return best;
+}
+
+/// A frame out of turn whose scene the worker has. Bounded in three ways, so that nobody starves:
+/// the priority is that of `first`, the owner has not much more than the one who is in turn, and
+/// after `affinity_time` the worker takes what is in turn.
+std::optional<Scheduler::Place> Scheduler::find_loaded(WorkerId id, const Worker& worker,
+                                                       const JobState& first) {
+  if (now_ - worker.in_turn >= options_.affinity_time) return std::nullopt;
+  const Share& turn = shares_[first.share];
+  const uint64_t most = turn.running + turn.running / 4 + 2 * uint64_t{worker.threads};
+  for (auto scene = worker.scenes.rbegin(); scene != worker.scenes.rend(); ++scene) {
+    JobState* job = find_job(scene->first);
+    if (job == nullptr || !job->ready || job->plan.order != FrameOrder::sequential) continue;
+    const Share& share = shares_[job->share];
+    if (share.priority != turn.priority || share.running > most) continue;
+    if (!may_join(*job, id) || !suits(*job, worker)) continue;
+    const FrameSlot* slot = job->slot(scene->second);
+    if (!has_work_for(*job, *slot, id, worker)) continue;
+    return Place{job, static_cast<uint32_t>(slot - job->slots.data())};
+  }
+  return std::nullopt;
+}
+
+/// Units of one frame, as many as the worker wants and the frame has.
+bool Scheduler::grant_from(const Place& place, WorkerId id, Worker& worker) {
+  JobState& job = *place.job;
+  FrameSlot& slot = job.slots[place.slot];
+  const auto judge = [&](const std::vector<WorkerId>& blamed) {
+    return may_try(job, id, worker, blamed);
+  };
+  const MayTry allowed = std::ref(judge);
+  remember_scene(worker, place.scene());
+  if (grant_check(job, place.slot, id, worker, allowed)) return true;
+  std::vector<Extent> extents;
+  const LeaseId next{options_.incarnation, next_lease_};
+  while (extents.size() < worker.wanted) {
+    const auto extent = slot.books->next(
+        allowed, [&](uint32_t tile) { return run_length(job, *slot.books, tile); });
+    if (!extent) break;
+    note_copy_candidate(job, place.slot,
+                        slot.books->assign(*extent, {id, next}, next_assignment_++));
+    extents.push_back(*extent);
+  }
+  if (extents.empty()) return false;
+  slot.worker_class = worker.worker_class;
+  worker.wanted -= static_cast<uint32_t>(extents.size());
+  new_lease(id, worker, job, place.slot, false, std::move(extents));
+  update_ready(job);
+  open_frames(job);
+  return true;
+}
+
+/// The worker will have this frame's scene in memory; it keeps a few.
+void Scheduler::remember_scene(Worker& worker, const Scene& scene) {
+  const auto there = std::find(worker.scenes.begin(), worker.scenes.end(), scene);
+  if (there != worker.scenes.end()) {
+    std::rotate(there, there + 1, worker.scenes.end());
+    return;
+  }
+  if (worker.scenes.size() == kScenesKept) worker.scenes.erase(worker.scenes.begin());
+  worker.scenes.push_back(scene);
+}
+
+/// Hands out a second copy of one of the oldest units: purity makes it safe, and whichever comes
+/// first counts. No unit is copied twice.
+bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
+  if (options_.copy_after <= Duration{0}) return false;
+  while (!copy_candidates_.empty() && !live_copy_candidate(copy_candidates_.front())) {
+    copy_candidates_.pop_front();
+  }
+  for (size_t i = 0; i < std::min(kCopySearch, copy_candidates_.size()); ++i) {
+    const CopyCandidate candidate = copy_candidates_[i];
+    if (candidate.since + options_.copy_after > now_) return false;
+    Assignment* assignment = live_copy_candidate(candidate);
+    if (assignment == nullptr || assignment->holders.front().worker == id) continue;
+    JobState& job = *find_job(candidate.job);
+    if (job.paused || job.slots[candidate.slot].worker_class != worker.worker_class) continue;
+    if (!may_join(job, id) || !suits(job, worker)) continue;
+    assignment->copied = true;
+    assignment->holders.push_back({id, {options_.incarnation, next_lease_}});
+    --worker.wanted;
+    remember_scene(worker, {job.id, job.slots[candidate.slot].frame});
+    new_lease(id, worker, job, candidate.slot, false, {candidate.extent});
+    return true;
+  }
+  return false;
+}
+
+/// As many batches as take one thread options_.unit_time, but not so many that the threads would
+/// end far apart.
+uint32_t Scheduler::run_length(const JobState& job, const FrameState& books, uint32_t tile) const {
+  const double cost = job.tile_cost[tile] > 0 ? job.tile_cost[tile] : job.mean_cost;
+  if (cost <= 0) return 1;
+  const double seconds = std::chrono::duration<double>(options_.unit_time).count();
+  const double by_time = std::clamp(seconds / cost, 1.0, 1e6);
+  const uint64_t by_spread = books.free() / (2 * std::max<uint64_t>(threads_, 1));
+  uint64_t run = std::max<uint64_t>(1, std::min(static_cast<uint64_t>(by_time), by_spread));
+  if (job.plan.order == FrameOrder::progressive) {
+    // No tile gets ahead of its frame's pass.
+    const uint32_t pass = pass_of(books, job.grid.size());
+    run = std::min(run, uint64_t{1} << std::min(pass == 0 ? 0 : pass - 1, 31U));
+  }
+  return static_cast<uint32_t>(run);
+}
+
+/// A unit that has failed goes to somebody who has not failed it yet, if there is anybody.
+bool Scheduler::may_try(const JobState& job, WorkerId id, const Worker& worker,
+                        const std::vector<WorkerId>& blamed) const {
+  if (std::find(blamed.begin(), blamed.end(), id) == blamed.end()) return true;
+  return std::none_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
+    return !entry.second.barred && entry.second.worker_class == worker.worker_class &&
+           suits(job, entry.second) &&
+           std::find(blamed.begin(), blamed.end(), entry.first) == blamed.end();
+  });
+}
+
+void Scheduler::note_copy_candidate(const JobState& job, uint32_t slot,
+                                    const Assignment& assignment) {
+  if (options_.copy_after <= Duration{0}) return;
+  if (copy_candidates_.size() >= copy_candidates_checked_) {
+    std::erase_if(copy_candidates_,
+                  [&](const CopyCandidate& c) { return !live_copy_candidate(c); });
+    copy_candidates_checked_ = std::max<size_t>(64, 2 * copy_candidates_.size());
+  }
+  copy_candidates_.push_back({now_, assignment.serial, job.id, slot, assignment.extent});
+}
+
+/// The assignment that may still be copied, or null.
+Assignment* Scheduler::live_copy_candidate(const CopyCandidate& c) {
+  JobState* job = find_job(c.job);
+  if (job == nullptr || !job->slots[c.slot].books) return nullptr;
+  Assignment* assignment = job->slots[c.slot].books->find_assignment(c.extent);
+  if (assignment == nullptr || assignment->serial != c.serial || assignment->copied) return nullptr;
+  return assignment;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,95 @@
+// What the coordinator says of frames and jobs, held against what may be.
+#include "tests/coordinator/scheduler/simulated_world.h"
+
+namespace hyades::coordinator {
+
+void SimulatedWorld::act(const OpenFrame& a) {
+  if (frame_of(a.job, a.frame).over) fail("a frame that is over is opened");
+  if (frame_of(a.job, a.frame).refused) {
+    tell_later(FrameRefused{a.job, a.frame, "refused"});
+  } else {
+    tell_later(FrameOpened{a.job, a.frame});
+  }
+}
+
+void SimulatedWorld::act(const FinishFrame& a) {
+  SimJob& job = jobs_.at(a.job);
+  SimFrame& frame = job.frames.at(a.frame);
+  const TileGrid grid(job.plan.region, job.plan.tile_size);
+  uint64_t oracle = 0;
+  for (uint32_t t = 0; t < grid.size(); ++t) {
+    for (uint32_t b = 0; b < job.plan.batches; ++b) {
+      oracle += value_of(a.frame, grid.tile(t), b);
+    }
+  }
+  bool wrong = false;
+  for (const auto& [place, batch] : frame.batches) {
+    if (batch.corrupted_by == 0) continue;
+    wrong = true;
+    // It may never have been compared, or the coordinator that knew whose it was has died.
+    const uint64_t found_out_by = workers_[batch.corrupted_by - 1U].quarantined_by;
+    if (found_out_by != 0 && batch.generation == found_out_by) {
+      fail("a film is finished with what a worker did that had been found out");
+    }
+  }
+  frames_wrong += wrong;
+  if (!wrong && frame.sum != oracle) fail("a film is finished that is not the frame's");
+  if (frame.unfinishable || fault()) {
+    tell_later(FinishFailed{a.job, a.frame, "no room for a picture"});
+  } else {
+    tell_later(FinishDone{a.job, a.frame});
+  }
+}
+
+void SimulatedWorld::act(const FrameDone& a) {
+  ++frames_done;
+  SimFrame& frame = frame_of(a.job, a.frame);
+  if (frame.over) fail("a frame is over twice");
+  if (frame.poisoned || frame.refused || frame.unfinishable) fail("a hopeless frame is done");
+  frame.over = true;
+}
+
+void SimulatedWorld::act(const FrameFailed& a) {
+  ++frames_failed;
+  SimFrame& frame = frame_of(a.job, a.frame);
+  if (frame.over) fail("a frame is over twice");
+  if (!frame.poisoned && !frame.refused && !frame.unfinishable &&
+      a.reason != "no room for a picture" && !broken_) {
+    fail("a good frame failed: " + a.reason);
+  }
+  frame.over = true;
+}
+
+void SimulatedWorld::act(const JobEnded& a) {
+  SimJob& job = jobs_.at(a.job);
+  if (job.ended) fail("a job ends twice");
+  if (a.cancelled != job.cancelled) fail("a job is cancelled that nobody cancelled");
+  if (!a.cancelled && a.done + a.failed != job.plan.frames.size()) fail("frames are missing");
+  job.ended = true;
+}
+
+void SimulatedWorld::act(const Conflict&) {
+  ++conflicts;
+  if (!corrupt_) fail("a conflict between equal films");
+}
+
+void SimulatedWorld::act(const Quarantine& a) {
+  SimWorker& w = workers_[index_of(a.worker)];
+  if (a.reason.starts_with("failed ")) {
+    ++struck_out;
+    // Bad luck can do it, too; then somebody releases it.
+    if (!w.broken) {
+      after(std::chrono::seconds(number(1, 20)), [this, id = a.worker] {
+        tell(WorkerBarred{id, false});
+      });
+    }
+    return;
+  }
+  ++quarantines;
+  if (!w.corrupt) fail("a good worker is quarantined");
+  w.quarantined_by = generation_ + 1;
+}
+
+void SimulatedWorld::act(const FrameReopened&) { ++frames_reopened; }
+
+}  // namespace hyades::coordinator

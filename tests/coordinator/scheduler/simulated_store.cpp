@@ -1,0 +1,144 @@
+// What is durable, and the films that are made of it.
+#include "tests/coordinator/scheduler/simulated_world.h"
+
+namespace hyades::coordinator {
+
+uint64_t SimulatedWorld::value_of(int32_t frame, const core::PixelRect& tile, uint32_t batch) {
+  uint64_t h = core::hash_combine(static_cast<uint64_t>(frame), batch);
+  h = core::hash_combine(h, static_cast<uint64_t>(tile.x0) << 32U | uint32_t(tile.y0));
+  return core::hash_combine(h, static_cast<uint64_t>(tile.x1) << 32U | uint32_t(tile.y1));
+}
+
+void SimulatedWorld::add_to_film(SimJob& job, const AcceptedUnit& accepted, uint64_t generation) {
+  const core::Unit& unit = accepted.unit;
+  SimFrame& frame = job.frames.at(unit.frame);
+  const uint8_t by = accepted.digest[1];
+  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
+    const SimBatch batch{value_of(unit.frame, unit.tile, b) + by, by, generation};
+    if (!frame.batches.insert({{unit.tile.x0, unit.tile.y0, b}, batch}).second) {
+      fail("a batch is counted twice");
+    }
+    frame.sum += batch.value;
+  }
+}
+
+void SimulatedWorld::act(const Persist& a) {
+  if (const auto* unit = std::get_if<UnitRecord>(&a.record)) {
+    records_[a.id] = unit->accepted;
+    unsettled_.insert({unit->job, a.id});
+  }
+  ++storing_[frame_of(a.record)];
+  store_later(a);
+}
+
+std::pair<JobId, int32_t> SimulatedWorld::frame_of(const Record& record) {
+  if (const auto* unit = std::get_if<UnitRecord>(&record)) {
+    return {unit->job, unit->accepted.unit.frame};
+  }
+  if (const auto* failed = std::get_if<FrameFailedRecord>(&record)) {
+    return {failed->job, failed->failed.frame};
+  }
+  if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
+    return {done->job, done->frame};
+  }
+  if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
+    return {voided->job, voided->frame};
+  }
+  const auto& again = std::get<FrameRestartedRecord>(record);
+  return {again.job, again.frame};
+}
+
+void SimulatedWorld::store_later(const Persist& a) {
+  const bool refuse = fault();
+  after(delay(), [this, a, refuse, g = generation_] {
+    if (g != generation_) return;  // it died before the bytes were on the disk
+    // A job's log keeps order; it matters only where earlier records become void.
+    if (std::holds_alternative<FrameRestartedRecord>(a.record) &&
+        storing_[frame_of(a.record)] > 1) {
+      return store_later(a);
+    }
+    if (const auto* voided = std::get_if<TileVoidedRecord>(&a.record);
+        voided && stores_unit_of(*voided)) {
+      return store_later(a);
+    }
+    if (!refuse) store(a.record);
+    // Durable now; but nobody hears of it if the coordinator dies before the next line runs.
+    after(delay(), [this, a, refuse, g] {
+      if (g != generation_) return;
+      --storing_[frame_of(a.record)];
+      unsettled_.erase({frame_of(a.record).first, a.id});
+      if (refuse) {
+        tell(PersistFailed{a.id, "disk full"});
+      } else {
+        tell(Persisted{a.id});
+      }
+    });
+  });
+}
+
+/// Whether a film of the tile is still on its way to the disk, or was said to be and nobody knows
+/// yet that it has arrived.
+bool SimulatedWorld::stores_unit_of(const TileVoidedRecord& voided) const {
+  for (const auto& [id, accepted] : records_) {
+    if (accepted.unit.frame == voided.frame && accepted.unit.tile == voided.tile &&
+        unsettled_.contains({voided.job, id})) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void SimulatedWorld::store(const Record& record) {
+  if (const auto* unit = std::get_if<UnitRecord>(&record)) {
+    SimJob& job = jobs_.at(unit->job);
+    job.stored.accepted.push_back(unit->accepted);
+    if (!job.stored_units.insert(name(unit->accepted.unit)).second) fail("a unit is stored twice");
+  } else if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
+    jobs_.at(done->job).stored.finished.push_back(done->frame);
+  } else if (const auto* failed = std::get_if<FrameFailedRecord>(&record)) {
+    jobs_.at(failed->job).stored.failed.push_back(failed->failed);
+  } else if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
+    SimJob& job = jobs_.at(voided->job);
+    std::erase_if(job.stored.accepted, [&](const AcceptedUnit& u) {
+      const bool there = u.unit.frame == voided->frame && u.unit.tile == voided->tile;
+      if (there) job.stored_units.erase(name(u.unit));
+      return there;
+    });
+  } else {
+    const auto& again = std::get<FrameRestartedRecord>(record);
+    SimJob& job = jobs_.at(again.job);
+    std::erase_if(job.stored.failed, [&](const FailedFrame& f) { return f.frame == again.frame; });
+    std::erase_if(job.stored.accepted,
+                  [&](const AcceptedUnit& u) { return u.unit.frame == again.frame; });
+    std::erase_if(job.stored_units,
+                  [&](const UnitName& u) { return std::get<0>(u) == again.frame; });
+  }
+}
+
+void SimulatedWorld::act(const Merge& a) {
+  if (!is_stored(a.job, a.unit)) fail("a film is merged that is not durable");
+  if (frame_of(a.job, a.unit.frame).over) fail("a film is merged into a frame that is over");
+  add_to_film(jobs_.at(a.job), records_.at(a.record), generation_ + 1);
+}
+
+void SimulatedWorld::act(const FrameRestarted& a) {
+  ++frames_restarted;
+  SimFrame& frame = frame_of(a.job, a.frame);
+  frame.batches.clear();
+  frame.sum = 0;
+  frame.over = false;
+}
+
+void SimulatedWorld::act(const TileVoided& a) {
+  ++tiles_voided;
+  SimFrame& frame = frame_of(a.job, a.frame);
+  if (frame.over) fail("a tile of a frame that is over is voided");
+  std::erase_if(frame.batches, [&](const auto& entry) {
+    const auto& [place, batch] = entry;
+    if (std::get<0>(place) != a.tile.x0 || std::get<1>(place) != a.tile.y0) return false;
+    frame.sum -= batch.value;
+    return true;
+  });
+}
+
+}  // namespace hyades::coordinator
