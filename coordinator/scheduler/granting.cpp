@@ -170,14 +170,18 @@ bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
   return false;
 }
 
-/// As many batches as take one thread options_.unit_time, but not so many that the threads would
-/// end far apart.
+/// As many batches as take one thread options_.unit_time; but where all that is left to lease is
+/// little, not so many that the threads would end far apart.
 uint32_t Scheduler::run_length(const JobState& job, const FrameState& books, uint32_t tile) const {
   const double cost = job.tile_cost[tile] > 0 ? job.tile_cost[tile] : job.mean_cost;
   if (cost <= 0) return 1;
   const double seconds = std::chrono::duration<double>(options_.unit_time).count();
   const double by_time = std::clamp(seconds / cost, 1.0, 1e6);
-  const uint64_t by_spread = books.free() / (2 * std::max<uint64_t>(threads_, 1));
+  uint64_t left = std::max(offered_, books.free());
+  if (job.in_flight.size() < job.plan.frames_in_flight) {
+    left += job.waiting * books.total();
+  }
+  const uint64_t by_spread = left / (2 * std::max<uint64_t>(threads_, 1));
   uint64_t run = std::max<uint64_t>(1, std::min(static_cast<uint64_t>(by_time), by_spread));
   if (job.plan.order == FrameOrder::progressive) {
     // No tile gets ahead of its frame's pass.

@@ -56,6 +56,7 @@ struct JobState {
   std::unordered_map<int32_t, uint32_t> by_number;  ///< frame number -> slot; never walked
   std::vector<uint32_t> in_flight;                  ///< slots, in order
   size_t next_slot = 0;                             ///< before it nothing waits
+  uint64_t waiting = 0;                             ///< frames that do
   uint64_t running = 0;                             ///< leased units
   std::map<WorkerId, uint32_t> workers;             ///< how many leases each has
   bool paused = false;

@@ -38,6 +38,9 @@ void Scheduler::on(const JobAdded& e) {
   }
   jobs_.emplace(e.job, std::move(owned));
   restore(job, e.restored);
+  job.waiting = static_cast<uint64_t>(
+      std::count_if(job.slots.begin(), job.slots.end(),
+                    [](const FrameSlot& slot) { return slot.phase == FramePhase::waiting; }));
   open_frames(job);
   end_job_if_over(job);
 }
@@ -187,6 +190,7 @@ void Scheduler::open_frames(JobState& job) {
     const auto index = static_cast<uint32_t>(job.next_slot);
     FrameSlot& slot = job.slots[index];
     slot.phase = FramePhase::opening;
+    --job.waiting;
     if (!slot.books) {
       slot.books = std::make_unique<FrameState>(job.grid.order(), job.plan.batches);
     }
@@ -227,6 +231,7 @@ void Scheduler::restart_frame(JobState& job, FrameSlot& slot) {
 void Scheduler::frame_restarted(JobState& job, FrameSlot& slot) {
   const auto index = static_cast<uint32_t>(&slot - job.slots.data());
   slot.phase = FramePhase::waiting;
+  ++job.waiting;
   slot.worker_class = 0;
   slot.orphaned.reset();
   slot.finish_attempts = 0;
@@ -341,6 +346,7 @@ void Scheduler::update_ready(JobState& job) {
     offer += slot.books->free() + slot.books->waiting_checks();
   }
   if (offer > job.offer) work_appeared_ = true;
+  offered_ += offer - job.offer;
   job.offer = offer;
   list_ready(job, offer > 0);
 }

@@ -244,6 +244,7 @@ class Scheduler {
   uint64_t next_waiting_ = 1;
   bool work_appeared_ = false;           ///< since the waiting were last served
   uint64_t threads_ = 0;                 ///< of all workers
+  uint64_t offered_ = 0;                 ///< JobState::offer of all jobs
   std::vector<uint32_t> class_workers_;  ///< how many of each class may get units
   std::vector<TimePoint> class_gone_;    ///< since when there are none
   TimePoint next_orphan_check_;

@@ -121,7 +121,9 @@ TEST(Preference, ProgressiveJobsSeeEveryFrameEarly) {
 }
 
 TEST(Preference, AWorkerStaysWithTheSceneThatItHas) {
-  Bench b;
+  SchedulerOptions options;
+  options.unit_time = milliseconds(1);  // a batch
+  Bench b(options);
   for (const WorkerId w : {kAnna, kBert}) b.join(w);
   b.add(plan_of("eve"), {}, JobId{1});
   b.add(plan_of("fay"), {}, JobId{2});
