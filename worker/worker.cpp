@@ -13,18 +13,18 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <random>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "core/base/hash.h"
 #include "farm/content_store.h"
+#include "farm/tags.h"
 #include "worker/asset_fetcher.h"
 #include "worker/backoff.h"
 #include "worker/coordinator_link.h"
 #include "worker/desk.h"
 #include "worker/renderer_process.h"
+#include "worker/worker_id.h"
 
 namespace hyades::worker {
 namespace {
@@ -43,13 +43,6 @@ constexpr milliseconds kLongestPause{60'000};
 /// How long the end of the stream may take when all is said.
 constexpr milliseconds kGoodbye{200};
 
-std::string random_id() {
-  std::random_device device;
-  std::array<uint32_t, 4> words{};
-  for (uint32_t& word : words) word = device();
-  return core::to_hex({reinterpret_cast<const uint8_t*>(words.data()), sizeof words});
-}
-
 std::string host_name() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
@@ -61,10 +54,10 @@ class Worker : private DeskPorts,
                private RendererProcess::Owner,
                private AssetFetcher::Owner {
  public:
-  Worker(const WorkerOptions& options, std::shared_ptr<grpc::Channel> channel, std::string token,
-         farm::ContentStore& store)
+  Worker(const WorkerOptions& options, const WorkerId& id, std::shared_ptr<grpc::Channel> channel,
+         std::string token, farm::ContentStore& store)
       : options_(options),
-        desk_(desk_options(options), *this),
+        desk_(desk_options(options, id), *this),
         link_(channel, token, *this),
         fetcher_(channel, token, store, *this, kFetchPatience) {}
 
@@ -83,9 +76,9 @@ class Worker : private DeskPorts,
   }
 
  private:
-  static DeskOptions desk_options(const WorkerOptions& options) {
+  static DeskOptions desk_options(const WorkerOptions& options, const WorkerId& id) {
     DeskOptions desk;
-    desk.worker_id = random_id();
+    desk.worker_id = id.text();
     desk.name = options.name.empty() ? host_name() : options.name;
     desk.host = host_name();
     desk.threads = static_cast<uint32_t>(options.threads);
@@ -293,7 +286,11 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   if (failed) return refuse({options.cache + ": cannot be made: " + failed.message()});
   auto store = farm::ContentStore::open({options.cache, options.cache_size});
   if (!store) return refuse(store.error());
-  Worker worker(options, *channel, *token, **store);
+  auto id = WorkerId::take(options.cache, host_name());
+  if (!id) return refuse(id.error());
+  auto tags = farm::check_tags(options.tags);
+  if (!tags) return refuse(tags.error());
+  Worker worker(options, *id, *channel, *token, **store);
   return worker.run(signals);
 }
 

@@ -71,6 +71,13 @@ void print_status(const v1::GetJobResponse& response, bool all) {
   std::printf("job %lu: %s\n", job.id(), printable(job.name()).c_str());
   print_line("state", state_name(job.state()) + (job.reason().empty() ? "" : ": " + job.reason()));
   print_line("owner", fmt::format("{}, priority {}", job.owner(), job.priority()));
+  if (job.tags_size() > 0 || job.memory_bytes() > 0) {
+    std::string needs = fmt::format("{}", fmt::join(job.tags(), ", "));
+    if (job.memory_bytes() > 0) {
+      needs += (needs.empty() ? "" : ", ") + core::format_bytes(job.memory_bytes()) + " of memory";
+    }
+    print_line("workers", "with " + needs);
+  }
   print_line("frames", frames_text(job));
   print_line("samples", fmt::format("{} of {}", percent(job.samples_done(), job.samples()),
                                     core::format_count(job.samples())));

@@ -53,7 +53,11 @@ Json to_json(const v1::Job& job) {
           {"submitted_ms", job.submitted_ms()},
           {"ended_ms", job.ended_ms()},
           {"reason", job.reason()},
-          {"max_workers", job.max_workers()}};
+          {"max_workers", job.max_workers()},
+          {"tags", std::vector<std::string>(job.tags().begin(), job.tags().end())},
+          {"memory_bytes", job.memory_bytes()},
+          {"max_attempts", job.max_attempts()},
+          {"frame_order", word(v1::FrameOrder_Name(job.frame_order()), "FRAME_ORDER_")}};
 }
 
 Json to_json(const v1::Frame& frame) {
@@ -78,7 +82,9 @@ Json to_json(const v1::Worker& worker) {
           {"samples_done", worker.samples_done()},
           {"joined_ms", worker.joined_ms()},
           {"heard_ms", worker.heard_ms()},
-          {"memory_bytes", worker.memory_bytes()}};
+          {"memory_bytes", worker.memory_bytes()},
+          {"memory_limit_bytes", worker.memory_limit_bytes()},
+          {"tags", std::vector<std::string>(worker.tags().begin(), worker.tags().end())}};
 }
 
 Json to_json(const v1::LogLine& line) {

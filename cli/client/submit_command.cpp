@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,6 +18,7 @@
 #include "cli/frame_range.h"
 #include "core/base/hash.h"
 #include "farm/job_package.h"
+#include "farm/tags.h"
 #include "farm/wire.h"
 
 namespace hyades::cli {
@@ -32,6 +36,10 @@ struct Options {
   uint32_t samples = 0;
   int32_t priority = 0;
   uint32_t max_workers = 0;
+  std::vector<std::string> tags;
+  uint64_t memory = 0;
+  uint32_t attempts = 3;
+  v1::FrameOrder order = v1::FRAME_ORDER_SEQUENTIAL;
   bool watch = false;
   bool quiet = false;
   bool json = false;
@@ -48,6 +56,20 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
       ->check(CLI::Range(1U, 1U << 24U));
   app.add_option("--max-workers", options.max_workers, "render on no more than so many at once");
+  app.add_option("--tags", options.tags, "render only on workers that have all of these: a,b")
+      ->delimiter(',');
+  app.add_option("--memory", options.memory,
+                 "render only on workers that have so much for scenes: 8G, 512M")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--attempts", options.attempts, "failures of one unit that fail its frame")
+      ->check(CLI::Range(1U, 100U))
+      ->capture_default_str();
+  app.add_option("--order", options.order,
+                 "sequential: frame after frame (default); progressive: a few samples of every "
+                 "frame first, then more")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, v1::FrameOrder>{{"sequential", v1::FRAME_ORDER_SEQUENTIAL},
+                                                {"progressive", v1::FRAME_ORDER_PROGRESSIVE}}));
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json, "print the job as JSON (field id)");
   app.footer(
@@ -98,6 +120,12 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Op
   request.set_owner(options.owner.empty() ? user_name() : options.owner);
   request.set_priority(options.priority);
   request.set_max_workers(options.max_workers);
+  const auto tags = farm::check_tags(options.tags);
+  if (!tags) return tags.error();
+  for (const std::string& tag : *tags) request.add_tags(tag);
+  request.set_memory_bytes(options.memory);
+  request.set_max_attempts(options.attempts);
+  request.set_frame_order(options.order);
   const auto key = random_key();
   if (!key) return key.error();
   request.set_idempotency_key(*key);

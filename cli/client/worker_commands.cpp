@@ -23,13 +23,15 @@ std::string ago(int64_t ms) {
 
 void print_workers(const v1::WorkersResponse& response) {
   std::vector<std::vector<std::string>> rows = {{"id", "name", "state", "threads", "units out",
-                                                 "done", "failed", "class", "heard", "reason"}};
+                                                 "done", "failed", "class", "tags", "heard",
+                                                 "reason"}};
   for (const v1::Worker& worker : response.workers()) {
     rows.push_back({std::to_string(worker.id()), worker.name(), state_name(worker.state()),
                     std::to_string(worker.threads()), std::to_string(worker.leased()),
                     core::format_count(worker.units_done()), std::to_string(worker.units_failed()),
-                    worker.worker_class().substr(0, 12), ago(worker.heard_ms()) + " ago",
-                    worker.reason()});
+                    worker.worker_class().substr(0, 12),
+                    fmt::format("{}", fmt::join(worker.tags(), ",")),
+                    ago(worker.heard_ms()) + " ago", worker.reason()});
   }
   print_table(rows);
 }

@@ -213,6 +213,7 @@ class Brain {
             const std::string& worker, const std::string& text);
   v1::Job describe(const JobDesk& desk) const;
   v1::Worker describe(const Seat& seat) const;
+  std::string unmet_needs(const StoredJob& job) const;
   grpc::Status not_open(uint64_t job);
   grpc::Status steer_worker(const v1::WorkerRequest& request, v1::Worker& now,
                             const std::function<std::vector<Action>(Seat&)>& what);

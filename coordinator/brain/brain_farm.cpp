@@ -45,6 +45,8 @@ v1::Worker Brain::describe(const Seat& seat) const {
   wire.set_joined_ms(seat.joined_ms);
   wire.set_heard_ms(seat.heard_ms);
   wire.set_memory_bytes(seat.memory);
+  wire.set_memory_limit_bytes(seat.hello.memory_bytes());
+  *wire.mutable_tags() = seat.hello.tags();
   return wire;
 }
 

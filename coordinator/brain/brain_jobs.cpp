@@ -7,6 +7,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "core/base/failpoint.h"
+#include "farm/tags.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -20,6 +21,7 @@ constexpr std::chrono::seconds kSubmitPatience{2};
 /// Of all open jobs together: what they have in memory.
 constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
+constexpr uint32_t kMostAttempts = 100;
 
 grpc::Status failed(const core::Error& error) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
@@ -44,6 +46,12 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   if (std::abs(int64_t{request.priority()}) > kMostPriority) {
     return wrong("priority: expected -1000000 to 1000000");
   }
+  auto tags = farm::check_tags({request.tags().begin(), request.tags().end()});
+  if (!tags) return wrong(tags.error().message);
+  if (request.max_attempts() > kMostAttempts) return wrong("max_attempts: at most 100");
+  if (request.frame_order() < 0 || request.frame_order() > v1::FRAME_ORDER_PROGRESSIVE) {
+    return wrong("frame_order: expected sequential or progressive");
+  }
   const auto files = files_of(request.spec());
   if (!files) return wrong(files.error().message);
   v1::ErrorDetail missing;
@@ -65,6 +73,10 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   stored.owner = request.owner();
   stored.priority = request.priority();
   stored.max_workers = request.max_workers();
+  stored.tags = std::move(*tags);
+  stored.memory = request.memory_bytes();
+  if (request.max_attempts() > 0) stored.max_attempts = request.max_attempts();
+  if (request.frame_order() != 0) stored.frame_order = request.frame_order();
   stored.submitted_ms = wall_ms();
   auto desk = make_desk(stored, request.spec(), *assets_);
   if (!desk) return wrong(desk.error().message);

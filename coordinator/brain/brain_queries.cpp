@@ -222,7 +222,9 @@ grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
     ++active;
     ++classes[seat.hello.worker_class()];
   }
+  const std::string unmet = active > 0 ? unmet_needs(desk->stored) : std::string();
   if (active == 0) say("no worker is there that could take units");
+  if (!unmet.empty()) say(unmet);
   uint32_t waiting = 0;
   uint32_t orphans = 0;
   for (const auto& [number, note] : desk->frames) {
@@ -254,7 +256,8 @@ grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
     if (desk->stored.max_workers > 0) {
       say(fmt::format("at most {} workers may render it at once", desk->stored.max_workers));
     }
-  } else if (active > 0 && orphans == 0 && desk->stored.state == StoredState::running) {
+  } else if (active > 0 && orphans == 0 && unmet.empty() &&
+             desk->stored.state == StoredState::running) {
     for (const auto& [other, rival] : desks_) {
       if (other != desk->id && rival->stored.priority >= desk->stored.priority &&
           scheduler_.leased_units(other) > 0) {

@@ -23,6 +23,18 @@ constexpr Duration kPokeEvery = std::chrono::milliseconds(200);
 constexpr Duration kForgetAfter = std::chrono::hours(1);
 constexpr Duration kFinishAgain = std::chrono::seconds(1);
 
+/// Films of a progressive job that may be in memory together, and frames that may be.
+constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
+constexpr uint64_t kMostAtOnce = 256;
+
+/// How many frames of a progressive job are refined together.
+uint32_t frames_at_once(const JobDesk& desk) {
+  const uint64_t film = static_cast<uint64_t>(desk.region.area()) * desk.layout.channels.size() *
+                        sizeof(core::Fixed128);
+  return static_cast<uint32_t>(
+      std::clamp<uint64_t>(kProgressiveBytes / std::max<uint64_t>(film, 1), 3, kMostAtOnce));
+}
+
 SchedulerOptions scheduler_options(const BrainOptions& options, uint64_t incarnation) {
   SchedulerOptions scheduler;
   scheduler.incarnation = incarnation;
@@ -260,6 +272,12 @@ core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) 
   added.plan.priority = desk.stored.priority;
   added.plan.owner = desk.stored.owner;
   added.plan.max_workers = desk.stored.max_workers;
+  added.plan.max_attempts = desk.stored.max_attempts;
+  added.plan.needs = {desk.stored.tags, desk.stored.memory};
+  if (desk.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE) {
+    added.plan.order = FrameOrder::progressive;
+    added.plan.frames_in_flight = frames_at_once(desk);
+  }
   added.restored = std::move(restored);
   std::vector<Action> later;
   {

@@ -7,6 +7,7 @@
 #include "coordinator/brain/brain.h"
 #include "core/base/version.h"
 #include "core/film/film_codec.h"
+#include "farm/tags.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 constexpr int kMostNotes = 8;
 constexpr uint32_t kMostThreads = 4096;
-constexpr size_t kMostTagBytes = 2000;
 constexpr size_t kMostWorkers = 20'000;
 constexpr uint32_t kCrowdedRetryMs = 500;
 /// Of a decoded film, besides its pixels.
@@ -41,9 +41,9 @@ std::string complaint(const v1::Hello& hello) {
       hello.build().size() > 200) {
     return "a worker needs a name; names, host and build have at most 200 characters";
   }
-  size_t tags = 0;
-  for (const std::string& tag : hello.tags()) tags += tag.size() + 1;
-  if (tags > kMostTagBytes) return "a worker's tags have at most 2000 characters in all";
+  if (const auto tags = farm::check_tags({hello.tags().begin(), hello.tags().end()}); !tags) {
+    return tags.error().message;
+  }
   if (hello.worker_class().empty() || hello.worker_class().size() > 64) {
     return "a worker needs a class of at most 64 characters";
   }
@@ -76,6 +76,8 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
   WorkerJoined joined;
   joined.threads = hello.threads();
   joined.worker_class = hello.worker_class();
+  joined.tags.assign(hello.tags().begin(), hello.tags().end());
+  joined.memory = hello.memory_bytes();
   for (const v1::LeasedUnit& held : hello.in_hand()) {
     const auto unit = farm::from_wire(held.unit());
     if (!unit) return {grpc::StatusCode::INVALID_ARGUMENT, unit.error().message};

@@ -124,6 +124,10 @@ v1::Job describe(const StoredJob& job) {
   wire.set_owner(job.owner);
   wire.set_priority(job.priority);
   wire.set_max_workers(job.max_workers);
+  for (const std::string& tag : job.tags) wire.add_tags(tag);
+  wire.set_memory_bytes(job.memory);
+  wire.set_max_attempts(job.max_attempts);
+  wire.set_frame_order(static_cast<v1::FrameOrder>(job.frame_order));
   wire.set_state(static_cast<v1::JobState>(job.state));  // the numbers are the same
   wire.set_frames(job.frames);
   wire.set_frames_done(job.frames_done);

@@ -24,6 +24,10 @@ struct StoredJob {
   std::string owner;
   int priority = 0;
   uint32_t max_workers = 0;
+  std::vector<std::string> tags;  ///< that a worker needs; no commas in them
+  uint64_t memory = 0;            ///< bytes that a worker needs; 0: any
+  uint32_t max_attempts = 3;      ///< failures of one unit that fail its frame
+  int frame_order = 1;            ///< v1::FrameOrder
   StoredState state = StoredState::running;
   uint32_t frames = 0;
   uint32_t frames_done = 0;
@@ -88,7 +92,7 @@ class JobStore {
     bool existed = false;
   };
   virtual core::Result<Added> add_job(const StoredJob& job) = 0;
-  /// Stores everything about the job but key and spec.
+  /// Stores everything that changes in a job's life: not its key, spec and what it asks of workers.
   virtual core::Status update_job(const StoredJob& job) = 0;
   /// Forgets the job, its frames, outputs and lines.
   virtual core::Status remove_job(uint64_t id) = 0;

@@ -60,6 +60,12 @@ CREATE INDEX lines_of_job ON lines (job, number);
     R"(
 CREATE TABLE quarantines (worker TEXT PRIMARY KEY, reason TEXT NOT NULL) WITHOUT ROWID;
 )",
+    R"(
+ALTER TABLE jobs ADD COLUMN tags TEXT NOT NULL DEFAULT '';  -- between commas
+ALTER TABLE jobs ADD COLUMN memory INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN max_attempts INTEGER NOT NULL DEFAULT 3;
+ALTER TABLE jobs ADD COLUMN frame_order INTEGER NOT NULL DEFAULT 1;
+)",
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <map>
 #include <mutex>
 
@@ -9,7 +10,23 @@ namespace {
 
 constexpr std::string_view kJobColumns =
     "id, key, name, owner, priority, max_workers, state, frames, frames_done, frames_failed, "
-    "samples, submitted_ms, ended_ms, reason";
+    "samples, submitted_ms, ended_ms, reason, tags, memory, max_attempts, frame_order";
+
+std::string join(const std::vector<std::string>& tags) {
+  std::string text;
+  for (const std::string& tag : tags) text += (text.empty() ? "" : ",") + tag;
+  return text;
+}
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> tags;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    tags.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return tags;
+}
 
 StoredJob read_job(const Query& row) {
   StoredJob job;
@@ -27,6 +44,10 @@ StoredJob read_job(const Query& row) {
   job.submitted_ms = row.integer(11);
   job.ended_ms = row.integer(12);
   job.reason = row.bytes(13);
+  job.tags = split(row.bytes(14));
+  job.memory = static_cast<uint64_t>(row.integer(15));
+  job.max_attempts = static_cast<uint32_t>(row.integer(16));
+  job.frame_order = static_cast<int>(row.integer(17));
   return job;
 }
 
@@ -59,8 +80,9 @@ class SqliteJobStore final : public JobStore {
     }
     Query insert(db_.get(),
                  "INSERT INTO jobs (key, spec, name, owner, priority, max_workers, state, frames, "
-                 "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason) "
-                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                 "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason, tags, "
+                 "memory, max_attempts, frame_order) "
+                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     if (job.key.empty()) {
       insert.bind_null();
     } else {
@@ -68,6 +90,10 @@ class SqliteJobStore final : public JobStore {
     }
     insert.bind_blob(job.spec).bind(job.name).bind(job.owner);
     bind_changing(insert, job);
+    insert.bind(join(job.tags))
+        .bind(number(job.memory))
+        .bind(int64_t{job.max_attempts})
+        .bind(int64_t{job.frame_order});
     if (core::Status done = insert.run(); !done) return done.error();
     return Added{static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get())), false};
   }
@@ -106,7 +132,7 @@ class SqliteJobStore final : public JobStore {
       return std::optional<StoredJob>();
     }
     StoredJob job = read_job(row);
-    job.spec = row.bytes(14);
+    job.spec = row.bytes(18);
     return std::optional(std::move(job));
   }
 

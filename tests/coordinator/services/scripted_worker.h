@@ -34,6 +34,8 @@ class ScriptedWorker {
     std::string worker_class = "class-a";
     std::string token;
     uint32_t threads = 2;
+    std::vector<std::string> tags;
+    uint64_t memory = 0;
     core::FilmLayout layout;
     uint32_t samples = 0;
     std::chrono::milliseconds unit_time{0};
@@ -140,6 +142,8 @@ class ScriptedWorker {
     hello.set_name(script_.name);
     hello.set_worker_class(script_.worker_class);
     hello.set_threads(script_.threads);
+    for (const std::string& tag : script_.tags) hello.add_tags(tag);
+    hello.set_memory_bytes(script_.memory);
     hello.set_want(script_.threads);
     for (const auto& [name, result] : kept_) {
       v1::LeasedUnit& held = *hello.add_in_hand();

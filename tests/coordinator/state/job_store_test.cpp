@@ -17,6 +17,10 @@ StoredJob some_job(const std::string& key, const std::string& owner) {
   job.owner = owner;
   job.priority = -3;
   job.max_workers = 5;
+  job.tags = {"gpu", "quiet.2"};
+  job.memory = uint64_t{1} << 40U;
+  job.max_attempts = 7;
+  job.frame_order = 2;
   job.frames = 7;
   job.samples = 1'000'000'000'000;
   job.submitted_ms = 42;
@@ -56,6 +60,10 @@ TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
   EXPECT_EQ((*job)->owner, expected.owner);
   EXPECT_EQ((*job)->priority, expected.priority);
   EXPECT_EQ((*job)->max_workers, expected.max_workers);
+  EXPECT_EQ((*job)->tags, expected.tags);
+  EXPECT_EQ((*job)->memory, expected.memory);
+  EXPECT_EQ((*job)->max_attempts, expected.max_attempts);
+  EXPECT_EQ((*job)->frame_order, expected.frame_order);
   EXPECT_EQ((*job)->samples, expected.samples);
   EXPECT_EQ((*job)->state, StoredState::running);
   const auto frames = store->frames(1);

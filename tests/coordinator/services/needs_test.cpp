@@ -1,0 +1,80 @@
+// Jobs that ask something of their workers.
+#include <gmock/gmock.h>
+
+#include "tests/coordinator/services/farm_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using testing::HasSubstr;
+
+std::string explain(FarmWorld& world, uint64_t job) {
+  v1::ExplainResponse response;
+  EXPECT_TRUE(world.brain->explain(job, response).ok());
+  std::string text;
+  for (const std::string& reason : response.reasons()) text += reason + "\n";
+  return text;
+}
+
+TEST(Needs, AreMetOrNamedAlsoAfterARestart) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(2, [](v1::SubmitRequest& request) {
+    request.add_tags("gpu");
+    request.add_tags("quiet");
+    request.set_memory_bytes(1000);
+    request.set_max_attempts(7);
+    request.set_frame_order(v1::FRAME_ORDER_PROGRESSIVE);
+  });
+  const auto script = [&](const char* id, std::vector<std::string> tags, uint64_t memory) {
+    ScriptedWorker::Script s = world.script(1);
+    s.id = std::string("needs-test-worker-") + id;
+    s.name = id;
+    s.tags = std::move(tags);
+    s.memory = memory;
+    return s;
+  };
+  const auto says = [&](const std::string& what) {
+    return eventually([&] { return explain(world, job).find(what) != std::string::npos; });
+  };
+  ScriptedWorker plain(world.address, script("plain", {"gpu"}, 0));
+  EXPECT_TRUE(says("tag 'quiet'")) << explain(world, job);
+  world.stop();
+  world.start();
+  ScriptedWorker small(world.address, script("small", {"quiet", "gpu"}, 999));
+  EXPECT_TRUE(says("both all its tags")) << explain(world, job);
+  v1::GetJobResponse now;
+  EXPECT_TRUE(world.brain->get(job, now).ok());
+  EXPECT_EQ(now.job().tags_size(), 2);
+  EXPECT_EQ(now.job().memory_bytes(), 1000U);
+  EXPECT_EQ(now.job().max_attempts(), 7U);
+  EXPECT_EQ(now.job().frame_order(), v1::FRAME_ORDER_PROGRESSIVE);
+  EXPECT_EQ(plain.delivered() + small.delivered(), 0U);
+
+  ScriptedWorker fit(world.address, script("fit", {"gpu", "other", "quiet"}, 1000));
+  EXPECT_TRUE(eventually([&] {
+    v1::GetJobResponse then;
+    return world.brain->get(job, then).ok() && then.job().state() == v1::JOB_STATE_DONE;
+  }));
+  EXPECT_EQ(plain.delivered() + small.delivered(), 0U);
+}
+
+TEST(Needs, ThatMakeNoSenseAreRefused) {
+  FarmWorld world;
+  world.start();
+  const auto refused = [&](const std::function<void(v1::SubmitRequest&)>& change) {
+    v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1));
+    change(request);
+    v1::SubmitResponse response;
+    const grpc::Status status = world.brain->submit(request, response);
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
+    return status.error_message();
+  };
+  EXPECT_THAT(refused([](v1::SubmitRequest& r) { r.add_tags("a,b"); }), HasSubstr("a,b"));
+  EXPECT_THAT(refused([](v1::SubmitRequest& r) { r.set_max_attempts(101); }), HasSubstr("100"));
+  EXPECT_THAT(refused([](v1::SubmitRequest& r) { r.set_frame_order(v1::FrameOrder(9)); }),
+              HasSubstr("progressive"));
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

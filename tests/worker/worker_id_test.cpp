@@ -1,0 +1,54 @@
+#include "worker/worker_id.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <optional>
+
+#include "tests/support/temp_folder.h"
+
+namespace hyades::worker {
+namespace {
+
+TEST(WorkerId, StaysTheSameOverRestarts) {
+  const test::TempFolder folder;
+  std::string first;
+  {
+    const auto id = WorkerId::take(folder.path(), "host");
+    ASSERT_TRUE(id.ok());
+    first = id->text();
+    EXPECT_EQ(first.size(), 32U);
+  }
+  EXPECT_EQ(WorkerId::take(folder.path(), "host")->text(), first);
+}
+
+TEST(WorkerId, WorkersThatShareACacheHaveTheirOwn) {
+  const test::TempFolder folder;
+  auto one = std::optional(WorkerId::take(folder.path(), "host"));
+  const auto two = WorkerId::take(folder.path(), "host");
+  ASSERT_TRUE(one->ok() && two.ok());
+  const std::string first = (*one)->text();
+  EXPECT_NE(first, two->text());
+  one.reset();
+  EXPECT_EQ(WorkerId::take(folder.path(), "host")->text(), first) << "its successor";
+}
+
+TEST(WorkerId, IsMadeAnewOnAnotherHostAndWhereItIsTorn) {
+  const test::TempFolder folder;
+  const std::string first = WorkerId::take(folder.path(), "host")->text();
+  const std::string other = WorkerId::take(folder.path(), "other")->text();
+  EXPECT_NE(first, other);
+  std::ofstream(folder.file("worker-0.id")) << other.substr(0, 20);
+  const std::string third = WorkerId::take(folder.path(), "other")->text();
+  EXPECT_EQ(third.size(), 32U);
+  EXPECT_NE(third.substr(0, 20), other.substr(0, 20));
+}
+
+TEST(WorkerId, AFolderThatCannotBeWrittenIsAnError) {
+  const auto id = WorkerId::take("/proc/no-such-folder", "host");
+  ASSERT_FALSE(id.ok());
+  EXPECT_NE(id.error().message.find("worker-0.id"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace hyades::worker
