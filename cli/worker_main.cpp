@@ -67,7 +67,9 @@ int main(int argc, char** argv) {
   app.add_option("--cache-size", options.cache_size, "most bytes in it (default: 16G)")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--name", options.name, "what people call it (default: this host's name)");
-  app.add_option("--tags", options.tags, "what jobs may ask for: a,b")->delimiter(',');
+  app.add_option("--tags", options.tags, "what jobs may ask for: a,b")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   app.add_option("--token-file", options.coordinator.token_file, "file with the farm's token");
   app.add_option("--tls-ca", options.coordinator.ca_file,
                  "certificate (PEM) that signed the coordinator's");

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdio>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -39,7 +38,7 @@ struct Options {
   std::vector<std::string> tags;
   uint64_t memory = 0;
   uint32_t attempts = 3;
-  v1::FrameOrder order = v1::FRAME_ORDER_SEQUENTIAL;
+  std::string order = "sequential";
   bool watch = false;
   bool quiet = false;
   bool json = false;
@@ -57,7 +56,8 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::Range(1U, 1U << 24U));
   app.add_option("--max-workers", options.max_workers, "render on no more than so many at once");
   app.add_option("--tags", options.tags, "render only on workers that have all of these: a,b")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);  // what follows is the job
   app.add_option("--memory", options.memory,
                  "render only on workers that have so much for scenes: 8G, 512M")
       ->transform(CLI::AsSizeValue(false));
@@ -67,9 +67,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--order", options.order,
                  "sequential: frame after frame (default); progressive: a few samples of every "
                  "frame first, then more")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, v1::FrameOrder>{{"sequential", v1::FRAME_ORDER_SEQUENTIAL},
-                                                {"progressive", v1::FRAME_ORDER_PROGRESSIVE}}));
+      ->check(CLI::IsMember({"sequential", "progressive"}));
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json, "print the job as JSON (field id)");
   app.footer(
@@ -125,7 +123,8 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Op
   for (const std::string& tag : *tags) request.add_tags(tag);
   request.set_memory_bytes(options.memory);
   request.set_max_attempts(options.attempts);
-  request.set_frame_order(options.order);
+  request.set_frame_order(options.order == "progressive" ? v1::FRAME_ORDER_PROGRESSIVE
+                                                         : v1::FRAME_ORDER_SEQUENTIAL);
   const auto key = random_key();
   if (!key) return key.error();
   request.set_idempotency_key(*key);
