@@ -43,8 +43,7 @@ TEST(Needs, AreMetOrNamedAlsoAfterARestart) {
   world.start();
   ScriptedWorker small(world.address, script("small", {"quiet", "gpu"}, 999));
   EXPECT_TRUE(says("both all its tags")) << explain(world, job);
-  v1::GetJobResponse now;
-  EXPECT_TRUE(world.brain->get(job, now).ok());
+  const v1::GetJobResponse now = world.get(job);
   EXPECT_EQ(now.job().tags_size(), 2);
   EXPECT_EQ(now.job().memory_bytes(), 1000U);
   EXPECT_EQ(now.job().max_attempts(), 7U);
@@ -52,10 +51,7 @@ TEST(Needs, AreMetOrNamedAlsoAfterARestart) {
   EXPECT_EQ(plain.delivered() + small.delivered(), 0U);
 
   ScriptedWorker fit(world.address, script("fit", {"gpu", "other", "quiet"}, 1000));
-  EXPECT_TRUE(eventually([&] {
-    v1::GetJobResponse then;
-    return world.brain->get(job, then).ok() && then.job().state() == v1::JOB_STATE_DONE;
-  }));
+  EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
   EXPECT_EQ(plain.delivered() + small.delivered(), 0U);
 }
 
