@@ -87,8 +87,9 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     }
     std::span<const std::byte> data = std::as_bytes(std::span(part.chunk().data()));
     if (data.size() > farm::kMaxChunkBytes) return invalid("a chunk has at most 1 MiB");
-    // A stream that goes on for ever says nothing, or the same again.
-    if (data.empty() && writer_->size() > 0) return invalid("a part without data");
+    // A stream that goes on for ever says nothing, or the same again. Where all bytes are here from
+    // before a crash, there is nothing left to say.
+    if (data.empty() && writer_->offset() < writer_->size()) return invalid("a part without data");
     received_ += data.size();
     if (received_ > writer_->size()) {
       return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
