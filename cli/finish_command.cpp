@@ -7,7 +7,9 @@
 #include "core/base/assets.h"
 #include "core/base/fp_mode.h"
 #include "core/base/hash.h"
+#include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
+#include "core/job/output_path.h"
 
 namespace hyades::cli {
 namespace {
@@ -17,8 +19,17 @@ core::Status finish(const std::string& folder) {
   if (!task) return task.error();
   auto film = coordinator::read_finish_film(folder);
   if (!film) return film.error();
-  const auto paths = core::write_outputs(task->outputs, task->folder, task->info, *film);
+  auto paths = core::write_outputs(task->outputs, task->folder, task->info, *film);
   if (!paths) return paths.error();
+  if (!task->film.empty()) {
+    std::error_code failed;
+    std::filesystem::create_directories(task->folder, failed);
+    if (failed) return core::Error{task->folder + ": cannot be made: " + failed.message()};
+    paths->push_back(task->folder + "/" + core::output_path(task->film, task->info.frame));
+    const core::Status written =
+        core::write_film_exr(paths->back(), {task->info, std::move(*film)});
+    if (!written) return written;
+  }
   std::vector<coordinator::FinishedFile> files;
   for (const std::string& path : *paths) {
     const auto bytes = core::map_file(path);

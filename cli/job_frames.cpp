@@ -11,6 +11,7 @@
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/picture.h"
+#include "core/job/film_file.h"
 #include "core/job/layers.h"
 #include "core/job/output_path.h"
 #include "core/job/render_key.h"
@@ -65,7 +66,7 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
 core::Status JobFrames::check_film_names() const {
   if (!options_.write_films) return {};
   for (const core::OutputDesc& output : loaded_.job.outputs) {
-    if (!core::same_output_path(output.file, film_file())) continue;
+    if (!core::same_output_path(output.file, core::film_file(loaded_.job))) continue;
     const std::string message = fmt::format(
         "file is '{}', where --film writes the film, expected another name", output.file);
     return core::Error{core::Diagnostic{output.where, message}.to_string()};
@@ -140,14 +141,9 @@ void JobFrames::remove_leftovers(const std::vector<int32_t>& frames,
   }
 }
 
-std::string JobFrames::film_file() const {
-  const bool several = loaded_.job.frames.last > loaded_.job.frames.first;
-  return loaded_.job.name + (several ? ".####.film.exr" : ".film.exr");
-}
-
 std::string JobFrames::film_path(int32_t frame) const {
   core::OutputDesc film;
-  film.file = film_file();
+  film.file = core::film_file(loaded_.job);
   return core::output_path(film, options_.folder, frame);
 }
 

@@ -64,7 +64,6 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
  private:
   class Work;
   core::FilmInfo film_info(int32_t frame) const;
-  std::string film_file() const;
   std::string film_path(int32_t frame) const;
   void note(int32_t frame, const core::RenderCounters& counters);
 

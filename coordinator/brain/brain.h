@@ -85,11 +85,11 @@ class Brain {
   grpc::Status set_priority(uint64_t job, int priority, v1::Job& now);
   grpc::Status remove(uint64_t job);
   grpc::Status explain(uint64_t job, v1::ExplainResponse& response);
-  /// A copy of the frame's film as it is now, given to `then` by another thread.
-  grpc::Status film(uint64_t job, int32_t frame,
-                    std::function<void(const grpc::Status&, const core::FilmInfo&,
-                                       std::shared_ptr<const core::Film>)>
-                        then);
+  using FilmTaker = std::function<void(const grpc::Status&, const core::FilmInfo&,
+                                       std::shared_ptr<const core::Film>)>;
+  /// A copy of the frame's film as it is now, or, where films are kept, was in the end; given to
+  /// `then`, perhaps by another thread.
+  grpc::Status film(uint64_t job, int32_t frame, FilmTaker then);
   /// How far somebody has been told of a job's changes; at first of nothing.
   struct ToldOf {
     uint64_t version = 0;          ///< of the job: of all changes up to this one
@@ -215,6 +215,7 @@ class Brain {
   v1::Worker describe(const Seat& seat) const;
   std::string unmet_needs(const StoredJob& job) const;
   grpc::Status not_open(uint64_t job);
+  grpc::Status kept_film(uint64_t job, int32_t frame, const FilmTaker& then);
   grpc::Status steer_worker(const v1::WorkerRequest& request, v1::Worker& now,
                             const std::function<std::vector<Action>(Seat&)>& what);
   Seat* find_worker(const std::string& text, grpc::Status& status);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "core/film/film_exr.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -155,20 +156,40 @@ void Brain::unwatch(uint64_t number) {
   watches_.erase(number);
 }
 
-grpc::Status Brain::film(uint64_t id, int32_t frame,
-                         std::function<void(const grpc::Status&, const core::FilmInfo&,
-                                            std::shared_ptr<const core::Film>)>
-                             then) {
-  const std::lock_guard lock(mutex_);
+/// Of a frame that is done; without the lock.
+grpc::Status Brain::kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
+  const auto stored = store_->job(id);
+  if (!stored) return failed(stored.error());
+  if (!*stored) return no_job(id);
+  const auto outputs = store_->outputs(id, 0);
+  if (!outputs) return failed(outputs.error());
+  for (const StoredOutput& output : *outputs) {
+    if (output.frame != frame || !output.path.ends_with(".film.exr")) continue;
+    auto file = core::read_film_exr(output_folder(id) + "/" + output.path);
+    if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
+    then(grpc::Status::OK, file->info, std::make_shared<const core::Film>(std::move(file->film)));
+    return grpc::Status::OK;
+  }
+  return {grpc::StatusCode::FAILED_PRECONDITION,
+          fmt::format("there is no film of frame {} any more; 'keep_films: true' in the job keeps "
+                      "those of finished frames",
+                      frame)};
+}
+
+grpc::Status Brain::film(uint64_t id, int32_t frame, FilmTaker then) {
+  std::unique_lock lock(mutex_);
   JobDesk* desk = desk_of(id);
-  if (desk == nullptr || desk->ending) return not_open(id);
+  if (desk == nullptr || desk->ending) {
+    lock.unlock();
+    return kept_film(id, frame, then);
+  }
   const auto noted = desk->frames.find(frame);
   if (noted == desk->frames.end()) {
     return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no frame {}", id, frame)};
   }
   if (noted->second.state == v1::FRAME_STATE_DONE) {
-    return {grpc::StatusCode::FAILED_PRECONDITION,
-            fmt::format("frame {} is done: its film is not kept", frame)};
+    lock.unlock();
+    return kept_film(id, frame, then);
   }
   if (!desk->keeper) {
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "nothing of the frame is there yet",

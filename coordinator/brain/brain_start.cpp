@@ -12,6 +12,7 @@
 #include "coordinator/finisher/finish_process.h"
 #include "core/base/failpoint.h"
 #include "core/base/fp_mode.h"
+#include "core/job/film_file.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -328,6 +329,7 @@ void Brain::finish_loop() {
     const FrameNote& note = desk->frames[completed.frame];
     task.info.worker_class = note.worker_class;
     task.outputs = desk->read.job.outputs;
+    if (desk->read.job.keep_films) task.film = core::film_file(desk->read.job);
     task.folder = output_folder(id);
     StoredFrame over{completed.frame, true, {}, note.worker_class, note.restarts};
     lock.unlock();

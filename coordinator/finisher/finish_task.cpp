@@ -48,6 +48,7 @@ core::Status write_finish_task(const std::string& folder, const FinishTask& task
                      {"samples", info.samples},
                      {"class", info.worker_class},
                      {"build", info.build},
+                     {"film", task.film},
                      {"folder", task.folder},
                      {"outputs", outputs}};
   if (auto written = write_json(folder + "/task.json", json); !written) return written;
@@ -71,6 +72,7 @@ core::Result<FinishTask> read_finish_task(const std::string& folder) {
     info.samples = json->at("samples");
     info.worker_class = json->at("class");
     info.build = json->at("build");
+    task.film = json->at("film");
     task.folder = json->at("folder");
     for (const Json& entry : json->at("outputs")) {
       core::OutputDesc output;

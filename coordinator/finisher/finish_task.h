@@ -19,6 +19,7 @@ namespace hyades::coordinator {
 struct FinishTask {
   core::FilmInfo info;
   std::vector<core::OutputDesc> outputs;
+  std::string film;    ///< where the film itself goes, #### for the frame; empty: nowhere
   std::string folder;  ///< where outputs go
 };
 

@@ -221,6 +221,7 @@ struct Job {
   std::vector<LightDesc> lights;
   std::optional<EnvironmentDesc> environment;
   std::vector<OutputDesc> outputs;
+  bool keep_films = false;  ///< each finished frame's film stays, as film_file() says
   ValueChecks checks;  ///< what its animated values must keep to at every frame (check_frame)
 
   /// The moment at which frame `frame`'s shutter is open for fraction `shutter_time` (0..1).

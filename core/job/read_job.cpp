@@ -81,6 +81,7 @@ void read_job(MapReader& top, Job& job) {
   read_objects(top);
   read_lights(top);
   read_environment(top, job);
+  top.flag("keep_films", job.keep_films);
   read_outputs(top, job);
   top.later("media");
   top.later("atmosphere");

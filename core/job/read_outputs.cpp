@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/base/text.h"
+#include "core/job/film_file.h"
 #include "core/job/output_names.h"
 #include "core/job/output_path.h"
 #include "core/job/read_sections.h"
@@ -120,6 +121,11 @@ void read_output(MapReader& reader, Job& job) {
   }
   check_frame_marks(reader, where, output.file, job.frames);
   check_inside_folder(reader, where, output.file);
+  if (job.keep_films && same_output_path(output.file, film_file(job))) {
+    reader.complain(where, fmt::format("file is '{}', where keep_films puts the film, expected "
+                                       "another name",
+                                       output.file));
+  }
   reader.enter_section(row->section);
   row->read(reader, output);
   reader.finish();

@@ -123,7 +123,10 @@ class FarmWorld {
 
   /// Uploads and submits; the job's id.
   uint64_t submit(int last_frame, const std::function<void(v1::SubmitRequest&)>& change = {}) {
-    const std::string text = document(last_frame);
+    return submit_text(document(last_frame), change);
+  }
+  uint64_t submit_text(const std::string& text,
+                       const std::function<void(v1::SubmitRequest&)>& change = {}) {
     EXPECT_TRUE(upload(text).ok());
     v1::SubmitRequest asked = request(text);
     if (change) change(asked);

@@ -289,6 +289,10 @@ TEST(Complaints, Outputs) {
             "job.yaml:2:42: layer is 'normals', expected beauty, alpha, depth, albedo, normal, "
             "variance or samples, did you mean 'normal'?\n"
             "job.yaml:2:51: layer 'beauty' is listed twice\n");
+  EXPECT_EQ(complaints("name: b\nkeep_films: true\noutputs: [{file: ./b.film.exr}]\n"),
+            "job.yaml:4:18: file is './b.film.exr', where keep_films puts the film, expected "
+            "another name\n");
+  EXPECT_EQ(complaints("name: b\noutputs: [{file: ./b.film.exr}]\n"), "");
 }
 
 TEST(Complaints, Transforms) {

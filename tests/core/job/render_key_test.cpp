@@ -35,6 +35,7 @@ TEST(RenderKey, IgnoresNameOutputsRangeAndFiles) {
   EXPECT_EQ(plain, key("name: other\nobjects: {a: {shape: sphere}}\n", 3, {}, "elsewhere/x.yaml"));
   EXPECT_EQ(plain,
             key("objects: {a: {shape: sphere}}\noutputs: [{file: b.exr, layers: [depth]}]\n", 3));
+  EXPECT_EQ(plain, key("keep_films: true\nobjects: {a: {shape: sphere}}\n", 3));
   EXPECT_EQ(plain, key("frames: 1-100\nobjects: {a: {shape: sphere}}\n", 3));
   EXPECT_EQ(plain, key("include: part.yaml\n", 3,
                        {{"part.yaml", "objects: {a: {shape: sphere}} # split\n"}}));
