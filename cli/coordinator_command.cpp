@@ -37,6 +37,7 @@ struct Arguments {
   double class_patience = 300;
   double adoption_seconds = 2;
   double compact_mb = 256;
+  double asset_grace = 3600;
 };
 
 /// A thousand workers are a thousand open files; the usual limit is that, and the hard one is
@@ -123,6 +124,16 @@ int main(int argc, char** argv) {
                  "a job's film log is rewritten when it has grown by this much")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
+  app.add_option("--disk-budget", arguments.brain.disk.budget,
+                 "most bytes that the data may take, such as 200G (default: no limit)")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--disk-reserve", arguments.brain.disk.reserve,
+                 "bytes of the disk to keep free (default: a twentieth of it, at most 2G)")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--asset-grace", arguments.asset_grace,
+                 "seconds that files which no job needs any more stay after their last use")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
   app.footer(
       "examples:\n"
       "  hyades coordinator --data /var/lib/hyades\n"
@@ -139,6 +150,7 @@ int main(int argc, char** argv) {
   arguments.brain.finisher = hyades::core::program_folder() + "hyades-film";
   arguments.brain.unit_time = seconds(arguments.unit_seconds);
   arguments.brain.lease_time = seconds(arguments.lease_seconds);
+  arguments.brain.asset_grace = seconds(arguments.asset_grace);
   arguments.brain.class_patience = seconds(arguments.class_patience);
   arguments.brain.adoption_time = seconds(arguments.adoption_seconds);
   arguments.brain.compact_bytes = static_cast<uint64_t>(arguments.compact_mb * 1e6);

@@ -107,4 +107,26 @@ Status ContentStore::make_room(const std::string& name, uint64_t bytes) {
                            core::format_bytes(used - options_.budget))};
 }
 
+std::vector<std::string> ContentStore::names() const {
+  std::vector<StoredFile> files;
+  list_files(options_.folder, files);
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const StoredFile& file : files) names.push_back(file.path.substr(file.path.rfind('/') + 1));
+  return names;
+}
+
+bool ContentStore::remove_unused(const std::string& name, std::chrono::nanoseconds age) {
+  if (!is_content_name(name)) return false;
+  struct stat info {};
+  const std::string path = path_of(name);
+  if (::lstat(path.c_str(), &info) != 0) return errno == ENOENT;
+  const auto of = [](const timespec& t) { return int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec; };
+  const int64_t used = std::max(of(info.st_atim), of(info.st_mtim));
+  const int64_t now = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                          std::chrono::system_clock::now().time_since_epoch())
+                          .count();
+  return now - used >= age.count() && remove_if_free(path);
+}
+
 }  // namespace hyades::farm

@@ -91,9 +91,7 @@ Result<Bytes> ContentStore::read(const std::string& name) {
   if (!identity) return identity.error().in("asset " + name);
   auto bytes = core::map_file(path);
   if (!bytes) return bytes.error().in("asset " + name);
-  // The time of reading decides who is evicted; that of writing tells whether the file is the same.
-  const struct timespec times[2] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};
-  ::utimensat(AT_FDCWD, path.c_str(), times, AT_SYMLINK_NOFOLLOW);
+  touch(name);
   {
     const std::lock_guard lock(mutex_);
     const auto known = verified_.find(name);
@@ -109,6 +107,13 @@ Result<Bytes> ContentStore::read(const std::string& name) {
   }
   remember(name, *identity);
   return bytes;
+}
+
+void ContentStore::touch(const std::string& name) const {
+  if (!is_content_name(name)) return;
+  // The time of reading decides who is evicted; that of writing tells whether the file is the same.
+  const struct timespec times[2] = {{0, UTIME_NOW}, {0, UTIME_OMIT}};
+  ::utimensat(AT_FDCWD, path_of(name).c_str(), times, AT_SYMLINK_NOFOLLOW);
 }
 
 Result<ContentPin> ContentStore::pin(const std::string& name) {
@@ -152,6 +157,7 @@ Status ContentStore::commit(ContentWriter& writer) {
   }
   if (auto synced = sync_folder(options_.folder); !synced) return synced;
   writer.file_.close();
+  ++commits_;
   if (const auto identity = identify(path)) remember(writer.name_, *identity);
   // Other processes may have written too: never above the budget for long. That all others are in
   // use is no reason to refuse a file that is here.

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/bytes.h"
 #include "core/base/descriptor.h"
@@ -69,6 +71,18 @@ class ContentStore {
   /// Removes file `name`, pinned or not. No error where it is missing.
   core::Status remove(const std::string& name);
 
+  /// The names of all complete files.
+  std::vector<std::string> names() const;
+  /// How many files this process has completed so far.
+  uint64_t commits() const { return commits_; }
+  /// Bytes that this process' writers have still to write.
+  uint64_t expected() const { return expected_; }
+  /// Notes that the file has been of use now: who removes what is not used waits again.
+  void touch(const std::string& name) const;
+  /// Removes file `name` if it was neither written, read nor touched within `age`, by the wall
+  /// clock. Whether it is gone.
+  bool remove_unused(const std::string& name, std::chrono::nanoseconds age);
+
  private:
   friend class ContentWriter;
 
@@ -92,6 +106,7 @@ class ContentStore {
   Options options_;
   std::atomic<uint64_t> expected_{0};   ///< bytes that this process' writers have still to write
   std::atomic<int64_t> next_sweep_{0};  ///< seconds of the steady clock
+  std::atomic<uint64_t> commits_{0};
   std::mutex mutex_;
   std::map<std::string, Identity> verified_;  ///< guarded by mutex_
 };

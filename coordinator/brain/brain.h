@@ -12,12 +12,14 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <unordered_set>
 #include <vector>
 
 #include "coordinator/brain/job_desk.h"
 #include "coordinator/brain/worker_link.h"
 #include "coordinator/scheduler/scheduler.h"
 #include "coordinator/state/job_store.h"
+#include "coordinator/store/disk_room.h"
 #include "farm/content_store.h"
 #include "hyades/v1/farm.pb.h"
 #include "hyades/v1/jobs.pb.h"
@@ -35,6 +37,9 @@ struct BrainOptions {
   Duration class_patience = std::chrono::minutes(5);
   /// A worker whose stream has ended is lost if it has not come again after this.
   Duration reconnect_time = std::chrono::seconds(3);
+  DiskLimits disk;
+  /// Files that no job needs any more stay for so long after they were last used.
+  Duration asset_grace = std::chrono::hours(1);
   /// After a restart no new units are leased for this long, so that workers can say what they hold.
   Duration adoption_time = std::chrono::seconds(2);
   /// A job's film log is rewritten when it has grown by this much.
@@ -103,6 +108,14 @@ class Brain {
   uint64_t watch(uint64_t job, std::function<void()> poke);
   void unwatch(uint64_t number);
 
+  // The disk (brain_disk.cpp).
+
+  /// Whether `bytes` more may be stored, or (0) something new may begin: OK, or RESOURCE_EXHAUSTED
+  /// with the reason.
+  grpc::Status admit(uint64_t bytes);
+  /// Even what was begun has to wait.
+  bool disk_is_full() const { return disk_full_; }
+
   // Farm (brain_farm.cpp).
 
   void info(v1::InfoResponse& response);
@@ -157,6 +170,7 @@ class Brain {
   Brain(BrainOptions options, std::unique_ptr<JobStore> store,
         std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation);
   bool has_room_for(const JobDesk& job) const;
+  grpc::Status files_are_here(const v1::JobSpec& spec);
   grpc::Status set_paused(uint64_t id, bool paused, v1::Job& now);
   grpc::Status change(uint64_t id, v1::Job& now,
                       const std::function<void(JobDesk&, std::vector<Action>&)>& what);
@@ -202,9 +216,19 @@ class Brain {
   void clock_loop();
   void finish_loop();
   void chores_loop();
+  void sweep_loop();
+  void disk_loop();
   void chore(std::function<void()> what);  // with the lock
   std::vector<Action> mind_workers(TimePoint now);
   void mind_jobs(TimePoint now);
+
+  void mind_disk();
+  bool disk_is_short_for(const core::Film& film);
+
+  // What nobody needs any more (brain_sweep.cpp); without the lock.
+  void sweep_folders();
+  core::Status sweep_assets(Duration grace);
+  core::Status spare_needed(std::unordered_set<std::string>& names, uint64_t& after);
 
   // Small things; with the lock.
   JobDesk* desk_of(JobId job);
@@ -243,6 +267,14 @@ class Brain {
   std::map<uint64_t, Watch> watches_;
   uint64_t next_watch_ = 1;
 
+  DiskRoom disk_;
+  uint64_t disk_free_ = UINT64_MAX;  ///< bytes, when it was last measured
+  uint64_t walked_used_ = 0;         ///< bytes of the folder, when it was last walked through
+  uint64_t walked_free_ = 0;         ///< bytes of the disk at that time
+  TimePoint room_made_;              ///< when keepers were last asked for room
+  std::atomic<bool> disk_full_{false};
+  std::condition_variable disk_wake_;
+
   std::condition_variable clock_wake_;
   std::deque<Completed> to_finish_;
   std::condition_variable finish_wake_;
@@ -250,6 +282,9 @@ class Brain {
   std::condition_variable chores_wake_;
   bool chores_end_ = false;
   std::timed_mutex submit_mutex_;  ///< one submission at a time
+  std::condition_variable sweep_wake_;
+  std::atomic<uint64_t> asset_changes_{0};  ///< jobs that have gone
+  uint64_t swept_changes_ = UINT64_MAX;     ///< of the sweeper: when it last left nothing to remove
   std::vector<std::thread> threads_;
 };
 

@@ -23,6 +23,7 @@ void Brain::info(v1::InfoResponse& response) {
     response.set_threads(response.threads() + seat.hello.threads());
   }
   response.set_jobs(static_cast<uint32_t>(desks_.size()));
+  response.set_trouble(disk_.reason());
   for (const auto& [id, desk] : desks_) {
     if (!desk->trouble.empty()) response.set_trouble(desk->trouble);
   }

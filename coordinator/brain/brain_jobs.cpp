@@ -54,19 +54,12 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   }
   const auto files = files_of(request.spec());
   if (!files) return wrong(files.error().message);
-  v1::ErrorDetail missing;
-  size_t count = 0;
-  for (const v1::JobFile& file : request.spec().files()) {
-    const auto digest = farm::digest_from_wire(file.sha256());
-    if (assets_->contains(core::to_hex(*digest), file.size())) continue;
-    if (++count <= kMostMissingTold) missing.add_missing(file.sha256());
-  }
-  if (count > 0) {
-    return farm::wire_status(grpc::StatusCode::FAILED_PRECONDITION,
-                             fmt::format("{} of the job's files are not here yet", count), missing);
-  }
+  if (const grpc::Status room = admit(0); !room.ok()) return room;
+  if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
   const std::unique_lock one(submit_mutex_, kSubmitPatience);
   if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
+  // What was not needed may have been removed meanwhile; from here on nothing is.
+  if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
   StoredJob stored;
   stored.key = key;
   stored.spec = request.spec().SerializeAsString();
@@ -120,6 +113,20 @@ bool Brain::has_room_for(const JobDesk& job) const {
     bytes += desk->stored.spec.size();
   }
   return frames <= kMostOpenFrames && bytes <= kMostOpenSpecBytes;
+}
+
+/// FAILED_PRECONDITION, naming those files of a job (which files_of has accepted) that are not.
+grpc::Status Brain::files_are_here(const v1::JobSpec& spec) {
+  v1::ErrorDetail missing;
+  size_t count = 0;
+  for (const v1::JobFile& file : spec.files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (assets_->contains(core::to_hex(*digest), file.size())) continue;
+    if (++count <= kMostMissingTold) missing.add_missing(file.sha256());
+  }
+  if (count == 0) return grpc::Status::OK;
+  return farm::wire_status(grpc::StatusCode::FAILED_PRECONDITION,
+                           fmt::format("{} of the job's files are not here yet", count), missing);
 }
 
 grpc::Status Brain::pause(uint64_t id, v1::Job& now) { return set_paused(id, true, now); }
@@ -225,6 +232,10 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
   job.reason.clear();
   if (core::Status noted = store_->update_job(job); !noted) return failed(noted.error());
   if (core::Status taken = take_up(id); !taken) {
+    job.state = StoredState::failed;
+    job.ended_ms = wall_ms();
+    job.reason = "could not be taken up again: " + taken.error().message;
+    (void)store_->update_job(job);  // where this fails too it is tried again at the next start
     return {grpc::StatusCode::FAILED_PRECONDITION, taken.error().message};
   }
   v1::GetJobResponse got;
@@ -245,10 +256,30 @@ grpc::Status Brain::remove(uint64_t id) {
   const auto stored = store_->job(id);
   if (!stored) return failed(stored.error());
   if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
-  if (core::Status removed = store_->remove_job(id); !removed) return failed(removed.error());
-  std::error_code ignored;
-  std::filesystem::remove_all(films_folder(id), ignored);
-  std::filesystem::remove_all(output_folder(id), ignored);
+  const auto remove_folders = [&] {
+    std::error_code ignored;  // what stays is found after the next start
+    std::filesystem::remove_all(films_folder(id), ignored);
+    std::filesystem::remove_all(output_folder(id), ignored);
+  };
+  core::Status removed = store_->remove_job(id);
+  if (!removed) {
+    // A full disk cannot even store that the job is gone: what is to go makes the room.
+    remove_folders();
+    removed = store_->remove_job(id);
+  }
+  if (!removed) return failed(removed.error());
+  core::failpoint("job-removed");
+  remove_folders();
+  // Its files have been of use until now: they stay for a while, should it come again.
+  v1::JobSpec spec;
+  if (spec.ParseFromString((*stored)->spec)) {
+    for (const v1::JobFile& file : spec.files()) {
+      if (const auto digest = farm::digest_from_wire(file.sha256())) {
+        assets_->touch(core::to_hex(*digest));
+      }
+    }
+  }
+  ++asset_changes_;
   return grpc::Status::OK;
 }
 

@@ -63,6 +63,7 @@ v1::Job Brain::describe(const JobDesk& desk) const {
   v1::Job job = desk.describe(scheduler_.leased_units(desk.id));
   // Until its end is stored, it has not ended for anybody.
   if (desk.ending) job.set_state(v1::JOB_STATE_RUNNING);
+  if (job.reason().empty()) job.set_reason(disk_.reason());
   return job;
 }
 
@@ -233,6 +234,12 @@ grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
             "; 'retry' takes it up again");
     }
     return grpc::Status::OK;
+  }
+  if (disk_.level() != DiskLevel::roomy) {
+    say(disk_.reason() +
+        (disk_.level() == DiskLevel::full ? "; no units are leased and films have to wait"
+                                          : "; no units are leased") +
+        " until there is room again (deleting jobs that have ended makes some)");
   }
   if (!desk->trouble.empty()) say(desk->trouble);
   if (desk->stored.state == StoredState::paused) say("it is paused; 'resume' lets it go on");

@@ -74,6 +74,8 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
   Brain& b = *brain;
   b.threads_.emplace_back([&b] { b.clock_loop(); });
   b.threads_.emplace_back([&b] { b.finish_loop(); });
+  b.threads_.emplace_back([&b] { b.sweep_loop(); });
+  b.threads_.emplace_back([&b] { b.disk_loop(); });
   b.threads_.emplace_back([&b] { b.chores_loop(); });
   return brain;
 }
@@ -87,13 +89,16 @@ Brain::Brain(BrainOptions options, std::unique_ptr<JobStore> store,
       started_ms_(wall_ms()),
       adopting_until_(incarnation > 1 ? std::chrono::steady_clock::now() + options_.adoption_time
                                       : TimePoint{}),
-      scheduler_(scheduler_options(options_, incarnation)) {}
+      scheduler_(scheduler_options(options_, incarnation)),
+      disk_(options_.disk) {}
 
 void Brain::stop() {
   stop_ = true;
   const std::lock_guard lock(mutex_);
   clock_wake_.notify_all();
   finish_wake_.notify_all();
+  sweep_wake_.notify_all();
+  disk_wake_.notify_all();
   for (auto& [id, seat] : seats_) {
     if (seat.link) seat.link->close({grpc::StatusCode::UNAVAILABLE, "the coordinator stops"});
   }
@@ -149,6 +154,13 @@ core::Status Brain::take_up(uint64_t id) {
   if (!spec.ParseFromString((*stored)->spec)) return core::Error{"its record is damaged"};
   auto desk = make_desk(**stored, spec, *assets_);
   if (!desk) return desk.error();
+  for (const v1::JobFile& file : spec.files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (digest && assets_->contains(core::to_hex(*digest), file.size())) continue;
+    return core::Error{file.path() +
+                       " is gone or damaged on the coordinator's disk: submit the job (or the "
+                       "file with another) again, then 'retry' takes this one up"};
+  }
   (*desk)->id = JobId{id};
   RestoredJob restored;
   const auto frames = store_->frames(id);
@@ -348,10 +360,21 @@ void Brain::finish_loop() {
       done = store_->frame_over(id, over, outputs);
       core::failpoint("frame-stored");
     }
+    const bool short_of_disk = !done && disk_is_short_for(*completed.film);
     lock.lock();
     if (stop_) return;
+    if (short_of_disk) {
+      // No fault of the frame's: it waits until there is room.
+      if (JobDesk* still = desk_of(completed.job)) {
+        still->trouble = fmt::format("frame {} waits for room on the disk to be finished: {}",
+                                     completed.frame, done.error().message);
+        still->touch();
+        to_finish_.push_back(completed);
+      }
+      finish_wake_.wait_for(lock, kFinishAgain, [&] { return stop_.load(); });
+      continue;
+    }
     if (!done) {
-      // A full disk may have room again.
       finish_wake_.wait_for(lock, kFinishAgain, [&] { return stop_.load(); });
       if (stop_) return;
     }

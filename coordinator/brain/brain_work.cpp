@@ -18,6 +18,7 @@ constexpr int kMostNotes = 8;
 constexpr uint32_t kMostThreads = 4096;
 constexpr size_t kMostWorkers = 20'000;
 constexpr uint32_t kCrowdedRetryMs = 500;
+constexpr uint32_t kFullRetryMs = 2000;
 /// Of a decoded film, besides its pixels.
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
 
@@ -300,7 +301,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
   delivery.film = std::move(*film);
 
   std::vector<Action> later;
-  enum class Verdict : uint8_t { taken, crowded, quarantined } verdict = Verdict::taken;
+  enum class Verdict : uint8_t { taken, crowded, full, quarantined } verdict = Verdict::taken;
   {
     const std::lock_guard lock(mutex_);
     Seat* seat = seat_of(worker, link);
@@ -308,6 +309,8 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
     JobDesk* desk = desk_of(job);
     if (seat->state == v1::WORKER_STATE_QUARANTINED) {
       verdict = Verdict::quarantined;
+    } else if (disk_.level() == DiskLevel::full) {
+      verdict = Verdict::full;
     } else if (desk != nullptr && desk->keeper && desk->keeper->crowded()) {
       verdict = Verdict::crowded;
     } else {
@@ -327,6 +330,9 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
   if (verdict == Verdict::crowded) {
     reject(worker, link, result, Rejected::REASON_NOT_NOW, "more films wait for the disk than may",
            kCrowdedRetryMs);
+  } else if (verdict == Verdict::full) {
+    reject(worker, link, result, Rejected::REASON_NOT_NOW, "the coordinator's disk is full",
+           kFullRetryMs);
   } else if (verdict == Verdict::quarantined) {
     reject(worker, link, result, Rejected::REASON_UNKNOWN, "the worker is quarantined", 0);
   }

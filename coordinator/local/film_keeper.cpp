@@ -14,6 +14,9 @@ namespace {
 /// After something could not be taken: when the scheduler hands out work again.
 constexpr Duration kTryAgain = std::chrono::milliseconds(1100);
 
+/// After a compaction has failed.
+constexpr Duration kCompactAgain = std::chrono::seconds(5);
+
 /// How many complete films whose outputs could not be written are kept for another run. They cost
 /// memory; more would have to be rendered again.
 constexpr size_t kUnfinishedFilms = 2;
@@ -66,6 +69,7 @@ core::Status FilmKeeper::open_log(bool erase) {
     const std::lock_guard lock(mutex_);
     if (trouble_.empty()) trouble_since_ = now();
     trouble_ = error.message;
+    room_wanted_ = true;  // mostly it is the disk that is full
     wake_.notify_one();
   };
   auto log = FilmLog::open(options_.folder, kLogKey, options);
@@ -94,6 +98,10 @@ core::Result<LogContents> FilmKeeper::open() {
   }
   finished_ = contents->finished;
   films_ = contents->films;
+  // What of it is of use is not known until it is rewritten.
+  useless_bytes_ = contents->bytes;
+  settled_sequence_ = log_->durable();
+  others_films_ = contents->others;
   for (const auto& [frame, units] : contents->units) classes_[frame] = units.front().worker_class;
   write_cut_ = contents->empty || contents->cut.region != plan_.region;
   return contents;
@@ -168,6 +176,12 @@ void FilmKeeper::call(std::function<void()> what) {
   push(std::move(item), false);
 }
 
+void FilmKeeper::make_room() {
+  const std::lock_guard lock(mutex_);
+  room_wanted_ = true;
+  wake_.notify_one();
+}
+
 bool FilmKeeper::crowded() const {
   const std::lock_guard lock(mutex_);
   return waiting_bytes_ >= plan_.max_waiting_bytes;
@@ -212,7 +226,7 @@ void FilmKeeper::run() {
   for (;;) {
     std::unique_lock lock(mutex_);
     const auto something = [&] {
-      return !queue_.empty() || draining_ ||
+      return !queue_.empty() || draining_ || room_wanted_ ||
              (!appended_.empty() && appended_.front().sequence <= durable_);
     };
     std::optional<TimePoint> until = try_again_at_;
@@ -227,6 +241,7 @@ void FilmKeeper::run() {
     }
     std::deque<Item> items = std::exchange(queue_, {});
     const uint64_t durable = durable_;
+    const bool room_wanted = std::exchange(room_wanted_, false);
     const bool last = draining_ && items.empty();
     const bool patient = trouble_.empty() || now() < trouble_since_ + options_.patience;
     const std::string hopeless = patient || gave_up_ ? "" : trouble_;
@@ -243,7 +258,7 @@ void FilmKeeper::run() {
       owner_.storage_failed(hopeless);
     }
     if (last) break;
-    compact_if_worthwhile();
+    compact_if_worthwhile(room_wanted);
   }
   if (log_) {
     const core::Status synced = log_->sync();
@@ -270,6 +285,7 @@ void FilmKeeper::append(std::deque<Item> items) {
       }
       item.sequence = *sequence;
       log_bytes_ += bytes;
+      if (item.kind == Item::Kind::film) frame_bytes_[item.frame] += bytes;
     } else {
       item.sequence = appended_.empty() ? 0 : appended_.back().sequence;
     }
@@ -330,6 +346,7 @@ std::shared_ptr<const core::Film> FilmKeeper::film(int32_t frame) const {
 }
 
 void FilmKeeper::forget(int32_t frame, bool finished) {
+  if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
   const auto it = films_.find(frame);
   if (it == films_.end()) return;
   if (finished) classes_.erase(frame);
@@ -342,16 +359,29 @@ void FilmKeeper::forget(int32_t frame, bool finished) {
   films_.erase(it);
 }
 
-/// Rewrites the log when films of finished frames, and units that could lie in it merged, fill it.
-void FilmKeeper::compact_if_worthwhile() {
-  if (!log_ || settled_sequence_ == 0) return;
-  if (log_bytes_ < std::max(options_.compact_bytes, 2 * snapshot_bytes_)) return;
-  snapshot_bytes_ = 0;
+/// Rewrites the log when films of finished frames, and units that could lie in it merged, fill it;
+/// where room is wanted, as soon as there is anything to gain.
+void FilmKeeper::compact_if_worthwhile(bool room_wanted) {
+  if (!log_ || settled_sequence_ == 0 || now() < compact_again_) return;
+  // What nobody asks for now goes only when the log has grown.
+  const bool gain = !others_films_ && (useless_bytes_ > 0 || log_bytes_ > snapshot_bytes_);
+  if (!(room_wanted && gain) &&
+      log_bytes_ < std::max(options_.compact_bytes, 2 * snapshot_bytes_)) {
+    return;
+  }
+  const uint64_t snapshot_before = std::exchange(snapshot_bytes_, 0);
+  std::map<int32_t, uint64_t> frames_before = std::exchange(frame_bytes_, {});
   const core::Status done = log_->compact(
       settled_sequence_, [this](const FilmLog::Sink& sink) { return write_snapshot(sink); });
-  log_bytes_ = 0;
-  if (done) return;
-  // The log is as good as before, only longer; it is tried again when it has grown as much again.
+  if (done) {
+    log_bytes_ = useless_bytes_ = 0;
+    others_films_ = false;
+    return;
+  }
+  // The log is as good as before, only longer.
+  snapshot_bytes_ = snapshot_before;
+  frame_bytes_ = std::move(frames_before);
+  compact_again_ = now() + kCompactAgain;
   const std::lock_guard lock(mutex_);
   if (draining_) return;
   if (trouble_.empty()) trouble_since_ = now();
@@ -376,10 +406,12 @@ core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
       while (end < units.size() && units[end].tile == units[first].tile) ++end;
       const core::Film part = cut_film(*film, {units.data() + first, end - first});
       const auto known = classes_.find(frame);
-      status =
-          put(known == classes_.end() ? encode_unit(frame, key_of(frame), part)
-                                      : encode_delivered({units[first], Digest{}, known->second},
-                                                         key_of(frame), core::encode_film(part)));
+      const std::vector<std::byte> bytes =
+          known == classes_.end() ? encode_unit(frame, key_of(frame), part)
+                                  : encode_delivered({units[first], Digest{}, known->second},
+                                                     key_of(frame), core::encode_film(part));
+      frame_bytes_[frame] += bytes.size();
+      status = put(bytes);
       first = end;
       const std::lock_guard lock(mutex_);
       if (draining_) return core::Error{"the run ends"};

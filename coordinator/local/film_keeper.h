@@ -74,6 +74,8 @@ class FilmKeeper {
   std::string trouble() const;
   /// As much waits for the disk as may: who delivers should come again later.
   bool crowded() const;
+  /// The disk is short: the log is rewritten soon, if that frees something.
+  void make_room();
   /// Has the keeper's thread call `what` soon.
   void call(std::function<void()> what);
 
@@ -107,7 +109,7 @@ class FilmKeeper {
   void run();
   void append(std::deque<Item> items);
   void settle(uint64_t durable);
-  void compact_if_worthwhile();
+  void compact_if_worthwhile(bool room_wanted);
   core::Status write_snapshot(const FilmLog::Sink& sink);
   void release(uint64_t memory);
 
@@ -124,6 +126,7 @@ class FilmKeeper {
   uint64_t durable_ = 0;
   bool hurrying_ = false;
   bool draining_ = false;
+  bool room_wanted_ = false;
   std::string trouble_;
   TimePoint trouble_since_;
 
@@ -138,8 +141,12 @@ class FilmKeeper {
   int32_t tile_size_ = 0;
   bool write_cut_ = false;  ///< the log is new
   uint64_t settled_sequence_ = 0;
-  uint64_t log_bytes_ = 0;       ///< since the last snapshot
-  uint64_t snapshot_bytes_ = 0;  ///< of the last snapshot
+  uint64_t log_bytes_ = 0;                   ///< since the last snapshot
+  uint64_t snapshot_bytes_ = 0;              ///< of the last snapshot
+  uint64_t useless_bytes_ = 0;               ///< in the log, of frames that are over
+  std::map<int32_t, uint64_t> frame_bytes_;  ///< in the log, of frames that are not
+  TimePoint compact_again_;                  ///< after a failure
+  bool others_films_ = false;                ///< the log has films of frames that nobody asked for
   std::optional<TimePoint> try_again_at_;
   bool gave_up_ = false;
 

@@ -111,7 +111,7 @@ class Reader {
     const auto frame = static_cast<int32_t>(get(bytes, 0));
     // A film after the end means that the frame was begun again, because its outputs were gone.
     contents_.finished.erase(frame);
-    if (!wish_.frames.contains(frame) || !has_key(frame, get_key(bytes, 4))) return {};
+    if (!is_wanted(frame) || !has_key(frame, get_key(bytes, 4))) return {};
     auto film = core::decode_film(bytes.subspan(kFrameAndKey));
     if (!film) return film.error();
     auto& whole = contents_.films[frame];
@@ -129,7 +129,7 @@ class Reader {
     std::string worker_class(length, '\0');
     for (size_t i = 0; i < length; ++i) worker_class[i] = std::to_integer<char>(bytes[kFixed + i]);
     contents_.finished.erase(frame);
-    if (!wish_.frames.contains(frame) || !has_key(frame, get_key(bytes, 4))) return {};
+    if (!is_wanted(frame) || !has_key(frame, get_key(bytes, 4))) return {};
     auto film = core::decode_film(bytes.subspan(kFixed + length));
     if (!film) return film.error();
     auto& whole = contents_.films[frame];
@@ -173,6 +173,12 @@ class Reader {
     contents_.films.erase(frame);
     contents_.units.erase(frame);
     return {};
+  }
+
+  bool is_wanted(int32_t frame) {
+    const bool wanted = wish_.frames.contains(frame);
+    contents_.others = contents_.others || !wanted;
+    return wanted;
   }
 
   bool has_key(int32_t frame, const FrameKey& key) {
@@ -276,6 +282,7 @@ core::Result<LogContents> read_log(FilmLog& log, const LogWish& wish) {
   Reader reader(contents, wish);
   auto report = log.replay([&](std::span<const std::byte> record) { return reader.read(record); });
   if (!report) return report.error();
+  contents.bytes = report->bytes;
   contents.problems = std::move(report->problems);
   if (contents.cut.tile_size == 0) return contents;
   if (contents.cut.samples != wish.samples) {

@@ -58,6 +58,8 @@ struct LogContents {
   /// The units of these films, where workers delivered them. A digest is zero where it is not known
   /// any more.
   std::map<int32_t, std::vector<AcceptedUnit>> units;
+  uint64_t bytes = 0;                 ///< of all records
+  bool others = false;                ///< there are films of frames that were not asked for
   std::vector<std::string> problems;  ///< damage, in words; costs rendering again
 };
 

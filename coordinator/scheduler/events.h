@@ -89,6 +89,12 @@ struct WorkRequested {
   uint32_t units = 1;
 };
 
+/// Nothing is leased (the disk is nearly full, say) until it is told again with `held` = false.
+/// Wishes stand; what is out goes on.
+struct LeasingHeld {
+  bool held = false;
+};
+
 /// The worker is alive and still works on these leases: they are renewed. One that it does not
 /// name runs out, whatever became of it.
 struct WorkerAlive {
@@ -150,9 +156,10 @@ struct PersistFailed {
 /// Nothing but time has passed.
 struct Tick {};
 
-using Event = std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised,
-                           FramesRetried, FrameOpened, FrameRefused, FinishDone, FinishFailed,
-                           WorkerJoined, WorkRequested, WorkerAlive, ResultArrived, UnitFailed,
-                           UnitReturned, WorkerBarred, WorkerLost, Persisted, PersistFailed, Tick>;
+using Event =
+    std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised, FramesRetried,
+                 FrameOpened, FrameRefused, FinishDone, FinishFailed, WorkerJoined, WorkRequested,
+                 LeasingHeld, WorkerAlive, ResultArrived, UnitFailed, UnitReturned, WorkerBarred,
+                 WorkerLost, Persisted, PersistFailed, Tick>;
 
 }  // namespace hyades::coordinator

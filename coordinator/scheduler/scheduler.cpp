@@ -411,7 +411,8 @@ std::optional<TimePoint> Scheduler::next_wake() const {
   if (options_.class_patience > Duration{0} && !jobs_.empty() && threads_ > 0) {
     at(next_orphan_check_);
   }
-  if (!waiting_.empty() && !copy_candidates_.empty() && options_.copy_after > Duration{0}) {
+  if (!leasing_held_ && !waiting_.empty() && !copy_candidates_.empty() &&
+      options_.copy_after > Duration{0}) {
     at(std::max(copy_candidates_.front().since + options_.copy_after, next_copy_round_));
   }
   return wake;

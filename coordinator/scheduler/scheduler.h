@@ -151,6 +151,7 @@ class Scheduler {
   // workers.cpp: workers that come and go.
   void on(const WorkerJoined& e);
   void on(const WorkRequested& e);
+  void on(const LeasingHeld& e);
   void on(const WorkerAlive& e);
   void on(const WorkerBarred& e);
   void on(const WorkerLost& e);
@@ -266,7 +267,9 @@ class Scheduler {
   std::map<RecordId, Pending> pending_;
   uint64_t next_record_ = 1;
   std::vector<RecordId> to_persist_again_;
+  bool may_lease() const { return !leasing_held_ && now_ >= storage_blocked_until_; }
   TimePoint storage_blocked_until_;
+  bool leasing_held_ = false;
 };
 
 }  // namespace hyades::coordinator

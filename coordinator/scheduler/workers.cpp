@@ -52,8 +52,13 @@ void Scheduler::on(const WorkRequested& e) {
   Worker* worker = find_worker(e.worker);
   if (worker == nullptr) return;
   worker->wanted = std::min(kMaxWanted, worker->wanted + std::min(e.units, kMaxWanted));
-  if (now_ >= storage_blocked_until_) serve(e.worker, *worker, true);
+  if (may_lease()) serve(e.worker, *worker, true);
   set_waiting(e.worker, *worker);
+}
+
+void Scheduler::on(const LeasingHeld& e) {
+  leasing_held_ = e.held;
+  work_appeared_ = true;
 }
 
 void Scheduler::on(const WorkerAlive& e) {
@@ -123,7 +128,7 @@ void Scheduler::serve(WorkerId id, Worker& worker, bool copies) {
 
 /// Serves those who wait, where something has turned up for them.
 void Scheduler::dispatch() {
-  if (now_ < storage_blocked_until_) return;
+  if (!may_lease()) return;
   const bool copies = options_.copy_after > Duration{0} && now_ >= next_copy_round_;
   if (copies) next_copy_round_ = now_ + kCopyRound;
   if (!copies && !work_appeared_) return;

@@ -25,7 +25,7 @@ grpc::Status invalid(const std::string& message) {
 /// Takes one file in. Writes as it reads, so that a client is never faster than the disk.
 class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
-  Uploading(farm::ContentStore& store, const grpc::Status& admitted) : store_(store) {
+  Uploading(Brain& brain, const grpc::Status& admitted) : brain_(brain), store_(brain.assets()) {
     if (admitted.ok()) {
       StartRead(&bytes_);
     } else {
@@ -72,6 +72,8 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
       done_ = true;
       return grpc::Status::OK;
     }
+    const uint64_t begun = std::min(store_.begun(name), part.size());
+    if (grpc::Status room = brain_.admit(part.size() - begun); !room.ok()) return room;
     auto writer = store_.write(name, part.size());
     if (!writer) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
@@ -105,18 +107,24 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     if (data.size() > writer_->size() - writer_->offset()) {
       return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
     }
+    if (brain_.disk_is_full()) {
+      // What has come stays for a later upload to go on with.
+      if (grpc::Status room = brain_.admit(0); !room.ok()) return room;
+    }
     if (auto written = writer_->append(data); !written) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, written.error().message,
                                std::chrono::seconds(10));
     }
     if (writer_->offset() < writer_->size()) return grpc::Status::OK;
     if (auto whole = writer_->commit(); !whole) {
+      if (grpc::Status room = brain_.admit(0); !room.ok()) return room;
       return {grpc::StatusCode::DATA_LOSS, whole.error().message};
     }
     done_ = true;
     return grpc::Status::OK;
   }
 
+  Brain& brain_;
   farm::ContentStore& store_;
   grpc::ByteBuffer bytes_;
   std::optional<farm::ContentWriter> writer_;
@@ -148,7 +156,7 @@ grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context, const Byt
 
 grpc::ServerReadReactor<grpc::ByteBuffer>* AssetsService::Upload(Context* context, Bytes* said) {
   (void)serialise(v1::UploadResponse(), *said);
-  return new Uploading(store_, admission_.check(*context));
+  return new Uploading(brain_, admission_.check(*context));
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* context,

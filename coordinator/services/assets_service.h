@@ -1,7 +1,7 @@
 #pragma once
 
+#include "coordinator/brain/brain.h"
 #include "coordinator/services/admission.h"
-#include "farm/content_store.h"
 #include "hyades/v1/assets.grpc.pb.h"
 
 namespace hyades::coordinator {
@@ -14,8 +14,8 @@ using RawAssets =
 /// Files by content (assets_service.cpp).
 class AssetsService final : public RawAssets {
  public:
-  AssetsService(farm::ContentStore& store, const Admission& admission)
-      : store_(store), admission_(admission) {}
+  AssetsService(Brain& brain, const Admission& admission)
+      : brain_(brain), store_(brain.assets()), admission_(admission) {}
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -24,6 +24,7 @@ class AssetsService final : public RawAssets {
   grpc::ServerWriteReactor<Bytes>* Download(Context* context, const Bytes* asked) override;
 
  private:
+  Brain& brain_;
   farm::ContentStore& store_;
   const Admission& admission_;
 };

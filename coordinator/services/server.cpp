@@ -33,7 +33,7 @@ struct Server::Parts {
       : admission(std::move(token)),
         work(brain, admission),
         jobs(brain, admission),
-        assets(brain.assets(), admission),
+        assets(brain, admission),
         farm(brain, admission) {}
 
   Admission admission;

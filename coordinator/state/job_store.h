@@ -38,6 +38,12 @@ struct StoredJob {
   std::string reason;
 };
 
+/// A job's spec alone.
+struct StoredSpec {
+  uint64_t id = 0;
+  std::string spec;
+};
+
 /// A frame that is over. Others are not stored: their films tell.
 struct StoredFrame {
   int32_t frame = 0;
@@ -100,6 +106,10 @@ class JobStore {
   virtual core::Result<std::vector<uint64_t>> open_jobs() = 0;
   /// Nothing where there is no such job.
   virtual core::Result<std::optional<StoredJob>> job(uint64_t id) = 0;
+  /// Nothing where there is no such job.
+  virtual core::Result<std::optional<StoredState>> state(uint64_t id) = 0;
+  /// The specs of the first `limit` jobs with ids above `after`, the oldest first.
+  virtual core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) = 0;
   /// Jobs with ids below `before` (0: all), the newest first, without their specs.
   virtual core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner,
                                                     uint64_t before, uint32_t limit) = 0;

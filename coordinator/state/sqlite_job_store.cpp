@@ -136,6 +136,25 @@ class SqliteJobStore final : public JobStore {
     return std::optional(std::move(job));
   }
 
+  core::Result<std::optional<StoredState>> state(uint64_t id) override {
+    const std::lock_guard lock(mutex_);
+    Query row(db_.get(), "SELECT state FROM jobs WHERE id = ?");
+    row.bind(number(id));
+    if (row.next()) return std::optional(static_cast<StoredState>(row.integer(0)));
+    if (core::Status status = row.status(); !status) return status.error();
+    return std::optional<StoredState>();
+  }
+
+  core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) override {
+    const std::lock_guard lock(mutex_);
+    Query rows(db_.get(), "SELECT id, spec FROM jobs WHERE id > ? ORDER BY id LIMIT ?");
+    rows.bind(number(after)).bind(int64_t{limit});
+    std::vector<StoredSpec> specs;
+    while (rows.next()) specs.push_back({static_cast<uint64_t>(rows.integer(0)), rows.bytes(1)});
+    if (core::Status status = rows.status(); !status) return status.error();
+    return specs;
+  }
+
   core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner, uint64_t before,
                                             uint32_t limit) override {
     const std::lock_guard lock(mutex_);

@@ -119,6 +119,28 @@ TEST(Scheduler, IdleWorkersGetOneCopyOfTheOldestUnits) {
   EXPECT_EQ(b.only<Revoke>().lease, slow.lease);
 }
 
+TEST(Scheduler, NothingIsLeasedWhileLeasingIsHeld) {
+  SchedulerOptions options;
+  options.copy_after = seconds(5);
+  Bench b(options);
+  b.join(kAnna);
+  b.join(kBert);
+  b.add(small_plan({1}, 4));
+  b.tell(FrameOpened{kJob, 1});
+  const Lease out = b.ask(kAnna);
+  b.tell(LeasingHeld{true});
+  b.tell(WorkRequested{kBert, 2});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.now += seconds(6);
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "no copies either";
+  b.deliver_durably(out);
+  EXPECT_EQ(b.only<Merge>().unit, out.units[0]) << "what is out goes on";
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(LeasingHeld{false});
+  EXPECT_EQ(b.only<Lease>().worker, kBert) << "wishes stand";
+}
+
 TEST(Scheduler, AReturnedUnitIsNobodysFault) {
   Bench b;
   b.join(kAnna);

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <set>
+#include <fstream>
 
 #include "core/film/film_codec.h"
 #include "core/film/film_exr.h"
@@ -69,6 +69,197 @@ TEST(Keeping, FilmsOfFinishedFramesStayWhereTheJobSaysSo) {
   const grpc::Status gone = fetch_film(world, other, 1, nothing);
   EXPECT_EQ(gone.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_NE(gone.error_message().find("keep_films"), std::string::npos) << gone.error_message();
+}
+
+v1::JobRequest about(uint64_t job) {
+  v1::JobRequest request;
+  request.set_job(job);
+  return request;
+}
+
+void finish_and_delete(FarmWorld& world, uint64_t job) {
+  v1::JobResponse now;
+  (void)world.jobs->Cancel(world.context().get(), about(job), &now);
+  v1::DeleteJobResponse gone;
+  const grpc::Status status = world.jobs->Delete(world.context().get(), about(job), &gone);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+}
+
+std::string asset_of(const FarmWorld& world, const std::string& text) {
+  return world.options.folder + "/assets/" + core::to_hex(core::sha256(text));
+}
+
+std::string folder_of(const FarmWorld& world, const std::string& kind, uint64_t job) {
+  return world.options.folder + "/" + kind + "/" + std::to_string(job);
+}
+
+TEST(Keeping, WhatADeletedJobHadGoesButNotWhatOthersNeed) {
+  FarmWorld world;
+  world.options.asset_grace = 600ms;
+  world.start();
+  const std::string shared = FarmWorld::document(2);
+  const std::string own = FarmWorld::document(1);
+  const uint64_t first = world.submit_text(shared);
+  const uint64_t second = world.submit_text(shared);
+  const uint64_t third = world.submit_text(own);
+  {
+    const ScriptedWorker worker(world.address, world.script());
+    for (const uint64_t job : {first, second, third}) {
+      ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+    }
+  }
+  ASSERT_TRUE(std::filesystem::exists(folder_of(world, "outputs", first)));
+  std::this_thread::sleep_for(1s);  // nobody uses the files; still, there are jobs that need them
+  finish_and_delete(world, first);
+  const auto deleted = std::chrono::steady_clock::now();
+  finish_and_delete(world, third);
+  EXPECT_FALSE(std::filesystem::exists(folder_of(world, "outputs", first)));
+  EXPECT_FALSE(std::filesystem::exists(folder_of(world, "films", first)));
+  ASSERT_TRUE(eventually([&] { return !std::filesystem::exists(asset_of(world, own)); }));
+  EXPECT_GE(std::chrono::steady_clock::now() - deleted, 550ms) << "it stays for a while";
+  std::this_thread::sleep_for(400ms);
+  EXPECT_TRUE(std::filesystem::exists(asset_of(world, shared))) << "another job needs it";
+  EXPECT_FALSE(world.fetch(second, "balls.0001.png").empty());
+  finish_and_delete(world, second);
+  // After a restart, too.
+  world.stop();
+  world.start();
+  EXPECT_TRUE(eventually([&] { return !std::filesystem::exists(asset_of(world, shared)); }));
+}
+
+TEST(Keeping, WhatACrashLeftOfADeletedJobGoesAfterTheNextStart) {
+  FarmWorld world;
+  world.start();
+  const uint64_t open = world.submit(4);
+  const uint64_t done = world.submit(1);
+  {
+    ScriptedWorker::Script script = world.script();
+    std::atomic<int> units{0};
+    script.meddle = [&](ScriptedWorker&, const v1::LeasedUnit& unit) {
+      return unit.job() != open || ++units <= 3;
+    };
+    const ScriptedWorker worker(world.address, script);
+    ASSERT_TRUE(eventually([&] { return worker.acknowledged() >= 3; }));
+    ASSERT_TRUE(
+        world.jobs
+            ->Pause(world.context().get(), about(open), std::make_unique<v1::JobResponse>().get())
+            .ok());
+  }
+  {
+    const ScriptedWorker worker(world.address, world.script(2));
+    ASSERT_TRUE(world.wait_for(done, v1::JOB_STATE_DONE));
+  }
+  world.stop();
+  std::filesystem::create_directories(folder_of(world, "films", 999));
+  std::filesystem::create_directories(folder_of(world, "outputs", 999) + "/png");
+  std::filesystem::create_directories(folder_of(world, "films", done));
+  std::filesystem::create_directories(world.options.folder + "/outputs/mine");
+  world.start();
+  EXPECT_TRUE(eventually([&] {
+    return !std::filesystem::exists(folder_of(world, "films", 999)) &&
+           !std::filesystem::exists(folder_of(world, "outputs", 999)) &&
+           !std::filesystem::exists(folder_of(world, "films", done));
+  }));
+  EXPECT_TRUE(std::filesystem::exists(folder_of(world, "films", open)));
+  EXPECT_TRUE(std::filesystem::exists(folder_of(world, "outputs", done)));
+  EXPECT_TRUE(std::filesystem::exists(world.options.folder + "/outputs/mine")) << "is no job's";
+  EXPECT_GT(world.get(open).job().samples_done(), 0U);
+}
+
+TEST(Keeping, AJobThatWasTakenInHasItsFilesHoweverEagerTheSweeperIs) {
+  FarmWorld world;
+  world.options.asset_grace = 0ms;
+  world.start();
+  const std::string text = FarmWorld::document(1);
+  int refused = 0;
+  for (int i = 0; i < 30; ++i) {
+    v1::SubmitResponse response;
+    grpc::Status status;
+    for (int round = 0; round < 20 && !response.has_job(); ++round) {
+      ASSERT_TRUE(world.upload(text).ok());
+      if (round % 2 == i % 2) std::this_thread::sleep_for(std::chrono::milliseconds(7 * i % 40));
+      status = world.jobs->Submit(world.context().get(), FarmWorld::request(text), &response);
+      refused += status.ok() ? 0 : 1;
+      ASSERT_TRUE(status.ok() || farm::detail_of(status).missing_size() == 1)
+          << status.error_message();
+    }
+    ASSERT_TRUE(status.ok());
+    std::this_thread::sleep_for(std::chrono::milliseconds(i % 3 * 60));
+    EXPECT_TRUE(std::filesystem::exists(asset_of(world, text)));
+    finish_and_delete(world, response.job().id());
+  }
+  RecordProperty("refused", refused);
+}
+
+TEST(Keeping, AFullDiskTakesNothingInLeasesNothingAndGoesOnByItself) {
+  FarmWorld world;
+  world.options.disk.budget = 20 << 20U;  // of which a twentieth is the reserve
+  world.options.disk.reserve = 0;
+  world.start();
+  const uint64_t job = world.submit(3);
+  const std::string ballast = world.options.folder + "/ballast";
+  std::ofstream(ballast) << std::string((19 << 20U) + (1 << 18U), 'x');
+  const auto reason = [&] {
+    v1::ExplainResponse why;
+    EXPECT_TRUE(world.jobs->Explain(world.context().get(), about(job), &why).ok());
+    return why.reasons(0);
+  };
+  ASSERT_TRUE(eventually([&] { return reason().find("--disk-budget") != std::string::npos; }));
+  EXPECT_NE(reason().find("no units are leased"), std::string::npos) << reason();
+  EXPECT_NE(world.get(job).job().reason().find("--disk-budget"), std::string::npos);
+
+  const std::string text = FarmWorld::document(1);
+  const grpc::Status upload = world.upload(text);
+  EXPECT_EQ(upload.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << upload.error_message();
+  EXPECT_NE(upload.error_message().find("--disk-budget"), std::string::npos);
+  EXPECT_GT(farm::detail_of(upload).retry_after_ms(), 0U);
+  v1::SubmitResponse response;
+  const grpc::Status submit = world.jobs->Submit(
+      world.context().get(), FarmWorld::request(FarmWorld::document(3)), &response);
+  EXPECT_EQ(submit.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << submit.error_message();
+
+  const ScriptedWorker worker(world.address, world.script());
+  std::this_thread::sleep_for(600ms);
+  EXPECT_EQ(worker.delivered(), 0U);
+  std::filesystem::remove(ballast);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  for (int frame = 1; frame <= 3; ++frame) world.expect_truth(job, frame);
+  EXPECT_TRUE(world.upload(text).ok());
+  // More than there is room for is refused before it is sent.
+  v1::UploadResponse ignored;
+  const auto context = world.context();
+  const auto writer = world.assets->Upload(context.get(), &ignored);
+  v1::UploadPart part;
+  part.set_sha256(farm::to_wire(core::sha256("large")));
+  part.set_size(19 << 20U);
+  writer->Write(part);
+  const grpc::Status large = writer->Finish();
+  EXPECT_EQ(large.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << large.error_message();
+  EXPECT_NE(large.error_message().find("does not fit"), std::string::npos);
+}
+
+TEST(Keeping, FilmsWaitWithTheirWorkersWhileTheDiskIsFull) {
+  FarmWorld world;
+  world.options.disk.budget = 20 << 20U;
+  world.options.disk.reserve = 0;
+  world.start();
+  const uint64_t job = world.submit(2);
+  const std::string ballast = world.options.folder + "/ballast";
+  std::atomic<bool> filled{false};
+  ScriptedWorker::Script script = world.script();
+  script.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
+    if (self.acknowledged() < 3 || filled.exchange(true)) return true;
+    std::ofstream(ballast) << std::string(20 << 20U, 'x');
+    EXPECT_TRUE(eventually([&] { return world.brain->disk_is_full(); }));
+    return true;
+  };
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return !worker.rejections().empty(); }));
+  EXPECT_EQ(worker.rejections().front().reason(), v1::Rejected::REASON_NOT_NOW);
+  EXPECT_GT(worker.rejections().front().retry_after_ms(), 0U);
+  std::filesystem::remove(ballast);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  for (int frame = 1; frame <= 2; ++frame) world.expect_truth(job, frame);
 }
 
 }  // namespace

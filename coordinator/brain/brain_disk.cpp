@@ -1,0 +1,97 @@
+// Room on the disk: what is refused and held back while there is little, and what makes more.
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "core/base/text.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr Duration kMeasureEvery = std::chrono::milliseconds(250);
+constexpr Duration kMakeRoomEvery = std::chrono::seconds(1);
+/// A walk through the folder may take this share of the time: one in so many.
+constexpr int kWalkShare = 50;
+constexpr std::chrono::milliseconds kAskAgain{5000};
+
+uint64_t above(uint64_t a, uint64_t b) { return a > b ? a - b : 0; }
+
+}  // namespace
+
+/// Measures, and does what follows; without the lock. An error of the system changes nothing.
+void Brain::mind_disk() {
+  auto measured = measure_disk(options_.folder);
+  if (!measured) return;
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    // Between two walks what vanishes from the disk is taken for ours.
+    measured->used = walked_used_ + above(walked_free_, measured->free);
+    disk_free_ = measured->free;
+    const bool held = disk_.level() != DiskLevel::roomy;
+    if (disk_.update(*measured)) {
+      for (auto& [id, desk] : desks_) desk->touch();
+      const bool hold = disk_.level() != DiskLevel::roomy;
+      if (hold != held) later = tell(LeasingHeld{hold});
+    }
+    disk_full_ = disk_.level() == DiskLevel::full;
+    const TimePoint now = std::chrono::steady_clock::now();
+    if (disk_.level() != DiskLevel::roomy && now - room_made_ >= kMakeRoomEvery) {
+      room_made_ = now;
+      for (auto& [id, desk] : desks_) {
+        if (desk->keeper) desk->keeper->make_room();
+      }
+    }
+  }
+  carry_out(later);
+}
+
+void Brain::disk_loop() {
+  TimePoint walk_again;
+  std::unique_lock lock(mutex_);
+  while (!stop_) {
+    lock.unlock();
+    const TimePoint begin = std::chrono::steady_clock::now();
+    if (options_.disk.budget > 0 && begin >= walk_again) {
+      const auto free = measure_disk(options_.folder);
+      const uint64_t used = measure_folder(options_.folder);
+      const TimePoint end = std::chrono::steady_clock::now();
+      walk_again = end + kWalkShare * (end - begin);
+      const std::lock_guard held(mutex_);
+      walked_used_ = used;
+      walked_free_ = free ? free->free : 0;
+    }
+    mind_disk();
+    lock.lock();
+    disk_wake_.wait_for(lock, kMeasureEvery, [&] { return stop_.load(); });
+  }
+}
+
+grpc::Status Brain::admit(uint64_t bytes) {
+  mind_disk();
+  const std::lock_guard lock(mutex_);
+  if (disk_.level() != DiskLevel::roomy) {
+    return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                             disk_.reason() + "; nothing new is taken in until there is room",
+                             kAskAgain);
+  }
+  const uint64_t room = above(disk_.room(), assets_->expected());
+  if (bytes <= room) return grpc::Status::OK;
+  return farm::retry_later(
+      grpc::StatusCode::RESOURCE_EXHAUSTED,
+      fmt::format("a file of {} does not fit: the coordinator's disk has room for {} more",
+                  core::format_bytes(bytes), core::format_bytes(room)),
+      kAskAgain);
+}
+
+/// Whether the disk may be why a frame could not be finished; without the lock.
+bool Brain::disk_is_short_for(const core::Film& film) {
+  mind_disk();
+  const uint64_t memory = static_cast<uint64_t>(film.window().area()) *
+                          film.layout().channels.size() * sizeof(core::Fixed128);
+  const std::lock_guard lock(mutex_);
+  // The film is written for the finisher, and its outputs are hardly larger.
+  return disk_.level() != DiskLevel::roomy || disk_free_ < 2 * memory;
+}
+
+}  // namespace hyades::coordinator
