@@ -191,6 +191,39 @@ TEST(Keeping, AJobThatWasTakenInHasItsFilesHoweverEagerTheSweeperIs) {
   RecordProperty("refused", refused);
 }
 
+TEST(Keeping, AJobWhoseFileIsCutOffFailsAloneUntilTheFileIsThereAgain) {
+  FarmWorld world;
+  world.start();
+  const std::string extra = "something that frames need";
+  ASSERT_TRUE(world.upload(extra).ok());
+  const uint64_t job = world.submit(1, [&](v1::SubmitRequest& request) {
+    v1::JobFile& file = *request.mutable_spec()->add_files();
+    file.set_path("extra.ply");
+    file.set_sha256(farm::to_wire(core::sha256(extra)));
+    file.set_size(extra.size());
+  });
+  const uint64_t other = world.submit(1);
+  world.stop();
+  std::filesystem::resize_file(asset_of(world, extra), 10);
+  world.start();
+  EXPECT_EQ(world.get(other).job().state(), v1::JOB_STATE_RUNNING);
+  const auto fails = [&] {
+    const v1::Job now = world.get(job).job();
+    EXPECT_EQ(now.state(), v1::JOB_STATE_FAILED);
+    EXPECT_NE(now.reason().find("extra.ply is gone or damaged"), std::string::npos) << now.reason();
+  };
+  fails();
+  v1::JobResponse now;
+  EXPECT_EQ(world.jobs->Retry(world.context().get(), about(job), &now).error_code(),
+            grpc::StatusCode::FAILED_PRECONDITION);
+  fails();
+  ASSERT_TRUE(world.upload(extra).ok());
+  ASSERT_TRUE(world.jobs->Retry(world.context().get(), about(job), &now).ok());
+  const ScriptedWorker worker(world.address, world.script());
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  world.expect_truth(job, 1);
+}
+
 TEST(Keeping, AFullDiskTakesNothingInLeasesNothingAndGoesOnByItself) {
   FarmWorld world;
   world.options.disk.budget = 20 << 20U;  // of which a twentieth is the reserve
