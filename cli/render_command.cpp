@@ -63,7 +63,8 @@ std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options
       ->capture_default_str();
   app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
   app.add_flag("--film", options.film,
-               "also write each frame's film (NAME.film.exr), for 'hyades merge', as keep_films in the job does");
+               "also write each frame's film (NAME.film.exr), for 'hyades merge', as keep_films in "
+               "the job does");
   app.add_flag("--resume", options.resume, "continue a run that was interrupted, to the same bits");
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.footer(
@@ -206,7 +207,8 @@ int render_command(int argc, char** argv) {
   const core::PixelRect window = window_of(options, job);
   const std::string kept = options.folder + "/.hyades/" + job.name;
   const OutputNote note(kept + ".outputs", job);
-  JobFrames frames(*loaded, {options.folder, options.film || job.keep_films, window, note.still_true()});
+  JobFrames frames(*loaded,
+                   {options.folder, options.film || job.keep_films, window, note.still_true()});
   if (const auto names = frames.check_film_names(); !names) {
     std::fprintf(stderr, "%s\n", names.error().message.c_str());
     return kBadInput;

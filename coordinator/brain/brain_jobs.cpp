@@ -268,7 +268,6 @@ grpc::Status Brain::remove(uint64_t id) {
     removed = store_->remove_job(id);
   }
   if (!removed) return failed(removed.error());
-  core::failpoint("job-removed");
   remove_folders();
   // Its files have been of use until now: they stay for a while, should it come again.
   v1::JobSpec spec;
