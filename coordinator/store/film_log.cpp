@@ -214,8 +214,12 @@ Status FilmLog::commit(const std::vector<Pending>& group) {
   // second sync of the same file may say yes without having stored it. The file ends here, at what
   // is durable if it can be cut; the group goes into a new one, and replay drops doubles.
   active_.reset();
-  segments_.back().last_sequence = group.back().sequence;
-  [[maybe_unused]] const Status cut = files_.truncate(path(segments_.back().name), active_bytes_);
+  Segment& given_up = segments_.back();
+  if (!files_.truncate(path(given_up.name), active_bytes_)) {
+    given_up.last_sequence = group.back().sequence;  // it may hold some of them
+  } else if (active_bytes_ == kSegmentHeaderBytes && files_.remove(path(given_up.name))) {
+    segments_.pop_back();  // a disk that stays full shall not fill up with empty files
+  }
   return written;
 }
 

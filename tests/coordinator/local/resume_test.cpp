@@ -379,26 +379,6 @@ TEST(Resume, AFullDiskHoldsTheRunUntilThereIsRoom) {
   expect_the_truth(plan, render);
 }
 
-TEST(Resume, FilmsOfFinishedFramesMakeRoomOnAFullDisk) {
-  LocalPlan plan = small_plan();
-  plan.frames_in_flight = 1;
-  FaultyFiles files;
-  uint64_t all = 0;
-  for (const bool limited : {false, true}) {
-    FakeRender render(plan.samples);
-    LocalLog log = log_on(files);
-    log.compact_bytes = uint64_t{1} << 30U;
-    log.patience = std::chrono::seconds(60);
-    if (limited) files.set_capacity(all * 2 / 3);  // not all, but more than one frame
-    LocalRun run(plan, log, render, render);
-    ASSERT_TRUE(run.start());
-    ASSERT_TRUE(run.wait_for(kLong));
-    EXPECT_TRUE(run.outcome().complete) << run.outcome().error;
-    expect_the_truth(plan, render);
-    for (const std::string& path : files.paths()) all += limited ? 0 : files.bytes(path).size();
-  }
-}
-
 TEST(Resume, ADiskThatStaysFullEndsTheRunWithTheReason) {
   const LocalPlan plan = small_plan();
   FaultyFiles files;

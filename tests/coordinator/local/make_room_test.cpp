@@ -1,0 +1,122 @@
+// Films of finished frames leave the log when the disk is short.
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <set>
+
+#include "coordinator/local/film_keeper.h"
+#include "tests/coordinator/local/fake_render.h"
+#include "tests/coordinator/store/faulty_files.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kSamples = 16;
+
+/// A keeper on files in memory, and somebody who merges what is durable.
+class Kept final : public FilmKeeper::Owner {
+ public:
+  explicit Kept(FaultyFiles& files) : keeper_(plan(), log(files), *this) {
+    EXPECT_TRUE(keeper_.open().ok());
+    EXPECT_TRUE(keeper_.start(16).ok());
+  }
+
+  /// Whether the film of `tile` is durable within some seconds.
+  bool keep(int32_t frame, const core::PixelRect& tile) {
+    const RecordId record{++records_};
+    keeper_.keep(record, frame, fake_film({frame, tile, {0, 1}}, kSamples));
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(20),
+                             [&] { return durable_.contains(record); });
+  }
+  void finish(int32_t frame) {
+    on_its_thread([&] { keeper_.forget(frame, true); });
+  }
+  void make_room() {
+    keeper_.make_room();
+    on_its_thread([] {});  // it has been seen
+    on_its_thread([] {});  // and dealt with
+  }
+
+  void persisted(RecordId record) override {
+    EXPECT_TRUE(keeper_.merge(record).ok());
+    const std::lock_guard lock(mutex_);
+    durable_.insert(record);
+    changed_.notify_all();
+  }
+  void not_persisted(RecordId, const std::string& reason) override { ADD_FAILURE() << reason; }
+  void try_again() override {}
+  void storage_failed(const std::string& reason) override { ADD_FAILURE() << reason; }
+  void keeper_done() override {}
+
+ private:
+  static LocalPlan plan() {
+    LocalPlan plan;
+    plan.frames = {1, 2};
+    plan.region = {0, 0, 64, 16};
+    plan.samples = kSamples;
+    return plan;
+  }
+  static LocalLog log(FaultyFiles& files) {
+    LocalLog log;
+    log.folder = "films";
+    log.files = &files;
+    log.compact_bytes = uint64_t{1} << 30U;
+    return log;
+  }
+  void on_its_thread(const std::function<void()>& what) {
+    bool done = false;
+    keeper_.call([&] {
+      what();
+      const std::lock_guard lock(mutex_);
+      done = true;
+      changed_.notify_all();
+    });
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return done; });
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<RecordId> durable_;
+  uint64_t records_ = 0;
+  FilmKeeper keeper_;
+};
+
+uint64_t size_of(FaultyFiles& files) {
+  uint64_t bytes = 0;
+  for (const std::string& path : files.paths()) bytes += files.bytes(path).size();
+  return bytes;
+}
+
+core::PixelRect tile(int number) { return {16 * number, 0, 16 * number + 16, 16}; }
+
+TEST(MakeRoom, FinishedFramesLeaveTheLogWhenRoomIsAskedFor) {
+  FaultyFiles files;
+  Kept kept(files);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+  ASSERT_TRUE(kept.keep(2, tile(0)));
+  const uint64_t before = size_of(files);
+  kept.finish(1);
+  kept.make_room();
+  EXPECT_LT(size_of(files), before / 2);
+  const uint64_t writes = files.operations();
+  kept.make_room();
+  EXPECT_EQ(files.operations(), writes) << "there is nothing to gain any more";
+}
+
+TEST(MakeRoom, AFullDiskIsRelievedByThem) {
+  FaultyFiles files;
+  Kept kept(files);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+  ASSERT_TRUE(kept.keep(2, tile(0)));
+  kept.finish(1);
+  const uint64_t used = size_of(files);
+  // Not enough for two tiles, but for what is still of use.
+  files.set_capacity(used + used / 3);
+  EXPECT_TRUE(kept.keep(2, {16, 0, 64, 16}));
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
