@@ -56,7 +56,9 @@ struct FarmClient::State {
   std::unique_ptr<v1::Farm::Stub> farm;
   Patience patience{0, 0};
   std::function<void(const std::string&)> tell;
-  bool told = false;  ///< that the coordinator is gone
+  bool told = false;    ///< that the coordinator is gone
+  Patience room{0, 0};  ///< with a coordinator that has no room, whatever else it answers
+  bool told_room = false;
 
   void reached() {
     patience.reached();
@@ -112,10 +114,11 @@ struct FarmClient::State {
   bool wait_after(const grpc::Status& status) {
     if (!farm::is_retryable(status)) return false;
     const double asked = farm::detail_of(status).retry_after_ms() * 1e-3;
-    const double wait = patience.next_wait(Patience::Clock::now(), asked);
+    const bool no_room = status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+    const double wait = (no_room ? room : patience).next_wait(Patience::Clock::now(), asked);
     if (wait < 0) return false;
-    if (patience.was_reached() && !told) {
-      told = true;
+    if (bool& known = no_room ? told_room : told; !known && (no_room || patience.was_reached())) {
+      known = true;
       const std::string text = fmt::format("{} ({}): trying for up to {}", options.peer.address,
                                            first_line(status.error_message()),
                                            core::format_duration(options.later_patience));
@@ -128,14 +131,16 @@ struct FarmClient::State {
   /// `once` until it succeeds, fails for good, or patience ends.
   Outcome persist(milliseconds timeout,
                   const std::function<grpc::Status(grpc::ClientContext&)>& once) {
-    while (true) {
+    for (bool refused = false;;) {
       grpc::ClientContext context;
       farm::prepare(context, token, timeout);
       const grpc::Status status = once(context);
       if (status.ok()) {
         reached();
+        if (refused) room.reached();
         return std::nullopt;
       }
+      refused = refused || status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
       if (!wait_after(status)) return failure(status);
     }
   }
@@ -186,6 +191,7 @@ Result<std::unique_ptr<FarmClient>> FarmClient::open(const ClientOptions& option
   state->assets = v1::Assets::NewStub(*channel);
   state->farm = v1::Farm::NewStub(*channel);
   state->patience = Patience(options.first_patience, options.later_patience);
+  state->room = Patience(options.later_patience, options.later_patience);
   return std::unique_ptr<FarmClient>(new FarmClient(std::move(state)));
 }
 
@@ -382,6 +388,7 @@ Outcome FarmClient::upload(const core::AssetRecord& file, const std::string& pat
   const grpc::Status status = writer->Finish();
   if (status.ok()) {
     state_->reached();
+    state_->room.reached();
     return std::nullopt;
   }
   Failure out = state_->failure(status);
