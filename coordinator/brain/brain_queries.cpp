@@ -162,7 +162,7 @@ grpc::Status Brain::kept_film(uint64_t id, int32_t frame, const FilmTaker& then)
   const auto stored = store_->job(id);
   if (!stored) return failed(stored.error());
   if (!*stored) return no_job(id);
-  const auto outputs = store_->outputs(id, 0);
+  const auto outputs = store_->outputs(id, 0, UINT32_MAX);
   if (!outputs) return failed(outputs.error());
   for (const StoredOutput& output : *outputs) {
     if (output.frame != frame || !output.path.ends_with(".film.exr")) continue;
