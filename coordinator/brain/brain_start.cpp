@@ -152,8 +152,6 @@ core::Status Brain::take_up(uint64_t id) {
   if (!*stored) return core::Error{"it is not there"};
   v1::JobSpec spec;
   if (!spec.ParseFromString((*stored)->spec)) return core::Error{"its record is damaged"};
-  auto desk = make_desk(**stored, spec, *assets_);
-  if (!desk) return desk.error();
   for (const v1::JobFile& file : spec.files()) {
     const auto digest = farm::digest_from_wire(file.sha256());
     if (digest && assets_->contains(core::to_hex(*digest), file.size())) continue;
@@ -161,6 +159,8 @@ core::Status Brain::take_up(uint64_t id) {
                        " is gone or damaged on the coordinator's disk: submit the job (or the "
                        "file with another) again, then 'retry' takes this one up"};
   }
+  auto desk = make_desk(**stored, spec, *assets_);
+  if (!desk) return desk.error();
   (*desk)->id = JobId{id};
   RestoredJob restored;
   const auto frames = store_->frames(id);
