@@ -46,6 +46,7 @@ TEST(Spine, ManyWorkersOfWhichSomeVanishGiveTheSameBits) {
 
 TEST(Spine, ARestartedCoordinatorTakesItsJobsUpAgain) {
   FarmWorld world;
+  world.options.unit_time = std::chrono::milliseconds(1);  // a batch: so there are many units
   world.start();
   const uint64_t job = world.submit(4);
   ScriptedWorker::Script script = world.script();

@@ -34,6 +34,7 @@ TEST(Steering, APausedJobRestsAlsoOverARestart) {
 
 TEST(Steering, ACancelledJobCanBeTakenUpAgainAndDeleted) {
   FarmWorld world;
+  world.options.unit_time = 1ms;  // a batch: so there are many units
   world.start();
   const uint64_t job = world.submit(3);
   v1::JobResponse now;
