@@ -222,7 +222,7 @@ struct Job {
   std::optional<EnvironmentDesc> environment;
   std::vector<OutputDesc> outputs;
   bool keep_films = false;  ///< each finished frame's film stays, as film_file() says
-  ValueChecks checks;  ///< what its animated values must keep to at every frame (check_frame)
+  ValueChecks checks;       ///< what its animated values must keep to at every frame (check_frame)
 
   /// The moment at which frame `frame`'s shutter is open for fraction `shutter_time` (0..1).
   JobTime time_of(int32_t frame, float shutter_time = 0.0F) const {

@@ -227,7 +227,8 @@ Outcome read(const std::string& text) {
     all << render_key(job, frame, assets.records()) << "\n";
   }
   if (job.film.crop) all << job.film.crop->x0 << " " << job.film.crop->y1 << " ";
-  all << job.name << " " << job.keep_films << " " << job.frames.first << " " << job.frames.last << " " << job.frames.step;
+  all << job.name << " " << job.keep_films << " " << job.frames.first << " " << job.frames.last
+      << " " << job.frames.step;
   for (const OutputDesc& output : job.outputs) {
     all << "\n"
         << output.file << " " << output.tone_map << " " << output.exposure << " " << output.half
