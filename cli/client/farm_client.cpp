@@ -326,21 +326,14 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
       stopped);
 }
 
-Outcome FarmClient::logs(const v1::LogsRequest& request,
+Outcome FarmClient::logs(v1::LogsRequest request,
                          const std::function<void(const v1::LogLine&)>& on_line) {
-  uint64_t told = 0;  // lines are only ever added: after a break those told already are skipped
-  uint64_t seen = 0;
   return state_->stream<v1::LogLine>(
       request.follow() ? milliseconds{0} : kSubmit,
-      [&](grpc::ClientContext& c) {
-        seen = 0;
-        return state_->jobs->Logs(&c, request);
-      },
+      [&](grpc::ClientContext& c) { return state_->jobs->Logs(&c, request); },
       [&](const v1::LogLine& line) {
-        if (seen++ >= told) {
-          on_line(line);
-          ++told;
-        }
+        on_line(line);
+        request.set_after(line.number());  // after a break those told already do not come again
         return true;
       },
       std::nullopt);

@@ -57,8 +57,7 @@ class FarmClient {
   /// The merged film of a frame as it is now: what it belongs to, and its bytes (film_codec.h).
   Outcome film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes);
 
-  Outcome logs(const v1::LogsRequest& request,
-               const std::function<void(const v1::LogLine&)>& on_line);
+  Outcome logs(v1::LogsRequest request, const std::function<void(const v1::LogLine&)>& on_line);
 
   Outcome find_missing(const v1::FindMissingRequest& request, v1::FindMissingResponse& response);
 

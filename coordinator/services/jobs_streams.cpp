@@ -140,7 +140,7 @@ class OutputList final : public Follower<v1::OutputFile> {
 class LogLines final : public Follower<v1::LogLine> {
  public:
   LogLines(grpc::CallbackServerContext& context, Brain& brain, const v1::LogsRequest& request)
-      : Follower(context, brain, request.job()), request_(request) {
+      : Follower(context, brain, request.job()), request_(request), seen_(request.after()) {
     frames_.insert(request.frames().begin(), request.frames().end());
   }
 
@@ -157,6 +157,7 @@ class LogLines final : public Follower<v1::LogLine> {
         message.set_frame(line.frame.value_or(0));
         message.set_worker(line.worker);
         message.set_text(line.text);
+        message.set_number(line.number);
         return Step::message;
       }
       if (last_) return Step::end;
@@ -179,7 +180,7 @@ class LogLines final : public Follower<v1::LogLine> {
   const v1::LogsRequest request_;
   std::set<int32_t> frames_;
   std::deque<StoredLine> ready_;
-  uint64_t seen_ = 0;  ///< the number of the last line
+  uint64_t seen_;  ///< the number of the last line
   bool last_ = false;
 };
 

@@ -25,7 +25,7 @@ struct Image {
   int height = 0;
   std::vector<std::string> channels;  ///< "R", "G", "B", "A", "Y", "albedo.R", ... in order
   std::vector<float> data;            ///< width * height * channels.size()
-  FramePlace placement;               ///< kept by EXR files (data and display window) only
+  FramePlace placement = {};          ///< kept by EXR files (data and display window) only
 
   int channel_count() const { return static_cast<int>(channels.size()); }
   size_t index(int x, int y, int c) const {

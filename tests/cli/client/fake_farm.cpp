@@ -171,7 +171,7 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
     return Status::OK;
   }
 
-  Status Logs(ServerContext* context, const v1::LogsRequest*,
+  Status Logs(ServerContext* context, const v1::LogsRequest* request,
               grpc::ServerWriter<v1::LogLine>* writer) override {
     const std::lock_guard lock(farm.mutex_);
     if (Status s = farm.enter(*context); !s.ok()) return s;
@@ -181,6 +181,8 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
       line.set_of_frame(true);
       line.set_frame(i);
       line.set_text("line " + std::to_string(i) + "\033[2J");
+      line.set_number(static_cast<uint64_t>(10 * i));
+      if (line.number() <= request->after()) continue;
       writer->Write(line);
       if (breaks()) return {StatusCode::UNAVAILABLE, "broken"};
     }
