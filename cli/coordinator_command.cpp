@@ -130,6 +130,10 @@ int main(int argc, char** argv) {
   app.add_option("--disk-reserve", arguments.brain.disk.reserve,
                  "bytes of the disk to keep free (default: a twentieth of it, at most 2G)")
       ->transform(CLI::AsSizeValue(false));
+  app.add_option("--film-memory", arguments.brain.film_memory,
+                 "most bytes that the film of a frame may take in memory; jobs of larger ones are "
+                 "refused (default: half of the machine's memory)")
+      ->transform(CLI::AsSizeValue(false));
   app.add_option("--asset-grace", arguments.asset_grace,
                  "seconds that files which no job needs any more stay after their last use")
       ->check(CLI::Range(0.0, 1e9))

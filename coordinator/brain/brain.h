@@ -27,6 +27,9 @@
 
 namespace hyades::coordinator {
 
+/// Half of the machine's memory, in bytes; all there can be where that is not known.
+uint64_t default_film_memory();
+
 struct BrainOptions {
   std::string folder;                            ///< where all state lies; made if it is missing
   std::string finisher;                          ///< the program hyades-film
@@ -42,6 +45,8 @@ struct BrainOptions {
   Duration asset_grace = std::chrono::hours(1);
   /// After a restart no new units are leased for this long, so that workers can say what they hold.
   Duration adoption_time = std::chrono::seconds(2);
+  /// Bytes that the film of a frame may take in memory; jobs of larger ones are refused.
+  uint64_t film_memory = default_film_memory();
   /// A job's film log is rewritten when it has grown by this much.
   uint64_t compact_bytes = LocalLog{}.compact_bytes;
 };
@@ -254,7 +259,7 @@ class Brain {
   const std::unique_ptr<farm::ContentStore> assets_;
   const uint64_t incarnation_;
   const int64_t started_ms_;
-  const TimePoint adopting_until_;
+  TimePoint adopting_until_;  ///< does not change once the threads have begun
   std::atomic<bool> stop_{false};
 
   mutable std::mutex mutex_;

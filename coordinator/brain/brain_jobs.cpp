@@ -18,6 +18,7 @@ constexpr size_t kLongestName = 200;
 constexpr int kMostPriority = 1'000'000;
 constexpr size_t kMostMissingTold = 100;  // an error travels in headers, which are short
 constexpr std::chrono::seconds kSubmitPatience{2};
+constexpr std::chrono::milliseconds kEndPatience{500};
 /// Of all open jobs together: what they have in memory.
 constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
@@ -71,7 +72,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   if (request.max_attempts() > 0) stored.max_attempts = request.max_attempts();
   if (request.frame_order() != 0) stored.frame_order = request.frame_order();
   stored.submitted_ms = wall_ms();
-  auto desk = make_desk(stored, request.spec(), *assets_);
+  auto desk = make_desk(stored, request.spec(), *assets_, options_.film_memory);
   if (!desk) return wrong(desk.error().message);
   if (!has_room_for(**desk)) {
     return overloaded("the open jobs have as many frames or files as there may be",
@@ -182,8 +183,13 @@ grpc::Status Brain::cancel(uint64_t id, v1::Job& now) {
     later = tell(JobCancelled{desk->id});
   }
   carry_out(later);
-  // The end is stored by the chores; to answer is to promise.
-  for (;;) {
+  // The end is stored by the chores; to answer is to promise. While it cannot be stored (the disk
+  // is full) this thread is let go, for there are few.
+  for (const auto give_up = std::chrono::steady_clock::now() + kEndPatience;;) {
+    if (std::chrono::steady_clock::now() > give_up) {
+      return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "the job's end is not stored yet",
+                               std::chrono::seconds(1));
+    }
     {
       const std::lock_guard lock(mutex_);
       if (stop_) return {grpc::StatusCode::UNAVAILABLE, "the coordinator stops"};

@@ -12,6 +12,7 @@
 #include "coordinator/finisher/finish_process.h"
 #include "core/base/failpoint.h"
 #include "core/base/fp_mode.h"
+#include "core/base/machine.h"
 #include "core/job/film_file.h"
 #include "farm/wire.h"
 
@@ -28,12 +29,14 @@ constexpr Duration kFinishAgain = std::chrono::seconds(1);
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
 constexpr uint64_t kMostAtOnce = 256;
 
-/// How many frames of a progressive job are refined together.
-uint32_t frames_at_once(const JobDesk& desk) {
-  const uint64_t film = static_cast<uint64_t>(desk.region.area()) * desk.layout.channels.size() *
-                        sizeof(core::Fixed128);
-  return static_cast<uint32_t>(
-      std::clamp<uint64_t>(kProgressiveBytes / std::max<uint64_t>(film, 1), 3, kMostAtOnce));
+/// How many frames of a job may be in work together: no more than half of `film_memory` holds, or
+/// one.
+uint32_t frames_at_once(const JobDesk& desk, uint64_t film_memory) {
+  const uint64_t film = std::max<uint64_t>(desk.film_bytes, 1);
+  const uint64_t wanted = desk.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE
+                              ? std::clamp<uint64_t>(kProgressiveBytes / film, 3, kMostAtOnce)
+                              : JobPlan{}.frames_in_flight;
+  return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
 }
 
 SchedulerOptions scheduler_options(const BrainOptions& options, uint64_t incarnation) {
@@ -47,6 +50,11 @@ SchedulerOptions scheduler_options(const BrainOptions& options, uint64_t incarna
 }
 
 }  // namespace
+
+uint64_t default_film_memory() {
+  const uint64_t memory = core::machine_memory();
+  return memory > 0 ? memory / 2 : UINT64_MAX;
+}
 
 core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
   std::error_code failed;
@@ -71,6 +79,10 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
     brain->quarantines_[kept.worker] = kept.reason;
   }
   if (auto taken = brain->take_up_jobs(); !taken) return taken.error();
+  // From here on workers can come: to take up many jobs may take longer than they are given.
+  if (*incarnation > 1) {
+    brain->adopting_until_ = std::chrono::steady_clock::now() + options.adoption_time;
+  }
   Brain& b = *brain;
   b.threads_.emplace_back([&b] { b.clock_loop(); });
   b.threads_.emplace_back([&b] { b.finish_loop(); });
@@ -87,8 +99,6 @@ Brain::Brain(BrainOptions options, std::unique_ptr<JobStore> store,
       assets_(std::move(assets)),
       incarnation_(incarnation),
       started_ms_(wall_ms()),
-      adopting_until_(incarnation > 1 ? std::chrono::steady_clock::now() + options_.adoption_time
-                                      : TimePoint{}),
       scheduler_(scheduler_options(options_, incarnation)),
       disk_(options_.disk) {}
 
@@ -159,7 +169,7 @@ core::Status Brain::take_up(uint64_t id) {
                        " is gone or damaged on the coordinator's disk: submit the job (or the "
                        "file with another) again, then 'retry' takes this one up"};
   }
-  auto desk = make_desk(**stored, spec, *assets_);
+  auto desk = make_desk(**stored, spec, *assets_, options_.film_memory);
   if (!desk) return desk.error();
   (*desk)->id = JobId{id};
   RestoredJob restored;
@@ -289,8 +299,8 @@ core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) 
   added.plan.needs = {desk.stored.tags, desk.stored.memory};
   if (desk.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE) {
     added.plan.order = FrameOrder::progressive;
-    added.plan.frames_in_flight = frames_at_once(desk);
   }
+  added.plan.frames_in_flight = frames_at_once(desk, options_.film_memory);
   added.restored = std::move(restored);
   std::vector<Action> later;
   {

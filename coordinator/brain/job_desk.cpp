@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/job/layers.h"
 #include "core/job/render_key.h"
@@ -210,7 +211,7 @@ core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec) {
 }
 
 core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const v1::JobSpec& spec,
-                                                 farm::ContentStore& assets) {
+                                                 farm::ContentStore& assets, uint64_t film_memory) {
   auto records = files_of(spec);
   if (!records) return records.error();
   farm::ManifestResolver files(*records, assets);
@@ -241,6 +242,15 @@ core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const 
   desk->region = core::render_window(job.film);
   const core::LayerSet layers = core::needed_layers(job);
   desk->layout = core::make_film_layout(layers);
+  desk->film_bytes = static_cast<uint64_t>(desk->region.area()) * desk->layout.channels.size() *
+                     sizeof(core::Fixed128);
+  if (desk->film_bytes > film_memory) {
+    return core::Error{fmt::format(
+        "film: {} x {} pixels of {} channels take {} of the coordinator's memory, which holds at "
+        "most {} of films (--film-memory); expected a smaller size, a crop, or fewer layers",
+        desk->region.width(), desk->region.height(), desk->layout.channels.size(),
+        core::format_bytes(desk->film_bytes), core::format_bytes(film_memory))};
+  }
   desk->samples_per_frame =
       static_cast<uint64_t>(desk->region.area()) * uint64_t{job.sampling.samples};
   desk->key = key_of(spec, layers);

@@ -53,6 +53,7 @@ struct JobDesk {
   std::vector<int32_t> numbers;  ///< of its frames, in order
   core::PixelRect region;
   core::FilmLayout layout;
+  uint64_t film_bytes = 0;  ///< that the film of one frame takes in memory
   uint64_t samples_per_frame = 0;
   Digest key{};  ///< JobBrief.key
 
@@ -91,9 +92,10 @@ int32_t tile_size_of(const core::PixelRect& region, uint32_t samples);
 /// A stored job as the wire shows it.
 v1::Job describe(const StoredJob& job);
 
-/// Reads what `stored` says out of `files`; an error holds every complaint about the document.
+/// Reads what `stored` says out of `files`; an error holds every complaint about the document, or
+/// says that the film of a frame takes more than `film_memory` bytes.
 core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const v1::JobSpec& spec,
-                                                 farm::ContentStore& assets);
+                                                 farm::ContentStore& assets, uint64_t film_memory);
 
 /// The records of a spec's files; an error where they are not what the wire allows.
 core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec);

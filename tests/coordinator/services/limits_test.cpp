@@ -157,6 +157,30 @@ TEST_F(Limits, OfAllOpenJobsTogether) {
   EXPECT_TRUE(world.jobs->Submit(world.context().get(), request, &response).ok());
 }
 
+TEST_F(Limits, OfTheMemoryThatAFilmTakes) {
+  std::string huge = FarmWorld::document(1);
+  huge.replace(huge.find("[80, 48]"), 8, "[16384, 16384]");
+  ASSERT_TRUE(world.upload(huge).ok());
+  v1::SubmitResponse response;
+  const auto submitted = [&](const std::string& text) {
+    return world.jobs->Submit(world.context().get(), FarmWorld::request(text), &response);
+  };
+  world.stop();
+  world.options.film_memory = uint64_t{1} << 20U;
+  world.start();
+  expect_refused(submitted(huge), StatusCode::INVALID_ARGUMENT, "16384 x 16384");
+  expect_refused(submitted(huge), StatusCode::INVALID_ARGUMENT, "--film-memory");
+  const uint64_t job = world.submit(3);
+
+  // A coordinator that has less takes up all but this job, instead of ending again and again.
+  world.stop();
+  world.options.film_memory = 1000;
+  world.start();
+  const v1::Job now = world.get(job).job();
+  EXPECT_EQ(now.state(), v1::JOB_STATE_FAILED);
+  EXPECT_NE(now.reason().find("80 x 48"), std::string::npos) << now.reason();
+}
+
 TEST_F(Limits, OfFramesThatAreNamedAgainAndAgain) {
   ASSERT_TRUE(world.upload(FarmWorld::document(1000)).ok());
   v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1000));
