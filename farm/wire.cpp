@@ -4,30 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
+
 namespace hyades::farm {
 namespace {
 
 constexpr int64_t kMostPixels = int64_t{1} << 24;
-
-/// How many bytes the first character of `text` has; 0 where it is not UTF-8 (RFC 3629, section 4).
-size_t utf8_length(std::string_view text) {
-  const auto at = [&](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : 0U; };
-  const auto tail = [&](size_t i) { return (at(i) & 0xC0U) == 0x80U; };
-  const uint32_t a = at(0);
-  if (a < 0x80) return 1;
-  if (a >= 0xC2 && a < 0xE0) return tail(1) ? 2 : 0;
-  if (a >= 0xE0 && a < 0xF0) {
-    const bool overlong = a == 0xE0 && at(1) < 0xA0;
-    const bool surrogate = a == 0xED && at(1) >= 0xA0;
-    return tail(1) && tail(2) && !overlong && !surrogate ? 3 : 0;
-  }
-  if (a >= 0xF0 && a < 0xF5) {
-    const bool overlong = a == 0xF0 && at(1) < 0x90;
-    const bool beyond = a == 0xF4 && at(1) >= 0x90;
-    return tail(1) && tail(2) && tail(3) && !overlong && !beyond ? 4 : 0;
-  }
-  return 0;
-}
 
 }  // namespace
 
@@ -135,7 +117,7 @@ core::Result<core::Sha256> digest_from_hex(const std::string& hex) {
 std::string wire_text(std::string_view text) {
   std::string clean;
   while (!text.empty()) {
-    size_t size = utf8_length(text);
+    size_t size = core::utf8_length(text);
     if (clean.size() + std::max<size_t>(size, 1) > kMaxTextBytes) break;
     if (size == 0) {
       clean += '?';

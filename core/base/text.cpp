@@ -109,4 +109,23 @@ std::string format_count(uint64_t count) {
   return digits;
 }
 
+size_t utf8_length(std::string_view text) {
+  const auto at = [&](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : 0U; };
+  const auto tail = [&](size_t i) { return (at(i) & 0xC0U) == 0x80U; };
+  const uint32_t a = at(0);
+  if (a < 0x80) return 1;
+  if (a >= 0xC2 && a < 0xE0) return tail(1) ? 2 : 0;
+  if (a >= 0xE0 && a < 0xF0) {
+    const bool overlong = a == 0xE0 && at(1) < 0xA0;
+    const bool surrogate = a == 0xED && at(1) >= 0xA0;
+    return tail(1) && tail(2) && !overlong && !surrogate ? 3 : 0;
+  }
+  if (a >= 0xF0 && a < 0xF5) {
+    const bool overlong = a == 0xF0 && at(1) < 0x90;
+    const bool beyond = a == 0xF4 && at(1) >= 0x90;
+    return tail(1) && tail(2) && tail(3) && !overlong && !beyond ? 4 : 0;
+  }
+  return 0;
+}
+
 }  // namespace hyades::core

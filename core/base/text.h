@@ -33,4 +33,8 @@ std::string format_bytes(uint64_t bytes);
 /// Thousands in groups: "1,234,567".
 std::string format_count(uint64_t count);
 
+/// How many bytes the first character of `text`, which is not empty, has; 0 where it is not UTF-8
+/// (RFC 3629, section 4: no overlong forms, no surrogates, nothing above U+10FFFF).
+size_t utf8_length(std::string_view text);
+
 }  // namespace hyades::core

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/base/text.h"
 #include "core/job/yaml_tree.h"
 
 namespace hyades::core {
@@ -13,31 +14,6 @@ namespace {
 /// yaml-cpp keeps every open bracket's tokens in memory until it is closed; comments and texts may
 /// hold a few unmatched ones ("[0, 1)"), so the limit is generous.
 constexpr int64_t kMaxOpenBrackets = 10'000;
-
-/// Bytes of the UTF-8 sequence at `text[i]`, 0 where it is malformed (RFC 3629: no overlong forms,
-/// no surrogates, nothing above U+10FFFF).
-size_t utf8_length(std::string_view text, size_t i) {
-  const auto byte = [&](size_t k) {
-    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0U;
-  };
-  const auto tail = [&](size_t k) { return (byte(k) & 0xC0U) == 0x80U; };
-  const unsigned lead = byte(0);
-  if (lead < 0x80U) return 1;
-  if (lead >= 0xC2U && lead <= 0xDFU) return tail(1) ? 2 : 0;
-  if (lead >= 0xE0U && lead <= 0xEFU) {
-    if (!tail(1) || !tail(2)) return 0;
-    if (lead == 0xE0U && byte(1) < 0xA0U) return 0;
-    if (lead == 0xEDU && byte(1) > 0x9FU) return 0;
-    return 3;
-  }
-  if (lead >= 0xF0U && lead <= 0xF4U) {
-    if (!tail(1) || !tail(2) || !tail(3)) return 0;
-    if (lead == 0xF0U && byte(1) < 0x90U) return 0;
-    if (lead == 0xF4U && byte(1) > 0x8FU) return 0;
-    return 4;
-  }
-  return 0;
-}
 
 bool is_hex(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
@@ -56,7 +32,7 @@ bool check_yaml_text(std::string_view text, const std::string& file, Diagnostics
   int column = 1;
   int64_t open_brackets = 0;
   for (size_t i = 0; i < text.size();) {
-    const size_t length = utf8_length(text, i);
+    const size_t length = utf8_length(text.substr(i));
     const auto byte = static_cast<unsigned char>(text[i]);
     if (length == 0) {
       diagnostics.add({file, line, column}, "not UTF-8 text; a job is a UTF-8 YAML file");
