@@ -7,13 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <random>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/random_id.h"
 
 namespace hyades::worker {
 namespace {
@@ -21,13 +20,6 @@ namespace {
 /// More workers than share one folder.
 constexpr int kMostWorkers = 4096;
 constexpr size_t kIdLength = 32;
-
-std::string random_id() {
-  std::random_device device;
-  std::array<uint32_t, 4> words{};
-  for (uint32_t& word : words) word = device();
-  return core::to_hex({reinterpret_cast<const uint8_t*>(words.data()), sizeof words});
-}
 
 bool is_id(const std::string& text) {
   return text.size() == kIdLength && std::all_of(text.begin(), text.end(), [](char c) {
@@ -61,7 +53,9 @@ core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std
     }
     std::string id = read_id(file.get(), host);
     if (id.empty()) {
-      id = random_id();
+      auto fresh = core::random_id();
+      if (!fresh) return fresh.error();
+      id = *fresh;
       const std::string text = id + " " + host + "\n";
       if (::ftruncate(file.get(), 0) != 0 ||
           ::pwrite(file.get(), text.data(), text.size(), 0) != std::ssize(text) ||

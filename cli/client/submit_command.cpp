@@ -1,8 +1,6 @@
 #include <pwd.h>
-#include <sys/random.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -15,7 +13,7 @@
 #include "cli/client/upload.h"
 #include "cli/client/watch.h"
 #include "cli/frame_range.h"
-#include "core/base/hash.h"
+#include "core/base/random_id.h"
 #include "farm/job_package.h"
 #include "farm/tags.h"
 #include "farm/wire.h"
@@ -84,15 +82,6 @@ std::string user_name() {
   return entry != nullptr ? entry->pw_name : fmt::format("user-{}", ::getuid());
 }
 
-/// Something that no other submission has.
-Result<std::string> random_key() {
-  std::array<uint8_t, 16> bytes{};
-  if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    return core::Error{"the system gives no random numbers"};
-  }
-  return core::to_hex(bytes);
-}
-
 Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Options& options) {
   v1::SubmitRequest request;
   v1::JobSpec& spec = *request.mutable_spec();
@@ -125,7 +114,7 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Op
   request.set_max_attempts(options.attempts);
   request.set_frame_order(options.order == "progressive" ? v1::FRAME_ORDER_PROGRESSIVE
                                                          : v1::FRAME_ORDER_SEQUENTIAL);
-  const auto key = random_key();
+  const auto key = core::random_id();
   if (!key) return key.error();
   request.set_idempotency_key(*key);
   return request;
