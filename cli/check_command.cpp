@@ -87,7 +87,7 @@ int check_command(int argc, char** argv) {
   const double samples =
       static_cast<double>(pixels) * job.sampling.samples * static_cast<double>(frames);
   const uint64_t batches = core::batch_count(job.sampling.samples);
-  const uint64_t film = pixels * renderer.layout().channels.size() * sizeof(core::Fixed128);
+  const uint64_t film = core::film_memory(renderer.layout(), window);
 
   std::printf("%s: good\n", path.c_str());
   std::printf("  job        %s\n", job.name.c_str());

@@ -14,8 +14,6 @@ constexpr Duration kMakeRoomEvery = std::chrono::seconds(1);
 constexpr int kWalkShare = 50;
 constexpr std::chrono::milliseconds kAskAgain{5000};
 
-uint64_t above(uint64_t a, uint64_t b) { return a > b ? a - b : 0; }
-
 }  // namespace
 
 /// Measures, and does what follows; without the lock. An error of the system changes nothing.
@@ -26,7 +24,7 @@ void Brain::mind_disk() {
   {
     const std::lock_guard lock(mutex_);
     // Between two walks what vanishes from the disk is taken for ours.
-    measured->used = walked_used_ + above(walked_free_, measured->free);
+    measured->used = walked_used_ + surplus(walked_free_, measured->free);
     disk_free_ = measured->free;
     const bool held = disk_.level() != DiskLevel::roomy;
     if (disk_.update(*measured)) {
@@ -75,7 +73,7 @@ grpc::Status Brain::admit(uint64_t bytes) {
                              disk_.reason() + "; nothing new is taken in until there is room",
                              kAskAgain);
   }
-  const uint64_t room = above(disk_.room(), assets_->expected());
+  const uint64_t room = surplus(disk_.room(), assets_->expected());
   if (bytes <= room) return grpc::Status::OK;
   return farm::retry_later(
       grpc::StatusCode::RESOURCE_EXHAUSTED,
@@ -87,8 +85,7 @@ grpc::Status Brain::admit(uint64_t bytes) {
 /// Whether the disk may be why a frame could not be finished; without the lock.
 bool Brain::disk_is_short_for(const core::Film& film) {
   mind_disk();
-  const uint64_t memory = static_cast<uint64_t>(film.window().area()) *
-                          film.layout().channels.size() * sizeof(core::Fixed128);
+  const uint64_t memory = core::film_memory(film.layout(), film.window());
   const std::lock_guard lock(mutex_);
   // The film is written for the finisher, and its outputs are hardly larger.
   return disk_.level() != DiskLevel::roomy || disk_free_ < 2 * memory;

@@ -280,8 +280,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
   }
   const auto area = static_cast<uint64_t>(unit->tile.area());
   const std::span<const std::byte> bytes = std::as_bytes(std::span(result.film()));
-  auto film = core::decode_film(
-      bytes, {area * layout.channels.size() * sizeof(core::Fixed128) + kFilmOverhead});
+  auto film = core::decode_film(bytes, {core::film_memory(layout, unit->tile) + kFilmOverhead});
   if (!film) {
     return reject(worker, link, result, Rejected::REASON_DAMAGED, film.error().message, 0);
   }

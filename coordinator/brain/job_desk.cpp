@@ -242,8 +242,7 @@ core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const 
   desk->region = core::render_window(job.film);
   const core::LayerSet layers = core::needed_layers(job);
   desk->layout = core::make_film_layout(layers);
-  desk->film_bytes = static_cast<uint64_t>(desk->region.area()) * desk->layout.channels.size() *
-                     sizeof(core::Fixed128);
+  desk->film_bytes = core::film_memory(desk->layout, desk->region);
   if (desk->film_bytes > film_memory) {
     return core::Error{fmt::format(
         "film: {} x {} pixels of {} channels take {} of the coordinator's memory, which holds at "

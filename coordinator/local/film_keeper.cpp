@@ -27,8 +27,7 @@ constexpr const char* kLogKey = "hyades render, films by frame";
 TimePoint now() { return std::chrono::steady_clock::now(); }
 
 uint64_t memory_of(const core::Film& film) {
-  return static_cast<uint64_t>(film.window().area()) * film.layout().channels.size() *
-         sizeof(core::Fixed128);
+  return core::film_memory(film.layout(), film.window());
 }
 
 }  // namespace

@@ -24,8 +24,6 @@ constexpr uint64_t kDiskUnit = 512;  // of st_blocks
 
 uint64_t default_reserve(uint64_t size) { return std::min(size / kShareKept, kMostKept); }
 
-uint64_t above(uint64_t a, uint64_t b) { return a > b ? a - b : 0; }
-
 }  // namespace
 
 void DiskRoom::Tank::fill(uint64_t size_now, uint64_t free_now, uint64_t reserve_now) {
@@ -42,14 +40,15 @@ void DiskRoom::Tank::fill(uint64_t size_now, uint64_t free_now, uint64_t reserve
 }
 
 uint64_t DiskRoom::Tank::room() const {
-  return level == DiskLevel::roomy ? above(free, reserve) : 0;
+  return level == DiskLevel::roomy ? surplus(free, reserve) : 0;
 }
 
 bool DiskRoom::update(const DiskMeasure& now) {
   const DiskLevel before = level();
   disk_.fill(now.size, now.free, limits_.reserve.value_or(default_reserve(now.size)));
   if (limits_.budget > 0) {
-    budget_.fill(limits_.budget, above(limits_.budget, now.used), default_reserve(limits_.budget));
+    budget_.fill(limits_.budget, surplus(limits_.budget, now.used),
+                 default_reserve(limits_.budget));
   }
   return level() != before;
 }

@@ -8,6 +8,9 @@
 
 namespace hyades::coordinator {
 
+/// a - b; 0 where b is larger.
+constexpr uint64_t surplus(uint64_t a, uint64_t b) { return a > b ? a - b : 0; }
+
 /// What is known of the disk under a folder; bytes.
 struct DiskMeasure {
   uint64_t size = 0;  ///< of the file system

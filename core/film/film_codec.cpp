@@ -30,10 +30,6 @@ enum class ChannelForm : uint8_t {
   fixed = 2,     ///< 16 byte planes
 };
 
-uint64_t film_bytes(const FilmLayout& layout, const PixelRect& window) {
-  return static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
-}
-
 uint16_t layer_bits(const LayerSet& layers) {
   return static_cast<uint16_t>((layers.depth ? 1 : 0) | (layers.albedo ? 2 : 0) |
                                (layers.normal ? 4 : 0));
@@ -142,7 +138,7 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
 
   const Result<PixelRect> window = read_window(in);
   if (!window) return window.error();
-  const uint64_t memory = film_bytes(layout, *window);
+  const uint64_t memory = film_memory(layout, *window);
   if (memory > limits.max_bytes) {
     return Error{fmt::format("it is {} x {} pixels and would take {} MB; the limit is {} MB",
                              window->width(), window->height(), memory >> 20U,
@@ -183,7 +179,7 @@ std::vector<std::byte> encode_film(const Film& film) {
   }
   // Large and nearly empty films are padded, so that a reader can tell them from bytes that claim
   // more than they hold.
-  const uint64_t memory = film_bytes(film.layout(), film.window());
+  const uint64_t memory = film_memory(film.layout(), film.window());
   if (memory > kFreeBytes) {
     const uint64_t least = (memory - kFreeBytes) / kMaxExpansion + 1;
     if (out.size() < least) out.resize(static_cast<size_t>(least));

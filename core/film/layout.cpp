@@ -1,5 +1,7 @@
 #include "core/film/layout.h"
 
+#include "core/film/fixed128.h"
+
 namespace hyades::core {
 
 FilmLayout make_film_layout(const LayerSet& layers) {
@@ -20,6 +22,10 @@ FilmLayout make_film_layout(const LayerSet& layers) {
   layout.moment2 = append("moment2.", {"R", "G", "B"}, MergeRule::sum);
   layout.samples = append("samples.", {"N"}, MergeRule::sum);
   return layout;
+}
+
+uint64_t film_memory(const FilmLayout& layout, const PixelRect& window) {
+  return static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
 }
 
 }  // namespace hyades::core

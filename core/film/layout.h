@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/rect.h"
+
 namespace hyades::core {
 
 /// How a channel of two films becomes one.
@@ -43,5 +45,8 @@ struct FilmLayout {
 };
 
 FilmLayout make_film_layout(const LayerSet& layers);
+
+/// Bytes that the sums of a film take in memory.
+uint64_t film_memory(const FilmLayout& layout, const PixelRect& window);
 
 }  // namespace hyades::core

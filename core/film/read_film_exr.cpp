@@ -87,9 +87,7 @@ Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
   FilmLayout layout = make_film_layout(header->layers);
   Result<std::vector<WordChannel>> words = present_words(part_header.channels(), layout);
   if (!words) return words.error();
-  const uint64_t memory =
-      static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
-  if (memory / kMaxExpansion > bytes.size()) {
+  if (film_memory(layout, window) / kMaxExpansion > bytes.size()) {
     return Error{fmt::format("it claims {} x {} pixels, which {} bytes cannot hold", window.width(),
                              window.height(), bytes.size())};
   }
