@@ -128,9 +128,7 @@ void Brain::persist(const Persist& persist, Delivery* delivery, std::vector<Acti
     desk->keeper->void_tile(persist.id, voided->frame, voided->tile);
   } else if (const auto* again = std::get_if<FrameRestartedRecord>(&persist.record)) {
     chore([this, job, id = persist.id, frame = again->frame] {
-      while (!store_->forget_frame(static_cast<uint64_t>(job), frame) && !stop_) {
-        std::this_thread::sleep_for(std::chrono::seconds(1));
-      }
+      store_patiently([&] { return store_->forget_frame(static_cast<uint64_t>(job), frame); });
       const std::lock_guard lock(mutex_);
       if (JobDesk* still = desk_of(job)) still->keeper->begin_again(id, frame);
     });
@@ -354,9 +352,7 @@ void Brain::job_ended(const JobEnded& ended) {
     const std::vector<StoredLine> lines = over->take_lines();
     held.unlock();
     (void)store_->add_lines(job.id, lines);
-    while (!store_->update_job(job) && !stop_) {
-      std::this_thread::sleep_for(std::chrono::seconds(1));
-    }
+    store_patiently([&] { return store_->update_job(job); });
     held.lock();
     auto node = desks_.extract(id);
     for (auto& [number, watch] : watches_) {

@@ -175,6 +175,7 @@ class Brain {
   Brain(BrainOptions options, std::unique_ptr<JobStore> store,
         std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation);
   bool has_room_for(const JobDesk& job) const;
+  bool is_here(const v1::JobFile& file);
   grpc::Status files_are_here(const v1::JobSpec& spec);
   grpc::Status set_paused(uint64_t id, bool paused, v1::Job& now);
   grpc::Status change(uint64_t id, v1::Job& now,
@@ -251,6 +252,7 @@ class Brain {
   void set_quarantine(Seat& seat, const std::string& reason);
   void end_quarantine(Seat& seat);
   void store_quarantine(std::function<core::Status()> what);
+  void store_patiently(const std::function<core::Status()>& what);
   uint64_t samples_of(const JobDesk& desk, const core::PixelRect& tile,
                       const core::BatchRange& batches) const;
 

@@ -109,9 +109,7 @@ void Brain::end_quarantine(Seat& seat) {
 }
 
 void Brain::store_quarantine(std::function<core::Status()> what) {
-  chore([this, what = std::move(what)] {
-    while (!what() && !stop_) std::this_thread::sleep_for(std::chrono::seconds(1));
-  });
+  chore([this, what = std::move(what)] { store_patiently(what); });
 }
 
 grpc::Status Brain::quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now) {

@@ -116,13 +116,17 @@ bool Brain::has_room_for(const JobDesk& job) const {
   return frames <= kMostOpenFrames && bytes <= kMostOpenSpecBytes;
 }
 
+bool Brain::is_here(const v1::JobFile& file) {
+  const auto digest = farm::digest_from_wire(file.sha256());
+  return digest && assets_->contains(core::to_hex(*digest), file.size());
+}
+
 /// FAILED_PRECONDITION, naming those files of a job (which files_of has accepted) that are not.
 grpc::Status Brain::files_are_here(const v1::JobSpec& spec) {
   v1::ErrorDetail missing;
   size_t count = 0;
   for (const v1::JobFile& file : spec.files()) {
-    const auto digest = farm::digest_from_wire(file.sha256());
-    if (assets_->contains(core::to_hex(*digest), file.size())) continue;
+    if (is_here(file)) continue;
     if (++count <= kMostMissingTold) missing.add_missing(file.sha256());
   }
   if (count == 0) return grpc::Status::OK;

@@ -163,8 +163,7 @@ core::Status Brain::take_up(uint64_t id) {
   v1::JobSpec spec;
   if (!spec.ParseFromString((*stored)->spec)) return core::Error{"its record is damaged"};
   for (const v1::JobFile& file : spec.files()) {
-    const auto digest = farm::digest_from_wire(file.sha256());
-    if (digest && assets_->contains(core::to_hex(*digest), file.size())) continue;
+    if (is_here(file)) continue;
     return core::Error{file.path() +
                        " is gone or damaged on the coordinator's disk: submit the job (or the "
                        "file with another) again, then 'retry' takes this one up"};
@@ -315,6 +314,12 @@ core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) 
   }
   carry_out(later);
   return {};
+}
+
+/// Tries again until it is stored, or the coordinator ends; for the chores' thread, without the
+/// lock.
+void Brain::store_patiently(const std::function<core::Status()>& what) {
+  while (!what() && !stop_) std::this_thread::sleep_for(std::chrono::seconds(1));
 }
 
 void Brain::chore(std::function<void()> what) {

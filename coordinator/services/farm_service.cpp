@@ -21,31 +21,29 @@ grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* as
       });
 }
 
-grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context, const Bytes* asked,
-                                                   Bytes* said) {
+grpc::ServerUnaryReactor* FarmService::steer(Context* context, const Bytes* asked, Bytes* said,
+                                             grpc::Status (Brain::*what)(const v1::WorkerRequest&,
+                                                                         v1::Worker&)) {
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
       admission_, context, asked, said,
       [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
-        return brain_.drain_worker(request, *response.mutable_worker());
+        return (brain_.*what)(request, *response.mutable_worker());
       });
+}
+
+grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context, const Bytes* asked,
+                                                   Bytes* said) {
+  return steer(context, asked, said, &Brain::drain_worker);
 }
 
 grpc::ServerUnaryReactor* FarmService::QuarantineWorker(Context* context, const Bytes* asked,
                                                         Bytes* said) {
-  return answer<v1::WorkerRequest, v1::WorkerResponse>(
-      admission_, context, asked, said,
-      [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
-        return brain_.quarantine_worker(request, *response.mutable_worker());
-      });
+  return steer(context, asked, said, &Brain::quarantine_worker);
 }
 
 grpc::ServerUnaryReactor* FarmService::ReleaseWorker(Context* context, const Bytes* asked,
                                                      Bytes* said) {
-  return answer<v1::WorkerRequest, v1::WorkerResponse>(
-      admission_, context, asked, said,
-      [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
-        return brain_.release_worker(request, *response.mutable_worker());
-      });
+  return steer(context, asked, said, &Brain::release_worker);
 }
 
 }  // namespace hyades::coordinator

@@ -30,36 +30,29 @@ grpc::ServerUnaryReactor* JobsService::Get(Context* context, const Bytes* asked,
       });
 }
 
-grpc::ServerUnaryReactor* JobsService::Pause(Context* context, const Bytes* asked, Bytes* said) {
+grpc::ServerUnaryReactor* JobsService::steer(Context* context, const Bytes* asked, Bytes* said,
+                                             grpc::Status (Brain::*what)(uint64_t, v1::Job&)) {
   return answer<v1::JobRequest, v1::JobResponse>(
       admission_, context, asked, said,
       [&](const v1::JobRequest& request, v1::JobResponse& response) {
-        return brain_.pause(request.job(), *response.mutable_job());
+        return (brain_.*what)(request.job(), *response.mutable_job());
       });
+}
+
+grpc::ServerUnaryReactor* JobsService::Pause(Context* context, const Bytes* asked, Bytes* said) {
+  return steer(context, asked, said, &Brain::pause);
 }
 
 grpc::ServerUnaryReactor* JobsService::Resume(Context* context, const Bytes* asked, Bytes* said) {
-  return answer<v1::JobRequest, v1::JobResponse>(
-      admission_, context, asked, said,
-      [&](const v1::JobRequest& request, v1::JobResponse& response) {
-        return brain_.resume(request.job(), *response.mutable_job());
-      });
+  return steer(context, asked, said, &Brain::resume);
 }
 
 grpc::ServerUnaryReactor* JobsService::Cancel(Context* context, const Bytes* asked, Bytes* said) {
-  return answer<v1::JobRequest, v1::JobResponse>(
-      admission_, context, asked, said,
-      [&](const v1::JobRequest& request, v1::JobResponse& response) {
-        return brain_.cancel(request.job(), *response.mutable_job());
-      });
+  return steer(context, asked, said, &Brain::cancel);
 }
 
 grpc::ServerUnaryReactor* JobsService::Retry(Context* context, const Bytes* asked, Bytes* said) {
-  return answer<v1::JobRequest, v1::JobResponse>(
-      admission_, context, asked, said,
-      [&](const v1::JobRequest& request, v1::JobResponse& response) {
-        return brain_.retry(request.job(), *response.mutable_job());
-      });
+  return steer(context, asked, said, &Brain::retry);
 }
 
 grpc::ServerUnaryReactor* JobsService::SetPriority(Context* context, const Bytes* asked,

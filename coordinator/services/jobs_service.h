@@ -42,6 +42,10 @@ class JobsService final : public RawJobs {
   grpc::ServerWriteReactor<Bytes>* Logs(Context* context, const Bytes* asked) override;
 
  private:
+  /// What a method does that takes a job and answers with how it is now.
+  grpc::ServerUnaryReactor* steer(Context* context, const Bytes* asked, Bytes* said,
+                                  grpc::Status (Brain::*what)(uint64_t, v1::Job&));
+
   Brain& brain_;
   const Admission& admission_;
   std::atomic<int> films_{0};  ///< on their way
