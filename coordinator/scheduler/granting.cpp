@@ -30,19 +30,12 @@ bool Scheduler::grant(WorkerId id, Worker& worker) {
     for (const auto& [serial, job] : shares_[index].ready) {
       const auto slot = find_frame(*job, id, worker);
       if (!slot) continue;
-      Place place{job, *slot};
-      const bool here = std::find(worker.scenes.begin(), worker.scenes.end(), place.scene()) !=
+      const Place in_turn{job, *slot};
+      const bool here = std::find(worker.scenes.begin(), worker.scenes.end(), in_turn.scene()) !=
                         worker.scenes.end();
-      if (!here) {
-        if (const auto loaded = find_loaded(id, worker, *job)) {
-          place = *loaded;
-        } else {
-          worker.in_turn = now_;
-        }
-      } else {
-        worker.in_turn = now_;
-      }
-      return grant_from(place, id, worker);
+      const auto loaded = here ? std::nullopt : find_loaded(id, worker, *job);
+      if (!loaded) worker.in_turn = now_;
+      return grant_from(loaded.value_or(in_turn), id, worker);
     }
   }
   return false;
@@ -70,7 +63,7 @@ bool Scheduler::has_work_for(const JobState& job, const FrameSlot& slot, WorkerI
 /// The frame of which the worker gets units next, in the job's own order.
 std::optional<uint32_t> Scheduler::find_frame(const JobState& job, WorkerId id,
                                               const Worker& worker) const {
-  if (!may_join(job, id) || !suits(job, worker)) return std::nullopt;
+  if (!may_join(job, id, worker)) return std::nullopt;
   std::optional<uint32_t> best;
   uint32_t best_pass = 0;
   for (const uint32_t index : job.in_flight) {
@@ -97,7 +90,7 @@ std::optional<Scheduler::Place> Scheduler::find_loaded(WorkerId id, const Worker
     if (job == nullptr || !job->ready || job->plan.order != FrameOrder::sequential) continue;
     const Share& share = shares_[job->share];
     if (share.priority != turn.priority || share.running > most) continue;
-    if (!may_join(*job, id) || !suits(*job, worker)) continue;
+    if (!may_join(*job, id, worker)) continue;
     const FrameSlot* slot = job->slot(scene->second);
     if (!has_work_for(*job, *slot, id, worker)) continue;
     return Place{job, static_cast<uint32_t>(slot - job->slots.data())};
@@ -159,7 +152,7 @@ bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
     if (assignment == nullptr || assignment->holders.front().worker == id) continue;
     JobState& job = *find_job(candidate.job);
     if (job.paused || job.slots[candidate.slot].worker_class != worker.worker_class) continue;
-    if (!may_join(job, id) || !suits(job, worker)) continue;
+    if (!may_join(job, id, worker)) continue;
     assignment->copied = true;
     assignment->holders.push_back({id, {options_.incarnation, next_lease_}});
     --worker.wanted;

@@ -61,10 +61,11 @@ void Scheduler::leave_job(JobState& job, WorkerId worker) {
   if (job.plan.max_workers > 0) work_appeared_ = true;
 }
 
-/// Whether the job's limit leaves room for this worker.
-bool Scheduler::may_join(const JobState& job, WorkerId worker) const {
-  return job.plan.max_workers == 0 || job.workers.size() < job.plan.max_workers ||
-         job.workers.contains(worker);
+/// Whether the worker has what the job asks for, and the job's limit leaves room for it.
+bool Scheduler::may_join(const JobState& job, WorkerId id, const Worker& worker) const {
+  const bool room = job.plan.max_workers == 0 || job.workers.size() < job.plan.max_workers ||
+                    job.workers.contains(id);
+  return room && suits(job, worker);
 }
 
 /// The unit is no longer out under this lease; its books are the caller's business.

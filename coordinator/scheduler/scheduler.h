@@ -185,7 +185,7 @@ class Scheduler {
   void release_lease(uint64_t number, bool revoke);
   void drop_from_lease(const LeaseId& id, const Extent& e);
   void leave_job(JobState& job, WorkerId worker);
-  bool may_join(const JobState& job, WorkerId worker) const;
+  bool may_join(const JobState& job, WorkerId id, const Worker& worker) const;
 
   // results.cpp: films, and what is durable.
   void on(const ResultArrived& e);

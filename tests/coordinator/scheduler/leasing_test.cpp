@@ -20,10 +20,7 @@ TEST(Scheduler, AWaitingWorkerIsServedWhenWorkAppears) {
 
 TEST(Scheduler, LostWorkersUnitsGoToOthers) {
   Bench b;
-  b.join(kAnna);
-  b.join(kBert);
-  b.add(small_plan({1}, 1));
-  b.tell(FrameOpened{kJob, 1});
+  b.begin(small_plan({1}, 1));
   const Lease lost = b.ask(kAnna, 2);
   b.tell(WorkRequested{kBert, 2});
   EXPECT_TRUE(b.all<Lease>().empty());
@@ -36,10 +33,7 @@ TEST(Scheduler, ALeaseThatIsNotRenewedRunsOut) {
   options.lease_time = seconds(10);
   options.copy_after = Duration{0};
   Bench b(options);
-  b.join(kAnna);
-  b.join(kBert);
-  b.add(small_plan({1}, 1));
-  b.tell(FrameOpened{kJob, 1});
+  b.begin(small_plan({1}, 1));
   const Lease kept = b.ask(kAnna);
   const Lease forgotten = b.ask(kAnna);
   b.tell(WorkRequested{kBert, 1});
@@ -123,10 +117,7 @@ TEST(Scheduler, NothingIsLeasedWhileLeasingIsHeld) {
   SchedulerOptions options;
   options.copy_after = seconds(5);
   Bench b(options);
-  b.join(kAnna);
-  b.join(kBert);
-  b.add(small_plan({1}, 4));
-  b.tell(FrameOpened{kJob, 1});
+  b.begin(small_plan({1}, 4));
   const Lease out = b.ask(kAnna);
   b.tell(LeasingHeld{true});
   b.tell(WorkRequested{kBert, 2});

@@ -196,10 +196,7 @@ TEST(Preference, AWorkerThatFailsWhatOthersCanRenderIsQuarantined) {
   SchedulerOptions options;
   options.max_strikes = 3;
   Bench b(options);
-  b.join(kAnna);
-  b.join(kBert);
-  b.add(plan_of("eve", 100));
-  b.tell(FrameOpened{kJob, 1});
+  b.begin(plan_of("eve", 100));
   for (int i = 0; i < 3; ++i) {
     const Lease failed = b.ask(kAnna);
     b.tell(UnitFailed{kAnna, failed.lease, kJob, failed.units[0], "bad memory"});
@@ -221,10 +218,7 @@ TEST(Preference, AUnitOfItsOwnEndsAWorkersStrikes) {
   SchedulerOptions options;
   options.max_strikes = 3;
   Bench b(options);
-  b.join(kAnna);
-  b.join(kBert);
-  b.add(plan_of("eve", 100));
-  b.tell(FrameOpened{kJob, 1});
+  b.begin(plan_of("eve", 100));
   for (int i = 0; i < 6; ++i) {
     const Lease failed = b.ask(kAnna);
     b.tell(UnitFailed{kAnna, failed.lease, kJob, failed.units[0], "now and then"});

@@ -32,10 +32,7 @@ TEST(Scheduler, AcknowledgesOnlyWhatIsDurable) {
 
 TEST(Scheduler, ALateResultCountsOnceAndStopsItsSuccessor) {
   Bench b;
-  b.join(kAnna);
-  b.join(kBert);
-  b.add(small_plan({1}, 1));
-  b.tell(FrameOpened{kJob, 1});
+  b.begin(small_plan({1}, 1));
   const Lease old = b.ask(kAnna);
   b.tell(WorkerLost{kAnna});
   b.join(kAnna);
@@ -76,10 +73,7 @@ TEST(Scheduler, OverlappingExtentsAreDroppedAndTheRestIsLeasedAgain) {
 
 TEST(Scheduler, TwoRenderingsThatDifferAreReported) {
   Bench b;
-  b.join(kAnna);
-  b.join(kBert);
-  b.add(small_plan());
-  b.tell(FrameOpened{kJob, 1});
+  b.begin(small_plan());
   const Lease lease = b.ask(kAnna);
   b.deliver_durably(lease);
   Lease stranger = lease;

@@ -51,6 +51,13 @@ class SchedulerBench {
   void join(WorkerId worker, std::vector<UnitInHand> in_hand = {}) {
     tell(WorkerJoined{worker, 1, "class", std::move(in_hand)});
   }
+  /// Anna and Bert are there, and the job's frame 1 is open.
+  void begin(JobPlan plan) {
+    join(kAnna);
+    join(kBert);
+    add(std::move(plan));
+    tell(FrameOpened{kJob, 1});
+  }
   Lease ask(WorkerId worker, uint32_t units = 1) {
     tell(WorkRequested{worker, units});
     return only<Lease>();
