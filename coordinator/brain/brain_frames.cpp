@@ -1,0 +1,209 @@
+// What becomes of frames, and of jobs in the end.
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+
+/// On the keeper's thread, as the film is at hand there.
+void Brain::merged(JobId job, const Merge& merge) {
+  FilmKeeper* keeper = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    if (JobDesk* desk = desk_of(job)) keeper = desk->keeper.get();
+  }
+  if (keeper == nullptr) return;
+  const core::Status status = keeper->merge(merge.record);
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  if (!status) {
+    // Checked when it arrived: this is a bug, and better a stuck frame than a wrong one.
+    note(*desk, v1::LOG_LEVEL_ERROR, merge.unit.frame, {},
+         "a film cannot be merged: " + status.error().message);
+    return;
+  }
+  const uint64_t samples = samples_of(*desk, merge.unit.tile, merge.unit.batches);
+  desk->touch(merge.unit.frame).samples_done += samples;
+  desk->samples_done += samples;
+}
+
+uint64_t Brain::samples_of(const JobDesk& desk, const core::PixelRect& tile,
+                           const core::BatchRange& batches) const {
+  return core::samples_in(tile, batches, desk.read.job.sampling.samples);
+}
+
+/// The keeper has taken the tile out of the film.
+void Brain::tile_voided(const TileVoided& voided) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(voided.job);
+  if (desk == nullptr) return;
+  uint64_t samples = 0;
+  for (const core::BatchRange& batches : voided.batches) {
+    samples += samples_of(*desk, voided.tile, batches);
+  }
+  FrameNote& frame = desk->touch(voided.frame);
+  samples = std::min(samples, frame.samples_done);
+  frame.samples_done -= samples;
+  desk->samples_done -= samples;
+  note(*desk, v1::LOG_LEVEL_WARNING, voided.frame, {},
+       fmt::format("tile {},{} is rendered again: a quarantined worker had a part in it",
+                   voided.tile.x0, voided.tile.y0));
+}
+
+/// What the finisher has made is of a film in doubt.
+void Brain::frame_reopened(JobId job, int32_t frame) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  desk->complete.erase(frame);
+  desk->touch(frame).state = v1::FRAME_STATE_RENDERING;
+  note(*desk, v1::LOG_LEVEL_WARNING, frame, {},
+       "is not done: a unit that was rendered differently twice is rendered once more");
+  // Should this be lost, or come after the frame is done again, it is rendered again or stays.
+  chore([this, id = static_cast<uint64_t>(job), frame] { (void)store_->forget_frame(id, frame); });
+}
+
+/// On the keeper's thread, unless the film is among the complete ones already.
+void Brain::finish_frame(const FinishFrame& finish) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(finish.job);
+  if (desk == nullptr) return;
+  auto& film = desk->complete[finish.frame];
+  if (!film) film = desk->keeper->film(finish.frame);
+  desk->touch(finish.frame).state = v1::FRAME_STATE_FINISHING;
+  to_finish_.push_back({finish.job, finish.frame, film});
+  finish_wake_.notify_one();
+}
+
+void Brain::frame_done(JobId job, int32_t frame) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  desk->keeper->forget(frame, true);
+  desk->complete.erase(frame);
+  desk->touch(frame).state = v1::FRAME_STATE_DONE;
+  ++desk->stored.frames_done;
+  note(*desk, v1::LOG_LEVEL_INFO, frame, {}, "done");
+}
+
+void Brain::frame_failed(JobId job, int32_t frame, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  desk->keeper->forget(frame, false);
+  desk->complete.erase(frame);
+  FrameNote& noted = desk->touch(frame);
+  noted.state = v1::FRAME_STATE_FAILED;
+  noted.reason = farm::wire_text(reason);
+  desk->samples_done -= std::exchange(noted.samples_done, 0);
+  ++desk->stored.frames_failed;
+  note(*desk, v1::LOG_LEVEL_ERROR, frame, {}, "failed: " + reason);
+}
+
+void Brain::frame_restarted(JobId job, int32_t frame) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr) return;
+  FrameNote& noted = desk->touch(frame);
+  if (noted.state == v1::FRAME_STATE_FAILED) --desk->stored.frames_failed;
+  noted.state = v1::FRAME_STATE_WAITING;
+  noted.reason.clear();
+  noted.worker_class.clear();
+  ++noted.restarts;
+  desk->samples_done -= std::exchange(noted.samples_done, 0);
+  note(*desk, v1::LOG_LEVEL_WARNING, frame, {}, "is rendered again from its beginning");
+}
+
+/// The job leaves memory once its end is stored.
+void Brain::job_ended(const JobEnded& ended) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(ended.job);
+  if (desk == nullptr || desk->ending) return;
+  desk->ending = true;
+  StoredJob& stored = desk->stored;
+  stored.state = ended.cancelled    ? StoredState::cancelled
+                 : ended.failed > 0 ? StoredState::failed
+                                    : StoredState::done;
+  stored.frames_done = ended.done;
+  stored.frames_failed = ended.failed;
+  stored.ended_ms = wall_ms();
+  stored.reason.clear();
+  for (const auto& [number, frame] : desk->frames) {
+    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
+      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
+    }
+  }
+  note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
+       fmt::format("ended: {} frames done, {} failed{}", ended.done, ended.failed,
+                   ended.cancelled ? ", cancelled" : ""));
+  for (auto& [id, seat] : seats_) {
+    if (seat.briefed.erase(ended.job) == 0) continue;
+    v1::CoordinatorMessage message;
+    message.mutable_over()->set_job(static_cast<uint64_t>(ended.job));
+    send(id, std::move(message));
+  }
+  chore([this, id = ended.job] {
+    std::unique_lock held(mutex_);
+    JobDesk* over = desk_of(id);
+    const StoredJob job = over->stored;
+    const std::vector<StoredLine> lines = over->take_lines();
+    held.unlock();
+    (void)store_->add_lines(job.id, lines);
+    store_patiently([&] { return store_->update_job(job); });
+    held.lock();
+    auto node = desks_.extract(id);
+    for (auto& [number, watch] : watches_) {
+      if (watch.job == job.id) chore(watch.poke);
+    }
+    held.unlock();
+    node = {};  // waits for the keeper's thread
+    // Films of frames that failed stay, should they be taken up again.
+    std::error_code ignored;
+    if (job.state == StoredState::done) {
+      std::filesystem::remove_all(films_folder(job.id), ignored);
+    }
+  });
+}
+
+void Brain::persisted(JobId job, RecordId record) {
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    if (JobDesk* desk = desk_of(job); desk != nullptr && !desk->trouble.empty()) {
+      desk->trouble.clear();
+      desk->touch();
+    }
+    later = tell(Persisted{record});
+  }
+  carry_out(later);
+}
+
+void Brain::not_persisted(JobId job, RecordId record, const std::string& reason) {
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    if (JobDesk* desk = desk_of(job)) {
+      desk->trouble = "films cannot be stored: " + reason;
+      desk->touch();
+    }
+    later = tell(PersistFailed{record, reason});
+  }
+  carry_out(later);
+}
+
+void Brain::storage_failed(JobId job, const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  if (JobDesk* desk = desk_of(job)) {
+    desk->trouble = "films cannot be stored: " + reason;
+    desk->touch();
+    note(*desk, v1::LOG_LEVEL_ERROR, std::nullopt, {}, desk->trouble);
+  }
+}
+
+}  // namespace hyades::coordinator

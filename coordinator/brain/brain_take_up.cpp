@@ -1,0 +1,207 @@
+// Jobs that are there already.
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/brain/keeper_owner.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;
+
+/// Films of a progressive job that may be in memory together, and frames that may be.
+constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
+constexpr uint64_t kMostAtOnce = 256;
+
+/// How many frames of a job may be in work together: no more than half of `film_memory` holds, or
+/// one.
+uint32_t frames_at_once(const JobDesk& desk, uint64_t film_memory) {
+  const uint64_t film = std::max<uint64_t>(desk.film_bytes, 1);
+  const uint64_t wanted = desk.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE
+                              ? std::clamp<uint64_t>(kProgressiveBytes / film, 3, kMostAtOnce)
+                              : JobPlan{}.frames_in_flight;
+  return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
+}
+
+}  // namespace
+
+core::Status Brain::take_up_jobs() {
+  const auto ids = store_->open_jobs();
+  if (!ids) return ids.error();
+  for (const uint64_t id : *ids) {
+    core::Status taken = take_up(id);
+    if (taken) continue;
+    // The job fails alone, with the reason kept; `retry` takes it up again.
+    auto stored = store_->job(id);
+    if (!stored) return stored.error();
+    (*stored)->state = StoredState::failed;
+    (*stored)->ended_ms = wall_ms();
+    (*stored)->reason = "could not be taken up again: " + taken.error().message;
+    if (auto noted = store_->update_job(**stored); !noted) return noted;
+  }
+  return {};
+}
+
+core::Status Brain::take_up(uint64_t id) {
+  auto stored = store_->job(id);
+  if (!stored) return stored.error();
+  if (!*stored) return core::Error{"it is not there"};
+  v1::JobSpec spec;
+  if (!spec.ParseFromString((*stored)->spec)) return core::Error{"its record is damaged"};
+  for (const v1::JobFile& file : spec.files()) {
+    if (is_here(file)) continue;
+    return core::Error{file.path() +
+                       " is gone or damaged on the coordinator's disk: submit the job (or the "
+                       "file with another) again, then 'retry' takes this one up"};
+  }
+  auto desk = make_desk(**stored, spec, *assets_, options_.film_memory);
+  if (!desk) return desk.error();
+  (*desk)->id = JobId{id};
+  RestoredJob restored;
+  const auto frames = store_->frames(id);
+  if (!frames) return frames.error();
+  const auto damaged = frames_without_outputs(id);
+  if (!damaged) return damaged.error();
+  for (const StoredFrame& frame : *frames) {
+    FrameNote& note = (*desk)->frames[frame.frame];
+    if (damaged->contains(frame.frame)) {
+      if (auto gone = store_->forget_frame(id, frame.frame); !gone) return gone;
+      note.restarts = frame.restarts + 1;
+      this->note(**desk, v1::LOG_LEVEL_WARNING, frame.frame, {},
+                 "its outputs are gone or damaged: it is rendered again");
+      continue;
+    }
+    note.worker_class = frame.worker_class;
+    note.restarts = frame.restarts;
+    if (frame.done) {
+      restored.finished.push_back(frame.frame);
+      note.state = v1::FRAME_STATE_DONE;
+      note.samples_done = (*desk)->samples_per_frame;
+      (*desk)->samples_done += note.samples_done;
+    } else {
+      restored.failed.push_back({frame.frame, frame.reason});
+      note.state = v1::FRAME_STATE_FAILED;
+      note.reason = frame.reason;
+    }
+  }
+  (*desk)->stored.frames_done = static_cast<uint32_t>(restored.finished.size());
+  (*desk)->stored.frames_failed = static_cast<uint32_t>(restored.failed.size());
+  return start(std::move(*desk), std::move(restored));
+}
+
+/// Finished frames of which a file is missing or has another size than when it was written.
+core::Result<std::set<int32_t>> Brain::frames_without_outputs(uint64_t id) const {
+  const auto outputs = store_->outputs(id, 0, UINT32_MAX);
+  if (!outputs) return outputs.error();
+  std::set<int32_t> damaged;
+  for (const StoredOutput& output : *outputs) {
+    std::error_code failed;
+    const auto size = std::filesystem::file_size(output_folder(id) + "/" + output.path, failed);
+    if (failed || size != output.size) damaged.insert(output.frame);
+  }
+  return damaged;
+}
+
+/// What of the films in a job's log counts.
+void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJob& restored) {
+  for (const std::string& problem : contents.problems) {
+    note(desk, v1::LOG_LEVEL_WARNING, std::nullopt, {}, "films: " + problem);
+  }
+  for (const auto& [number, units] : contents.units) {
+    FrameNote& frame = desk.frames[number];
+    if (frame.state != v1::FRAME_STATE_WAITING) {
+      desk.keeper->forget(number, frame.state == v1::FRAME_STATE_DONE);
+      continue;
+    }
+    frame.state = v1::FRAME_STATE_RENDERING;
+    frame.worker_class = units.front().worker_class;
+    for (const AcceptedUnit& unit : units) {
+      frame.samples_done +=
+          core::samples_in(unit.unit.tile, unit.unit.batches, desk.read.job.sampling.samples);
+      restored.accepted.push_back(unit);
+    }
+    desk.samples_done += frame.samples_done;
+    // Will be finished at once, by another thread than the keeper's, which runs by then.
+    if (frame.samples_done == desk.samples_per_frame) {
+      desk.complete[number] = desk.keeper->film(number);
+    }
+  }
+  for (const auto& [frame, finished] : contents.finished) {
+    if (desk.frames[frame].state != v1::FRAME_STATE_DONE) desk.keeper->reopen(frame);
+  }
+}
+
+/// A keeper of the job's films, not opened yet.
+std::unique_ptr<FilmKeeper> Brain::make_keeper(JobDesk& desk, bool resume) {
+  LocalPlan plan;
+  plan.frames = desk.numbers;
+  plan.region = desk.region;
+  plan.samples = desk.read.job.sampling.samples;
+  plan.max_waiting_bytes = kWaitingBytes;
+  LocalLog place;
+  place.folder = films_folder(desk.stored.id);
+  place.frame_key = [key = desk.key](int32_t) { return key; };
+  place.resume = resume;
+  place.compact_bytes = options_.compact_bytes;
+  if (!desk.owner) desk.owner = std::make_unique<KeeperOwner>(*this, desk.id);
+  return std::make_unique<FilmKeeper>(plan, place, *desk.owner);
+}
+
+/// A job gets its log and threads with its first film, so that those that wait cost little; with
+/// the lock, for some milliseconds once.
+core::Status Brain::ensure_keeper(JobDesk& desk) {
+  if (desk.keeper) return {};
+  auto keeper = make_keeper(desk, false);
+  if (auto opened = keeper->open(); !opened) return opened.error();
+  const int32_t tile_size = tile_size_of(desk.region, desk.read.job.sampling.samples);
+  if (auto started = keeper->start(tile_size); !started) return started;
+  desk.keeper = std::move(keeper);
+  return {};
+}
+
+/// Reads the films that are there, and hands the job to the scheduler.
+core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) {
+  JobDesk& desk = *owned;
+  int32_t tile_size = tile_size_of(desk.region, desk.read.job.sampling.samples);
+  if (std::filesystem::exists(films_folder(desk.stored.id))) {
+    desk.keeper = make_keeper(desk, true);
+    auto contents = desk.keeper->open();
+    if (!contents) return contents.error();
+    if (contents->cut.tile_size > 0) tile_size = contents->cut.tile_size;
+    restore_films(desk, *contents, restored);
+    if (auto started = desk.keeper->start(tile_size); !started) return started;
+  }
+  JobAdded added;
+  added.job = desk.id;
+  added.plan.frames = desk.numbers;
+  added.plan.region = desk.region;
+  added.plan.tile_size = tile_size;
+  added.plan.batches = core::batch_count(desk.read.job.sampling.samples);
+  added.plan.priority = desk.stored.priority;
+  added.plan.owner = desk.stored.owner;
+  added.plan.max_workers = desk.stored.max_workers;
+  added.plan.max_attempts = desk.stored.max_attempts;
+  added.plan.needs = {desk.stored.tags, desk.stored.memory};
+  if (desk.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE) {
+    added.plan.order = FrameOrder::progressive;
+  }
+  added.plan.frames_in_flight = frames_at_once(desk, options_.film_memory);
+  added.restored = std::move(restored);
+  std::vector<Action> later;
+  {
+    const std::lock_guard lock(mutex_);
+    const JobId id = desk.id;
+    const bool paused = desk.stored.state == StoredState::paused;
+    desks_.emplace(id, std::move(owned));
+    later = tell(added);
+    if (paused) {
+      for (Action& action : tell(JobPaused{id})) later.push_back(std::move(action));
+    }
+  }
+  carry_out(later);
+  return {};
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,182 @@
+// What goes on beside the calls of workers and clients.
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/finisher/finish_process.h"
+#include "core/base/failpoint.h"
+#include "core/base/fp_mode.h"
+#include "core/job/film_file.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr Duration kClock = std::chrono::milliseconds(50);
+constexpr Duration kPokeEvery = std::chrono::milliseconds(200);
+constexpr Duration kForgetAfter = std::chrono::hours(1);
+constexpr Duration kFinishAgain = std::chrono::seconds(1);
+
+}  // namespace
+
+/// Tries again until it is stored, or the coordinator ends; for the chores' thread, without the
+/// lock.
+void Brain::store_patiently(const std::function<core::Status()>& what) {
+  while (!what() && !stop_) std::this_thread::sleep_for(std::chrono::seconds(1));
+}
+
+void Brain::chore(std::function<void()> what) {
+  chores_.push_back(std::move(what));
+  chores_wake_.notify_one();
+}
+
+void Brain::chores_loop() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    chores_wake_.wait(lock, [&] { return chores_end_ || !chores_.empty(); });
+    if (chores_.empty()) return;
+    const std::function<void()> what = std::move(chores_.front());
+    chores_.pop_front();
+    lock.unlock();
+    what();
+    lock.lock();
+  }
+}
+
+void Brain::finish_loop() {
+  const core::FpMode mode;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    finish_wake_.wait(lock, [&] { return stop_ || !to_finish_.empty(); });
+    if (stop_) return;
+    const Completed completed = std::move(to_finish_.front());
+    to_finish_.pop_front();
+    JobDesk* desk = desk_of(completed.job);
+    if (desk == nullptr) continue;
+    const auto id = static_cast<uint64_t>(completed.job);
+    FinishTask task;
+    task.info = desk->film_info(completed.frame);
+    const FrameNote& note = desk->frames[completed.frame];
+    task.info.worker_class = note.worker_class;
+    task.outputs = desk->read.job.outputs;
+    if (desk->read.job.keep_films) task.film = core::film_file(desk->read.job);
+    task.folder = output_folder(id);
+    StoredFrame over{completed.frame, true, {}, note.worker_class, note.restarts};
+    lock.unlock();
+
+    const std::string scratch = fmt::format("{}/tmp/{}-{}", options_.folder, id, completed.frame);
+    auto files = run_finisher(options_.finisher, scratch, task, *completed.film, stop_);
+    core::Status done = files ? core::Status() : core::Status(files.error());
+    if (done) {
+      std::vector<StoredOutput> outputs;
+      for (const FinishedFile& file : *files) {
+        const auto digest = farm::digest_from_hex(file.sha256);
+        outputs.push_back({file.path, completed.frame, file.size,
+                           digest ? farm::to_wire(*digest) : std::string()});
+      }
+      core::failpoint("outputs-written");
+      done = store_->frame_over(id, over, outputs);
+      core::failpoint("frame-stored");
+    }
+    const bool short_of_disk = !done && disk_is_short_for(*completed.film);
+    lock.lock();
+    if (stop_) return;
+    if (short_of_disk) {
+      // No fault of the frame's: it waits until there is room.
+      if (JobDesk* still = desk_of(completed.job)) {
+        still->trouble = fmt::format("frame {} waits for room on the disk to be finished: {}",
+                                     completed.frame, done.error().message);
+        still->touch();
+        to_finish_.push_back(completed);
+      }
+      finish_wake_.wait_for(lock, kFinishAgain, [&] { return stop_.load(); });
+      continue;
+    }
+    if (!done) {
+      finish_wake_.wait_for(lock, kFinishAgain, [&] { return stop_.load(); });
+      if (stop_) return;
+    }
+    const std::vector<Action> later =
+        done ? tell(FinishDone{completed.job, completed.frame})
+             : tell(FinishFailed{completed.job, completed.frame, done.error().message});
+    lock.unlock();
+    carry_out(later);
+    lock.lock();
+  }
+}
+
+void Brain::clock_loop() {
+  std::unique_lock lock(mutex_);
+  TimePoint last_poke;
+  while (!stop_) {
+    clock_wake_.wait_for(lock, kClock, [&] { return stop_.load(); });
+    if (stop_) return;
+    const TimePoint now = std::chrono::steady_clock::now();
+    std::vector<Action> later;
+    if (const auto wake = scheduler_.next_wake(); wake && *wake <= now) later = tell(Tick{});
+    for (Action& action : mind_workers(now)) later.push_back(std::move(action));
+    if (now - last_poke >= kPokeEvery) {
+      last_poke = now;
+      mind_jobs(now);
+    }
+    if (later.empty()) continue;
+    lock.unlock();
+    carry_out(later);
+    lock.lock();
+  }
+}
+
+/// Workers that are gone, and wishes that waited for adoption; with the lock.
+std::vector<Action> Brain::mind_workers(TimePoint now) {
+  std::vector<Action> later;
+  const auto add = [&](std::vector<Action> actions) {
+    for (Action& action : actions) later.push_back(std::move(action));
+  };
+  for (auto it = seats_.begin(); it != seats_.end();) {
+    Seat& seat = it->second;
+    if (seat.link && now - seat.heard > options_.lease_time) {
+      seat.link->close({grpc::StatusCode::DEADLINE_EXCEEDED, "not heard of for too long"});
+      seat.link.reset();
+      seat.lost_at = now;
+    }
+    if (seat.lost_at && seat.joined &&
+        (seat.leaving || now - *seat.lost_at > options_.reconnect_time)) {
+      seat.joined = false;
+      if (seat.state != v1::WORKER_STATE_QUARANTINED) seat.state = v1::WORKER_STATE_GONE;
+      add(tell(WorkerLost{seat.id}));
+    }
+    if (seat.held_wish > 0 && seat.joined && now >= adopting_until_) {
+      add(tell(WorkRequested{seat.id, std::exchange(seat.held_wish, 0)}));
+    }
+    if (seat.lost_at && now - *seat.lost_at > kForgetAfter) {
+      worker_ids_.erase(seat.hello.worker_id());
+      it = seats_.erase(it);
+    } else {
+      ++it;
+    }
+  }
+  return later;
+}
+
+/// Speeds, lines to store, and those who watch; with the lock.
+void Brain::mind_jobs(TimePoint now) {
+  for (auto& [id, desk] : desks_) {
+    desk->speed.note(desk->samples_done, now);
+    if (desk->lines.empty() || desk->storing_lines || desk->ending) continue;
+    desk->storing_lines = true;
+    chore([this, id = desk->id, lines = desk->take_lines()] {
+      (void)store_->add_lines(static_cast<uint64_t>(id), lines);
+      const std::lock_guard lock(mutex_);
+      if (JobDesk* still = desk_of(id)) still->storing_lines = false;
+    });
+  }
+  for (auto& [number, watch] : watches_) {
+    const JobDesk* desk = desk_of(watch.job);
+    if (desk == nullptr || desk->version == watch.version) continue;
+    watch.version = desk->version;
+    chore(watch.poke);
+  }
+}
+
+}  // namespace hyades::coordinator
