@@ -35,7 +35,7 @@ struct Arguments {
   double unit_seconds = 5;
   double lease_seconds = 30;
   double class_patience = 300;
-  double adoption_seconds = 2;
+  double adoption_seconds = 5;
   double compact_mb = 256;
   double asset_grace = 3600;
 };

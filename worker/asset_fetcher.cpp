@@ -9,6 +9,7 @@
 #include <grpcpp/client_context.h>
 
 #include "core/base/hash.h"
+#include "farm/backoff.h"
 #include "farm/channel.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -124,17 +125,16 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(const Wanted& wanted) {
 
 AssetFetcher::Outcome AssetFetcher::fetch_patiently(const v1::JobFile& file) {
   const auto give_up = std::chrono::steady_clock::now() + patience_;
-  milliseconds wait = kFirstPause;
+  farm::Backoff backoff(kFirstPause, kLongestPause);
   for (;;) {
     Outcome failed = download(file);
     if (!failed || !failed->again || std::chrono::steady_clock::now() >= give_up) return failed;
-    if (!pause(std::max(wait, std::min(failed->retry_after, kLongestPause)))) return failed;
-    wait = std::min(wait * 2, kLongestPause);
+    if (!pause(backoff.next(std::min(failed->retry_after, kLongestPause)))) return failed;
   }
 }
 
 /// Waits; false when the files are no longer wanted.
-bool AssetFetcher::pause(milliseconds time) {
+bool AssetFetcher::pause(farm::Backoff::Duration time) {
   std::unique_lock lock(mutex_);
   return !wake_.wait_for(lock, time, [this] { return unwanted(); });
 }

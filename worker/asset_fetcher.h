@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "farm/backoff.h"
 #include "farm/content_store.h"
 #include "hyades/v1/common.pb.h"
 
@@ -67,7 +68,7 @@ class AssetFetcher {
   Outcome fetch_all(const Wanted& wanted);
   Outcome fetch_patiently(const v1::JobFile& file);
   Outcome download(const v1::JobFile& file);
-  bool pause(std::chrono::milliseconds time);
+  bool pause(farm::Backoff::Duration time);
   bool unwanted() const { return stop_ || dropped_; }
 
   const std::shared_ptr<grpc::Channel> channel_;

@@ -17,10 +17,10 @@
 
 #include <fmt/format.h>
 
+#include "farm/backoff.h"
 #include "farm/content_store.h"
 #include "farm/tags.h"
 #include "worker/asset_fetcher.h"
-#include "worker/backoff.h"
 #include "worker/coordinator_link.h"
 #include "worker/desk.h"
 #include "worker/renderer_process.h"
@@ -251,7 +251,7 @@ class Worker : private DeskPorts,
 
   // All else belongs to the loop.
   Desk desk_;
-  Backoff backoff_;
+  farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
   bool streaming_ = false;
   bool ever_connected_ = false;
   bool renderer_ready_ = false;

@@ -12,9 +12,10 @@ double Patience::next_wait(Clock::time_point now, double asked_for) {
   const double left =
       (reached_ ? later_ : first_) - std::chrono::duration<double>(now - since_).count();
   if (left <= 0) return -1;
-  const double wait = next_ * std::uniform_real_distribution(0.5, 1.0)(random_);
-  next_ = std::min(2 * next_, kLongest);
-  return std::min(std::max(wait, asked_for), left);
+  const auto asked = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(std::max(asked_for, 0.0)));
+  const double wait = std::chrono::duration<double>(backoff_.next(asked)).count();
+  return std::min(wait, left);
 }
 
 }  // namespace hyades::cli

@@ -1,14 +1,13 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
-#include <random>
+
+#include "farm/backoff.h"
 
 namespace hyades::cli {
 
-/// When to try a failed call again, and when to give up: waits grow from 0.1 s to 5 s, each
-/// shortened by up to a half by chance, so that clients which lost the same coordinator do not come
-/// back as one.
+/// When to try a failed call again, and when to give up: waits grow from 0.1 s to 5 s as
+/// farm::Backoff has them.
 class Patience {
  public:
   using Clock = std::chrono::steady_clock;
@@ -20,25 +19,22 @@ class Patience {
   void reached() {
     reached_ = true;
     waiting_ = false;
-    next_ = kShortest;
+    backoff_.reset();
   }
 
   bool was_reached() const { return reached_; }
 
-  /// The wait in seconds before the next try at `now`, at least `asked_for`; negative: give up.
+  /// The wait in seconds before the next try at `now`, more than `asked_for` if there
+  /// is so much time; negative: give up.
   double next_wait(Clock::time_point now, double asked_for = 0);
 
  private:
-  static constexpr double kShortest = 0.1;
-  static constexpr double kLongest = 5.0;
-
   double first_;
   double later_;
   bool reached_ = false;
   bool waiting_ = false;
   Clock::time_point since_;
-  double next_ = kShortest;
-  std::mt19937_64 random_{std::random_device{}()};
+  farm::Backoff backoff_{std::chrono::milliseconds(100), std::chrono::seconds(5)};
 };
 
 }  // namespace hyades::cli

@@ -43,8 +43,10 @@ struct BrainOptions {
   DiskLimits disk;
   /// Files that no job needs any more stay for so long after they were last used.
   Duration asset_grace = std::chrono::hours(1);
-  /// After a restart no new units are leased for this long, so that workers can say what they hold.
-  Duration adoption_time = std::chrono::seconds(2);
+  /// After a restart no new units are leased for this long, so that workers can say what they hold;
+  /// longer, up to four times this, while those who hold something still come. By default the
+  /// longest wait of a worker (farm/backoff.h), and what connecting takes.
+  Duration adoption_time = std::chrono::seconds(5);
   /// Bytes that the film of a frame may take in memory; jobs of larger ones are refused.
   uint64_t film_memory = default_film_memory();
   /// A job's film log is rewritten when it has grown by this much.
@@ -212,6 +214,7 @@ class Brain {
 
   // Messages of workers.
   bool has_seat();
+  void wait_for_more_holders();
   void on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result);
   void want(Seat& seat, uint32_t units, std::vector<Action>& later);
   void reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result,
@@ -261,10 +264,11 @@ class Brain {
   const std::unique_ptr<farm::ContentStore> assets_;
   const uint64_t incarnation_;
   const int64_t started_ms_;
-  TimePoint adopting_until_;  ///< does not change once the threads have begun
   std::atomic<bool> stop_{false};
 
   mutable std::mutex mutex_;
+  TimePoint adopting_until_;
+  TimePoint adopting_at_most_;  ///< until then
   Scheduler scheduler_;
   std::map<JobId, std::unique_ptr<JobDesk>> desks_;
   std::map<WorkerId, Seat> seats_;

@@ -51,8 +51,11 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
   }
   if (auto taken = brain->take_up_jobs(); !taken) return taken.error();
   // From here on workers can come: to take up many jobs may take longer than they are given.
-  if (*incarnation > 1) {
-    brain->adopting_until_ = std::chrono::steady_clock::now() + options.adoption_time;
+  // Where no job is open nobody holds anything.
+  if (*incarnation > 1 && !brain->desks_.empty()) {
+    const TimePoint now = std::chrono::steady_clock::now();
+    brain->adopting_until_ = now + options.adoption_time;
+    brain->adopting_at_most_ = now + 4 * options.adoption_time;
   }
   Brain& b = *brain;
   b.threads_.emplace_back([&b] { b.clock_loop(); });

@@ -134,6 +134,7 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
     if (seat.state == v1::WORKER_STATE_QUARANTINED) {
       for (Action& action : tell(WorkerBarred{worker, true})) later.push_back(std::move(action));
     }
+    if (!joined.in_hand.empty()) wait_for_more_holders();
     want(seat, hello.want(), later);
   }
   carry_out(later);
@@ -152,6 +153,15 @@ void Brain::detach(WorkerId worker, const WorkerLink* link) {
 Brain::Seat* Brain::seat_of(WorkerId worker, const WorkerLink* link) {
   const auto seat = seats_.find(worker);
   return seat == seats_.end() || seat->second.link.get() != link ? nullptr : &seat->second;
+}
+
+/// A worker that holds something has come: where so many come that they have to wait for each other
+/// the rest is still on its way. With the lock.
+void Brain::wait_for_more_holders() {
+  const TimePoint now = std::chrono::steady_clock::now();
+  if (now >= adopting_until_) return;
+  const TimePoint later = std::min(now + options_.adoption_time / 5, adopting_at_most_);
+  adopting_until_ = std::max(adopting_until_, later);
 }
 
 void Brain::want(Seat& seat, uint32_t units, std::vector<Action>& later) {

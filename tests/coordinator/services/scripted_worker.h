@@ -11,12 +11,14 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "core/film/film.h"
 #include "core/film/film_codec.h"
+#include "farm/backoff.h"
 #include "farm/channel.h"
 #include "farm/wire.h"
 #include "hyades/v1/work.grpc.pb.h"
@@ -44,6 +46,9 @@ class ScriptedWorker {
     /// Changes a film before it is delivered.
     std::function<void(core::Film&)> corrupt;
     bool reconnect = true;
+    bool hold = false;  ///< units are rendered and never delivered
+    /// How long it waits between streams; 50 ms without.
+    std::optional<farm::Backoff> backoff = std::nullopt;
   };
 
   ScriptedWorker(const std::string& address, Script script)
@@ -84,6 +89,14 @@ class ScriptedWorker {
   void deliver(const v1::LeasedUnit& leased) {
     std::this_thread::sleep_for(script_.unit_time);
     if (over_) return;
+    const v1::WorkerMessage message = render(leased);
+    ++delivered_;
+    write(message);
+  }
+
+ private:
+  /// The unit's film in a message, which is kept.
+  v1::WorkerMessage render(const v1::LeasedUnit& leased) {
     const auto unit = farm::from_wire(leased.unit());
     core::Film film = fake_film(*unit, script_.samples, script_.layout);
     if (script_.corrupt) script_.corrupt(film);
@@ -101,11 +114,9 @@ class ScriptedWorker {
       const std::lock_guard lock(mutex_);
       kept_[key(leased)] = result;
     }
-    ++delivered_;
-    write(message);
+    return message;
   }
 
- private:
   using Stream = grpc::ClientReaderWriter<v1::WorkerMessage, v1::CoordinatorMessage>;
 
   static std::string key(const v1::LeasedUnit& unit) {
@@ -116,8 +127,11 @@ class ScriptedWorker {
     while (!over_) {
       attend();
       if (!script_.reconnect) return;
-      for (int i = 0; i < 5 && !over_; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      farm::Backoff::Duration wait = std::chrono::milliseconds(50);
+      if (script_.backoff) wait = script_.backoff->next();
+      const auto until = std::chrono::steady_clock::now() + wait;
+      while (!over_ && std::chrono::steady_clock::now() < until) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
       }
     }
   }
@@ -154,7 +168,9 @@ class ScriptedWorker {
     v1::CoordinatorMessage reply;
     if (stream_->Write(message) && stream_->Read(&reply) && reply.has_welcome()) {
       ++streams_;
+      if (script_.backoff) script_.backoff->reset();
       for (const auto& [name, result] : kept_) {
+        if (script_.hold) break;
         v1::WorkerMessage again;
         *again.mutable_result() = result;
         again.mutable_result()->set_want(0);
@@ -180,7 +196,11 @@ class ScriptedWorker {
           continue;
         }
         if (script_.meddle && !script_.meddle(*this, leased)) continue;
-        deliver(leased);
+        if (script_.hold) {
+          render(leased);
+        } else {
+          deliver(leased);
+        }
       }
     } else if (message.has_acknowledge()) {
       const std::lock_guard lock(mutex_);
@@ -211,7 +231,7 @@ class ScriptedWorker {
   }
 
   const std::string address_;
-  const Script script_;
+  Script script_;
   std::atomic<bool> over_{false};
   std::atomic<uint64_t> delivered_{0};
   std::atomic<uint64_t> acknowledged_{0};

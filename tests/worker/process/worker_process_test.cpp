@@ -21,6 +21,7 @@
 #include "core/render/class_probe.h"
 #include "core/render/render_frame.h"
 #include "core/scene/build_scene.h"
+#include "farm/backoff.h"
 #include "tests/support/temp_folder.h"
 #include "tests/worker/process/fake_coordinator.h"
 
@@ -341,6 +342,23 @@ TEST(WorkerProcess, KeepsFilmsThroughARestartOfTheCoordinator) {
   EXPECT_EQ(seen.hellos[0].worker_id(), seen.hellos[1].worker_id());
   EXPECT_GE(seen.hellos[1].in_hand_size(), 6);
   EXPECT_GE(seen.doubles, 6U) << "films that were not acknowledged come again";
+}
+
+TEST(WorkerProcess, IsBackSoonAfterALongOutage) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  WorkerProcess worker(coordinator.address(), folder.path().string());
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 2; }))
+      << worker.log();
+  coordinator.stop();
+  std::this_thread::sleep_for(seconds(8));  // so that its waits are as long as they become
+  coordinator.start();
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.hellos.size() == 2; }))
+      << worker.log();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, farm::kLongestReconnect + milliseconds(1500))
+      << "or its units go to others: BrainOptions::adoption_time";
 }
 
 TEST(WorkerProcess, ASecondSignalEndsItAtOnce) {

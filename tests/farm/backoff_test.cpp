@@ -1,8 +1,8 @@
-#include "worker/backoff.h"
+#include "farm/backoff.h"
 
 #include <gtest/gtest.h>
 
-namespace hyades::worker {
+namespace hyades::farm {
 namespace {
 
 using std::chrono::milliseconds;
@@ -20,5 +20,11 @@ TEST(Backoff, GrowsAndWaitsAsLongAsItIsAsked) {
   EXPECT_LE(asked, milliseconds(5200)) << "do not come back together";
 }
 
+TEST(Backoff, EqualSeedsWaitEqually) {
+  Backoff one(milliseconds(200), milliseconds(1000), 7);
+  Backoff two(milliseconds(200), milliseconds(1000), 7);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(one.next(), two.next());
+}
+
 }  // namespace
-}  // namespace hyades::worker
+}  // namespace hyades::farm

@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <random>
 
-namespace hyades::worker {
+namespace hyades::farm {
 
 /// How long to wait before trying again: twice as long each time, up to a limit, and each time a
-/// random part of it, so that a thousand workers do not come back at once.
+/// random part of it, so that a thousand callers do not come back at once. Everybody who tries
+/// again waits by this.
 class Backoff {
  public:
   using Duration = std::chrono::steady_clock::duration;
 
-  explicit Backoff(Duration first = std::chrono::milliseconds(200),
-                   Duration limit = std::chrono::seconds(15))
-      : first_(first), limit_(limit), next_(first), random_(std::random_device{}()) {}
+  /// The first wait and the longest. Equal seeds wait
+  /// equally.
+  Backoff(Duration first, Duration limit, uint32_t seed = std::random_device{}())
+      : first_(first), limit_(limit), next_(first), random_(seed) {}
 
   /// Between a half and the whole of the current wait, after what the other side `asked` for.
   Duration next(Duration asked = Duration(0)) {
@@ -34,4 +37,9 @@ class Backoff {
   std::minstd_rand random_;
 };
 
-}  // namespace hyades::worker
+/// Of workers whose stream has ended. The limit is a part of what a coordinator waits for them
+/// after its restart (BrainOptions::adoption_time).
+inline constexpr std::chrono::milliseconds kFirstReconnect{200};
+inline constexpr std::chrono::milliseconds kLongestReconnect{3000};
+
+}  // namespace hyades::farm
