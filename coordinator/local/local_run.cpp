@@ -10,6 +10,7 @@ constexpr JobId kJob{1};
 
 SchedulerOptions scheduler_options(const LocalPlan& plan) {
   SchedulerOptions options;
+  options.scene_time = Duration{0};  // the threads share them
   options.unit_time = plan.unit_time;
   // Threads neither vanish nor fall behind each other for long.
   options.lease_time = std::chrono::hours(24 * 365);

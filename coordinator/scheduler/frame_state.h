@@ -103,6 +103,9 @@ class FrameState {
   /// Whether next() would find something.
   bool has_work(const MayTry& may_try) const;
 
+  /// Whether a unit has failed and waits for somebody who may try it.
+  bool any_suspect() const { return !suspects_.empty(); }
+
   /// Whether all batches are free, so that the extent can be assigned to a worker that has it.
   bool all_free(const Extent& e) const;
   Assignment& assign(const Extent& e, const Holder& holder, uint64_t serial);

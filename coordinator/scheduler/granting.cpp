@@ -11,8 +11,10 @@ namespace {
 
 /// How many of the oldest units are considered before a worker goes without a copy.
 constexpr size_t kCopySearch = 16;
-/// Scenes that a worker is taken to have in memory. Where it has fewer, it loads one again.
-constexpr size_t kScenesKept = 3;
+/// How many frames of an owner's are considered that have workers enough.
+constexpr size_t kPlacesLookedAt = 12;
+
+double seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 /// Which doubling of its samples a frame is in: 0 until every tile has had one batch, p until every
 /// tile has had 2^p.
@@ -22,23 +24,70 @@ uint32_t pass_of(const FrameState& books, uint32_t tiles) {
 
 }  // namespace
 
-/// Priorities first, then who has less, then the older job: who is first in turn for this worker.
 /// Where the worker has a scene of another frame in memory it may stay with that one, within
-/// bounds.
+/// bounds. A scene that it does not have begins with one unit, which waits while the worker goes on
+/// with what it has.
 bool Scheduler::grant(WorkerId id, Worker& worker) {
-  for (const auto& [priority, running, index] : ready_shares_) {
-    for (const auto& [serial, job] : shares_[index].ready) {
-      const auto slot = find_frame(*job, id, worker);
-      if (!slot) continue;
-      const Place in_turn{job, *slot};
-      const bool here = std::find(worker.scenes.begin(), worker.scenes.end(), in_turn.scene()) !=
-                        worker.scenes.end();
-      const auto loaded = here ? std::nullopt : find_loaded(id, worker, *job);
-      if (!loaded) worker.in_turn = now_;
-      return grant_from(loaded.value_or(in_turn), id, worker);
-    }
+  const auto first = in_turn(id, worker, false);
+  if (!first) return false;
+  const bool here =
+      has_scene(worker, first->scene()) && !(worker.next == first->scene() && still_loads(worker));
+  const auto loaded = here ? std::nullopt : find_loaded(id, worker, *first->job);
+  if (!loaded) worker.in_turn = now_;
+  const Place place = loaded.value_or(*first);
+  if (place.scene() == worker.home && !worker.next && nearly_leased(place)) {
+    const auto next = in_turn(id, worker, true);
+    if (next && grant_from(*next, id, worker, true)) return true;
   }
-  return false;
+  return grant_from(place, id, worker, false);
+}
+
+/// Priorities first, then who has less, then the older job, then the earlier frame: what is first
+/// in turn for this worker. A frame that has workers enough is in turn for those who have its scene
+/// only; where all have, the one with most to do is. `fresh`: of the scenes that the worker does
+/// not have.
+std::optional<Scheduler::Place> Scheduler::in_turn(WorkerId id, const Worker& worker, bool fresh) {
+  for (const auto& [priority, running, index] : ready_shares_) {
+    std::optional<Place> roomiest;
+    double most = -1;
+    size_t looked = 0;
+    for (const auto& [serial, job] : shares_[index].ready) {
+      if (looked == kPlacesLookedAt) break;
+      if (!may_join(*job, id, worker)) continue;
+      if (job->plan.order == FrameOrder::progressive) {
+        const auto slot = find_pass(*job, id, worker);
+        if (slot && !(fresh && has_scene(worker, Place{job, *slot}.scene()))) {
+          return Place{job, *slot};
+        }
+        continue;
+      }
+      for (const uint32_t slot : job->in_flight) {
+        const Place place{job, slot};
+        if (!has_work_for(*job, job->slots[slot], id, worker)) continue;
+        const bool here = has_scene(worker, place.scene());
+        if (here && fresh) continue;
+        if (!here && still_loads(worker)) {
+          // Scenes are loaded one after the other.
+          turned_away_ = true;
+          continue;
+        }
+        if (here || !crowded(place, worker)) return place;
+        if (too_late(place, worker)) {
+          turned_away_ = true;
+          continue;
+        }
+        const uint64_t threads = job->slots[slot].crew + job->slots[slot].coming;
+        const double left = seconds_left(place, threads + worker.threads);
+        if (left > most) {
+          most = left;
+          roomiest = place;
+        }
+        if (++looked == kPlacesLookedAt) break;
+      }
+    }
+    if (roomiest) return roomiest;
+  }
+  return std::nullopt;
 }
 
 /// Whether the worker could render units of the job at all.
@@ -60,15 +109,13 @@ bool Scheduler::has_work_for(const JobState& job, const FrameSlot& slot, WorkerI
   return slot.books->has_work(allowed) || slot.books->next_check(id, allowed).has_value();
 }
 
-/// The frame of which the worker gets units next, in the job's own order.
-std::optional<uint32_t> Scheduler::find_frame(const JobState& job, WorkerId id,
-                                              const Worker& worker) const {
-  if (!may_join(job, id, worker)) return std::nullopt;
+/// Of a progressive job, the frame in the lowest pass.
+std::optional<uint32_t> Scheduler::find_pass(const JobState& job, WorkerId id,
+                                             const Worker& worker) const {
   std::optional<uint32_t> best;
   uint32_t best_pass = 0;
   for (const uint32_t index : job.in_flight) {
     if (!has_work_for(job, job.slots[index], id, worker)) continue;
-    if (job.plan.order == FrameOrder::sequential) return index;
     const uint32_t pass = pass_of(*job.slots[index].books, job.grid.size());
     if (best && pass >= best_pass) continue;
     best = index;
@@ -77,40 +124,29 @@ std::optional<uint32_t> Scheduler::find_frame(const JobState& job, WorkerId id,
   return best;
 }
 
-/// A frame out of turn whose scene the worker has. Bounded in three ways, so that nobody starves:
-/// the priority is that of `first`, the owner has not much more than the one who is in turn, and
-/// after `affinity_time` the worker takes what is in turn.
-std::optional<Scheduler::Place> Scheduler::find_loaded(WorkerId id, const Worker& worker,
-                                                       const JobState& first) {
-  if (now_ - worker.in_turn >= options_.affinity_time) return std::nullopt;
-  const Share& turn = shares_[first.share];
-  const uint64_t most = turn.running + turn.running / 4 + 2 * uint64_t{worker.threads};
-  for (auto scene = worker.scenes.rbegin(); scene != worker.scenes.rend(); ++scene) {
-    JobState* job = find_job(scene->first);
-    if (job == nullptr || !job->ready || job->plan.order != FrameOrder::sequential) continue;
-    const Share& share = shares_[job->share];
-    if (share.priority != turn.priority || share.running > most) continue;
-    if (!may_join(*job, id, worker)) continue;
-    const FrameSlot* slot = job->slot(scene->second);
-    if (!has_work_for(*job, *slot, id, worker)) continue;
-    return Place{job, static_cast<uint32_t>(slot - job->slots.data())};
-  }
-  return std::nullopt;
-}
-
-/// Units of one frame, as many as the worker wants and the frame has.
-bool Scheduler::grant_from(const Place& place, WorkerId id, Worker& worker) {
+/// Units of one frame, as many as the worker wants and the frame has; `ahead`: one, so that its
+/// scene is loaded while the worker is busy with another.
+bool Scheduler::grant_from(const Place& place, WorkerId id, Worker& worker, bool ahead) {
   JobState& job = *place.job;
   FrameSlot& slot = job.slots[place.slot];
   const auto judge = [&](const std::vector<WorkerId>& blamed) {
     return may_try(job, id, worker, blamed);
   };
   const MayTry allowed = std::ref(judge);
-  remember_scene(worker, place.scene());
+  if (!has_scene(worker, place.scene())) {
+    worker.loading = Loading{place.scene(), now_, worker.leases.empty()};
+  }
+  remember_scene(worker, place.scene(), ahead);
+  if (ahead) {
+    come_next(worker, place.scene());
+  } else {
+    settle(worker, place.scene());
+  }
+  slot.last_leased = now_;
   if (grant_check(job, place.slot, id, worker, allowed)) return true;
   std::vector<Extent> extents;
   const LeaseId next{options_.incarnation, next_lease_};
-  while (extents.size() < worker.wanted) {
+  while (extents.size() < (ahead ? 1 : worker.wanted)) {
     const auto extent = slot.books->next(
         allowed, [&](uint32_t tile) { return run_length(job, *slot.books, tile); });
     if (!extent) break;
@@ -127,17 +163,6 @@ bool Scheduler::grant_from(const Place& place, WorkerId id, Worker& worker) {
   return true;
 }
 
-/// The worker will have this frame's scene in memory; it keeps a few.
-void Scheduler::remember_scene(Worker& worker, const Scene& scene) {
-  const auto there = std::find(worker.scenes.begin(), worker.scenes.end(), scene);
-  if (there != worker.scenes.end()) {
-    std::rotate(there, there + 1, worker.scenes.end());
-    return;
-  }
-  if (worker.scenes.size() == kScenesKept) worker.scenes.erase(worker.scenes.begin());
-  worker.scenes.push_back(scene);
-}
-
 /// Hands out a second copy of one of the oldest units: purity makes it safe, and whichever comes
 /// first counts. No unit is copied twice.
 bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
@@ -147,16 +172,20 @@ bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
   }
   for (size_t i = 0; i < std::min(kCopySearch, copy_candidates_.size()); ++i) {
     const CopyCandidate candidate = copy_candidates_[i];
-    if (candidate.since + options_.copy_after > now_) return false;
+    const double out = seconds(now_ - candidate.since - options_.copy_after);
+    if (out < 0) return false;
     Assignment* assignment = live_copy_candidate(candidate);
     if (assignment == nullptr || assignment->holders.front().worker == id) continue;
     JobState& job = *find_job(candidate.job);
     if (job.paused || job.slots[candidate.slot].worker_class != worker.worker_class) continue;
     if (!may_join(job, id, worker)) continue;
+    // Those who have the scene come first.
+    const Scene scene{job.id, job.slots[candidate.slot].frame};
+    if (out < load_seconds(job) && !has_scene(worker, scene)) continue;
     assignment->copied = true;
     assignment->holders.push_back({id, {options_.incarnation, next_lease_}});
     --worker.wanted;
-    remember_scene(worker, {job.id, job.slots[candidate.slot].frame});
+    remember_scene(worker, scene, false);
     new_lease(id, worker, job, candidate.slot, false, {candidate.extent});
     return true;
   }
@@ -174,7 +203,7 @@ uint32_t Scheduler::run_length(const JobState& job, const FrameState& books, uin
   if (job.in_flight.size() < job.plan.frames_in_flight) {
     left += job.waiting * books.total();
   }
-  const uint64_t by_spread = left / (2 * std::max<uint64_t>(threads_, 1));
+  const uint64_t by_spread = left / (4 * std::max<uint64_t>(threads_, 1));
   uint64_t run = std::max<uint64_t>(1, std::min(static_cast<uint64_t>(by_time), by_spread));
   if (job.plan.order == FrameOrder::progressive) {
     // No tile gets ahead of its frame's pass.

@@ -31,6 +31,9 @@ struct FrameSlot {
   FramePhase phase = FramePhase::waiting;
   uint32_t finish_attempts = 0;
   uint32_t worker_class = 0;  ///< interned; 0 until the first unit is leased
+  uint64_t crew = 0;          ///< threads of the workers that render it
+  uint64_t coming = 0;        ///< ... that load its scene while they render another
+  TimePoint last_leased;
   /// Since when nobody is there who may render it.
   std::optional<TimePoint> orphaned;
   std::unique_ptr<FrameState> books;
@@ -70,6 +73,8 @@ struct JobState {
   /// where nothing is known.
   std::vector<float> tile_cost;
   double mean_cost = 0;
+  uint64_t costs_known = 0;  ///< films that told
+  double load_seconds = -1;  ///< what it takes to load a scene, measured; -1: not known
 
   FrameSlot* slot(int32_t frame) {
     const auto it = by_number.find(frame);

@@ -17,7 +17,7 @@ void Scheduler::on(const ResultArrived& e) {
   if (slot == nullptr || slot->over()) return reject(RejectReason::unknown);
   const auto extent = extent_of(*job, e.unit);
   if (!extent) return reject(RejectReason::malformed);
-  const Worker* worker = find_worker(e.worker);
+  Worker* worker = find_worker(e.worker);
   if (worker == nullptr || slot->phase == FramePhase::waiting ||
       slot->phase == FramePhase::opening) {
     return reject(RejectReason::not_now);
@@ -50,6 +50,7 @@ void Scheduler::on(const ResultArrived& e) {
     accept(*job, *slot, *extent, e);
     forgive_and_blame(*job, *slot, *extent, e.worker);
     learn_cost(*job, *extent, e.render_time);
+    learn_load(*job, *worker, e);
   }
   end_unit(*job, *slot, *extent, e.lease);
   update_ready(*job);
@@ -103,7 +104,8 @@ void Scheduler::learn_cost(JobState& job, const Extent& extent, Duration render_
   const double cost = std::chrono::duration<double>(render_time).count() / extent.batches.count;
   float& known = job.tile_cost[extent.tile];
   known = static_cast<float>(known > 0 ? 0.5 * (known + cost) : cost);
-  job.mean_cost = job.mean_cost > 0 ? 0.9 * job.mean_cost + 0.1 * cost : cost;
+  const double rate = std::max(0.02, 1.0 / static_cast<double>(++job.costs_known));
+  job.mean_cost += rate * (cost - job.mean_cost);
 }
 
 void Scheduler::on(const UnitReturned& e) {

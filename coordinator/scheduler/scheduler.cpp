@@ -6,6 +6,12 @@
 #include <fmt/format.h>
 
 namespace hyades::coordinator {
+namespace {
+
+/// How long a worker waits that came too late for a frame.
+constexpr Duration kLookAgain = std::chrono::seconds(1);
+
+}  // namespace
 
 Scheduler::Scheduler(SchedulerOptions options) : options_(options) {
   // Class 0 stands for 'none yet'.
@@ -167,21 +173,24 @@ void Scheduler::on(const FinishFailed& e) {
   }
 }
 
-/// Opens frames while there is less than half a frame left to lease, or too little for all threads:
-/// the next scene is there before the last unit of this one is gone, and not much earlier.
+/// Opens frames while there is less than half a frame left to lease, or too little for all threads,
+/// or those that are open have workers enough: the next scene is there before the last unit of this
+/// one is gone, and not much earlier.
 void Scheduler::open_frames(JobState& job) {
   if (job.paused) return;
   const uint64_t frame_total = uint64_t{job.grid.size()} * job.plan.batches;
   const uint64_t enough = std::max(frame_total / 2, 2 * threads_);
   while (job.in_flight.size() < std::max(job.plan.frames_in_flight, 1U)) {
     uint64_t free = 0;
+    bool room = false;
     for (const uint32_t i : job.in_flight) {
       const FrameSlot& slot = job.slots[i];
       if (slot.phase == FramePhase::opening || slot.phase == FramePhase::rendering) {
         free += slot.books->free();
+        room = room || has_room({&job, i});
       }
     }
-    if (free > enough && job.plan.order == FrameOrder::sequential) return;
+    if (room && free > enough && job.plan.order == FrameOrder::sequential) return;
     while (job.next_slot < job.slots.size() &&
            job.slots[job.next_slot].phase != FramePhase::waiting) {
       ++job.next_slot;
@@ -408,6 +417,7 @@ std::optional<TimePoint> Scheduler::next_wake() const {
   const auto at = [&](TimePoint t) { wake = wake ? std::min(*wake, t) : t; };
   if (!deadlines_.empty()) at(deadlines_.top().first);
   if (now_ < storage_blocked_until_) at(storage_blocked_until_);
+  if (turned_away_) at(now_ + kLookAgain);
   if (options_.class_patience > Duration{0} && !jobs_.empty() && threads_ > 0) {
     at(next_orphan_check_);
   }

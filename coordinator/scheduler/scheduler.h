@@ -34,6 +34,9 @@ struct SchedulerOptions {
   /// A worker stays with scenes that it has loaded for this long though another job or frame would
   /// be in turn; 0: never.
   Duration affinity_time = std::chrono::seconds(20);
+  /// What loading a scene is taken to take until films have shown it; 0: it takes no time (all
+  /// workers are threads of one machine), and never shows.
+  Duration scene_time = std::chrono::seconds(3);
   /// So many units that a worker has failed one after the other and others then rendered put it
   /// into quarantine.
   uint32_t max_strikes = 5;
@@ -69,16 +72,24 @@ class Scheduler {
 
  private:
   using Scene = std::pair<JobId, int32_t>;  ///< a job's frame
+  struct Loading {
+    Scene scene;
+    TimePoint since;
+    bool alone = false;  ///< the worker had nothing else to do
+  };
   struct Worker {
     uint32_t threads = 1;
     uint32_t worker_class = 0;
-    std::vector<uint32_t> tags;  ///< interned, sorted
-    uint64_t memory = 0;         ///< 0: no limit
-    std::vector<Scene> scenes;   ///< that it should have in memory, the latest last
-    TimePoint in_turn;           ///< when it last got what was in turn
-    uint32_t wanted = 0;         ///< units it asked for and did not get yet
-    uint64_t waiting = 0;        ///< its key in waiting_, or 0
-    bool barred = false;         ///< gets nothing
+    std::vector<uint32_t> tags;      ///< interned, sorted
+    uint64_t memory = 0;             ///< 0: no limit
+    std::vector<Scene> scenes;       ///< that it should have in memory, the latest last
+    std::optional<Scene> home;       ///< what it renders: one of the frame's crew
+    std::optional<Scene> next;       ///< ... and will render then; it has a unit of it already
+    std::optional<Loading> loading;  ///< what it last began with, until the first film
+    TimePoint in_turn;               ///< when it last got what was in turn
+    uint32_t wanted = 0;             ///< units it asked for and did not get yet
+    uint64_t waiting = 0;            ///< its key in waiting_, or 0
+    bool barred = false;             ///< gets nothing
     std::vector<uint64_t> leases;
   };
   /// A frame to get units of.
@@ -167,16 +178,31 @@ class Scheduler {
   static bool suits(const JobState& job, const Worker& worker);
   bool has_work_for(const JobState& job, const FrameSlot& slot, WorkerId id,
                     const Worker& worker) const;
-  std::optional<uint32_t> find_frame(const JobState& job, WorkerId id, const Worker& worker) const;
-  std::optional<Place> find_loaded(WorkerId id, const Worker& worker, const JobState& first);
-  bool grant_from(const Place& place, WorkerId id, Worker& worker);
-  static void remember_scene(Worker& worker, const Scene& scene);
+  std::optional<Place> in_turn(WorkerId id, const Worker& worker, bool fresh);
+  std::optional<uint32_t> find_pass(const JobState& job, WorkerId id, const Worker& worker) const;
+  bool grant_from(const Place& place, WorkerId id, Worker& worker, bool ahead);
   bool grant_copy(WorkerId id, Worker& worker);
   uint32_t run_length(const JobState& job, const FrameState& books, uint32_t tile) const;
   bool may_try(const JobState& job, WorkerId id, const Worker& worker,
                const std::vector<WorkerId>& blamed) const;
   void note_copy_candidate(const JobState& job, uint32_t slot, const Assignment& assignment);
   Assignment* live_copy_candidate(const CopyCandidate& c);
+
+  // scenes.cpp: which scenes workers have, and which frames they go to.
+  static bool has_scene(const Worker& worker, const Scene& scene);
+  static void remember_scene(Worker& worker, const Scene& scene, bool ahead);
+  void settle(Worker& worker, const std::optional<Scene>& scene);
+  void come_next(Worker& worker, const std::optional<Scene>& scene);
+  FrameSlot* slot_of(const std::optional<Scene>& scene);
+  double load_seconds(const JobState& job) const;
+  double seconds_left(const Place& place, uint64_t threads) const;
+  bool crowded(const Place& place, const Worker& worker) const;
+  bool has_room(const Place& place) const;
+  bool too_late(const Place& place, const Worker& worker) const;
+  bool nearly_leased(const Place& place) const;
+  bool still_loads(const Worker& worker) const;
+  std::optional<Place> find_loaded(WorkerId id, const Worker& worker, const JobState& first);
+  void learn_load(JobState& job, Worker& worker, const ResultArrived& e);
 
   // leasing.cpp: leases.
   void new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t slot, bool adopted,
@@ -244,6 +270,8 @@ class Scheduler {
   std::map<uint64_t, WorkerId> waiting_;          ///< those with a wish, longest waiting first
   uint64_t next_waiting_ = 1;
   bool work_appeared_ = false;           ///< since the waiting were last served
+  bool turned_away_ = false;             ///< somebody, by too_late(): to be looked at again
+  double load_seconds_ = -1;             ///< to load a scene, of any job; -1: not known
   uint64_t threads_ = 0;                 ///< of all workers
   uint64_t offered_ = 0;                 ///< JobState::offer of all jobs
   std::vector<uint32_t> class_workers_;  ///< how many of each class may get units

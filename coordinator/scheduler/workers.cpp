@@ -45,6 +45,8 @@ void Scheduler::adopt(WorkerId id, Worker& worker, const UnitInHand& held) {
   const LeaseId next{options_.incarnation, next_lease_};
   note_copy_candidate(*job, index, slot->books->assign(*extent, {id, next}, next_assignment_++));
   new_lease(id, worker, *job, index, true, {*extent});
+  remember_scene(worker, {held.job, held.unit.frame}, false);
+  settle(worker, Scene{held.job, held.unit.frame});
   update_ready(*job);
 }
 
@@ -78,6 +80,7 @@ void Scheduler::on(const WorkerBarred& e) {
   Worker* worker = find_worker(e.worker);
   if (worker == nullptr || worker->barred == e.barred) return;
   worker->barred = e.barred;
+  if (e.barred) settle(*worker, std::nullopt);
   count_class(worker->worker_class, e.barred ? -1 : 1);
   work_appeared_ = true;
 }
@@ -95,6 +98,7 @@ void Scheduler::on(const WorkerLost& e) {
   for (const uint64_t number : numbers) release_lease(number, false);
   if (worker->waiting != 0) waiting_.erase(worker->waiting);
   threads_ -= worker->threads;
+  settle(*worker, std::nullopt);
   if (!worker->barred) count_class(worker->worker_class, -1);
   workers_.erase(e.worker);
   // A unit that failed with others may now be theirs to try again.
@@ -106,6 +110,7 @@ void Scheduler::on(const Tick&) {
   retry_persisting();
   restart_orphans();
   if (now_ >= storage_blocked_until_) work_appeared_ = true;
+  turned_away_ = false;
 }
 
 void Scheduler::set_waiting(WorkerId id, Worker& worker) {

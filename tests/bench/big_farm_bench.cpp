@@ -20,20 +20,9 @@ int main(int argc, char** argv) {
   options.frames = std::max(1, static_cast<int>(frames));
   try {
     const BigWorldReport r = BigWorld(options).run();
-    const double percent = 100 / r.thread_seconds;
-    std::printf(
-        "%zu workers, %u threads each, %zu jobs of %d frames: %.0f s\n"
-        "  counts %.2f %%  lost %.2f %%  waiting for scenes %.2f %% of the threads' time\n"
-        "  %.0f units/s of %.2f s, %.0f scenes/s, %.1f pre-empted/min\n"
-        "  %.0f events/s, %.2f us each: %.1f %% of a processor\n",
-        options.workers, options.threads, options.jobs, options.frames, r.duration,
-        percent * r.counted, percent * r.lost, percent * r.waiting_for_scene,
-        static_cast<double>(r.units) / r.duration,
-        (r.counted + r.lost) / static_cast<double>(r.units),
-        static_cast<double>(r.scenes_loaded) / r.duration,
-        static_cast<double>(r.preempted) / r.duration * 60,
-        static_cast<double>(r.events) / r.duration,
-        1e6 * r.cpu_seconds / static_cast<double>(r.events), 100 * r.cpu_seconds / r.duration);
+    std::printf("%zu workers, %u threads each, %zu jobs of %d frames\n", options.workers,
+                options.threads, options.jobs, options.frames);
+    print(r);
   } catch (const std::string& wrong) {
     std::printf("%s\n", wrong.c_str());
     return 1;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 
 namespace hyades::coordinator {
 namespace {
@@ -33,7 +34,37 @@ Duration duration(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
+void print(const char* name, const ThreadTime& time, double seconds) {
+  const double percent = 100 / time.there;
+  std::printf(
+      "  %s, %.0f s: %.2f %% of the threads' time counts; %.2f %% lost, %.2f %% starting, %.2f %% "
+      "loading scenes, %.2f %% without a unit\n",
+      name, seconds, 100 * time.efficiency(), percent * time.lost, percent * time.starting,
+      percent * time.loading, percent * time.starved);
+}
+
 }  // namespace
+
+void print(const BigWorldReport& r) {
+  ThreadTime all = r.enough;
+  all.there += r.tail.there;
+  all.rendering += r.tail.rendering;
+  all.starting += r.tail.starting;
+  all.loading += r.tail.loading;
+  all.starved += r.tail.starved;
+  all.lost += r.tail.lost;
+  print("with enough work", r.enough, r.enough_until);
+  print("tail", r.tail, r.duration - r.enough_until);
+  print("all", all, r.duration);
+  std::printf(
+      "  %.0f units/s of %.2f s, %.0f scenes/s, %.1f pre-empted/min\n"
+      "  %.0f events/s, %.2f us each: %.1f %% of a processor\n",
+      static_cast<double>(r.units) / r.duration, all.rendering / static_cast<double>(r.units),
+      static_cast<double>(r.scenes_loaded) / r.duration,
+      static_cast<double>(r.preempted) / r.duration * 60,
+      static_cast<double>(r.events) / r.duration,
+      1e6 * r.cpu_seconds / static_cast<double>(r.events), 100 * r.cpu_seconds / r.duration);
+}
 
 BigWorld::BigWorld(const BigWorldOptions& options)
     : options_(options), random_(options.seed), scheduler_(scheduler_options(options)) {
@@ -48,6 +79,10 @@ BigWorldReport BigWorld::run() {
     plan.batches = options_.batches;
     plan.owner = "owner " + std::to_string(j % 6);
     ++open_jobs_;
+    const TileGrid grid(plan.region, plan.tile_size);
+    for (uint32_t t = 0; t < grid.size(); ++t) {
+      to_render_ += options_.frames * cost(JobId{j}, {1, grid.tile(t), {0, plan.batches}});
+    }
     tell(JobAdded{JobId{j}, plan, {}});
   }
   for (size_t i = 0; i < machines_.size(); ++i) {
@@ -61,10 +96,31 @@ BigWorldReport BigWorld::run() {
     next.what();
   }
   report_.duration = seconds_now();
-  for (Machine& m : machines_) {
-    if (m.there) report_.thread_seconds += options_.threads * (seconds_now() - m.since);
-  }
+  for (Machine& m : machines_) account(m);
   return report_;
+}
+
+/// Puts the time since the last call to what the machine's threads did; to be called before that
+/// changes.
+void BigWorld::account(Machine& m) {
+  const double time = seconds_now() - std::exchange(m.since, seconds_now());
+  if (!m.there || time <= 0) return;
+  size_t busy = 0;
+  for (const Unit& u : m.units) busy += u.began >= 0;
+  const size_t idle = options_.threads - busy;
+  const size_t loading = m.begun ? std::min(idle, m.units.size() - busy) : 0;
+  phase_->there += time * options_.threads;
+  phase_->rendering += time * static_cast<double>(busy);
+  phase_->loading += time * static_cast<double>(loading);
+  (m.begun ? phase_->starved : phase_->starting) += time * static_cast<double>(idle - loading);
+}
+
+void BigWorld::look_whether_enough() {
+  const double unit = std::chrono::duration<double>(options_.unit_time).count();
+  if (phase_ == &report_.tail || to_render_ >= 2 * unit * threads_there_) return;
+  for (Machine& m : machines_) account(m);
+  phase_ = &report_.tail;
+  report_.enough_until = seconds_now();
 }
 
 void BigWorld::after(double seconds, std::function<void()> what) {
@@ -94,9 +150,12 @@ void BigWorld::tell(const Event& event) {
 
 void BigWorld::start(size_t i) {
   Machine& m = machines_[i];
-  m = Machine{
-      true, m.life + 1, WorkerId{next_worker_++}, 0.6 + uniform(), 0, seconds_now(), false, 0,
-      {},   {}};
+  m = Machine{.there = true,
+              .life = m.life + 1,
+              .id = WorkerId{next_worker_++},
+              .speed = 0.6 + uniform(),
+              .since = seconds_now()};
+  threads_there_ += options_.threads;
   // From the same room to another continent.
   m.link = 0.0005 * std::exp(4.5 * uniform());
   machine_of_[m.id] = i;
@@ -113,6 +172,8 @@ void BigWorld::start(size_t i) {
 /// Half of those that are pre-empted hear of it: they hand over what is done. Others are cut off.
 void BigWorld::leave(size_t i) {
   Machine& m = machines_[i];
+  account(m);
+  threads_there_ -= options_.threads;
   ++report_.preempted;
   const bool told = uniform() < 0.5;
   if (told) tell(WorkerBarred{m.id, true});
@@ -123,9 +184,9 @@ void BigWorld::leave(size_t i) {
     if (told && part.unit.batches.count > 0) {
       part.seconds = u.seconds * part.unit.batches.count / u.unit.batches.count;
       deliver(m, part, false);
-      report_.lost += done * u.seconds - part.seconds;
+      phase_->lost += done * u.seconds - part.seconds;
     } else {
-      report_.lost += done * u.seconds;
+      phase_->lost += done * u.seconds;
       if (told) tell(UnitReturned{m.id, u.lease, u.job, u.unit});
     }
   }
@@ -134,7 +195,6 @@ void BigWorld::leave(size_t i) {
     machine_of_.erase(id);
     tell(WorkerLost{id});
   });
-  report_.thread_seconds += options_.threads * (seconds_now() - m.since);
   m.there = false;
   ++m.life;
   m.units.clear();
@@ -178,14 +238,15 @@ double BigWorld::scene_at(Machine& m, JobId job, int32_t frame) {
     s = needed ? s + 1 : m.scenes.erase(s);
   }
   ++report_.scenes_loaded;
-  const double at = seconds_now() + options_.scene_seconds / m.speed;
-  m.scenes.emplace_back(scene, at);
-  return at;
+  m.loads_until = std::max(m.loads_until, seconds_now()) + options_.scene_seconds / m.speed;
+  m.scenes.emplace_back(scene, m.loads_until);
+  return m.loads_until;
 }
 
 /// Gives free threads what waits.
 void BigWorld::begin(size_t i) {
   Machine& m = machines_[i];
+  account(m);
   size_t busy = 0;
   for (const Unit& u : m.units) busy += u.began >= 0;
   double soonest = 0;
@@ -198,6 +259,7 @@ void BigWorld::begin(size_t i) {
       continue;
     }
     ++busy;
+    m.begun = true;
     u.began = seconds_now();
     after(u.seconds, [this, i, life = m.life, number = u.number] {
       if (machines_[i].life == life) done(i, number);
@@ -206,7 +268,6 @@ void BigWorld::begin(size_t i) {
   if (soonest == 0 || m.looks_again) return;
   m.looks_again = true;
   const double wait = soonest - seconds_now() + 1e-6;
-  report_.waiting_for_scene += static_cast<double>(options_.threads - busy) * wait;
   after(wait, [this, i, life = m.life] {
     if (machines_[i].life != life) return;
     machines_[i].looks_again = false;
@@ -220,6 +281,7 @@ void BigWorld::done(size_t i, uint64_t number) {
                                   [&](const Unit& u) { return u.number == number; });
   if (found == m.units.end()) return;  // it was stopped
   const Unit unit = *found;
+  account(m);
   m.units.erase(found);
   deliver(m, unit, true);
   begin(i);
@@ -231,7 +293,7 @@ void BigWorld::deliver(Machine& m, const Unit& unit, bool more) {
   after(m.link, [this, result, seconds = unit.seconds] {
     arriving_ = seconds;
     tell(result);
-    report_.lost += std::exchange(arriving_, 0.0);  // nobody took it
+    phase_->lost += std::exchange(arriving_, 0.0);  // nobody took it
   });
   if (more) ask(m, true);
 }
@@ -260,6 +322,7 @@ void BigWorld::send(WorkerId id, Message message) {
 void BigWorld::act(const Lease& lease) {
   send(lease.worker, [this, lease](size_t i) {
     Machine& m = machines_[i];
+    account(m);
     m.asked -= std::min(m.asked, static_cast<uint32_t>(lease.units.size()));
     for (const core::Unit& unit : lease.units) {
       const double seconds = cost(lease.job, unit) * (0.9 + 0.2 * uniform()) / m.speed;
@@ -273,9 +336,10 @@ void BigWorld::act(const Lease& lease) {
 void BigWorld::act(const Revoke& revoke) {
   send(revoke.worker, [this, revoke](size_t i) {
     Machine& m = machines_[i];
+    account(m);
     std::erase_if(m.units, [&](const Unit& u) {
       const bool it = u.lease == revoke.lease && u.unit == revoke.unit;
-      if (it && u.began >= 0) report_.lost += seconds_now() - u.began;
+      if (it && u.began >= 0) phase_->lost += seconds_now() - u.began;
       return it;
     });
     begin(i);
@@ -309,6 +373,8 @@ void BigWorld::act(const Merge& merge) {
   const auto took = took_.find(merge.record);
   report_.counted += took->second;
   took_.erase(took);
+  to_render_ -= cost(merge.job, unit);
+  look_whether_enough();
 }
 
 void BigWorld::act(const FinishFrame& finish) {

@@ -28,28 +28,46 @@ struct BigWorldOptions {
   Duration unit_time = std::chrono::seconds(5);
 };
 
+/// Where the threads' time went, in seconds of one thread.
+struct ThreadTime {
+  double there = 0;      ///< of workers that were there: the sum of the next four
+  double rendering = 0;  ///< of which `lost` does not count
+  double starting = 0;   ///< from a worker's start to its first unit
+  double loading = 0;    ///< with a unit whose scene was not there yet
+  double starved = 0;    ///< without a unit
+  double lost = 0;       ///< rendered for nothing: pre-empted, or another's copy was first
+  double efficiency() const { return (rendering - lost) / there; }
+};
+
 /// What happened, in seconds of simulated time where nothing else is said.
 struct BigWorldReport {
   double duration = 0;
-  double thread_seconds = 0;  ///< that workers were there
-  double counted = 0;         ///< ... in which what counts was rendered
-  double lost = 0;            ///< ... rendered for nothing: pre-empted, or another's copy was first
-  double waiting_for_scene = 0;
+  double enough_until = 0;  ///< when the tail began
+  ThreadTime enough;        ///< while there was enough work, with the start
+  ThreadTime tail;          ///< after that
+  double counted = 0;       ///< thread seconds in which what counts was rendered
   uint64_t units = 0;
   uint64_t scenes_loaded = 0;
   uint64_t preempted = 0;
   uint64_t frames_done = 0;
   uint64_t events = 0;     ///< that the scheduler has answered
   double cpu_seconds = 0;  ///< of this machine for them
-  double efficiency() const { return counted / thread_seconds; }
+  double thread_seconds() const { return enough.there + tail.there; }
+  double efficiency() const { return counted / thread_seconds(); }
 };
+
+/// Tells on standard output where the time went.
+void print(const BigWorldReport& report);
 
 /// A big farm on a good day: the real scheduler, thousands of workers, realistic links, unit times
 /// and scenes, workers pre-empted by rate. What a worker does is what worker/desk.h does: as many
 /// units wait as it has threads, the wish for the next travels with a result, heartbeats every five
-/// seconds. Efficiency is rendering that counts over the time that threads were there, from the
-/// first worker's start to the last frame's end, with loading and the tail. Deterministic, except
-/// for `cpu_seconds`. Throws a std::string where a batch counts twice, or a frame ends without one.
+/// seconds, one scene is loaded at a time beside what is rendered. Efficiency is rendering that
+/// counts over the time that threads were there, from the first worker's start to the last frame's
+/// end; `enough` is the same up to the moment when less is left to render than what fills all
+/// threads and their queues (two units each): no order of work could keep all of them busy after
+/// that. Deterministic, except for `cpu_seconds`. Throws a std::string where a batch counts twice,
+/// or a frame ends without one.
 class BigWorld {
  public:
   explicit BigWorld(const BigWorldOptions& options);
@@ -69,12 +87,15 @@ class BigWorld {
     uint64_t life = 0;
     WorkerId id{};
     double speed = 1;
-    double link = 0;  ///< seconds one way
-    double since = 0;
+    double link = 0;           ///< seconds one way
+    double since = 0;          ///< its time up to then is in the report
+    bool begun = false;        ///< has begun a unit in this life
+    double loads_until = 0;    ///< it loads scenes, one after the other
     bool looks_again = false;  ///< when a scene is there
     uint32_t asked = 0;
-    std::vector<Unit> units;  ///< in work first, then those that wait
-    std::vector<std::pair<std::pair<JobId, int32_t>, double>> scenes;  ///< and when they are there
+    std::vector<Unit> units{};  ///< in work first, then those that wait
+    std::vector<std::pair<std::pair<JobId, int32_t>, double>>
+        scenes{};  ///< and when they are there
   };
   using Film = std::vector<uint64_t>;  ///< one bit for each batch of a tile
 
@@ -87,6 +108,8 @@ class BigWorld {
   template <class Message>
   void send(WorkerId id, Message message);
 
+  void account(Machine& machine);
+  void look_whether_enough();
   void start(size_t machine);
   void leave(size_t machine);
   void beat(size_t machine, uint64_t life);
@@ -121,10 +144,12 @@ class BigWorld {
   std::map<std::pair<JobId, int32_t>, std::map<std::pair<int32_t, int32_t>, Film>> films_;
   std::map<RecordId, double> took_;  ///< thread seconds of films on their way to the disk
   double arriving_ = 0;              ///< ... of the one that has just come
-  TimePoint next_sync_;
   std::vector<RecordId> syncing_;
   size_t open_jobs_ = 0;
   bool woken_ = false;
+  double to_render_ = 0;  ///< thread seconds on a machine of speed 1 that are not merged yet
+  double threads_there_ = 0;
+  ThreadTime* phase_ = &report_.enough;
   BigWorldReport report_;
 };
 

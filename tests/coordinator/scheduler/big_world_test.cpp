@@ -16,16 +16,6 @@ BigWorldOptions some_minutes() {
   return options;
 }
 
-void report(const BigWorldReport& r) {
-  std::printf(
-      "%.0f s: efficiency %.2f %%, lost %.2f %%, waiting for scenes %.2f %%; %llu units, %llu "
-      "scenes loaded, %llu pre-empted, %llu events\n",
-      r.duration, 100 * r.efficiency(), 100 * r.lost / r.thread_seconds,
-      100 * r.waiting_for_scene / r.thread_seconds, static_cast<unsigned long long>(r.units),
-      static_cast<unsigned long long>(r.scenes_loaded),
-      static_cast<unsigned long long>(r.preempted), static_cast<unsigned long long>(r.events));
-}
-
 TEST(BigWorld, IsBusyThoughWorkersArePreempted) {
   BigWorldReport r;
   try {
@@ -33,7 +23,7 @@ TEST(BigWorld, IsBusyThoughWorkersArePreempted) {
   } catch (const std::string& wrong) {
     FAIL() << wrong;
   }
-  report(r);
+  print(r);
   EXPECT_EQ(r.frames_done, 16U);
   EXPECT_GE(r.preempted, 10U);
   EXPECT_GE(r.duration, 300);

@@ -20,10 +20,11 @@ inline Digest digest(uint8_t value) {
   return d;
 }
 
-/// A scheduler with a clock, and what it said last.
+/// A scheduler with a clock, and what it said last. Scenes take no time where nothing else is said.
 class SchedulerBench {
  public:
-  explicit SchedulerBench(SchedulerOptions options = {}) : scheduler(options) {}
+  explicit SchedulerBench(SchedulerOptions options = {}, Duration scene_time = {})
+      : scheduler(with_scenes(options, scene_time)) {}
 
   std::vector<Action> tell(const Event& event) {
     said = scheduler.handle(event, now);
@@ -75,6 +76,12 @@ class SchedulerBench {
   Scheduler scheduler;
   TimePoint now{};
   std::vector<Action> said;
+
+ private:
+  static SchedulerOptions with_scenes(SchedulerOptions options, Duration scene_time) {
+    options.scene_time = scene_time;
+    return options;
+  }
 };
 
 inline JobPlan small_plan(std::vector<int32_t> frames = {1}, uint32_t batches = 2) {

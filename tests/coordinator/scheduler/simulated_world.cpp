@@ -37,6 +37,7 @@ SimulatedWorld::SimulatedWorld(uint64_t seed) : random_(seed) {
     }
   }
   options_.affinity_time = std::chrono::milliseconds(chance(0.5) ? 0 : number(1, 20'000));
+  options_.scene_time = std::chrono::milliseconds(chance(0.5) ? 0 : number(1, 3000));
   const int jobs = number(1, 3);
   for (int i = 1; i <= jobs; ++i) make_job(JobId{static_cast<uint64_t>(i)});
 }
