@@ -36,6 +36,7 @@ struct Arguments {
   double lease_seconds = 30;
   double class_patience = 300;
   double adoption_seconds = 5;
+  double stall_seconds = 600;
   double compact_mb = 256;
   double asset_grace = 3600;
 };
@@ -120,6 +121,10 @@ int main(int argc, char** argv) {
                  "after a start, workers have so long to say what they hold before others get it")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
+  app.add_option("--stall-seconds", arguments.stall_seconds,
+                 "a unit of which a worker gets no sample done for so long is taken from it")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
   app.add_option("--compact-mb", arguments.compact_mb,
                  "a job's film log is rewritten when it has grown by this much")
       ->check(CLI::Range(0.01, 1e6))
@@ -157,6 +162,7 @@ int main(int argc, char** argv) {
   arguments.brain.asset_grace = seconds(arguments.asset_grace);
   arguments.brain.class_patience = seconds(arguments.class_patience);
   arguments.brain.adoption_time = seconds(arguments.adoption_seconds);
+  arguments.brain.stall_time = seconds(arguments.stall_seconds);
   arguments.brain.compact_bytes = static_cast<uint64_t>(arguments.compact_mb * 1e6);
   return serve(arguments);
 }

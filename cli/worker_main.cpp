@@ -78,6 +78,11 @@ int main(int argc, char** argv) {
   app.add_option("--grace", options.grace, "seconds from SIGTERM to the end")
       ->check(CLI::Range(0.3, 3600.0))
       ->capture_default_str();
+  app.add_option("--hang-limit", options.hang_limit,
+                 "seconds without a new sample of a unit after which the process that renders is "
+                 "killed; 0: never")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   app.footer(
       "examples:\n"
       "  hyades worker\n"

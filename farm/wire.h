@@ -17,8 +17,8 @@ namespace hyades::farm {
 // accept nothing that the core's types cannot hold.
 
 /// The version of the wire that this program speaks, and the oldest it understands (docs/wire.md).
-inline constexpr uint32_t kProtocol = 1;
-inline constexpr uint32_t kOldestProtocol = 1;
+inline constexpr uint32_t kProtocol = 2;
+inline constexpr uint32_t kOldestProtocol = 2;
 
 /// The most bytes of data in a Chunk.
 inline constexpr uint64_t kMaxChunkBytes = uint64_t{1} << 20U;

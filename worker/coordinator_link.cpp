@@ -13,6 +13,23 @@
 #include "hyades/v1/work.grpc.pb.h"
 
 namespace hyades::worker {
+namespace {
+
+StreamEnd meaning_of(grpc::StatusCode code) {
+  switch (code) {
+    case grpc::StatusCode::UNAUTHENTICATED:
+    case grpc::StatusCode::PERMISSION_DENIED:
+    case grpc::StatusCode::FAILED_PRECONDITION:
+    case grpc::StatusCode::UNIMPLEMENTED:
+      return StreamEnd::refused;
+    case grpc::StatusCode::ALREADY_EXISTS:
+      return StreamEnd::id_taken;
+    default:
+      return StreamEnd::broken;
+  }
+}
+
+}  // namespace
 
 struct CoordinatorLink::State {
   std::shared_ptr<grpc::Channel> channel;
@@ -83,10 +100,6 @@ class CoordinatorLink::Stream
   }
 
   void OnDone(const grpc::Status& status) override {
-    const auto code = status.error_code();
-    const bool final =
-        code == grpc::StatusCode::UNAUTHENTICATED || code == grpc::StatusCode::PERMISSION_DENIED ||
-        code == grpc::StatusCode::FAILED_PRECONDITION || code == grpc::StatusCode::UNIMPLEMENTED;
     const std::shared_ptr<State> state = state_;
     std::shared_ptr<Stream> self;  // outlives this function's last line
     {
@@ -94,7 +107,8 @@ class CoordinatorLink::Stream
       self = std::move(state->stream);
       state->stream.reset();
     }
-    state->owner->stream_ended(final, status.ok() ? "it was closed" : status.error_message(),
+    state->owner->stream_ended(meaning_of(status.error_code()),
+                               status.ok() ? "it was closed" : status.error_message(),
                                std::chrono::milliseconds(farm::detail_of(status).retry_after_ms()));
     const std::lock_guard lock(state->mutex);
     --state->live;

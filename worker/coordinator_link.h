@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -13,6 +14,13 @@ class Channel;
 
 namespace hyades::worker {
 
+/// What the end of a stream means for the next one.
+enum class StreamEnd : uint8_t {
+  broken,   ///< another one is worth a try
+  refused,  ///< another one would end the same way (wrong token, version)
+  id_taken  ///< another process works under this worker's id: it needs a new one
+};
+
 /// The stream to the coordinator, one at a time. Thread-safe.
 class CoordinatorLink {
  public:
@@ -21,9 +29,9 @@ class CoordinatorLink {
    public:
     virtual ~Owner() = default;
     virtual void stream_says(v1::CoordinatorMessage message) = 0;
-    /// The stream is over. `final`: coming again would end the same way (wrong token, version).
-    /// Otherwise the coordinator asks not to come before `retry_after` has passed.
-    virtual void stream_ended(bool final, const std::string& reason,
+    /// The stream is over. Where another one is worth it the coordinator asks not to come before
+    /// `retry_after` has passed.
+    virtual void stream_ended(StreamEnd end, const std::string& reason,
                               std::chrono::milliseconds retry_after) = 0;
   };
 

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "hyades/v1/work.pb.h"
 #include "worker/pipe/render_pipe.pb.h"
+#include "worker/render_watch.h"
 
 namespace hyades::worker {
 
@@ -25,6 +27,9 @@ class DeskPorts {
   virtual void send(v1::WorkerMessage message) = 0;
   /// To the rendering child; lost if there is none.
   virtual void tell_renderer(pipe::ToRenderer message) = 0;
+  /// It hangs. `reason` completes "the process that renders ...". When it is dead
+  /// Desk::renderer_died is called as always.
+  virtual void kill_renderer(const std::string& reason) = 0;
   /// Brings the job's files into the cache; answered by Desk::files_are_there or files_failed.
   virtual void fetch(uint64_t job, const v1::JobSpec& spec) = 0;
   /// No unit of the job is left: its files may be evicted. What was being fetched may go on.
@@ -36,6 +41,7 @@ class DeskPorts {
 /// What this worker is; see Hello.
 struct DeskOptions {
   std::string worker_id;
+  std::string instance;  ///< random, of this process
   std::string name;
   std::string host;
   uint32_t threads = 1;
@@ -44,6 +50,7 @@ struct DeskOptions {
   std::vector<std::string> tags;
   /// Films that may wait for their acknowledgement before no more work is asked for.
   uint64_t max_kept_bytes = uint64_t{1} << 30U;
+  Duration hang_limit{0};  ///< see RenderWatch
 };
 
 /// The worker's books: which units it has under which leases, who renders what, which films are not
@@ -54,12 +61,18 @@ struct DeskOptions {
 /// coordinator in the next Hello.
 ///
 /// When the rendering child dies, every unit that it had begun is a suspect. Suspects are rendered
-/// again one at a time, with nothing beside them: the one that kills the child alone has failed.
+/// again one at a time, with nothing beside them: the one that kills the child alone has failed. A
+/// child that hangs is killed, and then only the units that it hung in are suspects.
 class Desk {
  public:
-  Desk(DeskOptions options, DeskPorts& ports) : options_(std::move(options)), ports_(ports) {}
+  Desk(DeskOptions options, DeskPorts& ports)
+      : options_(std::move(options)), ports_(ports), watch_(options_.hang_limit) {}
+
+  /// Another worker is known by this one's id: from the next stream on it has another.
+  void rename(const std::string& worker_id) { options_.worker_id = worker_id; }
 
   // The rendering child.
+  void renderer_started();
   void renderer_ready(const pipe::Ready& ready);
   void renderer_says(pipe::FromRenderer message, TimePoint now);
   /// `reason` in words: "was killed by signal 11 (Segmentation fault)".
@@ -100,6 +113,7 @@ class Desk {
     v1::LeasedUnit leased;
     State state = State::fetching;
     bool begun = false;    ///< the child has said Started
+    bool loading = false;  ///< ... its scene
     bool suspect = false;  ///< it was begun when a child died
     uint64_t samples_done = 0;
     v1::UnitResult result;  ///< of a kept film
@@ -114,6 +128,9 @@ class Desk {
   };
   using Items = std::map<uint64_t, Item>;
 
+  static v1::LeaseProgress::Stage stage_of(const Item& item);
+  void lose_renderer(const std::string& reason, const std::set<uint64_t>* hung);
+  void watch(TimePoint now);
   void take(const v1::Lease& lease);
   void take_unit(const v1::LeasedUnit& leased, bool adopted);
   void dispatch();
@@ -145,6 +162,7 @@ class Desk {
   std::string worker_class_;
   std::string build_;
   bool renderer_up_ = false;
+  RenderWatch watch_;
   uint64_t renderer_memory_ = 0;
 
   bool open_ = false;

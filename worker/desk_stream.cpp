@@ -1,6 +1,5 @@
-// The desk's side of the stream: hello, leases, answers to films, heartbeats, leaving.
+// The desk's side of the stream: hello, leases, answers to films, wishes, leaving.
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,6 +39,7 @@ void Desk::send_hello() {
   v1::Hello& hello = *message.mutable_hello();
   hello.set_protocol(farm::kProtocol);
   hello.set_worker_id(options_.worker_id);
+  hello.set_instance(options_.instance);
   hello.set_name(options_.name);
   hello.set_host(options_.host);
   hello.set_worker_class(worker_class_);
@@ -169,68 +169,6 @@ void Desk::send_result(const Item& item) {
   v1::WorkerMessage message;
   *message.mutable_result() = item.result;
   ports_.send(std::move(message));
-}
-
-// ---- time ----
-
-void Desk::tick(TimePoint now, bool flowing) {
-  fence(now);
-  if (!welcomed_) return;
-  if (now - last_heartbeat_ >= heartbeat_every_ && flowing) {
-    heartbeat(now);
-    last_heartbeat_ = now;
-  }
-  for (auto& [token, item] : items_) {
-    if (!item.send_again || *item.send_again > now) continue;
-    item.send_again.reset();
-    if (item.state == Item::State::kept) send_result(item);
-  }
-  top_up();
-}
-
-/// No answer for as long as a lease lasts (the network may be cut without a sign), or asleep:
-/// whatever is not rendered yet was given to others by now.
-void Desk::fence(TimePoint now) {
-  if (!renewed_ || now - *renewed_ <= lease_time_) return;
-  size_t dropped = 0;
-  for (auto it = items_.begin(); it != items_.end();) {
-    const auto item = it++;
-    if (item->second.state == Item::State::kept) continue;
-    stop_rendering(item);
-    drop(item);
-    ++dropped;
-  }
-  renewed_.reset();
-  if (dropped > 0) {
-    ports_.note(fmt::format("out of contact for longer than a lease: {} units given up", dropped));
-  }
-}
-
-void Desk::heartbeat(TimePoint now) {
-  v1::WorkerMessage message;
-  v1::Heartbeat& beat = *message.mutable_heartbeat();
-  beat.set_number(++heartbeats_);
-  unanswered_.emplace(heartbeats_, now);
-  std::map<std::pair<uint64_t, uint64_t>, uint64_t> samples;  // by lease
-  for (const auto& [token, item] : items_) {
-    const v1::LeaseId& lease = item.leased.lease();
-    samples[{lease.incarnation(), lease.number()}] += item.samples_done;
-  }
-  for (const auto& [id, done] : samples) {
-    v1::LeaseProgress& lease = *beat.add_leases();
-    lease.mutable_lease()->set_incarnation(id.first);
-    lease.mutable_lease()->set_number(id.second);
-    lease.set_samples_done(done);
-  }
-  beat.set_memory_bytes(renderer_memory_);
-  ports_.send(std::move(message));
-}
-
-void Desk::echoed(uint64_t number) {
-  const auto sent = unanswered_.find(number);
-  if (sent == unanswered_.end()) return;
-  renewed_ = renewed_ ? std::max(*renewed_, sent->second) : sent->second;
-  unanswered_.erase(unanswered_.begin(), std::next(sent));
 }
 
 // ---- wishes ----

@@ -87,6 +87,13 @@ void RendererProcess::kill_child() {
   if (pid_ > 0) ::kill(pid_, SIGKILL);
 }
 
+void RendererProcess::kill(const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  if (pid_ <= 0) return;
+  killed_ = reason;
+  ::kill(pid_, SIGKILL);
+}
+
 void RendererProcess::send(pipe::ToRenderer message) {
   const std::lock_guard lock(mutex_);
   outgoing_.push_back(std::move(message));
@@ -106,17 +113,19 @@ void RendererProcess::read_loop() {
          errno == EINTR) {
   }
   bool wanted = false;
-  int status = 0;
+  std::string reason;
   {
     // Under the lock, so that nobody signals a pid that belongs to another process by then.
     const std::lock_guard lock(mutex_);
+    int status = 0;
     ::waitpid(pid_, &status, 0);
+    reason = killed_.empty() ? describe_end(status) : killed_;
     pid_ = 0;
     wanted = closing_;
     closing_ = true;
     wake_.notify_all();
   }
-  if (!wanted) owner_.renderer_ended(describe_end(status));
+  if (!wanted) owner_.renderer_ended(reason);
 }
 
 void RendererProcess::write_loop() {

@@ -44,6 +44,9 @@ class RendererProcess {
   RendererProcess(const RendererProcess&) = delete;
   RendererProcess& operator=(const RendererProcess&) = delete;
 
+  /// Ends the child; the owner hears of it when it is dead, with this reason.
+  void kill(const std::string& reason);
+
   /// Queues a message; never blocks.
   void send(pipe::ToRenderer message);
 
@@ -58,7 +61,8 @@ class RendererProcess {
   std::mutex mutex_;
   std::condition_variable wake_;
   // Guarded by mutex_.
-  pid_t pid_;  ///< 0: it has been waited for
+  pid_t pid_;           ///< 0: it has been waited for
+  std::string killed_;  ///< why, where this process did it
   std::deque<pipe::ToRenderer> outgoing_;
   bool closing_ = false;
 

@@ -17,9 +17,11 @@
 
 #include <fmt/format.h>
 
+#include "core/base/random_id.h"
 #include "farm/backoff.h"
 #include "farm/content_store.h"
 #include "farm/tags.h"
+#include "farm/wire.h"
 #include "worker/asset_fetcher.h"
 #include "worker/coordinator_link.h"
 #include "worker/desk.h"
@@ -54,10 +56,11 @@ class Worker : private DeskPorts,
                private RendererProcess::Owner,
                private AssetFetcher::Owner {
  public:
-  Worker(const WorkerOptions& options, const WorkerId& id, std::shared_ptr<grpc::Channel> channel,
-         std::string token, farm::ContentStore& store)
+  Worker(const WorkerOptions& options, WorkerId id, const std::string& instance,
+         std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store)
       : options_(options),
-        desk_(desk_options(options, id), *this),
+        id_(std::move(id)),
+        desk_(desk_options(options, id_, instance), *this),
         link_(channel, token, *this),
         fetcher_(channel, token, store, *this, kFetchPatience) {}
 
@@ -76,9 +79,13 @@ class Worker : private DeskPorts,
   }
 
  private:
-  static DeskOptions desk_options(const WorkerOptions& options, const WorkerId& id) {
+  static DeskOptions desk_options(const WorkerOptions& options, const WorkerId& id,
+                                  const std::string& instance) {
     DeskOptions desk;
     desk.worker_id = id.text();
+    desk.instance = instance;
+    desk.hang_limit =
+        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.hang_limit));
     desk.name = options.name.empty() ? host_name() : options.name;
     desk.host = host_name();
     desk.threads = static_cast<uint32_t>(options.threads);
@@ -143,6 +150,7 @@ class Worker : private DeskPorts,
       return;
     }
     renderer_ = std::move(*started);
+    desk_.renderer_started();
   }
 
   void renderer_says(pipe::FromRenderer message) override {
@@ -181,6 +189,10 @@ class Worker : private DeskPorts,
     if (renderer_) renderer_->send(std::move(message));
   }
 
+  void kill_renderer(const std::string& reason) override {
+    if (renderer_) renderer_->kill(reason);
+  }
+
   // ---- the coordinator ----
 
   void connect(TimePoint now) {
@@ -196,6 +208,12 @@ class Worker : private DeskPorts,
   void stream_says(v1::CoordinatorMessage message) override {
     post([this, message = std::move(message)]() mutable {
       if (message.has_welcome()) {
+        if (const uint32_t spoken = message.welcome().protocol(); spoken < farm::kOldestProtocol) {
+          note(fmt::format("the coordinator speaks protocol {}, this worker {} to {}: update it",
+                           spoken, farm::kOldestProtocol, farm::kProtocol));
+          exit_status_ = 2;
+          return;
+        }
         backoff_.reset();
         told_trouble_.clear();
         note(fmt::format("working for {} as {}", options_.coordinator.address,
@@ -205,16 +223,29 @@ class Worker : private DeskPorts,
     });
   }
 
-  void stream_ended(bool final, const std::string& reason,
+  /// There are two with one id, and the other was first.
+  void rename() {
+    if (auto renewed = id_.renew(); !renewed) {
+      note(renewed.error().message);
+      exit_status_ = 1;
+      return;
+    }
+    desk_.rename(id_.text());
+    note("another worker has this one's id (a copied cache, or machine): it takes a new one");
+  }
+
+  void stream_ended(StreamEnd end, const std::string& reason,
                     std::chrono::milliseconds retry_after) override {
-    post([this, final, reason, retry_after] {
+    post([this, end, reason, retry_after] {
       streaming_ = false;
       desk_.stream_closed();
-      if (final) {
+      if (exit_status_) return;
+      if (end == StreamEnd::refused) {
         note("the coordinator refuses this worker: " + reason);
         exit_status_ = 2;
         return;
       }
+      if (end == StreamEnd::id_taken) rename();
       const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestPause));
       connect_at_ = Clock::now() + pause;
       if (goodbye_by_ || reason == told_trouble_) return;
@@ -250,6 +281,7 @@ class Worker : private DeskPorts,
   std::deque<std::function<void()>> posted_;  ///< guarded by mutex_
 
   // All else belongs to the loop.
+  WorkerId id_;
   Desk desk_;
   farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
   bool streaming_ = false;
@@ -286,11 +318,13 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   if (failed) return refuse({options.cache + ": cannot be made: " + failed.message()});
   auto store = farm::ContentStore::open({options.cache, options.cache_size});
   if (!store) return refuse(store.error());
-  auto id = WorkerId::take(options.cache, host_name());
+  auto id = WorkerId::take(options.cache, machine_name(host_name()));
   if (!id) return refuse(id.error());
+  const auto instance = core::random_id();
+  if (!instance) return refuse(instance.error());
   auto tags = farm::check_tags(options.tags);
   if (!tags) return refuse(tags.error());
-  Worker worker(options, *id, *channel, *token, **store);
+  Worker worker(options, std::move(*id), *instance, *channel, *token, **store);
   return worker.run(signals);
 }
 

@@ -17,8 +17,9 @@ struct WorkerOptions {
   uint64_t cache_size = 0;  ///< bytes; 0: no limit
   std::string name;         ///< for people
   std::vector<std::string> tags;
-  double grace = 2.0;    ///< seconds from SIGTERM to the end
-  std::string renderer;  ///< path of hyades-worker-render
+  double grace = 2.0;      ///< seconds from SIGTERM to the end
+  double hang_limit = 60;  ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
+  std::string renderer;    ///< path of hyades-worker-render
 };
 
 /// Works for a coordinator until `signals` is not 0 or it is drained. Returns the process' exit

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <fstream>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "core/base/hash.h"
 #include "core/base/io_reason.h"
 #include "core/base/random_id.h"
 
@@ -27,19 +29,19 @@ bool is_id(const std::string& text) {
          });
 }
 
-/// What the file says where it was written whole, by this host.
-std::string read_id(int fd, const std::string& host) {
+/// What the file says where it was written whole, by this machine.
+std::string read_id(int fd, const std::string& machine) {
   std::array<char, 512> bytes{};
   const ssize_t size = ::pread(fd, bytes.data(), bytes.size(), 0);
   if (size <= 0) return {};
   const std::string text(bytes.data(), static_cast<size_t>(size));
   const std::string id = text.substr(0, kIdLength);
-  return is_id(id) && text == id + " " + host + "\n" ? id : std::string();
+  return is_id(id) && text == id + " " + machine + "\n" ? id : std::string();
 }
 
 }  // namespace
 
-core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std::string& host) {
+core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std::string& machine) {
   for (int number = 0; number < kMostWorkers; ++number) {
     const std::string path = fmt::format("{}/worker-{}.id", cache_folder, number);
     const auto failed = [&](const char* what) {
@@ -51,22 +53,36 @@ core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std
       if (errno == EWOULDBLOCK) continue;
       return failed("lock");
     }
-    std::string id = read_id(file.get(), host);
-    if (id.empty()) {
-      auto fresh = core::random_id();
-      if (!fresh) return fresh.error();
-      id = *fresh;
-      const std::string text = id + " " + host + "\n";
-      if (::ftruncate(file.get(), 0) != 0 ||
-          ::pwrite(file.get(), text.data(), text.size(), 0) != std::ssize(text) ||
-          ::fsync(file.get()) != 0) {
-        return failed("write");
-      }
+    WorkerId id(path, machine, std::move(file));
+    id.text_ = read_id(id.lock_.get(), machine);
+    if (id.text_.empty()) {
+      if (auto made = id.renew(); !made) return made.error();
     }
-    return WorkerId(std::move(id), std::move(file));
+    return id;
   }
   return core::Error{
       fmt::format("{}: {} workers run with this cache already", cache_folder, kMostWorkers)};
+}
+
+core::Status WorkerId::renew() {
+  auto fresh = core::random_id();
+  if (!fresh) return fresh.error();
+  const std::string text = *fresh + " " + machine_ + "\n";
+  if (::ftruncate(lock_.get(), 0) != 0 ||
+      ::pwrite(lock_.get(), text.data(), text.size(), 0) != std::ssize(text) ||
+      ::fsync(lock_.get()) != 0) {
+    return core::Error{fmt::format("cannot write {}: {}", path_, core::io_reason(errno))};
+  }
+  text_ = *fresh;
+  return {};
+}
+
+std::string machine_name(const std::string& host, const std::string& id_file) {
+  std::ifstream file(id_file);
+  std::string id;
+  if (!(file >> id)) return host;
+  // A hash, as the id itself is nobody else's business.
+  return host + "/" + core::to_hex(core::sha256("hyades worker " + id)).substr(0, kIdLength);
 }
 
 }  // namespace hyades::worker

@@ -47,6 +47,9 @@ struct BrainOptions {
   /// longer, up to four times this, while those who hold something still come. By default the
   /// longest wait of a worker (farm/backoff.h), and what connecting takes.
   Duration adoption_time = std::chrono::seconds(5);
+  /// A lease whose rendering makes no progress is not renewed any more after this; where the worker
+  /// loads or waits, after six times this.
+  Duration stall_time = std::chrono::minutes(10);
   /// Bytes that the film of a frame may take in memory; jobs of larger ones are refused.
   uint64_t film_memory = default_film_memory();
   /// A job's film log is rewritten when it has grown by this much.
@@ -73,10 +76,11 @@ class Brain {
   Brain(const Brain&) = delete;
   Brain& operator=(const Brain&) = delete;
 
-  // Workers (brain_work.cpp).
+  // Workers (brain_attach.cpp, brain_work.cpp, brain_heartbeat.cpp).
 
   /// A worker's stream begins; `link` gets the Welcome. An older stream of the same worker is
-  /// closed. INVALID_ARGUMENT for a Hello that makes no sense.
+  /// closed, unless it is another process' that still speaks: ALREADY_EXISTS then. INVALID_ARGUMENT
+  /// for a Hello that makes no sense.
   grpc::Status attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
                       WorkerId& worker);
   /// What came on the stream; what comes on one that is not the worker's newest is ignored.
@@ -137,6 +141,12 @@ class Brain {
   std::string films_folder(uint64_t job) const;
 
  private:
+  /// How far a lease was when the worker last told, and for how long that is so.
+  struct Pulse {
+    v1::LeaseProgress::Stage stage = v1::LeaseProgress::STAGE_UNSPECIFIED;
+    uint64_t samples_done = 0;
+    Duration still{0};
+  };
   struct Seat {
     WorkerId id{};
     v1::Hello hello;  ///< without what is in hand
@@ -145,6 +155,10 @@ class Brain {
     v1::WorkerState state = v1::WORKER_STATE_ACTIVE;
     std::string reason;
     TimePoint heard;
+    TimePoint beat;                   ///< the last heartbeat
+    std::map<LeaseId, Pulse> pulses;  ///< as of then
+    std::optional<TimePoint>
+        twin_came;                     ///< another process with the same id, while this one is here
     std::optional<TimePoint> lost_at;  ///< its stream has ended
     bool leaving = false;
     bool joined = false;     ///< the scheduler knows it
@@ -214,6 +228,11 @@ class Brain {
 
   // Messages of workers.
   bool has_seat();
+  grpc::Status meet_twin(Seat& seat, const v1::Hello& hello);
+  std::optional<Duration> patience_with(v1::LeaseProgress::Stage stage) const;
+  std::vector<Event> feel_pulses(Seat& seat, const v1::Heartbeat& beat);
+  std::vector<Event> take_back(Seat& seat, const LeaseId& lease, const Pulse& pulse);
+  std::vector<std::string> still_units(JobId job) const;
   void wait_for_more_holders();
   void on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result);
   void want(Seat& seat, uint32_t units, std::vector<Action>& later);

@@ -278,6 +278,7 @@ grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
                     "another worker of it to say who is right",
                     disputed));
   }
+  for (std::string& still : still_units(desk->id)) say(std::move(still));
   const uint32_t leased = scheduler_.leased_units(desk->id);
   if (leased > 0) {
     say(fmt::format("{} units are being rendered", leased));

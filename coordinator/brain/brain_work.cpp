@@ -1,167 +1,29 @@
-// What workers say.
+// What workers say: wishes, films, failures.
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
-#include "core/base/version.h"
+#include "coordinator/brain/wire_ids.h"
 #include "core/film/film_codec.h"
-#include "farm/tags.h"
 #include "farm/wire.h"
-#include "farm/wire_status.h"
 
 namespace hyades::coordinator {
 namespace {
 
 constexpr int kMostNotes = 8;
-constexpr uint32_t kMostThreads = 4096;
-constexpr size_t kMostWorkers = 20'000;
 constexpr uint32_t kCrowdedRetryMs = 500;
 constexpr uint32_t kFullRetryMs = 2000;
 /// Of a decoded film, besides its pixels.
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
 
-LeaseId from_wire(const v1::LeaseId& wire) { return {wire.incarnation(), wire.number()}; }
-
-uint64_t milliseconds(Duration d) {
-  return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(d).count());
-}
-
-/// What makes a Hello useless, or nothing.
-std::string complaint(const v1::Hello& hello) {
-  if (hello.protocol() < farm::kOldestProtocol) {
-    return fmt::format(
-        "the worker speaks protocol {}, this coordinator {} to {}: update the worker",
-        hello.protocol(), farm::kOldestProtocol, farm::kProtocol);
-  }
-  if (hello.worker_id().size() < 16 || hello.worker_id().size() > 64) {
-    return "worker_id has to have 16 to 64 characters";
-  }
-  if (hello.name().empty() || hello.name().size() > 200 || hello.host().size() > 200 ||
-      hello.build().size() > 200) {
-    return "a worker needs a name; names, host and build have at most 200 characters";
-  }
-  if (const auto tags = farm::check_tags({hello.tags().begin(), hello.tags().end()}); !tags) {
-    return tags.error().message;
-  }
-  if (hello.worker_class().empty() || hello.worker_class().size() > 64) {
-    return "a worker needs a class of at most 64 characters";
-  }
-  if (hello.threads() < 1 || hello.threads() > kMostThreads) return "threads: expected 1 to 4096";
-  return {};
-}
-
 }  // namespace
-
-/// Whether another worker may come; with the lock. Where all seats are taken, one that is gone is
-/// forgotten sooner than others.
-bool Brain::has_seat() {
-  if (seats_.size() < kMostWorkers) return true;
-  const auto gone = std::find_if(seats_.begin(), seats_.end(), [](const auto& seat) {
-    return seat.second.lost_at && !seat.second.joined;
-  });
-  if (gone == seats_.end()) return false;
-  worker_ids_.erase(gone->second.hello.worker_id());
-  seats_.erase(gone);
-  return true;
-}
-
-grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
-                           WorkerId& worker) {
-  if (const std::string wrong = complaint(hello); !wrong.empty()) {
-    return {hello.protocol() < farm::kOldestProtocol ? grpc::StatusCode::FAILED_PRECONDITION
-                                                     : grpc::StatusCode::INVALID_ARGUMENT,
-            wrong};
-  }
-  WorkerJoined joined;
-  joined.threads = hello.threads();
-  joined.worker_class = hello.worker_class();
-  joined.tags.assign(hello.tags().begin(), hello.tags().end());
-  joined.memory = hello.memory_bytes();
-  for (const v1::LeasedUnit& held : hello.in_hand()) {
-    const auto unit = farm::from_wire(held.unit());
-    if (!unit) return {grpc::StatusCode::INVALID_ARGUMENT, unit.error().message};
-    joined.in_hand.push_back({from_wire(held.lease()), JobId{held.job()}, *unit});
-  }
-  std::vector<Action> later;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!worker_ids_.contains(hello.worker_id()) && !has_seat()) {
-      return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                               fmt::format("there are {} workers already", kMostWorkers),
-                               std::chrono::seconds(10));
-    }
-    const auto [known, fresh] = worker_ids_.try_emplace(hello.worker_id(), WorkerId{next_worker_});
-    if (fresh) ++next_worker_;
-    worker = known->second;
-    Seat& seat = seats_[worker];
-    if (seat.link) {
-      seat.link->close({grpc::StatusCode::ABORTED, "the worker has a newer stream"});
-    }
-    seat.id = worker;
-    seat.hello = hello;
-    seat.hello.clear_in_hand();
-    seat.link = link;
-    seat.briefed.clear();
-    if (const auto kept = quarantines_.find(hello.worker_id()); kept != quarantines_.end()) {
-      seat.state = v1::WORKER_STATE_QUARANTINED;
-      seat.reason = kept->second;
-    } else {
-      seat.state = v1::WORKER_STATE_ACTIVE;
-    }
-    seat.lost_at.reset();
-    seat.leaving = false;
-    seat.held_wish = 0;
-    seat.heard = std::chrono::steady_clock::now();
-    seat.heard_ms = wall_ms();
-    if (seat.joined_ms == 0) seat.joined_ms = seat.heard_ms;
-
-    v1::CoordinatorMessage message;
-    v1::Welcome& welcome = *message.mutable_welcome();
-    welcome.set_protocol(farm::kProtocol);
-    welcome.set_incarnation(incarnation_);
-    welcome.set_heartbeat_ms(static_cast<uint32_t>(milliseconds(options_.lease_time) / 6));
-    welcome.set_lease_ms(static_cast<uint32_t>(milliseconds(options_.lease_time)));
-    welcome.set_max_message_bytes(farm::kMaxResultBytes);
-    welcome.set_version(core::kVersion);
-    welcome.set_name(hello.name());
-    link->send(std::move(message));
-
-    joined.worker = worker;
-    seat.joined = true;
-    later = tell(joined);
-    if (seat.state == v1::WORKER_STATE_QUARANTINED) {
-      for (Action& action : tell(WorkerBarred{worker, true})) later.push_back(std::move(action));
-    }
-    if (!joined.in_hand.empty()) wait_for_more_holders();
-    want(seat, hello.want(), later);
-  }
-  carry_out(later);
-  return grpc::Status::OK;
-}
-
-void Brain::detach(WorkerId worker, const WorkerLink* link) {
-  const std::lock_guard lock(mutex_);
-  Seat* seat = seat_of(worker, link);
-  if (seat == nullptr) return;
-  seat->link.reset();
-  seat->lost_at = std::chrono::steady_clock::now();
-}
 
 /// The worker's seat, if `link` is its newest stream.
 Brain::Seat* Brain::seat_of(WorkerId worker, const WorkerLink* link) {
   const auto seat = seats_.find(worker);
   return seat == seats_.end() || seat->second.link.get() != link ? nullptr : &seat->second;
-}
-
-/// A worker that holds something has come: where so many come that they have to wait for each other
-/// the rest is still on its way. With the lock.
-void Brain::wait_for_more_holders() {
-  const TimePoint now = std::chrono::steady_clock::now();
-  if (now >= adopting_until_) return;
-  const TimePoint later = std::min(now + options_.adoption_time / 5, adopting_at_most_);
-  adopting_until_ = std::max(adopting_until_, later);
 }
 
 void Brain::want(Seat& seat, uint32_t units, std::vector<Action>& later) {
@@ -188,12 +50,8 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
     if (message.has_request()) {
       want(*seat, message.request().units(), later);
     } else if (message.has_heartbeat()) {
-      WorkerAlive alive{worker, {}};
-      for (const v1::LeaseProgress& lease : message.heartbeat().leases()) {
-        alive.leases.push_back(from_wire(lease.lease()));
-      }
       seat->memory = message.heartbeat().memory_bytes();
-      say(alive);
+      for (const Event& event : feel_pulses(*seat, message.heartbeat())) say(event);
       v1::CoordinatorMessage echo;
       echo.mutable_echo()->set_number(message.heartbeat().number());
       seat->link->send(std::move(echo));
@@ -209,7 +67,7 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
                            unit->batches.first, unit->batches.end() - 1,
                            farm::wire_text(failure.reason())));
         }
-        say(UnitFailed{worker, from_wire(failure.unit().lease()), job, *unit,
+        say(UnitFailed{worker, lease_from_wire(failure.unit().lease()), job, *unit,
                        farm::wire_text(failure.reason())});
       }
       want(*seat, failure.want(), later);
@@ -217,7 +75,7 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
       for (const v1::LeasedUnit& returned : message.returned().units()) {
         const auto unit = farm::from_wire(returned.unit());
         if (!unit) continue;
-        say(UnitReturned{worker, from_wire(returned.lease()), JobId{returned.job()}, *unit});
+        say(UnitReturned{worker, lease_from_wire(returned.lease()), JobId{returned.job()}, *unit});
       }
     } else if (message.has_leaving()) {
       seat->leaving = true;
@@ -252,7 +110,8 @@ void Brain::reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult
              "a film was refused: " + text);
       }
       if (const auto unit = farm::from_wire(result.unit())) {
-        later = tell(UnitReturned{worker, from_wire(result.lease()), JobId{result.job()}, *unit});
+        later =
+            tell(UnitReturned{worker, lease_from_wire(result.lease()), JobId{result.job()}, *unit});
       }
     }
     want(*seat, result.want(), later);
@@ -330,8 +189,9 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
              farm::wire_text(result.notes(i)));
       }
       const Duration took{static_cast<int64_t>(std::min<uint64_t>(result.render_ns(), INT64_MAX))};
-      later = tell(ResultArrived{worker, from_wire(result.lease()), job, *unit, *digest, took},
-                   &delivery);
+      later =
+          tell(ResultArrived{worker, lease_from_wire(result.lease()), job, *unit, *digest, took},
+               &delivery);
       want(*seat, result.want(), later);
     }
   }

@@ -452,6 +452,20 @@ uint32_t Scheduler::leased_units(WorkerId id) const {
   return static_cast<uint32_t>(units);
 }
 
+std::vector<UnitInHand> Scheduler::units_of(WorkerId worker, const LeaseId& lease) const {
+  std::vector<UnitInHand> units;
+  const auto found = leases_.find(lease.number);
+  if (lease.incarnation != options_.incarnation || found == leases_.end() ||
+      found->second.worker != worker) {
+    return units;
+  }
+  const JobState& job = *jobs_.at(found->second.job);
+  for (const Extent& extent : found->second.units) {
+    units.push_back({lease, job.id, unit_of(job, job.slots[found->second.slot], extent)});
+  }
+  return units;
+}
+
 std::string Scheduler::audit() const {
   std::map<std::pair<JobId, uint32_t>, size_t> out;
   for (const auto& [number, lease] : leases_) {

@@ -63,6 +63,9 @@ class Scheduler {
   /// How many units the worker has.
   uint32_t leased_units(WorkerId worker) const;
 
+  /// What the worker has under the lease; nothing where it has no such lease.
+  std::vector<UnitInHand> units_of(WorkerId worker, const LeaseId& lease) const;
+
   /// How many units of the job, rendered differently by two workers, wait for one who has not
   /// rendered them.
   uint32_t disputed_units(JobId job) const;

@@ -78,7 +78,8 @@ PixelSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sam
 
 bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& sampler,
                                  Workspace& work, std::vector<float>& sums,
-                                 RenderCounters& counters, const std::atomic<bool>* stop) const {
+                                 RenderCounters& counters, const std::atomic<bool>* stop,
+                                 std::atomic<uint64_t>* samples_done) const {
   const uint32_t first = batch * kBatchSamples;
   const uint32_t count = samples_in_batch(batch, sampling_.samples);
   float* out = sums.data();
@@ -106,6 +107,7 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
             sum[static_cast<size_t>(layout_.normal + c)] += double{sample.normal[c]};
         }
       }
+      if (samples_done != nullptr) samples_done->fetch_add(count, std::memory_order_relaxed);
       for (int c = 0; c < layout_.deposited; ++c) {
         *out++ = c == layout_.depth ? depth : static_cast<float>(sum[static_cast<size_t>(c)]);
       }
@@ -116,7 +118,8 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
 }
 
 RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* stop,
-                                   std::atomic<uint32_t>* batches_done) const {
+                                   std::atomic<uint32_t>* batches_done,
+                                   std::atomic<uint64_t>* samples_done) const {
   const FpMode fp_mode;
   RenderedUnit result{Film(layout_, unit.tile), {}, false};
   const auto sampler = make_sampler(
@@ -125,7 +128,7 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
   std::vector<float> sums(static_cast<size_t>(unit.tile.area()) *
                           static_cast<size_t>(layout_.deposited));
   for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
-    if (!render_batch(unit, b, *sampler, work, sums, result.counters, stop)) {
+    if (!render_batch(unit, b, *sampler, work, sums, result.counters, stop, samples_done)) {
       result.stopped = true;
       break;
     }

@@ -46,9 +46,11 @@ class FrameRenderer {
                 const LayerSet& layers);
 
   /// Renders `unit` on the calling thread. `stop` is looked at after every row of pixels;
-  /// `batches_done` counts along, for whoever watches.
+  /// `batches_done` and `samples_done` (after every pixel of a batch) count along, for whoever
+  /// watches.
   RenderedUnit render(const Unit& unit, const std::atomic<bool>* stop = nullptr,
-                      std::atomic<uint32_t>* batches_done = nullptr) const;
+                      std::atomic<uint32_t>* batches_done = nullptr,
+                      std::atomic<uint64_t>* samples_done = nullptr) const;
 
   /// One sample of one pixel; `log` gets the path in words.
   PixelSample replay(const Vec2i& pixel, uint32_t sample, PathLog& log) const;
@@ -61,7 +63,7 @@ class FrameRenderer {
                            Workspace& work) const;
   bool render_batch(const Unit& unit, uint32_t batch, Sampler& sampler, Workspace& work,
                     std::vector<float>& sums, RenderCounters& counters,
-                    const std::atomic<bool>* stop) const;
+                    const std::atomic<bool>* stop, std::atomic<uint64_t>* samples_done) const;
 
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<Integrator> integrator_;

@@ -76,6 +76,7 @@ class Worker final : public grpc::ClientBidiReactor<v1::WorkerMessage, v1::Coord
     v1::Hello& hello = *message.mutable_hello();
     hello.set_protocol(farm::kProtocol);
     hello.set_worker_id("simulated-worker-" + std::to_string(1000 + number));
+    hello.set_instance(hello.worker_id());
     hello.set_name("simulated/" + std::to_string(number));
     hello.set_worker_class("simulated");
     hello.set_threads(kThreadsOfWorker);

@@ -227,6 +227,90 @@ TEST(Desk, OneUnitInWorkNeedsNoSecondTrial) {
   EXPECT_TRUE(world.desk->empty());
 }
 
+TEST(Desk, AHungUnitFailsAndThoseBesideItAreNotToBlame) {
+  DeskWorld world(3, 1);
+  world.begin();
+  for (const int x : {0, 8, 16}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  for (const int x : {0, 8}) world.started(world.token_of(x));
+  world.take_sent();
+  const auto pass = [&](int time) {  // seconds, in which unit 0 gets on and unit 8 does not
+    for (int i = 0; i < time; ++i) {
+      world.now += seconds(1);
+      world.progress({{world.token_of(0), 16 * world.now.time_since_epoch().count()},
+                      {world.token_of(8), 32}});
+      world.desk->tick(world.now, false);
+      world.echo(1);
+    }
+  };
+  world.welcome(1000, 1'000'000);
+  pass(60);
+  EXPECT_TRUE(world.ports.kills.empty());
+  pass(2);
+  ASSERT_EQ(world.ports.kills.size(), 1U);
+  EXPECT_EQ(world.ports.kills[0], "had no sample done in 60 s and was killed");
+  const Message failure = first(world.take_sent(), &Message::has_failure);
+  EXPECT_EQ(failure.failure().unit().unit().tile().x0(), 8);
+  EXPECT_EQ(failure.failure().reason(),
+            "the process that rendered it had no sample done in 60 s and was killed");
+  world.desk->renderer_died("had no sample done in 60 s and was killed");  // it is really dead
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_failure).has_failure());
+  world.ports.told.clear();
+  world.renderer_up();
+  EXPECT_NE(world.token_of(0), 0U);
+  EXPECT_NE(world.token_of(16), 0U) << "nobody is a suspect: all are rendered beside each other";
+}
+
+TEST(Desk, ASuspectThatWaitsIsNotBlamedForAHangOfAnother) {
+  DeskWorld world(3, 1);
+  world.begin();
+  for (const int x : {0, 8}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  for (const int x : {0, 8}) world.started(world.token_of(x));
+  world.desk->renderer_died("crashed with signal 11");
+  world.renderer_up();
+  world.started(world.token_of(0));
+  v1::CoordinatorMessage stop;
+  *stop.mutable_stop()->mutable_unit() = DeskWorld::unit(0);
+  world.desk->coordinator_says(stop, world.now);  // and the child does not even stop
+  world.take_sent();
+  world.desk->renderer_died("crashed with signal 11");
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_failure).has_failure());
+}
+
+TEST(Desk, HeartbeatsTellHowFarALeaseIs) {
+  DeskWorld world(1, 4);
+  world.begin();
+  world.lease(DeskWorld::unit(0, 1));
+  world.lease(DeskWorld::unit(8, 2));
+  world.lease(DeskWorld::unit(16, 3));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.job(8);
+  world.lease(DeskWorld::unit(24, 4, 8));  // its files are still being fetched
+  world.film(world.token_of(0));
+  world.started(world.token_of(8));
+  world.started(world.token_of(16), true);
+  world.progress({{world.token_of(8), 48}});
+  world.take_sent();
+  const auto stages = [&] {
+    world.now += seconds(1);
+    world.desk->tick(world.now, true);
+    std::map<uint64_t, v1::LeaseProgress::Stage> all;
+    const Message beat = first(world.take_sent(), &Message::has_heartbeat);
+    for (const auto& lease : beat.heartbeat().leases()) all[lease.lease().number()] = lease.stage();
+    return all;
+  };
+  auto all = stages();
+  EXPECT_EQ(all[1], v1::LeaseProgress::STAGE_FILM);
+  EXPECT_EQ(all[2], v1::LeaseProgress::STAGE_RENDERING);
+  EXPECT_EQ(all[3], v1::LeaseProgress::STAGE_LOADING);
+  EXPECT_EQ(all[4], v1::LeaseProgress::STAGE_FETCHING);
+  world.desk->renderer_died("crashed with signal 11");
+  all = stages();
+  EXPECT_EQ(all[2], v1::LeaseProgress::STAGE_WAITING);
+  EXPECT_EQ(all[3], v1::LeaseProgress::STAGE_WAITING);
+}
+
 TEST(Desk, LeavingHandsOverWholeBatchesAndGivesBackTheRest) {
   DeskWorld world(1, 2);
   world.begin();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,12 +15,14 @@ class FakePorts : public DeskPorts {
  public:
   void send(v1::WorkerMessage message) override { sent.push_back(std::move(message)); }
   void tell_renderer(pipe::ToRenderer message) override { told.push_back(std::move(message)); }
+  void kill_renderer(const std::string& reason) override { kills.push_back(reason); }
   void fetch(uint64_t job, const v1::JobSpec& /*spec*/) override { fetched.push_back(job); }
   void release(uint64_t job) override { released.push_back(job); }
   void note(const std::string& text) override { notes.push_back(text); }
 
   std::vector<v1::WorkerMessage> sent;
   std::vector<pipe::ToRenderer> told;
+  std::vector<std::string> kills;
   std::vector<uint64_t> fetched;
   std::vector<uint64_t> released;
   std::vector<std::string> notes;
@@ -36,6 +39,7 @@ class DeskWorld {
     options.threads = threads;
     options.ahead = ahead;
     options.max_kept_bytes = 1000;
+    options.hang_limit = std::chrono::seconds(60);
     desk.emplace(options, ports);
   }
 
@@ -96,9 +100,10 @@ class DeskWorld {
     desk->coordinator_says(message, now);
   }
 
-  void started(uint64_t token) {
+  void started(uint64_t token, bool loading = false) {
     pipe::FromRenderer message;
     message.mutable_started()->set_token(token);
+    message.mutable_started()->set_loading(loading);
     desk->renderer_says(message, now);
   }
   void film(uint64_t token, uint32_t batches = 4, size_t bytes = 10) {
@@ -106,6 +111,16 @@ class DeskWorld {
     message.mutable_film()->set_token(token);
     message.mutable_film()->set_batches(batches);
     message.mutable_film()->set_film(std::string(bytes, 'f'));
+    desk->renderer_says(message, now);
+  }
+  void progress(const std::map<uint64_t, uint64_t>& samples_by_token) {
+    pipe::FromRenderer message;
+    message.mutable_progress();
+    for (const auto& [token, samples] : samples_by_token) {
+      auto& unit = *message.mutable_progress()->add_units();
+      unit.set_token(token);
+      unit.set_samples_done(samples);
+    }
     desk->renderer_says(message, now);
   }
   void returned(uint64_t token) {

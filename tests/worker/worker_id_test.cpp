@@ -44,6 +44,33 @@ TEST(WorkerId, IsMadeAnewOnAnotherHostAndWhereItIsTorn) {
   EXPECT_NE(third.substr(0, 20), other.substr(0, 20));
 }
 
+TEST(WorkerId, TwoMachinesWithOneHostNameAreTold) {
+  const test::TempFolder folder;
+  std::ofstream(folder.file("one")) << "0123456789abcdef0123456789abcdef\n";
+  std::ofstream(folder.file("two")) << "fedcba9876543210fedcba9876543210\n";
+  const std::string one = machine_name("render", folder.file("one"));
+  const std::string two = machine_name("render", folder.file("two"));
+  EXPECT_NE(one, two);
+  EXPECT_EQ(one, machine_name("render", folder.file("one")));
+  EXPECT_EQ(one.find("0123456789abcdef"), std::string::npos) << "the id itself is not given away";
+  EXPECT_EQ(machine_name("render", folder.file("none")), "render");
+  const std::string first = WorkerId::take(folder.path(), one)->text();
+  EXPECT_NE(WorkerId::take(folder.path(), two)->text(), first);
+}
+
+TEST(WorkerId, ANewOneStays) {
+  const test::TempFolder folder;
+  std::string renewed;
+  {
+    auto id = WorkerId::take(folder.path(), "host");
+    const std::string first = id->text();
+    ASSERT_TRUE(id->renew().ok());
+    renewed = id->text();
+    EXPECT_NE(renewed, first);
+  }
+  EXPECT_EQ(WorkerId::take(folder.path(), "host")->text(), renewed);
+}
+
 TEST(WorkerId, AFolderThatCannotBeWrittenIsAnError) {
   const auto id = WorkerId::take("/proc/no-such-folder", "host");
   ASSERT_FALSE(id.ok());

@@ -136,7 +136,7 @@ void RenderServer::render(Task& task) {
   const core::Status done = guarded([&]() -> core::Status {
     if (auto checked = check(task.unit, *task.frame); !checked) return checked;
     const core::RenderedUnit unit =
-        task.frame->renderer.render(task.unit, &task.stop, &task.batches_done);
+        task.frame->renderer.render(task.unit, &task.stop, &task.batches_done, &task.samples_done);
     const uint32_t batches = unit.stopped ? task.batches_done.load() : task.unit.batches.count;
     bool keep = !unit.stopped;
     if (unit.stopped) {
@@ -189,6 +189,7 @@ void RenderServer::load_loop() {
     }
     pipe::FromRenderer started;
     started.mutable_started()->set_token(first->token);
+    started.mutable_started()->set_loading(true);
     send(started);
     const auto frame = guarded([&] { return shelf_.load(first->job, first->unit.frame); });
     std::vector<uint64_t> failed;
@@ -220,15 +221,14 @@ void RenderServer::progress_loop() {
     pipe::FromRenderer message;
     {
       const std::lock_guard lock(mutex_);
+      if (tasks_.empty()) continue;
       for (const auto& [token, task] : tasks_) {
         if (task->state != Task::State::rendering) continue;
         auto& unit = *message.mutable_progress()->add_units();
         unit.set_token(token);
-        unit.set_samples_done(uint64_t{task->batches_done.load()} * core::kBatchSamples *
-                              static_cast<uint64_t>(task->unit.tile.area()));
+        unit.set_samples_done(task->samples_done.load(std::memory_order_relaxed));
       }
     }
-    if (!message.has_progress()) continue;
     message.mutable_progress()->set_memory_bytes(resident_memory());
     send(message);
   }

@@ -38,6 +38,7 @@ class RenderServer {
     bool keep_batches = false;  ///< when stopped, the batches that are done count
     std::atomic<bool> stop{false};
     std::atomic<uint32_t> batches_done{0};
+    std::atomic<uint64_t> samples_done{0};
   };
   using TaskPtr = std::shared_ptr<Task>;
 

@@ -67,6 +67,7 @@ void babble(const FarmWorld& world, uint32_t seed, int messages) {
   v1::Hello& hello = *message.mutable_hello();
   hello.set_protocol(farm::kProtocol);
   hello.set_worker_id("babbling-worker-" + std::to_string(1000 + seed));
+  hello.set_instance("process-" + std::to_string(10'000'000 + seed));
   hello.set_name("babbler");
   hello.set_worker_class("class-a");
   hello.set_threads(4);

@@ -228,6 +228,7 @@ TEST_F(Limits, AWorkerThatDoesNotReadIsCutOff) {
   v1::Hello& hello = *message.mutable_hello();
   hello.set_protocol(farm::kProtocol);
   hello.set_worker_id("a-worker-that-does-not-read");
+  hello.set_instance("only-one-process");
   hello.set_name("deaf");
   hello.set_worker_class("class-a");
   hello.set_threads(1);

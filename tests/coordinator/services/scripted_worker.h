@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/random_id.h"
 #include "core/film/film.h"
 #include "core/film/film_codec.h"
 #include "farm/backoff.h"
@@ -32,6 +33,7 @@ class ScriptedWorker {
  public:
   struct Script {
     std::string id = "scripted-worker-0001";
+    std::string instance;  ///< of its process; one of its own without
     std::string name = "scripted/1";
     std::string worker_class = "class-a";
     std::string token;
@@ -47,6 +49,10 @@ class ScriptedWorker {
     std::function<void(core::Film&)> corrupt;
     bool reconnect = true;
     bool hold = false;  ///< units are rendered and never delivered
+    /// Heartbeats, by a thread of their own, for what it holds; none without.
+    std::chrono::milliseconds beat_every{0};
+    v1::LeaseProgress::Stage stage = v1::LeaseProgress::STAGE_RENDERING;  ///< what they say
+    bool moves = false;  ///< each tells of more samples
     /// How long it waits between streams; 50 ms without.
     std::optional<farm::Backoff> backoff = std::nullopt;
   };
@@ -83,8 +89,10 @@ class ScriptedWorker {
     return kept_.size();
   }
 
-  /// Writes a message, by the worker's own thread only.
-  void write(const v1::WorkerMessage& message) { stream_->Write(message); }
+  void write(const v1::WorkerMessage& message) {
+    const std::lock_guard lock(write_mutex_);
+    stream_->Write(message);
+  }
   /// The same: renders a unit and delivers it.
   void deliver(const v1::LeasedUnit& leased) {
     std::this_thread::sleep_for(script_.unit_time);
@@ -153,6 +161,7 @@ class ScriptedWorker {
     v1::Hello& hello = *message.mutable_hello();
     hello.set_protocol(farm::kProtocol);
     hello.set_worker_id(script_.id);
+    hello.set_instance(script_.instance.empty() ? instance_ : script_.instance);
     hello.set_name(script_.name);
     hello.set_worker_class(script_.worker_class);
     hello.set_threads(script_.threads);
@@ -176,12 +185,35 @@ class ScriptedWorker {
         again.mutable_result()->set_want(0);
         stream_->Write(again);
       }
+      std::atomic<bool> ended{false};
+      std::thread heart([&] { beat(ended); });
       while (!over_ && stream_->Read(&reply)) on(reply);
+      ended = true;
+      heart.join();
     }
     stream_->WritesDone();
     const grpc::Status status = stream_->Finish();
     const std::lock_guard lock(mutex_);
     status_ = status;
+  }
+
+  void beat(const std::atomic<bool>& ended) {
+    if (script_.beat_every.count() == 0) return;
+    for (uint64_t number = 1; !ended; ++number) {
+      v1::WorkerMessage message;
+      message.mutable_heartbeat()->set_number(number);
+      {
+        const std::lock_guard lock(mutex_);
+        for (const auto& [name, result] : kept_) {
+          v1::LeaseProgress& lease = *message.mutable_heartbeat()->add_leases();
+          *lease.mutable_lease() = result.lease();
+          lease.set_stage(script_.stage);
+          if (script_.moves) lease.set_samples_done(number);
+        }
+      }
+      write(message);
+      std::this_thread::sleep_for(script_.beat_every);
+    }
   }
 
   void on(const v1::CoordinatorMessage& message) {
@@ -224,6 +256,8 @@ class ScriptedWorker {
       again.mutable_result()->set_want(0);
       write(again);
     } else if (message.has_stop()) {
+      const std::lock_guard lock(mutex_);
+      if (script_.hold) kept_.erase(key(message.stop().unit()));
       ++stopped_;
     } else if (message.has_drain()) {
       drained_ = true;
@@ -232,6 +266,7 @@ class ScriptedWorker {
 
   const std::string address_;
   Script script_;
+  const std::string instance_ = *core::random_id();
   std::atomic<bool> over_{false};
   std::atomic<uint64_t> delivered_{0};
   std::atomic<uint64_t> acknowledged_{0};
@@ -240,6 +275,7 @@ class ScriptedWorker {
   std::atomic<uint64_t> streams_{0};
   std::atomic<bool> drained_{false};
   mutable std::mutex mutex_;
+  std::mutex write_mutex_;
   std::unique_ptr<grpc::ClientContext> context_;
   std::map<std::string, v1::UnitResult> kept_;
   std::vector<v1::Rejected> rejections_;

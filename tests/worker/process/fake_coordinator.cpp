@@ -79,6 +79,11 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
       const std::lock_guard lock(books_.mutex);
       if (message.has_hello()) {
         books_.seen.hellos.push_back(message.hello());
+        if (books_.owner->twins > 0) {
+          --books_.owner->twins;
+          books_.changed.notify_all();
+          return {grpc::StatusCode::ALREADY_EXISTS, "a worker called other works under this id"};
+        }
         greet(stream, message.hello());
         want += message.hello().want();
       } else if (message.has_request()) {
@@ -113,6 +118,7 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
  private:
   void greet(Stream* stream, const v1::Hello& hello) {
     v1::CoordinatorMessage message;
+    message.mutable_welcome()->set_protocol(books_.owner->protocol);
     message.mutable_welcome()->set_heartbeat_ms(200);
     message.mutable_welcome()->set_lease_ms(books_.owner->lease_ms);
     message.mutable_welcome()->set_name(hello.name());

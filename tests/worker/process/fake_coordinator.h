@@ -13,6 +13,7 @@
 
 #include "core/film/film.h"
 #include "core/film/unit.h"
+#include "farm/wire.h"
 #include "hyades/v1/work.pb.h"
 
 namespace hyades::worker {
@@ -43,6 +44,8 @@ class FakeCoordinator {
   ~FakeCoordinator();
 
   uint32_t lease_ms = 10'000;
+  uint32_t protocol = farm::kProtocol;
+  size_t twins = 0;  ///< so many Hellos more are told that another process has their id
   bool acknowledge = true;
   bool answer_failures = true;  ///< a failed unit is leased again
 

@@ -253,6 +253,55 @@ TEST(WorkerProcess, ACrashTakesDownOnlyTheRenderingChild) {
   EXPECT_NE(worker.log().find("signal 11"), std::string::npos);
 }
 
+TEST(WorkerProcess, AHungRenderingChildIsKilledAndItsUnitsAreRenderedAgain) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  WorkerProcess worker(coordinator.address(), folder.path().string(), {"--hang-limit", "2"});
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 4; }))
+      << worker.log();
+  const pid_t hung = worker.renderer();
+  ASSERT_GT(hung, 0);
+  ::kill(hung, SIGSTOP);
+  ASSERT_TRUE(coordinator.wait_for_all()) << worker.log();
+  expect_whole(coordinator, made);
+  EXPECT_NE(worker.renderer(), hung);
+  EXPECT_NE(worker.log().find("s and was killed"), std::string::npos) << worker.log();
+  EXPECT_EQ(worker.log().find("out of memory"), std::string::npos) << worker.log();
+  EXPECT_EQ(coordinator.seen().hellos.size(), 1U) << "the worker itself never left";
+}
+
+TEST(WorkerProcess, WhoseIdAnotherHasTakesANewOneAndKeepsIt) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  coordinator.twins = 1;
+  {
+    WorkerProcess worker(coordinator.address(), folder.path().string());
+    ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 2; }))
+        << worker.log();
+    EXPECT_NE(worker.log().find("takes a new one"), std::string::npos) << worker.log();
+  }
+  coordinator.expire_leases();
+  WorkerProcess next(coordinator.address(), folder.path().string());
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.hellos.size() >= 3; }))
+      << next.log();
+  const auto hellos = coordinator.seen().hellos;
+  EXPECT_NE(hellos[0].worker_id(), hellos[1].worker_id());
+  EXPECT_EQ(hellos[0].instance(), hellos[1].instance());
+  EXPECT_EQ(hellos[1].worker_id(), hellos[2].worker_id());
+  EXPECT_NE(hellos[1].instance(), hellos[2].instance());
+}
+
+TEST(WorkerProcess, LeavesACoordinatorThatIsTooOld) {
+  const test::TempFolder folder;
+  FakeCoordinator coordinator(make_job().job);
+  coordinator.protocol = 1;
+  WorkerProcess worker(coordinator.address(), folder.path().string());
+  EXPECT_EQ(worker.wait(seconds(20)), 2) << worker.log();
+  EXPECT_NE(worker.log().find("speaks protocol 1"), std::string::npos) << worker.log();
+}
+
 TEST(WorkerProcess, ASceneThatTakesTooMuchMemoryFailsWithThatReason) {
   const test::TempFolder folder;
   Made made = make_job();

@@ -1,0 +1,88 @@
+// Who may attach: versions, and two workers that go by one id.
+#include <gtest/gtest.h>
+
+#include "tests/coordinator/services/farm_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// What becomes of a stream whose Hello says `protocol`, in a call that says `called`.
+grpc::Status attach(const FarmWorld& world, const std::string& called, uint32_t protocol) {
+  const auto stub = v1::Work::NewStub(world.channel);
+  grpc::ClientContext context;
+  context.AddMetadata(farm::kProtocolKey, called);
+  context.set_deadline(std::chrono::system_clock::now() + 20s);
+  const auto stream = stub->Attend(&context);
+  v1::WorkerMessage message;
+  v1::Hello& hello = *message.mutable_hello();
+  hello.set_protocol(protocol);
+  hello.set_worker_id("a-worker-of-some-version");
+  hello.set_instance("a-process-of-some-version");
+  hello.set_name("versions");
+  hello.set_worker_class("class-a");
+  hello.set_threads(1);
+  stream->Write(message);
+  v1::CoordinatorMessage reply;
+  if (stream->Read(&reply) && reply.has_welcome()) stream->WritesDone();
+  while (stream->Read(&reply)) {
+  }
+  return stream->Finish();
+}
+
+TEST(Attach, OlderProtocolsAreRefusedNamingBothVersions) {
+  FarmWorld world;
+  world.start();
+  const std::string ours = std::to_string(farm::kProtocol);
+  const std::string oldest = std::to_string(farm::kOldestProtocol);
+  for (const grpc::Status& status :
+       {attach(world, "1", farm::kProtocol), attach(world, ours, 1), attach(world, "", 1)}) {
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+    EXPECT_NE(status.error_message().find(oldest + " to " + ours), std::string::npos)
+        << status.error_message();
+  }
+  EXPECT_TRUE(attach(world, ours, farm::kProtocol).ok());
+  EXPECT_TRUE(attach(world, std::to_string(farm::kProtocol + 1), farm::kProtocol + 1).ok())
+      << "newer callers know what we do not do";
+
+  v1::ListJobsResponse response;
+  grpc::ClientContext client;
+  client.AddMetadata(farm::kProtocolKey, "1");
+  EXPECT_EQ(world.jobs->List(&client, {}, &response).error_code(),
+            grpc::StatusCode::FAILED_PRECONDITION)
+      << "clients too";
+}
+
+TEST(Attach, TwoWorkersWithOneIdDoNotFightAndTheNewcomerIsToldToTakeAnother) {
+  FarmWorld world;
+  world.options.lease_time = 1s;
+  world.start();
+  ScriptedWorker::Script script = world.script();
+  script.beat_every = 50ms;
+  const ScriptedWorker first(world.address, script);
+  ASSERT_TRUE(eventually([&] { return first.streams() == 1; }));
+  const ScriptedWorker twin(world.address, script);
+  ASSERT_TRUE(eventually([&] {
+    return twin.last_status().error_code() == grpc::StatusCode::ALREADY_EXISTS;
+  })) << twin.last_status().error_message();
+  EXPECT_NE(twin.last_status().error_message().find("take a new one"), std::string::npos);
+  EXPECT_EQ(first.streams(), 1U) << "nobody closed its stream";
+  EXPECT_EQ(twin.streams(), 0U);
+}
+
+TEST(Attach, AWorkerThatHasGoneWithoutASignIsReplacedByItsSuccessor) {
+  FarmWorld world;
+  world.options.lease_time = 12s;  // so that silence alone ends no stream in this test
+  world.start();
+  ScriptedWorker::Script script = world.script();
+  script.reconnect = false;
+  const ScriptedWorker first(world.address, script);  // its machine has lost its power
+  ASSERT_TRUE(eventually([&] { return first.streams() == 1; }));
+  script.reconnect = true;
+  const ScriptedWorker successor(world.address, script);
+  ASSERT_TRUE(eventually([&] { return successor.streams() == 1; }));
+  EXPECT_TRUE(
+      eventually([&] { return first.last_status().error_code() == grpc::StatusCode::ABORTED; }));
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

@@ -1,0 +1,146 @@
+// The desk's side of the rendering child: what it is given, what it says, how it ends.
+#include <algorithm>
+#include <utility>
+
+#include "worker/desk.h"
+
+namespace hyades::worker {
+
+void Desk::renderer_started() { watch_.child_started(); }
+
+void Desk::renderer_ready(const pipe::Ready& ready) {
+  worker_class_ = ready.worker_class();
+  build_ = ready.build();
+  renderer_up_ = true;
+  watch_.heard();
+  if (open_ && !welcomed_) send_hello();
+  dispatch();
+}
+
+void Desk::renderer_says(pipe::FromRenderer message, TimePoint /*now*/) {
+  watch_.heard();
+  if (message.has_progress()) {
+    renderer_memory_ = message.progress().memory_bytes();
+    for (const auto& unit : message.progress().units()) {
+      watch_.progress(unit.token(), unit.samples_done());
+      const auto item = items_.find(unit.token());
+      if (item != items_.end()) item->second.samples_done = unit.samples_done();
+    }
+    return;
+  }
+  const auto named = [&](uint64_t token) {
+    const auto item = items_.find(token);
+    // The child may answer late about a unit that was given up.
+    const bool in_work = item != items_.end() && item->second.state == Item::State::rendering;
+    return in_work ? item : items_.end();
+  };
+  if (message.has_started()) {
+    if (const auto item = named(message.started().token()); item != items_.end()) {
+      item->second.begun = true;
+      item->second.loading = message.started().loading();
+    }
+    if (message.started().loading()) {
+      watch_.loading(message.started().token());
+    } else {
+      watch_.rendering(message.started().token());
+    }
+  } else if (message.has_film()) {
+    watch_.answered(message.film().token());
+    if (const auto item = named(message.film().token()); item != items_.end()) {
+      keep_film(item, message.film());
+    }
+  } else if (message.has_failed()) {
+    watch_.answered(message.failed().token());
+    if (const auto item = named(message.failed().token()); item != items_.end()) {
+      fail(item, message.failed().reason());
+    }
+  } else if (message.has_returned()) {
+    watch_.answered(message.returned().token());
+    // Stopped by hand_over before its first batch was done.
+    if (const auto item = named(message.returned().token()); item != items_.end()) {
+      item->second.state = Item::State::waiting;
+      item->second.begun = false;
+      if (handing_over_) give_back_rest(leaving_reason_);
+    }
+  }
+  dispatch();
+  top_up();
+}
+
+void Desk::renderer_died(const std::string& reason) { lose_renderer(reason, nullptr); }
+
+/// The child is gone, or as good as that. Units that it had begun are accused, of these only those
+/// in `hung` where it is known in which of them it hung.
+void Desk::lose_renderer(const std::string& reason, const std::set<uint64_t>* hung) {
+  renderer_up_ = false;
+  watch_.child_gone();
+  for (auto& [id, job] : jobs_) job.told = false;
+  std::vector<uint64_t> guilty;
+  std::vector<uint64_t> accused;
+  for (auto& [token, item] : items_) {
+    if (item.state != Item::State::rendering) continue;
+    if (item.begun && (hung == nullptr || hung->contains(token))) {
+      accused.push_back(token);
+      if (item.suspect) guilty.push_back(token);
+      item.suspect = true;
+    }
+    item.state = Item::State::waiting;
+    item.begun = false;
+    item.loading = false;
+    item.samples_done = 0;
+  }
+  // Nothing else was being worked on: no need to try again.
+  if (guilty.empty() && accused.size() == 1) guilty = accused;
+  for (const uint64_t token : guilty) {
+    fail(items_.find(token), "the process that rendered it " + reason);
+  }
+}
+
+/// Kills a child that hangs. Its units are free at once, whenever it really dies.
+void Desk::watch(TimePoint now) {
+  const auto hang = watch_.tick(now);
+  if (!hang) return;
+  ports_.kill_renderer(hang->reason);
+  lose_renderer(hang->reason, &hang->tokens);
+}
+
+/// Gives the child what it can work on.
+void Desk::dispatch() {
+  if (!renderer_up_ || handing_over_) return;
+  bool suspects = false;
+  for (const auto& [token, item] : items_) {
+    suspects = suspects || (item.suspect && item.state <= Item::State::rendering);
+  }
+  for (auto& [token, item] : items_) {
+    if (item.state != Item::State::waiting) continue;
+    if (suspects) {
+      // One suspect at a time, and nothing beside it.
+      const bool busy = std::any_of(items_.begin(), items_.end(), [](const auto& entry) {
+        return entry.second.state == Item::State::rendering;
+      });
+      if (busy) return;
+      if (!item.suspect) continue;
+    }
+    tell_child(token, item);
+  }
+}
+
+void Desk::tell_child(uint64_t token, Item& item) {
+  JobState& job = jobs_[item.leased.job()];
+  if (!job.told) {
+    pipe::ToRenderer message;
+    message.mutable_job()->set_job(item.leased.job());
+    *message.mutable_job()->mutable_spec() = job.spec;
+    ports_.tell_renderer(std::move(message));
+    job.told = true;
+  }
+  pipe::ToRenderer message;
+  message.mutable_unit()->set_token(token);
+  message.mutable_unit()->set_job(item.leased.job());
+  *message.mutable_unit()->mutable_unit() = item.leased.unit();
+  ports_.tell_renderer(std::move(message));
+  item.state = Item::State::rendering;
+  watch_.told(token, item.leased.job());
+}
+
+}  // namespace hyades::worker
