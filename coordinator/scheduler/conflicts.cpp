@@ -104,6 +104,7 @@ bool Scheduler::quarantine(WorkerId id, const std::string& reason) {
   if (Worker* worker = find_worker(id)) {
     const std::vector<uint64_t> numbers = worker->leases;
     for (const uint64_t number : numbers) release_lease(number, true);
+    settle(*worker, std::nullopt);
     if (!std::exchange(worker->barred, true)) count_class(worker->worker_class, -1);
   }
   // A unit that failed with others may now be theirs to try again.

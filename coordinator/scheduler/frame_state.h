@@ -81,6 +81,11 @@ class FrameState {
   void hold(const Extent& e, const HeldRecord& record);
   /// The record of exactly this extent, if there is one.
   const HeldRecord* find_held(const Extent& e) const;
+  /// Whether what is held of exactly this extent is this record, not durable yet.
+  bool waits_for(const Extent& e, RecordId record) const {
+    const HeldRecord* held = find_held(e);
+    return held != nullptr && held->pending == record;
+  }
   void made_durable(const Extent& e);
   /// The film was lost before it was durable: its batches are free again.
   void unhold(const Extent& e);

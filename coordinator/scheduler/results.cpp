@@ -163,7 +163,8 @@ void Scheduler::unit_persisted(const UnitRecord& record, const Pending& pending,
   const core::Unit& unit = record.accepted.unit;
   JobState* job = find_job(record.job);
   FrameSlot* slot = job ? job->slot(unit.frame) : nullptr;
-  const bool counts = slot != nullptr && slot->phase == FramePhase::rendering;
+  const bool counts = slot != nullptr && slot->phase == FramePhase::rendering &&
+                      slot->books->waits_for(pending.extent, id);
   if (counts) {
     slot->books->made_durable(pending.extent);
     say(Merge{id, record.job, unit});
@@ -187,7 +188,9 @@ void Scheduler::on(const PersistFailed& e) {
   const auto& record = std::get<UnitRecord>(pending.record);
   JobState* job = find_job(record.job);
   FrameSlot* slot = job ? job->slot(record.accepted.unit.frame) : nullptr;
-  if (slot != nullptr && slot->phase == FramePhase::rendering) {
+  // Its tile or frame may have begun again, and hold another film of these extents.
+  if (slot != nullptr && slot->phase == FramePhase::rendering &&
+      slot->books->waits_for(pending.extent, e.record)) {
     slot->books->unhold(pending.extent);
     update_ready(*job);
   }

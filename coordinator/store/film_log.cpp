@@ -54,7 +54,9 @@ Result<std::unique_ptr<FilmLog>> FilmLog::open(const std::string& folder, const 
   if (!lock) return lock.error();
   log->lock_ = std::move(*lock);
   if (Status s = log->open_guard(key); !s) return s.error();
-  log->thread_ = std::thread([self = log.get()] { self->commit_loop(); });
+  if (log->options_.threaded) {
+    log->thread_ = std::thread([self = log.get()] { self->commit_loop(); });
+  }
   return log;
 }
 
@@ -90,7 +92,7 @@ Status FilmLog::open_guard(const std::string& key) {
     }
   }
   std::random_device random;
-  salt_ = (uint64_t{random()} << 32U) | random();
+  salt_ = options_.salt != 0 ? options_.salt : (uint64_t{random()} << 32U) | random();
   const std::string unfinished = path(kGuardName) + kUnfinishedSuffix;
   if (std::find(names->begin(), names->end(), std::string(kGuardName) + kUnfinishedSuffix) !=
       names->end()) {
@@ -162,41 +164,52 @@ void FilmLog::commit_loop() {
     if (pending_.empty()) return;
     work_.wait_for(hold, options_.commit_delay, no_delay);
 
-    std::vector<Pending> group = std::move(pending_);
-    pending_.clear();
-    uint64_t bytes = 0;
-    for (const Pending& record : group) bytes += record.bytes.size();
-    const uint64_t through = group.back().sequence;
-    hold.unlock();
-    const Status stored = commit(group);
-    hold.lock();
-
-    if (stored) {
-      durable_ = through;
-      pending_bytes_ -= bytes;
-    } else {
-      group.insert(group.end(), std::make_move_iterator(pending_.begin()),
-                   std::make_move_iterator(pending_.end()));
-      pending_ = std::move(group);
-      last_failure_ = stored.error();
-      ++failures_;
-      urgent_ = 0;
-    }
-    settled_.notify_all();
-    if (stored ? options_.on_durable != nullptr : options_.on_trouble != nullptr) {
-      hold.unlock();
-      if (stored) {
-        options_.on_durable(through);
-      } else {
-        options_.on_trouble(stored.error());
-      }
-      hold.lock();
-    }
+    const Status stored = commit_pending(hold);
     if (!stored) {
       if (stopping_) return;
       work_.wait_for(hold, kRetryDelay, [this] { return stopping_ || urgent_ > durable_; });
     }
   }
+}
+
+/// Stores all that is pending, or puts it back, and tells those who wait. `hold` is of mutex_.
+Status FilmLog::commit_pending(std::unique_lock<std::mutex>& hold) {
+  std::vector<Pending> group = std::move(pending_);
+  pending_.clear();
+  uint64_t bytes = 0;
+  for (const Pending& record : group) bytes += record.bytes.size();
+  const uint64_t through = group.back().sequence;
+  hold.unlock();
+  const Status stored = commit(group);
+  hold.lock();
+
+  if (stored) {
+    durable_ = through;
+    pending_bytes_ -= bytes;
+  } else {
+    group.insert(group.end(), std::make_move_iterator(pending_.begin()),
+                 std::make_move_iterator(pending_.end()));
+    pending_ = std::move(group);
+    last_failure_ = stored.error();
+    ++failures_;
+    urgent_ = 0;
+  }
+  settled_.notify_all();
+  if (stored ? options_.on_durable != nullptr : options_.on_trouble != nullptr) {
+    hold.unlock();
+    if (stored) {
+      options_.on_durable(through);
+    } else {
+      options_.on_trouble(stored.error());
+    }
+    hold.lock();
+  }
+  return stored;
+}
+
+Status FilmLog::commit_now() {
+  std::unique_lock<std::mutex> hold(mutex_);
+  return pending_.empty() ? Status() : commit_pending(hold);
 }
 
 Status FilmLog::commit(const std::vector<Pending>& group) {

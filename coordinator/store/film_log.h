@@ -33,6 +33,11 @@ struct FilmLogOptions {
   std::function<void(const core::Error& error)> on_trouble;
 
   LogFiles* files = nullptr;  ///< the disk where null
+
+  // For simulations, which have to be the same every time.
+
+  bool threaded = true;  ///< else nothing is stored but by commit_now(), and at the end nothing
+  uint64_t salt = 0;     ///< of a new log's checksums; 0: a random one
 };
 
 /// What replay() found. Damage costs rendering again, never a wrong picture.
@@ -88,6 +93,9 @@ class FilmLog {
   /// All records up to this number are durable.
   uint64_t durable() const;
 
+  /// Where the log has no thread: stores what is pending now, as the thread would, once.
+  core::Status commit_now();
+
   /// Replaces all records up to number `through` (which must be durable) by those that `write` puts
   /// into its sink, atomically: a crash leaves the old ones or the new ones. Appending goes on
   /// meanwhile; records after `through` stay. Returns when it is durable.
@@ -118,6 +126,7 @@ class FilmLog {
                               const std::function<core::Status(const Sink&)>& write);
   core::Status remove_segments(const std::function<bool(const Segment&)>& superseded);
   void commit_loop();
+  core::Status commit_pending(std::unique_lock<std::mutex>& hold);
   core::Status commit(const std::vector<Pending>& group);
   core::Status begin_segment();
   core::Status write_group(const std::vector<Pending>& group);

@@ -32,6 +32,9 @@ void SimulatedWorld::act(const FinishFrame& a) {
       fail("a film is finished with what a worker did that had been found out");
     }
   }
+  if (real_store_ && !wrong && frame.film.digest() != job.disk->oracle(a.frame).digest()) {
+    fail("a film is finished whose bits are not the frame's");
+  }
   frames_wrong += wrong;
   if (!wrong && frame.sum != oracle) fail("a film is finished that is not the frame's");
   if (frame.unfinishable || fault()) {

@@ -33,7 +33,8 @@ void SimulatedWorld::nature() {
     });
     after(std::chrono::milliseconds(number(10, 8000)), [this, i] { connect(i); });
   }
-  if (chance(fault_rate_ / 4) && scheduler_) crash_coordinator();
+  if (chance(fault_rate_ / 4) && scheduler_) crash_coordinator(real_store_ && chance(0.5));
+  if (real_store_ && chance(fault_rate_ / 4) && scheduler_) disks_fill();
   if (chance(fault_rate_ / 4)) now_ += std::chrono::seconds(number(1, 100));
   if (chance(fault_rate_ / 2) && !job->second.ended) {
     job->second.paused = !job->second.paused;

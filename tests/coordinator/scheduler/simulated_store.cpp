@@ -27,6 +27,10 @@ void SimulatedWorld::act(const Persist& a) {
     records_[a.id] = unit->accepted;
     unsettled_.insert({unit->job, a.id});
   }
+  // What failed is not in the film log.
+  if (real_store_ && !std::holds_alternative<FrameFailedRecord>(a.record)) {
+    return append(jobs_.at(frame_of(a.record).first), a);
+  }
   ++storing_[frame_of(a.record)];
   store_later(a);
 }
@@ -118,7 +122,14 @@ void SimulatedWorld::store(const Record& record) {
 void SimulatedWorld::act(const Merge& a) {
   if (!is_stored(a.job, a.unit)) fail("a film is merged that is not durable");
   if (frame_of(a.job, a.unit.frame).over) fail("a film is merged into a frame that is over");
-  add_to_film(jobs_.at(a.job), records_.at(a.record), generation_ + 1);
+  const AcceptedUnit& accepted = records_.at(a.record);
+  add_to_film(jobs_.at(a.job), accepted, generation_ + 1);
+  if (!real_store_) return;
+  SimFrame& frame = frame_of(a.job, a.unit.frame);
+  frame.worker_class = accepted.worker_class;
+  const core::Status merged =
+      frame.film.merge(SimulatedDisk::film_of(accepted.unit, accepted.digest[1]));
+  if (!merged) fail("a film cannot be merged: " + merged.error().message);
 }
 
 void SimulatedWorld::act(const FrameRestarted& a) {
@@ -127,12 +138,14 @@ void SimulatedWorld::act(const FrameRestarted& a) {
   frame.batches.clear();
   frame.sum = 0;
   frame.over = false;
+  if (real_store_) frame.film = jobs_.at(a.job).disk->blank();
 }
 
 void SimulatedWorld::act(const TileVoided& a) {
   ++tiles_voided;
   SimFrame& frame = frame_of(a.job, a.frame);
   if (frame.over) fail("a tile of a frame that is over is voided");
+  if (real_store_) frame.film.erase(a.tile);
   std::erase_if(frame.batches, [&](const auto& entry) {
     const auto& [place, batch] = entry;
     if (std::get<0>(place) != a.tile.x0 || std::get<1>(place) != a.tile.y0) return false;

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <tuple>
 
 #include "coordinator/scheduler/job_plan.h"
+#include "tests/coordinator/scheduler/simulated_disk.h"
 
 namespace hyades::coordinator {
 
@@ -60,6 +63,8 @@ struct SimBatch {
 struct SimFrame {
   std::map<std::tuple<int32_t, int32_t, uint32_t>, SimBatch> batches;  ///< that have been merged
   uint64_t sum = 0;
+  core::Film film;  ///< the real one, where the store is
+  std::string worker_class;
   bool poisoned = false;
   bool refused = false;
   bool unfinishable = false;
@@ -71,6 +76,11 @@ struct SimJob {
   JobPlan plan;
   RestoredJob stored;  ///< what the store holds
   std::set<UnitName> stored_units;
+  // Where the store is the real one.
+  std::unique_ptr<SimulatedDisk> disk;
+  std::deque<std::pair<uint64_t, Persist>> appended;  ///< numbers in the log; nobody has heard yet
+  uint64_t settled = 0;                               ///< number of the last that somebody has
+  bool committing = false;                            ///< a group is about to be stored
   std::map<int32_t, SimFrame> frames;
   bool ended = false;
   bool paused = false;

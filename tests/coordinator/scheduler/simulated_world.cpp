@@ -38,6 +38,7 @@ SimulatedWorld::SimulatedWorld(uint64_t seed) : random_(seed) {
   }
   options_.affinity_time = std::chrono::milliseconds(chance(0.5) ? 0 : number(1, 20'000));
   options_.scene_time = std::chrono::milliseconds(chance(0.5) ? 0 : number(1, 3000));
+  real_store_ = chance(0.5);
   const int jobs = number(1, 3);
   for (int i = 1; i <= jobs; ++i) make_job(JobId{static_cast<uint64_t>(i)});
 }
@@ -56,6 +57,7 @@ void SimulatedWorld::run() {
     next.what();
   }
   check_audit();
+  check_disks();
 }
 
 void SimulatedWorld::make_job(JobId id) {
@@ -84,6 +86,7 @@ void SimulatedWorld::make_job(JobId id) {
     frame.refused = chance(0.03);
     frame.unfinishable = chance(0.03);
   }
+  if (real_store_) job.disk = std::make_unique<SimulatedDisk>(plan, random_() | 1U);
 }
 
 void SimulatedWorld::start_coordinator() {
@@ -93,6 +96,7 @@ void SimulatedWorld::start_coordinator() {
   records_.clear();
   for (auto& [id, job] : jobs_) {
     if (job.ended) continue;
+    if (real_store_) take_up(job);
     for (auto& [number, frame] : job.frames) {
       frame.batches.clear();
       frame.sum = 0;
@@ -106,8 +110,17 @@ void SimulatedWorld::start_coordinator() {
   }
 }
 
-void SimulatedWorld::crash_coordinator() {
+/// With `power` its machine goes, too.
+void SimulatedWorld::crash_coordinator(bool power) {
   ++restarts;
+  power_cuts += power;
+  std::mt19937 chances(static_cast<uint32_t>(random_()));
+  for (auto& [id, job] : jobs_) {
+    if (!job.disk) continue;
+    job.disk->die(power, chances);
+    job.appended.clear();
+    job.committing = false;
+  }
   scheduler_.reset();
   ++generation_;
   storing_.clear();
@@ -123,7 +136,7 @@ void SimulatedWorld::crash_coordinator() {
 
 void SimulatedWorld::tell(const Event& event) {
   if (!scheduler_) return;
-  if (const auto* result = std::get_if<ResultArrived>(&event); result && refused(*result)) return;
+  if (const auto* result = std::get_if<ResultArrived>(&event); result && unwelcome(*result)) return;
   for (const Action& action : scheduler_->handle(event, now_)) {
     std::visit([this](const auto& a) { act(a); }, action);
   }
@@ -139,7 +152,7 @@ void SimulatedWorld::tell(const Event& event) {
 }
 
 /// Whether the coordinator takes nothing from the worker, because one before it had found it out.
-bool SimulatedWorld::refused(const ResultArrived& result) {
+bool SimulatedWorld::unwelcome(const ResultArrived& result) {
   const uint64_t by = workers_[index_of(result.worker)].quarantined_by;
   if (by == 0 || by == generation_ + 1) return false;
   send(result.worker, [this, result](SimWorker& w) { drop(w, result.job, result.unit, {}); });

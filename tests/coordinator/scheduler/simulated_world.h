@@ -20,9 +20,11 @@ namespace hyades::coordinator {
 /// A small farm in which everything goes wrong: the real scheduler under a simulated network, clock
 /// and store, driven by one seed. Messages are delayed, reordered, doubled and dropped; workers die
 /// or lose the connection; the coordinator dies and comes back with what its store holds; the store
-/// refuses; some workers' films are wrong, others fail all; units and finishing fail; jobs are
-/// paused and cancelled; the clock jumps. After a while the faults end, and then every job must end
-/// too. Throws a std::string with what went wrong.
+/// refuses; in half of the worlds it is the real film log with real films (SimulatedDisk), whose
+/// disk fills, fails, and forgets what was not synced when the power goes; some workers' films are
+/// wrong, others fail all; units and finishing fail; jobs are paused and cancelled; the clock
+/// jumps. After a while the faults end, and then every job must end too. Throws a std::string with
+/// what went wrong.
 class SimulatedWorld {
  public:
   explicit SimulatedWorld(uint64_t seed);
@@ -46,6 +48,12 @@ class SimulatedWorld {
   uint64_t frames_reopened = 0;
   uint64_t struck_out = 0;    ///< workers in quarantine because they failed unit after unit
   uint64_t frames_wrong = 0;  ///< finished before anybody compared
+  // Of the real store.
+  uint64_t films_replayed = 0;
+  uint64_t power_cuts = 0;
+  uint64_t failed_commits = 0;
+  uint64_t refused = 0;  ///< appends
+  uint64_t compactions = 0;
 
  private:
   [[noreturn]] static void fail(const std::string& what) { throw what; }
@@ -61,10 +69,10 @@ class SimulatedWorld {
   // simulated_world.cpp
   void make_job(JobId id);
   void start_coordinator();
-  void crash_coordinator();
+  void crash_coordinator(bool power);
   void tell(const Event& event);
   /// Whether the coordinator takes nothing from the worker, because one before it had found it out.
-  bool refused(const ResultArrived& result);
+  bool unwelcome(const ResultArrived& result);
   void tell_later(const Event& event);
   void check_audit();
   bool all_ended() const;
@@ -89,6 +97,16 @@ class SimulatedWorld {
   void act(const Merge& a);
   void act(const FrameRestarted& a);
   void act(const TileVoided& a);
+
+  // simulated_log.cpp: the same with the real film log.
+  void take_up(SimJob& job);
+  void append(SimJob& job, const Persist& a);
+  void commit_soon(SimJob& job, Duration delay);
+  void commit(SimJob& job);
+  void settle(SimJob& job, uint64_t durable);
+  void compact(SimJob& job);
+  void disks_fill();
+  void check_disks();
 
   // simulated_frames.cpp
   void act(const OpenFrame& a);
@@ -144,6 +162,7 @@ class SimulatedWorld {
   bool corrupt_ = false;     ///< some workers' films are wrong
   bool broken_ = false;      ///< one worker fails everything
   bool choosy_ = false;      ///< jobs do not go to every worker
+  bool real_store_ = false;  ///< the film log and films are the real ones
   bool woken_ = false;       ///< a Tick is on its way
   std::priority_queue<Happening> events_;
   std::unique_ptr<Scheduler> scheduler_;

@@ -31,6 +31,11 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   uint64_t reopened = 0;
   uint64_t struck = 0;
   uint64_t wrong = 0;
+  uint64_t replayed = 0;
+  uint64_t power_cuts = 0;
+  uint64_t failed_commits = 0;
+  uint64_t refused = 0;
+  uint64_t compactions = 0;
   for (uint64_t i = 0; i < worlds; ++i) {
     const uint64_t seed = only != 0 ? only : i + 1;
     SimulatedWorld world(seed);
@@ -53,6 +58,11 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
     reopened += world.frames_reopened;
     struck += world.struck_out;
     wrong += world.frames_wrong;
+    replayed += world.films_replayed;
+    power_cuts += world.power_cuts;
+    failed_commits += world.failed_commits;
+    refused += world.refused;
+    compactions += world.compactions;
   }
   RecordProperty("restarts", std::to_string(restarts));
   RecordProperty("kills", std::to_string(kills));
@@ -71,6 +81,12 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
       static_cast<unsigned long long>(conflicts), static_cast<unsigned long long>(quarantines),
       static_cast<unsigned long long>(voided), static_cast<unsigned long long>(reopened),
       static_cast<unsigned long long>(wrong));
+  std::printf(
+      "%llu power cuts, %llu groups not stored, %llu films refused, %llu compactions, %llu films "
+      "read again\n",
+      static_cast<unsigned long long>(power_cuts), static_cast<unsigned long long>(failed_commits),
+      static_cast<unsigned long long>(refused), static_cast<unsigned long long>(compactions),
+      static_cast<unsigned long long>(replayed));
   if (only != 0) return;
   // The worlds must have been bad enough to prove something.
   EXPECT_GE(done, worlds);
@@ -86,6 +102,11 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   EXPECT_GE(voided, worlds / 20);
   EXPECT_GE(reopened, 1U);
   EXPECT_GE(struck, worlds / 50);
+  EXPECT_GE(replayed, worlds);
+  EXPECT_GE(power_cuts, worlds / 20);
+  EXPECT_GE(failed_commits, worlds / 2);
+  EXPECT_GE(refused, worlds / 10);
+  EXPECT_GE(compactions, worlds / 10);
 }
 
 }  // namespace

@@ -1,0 +1,124 @@
+#include "tests/coordinator/scheduler/simulated_disk.h"
+
+#include <utility>
+
+#include "core/base/hash.h"
+#include "core/film/film_codec.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr const char* kFolder = "films";
+
+core::FilmLayout layout() {
+  core::LayerSet layers;
+  layers.depth = true;
+  return core::make_film_layout(layers);
+}
+
+void must(const core::Status& status, const char* what) {
+  if (!status) throw std::string(what) + ": " + status.error().message;
+}
+
+}  // namespace
+
+LogContents SimulatedDisk::open() {
+  FilmLogOptions options;
+  options.files = &files_;
+  options.threaded = false;
+  options.salt = salt_;
+  options.segment_bytes = 20'000;
+  options.max_pending_bytes = 30'000;
+  auto log = FilmLog::open(kFolder, "job", options);
+  if (!log) throw "the film log does not open: " + log.error().message;
+  LogWish wish{{plan_.frames.begin(), plan_.frames.end()}, plan_.region, samples(), {}};
+  auto contents = read_log(**log, wish);
+  if (!contents) throw "the film log cannot be read: " + contents.error().message;
+  log_ = std::move(*log);
+  if (contents->empty) {
+    const auto cut = log_->append(encode_cut({plan_.region, plan_.tile_size, samples()}));
+    if (!cut) throw "the film log takes nothing: " + cut.error().message;
+  }
+  return std::move(*contents);
+}
+
+void SimulatedDisk::die(bool power, std::mt19937& random) {
+  log_.reset();
+  if (power) {
+    files_.crash(random);
+  } else {
+    files_.kill();
+  }
+}
+
+core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark) {
+  if (const auto* unit = std::get_if<UnitRecord>(&record)) {
+    const core::Film film = film_of(unit->accepted.unit, mark);
+    return log_->append(encode_delivered(unit->accepted, {}, core::encode_film(film)));
+  }
+  if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
+    return log_->append(encode_finished(done->frame, {{}, plan_.region}));
+  }
+  if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
+    return log_->append(encode_tile_voided(voided->frame, voided->tile));
+  }
+  return log_->append(encode_begun_again(std::get<FrameRestartedRecord>(record).frame));
+}
+
+core::Status SimulatedDisk::compact(uint64_t through, const std::vector<int32_t>& finished,
+                                    const std::map<int32_t, Frame>& frames) {
+  return log_->compact(through, [&](const FilmLog::Sink& sink) {
+    core::Status status = sink(encode_cut({plan_.region, plan_.tile_size, samples()}));
+    for (const int32_t frame : finished) {
+      if (status) status = sink(encode_finished(frame, {{}, plan_.region}));
+    }
+    for (const auto& [number, frame] : frames) {
+      const std::vector<core::Unit> units =
+          units_of(number, *frame.film, plan_.region, plan_.tile_size);
+      for (size_t first = 0; status && first < units.size();) {
+        size_t end = first;
+        while (end < units.size() && units[end].tile == units[first].tile) ++end;
+        const core::Film part = cut_film(*frame.film, {units.data() + first, end - first});
+        status = sink(encode_delivered({units[first], Digest{}, frame.worker_class}, {},
+                                       core::encode_film(part)));
+        first = end;
+      }
+    }
+    return status;
+  });
+}
+
+uint64_t SimulatedDisk::used() {
+  uint64_t used = 0;
+  for (const std::string& path : files_.paths()) used += files_.bytes(path).size();
+  return used;
+}
+
+core::Film SimulatedDisk::blank() const { return {layout(), plan_.region}; }
+
+core::Film SimulatedDisk::film_of(const core::Unit& unit, uint8_t mark) {
+  core::Film film(layout(), unit.tile);
+  const auto channels = static_cast<size_t>(film.layout().deposited);
+  std::vector<float> values(static_cast<size_t>(unit.tile.area()) * channels);
+  for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
+    size_t i = 0;
+    for (int y = unit.tile.y0; y < unit.tile.y1; ++y) {
+      for (int x = unit.tile.x0; x < unit.tile.x1; ++x) {
+        const uint64_t pixel = (static_cast<uint64_t>(uint32_t(x)) << 32U) | uint32_t(y);
+        const uint64_t h = core::hash_combine(
+            core::hash_combine(static_cast<uint64_t>(unit.frame) << 32U | b, pixel), mark);
+        for (size_t c = 0; c < channels; ++c) {
+          values[i++] = static_cast<float>((h >> (3 * c)) & 0xffffU) * 0.001F;
+        }
+      }
+    }
+    film.deposit(unit.tile, b, core::kBatchSamples, values);
+  }
+  return film;
+}
+
+core::Film SimulatedDisk::oracle(int32_t frame) const {
+  return film_of({frame, plan_.region, {0, plan_.batches}}, 0);
+}
+
+}  // namespace hyades::coordinator

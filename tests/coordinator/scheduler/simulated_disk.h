@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "coordinator/local/local_log.h"
+#include "coordinator/scheduler/actions.h"
+#include "core/film/film.h"
+#include "tests/coordinator/store/faulty_files.h"
+
+namespace hyades::coordinator {
+
+/// Where a job of a simulated world keeps its films: the real film log with its real records, over
+/// a disk in memory that fails, fills, tears and forgets. What cannot be is thrown as a
+/// std::string.
+class SimulatedDisk {
+ public:
+  SimulatedDisk(const JobPlan& plan, uint64_t salt) : plan_(plan), salt_(salt) {}
+
+  /// The coordinator starts: what of the job is on the disk.
+  LogContents open();
+  /// The coordinator dies; with `power` the machine, too: what was not synced may be lost.
+  void die(bool power, std::mt19937& random);
+  bool is_open() const { return log_ != nullptr; }
+
+  /// Queues the record (of all kinds but FrameFailedRecord) and returns its number. Refused where
+  /// too much waits for a disk that is full. `mark`: of the film, see film_of().
+  core::Result<uint64_t> append(const Record& record, uint8_t mark);
+  /// What waits is written and synced, or kept for another try.
+  core::Status commit() { return log_->commit_now(); }
+  uint64_t durable() const { return log_->durable(); }
+
+  /// A frame's film, as the coordinator has merged it.
+  struct Frame {
+    const core::Film* film = nullptr;
+    std::string worker_class;
+  };
+  /// The films and finished frames replace the records up to number `through`.
+  core::Status compact(uint64_t through, const std::vector<int32_t>& finished,
+                       const std::map<int32_t, Frame>& frames);
+
+  FaultyFiles& files() { return files_; }
+  /// Bytes in all files.
+  uint64_t used();
+
+  core::Film blank() const;
+  /// What a worker renders of the unit; films with different marks are different.
+  static core::Film film_of(const core::Unit& unit, uint8_t mark);
+  /// The whole frame's.
+  core::Film oracle(int32_t frame) const;
+
+ private:
+  uint32_t samples() const { return plan_.batches * core::kBatchSamples; }
+
+  const JobPlan plan_;
+  const uint64_t salt_;
+  FaultyFiles files_;
+  std::unique_ptr<FilmLog> log_;
+};
+
+}  // namespace hyades::coordinator
