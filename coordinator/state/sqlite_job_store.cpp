@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <mutex>
 
 #include "coordinator/state/database.h"
+#include "coordinator/state/incarnation_file.h"
 #include "coordinator/state/job_store.h"
+#include "coordinator/state/reserve_file.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -11,6 +14,9 @@ namespace {
 constexpr std::string_view kJobColumns =
     "id, key, name, owner, priority, max_workers, state, frames, frames_done, frames_failed, "
     "samples, submitted_ms, ended_ms, reason, tags, memory, max_attempts, frame_order";
+
+/// A few times what the largest transaction that frees room needs in the WAL.
+constexpr uint64_t kReserve = uint64_t{1} << 20U;
 
 std::string join(const std::vector<std::string>& tags) {
   std::string text;
@@ -60,14 +66,22 @@ int64_t number(uint64_t value) { return static_cast<int64_t>(value); }
 
 class SqliteJobStore final : public JobStore {
  public:
-  explicit SqliteJobStore(Database db) : db_(std::move(db)) {}
+  SqliteJobStore(Database db, const std::string& path)
+      : db_(std::move(db)), starts_(path + ".starts"), reserve_(path + ".reserve", kReserve) {
+    reserve_.keep();
+  }
 
   core::Result<uint64_t> next_incarnation() override {
     const std::lock_guard lock(mutex_);
-    if (core::Status done = query("INSERT INTO starts DEFAULT VALUES").run(); !done) {
-      return done.error();
-    }
-    return static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get()));
+    Query last(db_.get(), "SELECT MAX(incarnation) FROM starts");
+    const uint64_t known = last.next() ? static_cast<uint64_t>(last.integer(0)) : 0;
+    if (core::Status read = last.status(); !read) return read.error();
+    auto counted = count_start(starts_, known);
+    if (!counted && reserve_.release()) counted = count_start(starts_, known);
+    if (!counted) return counted;
+    // For older programs, which look nowhere else. A full disk does not take it.
+    (void)query("INSERT INTO starts VALUES (?)").bind(number(*counted)).run();
+    return counted;
   }
 
   core::Result<Added> add_job(const StoredJob& job) override {
@@ -95,10 +109,15 @@ class SqliteJobStore final : public JobStore {
         .bind(int64_t{job.max_attempts})
         .bind(int64_t{job.frame_order});
     if (core::Status done = insert.run(); !done) return done.error();
+    reserve_.keep();
     return Added{static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get())), false};
   }
 
   core::Status update_job(const StoredJob& job) override {
+    return with_reserve([&] { return update_row(job); });
+  }
+
+  core::Status update_row(const StoredJob& job) {
     const std::lock_guard lock(mutex_);
     Query update(db_.get(),
                  "UPDATE jobs SET priority = ?, max_workers = ?, state = ?, frames = ?, "
@@ -109,9 +128,11 @@ class SqliteJobStore final : public JobStore {
   }
 
   core::Status remove_job(uint64_t id) override {
-    const std::lock_guard lock(mutex_);
-    line_counts_.erase(id);
-    return query("DELETE FROM jobs WHERE id = ?").bind(number(id)).run();
+    return with_reserve([&] {
+      const std::lock_guard lock(mutex_);
+      line_counts_.erase(id);
+      return query("DELETE FROM jobs WHERE id = ?").bind(number(id)).run();
+    });
   }
 
   core::Result<std::vector<uint64_t>> open_jobs() override {
@@ -199,7 +220,9 @@ class SqliteJobStore final : public JobStore {
                  .bind_blob(output.sha256)
                  .run();
     }
-    return done ? transaction.commit() : done;
+    if (done) done = transaction.commit();
+    if (done) reserve_.keep();
+    return done;
   }
 
   core::Status forget_frame(uint64_t job, int32_t frame) override {
@@ -313,6 +336,14 @@ class SqliteJobStore final : public JobStore {
   }
 
  private:
+  /// What has to be stored on a full disk too, as it makes room: the ends of jobs.
+  core::Status with_reserve(const std::function<core::Status()>& what) {
+    core::Status done = what();
+    if (!done && reserve_.release()) done = what();
+    if (done) reserve_.keep();
+    return done;
+  }
+
   /// Short-lived: SQLite prepares such statements in some ten microseconds.
   Query query(std::string_view sql) { return {db_.get(), sql}; }
 
@@ -372,6 +403,8 @@ class SqliteJobStore final : public JobStore {
 
   std::mutex mutex_;
   Database db_;
+  const std::string starts_;
+  ReserveFile reserve_;
   std::map<uint64_t, uint64_t> line_counts_;  ///< of jobs that had lines lately
 };
 
@@ -379,8 +412,10 @@ class SqliteJobStore final : public JobStore {
 
 core::Result<std::unique_ptr<JobStore>> open_sqlite_job_store(const std::string& path) {
   auto db = open_database(path);
+  // To bring it to this schema takes some room.
+  if (!db && ReserveFile(path + ".reserve", kReserve).release()) db = open_database(path);
   if (!db) return db.error();
-  return std::unique_ptr<JobStore>(std::make_unique<SqliteJobStore>(std::move(*db)));
+  return std::unique_ptr<JobStore>(std::make_unique<SqliteJobStore>(std::move(*db), path));
 }
 
 }  // namespace hyades::coordinator
