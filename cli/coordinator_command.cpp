@@ -73,11 +73,17 @@ int serve(const Arguments& arguments) {
       return 1;
     }
     const std::string address = (*server)->address() + "\n";
-    const auto noted = hyades::core::write_file(arguments.brain.folder + "/address",
-                                                std::as_bytes(std::span(address)));
+    // Neither keeps it from starting: who makes room has to reach it.
+    const std::string path = arguments.brain.folder + "/address";
+    auto noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
+    if (!noted && std::remove(path.c_str()) == 0) {  // what it said is not true any more
+      noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
+    }
     if (!noted) {
       std::fprintf(stderr, "hyades coordinator: %s\n", noted.error().message.c_str());
-      return 1;
+    }
+    if (const grpc::Status room = (*brain)->admit(0); !room.ok()) {
+      std::fprintf(stderr, "hyades coordinator: %s\n", room.error_message().c_str());
     }
     std::printf("listening on %s", address.c_str());
     std::fflush(stdout);

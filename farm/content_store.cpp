@@ -84,6 +84,11 @@ bool ContentStore::contains(const std::string& name, uint64_t size) {
   return identity->size == size || read(name).ok();
 }
 
+bool ContentStore::missing(const std::string& name) const {
+  struct stat info {};
+  return !is_content_name(name) || (::stat(path_of(name).c_str(), &info) != 0 && errno == ENOENT);
+}
+
 Result<Bytes> ContentStore::read(const std::string& name) {
   if (!is_content_name(name)) return not_a_name(name);
   const std::string path = path_of(name);

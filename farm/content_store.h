@@ -51,6 +51,9 @@ class ContentStore {
   /// truncated file counts as missing.
   bool contains(const std::string& name, uint64_t size);
 
+  /// Whether there is surely no file `name`; one that cannot be looked at now may be there.
+  bool missing(const std::string& name) const;
+
   /// The bytes of file `name`, mapped. They are hashed when this process first reads the file and
   /// whenever the file changed since. Errors: no such file, damaged (it is removed), unreadable.
   core::Result<core::Bytes> read(const std::string& name);

@@ -108,39 +108,35 @@ void Brain::persist(const Persist& persist, Delivery* delivery, std::vector<Acti
   const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
-  if (core::Status kept = ensure_keeper(*desk); !kept) {
-    desk->trouble = "films cannot be stored: " + kept.error().message;
-    for (const Action& next : scheduler_.handle(PersistFailed{persist.id, kept.error().message},
-                                                std::chrono::steady_clock::now())) {
-      act(next, nullptr, later);
-    }
-    return;
-  }
   if (const auto* unit = std::get_if<UnitRecord>(&persist.record)) {
-    desk->keeper->keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
-                                 std::move(delivery->record));
+    keeper_of(*desk).keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
+                                    std::move(delivery->record));
   } else if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {
-    desk->keeper->keep_finished(persist.id, done->frame);
+    keeper_of(*desk).keep_finished(persist.id, done->frame);
   } else if (const auto* voided = std::get_if<TileVoidedRecord>(&persist.record)) {
-    desk->keeper->void_tile(persist.id, voided->frame, voided->tile);
+    keeper_of(*desk).void_tile(persist.id, voided->frame, voided->tile);
   } else if (const auto* again = std::get_if<FrameRestartedRecord>(&persist.record)) {
-    chore([this, job, id = persist.id, frame = again->frame] {
-      store_patiently([&] { return store_->forget_frame(static_cast<uint64_t>(job), frame); });
+    chores_.add(static_cast<uint64_t>(job), [this, job, id = persist.id, frame = again->frame] {
+      const core::Status forgotten = store_->forget_frame(static_cast<uint64_t>(job), frame);
       const std::lock_guard lock(mutex_);
-      if (JobDesk* still = desk_of(job)) still->keeper->begin_again(id, frame);
+      JobDesk* still = desk_of(job);
+      if (still == nullptr || still->ending) return true;
+      if (forgotten) keeper_of(*still).begin_again(id, frame);
+      return forgotten.ok();
     });
   } else if (const auto* failed = std::get_if<FrameFailedRecord>(&persist.record)) {
     const FrameNote& note = desk->frames[failed->failed.frame];
     StoredFrame frame{failed->failed.frame, false, failed->failed.reason, note.worker_class,
                       note.restarts};
-    chore([this, job, id = persist.id, frame] {
+    chores_.add(static_cast<uint64_t>(job), [this, job, id = persist.id, frame] {
       const core::Status stored = store_->frame_over(static_cast<uint64_t>(job), frame, {});
       const std::lock_guard lock(mutex_);
       JobDesk* still = desk_of(job);
-      if (still == nullptr) return;
+      if (still == nullptr) return true;
       // Where it could not be stored the frame fails again after a restart, if it must.
       if (!stored) still->trouble = stored.error().message;
-      still->keeper->keep_failed(id);
+      keeper_of(*still).keep_failed(id);
+      return true;
     });
   }
 }

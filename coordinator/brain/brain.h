@@ -15,6 +15,9 @@
 #include <unordered_set>
 #include <vector>
 
+#include "coordinator/brain/brain_options.h"
+#include "coordinator/brain/chores.h"
+#include "coordinator/brain/clerks.h"
 #include "coordinator/brain/job_desk.h"
 #include "coordinator/brain/worker_link.h"
 #include "coordinator/scheduler/scheduler.h"
@@ -27,47 +30,20 @@
 
 namespace hyades::coordinator {
 
-/// Half of the machine's memory, in bytes; all there can be where that is not known.
-uint64_t default_film_memory();
-
-struct BrainOptions {
-  std::string folder;                            ///< where all state lies; made if it is missing
-  std::string finisher;                          ///< the program hyades-film
-  Duration unit_time = std::chrono::seconds(5);  ///< of one thread for one unit
-  Duration lease_time = std::chrono::seconds(30);
-  Duration copy_after = std::chrono::seconds(10);
-  /// A frame whose class of workers has been gone for this long begins again with another.
-  Duration class_patience = std::chrono::minutes(5);
-  /// A worker whose stream has ended is lost if it has not come again after this.
-  Duration reconnect_time = std::chrono::seconds(3);
-  DiskLimits disk;
-  /// Files that no job needs any more stay for so long after they were last used.
-  Duration asset_grace = std::chrono::hours(1);
-  /// After a restart no new units are leased for this long, so that workers can say what they hold;
-  /// longer, up to four times this, while those who hold something still come. By default the
-  /// longest wait of a worker (farm/backoff.h), and what connecting takes.
-  Duration adoption_time = std::chrono::seconds(5);
-  /// A lease whose rendering makes no progress is not renewed any more after this; where the worker
-  /// loads or waits, after six times this.
-  Duration stall_time = std::chrono::minutes(10);
-  /// Bytes that the film of a frame may take in memory; jobs of larger ones are refused.
-  uint64_t film_memory = default_film_memory();
-  /// A job's film log is rewritten when it has grown by this much.
-  uint64_t compact_bytes = LocalLog{}.compact_bytes;
-};
-
 /// The coordinator without its network: the scheduler, and everything that happens because of it.
 ///
 /// One lock guards the scheduler and all books; every event is handled and its messages are queued
 /// under it, so that what workers are told has one order. Nothing slow happens under it: films are
 /// decoded before (by the thread that received them), made durable and merged by each job's
-/// FilmKeeper, finished by a process; what touches the disk is done by the chores' thread.
+/// FilmKeeper, finished by a process; what changes in a job's rows is stored by its chores.
 /// Thread-safe.
 class Brain {
  public:
   /// Opens the folder and takes up all jobs that have not ended. An error where another process has
   /// it, or it was written by a newer version. A job whose files are gone fails alone.
-  static core::Result<std::unique_ptr<Brain>> open(const BrainOptions& options);
+  /// Jobs are kept in `store`, or, where that is null, in the folder.
+  static core::Result<std::unique_ptr<Brain>> open(const BrainOptions& options,
+                                                   std::unique_ptr<JobStore> store = nullptr);
 
   /// Stops at once: all that was promised is durable.
   ~Brain();
@@ -88,23 +64,40 @@ class Brain {
   /// The stream has ended.
   void detach(WorkerId worker, const WorkerLink* link);
 
-  // Jobs (brain_jobs.cpp, brain_queries.cpp). Errors as docs/wire.md has them.
+  // Jobs (brain_jobs.cpp, brain_steer.cpp, brain_queries.cpp, brain_explain.cpp). Errors as
+  // docs/wire.md has them. What may wait for the disk or the store says so: it is not for threads
+  // that others need. All else never does.
 
+  /// Told of what somebody asked for: a status, and where that is OK the job as it is now.
+  using Told = std::function<void(const grpc::Status&, const v1::Job&)>;
+
+  /// May wait for the disk, for other submissions up to two seconds.
   grpc::Status submit(const v1::SubmitRequest& request, v1::SubmitResponse& response);
+  /// May wait for the store; list_open() knows all jobs that have not ended, and says no where
+  /// others are asked for.
   grpc::Status list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
-  /// The job, and its frames above `after` as far as they fit.
+  bool list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
+  /// The job, and its frames above `after` as far as they fit. May wait for the store; get_open()
+  /// answers for jobs that have not ended, and says no for others.
   grpc::Status get(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response);
-  grpc::Status pause(uint64_t job, v1::Job& now);
-  grpc::Status resume(uint64_t job, v1::Job& now);
-  grpc::Status cancel(uint64_t job, v1::Job& now);
-  grpc::Status retry(uint64_t job, v1::Job& now);
-  grpc::Status set_priority(uint64_t job, int priority, v1::Job& now);
-  grpc::Status remove(uint64_t job);
+  bool get_open(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response);
+  /// The same of why it does or does not get on.
   grpc::Status explain(uint64_t job, v1::ExplainResponse& response);
+  bool explain_open(uint64_t job, v1::ExplainResponse& response);
+  /// These four call `then` exactly once, perhaps by another thread and at the latest when the
+  /// brain stops: when the change is stored, or after half a second with UNAVAILABLE (it holds, and
+  /// will be stored). For a job that is not open they may wait for the store.
+  void pause(uint64_t job, Told then);
+  void resume(uint64_t job, Told then);
+  void cancel(uint64_t job, Told then);
+  void set_priority(uint64_t job, int priority, Told then);
+  /// May wait for the disk, and for submissions up to two seconds.
+  grpc::Status retry(uint64_t job, v1::Job& now);
+  grpc::Status remove(uint64_t job);
   using FilmTaker = std::function<void(const grpc::Status&, const core::FilmInfo&,
                                        std::shared_ptr<const core::Film>)>;
   /// A copy of the frame's film as it is now, or, where films are kept, was in the end; given to
-  /// `then`, perhaps by another thread.
+  /// `then` (which is quick), perhaps by another thread. May wait for the disk.
   grpc::Status film(uint64_t job, int32_t frame, FilmTaker then);
   /// How far somebody has been told of a job's changes; at first of nothing.
   struct ToldOf {
@@ -113,8 +106,10 @@ class Brain {
     std::optional<int32_t> after;  ///< the last frame that did
     bool over = false;             ///< what is told is how the job has ended
   };
-  /// What has changed since, as far as it fits. `ended`: there will be no other changes.
+  /// What has changed since, as far as it fits. `ended`: there will be no other changes. May wait
+  /// for the store; changes_of_open() answers for jobs that have not ended, and says no for others.
   grpc::Status changes(uint64_t job, ToldOf& told, v1::WatchEvent& event, bool& ended);
+  bool changes_of_open(uint64_t job, ToldOf& told, v1::WatchEvent& event);
   /// Calls `poke` (quickly, by another thread) whenever the job has changed, until unwatch.
   uint64_t watch(uint64_t job, std::function<void()> poke);
   void unwatch(uint64_t number);
@@ -122,7 +117,7 @@ class Brain {
   // The disk (brain_disk.cpp).
 
   /// Whether `bytes` more may be stored, or (0) something new may begin: OK, or RESOURCE_EXHAUSTED
-  /// with the reason.
+  /// with the reason. May wait for the disk.
   grpc::Status admit(uint64_t bytes);
   /// Even what was begun has to wait.
   bool disk_is_full() const { return disk_full_; }
@@ -193,15 +188,33 @@ class Brain {
   bool has_room_for(const JobDesk& job) const;
   bool is_here(const v1::JobFile& file);
   grpc::Status files_are_here(const v1::JobSpec& spec);
-  grpc::Status set_paused(uint64_t id, bool paused, v1::Job& now);
-  grpc::Status change(uint64_t id, v1::Job& now,
-                      const std::function<void(JobDesk&, std::vector<Action>&)>& what);
+  void set_paused(uint64_t id, bool paused, Told then);
+  void change(uint64_t id, Told then,
+              const std::function<void(JobDesk&, std::vector<Action>&)>& what);
+
+  // What is stored of jobs, and who waits for it (brain_ends.cpp).
+  /// Somebody who is told once a job is stored as it was when he asked.
+  struct Waiter {
+    uint64_t number = 0;  ///< grows
+    uint64_t job = 0;
+    TimePoint give_up;
+    Told then;
+  };
+  void when_stored(uint64_t job, Told then);
+  void store_row(JobDesk& desk);
+  bool store_row_now(uint64_t id);
+  bool store_end(uint64_t id);
+  std::vector<Waiter> take_waiters(const std::function<bool(const Waiter&)>& which);
+  void mind_waiters(TimePoint now);
   core::Status take_up_jobs();
+  bool take_up_later(uint64_t id);
+  core::Status give_up(uint64_t id, const core::Error& why);
   core::Status take_up(uint64_t id);
   core::Result<std::set<int32_t>> frames_without_outputs(uint64_t id) const;
   core::Status start(std::unique_ptr<JobDesk> desk, RestoredJob restored);
   std::unique_ptr<FilmKeeper> make_keeper(JobDesk& desk, bool resume);
-  core::Status ensure_keeper(JobDesk& desk);
+  FilmKeeper& keeper_of(JobDesk& desk);
+  bool open_keeper(JobId job);
   void restore_films(JobDesk& desk, const LogContents& contents, RestoredJob& restored);
 
   // brain.cpp: events in, actions out; with the lock.
@@ -243,12 +256,11 @@ class Brain {
   // Threads.
   void clock_loop();
   void finish_loop();
-  void chores_loop();
   void sweep_loop();
   void disk_loop();
-  void chore(std::function<void()> what);  // with the lock
   std::vector<Action> mind_workers(TimePoint now);
   void mind_jobs(TimePoint now);
+  void tell_watcher(const std::function<void()>& poke);
 
   void mind_disk();
   bool disk_is_short_for(const core::Film& film);
@@ -274,7 +286,6 @@ class Brain {
   void set_quarantine(Seat& seat, const std::string& reason);
   void end_quarantine(Seat& seat);
   void store_quarantine(std::function<core::Status()> what);
-  void store_patiently(const std::function<core::Status()>& what);
   uint64_t samples_of(const JobDesk& desk, const core::PixelRect& tile,
                       const core::BatchRange& batches) const;
 
@@ -308,14 +319,15 @@ class Brain {
   std::condition_variable clock_wake_;
   std::deque<Completed> to_finish_;
   std::condition_variable finish_wake_;
-  std::deque<std::function<void()>> chores_;
-  std::condition_variable chores_wake_;
-  bool chores_end_ = false;
+  std::vector<Waiter> waiters_;
+  uint64_t next_waiter_ = 1;
   std::timed_mutex submit_mutex_;  ///< one submission at a time
   std::condition_variable sweep_wake_;
   std::atomic<uint64_t> asset_changes_{0};  ///< jobs that have gone
   uint64_t swept_changes_ = UINT64_MAX;     ///< of the sweeper: when it last left nothing to remove
   std::vector<std::thread> threads_;
+  Chores chores_{2};  ///< by job; begins and ends while all else is there
+  Clerks herald_{1, SIZE_MAX};
 };
 
 /// Milliseconds since 1970, UTC.

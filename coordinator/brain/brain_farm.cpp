@@ -9,6 +9,11 @@
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
+namespace {
+
+constexpr uint64_t kWorkersChores = 0;  // no job has this number
+
+}  // namespace
 
 void Brain::info(v1::InfoResponse& response) {
   const std::lock_guard lock(mutex_);
@@ -25,6 +30,7 @@ void Brain::info(v1::InfoResponse& response) {
   response.set_jobs(static_cast<uint32_t>(desks_.size()));
   response.set_trouble(disk_.reason());
   for (const auto& [id, desk] : desks_) {
+    if (!desk->row_trouble.empty()) response.set_trouble(desk->row_trouble);
     if (!desk->trouble.empty()) response.set_trouble(desk->trouble);
   }
 }
@@ -109,7 +115,7 @@ void Brain::end_quarantine(Seat& seat) {
 }
 
 void Brain::store_quarantine(std::function<core::Status()> what) {
-  chore([this, what = std::move(what)] { store_patiently(what); });
+  chores_.add(kWorkersChores, [what = std::move(what)] { return what().ok(); });
 }
 
 grpc::Status Brain::quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now) {

@@ -1,6 +1,5 @@
-// What becomes of frames, and of jobs in the end.
+// What becomes of frames.
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -66,7 +65,10 @@ void Brain::frame_reopened(JobId job, int32_t frame) {
   note(*desk, v1::LOG_LEVEL_WARNING, frame, {},
        "is not done: a unit that was rendered differently twice is rendered once more");
   // Should this be lost, or come after the frame is done again, it is rendered again or stays.
-  chore([this, id = static_cast<uint64_t>(job), frame] { (void)store_->forget_frame(id, frame); });
+  chores_.add(static_cast<uint64_t>(job), [this, id = static_cast<uint64_t>(job), frame] {
+    (void)store_->forget_frame(id, frame);
+    return true;
+  });
 }
 
 /// On the keeper's thread, unless the film is among the complete ones already.
@@ -118,57 +120,6 @@ void Brain::frame_restarted(JobId job, int32_t frame) {
   ++noted.restarts;
   desk->samples_done -= std::exchange(noted.samples_done, 0);
   note(*desk, v1::LOG_LEVEL_WARNING, frame, {}, "is rendered again from its beginning");
-}
-
-/// The job leaves memory once its end is stored.
-void Brain::job_ended(const JobEnded& ended) {
-  const std::lock_guard lock(mutex_);
-  JobDesk* desk = desk_of(ended.job);
-  if (desk == nullptr || desk->ending) return;
-  desk->ending = true;
-  StoredJob& stored = desk->stored;
-  stored.state = ended.cancelled    ? StoredState::cancelled
-                 : ended.failed > 0 ? StoredState::failed
-                                    : StoredState::done;
-  stored.frames_done = ended.done;
-  stored.frames_failed = ended.failed;
-  stored.ended_ms = wall_ms();
-  stored.reason.clear();
-  for (const auto& [number, frame] : desk->frames) {
-    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
-      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
-    }
-  }
-  note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
-       fmt::format("ended: {} frames done, {} failed{}", ended.done, ended.failed,
-                   ended.cancelled ? ", cancelled" : ""));
-  for (auto& [id, seat] : seats_) {
-    if (seat.briefed.erase(ended.job) == 0) continue;
-    v1::CoordinatorMessage message;
-    message.mutable_over()->set_job(static_cast<uint64_t>(ended.job));
-    send(id, std::move(message));
-  }
-  chore([this, id = ended.job] {
-    std::unique_lock held(mutex_);
-    JobDesk* over = desk_of(id);
-    const StoredJob job = over->stored;
-    const std::vector<StoredLine> lines = over->take_lines();
-    held.unlock();
-    (void)store_->add_lines(job.id, lines);
-    store_patiently([&] { return store_->update_job(job); });
-    held.lock();
-    auto node = desks_.extract(id);
-    for (auto& [number, watch] : watches_) {
-      if (watch.job == job.id) chore(watch.poke);
-    }
-    held.unlock();
-    node = {};  // waits for the keeper's thread
-    // Films of frames that failed stay, should they be taken up again.
-    std::error_code ignored;
-    if (job.state == StoredState::done) {
-      std::filesystem::remove_all(films_folder(job.id), ignored);
-    }
-  });
 }
 
 void Brain::persisted(JobId job, RecordId record) {

@@ -18,7 +18,6 @@ constexpr size_t kLongestName = 200;
 constexpr int kMostPriority = 1'000'000;
 constexpr size_t kMostMissingTold = 100;  // an error travels in headers, which are short
 constexpr std::chrono::seconds kSubmitPatience{2};
-constexpr std::chrono::milliseconds kEndPatience{500};
 /// Of all open jobs together: what they have in memory.
 constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
@@ -134,81 +133,9 @@ grpc::Status Brain::files_are_here(const v1::JobSpec& spec) {
                            fmt::format("{} of the job's files are not here yet", count), missing);
 }
 
-grpc::Status Brain::pause(uint64_t id, v1::Job& now) { return set_paused(id, true, now); }
-
-grpc::Status Brain::resume(uint64_t id, v1::Job& now) { return set_paused(id, false, now); }
-
-grpc::Status Brain::set_paused(uint64_t id, bool paused, v1::Job& now) {
-  return change(id, now, [&](JobDesk& desk, std::vector<Action>& later) {
-    const StoredState wanted = paused ? StoredState::paused : StoredState::running;
-    if (desk.stored.state == wanted) return;
-    desk.stored.state = wanted;
-    note(desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, paused ? "paused" : "resumed");
-    later = paused ? tell(JobPaused{desk.id}) : tell(JobResumed{desk.id});
-  });
-}
-
-grpc::Status Brain::set_priority(uint64_t id, int priority, v1::Job& now) {
-  if (std::abs(int64_t{priority}) > kMostPriority) {
-    return wrong("priority: expected -1000000 to 1000000");
-  }
-  return change(id, now, [&](JobDesk& desk, std::vector<Action>& later) {
-    if (desk.stored.priority == priority) return;
-    desk.stored.priority = priority;
-    note(desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, fmt::format("priority {}", priority));
-    later = tell(JobReprioritised{desk.id, priority});
-  });
-}
-
-/// Changes an open job and stores it before it answers.
-grpc::Status Brain::change(uint64_t id, v1::Job& now,
-                           const std::function<void(JobDesk&, std::vector<Action>&)>& what) {
-  std::vector<Action> later;
-  StoredJob stored;
-  {
-    const std::lock_guard lock(mutex_);
-    JobDesk* desk = desk_of(id);
-    if (desk == nullptr || desk->ending) return not_open(id);
-    what(*desk, later);
-    now = describe(*desk);
-    stored = desk->stored;
-  }
-  carry_out(later);
-  if (core::Status done = store_->update_job(stored); !done) return failed(done.error());
-  return grpc::Status::OK;
-}
-
-grpc::Status Brain::cancel(uint64_t id, v1::Job& now) {
-  std::vector<Action> later;
-  {
-    const std::lock_guard lock(mutex_);
-    JobDesk* desk = desk_of(id);
-    if (desk == nullptr) return not_open(id);
-    later = tell(JobCancelled{desk->id});
-  }
-  carry_out(later);
-  // The end is stored by the chores; to answer is to promise. While it cannot be stored (the disk
-  // is full) this thread is let go, for there are few.
-  for (const auto give_up = std::chrono::steady_clock::now() + kEndPatience;;) {
-    if (std::chrono::steady_clock::now() > give_up) {
-      return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "the job's end is not stored yet",
-                               std::chrono::seconds(1));
-    }
-    {
-      const std::lock_guard lock(mutex_);
-      if (stop_) return {grpc::StatusCode::UNAVAILABLE, "the coordinator stops"};
-      if (desk_of(id) == nullptr) break;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  v1::GetJobResponse got;
-  const grpc::Status status = get(id, std::nullopt, got);
-  now = got.job();
-  return status;
-}
-
 grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
-  const std::lock_guard one(submit_mutex_);
+  const std::unique_lock one(submit_mutex_, kSubmitPatience);
+  if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
   std::vector<Action> later;
   bool open = false;
   {
@@ -255,7 +182,8 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
 }
 
 grpc::Status Brain::remove(uint64_t id) {
-  const std::lock_guard one(submit_mutex_);
+  const std::unique_lock one(submit_mutex_, kSubmitPatience);
+  if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
   {
     const std::lock_guard lock(mutex_);
     if (desk_of(id) != nullptr) {
@@ -290,14 +218,6 @@ grpc::Status Brain::remove(uint64_t id) {
   }
   ++asset_changes_;
   return grpc::Status::OK;
-}
-
-/// NOT_FOUND, or FAILED_PRECONDITION for a job that has ended; with the lock.
-grpc::Status Brain::not_open(uint64_t id) {
-  const auto stored = store_->job(id);
-  if (!stored) return failed(stored.error());
-  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
-  return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} has ended", id)};
 }
 
 }  // namespace hyades::coordinator

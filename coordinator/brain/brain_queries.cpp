@@ -52,6 +52,10 @@ class FramePage {
   size_t bytes_ = 0;
 };
 
+uint32_t most_listed(const v1::ListJobsRequest& request) {
+  return request.limit() == 0 ? kMostListed : std::min(request.limit(), kMostListed);
+}
+
 std::map<int32_t, FrameNote>::const_iterator above(const std::map<int32_t, FrameNote>& frames,
                                                    std::optional<int32_t> after) {
   return after ? frames.upper_bound(*after) : frames.begin();
@@ -67,9 +71,25 @@ v1::Job Brain::describe(const JobDesk& desk) const {
   return job;
 }
 
+bool Brain::list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
+  if (request.ended()) return false;
+  const int limit = static_cast<int>(most_listed(request));
+  const std::lock_guard lock(mutex_);
+  auto desk = request.before() == 0 ? desks_.end() : desks_.lower_bound(JobId{request.before()});
+  while (desk != desks_.begin()) {
+    --desk;
+    const StoredJob& stored = desk->second->stored;
+    if (!request.owner().empty() && stored.owner != request.owner()) continue;
+    *response.add_jobs() = describe(*desk->second);
+    if (response.jobs_size() < limit) continue;
+    response.set_next_before(stored.id);
+    break;
+  }
+  return true;
+}
+
 grpc::Status Brain::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
-  const uint32_t limit =
-      request.limit() == 0 ? kMostListed : std::min(request.limit(), kMostListed);
+  const uint32_t limit = most_listed(request);
   const auto jobs = store_->list(request.ended(), request.owner(), request.before(), limit);
   if (!jobs) return failed(jobs.error());
   const std::lock_guard lock(mutex_);
@@ -81,20 +101,23 @@ grpc::Status Brain::list(const v1::ListJobsRequest& request, v1::ListJobsRespons
   return grpc::Status::OK;
 }
 
-grpc::Status Brain::get(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response) {
+bool Brain::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response) {
+  const std::lock_guard lock(mutex_);
+  const JobDesk* desk = desk_of(id);
+  if (desk == nullptr) return false;
   FramePage page(*response.mutable_frames());
-  {
-    const std::lock_guard lock(mutex_);
-    if (const JobDesk* desk = desk_of(id)) {
-      *response.mutable_job() = describe(*desk);
-      for (auto it = above(desk->frames, after); it != desk->frames.end(); ++it) {
-        response.set_more(page.full());
-        if (page.full()) break;
-        page.add(desk->describe_frame(it->first, it->second));
-      }
-      return grpc::Status::OK;
-    }
+  *response.mutable_job() = describe(*desk);
+  for (auto it = above(desk->frames, after); it != desk->frames.end(); ++it) {
+    response.set_more(page.full());
+    if (page.full()) break;
+    page.add(desk->describe_frame(it->first, it->second));
   }
+  return true;
+}
+
+grpc::Status Brain::get(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response) {
+  if (get_open(id, after, response)) return grpc::Status::OK;
+  FramePage page(*response.mutable_frames());
   const auto stored = store_->job(id);
   if (!stored) return failed(stored.error());
   if (!*stored) return no_job(id);
@@ -112,28 +135,30 @@ grpc::Status Brain::get(uint64_t id, std::optional<int32_t> after, v1::GetJobRes
   return grpc::Status::OK;
 }
 
+bool Brain::changes_of_open(uint64_t id, ToldOf& told, v1::WatchEvent& event) {
+  const std::lock_guard lock(mutex_);
+  const JobDesk* desk = desk_of(id);
+  if (desk == nullptr) return false;
+  *event.mutable_job() = describe(*desk);
+  if (!told.after) told.next_version = desk->version;
+  FramePage page(*event.mutable_changed());
+  for (auto it = above(desk->frames, told.after); it != desk->frames.end(); ++it) {
+    if (told.version != 0 && it->second.version <= told.version) continue;
+    if (page.full()) {
+      event.set_more(true);
+      return true;
+    }
+    page.add(desk->describe_frame(it->first, it->second));
+    told.after = it->first;
+  }
+  told.version = told.next_version;
+  told.after.reset();
+  return true;
+}
+
 grpc::Status Brain::changes(uint64_t id, ToldOf& told, v1::WatchEvent& event, bool& ended) {
   ended = false;
-  {
-    const std::lock_guard lock(mutex_);
-    if (const JobDesk* desk = desk_of(id)) {
-      *event.mutable_job() = describe(*desk);
-      if (!told.after) told.next_version = desk->version;
-      FramePage page(*event.mutable_changed());
-      for (auto it = above(desk->frames, told.after); it != desk->frames.end(); ++it) {
-        if (told.version != 0 && it->second.version <= told.version) continue;
-        if (page.full()) {
-          event.set_more(true);
-          return grpc::Status::OK;
-        }
-        page.add(desk->describe_frame(it->first, it->second));
-        told.after = it->first;
-      }
-      told.version = told.next_version;
-      told.after.reset();
-      return grpc::Status::OK;
-    }
-  }
+  if (changes_of_open(id, told, event)) return grpc::Status::OK;
   if (!std::exchange(told.over, true)) told.after.reset();
   v1::GetJobResponse over;
   const grpc::Status status = get(id, told.after, over);
@@ -198,108 +223,15 @@ grpc::Status Brain::film(uint64_t id, int32_t frame, FilmTaker then) {
   }
   core::FilmInfo info = desk->film_info(frame);
   info.worker_class = noted->second.worker_class;
-  // The keeper's thread copies, as only it may look at films while they grow; what follows takes
-  // its time, which should not be the keeper's.
-  desk->keeper->call([this, keeper = desk->keeper.get(), frame, info, then = std::move(then)] {
+  // The keeper's thread copies, as only it may look at films while they grow.
+  desk->keeper->call([keeper = desk->keeper.get(), frame, info, then = std::move(then)] {
     const auto film = keeper->film(frame);
     const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
-    const std::lock_guard held(mutex_);
-    chore([copy, info, then] {
-      then(copy ? grpc::Status::OK
-                : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
-                                    "nothing of the frame is there yet", std::chrono::seconds(1)),
-           info, copy);
-    });
+    then(copy ? grpc::Status::OK
+              : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                                  "nothing of the frame is there yet", std::chrono::seconds(1)),
+         info, copy);
   });
-  return grpc::Status::OK;
-}
-
-grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
-  const std::lock_guard lock(mutex_);
-  JobDesk* desk = desk_of(id);
-  const auto say = [&](std::string text) { response.add_reasons(std::move(text)); };
-  if (desk == nullptr) {
-    const auto stored = store_->job(id);
-    if (!stored) return failed(stored.error());
-    if (!*stored) return no_job(id);
-    switch ((*stored)->state) {
-      case StoredState::done:
-        say("it is done");
-        break;
-      case StoredState::cancelled:
-        say("it was cancelled; 'retry' takes it up again");
-        break;
-      default:
-        say("it is over, but not all of it is done: " + (*stored)->reason +
-            "; 'retry' takes it up again");
-    }
-    return grpc::Status::OK;
-  }
-  if (disk_.level() != DiskLevel::roomy) {
-    say(disk_.reason() +
-        (disk_.level() == DiskLevel::full ? "; no units are leased and films have to wait"
-                                          : "; no units are leased") +
-        " until there is room again (deleting jobs that have ended makes some)");
-  }
-  if (!desk->trouble.empty()) say(desk->trouble);
-  if (desk->stored.state == StoredState::paused) say("it is paused; 'resume' lets it go on");
-  uint32_t active = 0;
-  std::map<std::string, uint32_t> classes;
-  for (const auto& [worker, seat] : seats_) {
-    if (!seat.joined || seat.state != v1::WORKER_STATE_ACTIVE) continue;
-    ++active;
-    ++classes[seat.hello.worker_class()];
-  }
-  const std::string unmet = active > 0 ? unmet_needs(desk->stored) : std::string();
-  if (active == 0) say("no worker is there that could take units");
-  if (!unmet.empty()) say(unmet);
-  uint32_t waiting = 0;
-  uint32_t orphans = 0;
-  for (const auto& [number, note] : desk->frames) {
-    if (note.state == v1::FRAME_STATE_FINISHING) {
-      say(fmt::format("frame {} is rendered; its outputs are being made", number));
-    } else if (note.state == v1::FRAME_STATE_FAILED) {
-      say(fmt::format("frame {} failed: {}", number, note.reason));
-    } else if (note.state == v1::FRAME_STATE_WAITING) {
-      ++waiting;
-    } else if (note.state == v1::FRAME_STATE_RENDERING && active > 0 &&
-               !note.worker_class.empty() && !classes.contains(note.worker_class)) {
-      ++orphans;
-      say(fmt::format(
-          "frame {} was begun by workers of class {}, and none of them is there; it "
-          "begins again with another class {} s after the last one went",
-          number, note.worker_class.substr(0, 12),
-          std::chrono::duration_cast<std::chrono::seconds>(options_.class_patience).count()));
-    }
-  }
-  if (const uint32_t disputed = scheduler_.disputed_units(desk->id); disputed > 0) {
-    say(
-        fmt::format("{} units were rendered differently by two workers of one class and wait for "
-                    "another worker of it to say who is right",
-                    disputed));
-  }
-  for (std::string& still : still_units(desk->id)) say(std::move(still));
-  const uint32_t leased = scheduler_.leased_units(desk->id);
-  if (leased > 0) {
-    say(fmt::format("{} units are being rendered", leased));
-    if (desk->stored.max_workers > 0) {
-      say(fmt::format("at most {} workers may render it at once", desk->stored.max_workers));
-    }
-  } else if (active > 0 && orphans == 0 && unmet.empty() &&
-             desk->stored.state == StoredState::running) {
-    for (const auto& [other, rival] : desks_) {
-      if (other != desk->id && rival->stored.priority >= desk->stored.priority &&
-          scheduler_.leased_units(other) > 0) {
-        say(fmt::format("job {} ({}, priority {}) has the workers now", rival->stored.id,
-                        rival->stored.name, rival->stored.priority));
-      }
-    }
-    if (std::chrono::steady_clock::now() < adopting_until_) {
-      say("the coordinator has just started and waits for its workers to come back");
-    }
-  }
-  if (waiting > 0) say(fmt::format("{} frames wait for their turn", waiting));
-  if (response.reasons().empty()) say("nothing stands in its way");
   return grpc::Status::OK;
 }
 

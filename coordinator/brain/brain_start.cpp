@@ -27,7 +27,8 @@ uint64_t default_film_memory() {
   return memory > 0 ? memory / 2 : UINT64_MAX;
 }
 
-core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
+core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options,
+                                                 std::unique_ptr<JobStore> store) {
   std::error_code failed;
   for (const char* part : {"", "/films", "/outputs", "/tmp"}) {
     std::filesystem::create_directories(options.folder + part, failed);
@@ -36,14 +37,17 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
   for (const auto& left : std::filesystem::directory_iterator(options.folder + "/tmp", failed)) {
     std::filesystem::remove_all(left.path(), failed);
   }
-  auto store = open_sqlite_job_store(options.folder + "/state.db");
-  if (!store) return store.error();
+  if (!store) {
+    auto opened = open_sqlite_job_store(options.folder + "/state.db");
+    if (!opened) return opened.error();
+    store = std::move(*opened);
+  }
   auto assets = farm::ContentStore::open({options.folder + "/assets", 0});
   if (!assets) return assets.error();
-  const auto incarnation = (*store)->next_incarnation();
+  const auto incarnation = store->next_incarnation();
   if (!incarnation) return incarnation.error();
   std::unique_ptr<Brain> brain(
-      new Brain(options, std::move(*store), std::move(*assets), *incarnation));
+      new Brain(options, std::move(store), std::move(*assets), *incarnation));
   const auto quarantines = brain->store_->quarantines();
   if (!quarantines) return quarantines.error();
   for (const StoredQuarantine& kept : *quarantines) {
@@ -62,7 +66,6 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options) {
   b.threads_.emplace_back([&b] { b.finish_loop(); });
   b.threads_.emplace_back([&b] { b.sweep_loop(); });
   b.threads_.emplace_back([&b] { b.disk_loop(); });
-  b.threads_.emplace_back([&b] { b.chores_loop(); });
   return brain;
 }
 
@@ -78,6 +81,7 @@ Brain::Brain(BrainOptions options, std::unique_ptr<JobStore> store,
 
 void Brain::stop() {
   stop_ = true;
+  mind_waiters({});
   const std::lock_guard lock(mutex_);
   clock_wake_.notify_all();
   finish_wake_.notify_all();
@@ -90,14 +94,9 @@ void Brain::stop() {
 
 Brain::~Brain() {
   stop();
+  for (std::thread& thread : threads_) thread.join();
   // The chores go last: others leave them some.
-  for (size_t i = 0; i + 1 < threads_.size(); ++i) threads_[i].join();
-  {
-    const std::lock_guard lock(mutex_);
-    chores_end_ = true;
-    chores_wake_.notify_all();
-  }
-  if (!threads_.empty()) threads_.back().join();
+  chores_.end();
   std::map<JobId, std::unique_ptr<JobDesk>> desks;
   {
     const std::lock_guard lock(mutex_);

@@ -5,11 +5,13 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/keeper_owner.h"
+#include "farm/wire.h"
 
 namespace hyades::coordinator {
 namespace {
 
 constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;
+constexpr std::chrono::seconds kPatience{2};
 
 /// Films of a progressive job that may be in memory together, and frames that may be.
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
@@ -25,6 +27,26 @@ uint32_t frames_at_once(const JobDesk& desk, uint64_t film_memory) {
   return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
 }
 
+/// Whether a job can never be taken up as it is: its record is damaged, its files are gone, or what
+/// they say is not allowed here. All else (a full disk, one that does not answer) may pass.
+bool lasting_obstacle(JobStore& store, farm::ContentStore& assets, uint64_t id,
+                      uint64_t film_memory) {
+  const auto stored = store.job(id);
+  if (!stored) return false;
+  if (!*stored) return true;
+  v1::JobSpec spec;
+  if (!spec.ParseFromString((*stored)->spec)) return true;
+  for (const v1::JobFile& file : spec.files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (!digest) return true;
+    const std::string name = core::to_hex(*digest);
+    if (assets.missing(name)) return true;
+    // One that is damaged is gone once it was read.
+    if (!assets.read(name)) return assets.missing(name);
+  }
+  return !make_desk(**stored, spec, assets, film_memory);
+}
+
 }  // namespace
 
 core::Status Brain::take_up_jobs() {
@@ -33,15 +55,46 @@ core::Status Brain::take_up_jobs() {
   for (const uint64_t id : *ids) {
     core::Status taken = take_up(id);
     if (taken) continue;
-    // The job fails alone, with the reason kept; `retry` takes it up again.
-    auto stored = store_->job(id);
-    if (!stored) return stored.error();
-    (*stored)->state = StoredState::failed;
-    (*stored)->ended_ms = wall_ms();
-    (*stored)->reason = "could not be taken up again: " + taken.error().message;
-    if (auto noted = store_->update_job(**stored); !noted) return noted;
+    if (!lasting_obstacle(*store_, *assets_, id, options_.film_memory)) {
+      // Perhaps the disk is full, or did not answer: the job waits, and says why.
+      if (auto stored = store_->job(id); stored && *stored) {
+        (*stored)->reason = "waits to be taken up again: " + taken.error().message;
+        (void)store_->update_job(**stored);
+      }
+      chores_.add(id, [this, id] { return take_up_later(id); });
+      continue;
+    }
+    if (core::Status noted = give_up(id, taken.error()); !noted) {
+      chores_.add(id, [this, id] { return take_up_later(id); });
+    }
   }
   return {};
+}
+
+/// Whether there is nothing left to try; for the job's chores.
+bool Brain::take_up_later(uint64_t id) {
+  if (stop_) return true;
+  // Not while somebody deletes it, or unused files are swept.
+  const std::unique_lock one(submit_mutex_, kPatience);
+  if (!one) return false;
+  const auto stored = store_->job(id);
+  if (!stored) return false;
+  if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
+  const core::Status taken = take_up(id);
+  if (taken) return true;
+  return lasting_obstacle(*store_, *assets_, id, options_.film_memory) &&
+         give_up(id, taken.error()).ok();
+}
+
+/// The job fails alone, with the reason kept; `retry` takes it up again.
+core::Status Brain::give_up(uint64_t id, const core::Error& why) {
+  auto stored = store_->job(id);
+  if (!stored) return stored.error();
+  if (!*stored) return {};
+  (*stored)->state = StoredState::failed;
+  (*stored)->ended_ms = wall_ms();
+  (*stored)->reason = "could not be taken up again: " + why.message;
+  return store_->update_job(**stored);
 }
 
 core::Status Brain::take_up(uint64_t id) {
@@ -98,7 +151,13 @@ core::Result<std::set<int32_t>> Brain::frames_without_outputs(uint64_t id) const
   std::set<int32_t> damaged;
   for (const StoredOutput& output : *outputs) {
     std::error_code failed;
-    const auto size = std::filesystem::file_size(output_folder(id) + "/" + output.path, failed);
+    const std::string path = output_folder(id) + "/" + output.path;
+    const auto size = std::filesystem::file_size(path, failed);
+    // What cannot be looked at now may be as it should.
+    if (failed && failed != std::errc::no_such_file_or_directory &&
+        failed != std::errc::not_a_directory) {
+      return core::Error{path + ": " + failed.message()};
+    }
     if (failed || size != output.size) damaged.insert(output.frame);
   }
   return damaged;
@@ -149,23 +208,42 @@ std::unique_ptr<FilmKeeper> Brain::make_keeper(JobDesk& desk, bool resume) {
   return std::make_unique<FilmKeeper>(plan, place, *desk.owner);
 }
 
-/// A job gets its log and threads with its first film, so that those that wait cost little; with
-/// the lock, for some milliseconds once.
-core::Status Brain::ensure_keeper(JobDesk& desk) {
-  if (desk.keeper) return {};
-  auto keeper = make_keeper(desk, false);
-  if (auto opened = keeper->open(); !opened) return opened.error();
-  const int32_t tile_size = tile_size_of(desk.region, desk.read.job.sampling.samples);
-  if (auto started = keeper->start(tile_size); !started) return started;
-  desk.keeper = std::move(keeper);
-  return {};
+/// A job gets its log and threads with its first film, so that those that wait cost little. The
+/// keeper takes what it is given from now on; its log is opened by the job's chores. With the lock.
+FilmKeeper& Brain::keeper_of(JobDesk& desk) {
+  if (!desk.keeper) {
+    desk.keeper = make_keeper(desk, false);
+    chores_.add(desk.stored.id, [this, job = desk.id] { return open_keeper(job); });
+  }
+  return *desk.keeper;
+}
+
+/// Without the lock; the desk stays while its chores do.
+bool Brain::open_keeper(JobId job) {
+  FilmKeeper* keeper = nullptr;
+  int32_t tile_size = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(job);
+    if (desk == nullptr || desk->ending) return true;  // or its end would wait for this
+    keeper = desk->keeper.get();
+    tile_size = tile_size_of(desk->region, desk->read.job.sampling.samples);
+  }
+  core::Status opened;
+  if (const auto contents = keeper->open(); !contents) opened = contents.error();
+  if (opened) opened = keeper->start(tile_size);
+  if (!opened) storage_failed(job, opened.error().message);
+  return opened.ok();
 }
 
 /// Reads the films that are there, and hands the job to the scheduler.
 core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) {
   JobDesk& desk = *owned;
   int32_t tile_size = tile_size_of(desk.region, desk.read.job.sampling.samples);
-  if (std::filesystem::exists(films_folder(desk.stored.id))) {
+  std::error_code unknown;
+  const bool films = std::filesystem::exists(films_folder(desk.stored.id), unknown);
+  if (unknown) return core::Error{films_folder(desk.stored.id) + ": " + unknown.message()};
+  if (films) {
     desk.keeper = make_keeper(desk, true);
     auto contents = desk.keeper->open();
     if (!contents) return contents.error();

@@ -20,30 +20,6 @@ constexpr Duration kFinishAgain = std::chrono::seconds(1);
 
 }  // namespace
 
-/// Tries again until it is stored, or the coordinator ends; for the chores' thread, without the
-/// lock.
-void Brain::store_patiently(const std::function<core::Status()>& what) {
-  while (!what() && !stop_) std::this_thread::sleep_for(std::chrono::seconds(1));
-}
-
-void Brain::chore(std::function<void()> what) {
-  chores_.push_back(std::move(what));
-  chores_wake_.notify_one();
-}
-
-void Brain::chores_loop() {
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    chores_wake_.wait(lock, [&] { return chores_end_ || !chores_.empty(); });
-    if (chores_.empty()) return;
-    const std::function<void()> what = std::move(chores_.front());
-    chores_.pop_front();
-    lock.unlock();
-    what();
-    lock.lock();
-  }
-}
-
 void Brain::finish_loop() {
   const core::FpMode mode;
   std::unique_lock lock(mutex_);
@@ -79,14 +55,15 @@ void Brain::finish_loop() {
       done = store_->frame_over(id, over, outputs);
       core::failpoint("frame-stored");
     }
-    const bool short_of_disk = !done && disk_is_short_for(*completed.film);
+    // What is written and cannot be stored is no fault of the frame's, nor is a full disk.
+    const bool waits = !done && (files || disk_is_short_for(*completed.film));
     lock.lock();
     if (stop_) return;
-    if (short_of_disk) {
-      // No fault of the frame's: it waits until there is room.
+    if (waits) {
       if (JobDesk* still = desk_of(completed.job)) {
-        still->trouble = fmt::format("frame {} waits for room on the disk to be finished: {}",
-                                     completed.frame, done.error().message);
+        still->trouble =
+            fmt::format("frame {} waits {} to be finished: {}", completed.frame,
+                        files ? "for the job store" : "for room on the disk", done.error().message);
         still->touch();
         to_finish_.push_back(completed);
       }
@@ -120,8 +97,8 @@ void Brain::clock_loop() {
       last_poke = now;
       mind_jobs(now);
     }
-    if (later.empty()) continue;
     lock.unlock();
+    mind_waiters(now);
     carry_out(later);
     lock.lock();
   }
@@ -163,20 +140,26 @@ std::vector<Action> Brain::mind_workers(TimePoint now) {
 void Brain::mind_jobs(TimePoint now) {
   for (auto& [id, desk] : desks_) {
     desk->speed.note(desk->samples_done, now);
-    if (desk->lines.empty() || desk->storing_lines || desk->ending) continue;
+    if (desk->lines.empty() || desk->storing_lines || desk->ending || disk_full_) continue;
     desk->storing_lines = true;
-    chore([this, id = desk->id, lines = desk->take_lines()] {
+    chores_.add(desk->stored.id, [this, id = desk->id, lines = desk->take_lines()] {
       (void)store_->add_lines(static_cast<uint64_t>(id), lines);
       const std::lock_guard lock(mutex_);
       if (JobDesk* still = desk_of(id)) still->storing_lines = false;
+      return true;
     });
   }
   for (auto& [number, watch] : watches_) {
     const JobDesk* desk = desk_of(watch.job);
     if (desk == nullptr || desk->version == watch.version) continue;
     watch.version = desk->version;
-    chore(watch.poke);
+    tell_watcher(watch.poke);
   }
+}
+
+/// By another thread, as it is told with the lock.
+void Brain::tell_watcher(const std::function<void()>& poke) {
+  (void)herald_.hand(poke);  // takes any number
 }
 
 }  // namespace hyades::coordinator

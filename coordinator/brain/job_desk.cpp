@@ -152,6 +152,7 @@ v1::Job JobDesk::describe(uint32_t leased) const {
         static_cast<double>(stored.samples - std::min(samples_done, stored.samples)) /
         speed.per_second());
   }
+  if (!row_trouble.empty()) wire.set_reason(farm::wire_text(row_trouble));
   if (!trouble.empty()) wire.set_reason(farm::wire_text(trouble));
   return wire;
 }

@@ -38,6 +38,10 @@ FilmKeeper::FilmKeeper(const LocalPlan& plan, const LocalLog& log, Owner& owner)
 FilmKeeper::~FilmKeeper() {
   drain();
   join();
+  // Where it was never started somebody may wait still.
+  for (const Item& item : queue_) {
+    if (item.kind == Item::Kind::call) item.call();
+  }
   log_.reset();
 }
 
@@ -131,7 +135,7 @@ void FilmKeeper::keep(RecordId record, int32_t frame, core::Film film) {
   item.record = record;
   item.frame = frame;
   // Packing takes longer than anything else here and so is done by the thread that hands over.
-  if (log_) item.bytes = encode_unit(frame, key_of(frame), film);
+  if (logs()) item.bytes = encode_unit(frame, key_of(frame), film);
   item.memory = memory_of(film) + item.bytes.size();
   item.film = std::move(film);
   push(std::move(item), true);
@@ -142,7 +146,7 @@ void FilmKeeper::keep_delivered(RecordId record, const AcceptedUnit& unit, core:
   Item item;
   item.record = record;
   item.frame = unit.unit.frame;
-  if (log_) item.bytes = std::move(bytes);
+  if (logs()) item.bytes = std::move(bytes);
   item.memory = memory_of(film) + item.bytes.size();
   item.film = std::move(film);
   item.worker_class = unit.worker_class;
@@ -154,7 +158,7 @@ void FilmKeeper::begin_again(RecordId record, int32_t frame) {
   item.record = record;
   item.kind = Item::Kind::begun_again;
   item.frame = frame;
-  if (log_) item.bytes = encode_begun_again(frame);
+  if (logs()) item.bytes = encode_begun_again(frame);
   push(std::move(item), false);
 }
 
@@ -164,7 +168,7 @@ void FilmKeeper::void_tile(RecordId record, int32_t frame, const core::PixelRect
   item.kind = Item::Kind::tile_voided;
   item.frame = frame;
   item.tile = tile;
-  if (log_) item.bytes = encode_tile_voided(frame, tile);
+  if (logs()) item.bytes = encode_tile_voided(frame, tile);
   push(std::move(item), false);
 }
 
@@ -191,7 +195,7 @@ void FilmKeeper::keep_finished(RecordId record, int32_t frame) {
   item.record = record;
   item.kind = Item::Kind::finished;
   item.frame = frame;
-  if (log_) item.bytes = encode_finished(frame, {key_of(frame), plan_.region});
+  if (logs()) item.bytes = encode_finished(frame, {key_of(frame), plan_.region});
   push(std::move(item), false);
 }
 

@@ -53,7 +53,7 @@ class FilmKeeper {
   /// Waits for the end of the thread; somebody has called drain().
   void join();
 
-  // Any thread.
+  // Any thread, and before open() already: what is handed over then waits.
 
   /// Takes a unit's film. Waits while too much waits for the disk already.
   void keep(RecordId record, int32_t frame, core::Film film);
@@ -103,6 +103,8 @@ class FilmKeeper {
     uint64_t sequence = 0;
   };
 
+  /// Whether there is, or will be, a log.
+  bool logs() const { return !options_.folder.empty(); }
   core::Status open_log(bool erase);
   FrameKey key_of(int32_t frame) const;
   void push(Item item, bool may_wait);

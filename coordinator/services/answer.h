@@ -1,12 +1,15 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
+#include <utility>
 
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
 #include "coordinator/services/admission.h"
+#include "coordinator/services/desks.h"
 #include "coordinator/services/part_count.h"
 #include "coordinator/services/raw.h"
 #include "farm/wire_status.h"
@@ -16,37 +19,102 @@ namespace hyades::coordinator {
 /// Messages in one request; a job with as many files as it may have has about half of that.
 inline constexpr uint64_t kMostParts = 200'000;
 
-/// Answers an admitted call with what `what` makes of the request, or its status. A request has at
-/// most `limit` bytes; of those larger than usual one at a time is looked at.
+/// A call on its way: who may come in, what was asked, and where the answer goes. Small; copies
+/// mean the same call, which is answered once.
+struct Call {
+  Call(const Admission& admission_, grpc::CallbackServerContext* context_,
+       const grpc::ByteBuffer* asked_, grpc::ByteBuffer* said_)
+      : admission(admission_),
+        context(context_),
+        asked(asked_),
+        said(said_),
+        reactor(context->DefaultReactor()) {}
+
+  const Admission& admission;
+  grpc::CallbackServerContext* context;
+  const grpc::ByteBuffer* asked;
+  grpc::ByteBuffer* said;
+  grpc::ServerUnaryReactor* reactor;  ///< every DefaultReactor() makes it anew
+
+  template <class Response>
+  void finish(const grpc::Status& status, const Response& response) const {
+    reactor->Finish(status.ok() ? serialise(response, *said) : status);
+  }
+};
+
+/// Answers with what `what(request, response)` makes of the request, or its status. A request has
+/// at most `limit` bytes; of those larger than usual one at a time is looked at.
 template <class Request, class Response, class What>
-grpc::ServerUnaryReactor* answer(const Admission& admission, grpc::CallbackServerContext* context,
-                                 const grpc::ByteBuffer* bytes, grpc::ByteBuffer* answer, What what,
-                                 uint64_t limit = farm::kMaxRequestBytes) {
+void answer_here(const Call& call, What& what, uint64_t limit) {
+  Response response;
   const auto work = [&]() -> grpc::Status {
-    if (const grpc::Status admitted = admission.check(*context); !admitted.ok()) return admitted;
     std::unique_lock<std::mutex> alone;
-    if (bytes->Length() > farm::kMaxRequestBytes) {
-      alone = admission.alone();
+    if (call.asked->Length() > farm::kMaxRequestBytes) {
+      alone = call.admission.alone();
       if (!alone) {
         return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                  "another large request is being looked at",
                                  std::chrono::milliseconds(500));
       }
-      if (!has_few_parts(*bytes, *Request::descriptor(), kMostParts)) {
+      if (!has_few_parts(*call.asked, *Request::descriptor(), kMostParts)) {
         return {grpc::StatusCode::INVALID_ARGUMENT,
                 fmt::format("more than {} parts in one request, or no {}", kMostParts,
                             Request::descriptor()->name())};
       }
     }
     Request request;
-    if (const grpc::Status read = parse(*bytes, limit, request); !read.ok()) return read;
-    Response response;
-    if (const grpc::Status done = what(request, response); !done.ok()) return done;
-    return serialise(response, *answer);
+    if (const grpc::Status read = parse(*call.asked, limit, request); !read.ok()) return read;
+    return what(request, response);
   };
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(work());
-  return reactor;
+  const grpc::Status status = work();
+  call.finish(status, response);
+}
+
+/// An admitted call is answered on gRPC's own thread: for what never waits.
+template <class Request, class Response, class What>
+grpc::ServerUnaryReactor* answer(const Call& call, What what) {
+  if (const grpc::Status admitted = call.admission.check(*call.context); !admitted.ok()) {
+    call.reactor->Finish(admitted);
+  } else {
+    answer_here<Request, Response>(call, what, farm::kMaxRequestBytes);
+  }
+  return call.reactor;
+}
+
+/// An admitted call is answered by one of `clerks`: for what may wait.
+template <class Request, class Response, class What>
+grpc::ServerUnaryReactor* answer_by(Clerks& clerks, const Call& call, What what,
+                                    uint64_t limit = farm::kMaxRequestBytes) {
+  if (const grpc::Status admitted = call.admission.check(*call.context); !admitted.ok()) {
+    call.reactor->Finish(admitted);
+  } else if (!clerks.hand([call, what, limit]() mutable {
+               answer_here<Request, Response>(call, what, limit);
+             })) {
+    call.reactor->Finish(crowded());
+  }
+  return call.reactor;
+}
+
+/// An admitted call is answered at once where `known(request, response)` says yes, and otherwise by
+/// one of `clerks`, with what `what` makes of it.
+template <class Request, class Response, class Known, class What>
+grpc::ServerUnaryReactor* answer_or_by(Clerks& clerks, const Call& call, Known known, What what) {
+  Request request;
+  Response response;
+  grpc::Status status = call.admission.check(*call.context);
+  if (status.ok()) status = parse(*call.asked, farm::kMaxRequestBytes, request);
+  if (!status.ok()) {
+    call.reactor->Finish(status);
+  } else if (known(request, response)) {
+    call.finish(grpc::Status::OK, response);
+  } else if (!clerks.hand([call, what, request = std::move(request)] {
+               Response found;
+               const grpc::Status done = what(request, found);
+               call.finish(done, found);
+             })) {
+    call.reactor->Finish(crowded());
+  }
+  return call.reactor;
 }
 
 }  // namespace hyades::coordinator

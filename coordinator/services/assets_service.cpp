@@ -25,7 +25,8 @@ grpc::Status invalid(const std::string& message) {
 /// Takes one file in. Writes as it reads, so that a client is never faster than the disk.
 class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
-  Uploading(Brain& brain, const grpc::Status& admitted) : brain_(brain), store_(brain.assets()) {
+  Uploading(Brain& brain, Clerks& clerks, const grpc::Status& admitted)
+      : brain_(brain), clerks_(clerks), store_(brain.assets()) {
     if (admitted.ok()) {
       StartRead(&bytes_);
     } else {
@@ -34,6 +35,13 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   }
 
   void OnReadDone(bool ok) override {
+    if (!clerks_.hand([this, ok] { take_part(ok); })) Finish(crowded());
+  }
+
+  void OnDone() override { delete this; }
+
+ private:
+  void take_part(bool ok) {
     if (!ok) {
       finish(writer_ ? incomplete() : invalid("an upload begins with the file's digest and size"));
       return;
@@ -51,9 +59,6 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     }
   }
 
-  void OnDone() override { delete this; }
-
- private:
   void finish(const grpc::Status& status) {
     writer_.reset();  // what has come is there before the answer is
     Finish(status);
@@ -125,6 +130,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   }
 
   Brain& brain_;
+  Clerks& clerks_;
   farm::ContentStore& store_;
   grpc::ByteBuffer bytes_;
   std::optional<farm::ContentWriter> writer_;
@@ -136,7 +142,8 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
 
 grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context, const Bytes* asked,
                                                      Bytes* said) {
-  const auto find = [&](const v1::FindMissingRequest& request, v1::FindMissingResponse& response) {
+  const auto find = [this](const v1::FindMissingRequest& request,
+                           v1::FindMissingResponse& response) {
     if (request.files_size() > kMostAsked) return invalid("at most 10,000 files at a time");
     std::set<std::string> seen;
     for (const v1::JobFile& file : request.files()) {
@@ -150,13 +157,13 @@ grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context, const Byt
     }
     return grpc::Status::OK;
   };
-  return answer<v1::FindMissingRequest, v1::FindMissingResponse>(admission_, context, asked, said,
-                                                                 find, farm::kMaxMessageBytes);
+  return answer_by<v1::FindMissingRequest, v1::FindMissingResponse>(
+      desks_.files, {admission_, context, asked, said}, find, farm::kMaxMessageBytes);
 }
 
 grpc::ServerReadReactor<grpc::ByteBuffer>* AssetsService::Upload(Context* context, Bytes* said) {
   (void)serialise(v1::UploadResponse(), *said);
-  return new Uploading(brain_, admission_.check(*context));
+  return new Uploading(brain_, desks_.files, admission_.check(*context));
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* context,
@@ -170,13 +177,13 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* con
   }
   const auto digest = farm::digest_from_wire(request.sha256());
   if (!digest) return refuse(invalid(digest.error().message));
-  auto bytes = store_.read(core::to_hex(*digest));
-  if (!bytes) return refuse({grpc::StatusCode::NOT_FOUND, bytes.error().message});
-  if (request.offset() > bytes->size()) {
-    return refuse(
-        {grpc::StatusCode::OUT_OF_RANGE, fmt::format("the file has {} bytes", bytes->size())});
-  }
-  return new FileStream(*context, std::move(*bytes), request.offset());
+  const auto open = [this, name = core::to_hex(*digest)](core::Bytes& file) -> grpc::Status {
+    auto bytes = store_.read(name);
+    if (!bytes) return {grpc::StatusCode::NOT_FOUND, bytes.error().message};
+    file = std::move(*bytes);
+    return grpc::Status::OK;
+  };
+  return new FileStream(*context, desks_.files, open, request.offset());
 }
 
 }  // namespace hyades::coordinator

@@ -2,6 +2,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/admission.h"
+#include "coordinator/services/desks.h"
 #include "hyades/v1/assets.grpc.pb.h"
 
 namespace hyades::coordinator {
@@ -14,8 +15,8 @@ using RawAssets =
 /// Files by content (assets_service.cpp).
 class AssetsService final : public RawAssets {
  public:
-  AssetsService(Brain& brain, const Admission& admission)
-      : brain_(brain), store_(brain.assets()), admission_(admission) {}
+  AssetsService(Brain& brain, const Admission& admission, Desks& desks)
+      : brain_(brain), store_(brain.assets()), admission_(admission), desks_(desks) {}
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -27,6 +28,7 @@ class AssetsService final : public RawAssets {
   Brain& brain_;
   farm::ContentStore& store_;
   const Admission& admission_;
+  Desks& desks_;
 };
 
 }  // namespace hyades::coordinator

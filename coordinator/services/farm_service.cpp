@@ -6,7 +6,7 @@ namespace hyades::coordinator {
 
 grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked, Bytes* said) {
   return answer<v1::InfoRequest, v1::InfoResponse>(
-      admission_, context, asked, said, [&](const v1::InfoRequest&, v1::InfoResponse& response) {
+      {admission_, context, asked, said}, [&](const v1::InfoRequest&, v1::InfoResponse& response) {
         brain_.info(response);
         return grpc::Status::OK;
       });
@@ -14,7 +14,7 @@ grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked
 
 grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* asked, Bytes* said) {
   return answer<v1::WorkersRequest, v1::WorkersResponse>(
-      admission_, context, asked, said,
+      {admission_, context, asked, said},
       [&](const v1::WorkersRequest&, v1::WorkersResponse& response) {
         brain_.workers(response);
         return grpc::Status::OK;
@@ -25,7 +25,7 @@ grpc::ServerUnaryReactor* FarmService::steer(Context* context, const Bytes* aske
                                              grpc::Status (Brain::*what)(const v1::WorkerRequest&,
                                                                          v1::Worker&)) {
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
-      admission_, context, asked, said,
+      {admission_, context, asked, said},
       [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
         return (brain_.*what)(request, *response.mutable_worker());
       });

@@ -4,6 +4,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/admission.h"
+#include "coordinator/services/desks.h"
 #include "hyades/v1/jobs.grpc.pb.h"
 
 namespace hyades::coordinator {
@@ -21,7 +22,8 @@ using RawJobs = v1::Jobs::WithRawCallbackMethod_Submit<v1::Jobs::WithRawCallback
 /// What clients ask about jobs (jobs_service.cpp, jobs_streams.cpp).
 class JobsService final : public RawJobs {
  public:
-  JobsService(Brain& brain, const Admission& admission) : brain_(brain), admission_(admission) {}
+  JobsService(Brain& brain, const Admission& admission, Desks& desks)
+      : brain_(brain), admission_(admission), desks_(desks) {}
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -43,11 +45,13 @@ class JobsService final : public RawJobs {
 
  private:
   /// What a method does that takes a job and answers with how it is now.
+  template <class Request>
   grpc::ServerUnaryReactor* steer(Context* context, const Bytes* asked, Bytes* said,
-                                  grpc::Status (Brain::*what)(uint64_t, v1::Job&));
+                                  void (*what)(Brain&, const Request&, Brain::Told));
 
   Brain& brain_;
   const Admission& admission_;
+  Desks& desks_;
   std::atomic<int> films_{0};  ///< on their way
 };
 

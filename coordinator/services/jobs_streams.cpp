@@ -46,8 +46,8 @@ grpc::Status failed(const core::Error& error) {
 template <class Message>
 class Follower : public Producer<Message> {
  protected:
-  Follower(grpc::CallbackServerContext& context, Brain& brain, uint64_t job)
-      : Producer<Message>(context), brain_(brain), job_(job) {
+  Follower(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain, uint64_t job)
+      : Producer<Message>(context, clerks), brain_(brain), job_(job) {
     watch_ = brain.watch(job, [poker = this->poker()] { poker->poke(); });
   }
   void over() override { brain_.unwatch(watch_); }
@@ -69,16 +69,19 @@ class Follower : public Producer<Message> {
 
 class Watching final : public Follower<v1::WatchEvent> {
  public:
-  Watching(grpc::CallbackServerContext& context, Brain& brain, uint64_t job)
-      : Follower(context, brain, job) {}
+  Watching(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain, uint64_t job)
+      : Follower(context, clerks, brain, job) {}
 
  private:
-  Step next(v1::WatchEvent& event, grpc::Status& status) override {
+  Step next(v1::WatchEvent& event, grpc::Status& status, bool may_wait) override {
     if (ended_) return Step::end;
     const Brain::ToldOf before = told_;
     bool over = false;
-    status = brain_.changes(job_, told_, event, over);
-    if (!status.ok()) return Step::end;
+    if (!brain_.changes_of_open(job_, told_, event)) {
+      if (!may_wait) return Step::hand;
+      status = brain_.changes(job_, told_, event, over);
+      if (!status.ok()) return Step::end;
+    }
     ended_ = over && !event.more();
     const bool news = over || before.after || event.more() || told_.version != before.version;
     return news ? Step::message : Step::wait;
@@ -88,8 +91,9 @@ class Watching final : public Follower<v1::WatchEvent> {
 
 class OutputList final : public Follower<v1::OutputFile> {
  public:
-  OutputList(grpc::CallbackServerContext& context, Brain& brain, const v1::OutputsRequest& request)
-      : Follower(context, brain, request.job()), request_(request) {}
+  OutputList(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain,
+             const v1::OutputsRequest& request)
+      : Follower(context, clerks, brain, request.job()), request_(request) {}
 
  private:
   bool wanted(int32_t frame) const {
@@ -102,7 +106,7 @@ class OutputList final : public Follower<v1::OutputFile> {
                        });
   }
 
-  Step next(v1::OutputFile& message, grpc::Status& status) override {
+  Step next(v1::OutputFile& message, grpc::Status& status, bool may_wait) override {
     for (;;) {
       while (!ready_.empty()) {
         const StoredOutput output = std::move(ready_.front());
@@ -115,6 +119,7 @@ class OutputList final : public Follower<v1::OutputFile> {
         return Step::message;
       }
       if (last_) return Step::end;
+      if (!may_wait) return Step::hand;
       bool over = false;
       status = ended(over);
       if (!status.ok()) return Step::end;
@@ -139,13 +144,14 @@ class OutputList final : public Follower<v1::OutputFile> {
 
 class LogLines final : public Follower<v1::LogLine> {
  public:
-  LogLines(grpc::CallbackServerContext& context, Brain& brain, const v1::LogsRequest& request)
-      : Follower(context, brain, request.job()), request_(request), seen_(request.after()) {
+  LogLines(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain,
+           const v1::LogsRequest& request)
+      : Follower(context, clerks, brain, request.job()), request_(request), seen_(request.after()) {
     frames_.insert(request.frames().begin(), request.frames().end());
   }
 
  private:
-  Step next(v1::LogLine& message, grpc::Status& status) override {
+  Step next(v1::LogLine& message, grpc::Status& status, bool may_wait) override {
     for (;;) {
       while (!ready_.empty()) {
         const StoredLine line = std::move(ready_.front());
@@ -161,6 +167,7 @@ class LogLines final : public Follower<v1::LogLine> {
         return Step::message;
       }
       if (last_) return Step::end;
+      if (!may_wait) return Step::hand;
       bool over = false;
       status = ended(over);
       if (!status.ok()) return Step::end;
@@ -187,25 +194,14 @@ class LogLines final : public Follower<v1::LogLine> {
 class FilmStream final : public Producer<v1::FilmPart> {
  public:
   /// `open` counts such streams.
-  FilmStream(grpc::CallbackServerContext& context, Brain& brain, const v1::FilmRequest& request,
-             std::atomic<int>& open)
-      : Producer(context), open_(open), found_(std::make_shared<Found>()) {
+  FilmStream(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain,
+             v1::FilmRequest request, std::atomic<int>& open)
+      : Producer(context, clerks),
+        brain_(brain),
+        request_(std::move(request)),
+        open_(open),
+        found_(std::make_shared<Found>()) {
     ++open_;
-    // The stream may be over before the film is found.
-    const grpc::Status asked = brain.film(
-        request.job(), request.frame(),
-        [found = found_, poker = poker()](const grpc::Status& status, const core::FilmInfo& info,
-                                          std::shared_ptr<const core::Film> film) {
-          found->status = status;
-          found->info = info;
-          found->film = std::move(film);
-          found->there = true;
-          poker->poke();
-        });
-    if (!asked.ok()) {
-      found_->status = asked;
-      found_->there = true;
-    }
     begin();
   }
 
@@ -219,7 +215,26 @@ class FilmStream final : public Producer<v1::FilmPart> {
     std::shared_ptr<const core::Film> film;
   };
 
-  Step next(v1::FilmPart& part, grpc::Status& status) override {
+  /// The stream may be over before the film is found.
+  void ask() {
+    const grpc::Status asked = brain_.film(
+        request_.job(), request_.frame(),
+        [found = found_, poker = poker()](const grpc::Status& said, const core::FilmInfo& info,
+                                          std::shared_ptr<const core::Film> film) {
+          found->status = said;
+          found->info = info;
+          found->film = std::move(film);
+          found->there = true;
+          poker->poke();
+        });
+    if (asked.ok()) return;
+    found_->status = asked;
+    found_->there = true;
+  }
+
+  Step next(v1::FilmPart& part, grpc::Status& status, bool may_wait) override {
+    if (!may_wait) return Step::hand;
+    if (!std::exchange(asked_, true)) ask();
     if (!found_->there) return Step::wait;
     if (!found_->status.ok()) {
       status = found_->status;
@@ -240,8 +255,11 @@ class FilmStream final : public Producer<v1::FilmPart> {
     return Step::message;
   }
 
+  Brain& brain_;
+  const v1::FilmRequest request_;
   std::atomic<int>& open_;
   const std::shared_ptr<Found> found_;
+  bool asked_ = false;
   std::vector<std::byte> bytes_;
   uint64_t offset_ = 0;
 };
@@ -253,7 +271,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Watch(Context* context,
   v1::WatchRequest request;
   const grpc::Status taken = take_in(admission_, *context, *asked, request);
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new Watching(*context, brain_, request.job());
+  auto* stream = new Watching(*context, desks_.rows, brain_, request.job());
   stream->begin();
   return stream;
 }
@@ -264,7 +282,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Outputs(Context* contex
   grpc::Status taken = take_in(admission_, *context, *asked, request);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("ranges of frames");
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new OutputList(*context, brain_, request);
+  auto* stream = new OutputList(*context, desks_.rows, brain_, request);
   stream->begin();
   return stream;
 }
@@ -275,7 +293,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
   grpc::Status taken = take_in(admission_, *context, *asked, request);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("frames");
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new LogLines(*context, brain_, request);
+  auto* stream = new LogLines(*context, desks_.rows, brain_, request);
   stream->begin();
   return stream;
 }
@@ -283,30 +301,30 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
                                                                const Bytes* asked) {
   v1::FetchRequest request;
-  const auto refuse = [](const grpc::Status& status) { return new Refusal(status); };
   const grpc::Status taken = take_in(admission_, *context, *asked, request);
-  if (!taken.ok()) return refuse(taken);
-  // The path is looked up among the job's outputs and never taken for one of the file system's.
-  const auto output = brain_.store().output(request.job(), request.path());
-  if (!output) return refuse(failed(output.error()));
-  if (!*output) {
-    return refuse({grpc::StatusCode::NOT_FOUND,
-                   fmt::format("job {} has no output '{}' (yet)", request.job(), request.path())});
-  }
-  if (!request.sha256().empty() && request.sha256() != (*output)->sha256) {
-    return refuse({grpc::StatusCode::FAILED_PRECONDITION,
-                   request.path() + " has been rendered again: fetch it from its beginning"});
-  }
-  auto bytes = core::map_file(brain_.output_folder(request.job()) + "/" + (*output)->path);
-  if (!bytes || bytes->size() != (*output)->size) {
-    return refuse(
-        {grpc::StatusCode::DATA_LOSS, request.path() + " is damaged on the coordinator's disk"});
-  }
-  if (request.offset() > bytes->size()) {
-    return refuse({grpc::StatusCode::OUT_OF_RANGE,
-                   fmt::format("{} has {} bytes", request.path(), bytes->size())});
-  }
-  return new FileStream(*context, std::move(*bytes), request.offset());
+  if (!taken.ok()) return new Refusal(taken);
+  const uint64_t offset = request.offset();
+  const auto open = [this, request = std::move(request)](core::Bytes& file) -> grpc::Status {
+    // The path is looked up among the job's outputs and never taken for one of the file system's.
+    const auto output = brain_.store().output(request.job(), request.path());
+    if (!output) return failed(output.error());
+    if (!*output) {
+      return {grpc::StatusCode::NOT_FOUND,
+              fmt::format("job {} has no output '{}' (yet)", request.job(), request.path())};
+    }
+    if (!request.sha256().empty() && request.sha256() != (*output)->sha256) {
+      return {grpc::StatusCode::FAILED_PRECONDITION,
+              request.path() + " has been rendered again: fetch it from its beginning"};
+    }
+    auto bytes = core::map_file(brain_.output_folder(request.job()) + "/" + (*output)->path);
+    if (!bytes || bytes->size() != (*output)->size) {
+      return {grpc::StatusCode::DATA_LOSS,
+              request.path() + " is damaged on the coordinator's disk"};
+    }
+    file = std::move(*bytes);
+    return grpc::Status::OK;
+  };
+  return new FileStream(*context, desks_.files, open, offset);
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
@@ -319,7 +337,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
                                          "enough films are on their way to others",
                                          std::chrono::seconds(2)));
   }
-  return new FilmStream(*context, brain_, request, films_);
+  return new FilmStream(*context, desks_.files, brain_, request, films_);
 }
 
 }  // namespace hyades::coordinator

@@ -9,6 +9,7 @@
 #include <grpcpp/support/server_callback.h>
 #include <grpcpp/support/status.h>
 
+#include "coordinator/services/desks.h"
 #include "coordinator/services/raw.h"
 
 namespace hyades::coordinator {
@@ -24,21 +25,22 @@ class Poker {
 };
 
 /// A stream of messages to a client, produced as fast as it reads: next() is called again when the
-/// last message is on its way, or, after it had nothing, when somebody pokes. Broken off where the
-/// client does not read. Deletes itself.
+/// last message is on its way, or, after it had nothing, when somebody pokes. Where it would have
+/// to wait (for the disk, say) it has itself called by a clerk. Broken off where the client does
+/// not read, or the clerks have too much to do. Deletes itself.
 template <class Message>
 class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
-  enum class Step { message, wait, end };
+  enum class Step { message, wait, hand, end };
 
   /// To be called once, by the service's method or the last constructor: when everything is set up.
   /// gRPC reports nothing, so the end neither, before the method has returned.
-  void begin() { advance(); }
+  void begin() { advance(false); }
 
   void OnWriteDone(bool ok) override {
     too_slow_.reset();
     if (ok) {
-      advance();
+      advance(false);
     } else {
       Finish({grpc::StatusCode::CANCELLED, "the client is gone"});
     }
@@ -57,12 +59,16 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   }
 
  protected:
-  explicit Producer(grpc::CallbackServerContext& context,
-                    std::chrono::milliseconds patience = kReaderPatience)
-      : handle_(std::make_shared<Handle>(this)), context_(context), patience_(patience) {}
+  Producer(grpc::CallbackServerContext& context, Clerks& clerks,
+           std::chrono::milliseconds patience = kReaderPatience)
+      : handle_(std::make_shared<Handle>(this)),
+        context_(context),
+        clerks_(clerks),
+        patience_(patience) {}
 
-  /// Puts the next message, or, where it says end, the status. Never called twice at once.
-  virtual Step next(Message& message, grpc::Status& status) = 0;
+  /// Puts the next message, or, where it says end, the status. May say `hand` where it may not
+  /// wait: then it is called again, with nothing in `message`, and may. Never called twice at once.
+  virtual Step next(Message& message, grpc::Status& status, bool may_wait) = 0;
   /// The call is over: nobody may poke any more.
   virtual void over() {}
 
@@ -97,10 +103,10 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
       if (busy_) return;
       busy_ = true;
     }
-    advance();
+    advance(false);
   }
 
-  void advance() {
+  void advance(bool may_wait) {
     for (;;) {
       grpc::Status status;
       bool cancelled = false;
@@ -114,7 +120,7 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
       if (cancelled) {
         status = {grpc::StatusCode::CANCELLED, "the client is gone"};
       } else {
-        step = next(message_, status);
+        step = next(message_, status, may_wait);
         if (step == Step::message) {
           status = serialise(message_, bytes_);
           if (!status.ok()) step = Step::end;
@@ -122,6 +128,10 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
       }
       if (step == Step::message) return write();
       if (step == Step::end) return Finish(status);
+      if (step == Step::hand) {
+        if (!clerks_.hand([this] { advance(true); })) Finish(crowded());
+        return;
+      }
       const std::lock_guard lock(mutex_);
       if (poked_) continue;
       busy_ = false;
@@ -139,6 +149,7 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
 
   const std::shared_ptr<Handle> handle_;
   grpc::CallbackServerContext& context_;
+  Clerks& clerks_;
   const std::chrono::milliseconds patience_;
   std::unique_ptr<grpc::Alarm> too_slow_;  ///< while a message is on its way
   Message message_;

@@ -32,11 +32,12 @@ struct Server::Parts {
   Parts(Brain& brain, std::string token)
       : admission(std::move(token)),
         work(brain, admission),
-        jobs(brain, admission),
-        assets(brain, admission),
+        jobs(brain, admission, desks),
+        assets(brain, admission, desks),
         farm(brain, admission) {}
 
   Admission admission;
+  Desks desks;
   WorkService work;
   JobsService jobs;
   AssetsService assets;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -54,7 +55,14 @@ class FarmWorld {
   ~FarmWorld() { stop(); }
 
   void start() {
-    auto opened = Brain::open(options);
+    std::unique_ptr<JobStore> store;
+    if (wrap_store) {
+      std::filesystem::create_directories(options.folder);
+      auto stored = open_sqlite_job_store(options.folder + "/state.db");
+      ASSERT_TRUE(stored.ok()) << (stored ? "" : stored.error().message);
+      store = wrap_store(std::move(*stored));
+    }
+    auto opened = Brain::open(options, std::move(store));
     ASSERT_TRUE(opened.ok()) << (opened ? "" : opened.error().message);
     brain = std::move(*opened);
     farm::Listen listen = how;
@@ -216,6 +224,8 @@ class FarmWorld {
 
   test::TempFolder folder;
   BrainOptions options;
+  /// Puts something before the coordinator's job store, to make it fail or wait.
+  std::function<std::unique_ptr<JobStore>(std::unique_ptr<JobStore>)> wrap_store;
   farm::Listen how;
   std::string token;
   std::string address;

@@ -16,17 +16,19 @@ namespace {
 /// Whoever wakes it may do so as soon as it is told of it, which is before the stream is made.
 class Woken : public Producer<v1::Chunk> {
  protected:
-  explicit Woken(grpc::CallbackServerContext& context) : Producer(context) { poker()->poke(); }
+  Woken(grpc::CallbackServerContext& context, Clerks& clerks) : Producer(context, clerks) {
+    poker()->poke();
+  }
 };
 
 class Counting final : public Woken {
  public:
   using Woken::poker;
-  explicit Counting(grpc::CallbackServerContext& context) : Woken(context) {}
+  Counting(grpc::CallbackServerContext& context, Clerks& clerks) : Woken(context, clerks) {}
   int asked = 0;
 
  private:
-  Step next(v1::Chunk&, grpc::Status&) override {
+  Step next(v1::Chunk&, grpc::Status&, bool) override {
     ++asked;
     return Step::wait;
   }
@@ -34,7 +36,8 @@ class Counting final : public Woken {
 
 TEST(Producer, IsNotAskedBeforeItBegins) {
   grpc::CallbackServerContext context;
-  Counting stream(context);  // a stream that is asked here calls a pure virtual function
+  Clerks clerks(1, 1);
+  Counting stream(context, clerks);  // a stream that is asked here calls a pure virtual function
   stream.poker()->poke();
   EXPECT_EQ(stream.asked, 0);
   stream.begin();
@@ -46,13 +49,13 @@ TEST(Producer, IsNotAskedBeforeItBegins) {
 /// 64 MiB for anybody, of whom it expects to take something every 200 ms.
 class Chunks final : public Producer<v1::Chunk> {
  public:
-  explicit Chunks(grpc::CallbackServerContext& context)
-      : Producer(context, std::chrono::milliseconds(200)) {
+  Chunks(grpc::CallbackServerContext& context, Clerks& clerks)
+      : Producer(context, clerks, std::chrono::milliseconds(200)) {
     begin();
   }
 
  private:
-  Step next(v1::Chunk& chunk, grpc::Status&) override {
+  Step next(v1::Chunk& chunk, grpc::Status&, bool) override {
     if (++sent_ > 64) return Step::end;
     chunk.set_data(std::string(farm::kMaxChunkBytes, 'x'));
     return Step::message;
@@ -64,8 +67,11 @@ class ChunkService final : public v1::Assets::WithRawCallbackMethod_Download<v1:
  public:
   grpc::ServerWriteReactor<grpc::ByteBuffer>* Download(grpc::CallbackServerContext* context,
                                                        const grpc::ByteBuffer*) override {
-    return new Chunks(*context);
+    return new Chunks(*context, clerks_);
   }
+
+ private:
+  Clerks clerks_{1, 1};
 };
 
 TEST(Producer, BreaksOffWhereNobodyReads) {

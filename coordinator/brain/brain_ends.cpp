@@ -1,0 +1,165 @@
+// What is stored of a job's life, and who waits for that.
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// After this somebody who waits for a change to be stored is told to come again.
+constexpr Duration kStorePatience = std::chrono::milliseconds(500);
+
+grpc::Status not_stored(const std::string& why) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                           "it is so now, but not stored yet" + (why.empty() ? why : ": " + why),
+                           std::chrono::seconds(1));
+}
+
+}  // namespace
+
+/// `then` is called once the job is stored as it is now, or with the reason why it is not; with the
+/// lock.
+void Brain::when_stored(uint64_t job, Told then) {
+  waiters_.push_back(
+      {next_waiter_++, job, std::chrono::steady_clock::now() + kStorePatience, std::move(then)});
+}
+
+/// Stores what has changed of an open job. All of a job's rows are stored by its chores, one after
+/// the other, and each as the job is then: what is stored last is what was last. With the lock.
+void Brain::store_row(JobDesk& desk) {
+  if (std::exchange(desk.storing_row, true)) return;
+  chores_.add(desk.stored.id, [this, id = desk.stored.id] { return store_row_now(id); });
+}
+
+bool Brain::store_row_now(uint64_t id) {
+  StoredJob job;
+  uint64_t before = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    if (desk == nullptr || desk->ending) return true;  // its end will be stored
+    desk->storing_row = false;
+    job = desk->stored;
+    before = next_waiter_;
+  }
+  const core::Status done = store_->update_job(job);
+  std::vector<Waiter> told;
+  v1::Job now;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    if (desk == nullptr) return true;
+    if (!done) {
+      desk->storing_row = true;
+      desk->row_trouble = "a change cannot be stored: " + done.error().message;
+      desk->touch();
+      return false;
+    }
+    if (!desk->row_trouble.empty()) desk->touch();
+    desk->row_trouble.clear();
+    now = describe(*desk);
+    told = take_waiters([&](const Waiter& w) { return w.job == id && w.number < before; });
+  }
+  for (const Waiter& waiter : told) waiter.then(grpc::Status::OK, now);
+  return true;
+}
+
+/// With the lock.
+std::vector<Brain::Waiter> Brain::take_waiters(const std::function<bool(const Waiter&)>& which) {
+  std::vector<Waiter> taken;
+  std::erase_if(waiters_, [&](Waiter& waiter) {
+    if (!which(waiter)) return false;
+    taken.push_back(std::move(waiter));
+    return true;
+  });
+  return taken;
+}
+
+/// Those who have waited for long enough are let go; without the lock.
+void Brain::mind_waiters(TimePoint now) {
+  std::vector<std::pair<Waiter, std::string>> late;
+  {
+    const std::lock_guard lock(mutex_);
+    for (Waiter& waiter :
+         take_waiters([&](const Waiter& w) { return stop_ || w.give_up <= now; })) {
+      const JobDesk* desk = desk_of(waiter.job);
+      late.emplace_back(std::move(waiter), desk != nullptr ? desk->row_trouble : std::string());
+    }
+  }
+  for (const auto& [waiter, why] : late) waiter.then(not_stored(why), {});
+}
+
+/// The job leaves memory once its end is stored.
+void Brain::job_ended(const JobEnded& ended) {
+  const std::lock_guard lock(mutex_);
+  JobDesk* desk = desk_of(ended.job);
+  if (desk == nullptr || desk->ending) return;
+  desk->ending = true;
+  StoredJob& stored = desk->stored;
+  stored.state = ended.cancelled    ? StoredState::cancelled
+                 : ended.failed > 0 ? StoredState::failed
+                                    : StoredState::done;
+  stored.frames_done = ended.done;
+  stored.frames_failed = ended.failed;
+  stored.ended_ms = wall_ms();
+  stored.reason.clear();
+  for (const auto& [number, frame] : desk->frames) {
+    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
+      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
+    }
+  }
+  note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
+       fmt::format("ended: {} frames done, {} failed{}", ended.done, ended.failed,
+                   ended.cancelled ? ", cancelled" : ""));
+  for (auto& [id, seat] : seats_) {
+    if (seat.briefed.erase(ended.job) == 0) continue;
+    v1::CoordinatorMessage message;
+    message.mutable_over()->set_job(static_cast<uint64_t>(ended.job));
+    send(id, std::move(message));
+  }
+  chores_.add(stored.id, [this, id = stored.id] { return store_end(id); });
+}
+
+bool Brain::store_end(uint64_t id) {
+  StoredJob job;
+  {
+    const std::lock_guard lock(mutex_);
+    job = desk_of(id)->stored;
+  }
+  // The end first: on a full disk there may be room for it alone.
+  const core::Status done = store_->update_job(job);
+  std::vector<StoredLine> lines;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* over = desk_of(id);
+    if (!done) {
+      over->row_trouble = "its end cannot be stored: " + done.error().message;
+      over->touch();
+      return false;
+    }
+    lines = over->take_lines();
+  }
+  if (!lines.empty()) (void)store_->add_lines(id, lines);
+  std::unique_ptr<JobDesk> over;
+  std::vector<Waiter> told;
+  {
+    const std::lock_guard lock(mutex_);
+    over = std::move(desks_.extract(JobId{id}).mapped());
+    told = take_waiters([&](const Waiter& waiter) { return waiter.job == id; });
+    for (const auto& [number, watch] : watches_) {
+      if (watch.job == id) tell_watcher(watch.poke);
+    }
+  }
+  for (const Waiter& waiter : told) waiter.then(grpc::Status::OK, coordinator::describe(job));
+  over.reset();  // waits for the keeper's thread
+  // Films of frames that failed stay, should they be taken up again.
+  std::error_code ignored;
+  if (job.state == StoredState::done) std::filesystem::remove_all(films_folder(id), ignored);
+  return true;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,100 @@
+// What clients want of open jobs: a change that is stored before it is answered.
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/brain/brain.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr int kMostPriority = 1'000'000;
+
+grpc::Status failed(const core::Error& error) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
+}
+
+}  // namespace
+
+void Brain::pause(uint64_t id, Told then) { set_paused(id, true, std::move(then)); }
+
+void Brain::resume(uint64_t id, Told then) { set_paused(id, false, std::move(then)); }
+
+void Brain::set_paused(uint64_t id, bool paused, Told then) {
+  change(id, std::move(then), [&](JobDesk& desk, std::vector<Action>& later) {
+    const StoredState wanted = paused ? StoredState::paused : StoredState::running;
+    if (desk.stored.state == wanted) return;
+    desk.stored.state = wanted;
+    note(desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, paused ? "paused" : "resumed");
+    later = paused ? tell(JobPaused{desk.id}) : tell(JobResumed{desk.id});
+  });
+}
+
+void Brain::set_priority(uint64_t id, int priority, Told then) {
+  if (std::abs(int64_t{priority}) > kMostPriority) {
+    return then({grpc::StatusCode::INVALID_ARGUMENT, "priority: expected -1000000 to 1000000"}, {});
+  }
+  change(id, std::move(then), [&](JobDesk& desk, std::vector<Action>& later) {
+    if (desk.stored.priority == priority) return;
+    desk.stored.priority = priority;
+    note(desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, fmt::format("priority {}", priority));
+    later = tell(JobReprioritised{desk.id, priority});
+  });
+}
+
+/// Changes an open job; `then` is told once that is stored.
+void Brain::change(uint64_t id, Told then,
+                   const std::function<void(JobDesk&, std::vector<Action>&)>& what) {
+  std::vector<Action> later;
+  bool open = false;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    open = desk != nullptr && !desk->ending;
+    if (open) {
+      what(*desk, later);
+      when_stored(id, then);
+      store_row(*desk);
+    }
+  }
+  carry_out(later);
+  if (stop_) mind_waiters({});
+  if (!open) then(not_open(id), {});
+}
+
+void Brain::cancel(uint64_t id, Told then) {
+  std::vector<Action> later;
+  bool open = false;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    open = desk != nullptr;
+    if (open) {
+      // The end is stored by the job's chores; to answer is to promise.
+      when_stored(id, then);
+      later = tell(JobCancelled{desk->id});
+    }
+  }
+  carry_out(later);
+  if (stop_) mind_waiters({});
+  if (!open) then(not_open(id), {});
+}
+
+/// NOT_FOUND, or FAILED_PRECONDITION for a job that has ended; without the lock.
+grpc::Status Brain::not_open(uint64_t id) {
+  const auto stored = store_->job(id);
+  if (!stored) return failed(stored.error());
+  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  if (!has_ended((*stored)->state)) {
+    return farm::retry_later(
+        grpc::StatusCode::UNAVAILABLE,
+        fmt::format("job {} {}", id,
+                    (*stored)->reason.empty() ? "is being taken up" : (*stored)->reason),
+        std::chrono::seconds(1));
+  }
+  return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} has ended", id)};
+}
+
+}  // namespace hyades::coordinator

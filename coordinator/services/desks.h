@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+
+#include <grpcpp/support/status.h>
+
+#include "coordinator/brain/clerks.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+
+/// Where gRPC's threads hand over whatever may wait for the disk: they are few, and workers'
+/// heartbeats and results come by them too. Two desks, so that files on a disk that does not answer
+/// leave those waiting alone who only want to know something.
+struct Desks {
+  Clerks rows{4, 1000};   ///< what is read from and stored in the job store
+  Clerks files{8, 1000};  ///< what reads or writes files besides
+};
+
+/// For those whose desk has too long a queue.
+inline grpc::Status crowded() {
+  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                           "more requests wait for the coordinator's disk than may",
+                           std::chrono::seconds(2));
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <algorithm>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/state/job_store.h"
+
+namespace hyades::coordinator {
+
+/// What goes wrong with a TroubledStore, for the test to say; shared with the store.
+class Trouble {
+ public:
+  enum class Kind { none, fails, waits };
+  /// What becomes of calls that write, and of those that read.
+  void of_writes(Kind kind) { set(writes_, kind); }
+  void of_reads(Kind kind) { set(reads_, kind); }
+  /// The frames of a job alone.
+  void of_frames(Kind kind) { set(frames_, kind); }
+  /// How many calls were waiting at once at most.
+  int most_waiting() const {
+    const std::lock_guard lock(mutex_);
+    return most_waiting_;
+  }
+
+  core::Status write() { return pass(writes_); }
+  core::Status read() { return pass(reads_); }
+  core::Status read_frames() { return pass(frames_); }
+
+ private:
+  void set(Kind& which, Kind kind) {
+    const std::lock_guard lock(mutex_);
+    which = kind;
+    wake_.notify_all();
+  }
+  core::Status pass(const Kind& kind) {
+    std::unique_lock lock(mutex_);
+    most_waiting_ = std::max(most_waiting_, ++waiting_);
+    wake_.wait(lock, [&] { return kind != Kind::waits; });
+    --waiting_;
+    if (kind == Kind::fails) return core::Error{"the job store: database or disk is full"};
+    return {};
+  }
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  Kind writes_ = Kind::none;
+  Kind reads_ = Kind::none;
+  Kind frames_ = Kind::none;
+  int waiting_ = 0;
+  int most_waiting_ = 0;
+};
+
+/// A job store whose disk fails or does not answer when a test wants it.
+class TroubledStore final : public JobStore {
+ public:
+  TroubledStore(std::unique_ptr<JobStore> store, std::shared_ptr<Trouble> trouble)
+      : store_(std::move(store)), trouble_(std::move(trouble)) {}
+
+  core::Result<uint64_t> next_incarnation() override { return store_->next_incarnation(); }
+  core::Result<Added> add_job(const StoredJob& job) override {
+    return written([&] { return store_->add_job(job); });
+  }
+  core::Status update_job(const StoredJob& job) override {
+    return written([&] { return store_->update_job(job); });
+  }
+  core::Status remove_job(uint64_t id) override {
+    return written([&] { return store_->remove_job(id); });
+  }
+  core::Result<std::vector<uint64_t>> open_jobs() override { return store_->open_jobs(); }
+  core::Result<std::optional<StoredJob>> job(uint64_t id) override {
+    return read([&] { return store_->job(id); });
+  }
+  core::Result<std::optional<StoredState>> state(uint64_t id) override {
+    return read([&] { return store_->state(id); });
+  }
+  core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) override {
+    return read([&] { return store_->specs(after, limit); });
+  }
+  core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner, uint64_t before,
+                                            uint32_t limit) override {
+    return read([&] { return store_->list(ended, owner, before, limit); });
+  }
+  core::Status frame_over(uint64_t job, const StoredFrame& frame,
+                          const std::vector<StoredOutput>& outputs) override {
+    return written([&] { return store_->frame_over(job, frame, outputs); });
+  }
+  core::Status forget_frame(uint64_t job, int32_t frame) override {
+    return written([&] { return store_->forget_frame(job, frame); });
+  }
+  using JobStore::frames;
+  core::Result<std::vector<StoredFrame>> frames(uint64_t job, std::optional<int32_t> after,
+                                                uint32_t limit) override {
+    if (core::Status passed = trouble_->read_frames(); !passed) return passed.error();
+    return read([&] { return store_->frames(job, after, limit); });
+  }
+  core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t after,
+                                                  uint32_t limit) override {
+    return read([&] { return store_->outputs(job, after, limit); });
+  }
+  core::Result<std::optional<StoredOutput>> output(uint64_t job, const std::string& path) override {
+    return read([&] { return store_->output(job, path); });
+  }
+  core::Status quarantine(const StoredQuarantine& worker) override {
+    return written([&] { return store_->quarantine(worker); });
+  }
+  core::Status end_quarantine(const std::string& worker) override {
+    return written([&] { return store_->end_quarantine(worker); });
+  }
+  core::Result<std::vector<StoredQuarantine>> quarantines() override {
+    return store_->quarantines();
+  }
+  core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
+    return written([&] { return store_->add_lines(job, lines); });
+  }
+  core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t after,
+                                              uint32_t limit) override {
+    return read([&] { return store_->lines(job, after, limit); });
+  }
+
+ private:
+  template <class What>
+  auto written(const What& what) -> decltype(what()) {
+    if (core::Status passed = trouble_->write(); !passed) return passed.error();
+    return what();
+  }
+  template <class What>
+  auto read(const What& what) -> decltype(what()) {
+    if (core::Status passed = trouble_->read(); !passed) return passed.error();
+    return what();
+  }
+
+  const std::unique_ptr<JobStore> store_;
+  const std::shared_ptr<Trouble> trouble_;
+};
+
+}  // namespace hyades::coordinator
