@@ -2,307 +2,23 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <chrono>
-#include <condition_variable>
 #include <cstdio>
-#include <deque>
 #include <filesystem>
-#include <functional>
-#include <memory>
-#include <mutex>
-#include <optional>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "core/base/random_id.h"
-#include "farm/backoff.h"
 #include "farm/content_store.h"
 #include "farm/tags.h"
-#include "farm/wire.h"
-#include "worker/asset_fetcher.h"
-#include "worker/coordinator_link.h"
-#include "worker/desk.h"
-#include "worker/renderer_process.h"
 #include "worker/worker_id.h"
+#include "worker/worker_loop.h"
 
 namespace hyades::worker {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-using std::chrono::milliseconds;
-
-constexpr milliseconds kTick{50};
-/// A child that dies sooner than this is not started again at once.
-constexpr std::chrono::seconds kHealthyLife{5};
-/// Deaths in a row before a first Ready that make the worker give up.
-constexpr int kMostStillbirths = 3;
-constexpr milliseconds kFetchPatience{60'000};
-/// However long a coordinator asks not to be called.
-constexpr milliseconds kLongestPause{60'000};
-/// How long the end of the stream may take when all is said.
-constexpr milliseconds kGoodbye{200};
 
 std::string host_name() {
   std::array<char, 256> name{};
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
-
-/// One loop that everything happens in: other threads only post to it.
-class Worker : private DeskPorts,
-               private CoordinatorLink::Owner,
-               private RendererProcess::Owner,
-               private AssetFetcher::Owner {
- public:
-  Worker(const WorkerOptions& options, WorkerId id, const std::string& instance,
-         std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store)
-      : options_(options),
-        id_(std::move(id)),
-        desk_(desk_options(options, id_, instance), *this),
-        link_(channel, token, *this),
-        fetcher_(channel, token, store, *this, kFetchPatience) {}
-
-  int run(const volatile std::sig_atomic_t& signals) {
-    start_renderer();
-    while (!exit_status_) {
-      run_posted();
-      const TimePoint now = Clock::now();
-      if (signals > 0) leave(now);
-      if (restart_at_ && now >= *restart_at_ && !leave_by_) start_renderer();
-      if (connect_at_ && now >= *connect_at_) connect(now);
-      desk_.tick(now, link_.flowing());
-      if (desk_.leaving()) try_to_go(now);
-    }
-    return *exit_status_;
-  }
-
- private:
-  static DeskOptions desk_options(const WorkerOptions& options, const WorkerId& id,
-                                  const std::string& instance) {
-    DeskOptions desk;
-    desk.worker_id = id.text();
-    desk.instance = instance;
-    desk.hang_limit =
-        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.hang_limit));
-    desk.name = options.name.empty() ? host_name() : options.name;
-    desk.host = host_name();
-    desk.threads = static_cast<uint32_t>(options.threads);
-    desk.ahead = desk.threads;
-    desk.memory_bytes = options.memory;
-    desk.tags = options.tags;
-    return desk;
-  }
-
-  // ---- the loop ----
-
-  void post(std::function<void()> event) {
-    const std::lock_guard lock(mutex_);
-    posted_.push_back(std::move(event));
-    wake_.notify_one();
-  }
-
-  void run_posted() {
-    std::deque<std::function<void()>> events;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, kTick, [this] { return !posted_.empty(); });
-      events.swap(posted_);
-    }
-    for (const auto& event : events) event();
-  }
-
-  void leave(TimePoint now) {
-    if (leave_by_) return;
-    note("leaving: batches that are done are handed over");
-    leave_by_ =
-        now + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options_.grace)) -
-        kGoodbye;
-    desk_.leave("asked to leave", true);
-  }
-
-  void try_to_go(TimePoint now) {
-    const bool late = leave_by_ && now >= *leave_by_;
-    if (!goodbye_by_ && (desk_.empty() || late)) {
-      desk_.give_back_rest("asked to leave");
-      if (desk_.unacknowledged() > 0) {
-        note(fmt::format("{} films were not acknowledged in time", desk_.unacknowledged()));
-      }
-      link_.finish();
-      goodbye_by_ = now + kGoodbye;
-    }
-    if (goodbye_by_ && (now >= *goodbye_by_ || !streaming_)) exit_status_ = 0;
-  }
-
-  // ---- the rendering child ----
-
-  void start_renderer() {
-    restart_at_.reset();
-    renderer_.reset();
-    renderer_started_ = Clock::now();
-    renderer_ready_ = false;
-    auto started = RendererProcess::start(
-        {options_.renderer, options_.cache, options_.threads, options_.memory}, *this);
-    if (!started) {
-      note(started.error().message);
-      exit_status_ = 1;
-      return;
-    }
-    renderer_ = std::move(*started);
-    desk_.renderer_started();
-  }
-
-  void renderer_says(pipe::FromRenderer message) override {
-    post([this, message = std::move(message)]() mutable {
-      if (message.has_ready()) {
-        renderer_ready_ = true;
-        stillbirths_ = 0;
-        desk_.renderer_ready(message.ready());
-        if (!ever_connected_) connect(Clock::now());
-      } else if (message.has_not_ready()) {
-        note("this machine cannot render: " + message.not_ready().reason());
-        exit_status_ = 1;
-      } else {
-        desk_.renderer_says(std::move(message), Clock::now());
-      }
-    });
-  }
-
-  void renderer_ended(const std::string& reason) override {
-    post([this, reason] {
-      note("the rendering process " + reason);
-      desk_.renderer_died(reason);
-      const TimePoint now = Clock::now();
-      if (!renderer_ready_ && ++stillbirths_ >= kMostStillbirths) {
-        exit_status_ = 1;
-        return;
-      }
-      const bool healthy = now - renderer_started_ >= kHealthyLife;
-      restart_at_ = healthy ? now : now + std::chrono::seconds(1);
-      // No time for another child.
-      if (leave_by_) desk_.give_back_rest("the rendering process " + reason);
-    });
-  }
-
-  void tell_renderer(pipe::ToRenderer message) override {
-    if (renderer_) renderer_->send(std::move(message));
-  }
-
-  void kill_renderer(const std::string& reason) override {
-    if (renderer_) renderer_->kill(reason);
-  }
-
-  // ---- the coordinator ----
-
-  void connect(TimePoint now) {
-    connect_at_.reset();
-    ever_connected_ = true;
-    streaming_ = true;
-    link_.open();
-    desk_.stream_opened(now);
-  }
-
-  void send(v1::WorkerMessage message) override { link_.send(std::move(message)); }
-
-  void stream_says(v1::CoordinatorMessage message) override {
-    post([this, message = std::move(message)]() mutable {
-      if (message.has_welcome()) {
-        if (const uint32_t spoken = message.welcome().protocol(); spoken < farm::kOldestProtocol) {
-          note(fmt::format("the coordinator speaks protocol {}, this worker {} to {}: update it",
-                           spoken, farm::kOldestProtocol, farm::kProtocol));
-          exit_status_ = 2;
-          return;
-        }
-        backoff_.reset();
-        told_trouble_.clear();
-        note(fmt::format("working for {} as {}", options_.coordinator.address,
-                         message.welcome().name()));
-      }
-      desk_.coordinator_says(std::move(message), Clock::now());
-    });
-  }
-
-  /// There are two with one id, and the other was first.
-  void rename() {
-    if (auto renewed = id_.renew(); !renewed) {
-      note(renewed.error().message);
-      exit_status_ = 1;
-      return;
-    }
-    desk_.rename(id_.text());
-    note("another worker has this one's id (a copied cache, or machine): it takes a new one");
-  }
-
-  void stream_ended(StreamEnd end, const std::string& reason,
-                    std::chrono::milliseconds retry_after) override {
-    post([this, end, reason, retry_after] {
-      streaming_ = false;
-      desk_.stream_closed();
-      if (exit_status_) return;
-      if (end == StreamEnd::refused) {
-        note("the coordinator refuses this worker: " + reason);
-        exit_status_ = 2;
-        return;
-      }
-      if (end == StreamEnd::id_taken) rename();
-      const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestPause));
-      connect_at_ = Clock::now() + pause;
-      if (goodbye_by_ || reason == told_trouble_) return;
-      note(fmt::format(
-          "no connection to {} ({}); {} units in hand, {} films not acknowledged; trying again",
-          options_.coordinator.address, reason, desk_.in_hand(), desk_.unacknowledged()));
-      told_trouble_ = reason;
-    });
-  }
-
-  // ---- files ----
-
-  void fetch(uint64_t job, const v1::JobSpec& spec) override { fetcher_.fetch(job, spec); }
-  void release(uint64_t job) override { fetcher_.release(job); }
-  void files_are_there(uint64_t job) override {
-    post([this, job] { desk_.files_are_there(job); });
-  }
-  void files_failed(uint64_t job, const std::string& reason, bool final) override {
-    post([this, job, reason, final] {
-      note(reason);
-      desk_.files_failed(job, reason, final);
-    });
-  }
-
-  void note(const std::string& text) override {
-    std::fprintf(stderr, "hyades worker: %s\n", text.c_str());
-    std::fflush(stderr);
-  }
-
-  const WorkerOptions options_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<std::function<void()>> posted_;  ///< guarded by mutex_
-
-  // All else belongs to the loop.
-  WorkerId id_;
-  Desk desk_;
-  farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
-  bool streaming_ = false;
-  bool ever_connected_ = false;
-  bool renderer_ready_ = false;
-  int stillbirths_ = 0;
-  TimePoint renderer_started_;
-  std::string told_trouble_;
-  std::optional<TimePoint> connect_at_;
-  std::optional<TimePoint> restart_at_;
-  std::optional<TimePoint> leave_by_;
-  std::optional<TimePoint> goodbye_by_;
-  std::optional<int> exit_status_;
-
-  // Last: their threads post to the above.
-  std::unique_ptr<RendererProcess> renderer_;
-  CoordinatorLink link_;
-  AssetFetcher fetcher_;
-};
-
-}  // namespace
 
 int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals) {
   const auto refuse = [](const core::Error& error) {
@@ -324,8 +40,7 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   if (!instance) return refuse(instance.error());
   auto tags = farm::check_tags(options.tags);
   if (!tags) return refuse(tags.error());
-  Worker worker(options, std::move(*id), *instance, *channel, *token, **store);
-  return worker.run(signals);
+  return work(options, std::move(*id), *instance, *channel, *token, **store, signals);
 }
 
 }  // namespace hyades::worker
