@@ -30,10 +30,15 @@ uint32_t pass_of(const FrameState& books, uint32_t tiles) {
 bool Scheduler::grant(WorkerId id, Worker& worker) {
   const auto first = in_turn(id, worker, false);
   if (!first) return false;
-  const bool here =
-      has_scene(worker, first->scene()) && !(worker.next == first->scene() && still_loads(worker));
-  const auto loaded = here ? std::nullopt : find_loaded(id, worker, *first->job);
+  const bool fresh = !has_scene(worker, first->scene());
+  const bool loads = worker.next == first->scene() && still_loads(worker);
+  const bool here = !fresh && !loads;
+  const auto loaded = here ? std::nullopt : find_loaded(id, worker, *first->job, loads);
   if (!loaded) worker.in_turn = now_;
+  if (fresh && !loaded && options_.scene_time > Duration{0} &&
+      find_loaded(id, worker, *first->job, true)) {
+    return grant_from(*first, id, worker, true);
+  }
   const Place place = loaded.value_or(*first);
   if (place.scene() == worker.home && !worker.next && nearly_leased(place)) {
     const auto next = in_turn(id, worker, true);

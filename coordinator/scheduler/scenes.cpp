@@ -11,7 +11,7 @@ namespace {
 constexpr size_t kScenesKept = 3;
 /// A worker begins with a scene where that many times what loading takes is left to render for
 /// every thread: then loading costs little though nothing hides it.
-constexpr double kWorthLoading = 10;
+constexpr double kWorthLoading = 15;
 /// The next scene is loaded when that many times what loading takes is left of this one.
 constexpr double kLoadAhead = 2;
 /// Some take longer than the others.
@@ -117,17 +117,18 @@ bool Scheduler::still_loads(const Worker& worker) const {
 
 /// A frame out of turn whose scene the worker has. Bounded in three ways, so that nobody starves:
 /// the priority is that of `first`, the owner has not much more than the one who is in turn, and
-/// after `affinity_time` the worker takes what is in turn.
+/// after `affinity_time` the worker takes what is in turn. While it `loads` that scene, only the
+/// priority counts.
 std::optional<Scheduler::Place> Scheduler::find_loaded(WorkerId id, const Worker& worker,
-                                                       const JobState& first) {
-  if (now_ - worker.in_turn >= options_.affinity_time) return std::nullopt;
+                                                       const JobState& first, bool loads) {
+  if (!loads && now_ - worker.in_turn >= options_.affinity_time) return std::nullopt;
   const Share& turn = shares_[first.share];
   const uint64_t most = turn.running + turn.running / 4 + 2 * uint64_t{worker.threads};
   for (auto scene = worker.scenes.rbegin(); scene != worker.scenes.rend(); ++scene) {
     JobState* job = find_job(scene->first);
     if (job == nullptr || !job->ready || job->plan.order != FrameOrder::sequential) continue;
     const Share& share = shares_[job->share];
-    if (share.priority != turn.priority || share.running > most) continue;
+    if (share.priority != turn.priority || (!loads && share.running > most)) continue;
     if (!may_join(*job, id, worker)) continue;
     const FrameSlot* slot = job->slot(scene->second);
     if (!has_work_for(*job, *slot, id, worker)) continue;

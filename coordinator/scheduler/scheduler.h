@@ -204,7 +204,8 @@ class Scheduler {
   bool too_late(const Place& place, const Worker& worker) const;
   bool nearly_leased(const Place& place) const;
   bool still_loads(const Worker& worker) const;
-  std::optional<Place> find_loaded(WorkerId id, const Worker& worker, const JobState& first);
+  std::optional<Place> find_loaded(WorkerId id, const Worker& worker, const JobState& first,
+                                   bool loads);
   void learn_load(JobState& job, Worker& worker, const ResultArrived& e);
 
   // leasing.cpp: leases.
