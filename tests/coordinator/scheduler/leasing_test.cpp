@@ -180,5 +180,15 @@ TEST(Scheduler, RunsGrowToTheTimeAUnitShallTake) {
   EXPECT_EQ(b.ask(kAnna).units[0].batches.count, 50U);
 }
 
+TEST(Leasing, WishesThatWereHeldAreServedAsSoonAsThereIsRoom) {
+  SchedulerBench b;
+  b.begin(small_plan());
+  b.tell(LeasingHeld{true});
+  b.tell(WorkRequested{kAnna, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(LeasingHeld{false});
+  EXPECT_EQ(b.only<Lease>().worker, kAnna) << "nothing else may happen for long";
+}
+
 }  // namespace
 }  // namespace hyades::coordinator
