@@ -24,6 +24,7 @@ TEST(Chores, OfOneOwnerKeepTheirOrderWhileOthersGoOn) {
   Chores chores(2);
   std::promise<void> other;
   chores.add(1, [&] { return !full && note(1); });
+  chores.add(3, [&] { return !full; });  // as many as there are threads
   for (int i = 2; i <= 50; ++i) chores.add(1, [&, i] { return note(i); });
   chores.add(2, [&] {
     other.set_value();
