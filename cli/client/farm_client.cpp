@@ -1,5 +1,6 @@
 #include "cli/client/farm_client.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <optional>
@@ -394,7 +395,21 @@ Outcome FarmClient::upload(const core::AssetRecord& file, const std::string& pat
 }
 
 Outcome FarmClient::workers(v1::WorkersResponse& response) {
-  return state_->call(*state_->farm, &v1::Farm::Stub::Workers, v1::WorkersRequest(), response);
+  response.Clear();
+  v1::WorkersRequest request;
+  for (;;) {
+    v1::WorkersResponse page;
+    Outcome failed = state_->call(*state_->farm, &v1::Farm::Stub::Workers, request, page);
+    if (failed) return failed;
+    for (v1::Worker& worker : *page.mutable_workers()) *response.add_workers() = std::move(worker);
+    if (page.next_after() <= request.after()) break;
+    request.set_after(page.next_after());
+  }
+  std::sort(response.mutable_workers()->begin(), response.mutable_workers()->end(),
+            [](const v1::Worker& a, const v1::Worker& b) {
+              return a.name() != b.name() ? a.name() < b.name() : a.id() < b.id();
+            });
+  return std::nullopt;
 }
 
 Outcome FarmClient::act(WorkerAction action, const v1::WorkerRequest& request,

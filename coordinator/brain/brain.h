@@ -125,7 +125,8 @@ class Brain {
   // Farm (brain_farm.cpp).
 
   void info(v1::InfoResponse& response);
-  void workers(v1::WorkersResponse& response);
+  /// As many as fit.
+  void workers(const v1::WorkersRequest& request, v1::WorkersResponse& response);
   grpc::Status drain_worker(const v1::WorkerRequest& request, v1::Worker& now);
   grpc::Status quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now);
   grpc::Status release_worker(const v1::WorkerRequest& request, v1::Worker& now);

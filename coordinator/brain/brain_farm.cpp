@@ -11,6 +11,8 @@
 namespace hyades::coordinator {
 namespace {
 
+/// Of an answer: twenty thousand workers with long names and many tags would make forty megabytes.
+constexpr size_t kMostWorkerBytes = size_t{1} << 20U;
 constexpr uint64_t kWorkersChores = 0;  // no job has this number
 
 }  // namespace
@@ -57,16 +59,18 @@ v1::Worker Brain::describe(const Seat& seat) const {
   return wire;
 }
 
-void Brain::workers(v1::WorkersResponse& response) {
-  std::vector<v1::Worker> workers;
-  {
-    const std::lock_guard lock(mutex_);
-    for (const auto& [id, seat] : seats_) workers.push_back(describe(seat));
+void Brain::workers(const v1::WorkersRequest& request, v1::WorkersResponse& response) {
+  const std::lock_guard lock(mutex_);
+  size_t bytes = 0;
+  for (auto seat = seats_.upper_bound(WorkerId{request.after()}); seat != seats_.end(); ++seat) {
+    if (bytes > kMostWorkerBytes) {
+      response.set_next_after(response.workers().rbegin()->id());
+      return;
+    }
+    v1::Worker worker = describe(seat->second);
+    bytes += worker.ByteSizeLong();
+    *response.add_workers() = std::move(worker);
   }
-  std::sort(workers.begin(), workers.end(), [](const v1::Worker& a, const v1::Worker& b) {
-    return a.name() != b.name() ? a.name() < b.name() : a.id() < b.id();
-  });
-  for (v1::Worker& worker : workers) *response.add_workers() = std::move(worker);
 }
 
 /// By number or by name; with the lock. Null where `status` says why.

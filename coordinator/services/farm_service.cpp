@@ -15,8 +15,8 @@ grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked
 grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* asked, Bytes* said) {
   return answer<v1::WorkersRequest, v1::WorkersResponse>(
       {admission_, context, asked, said},
-      [&](const v1::WorkersRequest&, v1::WorkersResponse& response) {
-        brain_.workers(response);
+      [&](const v1::WorkersRequest& request, v1::WorkersResponse& response) {
+        brain_.workers(request, response);
         return grpc::Status::OK;
       });
 }

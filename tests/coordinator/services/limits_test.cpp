@@ -141,6 +141,45 @@ TEST_F(Limits, OfAnswersWhichComeInParts) {
   }
 }
 
+/// Hears nothing.
+class DeafLink final : public WorkerLink {
+ public:
+  void send(v1::CoordinatorMessage) override {}
+  void close(const grpc::Status&) override {}
+};
+
+TEST_F(Limits, OfAnAnswerThatTellsOfAllWorkers) {
+  constexpr uint64_t kWorkers = 1500;
+  const auto link = std::make_shared<DeafLink>();
+  for (uint64_t i = 0; i < kWorkers; ++i) {
+    v1::Hello hello;
+    hello.set_protocol(farm::kProtocol);
+    hello.set_worker_id("a-worker-among-many-" + std::to_string(i));
+    hello.set_instance("a-process-among-many");
+    hello.set_name(std::string(200, 'n'));
+    hello.set_worker_class("class-a");
+    hello.set_threads(1);
+    for (int tag = 0; tag < 32; ++tag) {
+      hello.add_tags(std::to_string(100 + tag) + std::string(37, 't'));
+    }
+    WorkerId worker{};
+    ASSERT_TRUE(world.brain->attach(hello, link, worker).ok());
+  }
+  v1::WorkersRequest request;
+  uint64_t seen = 0;
+  int pages = 0;
+  do {
+    v1::WorkersResponse page;
+    ASSERT_TRUE(world.farm_->Workers(world.context().get(), request, &page).ok());
+    EXPECT_LT(page.ByteSizeLong(), 1'100'000U);
+    for (const v1::Worker& worker : page.workers()) EXPECT_EQ(worker.id(), ++seen);
+    request.set_after(page.next_after());
+    ++pages;
+  } while (request.after() != 0);
+  EXPECT_EQ(seen, kWorkers);
+  EXPECT_GT(pages, 1);
+}
+
 TEST_F(Limits, OfAllOpenJobsTogether) {
   const uint64_t one = world.submit(1'000'000);
   world.submit(999'999);
