@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -76,8 +77,19 @@ core::Status JobFrames::check_film_names() const {
 
 core::Status JobFrames::load_files() { return core::load_files(loaded_.job, cache_); }
 
-core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {
+core::Status JobFrames::load_first(int32_t frame) {
   auto scene = core::build_scene(loaded_.job, frame, cache_);
+  if (!scene) return scene.error();
+  first_frame_ = frame;
+  first_scene_ = std::move(*scene);
+  return {};
+}
+
+core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {
+  const auto first = std::exchange(first_scene_, nullptr);
+  auto scene = first != nullptr && frame == first_frame_
+                   ? core::Result<std::shared_ptr<const core::Scene>>(first)
+                   : core::build_scene(loaded_.job, frame, cache_);
   if (!scene) return scene.error();
   return std::shared_ptr<const coordinator::FrameWork>(
       std::make_shared<Work>(*this, frame, *scene));

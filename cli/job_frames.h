@@ -45,6 +45,10 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// Loads the files that all frames share. The error names every one that is broken.
   core::Status load_files();
 
+  /// Loads the scene of the frame that will be asked for first, so that what is wrong with it is
+  /// known before anything is written. prepare() gives it out.
+  core::Status load_first(int32_t frame);
+
   core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(int32_t frame) override;
   core::Status finish(int32_t frame, const core::Film& film) override;
   bool outputs_exist(int32_t frame) override;
@@ -73,6 +77,9 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   const std::vector<core::AssetRecord>
       assets_;  ///< all files of the job, as they were when it was read
   core::SceneCache cache_;
+  int32_t first_frame_ = 0;
+  /// Of first_frame_, until a frame is prepared: from then on only the thread that prepares has it.
+  std::shared_ptr<const core::Scene> first_scene_;
   std::mutex keys_mutex_;
   std::map<int32_t, coordinator::FrameKey> keys_;  ///< of some frames; guarded by keys_mutex_
   mutable std::mutex mutex_;

@@ -218,6 +218,13 @@ int render_command(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", files.error().message.c_str());
     return kBadInput;
   }
+  // Nor, mostly, where the first one cannot. A resumed run may have it behind it.
+  if (!options.resume || !frames.outputs_exist(numbers->front())) {
+    if (const auto first = frames.load_first(numbers->front()); !first) {
+      std::fprintf(stderr, "%s\n", first.error().message.c_str());
+      return kBadInput;
+    }
+  }
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
   if (failed) {

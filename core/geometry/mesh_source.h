@@ -35,6 +35,9 @@ void drop_unused_vertices(TriangleMesh& mesh);
 /// position, normal or UV that is not finite, no triangles.
 Status complete_mesh(TriangleMesh& mesh);
 
+/// The complaint about a file that is of no format known here.
+inline constexpr const char* kNoMesh = "it is no mesh file that is known; expected OBJ or PLY";
+
 /// Readers of one format each, from the bytes of a whole file. Errors do not name the file.
 Result<std::shared_ptr<TriangleMesh>> read_ply(std::span<const char> bytes);
 Result<std::shared_ptr<TriangleMesh>> read_obj(std::span<const char> bytes);

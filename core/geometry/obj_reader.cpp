@@ -50,6 +50,8 @@ Result<std::shared_ptr<TriangleMesh>> read_obj(std::span<const char> bytes) {
   auto parsed = parse_obj(bytes);
   if (!parsed) return parsed.error();
   ObjData& data = *parsed;
+  // Any text is an OBJ file whose lines mean nothing.
+  if (!bytes.empty() && data.positions.empty() && data.sizes.empty()) return Error{kNoMesh};
   const auto uses = [&](int32_t ObjCorner::*index) {
     return std::any_of(data.corners.begin(), data.corners.end(),
                        [&](const ObjCorner& c) { return c.*index >= 0; });

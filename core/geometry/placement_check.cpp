@@ -109,7 +109,7 @@ Status check_placement(const Placement& p) {
     const Bounds b = transform_bounds(Affine(m), box);
     if (!(largest_coordinate(b.lower) <= kLargestCoordinate &&
           largest_coordinate(b.upper) <= kLargestCoordinate)) {
-      return Error{"it reaches beyond a distance of 1e12"};
+      return Error{"it reaches beyond a distance of 1e12 m"};
     }
   }
   return {};

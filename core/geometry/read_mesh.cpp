@@ -10,6 +10,9 @@
 namespace hyades::core {
 namespace {
 
+/// Some editors begin a text with it; it is no part of any format.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 bool is_ply(std::string_view text) {
   return text.starts_with("ply\n") || text.starts_with("ply\r\n") || text.starts_with("ply ");
 }
@@ -26,12 +29,14 @@ Result<std::shared_ptr<TriangleMesh>> read_mesh(AssetResolver& assets,
   const Result<Bytes> bytes = assets.open(reference);
   if (!bytes) return bytes.error();
   const FpMode mode;
-  const std::span<const char> chars(bytes->chars(), bytes->size());
+  std::span<const char> chars(bytes->chars(), bytes->size());
+  if (std::string_view(chars.data(), chars.size()).starts_with(kByteOrderMark)) {
+    chars = chars.subspan(kByteOrderMark.size());
+  }
   const std::string_view text(chars.data(), chars.size());
-  Result<std::shared_ptr<TriangleMesh>> mesh = is_ply(text) ? read_ply(chars)
-                                               : is_text(text)
-                                                   ? read_obj(chars)
-                                                   : Error{"it is neither a PLY nor an OBJ file"};
+  Result<std::shared_ptr<TriangleMesh>> mesh = is_ply(text)    ? read_ply(chars)
+                                               : is_text(text) ? read_obj(chars)
+                                                               : Error{kNoMesh};
   if (!mesh) return mesh.error().in(reference);
   (*mesh)->name = reference;
   return mesh;

@@ -90,6 +90,7 @@ struct CameraDesc {
   float aperture_rotation = 0.0F;  ///< degrees
   std::optional<Animated<float>> focus_distance;  ///< along the view axis; absent: to look_at
   std::string focus_object;                       ///< focus on this object's centre
+  SourceLocation focus_where;                     ///< of its name
 };
 
 struct TextureDesc {

@@ -34,6 +34,7 @@ void read_focus(MapReader& reader, CameraDesc& camera) {
                     !parse_number(node->scalar, number);
   if (name) {
     reader.name_of("focus", camera.focus_object, NameKind::object);
+    camera.focus_where = node->where;
     return;
   }
   Animated<float> distance(1.0F);

@@ -47,4 +47,10 @@ std::string Diagnostics::to_string() const {
   return text;
 }
 
+Error Diagnostics::to_error() const {
+  std::string text = to_string();
+  if (!text.empty()) text.pop_back();
+  return Error{std::move(text)};
+}
+
 }  // namespace hyades::core

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/result.h"
+
 namespace hyades::core {
 
 /// Where something stands in a job's text.
@@ -28,6 +30,7 @@ class Diagnostics {
   bool full() const;  ///< further complaints would be dropped
   const std::vector<Diagnostic>& list() const { return list_; }
   std::string to_string() const;  ///< one per line, in order of file and line
+  Error to_error() const;         ///< all of them as one error, whose last line has no end
 
  private:
   std::vector<Diagnostic> list_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/base/elementary.h"
 #include "core/geometry/placement_check.h"
 #include "core/job/check_frame.h"
@@ -40,7 +42,7 @@ class SceneBuilder {
     if (auto done = add_objects(); !done) return done.error();
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
-    add_camera();
+    if (auto done = add_camera(); !done) return done.error();
     scene_->selector = make_power_selector(scene_->lights);
     scene_->resolution = {job_.film.width, job_.film.height};
     scene_->texture_memory = cache_.image_memory();
@@ -76,13 +78,17 @@ class SceneBuilder {
     return {Diagnostic{object.desc->where, named.message}.to_string()};
   }
 
-  /// The error of a world, which knows objects only by number, in the job's words.
+  /// The error of a world, which knows objects only by number, in the job's words; all objects that
+  /// cannot be placed are told.
   Error blame(const std::vector<FlatObject>& objects, const Error& error) const {
+    Diagnostics diagnostics;
     for (const FlatObject& object : objects) {
       if (const Status good = check_placement(object.placement); !good) {
-        return at(object, good.error());
+        diagnostics.add(object.desc->where,
+                        good.error().in("object '" + object.name + "'").message);
       }
     }
+    if (!diagnostics.empty()) return diagnostics.to_error();
     return job_.file.empty() ? error : error.in(job_.file);
   }
 
@@ -134,20 +140,23 @@ class SceneBuilder {
     return {};
   }
 
-  void add_camera() {
+  Status add_camera() {
     const bool moves = job_.frames.shutter > 0.0F;
     const int steps = moves ? kShutterMoments - 1 : 0;
     std::vector<CameraPose> poses;
     for (int i = 0; i <= steps; ++i) {
       const float shutter_time = moves ? static_cast<float>(i) / static_cast<float>(steps) : 0.0F;
-      poses.push_back(pose_at(shutter_time));
+      auto pose = pose_at(shutter_time);
+      if (!pose) return pose.error();
+      poses.push_back(*pose);
     }
     scene_->camera = make_perspective_camera(std::move(poses), {job_.film.width, job_.film.height},
                                              job_.camera.aperture_blades,
                                              job_.camera.aperture_rotation * kRadians);
+    return {};
   }
 
-  CameraPose pose_at(float shutter_time) const {
+  Result<CameraPose> pose_at(float shutter_time) const {
     const CameraDesc& camera = job_.camera;
     const JobTime time = job_.time_of(frame_, shutter_time);
     CameraPose pose;
@@ -159,6 +168,7 @@ class SceneBuilder {
     if (!camera.focus_object.empty()) {
       pose.focus_distance =
           glm::dot(center_of(camera.focus_object, shutter_time) - pose.from, axis);
+      if (!(pose.focus_distance > 0.0F)) return focus_behind(time, pose.focus_distance);
     } else if (camera.focus_distance) {
       pose.focus_distance = camera.focus_distance->at(time) * job_.units;
     } else {
@@ -172,6 +182,15 @@ class SceneBuilder {
       pose.lens_radius = camera.aperture_radius.at(time) * job_.units;
     }
     return pose;
+  }
+
+  Error focus_behind(const JobTime& time, float distance) const {
+    const std::string message = fmt::format(
+        "focus is on the object '{}', whose centre lies {:.4g} m behind the camera at frame "
+        "{:.10g}, "
+        "expected one in front of it",
+        job_.camera.focus_object, -distance, time.frame);
+    return {Diagnostic{job_.camera.focus_where, message}.to_string()};
   }
 
   /// The middle of the bounds of object `name` (groups: of all within).

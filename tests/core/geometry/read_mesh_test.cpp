@@ -294,7 +294,6 @@ TEST(ReadObj, UnusedNormalsAndUvsAreNotKept) {
 TEST(ReadObj, Errors) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   expect_error("", "no faces");
-  expect_error("hello\n", "no faces");
   expect_error(three, "no faces");
   expect_error("v 0 0\n", "line 1: expected 'v x y z'");
   expect_error("v 0 0 nan\n", "line 1: expected 'v x y z', finite");
@@ -312,7 +311,24 @@ TEST(ReadObj, Errors) {
   expect_error(three + "f 1//1 2//1 3//1\n", "line 4: an index is out of range");
   expect_error(three + "f 1 2 99999999999999999999\n", "line 4: expected corners like");
   expect_error(three + "f 1 \\\n2 \\\n3\n# \\\n\nf 1 2 9\n", "line 9: an index is out of range");
-  expect_error(std::string("\x7f\x45\x4c\x46\0\0", 6), "neither a PLY nor an OBJ");
+  expect_error(std::string("\x7f\x45\x4c\x46\0\0", 6), "no mesh file that is known");
+}
+
+TEST(ReadObj, OtherTextIsSaidToBeNoMesh) {
+  expect_error("root:x:0:0:root:/root:/bin/bash\n",
+               "no mesh file that is known; expected OBJ or PLY");
+  expect_error("hyades: 1\nfilm: {size: [4, 4]}\n", "no mesh file that is known");
+}
+
+TEST(ReadMesh, AByteOrderMarkIsNoPartOfTheFirstLine) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(must_read(mark + obj)->positions.size(), 3U);
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(must_read(mark + ply)->triangles.size(), 1U);
 }
 
 TEST(ReadObj, TooManyCornersAreRefused) {

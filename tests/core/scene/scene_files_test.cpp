@@ -194,7 +194,42 @@ objects:
   ASSERT_FALSE(scene);
   EXPECT_THAT(scene.error().message,
               testing::MatchesRegex("files.yaml:7:[0-9]+: object 'one/far': it reaches beyond a "
-                                    "distance of 1e12"));
+                                    "distance of 1e12 m"));
+}
+
+TEST(SceneErrors, AllObjectsThatReachTooFarAreTold) {
+  MemoryAssets assets;
+  const Job job = parsed(R"yaml(
+objects:
+  a: {shape: sphere, at: [3e12, 0, 0]}
+  b: {shape: sphere}
+  c: {shape: sphere, radius: 1e13}
+)yaml",
+                         assets);
+  SceneCache cache(assets);
+  const auto scene = build_scene(job, 1, cache);
+  ASSERT_FALSE(scene);
+  EXPECT_THAT(scene.error().message, testing::MatchesRegex("files.yaml:4:.*object 'a': .*\n"
+                                                           "files.yaml:6:.*object 'c': .*"));
+}
+
+TEST(SceneErrors, FocusOnAnObjectBehindTheCameraIsRefused) {
+  MemoryAssets assets;
+  const Job job = parsed(R"yaml(
+frames: 1-3
+camera: {look_from: [0, 0, 5], look_at: [0, 0, 0], focus: ball}
+objects:
+  ball: {shape: sphere, at: [0, 0, "= frame > 2.5 ? 7 : 0"]}
+outputs: [{file: a.#.png}]
+)yaml",
+                         assets);
+  SceneCache cache(assets);
+  EXPECT_TRUE(build_scene(job, 1, cache));
+  const auto scene = build_scene(job, 3, cache);
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(scene.error().message,
+            "files.yaml:4:59: focus is on the object 'ball', whose centre lies 2 m behind the "
+            "camera at frame 3, expected one in front of it");
 }
 
 TEST(SceneFiles, OneThatIsBeingLoadedHoldsUpNoOther) {
