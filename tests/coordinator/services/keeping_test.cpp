@@ -280,6 +280,7 @@ TEST(Keeping, FilmsWaitWithTheirWorkersWhileTheDiskIsFull) {
   const std::string ballast = world.options.folder + "/ballast";
   std::atomic<bool> filled{false};
   ScriptedWorker::Script script = world.script();
+  script.unit_time = 20ms;  // so that some are acknowledged before all are rendered
   script.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
     if (self.acknowledged() < 3 || filled.exchange(true)) return true;
     std::ofstream(ballast) << std::string(20 << 20U, 'x');
