@@ -140,8 +140,9 @@ core::PixelRect window_of(const RenderOptions& options, const core::Job& job) {
 
 void print_bad_samples(const RunTotals& totals, const std::string& path) {
   if (totals.counters.bad_samples == 0) return;
-  std::fprintf(stderr, "%s samples were not finite and count as black. To see why:\n",
-               core::format_count(totals.counters.bad_samples).c_str());
+  std::fprintf(stderr, "%s samples were %s and count as black. To see why:\n",
+               core::format_count(totals.counters.bad_samples).c_str(),
+               core::bad_sample_words().c_str());
   for (const RunTotals::Bad& bad : totals.bad) {
     std::fprintf(stderr, "  hyades replay %s --frame %d --pixel %d,%d --sample %u\n", path.c_str(),
                  bad.frame, bad.sample.pixel.x, bad.sample.pixel.y, bad.sample.sample);

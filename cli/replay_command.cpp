@@ -64,6 +64,9 @@ int replay_command(int argc, char** argv) {
               static_cast<double>(result.radiance.x), static_cast<double>(result.radiance.y),
               static_cast<double>(result.radiance.z), static_cast<double>(result.alpha),
               static_cast<double>(result.depth));
+  if (const auto why = core::why_not_counted(result)) {
+    std::printf("this sample is not counted: %s\n", why->c_str());
+  }
   return 0;
 }
 

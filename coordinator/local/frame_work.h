@@ -18,7 +18,7 @@ class FrameWork {
 
   /// The film of exactly this unit: window = its tile, coverage = its batches. A pure function of
   /// the unit, called by many threads at once. When `stop` becomes true it returns soon (within a
-  /// row of pixels) with anything; an error otherwise is the unit's fault and counts as a failed
+  /// sample) with anything; an error otherwise is the unit's fault and counts as a failed
   /// attempt.
   virtual core::Result<core::Film> render(const core::Unit& unit,
                                           const std::atomic<bool>& stop) const = 0;

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "core/base/fp_mode.h"
 
@@ -29,16 +32,33 @@ FilterShape filter_shape(FilterKind kind) {
   return FilterShape::box;
 }
 
+bool is_usable(const Vec3& v) {
+  // Every comparison is false for NaN.
+  return std::abs(v.x) <= kMaxSample && std::abs(v.y) <= kMaxSample && std::abs(v.z) <= kMaxSample;
+}
+
 bool is_usable(const PixelSample& s) {
-  // Every comparison is false for NaN. The bound keeps a batch's sum within what a film can hold.
-  constexpr float kLimit = kMaxDeposit / static_cast<float>(2 * kBatchSamples);
-  const auto usable = [](const Vec3& v) {
-    return std::abs(v.x) <= kLimit && std::abs(v.y) <= kLimit && std::abs(v.z) <= kLimit;
-  };
-  return usable(s.radiance) && usable(s.albedo) && usable(s.normal);
+  return is_usable(s.radiance) && is_usable(s.albedo) && is_usable(s.normal);
+}
+
+bool is_finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 }  // namespace
+
+std::optional<std::string> why_not_counted(const PixelSample& sample) {
+  const std::pair<const char*, Vec3> values[] = {
+      {"radiance", sample.radiance}, {"albedo", sample.albedo}, {"normal", sample.normal}};
+  for (const auto& [name, value] : values) {
+    if (is_usable(value)) continue;
+    return is_finite(value) ? fmt::format("its {} is beyond {:.3g}", name, kMaxSample)
+                            : fmt::format("its {} is not finite", name);
+  }
+  return std::nullopt;
+}
+
+std::string bad_sample_words() { return fmt::format("not finite or beyond {:.3g}", kMaxSample); }
 
 void RenderCounters::add(const RenderCounters& other) {
   samples += other.samples;
@@ -84,11 +104,12 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
   const uint32_t count = samples_in_batch(batch, sampling_.samples);
   float* out = sums.data();
   for (int y = unit.tile.y0; y < unit.tile.y1; ++y) {
-    if (stop != nullptr && stop->load(std::memory_order_relaxed)) return false;
     for (int x = unit.tile.x0; x < unit.tile.x1; ++x) {
       std::array<double, kMaxDeposited> sum{};
       float depth = kInfinity;
       for (uint32_t s = first; s < first + count; ++s) {
+        // A path may take tens of milliseconds, so a pixel is too long to wait for.
+        if (stop != nullptr && stop->load(std::memory_order_relaxed)) return false;
         const PixelSample sample = sample_pixel({x, y}, s, sampler, work);
         if (!is_usable(sample)) {
           ++counters.bad_samples;

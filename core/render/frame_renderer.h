@@ -3,10 +3,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/film/film.h"
+#include "core/film/fixed128.h"
 #include "core/integrators/integrator.h"
 #include "core/job/job.h"
 #include "core/samplers/filter.h"
@@ -14,8 +16,20 @@
 
 namespace hyades::core {
 
-/// A sample that did not give a finite colour: left out of the film, reported so that it can be
-/// replayed.
+/// The largest magnitude of a sample's radiance (times its filter weight), albedo and normal that
+/// counts, about 3.4e10: sums of batches stay well within what a film can hold.
+inline constexpr float kMaxSample = kMaxDeposit / static_cast<float>(2 * kBatchSamples);
+
+/// Why `sample` does not count, in words that fit behind "this sample is not counted: "; nothing
+/// where it does.
+std::optional<std::string> why_not_counted(const PixelSample& sample);
+
+/// What is wrong with samples that do not count, in words that fit behind "they are ": "not finite
+/// or beyond 3.44e+10".
+std::string bad_sample_words();
+
+/// A sample that does not count, for it is not finite or beyond kMaxSample: left out of the film
+/// (as if it were black), reported so that it can be replayed.
 struct BadSample {
   Vec2i pixel{0, 0};
   uint32_t sample = 0;
@@ -23,7 +37,7 @@ struct BadSample {
 
 /// What rendering a unit took.
 struct RenderCounters {
-  uint64_t samples = 0;
+  uint64_t samples = 0;  ///< of whole batches, bad ones too
   uint64_t rays = 0;
   uint64_t bounces = 0;
   uint64_t bad_samples = 0;
@@ -45,7 +59,7 @@ class FrameRenderer {
   FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                 const LayerSet& layers);
 
-  /// Renders `unit` on the calling thread. `stop` is looked at after every row of pixels;
+  /// Renders `unit` on the calling thread. `stop` is looked at before every sample;
   /// `batches_done` and `samples_done` (after every pixel of a batch) count along, for whoever
   /// watches.
   RenderedUnit render(const Unit& unit, const std::atomic<bool>* stop = nullptr,

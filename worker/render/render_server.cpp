@@ -161,9 +161,10 @@ void RenderServer::render(Task& task) {
     film.set_bad_samples(unit.counters.bad_samples);
     for (const core::BadSample& bad : unit.counters.examples) {
       film.add_notes(
-          fmt::format("a sample is not finite; to see why: hyades replay {} --frame {} --pixel "
-                      "{},{} --sample {}",
-                      task.frame->document, task.unit.frame, bad.pixel.x, bad.pixel.y, bad.sample));
+          fmt::format("a sample is {} and counts as black; to see why: hyades replay {} --frame "
+                      "{} --pixel {},{} --sample {}",
+                      core::bad_sample_words(), task.frame->document, task.unit.frame, bad.pixel.x,
+                      bad.pixel.y, bad.sample));
     }
     return {};
   });

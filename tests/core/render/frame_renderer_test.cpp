@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <thread>
 
 #include "core/render/render_frame.h"
 #include "tests/core/integrators/scene_of.h"
@@ -92,7 +93,31 @@ TEST(FrameRenderer, GivesUpWhenToldTo) {
   EXPECT_FALSE(room.renderer.render({1, {0, 0, 2, 2}, {0, 1}}, &go_on).stopped);
 }
 
-TEST(FrameRenderer, SamplesThatAreNotFiniteAreCountedAndLeftOut) {
+TEST(FrameRenderer, DoesNotFinishARowOfLongPathsWhenToldToStop) {
+  // In a closed mirror every path goes on to its last bounce: a pixel takes a tenth of a second.
+  const TestRenderer mirror(R"yaml(
+film: {size: [256, 4], filter: box}
+sampling: {samples: 16}
+integrator: {type: path, max_depth: 65536, roulette_depth: 65536}
+camera: {look_from: [0, 0, 0.5], look_at: [0, 0, 0], fov: 40}
+materials: {mirror: {type: mirror}}
+objects: {ball: {shape: sphere, radius: 1, material: mirror}}
+)yaml");
+  const PixelRect row{0, 0, 256, 1};
+  std::atomic<bool> stop{false};
+  std::atomic<uint64_t> samples{0};
+  std::thread hand([&] {
+    while (samples == 0) std::this_thread::yield();
+    stop = true;
+  });
+  const RenderedUnit done = mirror.renderer.render({1, row, {0, 1}}, &stop, nullptr, &samples);
+  hand.join();
+  EXPECT_TRUE(done.stopped);
+  EXPECT_LT(samples, 16U * 128);
+  EXPECT_EQ(done.film.coverage().volume(), 0U) << "no part of a batch";
+}
+
+TEST(FrameRenderer, SamplesThatAreTooBrightAreCountedAndLeftOut) {
   // A lamp beyond all bounds on the left of the picture; the rest is dark.
   const TestRenderer room(R"yaml(
 film: {size: [8, 4], filter: box}
@@ -109,6 +134,11 @@ objects:
   ASSERT_EQ(done.counters.examples.size(), 8U);
   EXPECT_EQ(done.counters.examples[7].pixel, Vec2i(0, 0));
   EXPECT_EQ(done.counters.examples[7].sample, 7U);
+  PathLog log;
+  const PixelSample bright = room.renderer.replay({0, 0}, 7, log);
+  EXPECT_TRUE(std::isfinite(bright.radiance.x));
+  EXPECT_EQ(why_not_counted(bright), "its radiance is beyond 3.44e+10");
+  EXPECT_FALSE(why_not_counted(room.renderer.replay({7, 0}, 7, log)));
   EXPECT_TRUE(done.film.check());
   const Image picture = done.film.normalised();
   for (int y = 0; y < 4; ++y) {
@@ -118,6 +148,19 @@ objects:
   sum.add(done.counters);
   EXPECT_EQ(sum.bad_samples, 2U * 16 * 16);
   EXPECT_EQ(sum.examples.size(), 8U) << "a few are enough";
+}
+
+TEST(FrameRenderer, WhatIsWrongWithASampleIsTold) {
+  PixelSample sample;
+  sample.radiance = Vec3(kMaxSample, -kMaxSample, 0.0F);
+  EXPECT_EQ(why_not_counted(sample), std::nullopt);
+  sample.normal.y = std::nextafter(kMaxSample, kInfinity);
+  EXPECT_EQ(why_not_counted(sample), "its normal is beyond 3.44e+10");
+  sample.albedo.z = std::nanf("");
+  EXPECT_EQ(why_not_counted(sample), "its albedo is not finite");
+  sample.radiance.x = -kInfinity;
+  EXPECT_EQ(why_not_counted(sample), "its radiance is not finite");
+  EXPECT_EQ(bad_sample_words(), "not finite or beyond 3.44e+10");
 }
 
 TEST(FrameRenderer, AReplayIsTheSampleThatWasRendered) {
