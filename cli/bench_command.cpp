@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/film_room.h"
 #include "cli/load_job.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
@@ -35,6 +36,10 @@ int scaling(const std::string& path, int most_threads, uint32_t samples) {
   if (!loaded) return kBadInput;
   core::Job& job = loaded->job;
   if (samples > 0) job.sampling.samples = samples;
+  if (const auto fits = film_room(job, core::render_window(job.film)).check(); !fits) {
+    std::fprintf(stderr, "%s: %s\n", path.c_str(), fits.error().message.c_str());
+    return kBadInput;
+  }
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, job.frames.first, cache);
   if (!scene) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/film_room.h"
 #include "cli/load_job.h"
 #include "core/base/hash.h"
 #include "core/base/machine.h"
@@ -87,7 +88,7 @@ int check_command(int argc, char** argv) {
   const double samples =
       static_cast<double>(pixels) * job.sampling.samples * static_cast<double>(frames);
   const uint64_t batches = core::batch_count(job.sampling.samples);
-  const uint64_t film = core::film_memory(renderer.layout(), window);
+  const FilmRoom room = film_room(job, window);
 
   std::printf("%s: good\n", path.c_str());
   std::printf("  job        %s\n", job.name.c_str());
@@ -101,14 +102,16 @@ int check_command(int argc, char** argv) {
               samples_in_words(samples).c_str());
   std::printf("  batches    %s per frame, of %u samples of a pixel each\n",
               core::format_count(batches).c_str(), core::kBatchSamples);
-  const uint64_t memory = (*scene)->world->memory() + (*scene)->texture_memory + film;
+  const uint64_t memory = (*scene)->world->memory() + (*scene)->texture_memory + room.film;
   std::printf(
       "  memory     about %s (geometry %s, textures %s, film %s)\n",
       core::format_bytes(memory).c_str(), core::format_bytes((*scene)->world->memory()).c_str(),
-      core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(film).c_str());
-  if (const uint64_t here = core::machine_memory(); here > 0 && memory > here) {
-    std::printf("  warning    this machine has %s of memory only\n",
-                core::format_bytes(here).c_str());
+      core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(room.film).c_str());
+  if (const core::Status fits = room.check(); !fits) {
+    std::printf("  warning    'hyades render' refuses it here: %s\n", fits.error().message.c_str());
+  } else if (room.here > 0 && memory > room.here) {
+    std::printf("  warning    there are %s of memory only\n",
+                core::format_bytes(room.here).c_str());
   }
   if (!no_probe && pixels > 0) {
     const double hours = seconds_per_sample(renderer, window, job.frames.first) * samples / 3600.0;

@@ -97,6 +97,7 @@ int serve(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hyades::core::ignore_file_size_signal();
   Arguments arguments;
   CLI::App app("Owns jobs, leases their units to workers, merges the films and writes the outputs.",
                "hyades coordinator");

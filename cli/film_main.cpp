@@ -2,9 +2,11 @@
 #include "cli/finish_command.h"
 #include "cli/merge_command.h"
 #include "cli/program.h"
+#include "core/base/machine.h"
 
 int main(int argc, char** argv) {
   using namespace hyades::cli;
+  hyades::core::ignore_file_size_signal();
   constexpr ProgramCommand kCommands[] = {
       {"compare", compare_command},
       {"finish", finish_command},

@@ -22,6 +22,12 @@ std::string rate(double samples_per_second) {
   return fmt::format("{:.0f} ksamples/s", samples_per_second * 1e-3);
 }
 
+/// "the disk is full" of "cannot write FILE: the disk is full".
+std::string reason_of(const std::string& trouble) {
+  const size_t colon = trouble.rfind(": ");
+  return colon == std::string::npos ? trouble : trouble.substr(colon + 2);
+}
+
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
@@ -38,10 +44,11 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
   text += fmt::format("{:3.0f} %", 100.0 * done);
   if (p.frames > 1)
     text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);
+  // In front: a line that is cut to the terminal's width still says why nothing happens.
+  if (!p.trouble.empty()) return text + "  waits for the disk: " + reason_of(p.trouble);
   if (p.samples_per_second > 0.0) text += "  " + rate(p.samples_per_second);
   if (p.noise >= 0.0) text += fmt::format("  noise {:.2g} %", 100.0 * p.noise);
   if (p.seconds_left >= 0.0) text += "  " + core::format_duration(p.seconds_left) + " left";
-  if (!p.trouble.empty()) text += "  (" + p.trouble + ")";
   return text;
 }
 
@@ -53,7 +60,10 @@ void ProgressDisplay::update(const coordinator::Progress& progress) {
     return;
   }
   const int percent = static_cast<int>(100.0 * fraction(progress));
-  if (now - last_ < kPlainEvery || percent == last_percent_) return;
+  const bool waiting = !progress.trouble.empty();
+  const bool begins_to_wait = waiting && !waiting_;
+  waiting_ = waiting;
+  if (!begins_to_wait && (now - last_ < kPlainEvery || percent == last_percent_)) return;
   last_ = now;
   last_percent_ = percent;
   std::fprintf(stderr, "%s\n", line(progress).c_str());

@@ -28,6 +28,7 @@ class ProgressDisplay {
   StatusLine status_;
   std::chrono::steady_clock::time_point last_;
   int last_percent_ = -1;
+  bool waiting_ = false;  ///< for the disk
 };
 
 }  // namespace hyades::cli

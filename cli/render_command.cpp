@@ -1,7 +1,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,8 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/film_room.h"
+#include "cli/interrupt.h"
 #include "cli/job_frames.h"
 #include "cli/load_job.h"
 #include "cli/progress_display.h"
@@ -25,23 +26,13 @@
 namespace hyades::cli {
 namespace {
 
-constexpr int kInterrupted = 130;
-
-volatile std::sig_atomic_t g_signals = 0;
-
-/// The first signal asks for an orderly end, the second one ends the process: what is durable is
-/// safe anyway.
-void on_signal(int) {
-  g_signals = g_signals + 1;
-  if (g_signals > 1) _exit(kInterrupted);
-}
-
 struct RenderOptions {
   std::string path;
   std::string frames;
   std::string folder = ".";
   int threads = core::hardware_threads();
   uint32_t samples = 0;
+  uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
   std::vector<int> crop;
   bool resume = false;
   bool quiet = false;
@@ -61,6 +52,10 @@ std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options
   app.add_option("--threads", options.threads, "rendering threads")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  app.add_option("--film-memory", options.film_memory,
+                 "most memory that films may take, such as 8G; jobs of larger ones are refused "
+                 "(default: half of what is here)")
+      ->transform(CLI::AsSizeValue(false));
   app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
   app.add_flag("--film", options.film,
                "also write each frame's film (NAME.film.exr), for 'hyades merge', as keep_films in "
@@ -173,7 +168,7 @@ int report(const RenderOptions& options, const JobFrames& frames,
     return 1;
   }
   if (!outcome.complete) {
-    std::fprintf(stderr, "interrupted; continue with --resume\n");
+    std::fputs(kInterruptedWords, stderr);
     return kInterrupted;
   }
   const auto first = first_written(numbers, outcome);
@@ -206,6 +201,11 @@ int render_command(int argc, char** argv) {
   if (!numbers) return kBadInput;
 
   const core::PixelRect window = window_of(options, job);
+  const FilmRoom room = film_room(job, window, options.film_memory);
+  if (const auto fits = room.check(); !fits) {
+    std::fprintf(stderr, "%s: %s\n", options.path.c_str(), fits.error().message.c_str());
+    return kBadInput;
+  }
   const std::string kept = options.folder + "/.hyades/" + job.name;
   const OutputNote note(kept + ".outputs", job);
   JobFrames frames(*loaded,
@@ -238,16 +238,14 @@ int render_command(int argc, char** argv) {
   plan.region = window;
   plan.samples = job.sampling.samples;
   plan.threads = options.threads;
+  plan.frames_in_flight = room.frames_in_flight();
   coordinator::LocalLog log;
   log.folder = kept;
   log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
   log.resume = options.resume;
 
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-
+  // What is durable is safe however the process ends.
+  watch_for_interrupts();
   coordinator::LocalRun run(plan, log, frames, frames);
   if (auto started = run.start(); !started) {
     std::fprintf(stderr, "%s\n", started.error().message.c_str());
@@ -261,7 +259,7 @@ int render_command(int argc, char** argv) {
   ProgressDisplay display(job.name, options.quiet);
   bool stopping = false;
   while (!run.wait_for(std::chrono::milliseconds(50))) {
-    if (g_signals > 0 && !stopping) {
+    if (interrupted() && !stopping) {
       stopping = true;
       run.stop();
     }

@@ -1,4 +1,5 @@
 #include "cli/program.h"
+#include "core/base/machine.h"
 
 namespace hyades::cli {
 int bench_command(int argc, char** argv);
@@ -9,6 +10,7 @@ int replay_command(int argc, char** argv);
 
 int main(int argc, char** argv) {
   using namespace hyades::cli;
+  hyades::core::ignore_file_size_signal();
   constexpr ProgramCommand kCommands[] = {
       {"render", render_command},
       {"check", check_command},

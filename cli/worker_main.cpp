@@ -3,7 +3,6 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -26,14 +25,6 @@ void on_signal(int signal) {
   if (g_signals > 1) _exit(128 + signal);
 }
 
-/// What this machine or its container has, less a fifth for all else.
-uint64_t usable_memory() {
-  uint64_t bytes = hyades::core::machine_memory();
-  uint64_t limit = 0;
-  if (std::ifstream("/sys/fs/cgroup/memory.max") >> limit && limit < bytes) bytes = limit;
-  return bytes / 5 * 4;
-}
-
 std::string default_cache() {
   if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache == '/') {
     return std::string(cache) + "/hyades";
@@ -45,10 +36,11 @@ std::string default_cache() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hyades::core::ignore_file_size_signal();
   CLI::App app("Renders for a coordinator.", "hyades worker");
   WorkerOptions options;
   options.threads = hyades::core::hardware_threads();
-  options.memory = usable_memory();
+  options.memory = hyades::core::usable_memory() / 5 * 4;  // the rest is for all else
   options.cache = default_cache();
   options.cache_size = uint64_t{16} << 30U;
   options.renderer = hyades::core::program_folder() + "hyades-worker-render";

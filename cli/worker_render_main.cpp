@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "core/base/machine.h"
 #include "core/base/parallel.h"
 #include "core/base/version.h"
 #include "core/render/class_probe.h"
@@ -51,6 +52,7 @@ int main(int argc, char** argv) {
   // The worker decides when this process ends: a Ctrl-C reaches both.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
+  core::ignore_file_size_signal();
   // Scenes are built by as many threads as the machine has.
   const auto all_threads = static_cast<uint64_t>(threads + core::hardware_threads());
   worker::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);

@@ -10,7 +10,8 @@
 
 namespace hyades::coordinator {
 
-/// Half of the machine's memory, in bytes; all there can be where that is not known.
+/// Half of the memory that this process may take, in bytes; all there can be where that is not
+/// known.
 uint64_t default_film_memory();
 
 struct BrainOptions {

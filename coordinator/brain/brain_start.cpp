@@ -23,7 +23,7 @@ SchedulerOptions scheduler_options(const BrainOptions& options, uint64_t incarna
 }  // namespace
 
 uint64_t default_film_memory() {
-  const uint64_t memory = core::machine_memory();
+  const uint64_t memory = core::usable_memory();
   return memory > 0 ? memory / 2 : UINT64_MAX;
 }
 

@@ -10,6 +10,7 @@
 
 #include "coordinator/store/log_files.h"
 #include "core/base/descriptor.h"
+#include "core/base/io_reason.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -20,7 +21,10 @@ using core::Result;
 using core::Status;
 
 Error failed(const std::string& doing, const std::string& path, int error) {
-  return {"cannot " + doing + " " + path + ": " + std::generic_category().message(error)};
+  // io_reason() speaks of writing, where it is the folder that is missing.
+  const std::string reason =
+      error == ENOENT ? std::generic_category().message(error) : core::io_reason(error);
+  return {"cannot " + doing + " " + path + ": " + reason};
 }
 
 int open_retrying(const std::string& path, int flags) {

@@ -11,6 +11,8 @@ std::string io_reason(int error) {
       return "the disk is full";
     case EDQUOT:
       return "the disk quota is used up";
+    case EFBIG:
+      return "the file would be larger than is allowed (ulimit -f)";
     case EROFS:
       return "the file system is read-only";
     case EACCES:

@@ -1,17 +1,36 @@
 #include "core/base/machine.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <climits>
+#include <csignal>
 #include <ctime>
+#include <fstream>
 
 namespace hyades::core {
 
-uint64_t machine_memory() {
+uint64_t usable_memory() {
+  uint64_t least = UINT64_MAX;
   const long pages = ::sysconf(_SC_PHYS_PAGES);
   const long size = ::sysconf(_SC_PAGESIZE);
-  return pages > 0 && size > 0 ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(size) : 0;
+  if (pages > 0 && size > 0) least = static_cast<uint64_t>(pages) * static_cast<uint64_t>(size);
+  // Of the container, where it sees itself as the root: of version 2, and of version 1, which says
+  // "no limit" by a huge number.
+  for (const char* file :
+       {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    uint64_t limit = 0;
+    if (std::ifstream(file) >> limit) least = std::min(least, limit);
+  }
+  rlimit own{};
+  if (::getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur != RLIM_INFINITY) {
+    least = std::min<uint64_t>(least, own.rlim_cur);
+  }
+  return least == UINT64_MAX ? 0 : least;
 }
+
+void ignore_file_size_signal() { std::signal(SIGXFSZ, SIG_IGN); }
 
 double thread_seconds() {
   timespec used{};

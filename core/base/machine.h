@@ -5,8 +5,13 @@
 
 namespace hyades::core {
 
-/// Bytes of memory that the machine has; 0 where that is not known.
-uint64_t machine_memory();
+/// Bytes of memory that this process may take: the least of what the machine has, the limit of its
+/// container (cgroup) and its own (ulimit -v). 0 where that is not known.
+uint64_t usable_memory();
+
+/// From now on a file that may not grow further (ulimit -f) is an error of whoever writes it, as a
+/// full disk is, and no signal that ends the process. Programs that are started inherit that.
+void ignore_file_size_signal();
 
 /// Seconds of a processor's time that the calling thread has used.
 double thread_seconds();

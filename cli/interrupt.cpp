@@ -1,0 +1,51 @@
+#include "cli/interrupt.h"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+
+namespace hyades::cli {
+namespace {
+
+constexpr unsigned kPatience = 1;  // seconds
+
+volatile std::sig_atomic_t g_signals = 0;
+
+// Handlers call only what POSIX allows in them.
+
+void leave() {
+  // A terminal that is stopped, or a pipe that nobody reads, must not hold it up.
+  pollfd out{STDERR_FILENO, POLLOUT, 0};
+  if (::poll(&out, 1, 0) > 0) {
+    const char* clear = "\r\033[K";  // the line of progress
+    if (::isatty(STDERR_FILENO) == 1) (void)!::write(STDERR_FILENO, clear, std::strlen(clear));
+    (void)!::write(STDERR_FILENO, kInterruptedWords, std::strlen(kInterruptedWords));
+  }
+  ::_exit(kInterrupted);
+}
+
+void on_signal(int) {
+  g_signals = g_signals + 1;
+  if (g_signals > 1) leave();
+  ::alarm(kPatience);
+}
+
+void on_alarm(int) { leave(); }
+
+}  // namespace
+
+void watch_for_interrupts() {
+  struct sigaction action {};
+  action.sa_flags = SA_RESTART;
+  action.sa_handler = on_alarm;
+  sigaction(SIGALRM, &action, nullptr);
+  action.sa_handler = on_signal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() { return g_signals > 0; }
+
+}  // namespace hyades::cli
