@@ -115,6 +115,8 @@ void Brain::persist(const Persist& persist, Delivery* delivery, std::vector<Acti
     keeper_of(*desk).keep_finished(persist.id, done->frame);
   } else if (const auto* voided = std::get_if<TileVoidedRecord>(&persist.record)) {
     keeper_of(*desk).void_tile(persist.id, voided->frame, voided->tile);
+  } else if (const auto* dispute = std::get_if<DisputeRecord>(&persist.record)) {
+    keeper_of(*desk).keep_dispute(persist.id, dispute->open);
   } else if (const auto* again = std::get_if<FrameRestartedRecord>(&persist.record)) {
     chores_.add(static_cast<uint64_t>(job), [this, job, id = persist.id, frame = again->frame] {
       const core::Status forgotten = store_->forget_frame(static_cast<uint64_t>(job), frame);

@@ -114,6 +114,7 @@ void Brain::frame_restarted(JobId job, int32_t frame) {
   if (desk == nullptr) return;
   FrameNote& noted = desk->touch(frame);
   if (noted.state == v1::FRAME_STATE_FAILED) --desk->stored.frames_failed;
+  desk->complete.erase(frame);
   noted.state = v1::FRAME_STATE_WAITING;
   noted.reason.clear();
   noted.worker_class.clear();

@@ -168,8 +168,23 @@ void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJo
   for (const std::string& problem : contents.problems) {
     note(desk, v1::LOG_LEVEL_WARNING, std::nullopt, {}, "films: " + problem);
   }
+  restored.disputed = contents.disputed;
+  if (contents.disputed) {
+    note(
+        desk, v1::LOG_LEVEL_WARNING, std::nullopt, {},
+        "workers had rendered a unit differently when the coordinator stopped: frames that are not "
+        "done are rendered again from their beginning");
+  }
   for (const auto& [number, units] : contents.units) {
     FrameNote& frame = desk.frames[number];
+    // The row may be of outputs that were made while a film was in doubt: the log has the last
+    // word.
+    if (frame.state == v1::FRAME_STATE_DONE && contents.disputed) {
+      frame.state = v1::FRAME_STATE_WAITING;
+      desk.samples_done -= std::exchange(frame.samples_done, 0);
+      --desk.stored.frames_done;
+      std::erase(restored.finished, number);
+    }
     if (frame.state != v1::FRAME_STATE_WAITING) {
       desk.keeper->forget(number, frame.state == v1::FRAME_STATE_DONE);
       continue;

@@ -101,6 +101,7 @@ core::Result<LogContents> FilmKeeper::open() {
   }
   finished_ = contents->finished;
   films_ = contents->films;
+  disputed_ = contents->disputed;
   // What of it is of use is not known until it is rewritten.
   useless_bytes_ = contents->bytes;
   settled_sequence_ = log_->durable();
@@ -169,6 +170,15 @@ void FilmKeeper::void_tile(RecordId record, int32_t frame, const core::PixelRect
   item.frame = frame;
   item.tile = tile;
   if (logs()) item.bytes = encode_tile_voided(frame, tile);
+  push(std::move(item), false);
+}
+
+void FilmKeeper::keep_dispute(RecordId record, bool open) {
+  Item item;
+  item.record = record;
+  item.kind = Item::Kind::dispute;
+  item.open = open;
+  if (logs()) item.bytes = encode_dispute(open);
   push(std::move(item), false);
 }
 
@@ -316,6 +326,7 @@ void FilmKeeper::settle(uint64_t durable) {
         whole->second->erase(item.tile);
       }
     }
+    if (item.kind == Item::Kind::dispute) disputed_ = item.open;
     if (!item.worker_class.empty()) classes_[item.frame] = item.worker_class;
     if (item.kind == Item::Kind::finished) {
       finished_[item.frame] = {key_of(item.frame), plan_.region};
@@ -397,6 +408,7 @@ core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
     return sink(bytes);
   };
   core::Status status = put(encode_cut({plan_.region, tile_size_, plan_.samples}));
+  if (status && disputed_) status = put(encode_dispute(true));
   for (const auto& [frame, finished] : finished_) {
     if (status) status = put(encode_finished(frame, finished));
   }

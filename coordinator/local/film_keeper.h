@@ -65,6 +65,8 @@ class FilmKeeper {
   void begin_again(RecordId record, int32_t frame);
   /// All films of the frame's tile that were handed over before are void.
   void void_tile(RecordId record, int32_t frame, const core::PixelRect& tile);
+  /// Films that were handed over before may be wrong, or are right after all.
+  void keep_dispute(RecordId record, bool open);
   void keep_finished(RecordId record, int32_t frame);
   void keep_failed(RecordId record);
   /// From now on keep() does not wait any more.
@@ -90,11 +92,12 @@ class FilmKeeper {
 
  private:
   struct Item {
-    enum class Kind : uint8_t { film, finished, failed, begun_again, tile_voided, call };
+    enum class Kind : uint8_t { film, finished, failed, begun_again, tile_voided, dispute, call };
     RecordId record{};
     Kind kind = Kind::film;
     int32_t frame = 0;
     core::PixelRect tile;
+    bool open = false;  ///< of a dispute
     core::Film film;
     std::string worker_class;
     std::vector<std::byte> bytes;
@@ -141,6 +144,7 @@ class FilmKeeper {
   /// Complete films of frames whose outputs could not be written.
   std::map<int32_t, std::shared_ptr<core::Film>> unfinished_;
   int32_t tile_size_ = 0;
+  bool disputed_ = false;   ///< films may be wrong
   bool write_cut_ = false;  ///< the log is new
   uint64_t settled_sequence_ = 0;
   uint64_t log_bytes_ = 0;                   ///< since the last snapshot

@@ -20,7 +20,8 @@ enum class Kind : uint8_t {
   finished = 3,
   delivered = 4,
   begun_again = 5,
-  tile_voided = 6
+  tile_voided = 6,
+  dispute = 7
 };
 constexpr uint8_t kVersion = 2;
 
@@ -89,6 +90,9 @@ class Reader {
         return {};
       case Kind::tile_voided:
         return read_tile_voided(record.subspan(kHead));
+      case Kind::dispute:
+        contents_.disputed = get(record, kHead) != 0;
+        return {};
     }
     return core::Error{"a record of an unknown kind"};
   }
@@ -266,6 +270,12 @@ std::vector<std::byte> encode_tile_voided(int32_t frame, const core::PixelRect& 
   std::vector<std::byte> out = begin(Kind::tile_voided);
   put(out, static_cast<uint32_t>(frame));
   put(out, tile);
+  return out;
+}
+
+std::vector<std::byte> encode_dispute(bool open) {
+  std::vector<std::byte> out = begin(Kind::dispute);
+  put(out, open ? 1U : 0U);
   return out;
 }
 

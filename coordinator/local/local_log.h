@@ -46,6 +46,8 @@ std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey
 std::vector<std::byte> encode_begun_again(int32_t frame);
 /// All films of the frame's tile before this record are void.
 std::vector<std::byte> encode_tile_voided(int32_t frame, const core::PixelRect& tile);
+/// Whether films before this record may be wrong, because two renderings of a unit differ.
+std::vector<std::byte> encode_dispute(bool open);
 std::vector<std::byte> encode_finished(int32_t frame, const FinishedRecord& finished);
 
 /// What a log holds.
@@ -58,6 +60,7 @@ struct LogContents {
   /// The units of these films, where workers delivered them. A digest is zero where it is not known
   /// any more.
   std::map<int32_t, std::vector<AcceptedUnit>> units;
+  bool disputed = false;              ///< some of these films may be wrong
   uint64_t bytes = 0;                 ///< of all records
   bool others = false;                ///< there are films of frames that were not asked for
   std::vector<std::string> problems;  ///< damage, in words; costs rendering again

@@ -60,8 +60,14 @@ struct TileVoidedRecord {
   int32_t frame = 0;
   core::PixelRect tile;
 };
+/// Whether films of the job may be wrong: two renderings of a unit differ, or they did and what the
+/// odd worker did is not void yet. The latest record counts.
+struct DisputeRecord {
+  JobId job{};
+  bool open = true;
+};
 using Record = std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord,
-                            FrameRestartedRecord, TileVoidedRecord>;
+                            FrameRestartedRecord, TileVoidedRecord, DisputeRecord>;
 
 /// Make this durable; answered by Persisted or PersistFailed. For a unit that means the film that
 /// came with the result now being handled.
@@ -90,7 +96,7 @@ enum class RejectReason : uint8_t {
   malformed,  ///< not a unit of this job; dropped
   overlap,    ///< some of its batches are there already in other extents; dropped
   conflict,   ///< the same extents are there with other bits; dropped (see Conflict)
-  not_now,    ///< not made durable, or the frame is not open yet; may be sent again later
+  not_now,    ///< not made durable, or nothing can be told yet; may be sent again later
 };
 
 /// The result does not count.

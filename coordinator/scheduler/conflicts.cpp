@@ -29,10 +29,12 @@ bool Scheduler::weigh(JobState& job, FrameSlot& slot, const Extent& extent,
       return false;
     }
     dispute = &books.open_dispute(extent, {held.worker, held.digest});
+    mark_disputed(job);
   }
   std::vector<Opinion>& opinions = dispute->opinions;
   if (std::none_of(opinions.begin(), opinions.end(),
                    [&](const Opinion& o) { return o.worker == e.worker; })) {
+    if (held.digest != e.digest) say(Conflict{e.job, e.unit, held.worker, e.worker});
     opinions.push_back({e.worker, e.digest});
     const auto agree = std::count_if(opinions.begin(), opinions.end(), [&](const Opinion& o) {
       return o.worker != WorkerId{} && o.digest == e.digest;
@@ -70,8 +72,11 @@ void Scheduler::decide(JobState& job, FrameSlot& slot, const Dispute& dispute,
     books.doubt_tile(extent.tile);
   }
   for (const Opinion& o : dispute.opinions) {
-    if (o.digest == e.digest || o.worker == WorkerId{}) continue;
-    if (quarantine(o.worker,
+    if (o.digest == e.digest) continue;
+    if (o.worker == WorkerId{}) {
+      doubt_films_of(o.worker);
+    } else if (quarantine(
+                   o.worker,
                    fmt::format("rendered job {} frame {} tile {},{} batches {}-{} to other "
                                "bits than two other workers",
                                static_cast<uint64_t>(job.id), slot.frame, e.unit.tile.x0,
@@ -113,13 +118,28 @@ bool Scheduler::quarantine(WorkerId id, const std::string& reason) {
 }
 
 /// What the worker gave to open frames, where no other agreed, is rendered again. A broken machine
-/// may err now and then, so that an earlier unit that was right says nothing of the next.
+/// may err now and then, so that an earlier unit that was right says nothing of the next. Films
+/// from before a restart are nobody's (0), and so may be its own.
 void Scheduler::doubt_films_of(WorkerId id) {
+  const auto tiles_of = [&](const FrameState& books) {
+    std::vector<uint32_t> tiles = books.unverified_tiles(id);
+    if (id == WorkerId{}) return tiles;
+    const std::vector<uint32_t> nobodys = books.unverified_tiles(WorkerId{});
+    tiles.insert(tiles.end(), nobodys.begin(), nobodys.end());
+    return tiles;
+  };
   for (const auto& [number, job] : jobs_) {
-    for (const uint32_t i : job->in_flight) {
+    for (uint32_t i = 0; i < job->slots.size(); ++i) {
       FrameSlot& slot = job->slots[i];
       if (!slot.books) continue;
-      for (const uint32_t tile : slot.books->unverified_tiles(id)) slot.books->doubt_tile(tile);
+      const std::vector<uint32_t> tiles = tiles_of(*slot.books);
+      if (tiles.empty()) continue;
+      mark_disputed(*job);
+      if (slot.phase == FramePhase::waiting) {
+        restart_waiting(*job, i);
+        continue;
+      }
+      for (const uint32_t tile : tiles) slot.books->doubt_tile(tile);
       void_doubted(*job, slot);
     }
     update_ready(*job);
@@ -146,12 +166,58 @@ void Scheduler::tile_voided(const TileVoidedRecord& record) {
 /// Whether a record that could not be made durable still says something: a tile that has begun
 /// again with its frame must not be voided once more, for its films are new.
 bool Scheduler::still_wanted(const Record& record) {
+  if (const auto* dispute = std::get_if<DisputeRecord>(&record)) return find_job(dispute->job);
   const auto* voided = std::get_if<TileVoidedRecord>(&record);
   if (voided == nullptr) return true;
   JobState* job = find_job(voided->job);
   const FrameSlot* slot = job ? job->slot(voided->frame) : nullptr;
   return slot != nullptr && slot->phase == FramePhase::rendering &&
          slot->books->in_doubt(*job->grid.index_of(voided->tile));
+}
+
+/// The job's log says that its films may be wrong, until end_marks(): should the coordinator die
+/// before all that is wrong is void, the next one renders again what it cannot tell apart.
+void Scheduler::mark_disputed(JobState& job) {
+  if (job.mark != DisputeMark::none) return;
+  job.mark = DisputeMark::opening;
+  marked_.insert(job.id);
+  persist(DisputeRecord{job.id, true}, {});
+}
+
+void Scheduler::dispute_marked(JobState& job, bool open) {
+  job.mark = open ? DisputeMark::open : DisputeMark::none;
+  if (open) return;
+  marked_.erase(job.id);
+  // Another one may have begun meanwhile.
+  if (has_dispute(job) || any_in_doubt()) mark_disputed(job);
+}
+
+bool Scheduler::has_dispute(const JobState& job) {
+  return std::any_of(job.in_flight.begin(), job.in_flight.end(), [&](uint32_t i) {
+    return job.slots[i].books && job.slots[i].books->disputes() > 0;
+  });
+}
+
+/// Whether films are to be void, in whatever job, and that is not durable yet.
+bool Scheduler::any_in_doubt() const {
+  return std::any_of(jobs_.begin(), jobs_.end(), [](const auto& entry) {
+    const JobState& job = *entry.second;
+    return std::any_of(job.in_flight.begin(), job.in_flight.end(), [&](uint32_t i) {
+      const FrameSlot& slot = job.slots[i];
+      // Without books it fails or begins again, and its films with it.
+      return slot.books ? slot.books->any_doubted() : slot.in_flight();
+    });
+  });
+}
+
+/// Disputes that are over, and all that followed from them.
+void Scheduler::end_marks() {
+  for (const JobId id : marked_) {
+    JobState& job = *find_job(id);
+    if (job.mark != DisputeMark::open || has_dispute(job) || any_in_doubt()) continue;
+    job.mark = DisputeMark::ending;
+    persist(DisputeRecord{id, false}, {});
+  }
 }
 
 /// A conflict showed while the outputs were made: the frame goes on until it is settled.

@@ -139,6 +139,7 @@ class FrameState {
   /// Whether no film is in doubt.
   bool settled() const { return disputes_.empty() && voiding_.empty(); }
   size_t disputes() const { return disputes_.size(); }
+  bool any_doubted() const { return !voiding_.empty(); }
   Dispute* find_dispute(const Extent& e);
   Dispute& open_dispute(const Extent& e, const Opinion& first);
   void end_dispute(const Extent& e);

@@ -60,6 +60,7 @@ struct RestoredJob {
   std::vector<int32_t> finished;  ///< frames whose outputs are there
   std::vector<FailedFrame> failed;
   std::vector<AcceptedUnit> accepted;  ///< of the other frames
+  bool disputed = false;               ///< some of them may be wrong (DisputeRecord)
 };
 
 }  // namespace hyades::coordinator

@@ -48,6 +48,14 @@ struct FrameSlot {
   }
 };
 
+/// What a job's log says of its films (DisputeRecord).
+enum class DisputeMark : uint8_t {
+  none,
+  opening,  ///< will say that they may be wrong, once that is durable
+  open,
+  ending,  ///< will say that they are right
+};
+
 struct JobState {
   JobId id{};
   uint64_t serial = 0;  ///< order of arrival
@@ -65,6 +73,8 @@ struct JobState {
   bool paused = false;
   bool ready = false;  ///< listed among those that have work
   uint64_t offer = 0;  ///< free batches and disputed units when it was last looked at
+
+  DisputeMark mark = DisputeMark::none;
 
   uint32_t frames_done = 0;
   uint32_t frames_failed = 0;

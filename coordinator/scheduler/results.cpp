@@ -26,13 +26,18 @@ void Scheduler::on(const ResultArrived& e) {
   FrameState& books = *slot->books;
   // Its films are about to be void; this one may count then.
   if (books.in_doubt(extent->tile)) return reject(RejectReason::not_now);
-  if (const HeldRecord* held = books.find_held(*extent)) {
+  const HeldRecord* held = books.find_held(*extent);
+  if (const Dispute* dispute = held ? books.find_dispute(*extent) : nullptr;
+      dispute != nullptr && job->mark != DisputeMark::open) {
+    // Who has heard an answer may forget its film, and that there is a dispute must be known then.
+    reject(RejectReason::not_now);
+  } else if (held != nullptr) {
     // After a restart what was merged has no digest any more.
     if (held->digest != Digest{} && held->digest != e.digest) {
       if (slot->worker_class != worker->worker_class) return reject(RejectReason::unknown);
-      say(Conflict{e.job, e.unit, held->worker, e.worker});
       const bool right = weigh(*job, *slot, *extent, e);
-      reject(right ? RejectReason::not_now : RejectReason::conflict);
+      const bool known = job->mark == DisputeMark::open;
+      reject(right || !known ? RejectReason::not_now : RejectReason::conflict);
     } else {
       if (held->pending == RecordId{}) {
         say(Acknowledge{e.worker, e.lease, e.job, e.unit});
@@ -152,6 +157,10 @@ void Scheduler::on(const Persisted& e) {
   }
   if (const auto* voided = std::get_if<TileVoidedRecord>(&pending.record)) {
     return tile_voided(*voided);
+  }
+  if (const auto* dispute = std::get_if<DisputeRecord>(&pending.record)) {
+    if (JobState* job = find_job(dispute->job)) dispute_marked(*job, dispute->open);
+    return;
   }
   JobState* job = find_job(finished ? finished->job : failed->job);
   if (job == nullptr) return;

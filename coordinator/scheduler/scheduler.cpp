@@ -23,6 +23,7 @@ Scheduler::Scheduler(SchedulerOptions options) : options_(options) {
 std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
   now_ = std::max(now_, now);
   std::visit([this](const auto& e) { on(e); }, event);
+  end_marks();
   dispatch();
   return std::exchange(actions_, {});
 }
@@ -47,6 +48,21 @@ void Scheduler::on(const JobAdded& e) {
   job.waiting = static_cast<uint64_t>(
       std::count_if(job.slots.begin(), job.slots.end(),
                     [](const FrameSlot& slot) { return slot.phase == FramePhase::waiting; }));
+  if (e.restored.disputed) {
+    // Nobody knows any more who was odd, and what else it did.
+    distrust_restored_ = true;
+    job.mark = DisputeMark::open;
+    marked_.insert(job.id);
+  }
+  if (distrust_restored_) doubt_films_of(WorkerId{});
+  for (uint32_t i = 0; i < job.slots.size(); ++i) {
+    FrameSlot& slot = job.slots[i];
+    if (slot.phase == FramePhase::waiting && slot.books && slot.books->complete()) {
+      --job.waiting;
+      job.in_flight.push_back(i);
+      finish(job, slot);
+    }
+  }
   open_frames(job);
   end_job_if_over(job);
 }
@@ -77,13 +93,6 @@ void Scheduler::restore(JobState& job, const RestoredJob& restored) {
     if (slot->books->any_held(*extent)) continue;
     slot->books->hold(*extent, {extent->batches, accepted.digest, WorkerId{}, RecordId{}});
   }
-  for (uint32_t i = 0; i < job.slots.size(); ++i) {
-    FrameSlot& slot = job.slots[i];
-    if (slot.phase == FramePhase::waiting && slot.books && slot.books->complete()) {
-      job.in_flight.push_back(i);
-      finish(job, slot);
-    }
-  }
 }
 
 void Scheduler::on(const JobPaused& e) {
@@ -108,6 +117,7 @@ void Scheduler::on(const JobCancelled& e) {
   job->in_flight.clear();
   update_ready(*job);
   say(JobEnded{e.job, job->frames_done, job->frames_failed, true});
+  marked_.erase(e.job);
   jobs_.erase(e.job);
 }
 
@@ -141,6 +151,7 @@ void Scheduler::on(const FrameOpened& e) {
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
   if (slot == nullptr || slot->phase != FramePhase::opening) return;
   slot->phase = FramePhase::rendering;
+  void_doubted(*job, *slot);  // what it has from before a restart
   update_ready(*job);
   complete_if_so(*job, *slot);  // a frame without pixels
 }
@@ -237,6 +248,13 @@ void Scheduler::restart_frame(JobState& job, FrameSlot& slot) {
   persist(FrameRestartedRecord{job.id, slot.frame}, {});
 }
 
+/// The same for a frame that has films from before a restart and was not opened since.
+void Scheduler::restart_waiting(JobState& job, uint32_t slot) {
+  --job.waiting;
+  job.in_flight.push_back(slot);
+  restart_frame(job, job.slots[slot]);
+}
+
 void Scheduler::frame_restarted(JobState& job, FrameSlot& slot) {
   const auto index = static_cast<uint32_t>(&slot - job.slots.data());
   slot.phase = FramePhase::waiting;
@@ -304,6 +322,7 @@ void Scheduler::end_job_if_over(JobState& job) {
   if (job.frames_done + job.frames_failed < job.slots.size()) return;
   update_ready(job);
   say(JobEnded{job.id, job.frames_done, job.frames_failed, false});
+  marked_.erase(job.id);
   jobs_.erase(job.id);
 }
 

@@ -157,6 +157,7 @@ class Scheduler {
   void fail_frame(JobState& job, FrameSlot& slot, std::string reason);
   void take_back_frame(JobState& job, FrameSlot& slot);
   void restart_frame(JobState& job, FrameSlot& slot);
+  void restart_waiting(JobState& job, uint32_t slot);
   void frame_restarted(JobState& job, FrameSlot& slot);
   void restart_orphans();
   void frame_over(JobState& job, FrameSlot& slot, FramePhase phase);
@@ -241,6 +242,11 @@ class Scheduler {
   void void_doubted(JobState& job, FrameSlot& slot);
   void tile_voided(const TileVoidedRecord& record);
   bool still_wanted(const Record& record);
+  void mark_disputed(JobState& job);
+  void dispute_marked(JobState& job, bool open);
+  void end_marks();
+  static bool has_dispute(const JobState& job);
+  bool any_in_doubt() const;
   void reopen_frame(JobState& job, FrameSlot& slot);
 
   // Shared.
@@ -270,6 +276,8 @@ class Scheduler {
 
   std::unordered_map<WorkerId, Worker> workers_;  ///< looked up; walked only where order is nothing
   std::set<WorkerId> quarantined_;                ///< by what they did; stays when they go and come
+  std::set<JobId> marked_;                        ///< jobs with a mark of a dispute
+  bool distrust_restored_ = false;                ///< a dispute was open before the restart
   std::map<WorkerId, Strikes> strikes_;           ///< of those that failed last
   std::map<uint64_t, WorkerId> waiting_;          ///< those with a wish, longest waiting first
   uint64_t next_waiting_ = 1;

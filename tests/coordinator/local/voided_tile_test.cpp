@@ -51,6 +51,12 @@ TEST(VoidedTile, TakesOutWhatCameBeforeAndKeepsWhatCameAfter) {
   EXPECT_EQ(contents.units.at(1)[1].unit, again);
 }
 
+TEST(Dispute, IsOpenUntilTheLogSaysOtherwise) {
+  EXPECT_FALSE(replayed({delivered(kLeft, kSamples)}).disputed);
+  EXPECT_TRUE(replayed({encode_dispute(true), delivered(kLeft, kSamples)}).disputed);
+  EXPECT_FALSE(replayed({encode_dispute(true), encode_dispute(false)}).disputed);
+}
+
 TEST(VoidedTile, LeavesNothingOfAFrameThatHadNoOther) {
   const LogContents contents =
       replayed({delivered(kLeft, kSamples), encode_tile_voided(1, kLeft.tile)});

@@ -23,8 +23,12 @@ class Conflicts : public testing::Test {
     b.deliver(by(kBert), 0, 2);
     EXPECT_EQ(b.only<Conflict>().first, kAnna);
     EXPECT_EQ(b.only<Conflict>().second, kBert);
-    EXPECT_EQ(b.only<Reject>().reason, RejectReason::conflict);
+    EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
     EXPECT_TRUE(b.all<Quarantine>().empty());
+    b.tell(Persisted{b.only<Persist>().id});
+    b.deliver(by(kBert), 0, 2);  // again
+    EXPECT_TRUE(b.all<Conflict>().empty());
+    EXPECT_EQ(b.only<Reject>().reason, RejectReason::conflict);
   }
 
   Lease by(WorkerId worker) const {
@@ -68,7 +72,7 @@ TEST_F(Conflicts, TheSecondWasWrong) {
   b.deliver(b.ask(kCora), 0, 1);
   EXPECT_EQ(b.only<Quarantine>().worker, kBert);
   EXPECT_EQ(b.only<Acknowledge>().worker, kCora);
-  EXPECT_TRUE(b.all<Persist>().empty());
+  EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open) << "all is well";
   EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
 }
 
@@ -149,6 +153,7 @@ TEST_F(Conflicts, FiveDifferentAnswersFailTheFrameAndBlameNobody) {
 TEST_F(Conflicts, ThatShowWhileTheOutputsAreMadeAreStillDecided) {
   b.join(kCora);
   b.deliver(b.ask(kCora), 0, 1);
+  b.tell(Persisted{b.only<Persist>().id});
   const Lease last = b.ask(kAnna);
   deliver_durably(last, 1);
   ASSERT_EQ(b.all<FinishFrame>().size(), 1U);
@@ -156,6 +161,7 @@ TEST_F(Conflicts, ThatShowWhileTheOutputsAreMadeAreStillDecided) {
   late.worker = kCora;
   b.deliver(late, 0, 2);
   EXPECT_EQ(b.all<Conflict>().size(), 1U);
+  b.tell(Persisted{b.only<Persist>().id});
   b.tell(FinishDone{kJob, 1});
   EXPECT_EQ(b.all<FrameReopened>().size(), 1U);
   EXPECT_TRUE(b.all<Persist>().empty());
@@ -163,6 +169,106 @@ TEST_F(Conflicts, ThatShowWhileTheOutputsAreMadeAreStillDecided) {
   b.deliver(b.ask(kDora), 0, 1);
   EXPECT_EQ(b.only<Quarantine>().worker, kCora);
   EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+}
+
+TEST_F(Conflicts, NobodyIsAnsweredBeforeTheLogKnowsOfTheDispute) {
+  b.join(kCora);
+  const Lease other = b.ask(kAnna);
+  deliver_durably(other, 1);
+  b.deliver(b.ask(kCora), 0, 1);
+  b.tell(Persisted{b.only<Persist>().id});  // that it is over
+  Lease late = other;
+  late.worker = kCora;
+  EXPECT_EQ(b.all<FinishFrame>().size(), 0U);
+  b.deliver(late, 0, 2);
+  const Persist mark = b.only<Persist>();
+  EXPECT_TRUE(std::get<DisputeRecord>(mark.record).open);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
+  b.join(kDora);
+  late.worker = kDora;
+  b.deliver(late, 0, 1);  // it would decide
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
+  EXPECT_TRUE(b.all<Quarantine>().empty());
+  b.tell(PersistFailed{mark.id, "disk full"});
+  b.now = *b.scheduler.next_wake();
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Persist>().id, mark.id);
+  b.tell(Persisted{mark.id});
+  b.deliver(late, 0, 1);
+  EXPECT_EQ(b.only<Quarantine>().worker, kCora);
+}
+
+TEST_F(Conflicts, TheDisputeIsOverWhenAllThatFollowsIsDurable) {
+  const Lease other = b.ask(kAnna);
+  deliver_durably(other, 1);
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 2);  // Anna was wrong
+  const auto voids = b.all<Persist>();
+  ASSERT_EQ(voids.size(), 2U);
+  b.tell(Persisted{voids[0].id});
+  EXPECT_TRUE(b.all<Persist>().empty());
+  b.tell(Persisted{voids[1].id});
+  EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open);
+}
+
+/// What a coordinator finds of two jobs, each with a film in its frame 1.
+class ConflictsBeforeARestart : public testing::Test {
+ protected:
+  static RestoredJob with_a_film(bool disputed) {
+    RestoredJob restored;
+    restored.accepted.push_back({{1, {0, 0, 32, 32}, {0, 1}}, digest(1), "class"});
+    restored.disputed = disputed;
+    return restored;
+  }
+  Bench b;
+};
+
+TEST_F(ConflictsBeforeARestart, LetNoFilmFromThenCount) {
+  b.add(small_plan({1}, 1), with_a_film(false), JobId{2});
+  b.tell(FrameOpened{JobId{2}, 1});
+  b.add(small_plan({1}, 1), with_a_film(true), JobId{1});
+  // The other one's too: who was odd is not known.
+  const auto said = b.all<Persist>();
+  ASSERT_EQ(said.size(), 3U);
+  EXPECT_EQ(std::get<FrameRestartedRecord>(said[0].record).job, JobId{1});
+  EXPECT_EQ(std::get<DisputeRecord>(said[1].record).job, JobId{2});
+  EXPECT_EQ(std::get<TileVoidedRecord>(said[2].record).job, JobId{2});
+  EXPECT_TRUE(b.all<OpenFrame>().empty());
+  b.tell(Persisted{said[0].id});
+  EXPECT_EQ(b.all<OpenFrame>().size(), 1U);
+  b.tell(Persisted{said[1].id});
+  EXPECT_TRUE(b.all<Persist>().empty()) << "a film is in doubt still";
+  b.tell(Persisted{said[2].id});
+  EXPECT_EQ(b.all<Persist>().size(), 2U) << "both disputes are over";
+  // A job that is taken up later is no better.
+  b.add(small_plan({1}, 1), with_a_film(false), JobId{3});
+  EXPECT_EQ(std::get<FrameRestartedRecord>(b.all<Persist>().at(1).record).job, JobId{3});
+}
+
+TEST_F(ConflictsBeforeARestart, LetNoCompleteFilmBeFinished) {
+  RestoredJob restored = with_a_film(true);
+  restored.accepted.push_back({{1, {32, 0, 64, 32}, {0, 1}}, digest(1), "class"});
+  b.add(small_plan({1}, 1), restored);
+  EXPECT_TRUE(b.all<FinishFrame>().empty());
+  EXPECT_EQ(b.all<Persist>().size(), 1U);
+}
+
+TEST_F(ConflictsBeforeARestart, AreNotTheOnlyReasonToDoubtWhatNobodyIsKnownToHaveDone) {
+  // No dispute was open; but a worker is found odd that may have rendered the film from then.
+  b.add(small_plan({1}, 2), with_a_film(false));
+  b.tell(FrameOpened{kJob, 1});
+  for (const WorkerId worker : {kAnna, kBert, kCora}) b.join(worker);
+  Lease lease = b.ask(kAnna);
+  b.deliver(lease, 0, 1);
+  b.tell(Persisted{b.all<Persist>().at(0).id});
+  lease.worker = kBert;
+  b.deliver(lease, 0, 2);
+  b.tell(Persisted{b.only<Persist>().id});
+  lease.worker = kCora;
+  b.deliver(lease, 0, 1);
+  EXPECT_EQ(b.only<Quarantine>().worker, kBert);
+  EXPECT_EQ(std::get<TileVoidedRecord>(b.only<Persist>().record).tile,
+            (core::PixelRect{0, 0, 32, 32}));
 }
 
 TEST_F(Conflicts, AVoidThatIsNotDurableIsTriedAgain) {

@@ -81,6 +81,9 @@ TEST(Scheduler, TwoRenderingsThatDifferAreReported) {
   b.deliver(stranger, 0, 2);
   EXPECT_EQ(b.only<Conflict>().first, kAnna);
   EXPECT_EQ(b.only<Conflict>().second, kBert);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now) << "the log does not know yet";
+  b.tell(Persisted{b.only<Persist>().id});
+  b.deliver(stranger, 0, 2);
   EXPECT_EQ(b.only<Reject>().reason, RejectReason::conflict);
 }
 

@@ -62,6 +62,9 @@ core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark)
   if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
     return log_->append(encode_tile_voided(voided->frame, voided->tile));
   }
+  if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
+    return log_->append(encode_dispute(dispute->open));
+  }
   return log_->append(encode_begun_again(std::get<FrameRestartedRecord>(record).frame));
 }
 

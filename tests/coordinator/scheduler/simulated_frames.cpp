@@ -26,10 +26,16 @@ void SimulatedWorld::act(const FinishFrame& a) {
   for (const auto& [place, batch] : frame.batches) {
     if (batch.corrupted_by == 0) continue;
     wrong = true;
-    // It may never have been compared, or the coordinator that knew whose it was has died.
-    const uint64_t found_out_by = workers_[batch.corrupted_by - 1U].quarantined_by;
-    if (found_out_by != 0 && batch.generation == found_out_by) {
+    // It may never have been compared.
+    if (workers_[batch.corrupted_by - 1U].quarantined_by != 0) {
       fail("a film is finished with what a worker did that had been found out");
+    }
+    for (const core::Unit& unit : job.disagreed) {
+      if (unit.frame == a.frame &&
+          place == PlaceOfBatch{unit.tile.x0, unit.tile.y0, std::get<2>(place)} &&
+          std::get<2>(place) >= unit.batches.first && std::get<2>(place) < unit.batches.end()) {
+        fail("a film is finished that two workers had disagreed about");
+      }
     }
   }
   if (real_store_ && !wrong && frame.film.digest() != job.disk->oracle(a.frame).digest()) {

@@ -12,11 +12,15 @@ void SimulatedWorld::take_up(SimJob& job) {
   job.stored.accepted.clear();
   for (const auto& [frame, record] : contents.finished) job.stored.finished.push_back(frame);
   job.stored_units.clear();
+  job.stored.disputed = contents.disputed;
   for (const auto& [frame, units] : contents.units) {
     for (const AcceptedUnit& u : units) job.stored_units.insert(name(u.unit));
     job.stored.accepted.insert(job.stored.accepted.end(), units.begin(), units.end());
     films_replayed += units.size();
   }
+  // What the log holds no more was void before it was heard of.
+  std::erase_if(job.disagreed,
+                [&](const core::Unit& u) { return !job.stored_units.contains(name(u)); });
   for (auto& [number, frame] : job.frames) {
     const auto film = contents.films.find(number);
     frame.film = film == contents.films.end() ? job.disk->blank() : *film->second;

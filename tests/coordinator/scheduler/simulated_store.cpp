@@ -48,6 +48,9 @@ std::pair<JobId, int32_t> SimulatedWorld::frame_of(const Record& record) {
   if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
     return {voided->job, voided->frame};
   }
+  if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
+    return {dispute->job, INT32_MIN};
+  }
   const auto& again = std::get<FrameRestartedRecord>(record);
   return {again.job, again.frame};
 }
@@ -108,6 +111,11 @@ void SimulatedWorld::store(const Record& record) {
       if (there) job.stored_units.erase(name(u.unit));
       return there;
     });
+    std::erase_if(job.disagreed, [&](const core::Unit& u) {
+      return u.frame == voided->frame && u.tile == voided->tile;
+    });
+  } else if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
+    jobs_.at(dispute->job).stored.disputed = dispute->open;
   } else {
     const auto& again = std::get<FrameRestartedRecord>(record);
     SimJob& job = jobs_.at(again.job);
@@ -116,6 +124,7 @@ void SimulatedWorld::store(const Record& record) {
                   [&](const AcceptedUnit& u) { return u.unit.frame == again.frame; });
     std::erase_if(job.stored_units,
                   [&](const UnitName& u) { return std::get<0>(u) == again.frame; });
+    std::erase_if(job.disagreed, [&](const core::Unit& u) { return u.frame == again.frame; });
   }
 }
 

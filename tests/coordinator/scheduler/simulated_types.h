@@ -52,6 +52,9 @@ struct SimWorker {
 /// Names a unit within its job: frame, corner of the tile, batches.
 using UnitName = std::tuple<int32_t, int32_t, int32_t, uint32_t, uint32_t>;
 
+/// Corner of a tile and the batch, within a frame.
+using PlaceOfBatch = std::tuple<int32_t, int32_t, uint32_t>;
+
 /// A batch that has been merged.
 struct SimBatch {
   uint64_t value = 0;
@@ -61,7 +64,7 @@ struct SimBatch {
 
 /// What the merger holds of a frame, and what shall go wrong with it.
 struct SimFrame {
-  std::map<std::tuple<int32_t, int32_t, uint32_t>, SimBatch> batches;  ///< that have been merged
+  std::map<PlaceOfBatch, SimBatch> batches;  ///< that have been merged
   uint64_t sum = 0;
   core::Film film;  ///< the real one, where the store is
   std::string worker_class;
@@ -76,6 +79,8 @@ struct SimJob {
   JobPlan plan;
   RestoredJob stored;  ///< what the store holds
   std::set<UnitName> stored_units;
+  /// What is stored of these is not what another worker has rendered, and has been told so.
+  std::vector<core::Unit> disagreed;
   // Where the store is the real one.
   std::unique_ptr<SimulatedDisk> disk;
   std::deque<std::pair<uint64_t, Persist>> appended;  ///< numbers in the log; nobody has heard yet

@@ -45,6 +45,7 @@ void SimulatedWorld::act(const Reject& a) {
   if (a.reason == RejectReason::malformed) fail("a good unit is malformed");
   overlaps += a.reason == RejectReason::overlap;
   if (a.reason == RejectReason::not_now) return;
+  if (a.reason == RejectReason::conflict) jobs_.at(a.job).disagreed.push_back(a.unit);
   send(a.worker, [this, a](SimWorker& w) { drop(w, a.job, a.unit, {}); });
 }
 

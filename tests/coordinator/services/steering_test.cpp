@@ -182,8 +182,10 @@ TEST(Steering, AWorkerWithOtherBitsThanTwoOthersIsQuarantinedAndItsFilmsDoNotCou
     return true;
   };
   const ScriptedWorker second(world.address, good);
-  ASSERT_TRUE(eventually([&] { return !second.rejections().empty(); }));
-  EXPECT_EQ(second.rejections().front().reason(), v1::Rejected::REASON_CONFLICT);
+  // Not before the log knows.
+  ASSERT_TRUE(eventually([&] { return second.rejections().size() > 1; }));
+  EXPECT_EQ(second.rejections().front().reason(), v1::Rejected::REASON_NOT_NOW);
+  EXPECT_EQ(second.rejections().back().reason(), v1::Rejected::REASON_CONFLICT);
   v1::ExplainResponse why;
   ASSERT_TRUE(world.jobs->Explain(world.context().get(), about(job), &why).ok());
   EXPECT_NE(why.reasons(0).find("rendered differently"), std::string::npos) << why.reasons(0);
@@ -204,6 +206,44 @@ TEST(Steering, AWorkerWithOtherBitsThanTwoOthersIsQuarantinedAndItsFilmsDoNotCou
   };
   ASSERT_TRUE(eventually([&] { return found().state() == v1::WORKER_STATE_QUARANTINED; }));
   EXPECT_NE(found().reason().find("other bits than two other workers"), std::string::npos);
+}
+
+TEST(Steering, WhatWorkersDisagreedAboutDoesNotCountAfterARestart) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  {
+    std::atomic<int> given{0};
+    v1::LeasedUnit first;
+    ScriptedWorker::Script odd = world.script(1);
+    odd.corrupt = [](core::Film& film) { film.mutable_plane(0)[0] += core::Fixed128{0, 1}; };
+    odd.meddle = [&](ScriptedWorker&, const v1::LeasedUnit& unit) {
+      if (given == 0) first = unit;
+      return ++given <= 4;
+    };
+    const ScriptedWorker broken(world.address, odd);
+    ASSERT_TRUE(eventually([&] { return broken.acknowledged() >= 4; }));
+    std::atomic<bool> compared{false};
+    ScriptedWorker::Script good = world.script(2);
+    good.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
+      if (!compared.exchange(true)) self.deliver(first);
+      return false;
+    };
+    const ScriptedWorker second(world.address, good);
+    ASSERT_TRUE(eventually([&] {
+      const auto rejected = second.rejections();
+      return !rejected.empty() && rejected.back().reason() == v1::Rejected::REASON_CONFLICT;
+    }));
+    world.stop();
+  }
+  // There is no third who decides, only a coordinator that has forgotten who was who.
+  world.start();
+  const ScriptedWorker alone(world.address, world.script(2));
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  world.expect_truth(job, 1);
+  EXPECT_EQ(world.get(job).job().samples_done(),
+            uint64_t{FarmWorld::kWidth} * FarmWorld::kHeight * FarmWorld::kSamples);
+  world.stop();
 }
 
 TEST(Steering, SubmittingTwiceMakesOneJobAndMissingFilesAreNamed) {
