@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -6,18 +7,56 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/film_room.h"
+#include "cli/frame_range.h"
 #include "cli/load_job.h"
+#include "coordinator/local/local_plan.h"
+#include "coordinator/scheduler/run_length.h"
+#include "coordinator/scheduler/tile_grid.h"
 #include "core/base/hash.h"
 #include "core/base/machine.h"
+#include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/build_scene.h"
+#include "core/scene/scene_files.h"
 
 namespace hyades::cli {
 namespace {
 
 constexpr auto kProbeTime = std::chrono::milliseconds(700);
+
+/// Reads all files that the job names and complains about what is wrong in them: of a good job,
+/// those of its scene into `cache`; what nothing uses is not kept.
+core::Status read_contents(const LoadedJob& loaded, core::SceneCache& cache,
+                           core::Diagnostics& diagnostics) {
+  core::SceneFiles others = core::files_of_job(loaded.job);
+  if (diagnostics.empty()) {
+    const core::SceneFiles scene = core::files_of_scene(loaded.job);
+    if (auto done = core::load_files(scene, cache, diagnostics); !done) return done;
+    others = core::without(std::move(others), scene);
+  }
+  // That a file is not there has been told.
+  const auto is_missing = [&](const auto& file) { return !loaded.assets->open(file.file); };
+  std::erase_if(others.meshes, is_missing);
+  std::erase_if(others.images, is_missing);
+  if (!others.sky.empty() && !loaded.assets->open(others.sky)) others.sky.clear();
+  core::SceneCache aside(*loaded.assets);
+  return core::load_files(others, aside, diagnostics);
+}
+
+/// About how many units `render` cuts a frame into, where a sample takes `seconds` of one thread.
+uint64_t units_per_frame(const core::Job& job, const coordinator::LocalPlan& plan, double seconds) {
+  const coordinator::TileGrid grid(plan.region, plan.tile_size);
+  const uint64_t batches = core::batch_count(plan.samples);
+  const int64_t frames = frame_count(job.frames.first, job.frames.last, job.frames.step);
+  const double pixels = static_cast<double>(plan.region.area()) / grid.size();
+  const double batch = seconds * pixels * std::min(plan.samples, core::kBatchSamples);
+  const uint64_t all = grid.size() * batches * static_cast<uint64_t>(frames);
+  const uint64_t run = coordinator::run_length(std::max(batch, 1e-12), plan.unit_time, all,
+                                               static_cast<uint64_t>(core::hardware_threads()));
+  return grid.size() * ((batches + run - 1) / run);
+}
 
 /// Seconds of one core that a sample of `renderer` takes, measured on small patches scattered over
 /// the window. What else the machine does is not counted.
@@ -70,10 +109,19 @@ int check_command(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kBadInput;
   }
-  auto loaded = load_job(path);
+  core::Diagnostics diagnostics;
+  auto loaded = read_job_file(path, diagnostics);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;
   core::SceneCache cache(*loaded->assets);
+  if (const auto read = read_contents(*loaded, cache, diagnostics); !read) {
+    std::fprintf(stderr, "%s\n", read.error().message.c_str());
+    return kBadInput;
+  }
+  if (!diagnostics.empty()) {
+    std::fputs(diagnostics.to_string().c_str(), stderr);
+    return kBadInput;
+  }
   auto scene = core::build_scene(job, job.frames.first, cache);
   if (!scene) {
     std::fprintf(stderr, "%s\n", scene.error().message.c_str());
@@ -82,7 +130,7 @@ int check_command(int argc, char** argv) {
   const core::PixelRect window = core::render_window(job.film);
   const core::LayerSet layers = core::needed_layers(job);
   const core::FrameRenderer renderer(*scene, job, job.frames.first, layers);
-  const int64_t frames = (int64_t{job.frames.last} - job.frames.first) / job.frames.step + 1;
+  const int64_t frames = frame_count(job.frames.first, job.frames.last, job.frames.step);
   const uint64_t pixels = static_cast<uint64_t>(window.area());
   // In double: the largest jobs have more than 64 bits can count.
   const double samples =
@@ -102,6 +150,20 @@ int check_command(int argc, char** argv) {
               samples_in_words(samples).c_str());
   std::printf("  batches    %s per frame, of %u samples of a pixel each\n",
               core::format_count(batches).c_str(), core::kBatchSamples);
+  coordinator::LocalPlan plan;
+  plan.region = window;
+  plan.samples = job.sampling.samples;
+  const uint64_t tiles = coordinator::TileGrid(window, plan.tile_size).size();
+  const double seconds = no_probe ? 0.0 : seconds_per_sample(renderer, window, job.frames.first);
+  if (no_probe) {
+    std::printf("  units      %s to %s per frame (tiles of %d x %d pixels)\n",
+                core::format_count(tiles).c_str(), core::format_count(tiles * batches).c_str(),
+                plan.tile_size, plan.tile_size);
+  } else {
+    std::printf("  units      about %s per frame (%s tiles of %d x %d pixels, runs of batches)\n",
+                core::format_count(units_per_frame(job, plan, seconds)).c_str(),
+                core::format_count(tiles).c_str(), plan.tile_size, plan.tile_size);
+  }
   const uint64_t memory = (*scene)->world->memory() + (*scene)->texture_memory + room.film;
   std::printf(
       "  memory     about %s (geometry %s, textures %s, film %s)\n",
@@ -113,8 +175,8 @@ int check_command(int argc, char** argv) {
     std::printf("  warning    there are %s of memory only\n",
                 core::format_bytes(room.here).c_str());
   }
-  if (!no_probe && pixels > 0) {
-    const double hours = seconds_per_sample(renderer, window, job.frames.first) * samples / 3600.0;
+  if (!no_probe) {
+    const double hours = seconds * samples / 3600.0;
     std::printf("  cost       about %s of one core like this one (%.3g core-hours)\n",
                 duration_in_words(hours).c_str(), hours);
   }

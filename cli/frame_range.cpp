@@ -23,8 +23,11 @@ core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::st
       range.last = range.first;
     }
   }
-  if (range.step < 1 || range.first > range.last || range.first < job.first ||
-      range.last > job.last) {
+  if (range.step < 1 || range.first > range.last) {
+    return core::Error{fmt::format(
+        "--frames {}: expected a range from its first frame on, such as 1-10 or 1-10x2", text)};
+  }
+  if (range.first < job.first || range.last > job.last) {
     return core::Error{fmt::format("--frames {}: expected frames within the job's range {}-{}",
                                    text, job.first, job.last)};
   }

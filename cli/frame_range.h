@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "core/base/result.h"
@@ -13,6 +14,11 @@ struct FrameRange {
   int last = 1;
   int step = 1;
 };
+
+/// How many frames first, first + step, ... up to last are.
+inline int64_t frame_count(int first, int last, int step) {
+  return (int64_t{last} - first) / step + 1;
+}
 
 /// "7", "1-10" or "1-10x2" as frames of a job; "" is all of them. An error where the text is not of
 /// that form or names a frame outside the job's range.

@@ -67,7 +67,11 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
 core::Status JobFrames::check_film_names() const {
   if (!options_.write_films) return {};
   for (const core::OutputDesc& output : loaded_.job.outputs) {
-    if (!core::same_output_path(output.file, core::film_file(loaded_.job))) continue;
+    const std::string film = core::film_file(loaded_.job);
+    if (!core::same_output_path(output.file, film) &&
+        !core::nested_output_paths(output.file, film)) {
+      continue;
+    }
     const std::string message = fmt::format(
         "file is '{}', where --film writes the film, expected another name", output.file);
     return core::Error{core::Diagnostic{output.where, message}.to_string()};

@@ -20,7 +20,7 @@ bool is_mesh(const std::string& path) {
 
 }  // namespace
 
-std::optional<LoadedJob> load_job(const std::string& path) {
+std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& diagnostics) {
   const std::filesystem::path file(path);
   LoadedJob loaded;
   loaded.files =
@@ -40,9 +40,14 @@ std::optional<LoadedJob> load_job(const std::string& path) {
     std::fprintf(stderr, "%s\n", text.error().message.c_str());
     return std::nullopt;
   }
-  Diagnostics diagnostics;
   loaded.job =
       core::parse_job(std::string(text->chars(), text->size()), path, *loaded.assets, diagnostics);
+  return loaded;
+}
+
+std::optional<LoadedJob> load_job(const std::string& path) {
+  Diagnostics diagnostics;
+  auto loaded = read_job_file(path, diagnostics);
   if (!diagnostics.empty()) {
     std::fprintf(stderr, "%s\n", diagnostics.to_string().c_str());
     return std::nullopt;
@@ -54,6 +59,13 @@ std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const st
   const auto range = parse_frames(job.frames, text);
   if (!range) {
     std::fprintf(stderr, "%s\n", range.error().message.c_str());
+    return std::nullopt;
+  }
+  const int64_t count = frame_count(range->first, range->last, range->step);
+  if (count > kMostFrames) {
+    std::fprintf(stderr,
+                 "%lld frames, expected at most %lld in one run: choose some with --frames\n",
+                 static_cast<long long>(count), static_cast<long long>(kMostFrames));
     return std::nullopt;
   }
   std::vector<int32_t> frames;

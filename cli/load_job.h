@@ -21,11 +21,18 @@ struct LoadedJob {
 /// Prints every complaint to standard error and returns nothing where there is one.
 std::optional<LoadedJob> load_job(const std::string& path);
 
+/// The same without printing complaints about the job: they go to `diagnostics`, and what could be
+/// read is returned. Nothing (and a message) where there is no such file or the mesh is broken.
+std::optional<LoadedJob> read_job_file(const std::string& path, core::Diagnostics& diagnostics);
+
 /// Exit status of a command whose arguments or job were wrong.
 inline constexpr int kBadInput = 2;
 
+/// So many frames are rendered in one run: each takes some memory.
+inline constexpr int64_t kMostFrames = 1'000'000;
+
 /// The frames of "7", "1-10" or "1-10x2" that the job has; nothing (and a message) where the text
-/// is not of that form or names a frame outside the job.
+/// is not of that form, names a frame outside the job, or the frames are more than kMostFrames.
 std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const std::string& text);
 
 }  // namespace hyades::cli

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/film_room.h"
+#include "cli/frame_range.h"
 #include "cli/interrupt.h"
 #include "cli/job_frames.h"
 #include "cli/load_job.h"
@@ -43,7 +44,11 @@ struct RenderOptions {
 std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options) {
   CLI::App app("Renders a job (or a mesh file) on this machine.", "hyades render");
   app.add_option("job", options.path, "the job (.yaml) or mesh (.obj, .ply)")->required();
-  app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)");
+  app.add_option("--frames", options.frames,
+                 "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
+      ->check([](const std::string& text) {
+        return text.empty() ? "expected frames such as 7, 1-10 or 1-10x2" : std::string();
+      });
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
       ->check(CLI::Range(1U, 1U << 24U));
   app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
@@ -227,6 +232,13 @@ int render_command(int argc, char** argv) {
     }
   }
   std::error_code failed;
+  for (const std::string& own : {options.folder + "/.hyades", kept}) {
+    if (!std::filesystem::is_symlink(own, failed)) continue;
+    std::fprintf(stderr, "%s: a symbolic link, expected a folder of the run's own (or none)\n",
+                 own.c_str());
+    return kBadInput;
+  }
+  const bool begins_over = !options.resume && std::filesystem::exists(kept, failed);
   std::filesystem::create_directories(options.folder, failed);
   if (failed) {
     std::fprintf(stderr, "%s: the folder could not be made: %s\n", options.folder.c_str(),
@@ -251,6 +263,11 @@ int render_command(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", started.error().message.c_str());
     return 1;
   }
+  if (begins_over) {
+    std::fprintf(stderr,
+                 "the work kept from an earlier run is given up; --resume would have "
+                 "gone on with it\n");
+  }
   // The log is ours now, so nobody else writes these files.
   frames.remove_leftovers(*numbers, begin);
   note.write();
@@ -270,7 +287,8 @@ int render_command(int argc, char** argv) {
   const int status = report(options, frames, *numbers, outcome, run.progress());
   // Everything is written: the films are of no more use. After --frames the log may hold work on
   // other frames.
-  const bool all_frames = numbers->size() == select_frames(job, "")->size();
+  const bool all_frames = static_cast<int64_t>(numbers->size()) ==
+                          frame_count(job.frames.first, job.frames.last, job.frames.step);
   if (outcome.complete && outcome.failures.empty() && all_frames) {
     std::filesystem::remove_all(log.folder, failed);
     std::filesystem::remove(kept + ".outputs", failed);

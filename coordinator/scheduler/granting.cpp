@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#include "coordinator/scheduler/run_length.h"
 #include "coordinator/scheduler/scheduler.h"
 
 namespace hyades::coordinator {
@@ -153,7 +154,7 @@ bool Scheduler::grant_from(const Place& place, WorkerId id, Worker& worker, bool
   const LeaseId next{options_.incarnation, next_lease_};
   while (extents.size() < (ahead ? 1 : worker.wanted)) {
     const auto extent = slot.books->next(
-        allowed, [&](uint32_t tile) { return run_length(job, *slot.books, tile); });
+        allowed, [&](uint32_t tile) { return run_length_of(job, *slot.books, tile); });
     if (!extent) break;
     note_copy_candidate(job, place.slot,
                         slot.books->assign(*extent, {id, next}, next_assignment_++));
@@ -197,19 +198,15 @@ bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
   return false;
 }
 
-/// As many batches as take one thread options_.unit_time; but where all that is left to lease is
-/// little, not so many that the threads would end far apart.
-uint32_t Scheduler::run_length(const JobState& job, const FrameState& books, uint32_t tile) const {
+uint32_t Scheduler::run_length_of(const JobState& job, const FrameState& books,
+                                  uint32_t tile) const {
   const double cost = job.tile_cost[tile] > 0 ? job.tile_cost[tile] : job.mean_cost;
   if (cost <= 0) return 1;
-  const double seconds = std::chrono::duration<double>(options_.unit_time).count();
-  const double by_time = std::clamp(seconds / cost, 1.0, 1e6);
   uint64_t left = std::max(offered_, books.free());
   if (job.in_flight.size() < job.plan.frames_in_flight) {
     left += job.waiting * books.total();
   }
-  const uint64_t by_spread = left / (4 * std::max<uint64_t>(threads_, 1));
-  uint64_t run = std::max<uint64_t>(1, std::min(static_cast<uint64_t>(by_time), by_spread));
+  uint64_t run = run_length(cost, options_.unit_time, left, threads_);
   if (job.plan.order == FrameOrder::progressive) {
     // No tile gets ahead of its frame's pass.
     const uint32_t pass = pass_of(books, job.grid.size());

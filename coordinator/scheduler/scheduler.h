@@ -186,7 +186,7 @@ class Scheduler {
   std::optional<uint32_t> find_pass(const JobState& job, WorkerId id, const Worker& worker) const;
   bool grant_from(const Place& place, WorkerId id, Worker& worker, bool ahead);
   bool grant_copy(WorkerId id, Worker& worker);
-  uint32_t run_length(const JobState& job, const FrameState& books, uint32_t tile) const;
+  uint32_t run_length_of(const JobState& job, const FrameState& books, uint32_t tile) const;
   bool may_try(const JobState& job, WorkerId id, const Worker& worker,
                const std::vector<WorkerId>& blamed) const;
   void note_copy_candidate(const JobState& job, uint32_t slot, const Assignment& assignment);

@@ -79,7 +79,8 @@ Status FilmLog::open_guard(const std::string& key) {
       return Error{path(kGuardName) +
                    " is damaged or from a newer version of Hyades (it begins "
                    "with \"" +
-                   title.substr(0, 40) + "\", expected \"" + kGuardTitle + "\")"};
+                   title.substr(0, 40) + "\", expected \"" + kGuardTitle +
+                   "\"): remove the folder or choose another one"};
     }
     if (holder == key) return {};
     return Error{folder_ + " holds the work of another job (its key is " + holder +

@@ -178,7 +178,7 @@ class Path {
     ray_.time = point.time;
     if (work_.log != nullptr) {
       work_.log->lines.push_back(fmt::format("  {} {} along {}, weight {}",
-                                             sample->delta ? "specular" : "smooth",
+                                             sample->delta ? "specular" : "scattered",
                                              sample->transmitted ? "transmission" : "reflection",
                                              show(sample->wi), show(sample->weight)));
     }
@@ -198,9 +198,11 @@ class Path {
   }
 
   void log_hit(const SurfacePoint& point, const SceneObject& object) {
+    const bool mesh = scene_.world->placement(point.object).shape.kind == Shape::Kind::mesh;
     work_.log->lines.push_back(
-        fmt::format("  meets '{}' (triangle {}) at {} after {:.6g} m, normal {}", object.name,
-                    point.primitive, show(point.position), point.t, show(point.ns)));
+        fmt::format("  meets '{}'{} at {} after {:.6g} m, normal {}", object.name,
+                    mesh ? fmt::format(" (triangle {})", point.primitive) : std::string(),
+                    show(point.position), point.t, show(point.ns)));
   }
 
   /// Where the path scattered last: what light selection and MIS refer to.

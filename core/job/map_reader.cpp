@@ -25,6 +25,9 @@ std::string belongs_elsewhere(const std::string& section, const std::string& key
       types.push_back(k.section.substr(family.size()));
     }
   }
+  // Not a type: the section of what all have but mix and null.
+  std::replace(types.begin(), types.end(), std::string("surfaces"),
+               std::string("materials that have a surface"));
   return types.empty() ? "" : "; it belongs to " + join_names(types);
 }
 
@@ -45,16 +48,20 @@ MapReader::MapReader(ReadContext& context, const YamlNode& map, std::string what
   context_.spend(map.map.size() + 1, where_);
 }
 
-const YamlNode* MapReader::find(std::string_view key) {
+const YamlNode* MapReader::find(std::string_view key) { return find(key, ""); }
+
+const YamlNode* MapReader::find_color(std::string_view key) {
+  return find(key,
+              " (a colour such as \"#d8c8a8\" needs its quotes: an unquoted # starts a comment)");
+}
+
+const YamlNode* MapReader::find(std::string_view key, std::string_view hint) {
   asked_.emplace_back(key);
   if (listing()) context_.listing->insert({section_, std::string(key)});
   const YamlEntry* entry = map_.find(key);
   if (entry == nullptr) return nullptr;
   if (entry->value->kind == YamlNode::Kind::null) {
-    complain(entry->key_where,
-             fmt::format("{} is empty, expected a value (a colour such as \"#d8c8a8\" needs its "
-                         "quotes: an unquoted # starts a comment)",
-                         std::string(key)));
+    complain(entry->key_where, fmt::format("{} is empty, expected a value{}", key, hint));
     return nullptr;
   }
   return entry->value.get();
@@ -115,7 +122,9 @@ void MapReader::flag(std::string_view key, bool& target) {
 void MapReader::text(std::string_view key, std::string& target, std::string_view expected) {
   const YamlNode* node = find(key);
   if (node == nullptr) return;
-  if (node->kind == YamlNode::Kind::scalar && !node->scalar.empty()) {
+  if (node->kind == YamlNode::Kind::scalar && node->scalar.find('\n') != std::string::npos) {
+    mismatch(key, *node, std::string(expected) + " on one line");
+  } else if (node->kind == YamlNode::Kind::scalar && !node->scalar.empty()) {
     target = node->scalar;
   } else {
     mismatch(key, *node, std::string(expected));
@@ -227,12 +236,12 @@ void MapReader::animated_scale(std::string_view key, Animated<Vec3>& target, con
 }
 
 void MapReader::color(std::string_view key, Animated<Rgb>& target, const Range& range) {
-  const YamlNode* node = find(key);
+  const YamlNode* node = find_color(key);
   if (node != nullptr) read_animated_color({context_, std::string(key), range}, *node, target);
 }
 
 void MapReader::color_input(std::string_view key, ColorInput& target, const Range& range) {
-  const YamlNode* node = find(key);
+  const YamlNode* node = find_color(key);
   if (node == nullptr) return;
   if (read_texture_input(*this, key, *node, target.texture)) return;
   if (read_animated_color({context_, std::string(key), range}, *node, target.value)) {

@@ -84,6 +84,10 @@ class MapReader {
   void finish();
 
  private:
+  const YamlNode* find(std::string_view key, std::string_view hint);
+  /// The same; where it is empty, the complaint tells of the commonest reason.
+  const YamlNode* find_color(std::string_view key);
+
   ReadContext& context_;
   const YamlNode& map_;
   std::string what_;

@@ -7,6 +7,15 @@
 
 namespace hyades::core {
 
+namespace {
+
+std::filesystem::path comparable(const std::string& file) {
+  // Runs of # of different length may still meet at long frame numbers.
+  return std::filesystem::path(output_path(file, 1'000'000'000)).lexically_normal();
+}
+
+}  // namespace
+
 std::string output_path(const std::string& file, int32_t frame) {
   std::string path;
   for (size_t i = 0; i < file.size();) {
@@ -28,9 +37,14 @@ std::string file_extension(const std::string& file) {
 }
 
 bool same_output_path(const std::string& a, const std::string& b) {
-  // Runs of different length may still meet at long frame numbers.
-  return std::filesystem::path(output_path(a, 1'000'000'000)).lexically_normal() ==
-         std::filesystem::path(output_path(b, 1'000'000'000)).lexically_normal();
+  return comparable(a) == comparable(b);
+}
+
+bool nested_output_paths(const std::string& a, const std::string& b) {
+  const std::filesystem::path one = comparable(a);
+  const std::filesystem::path two = comparable(b);
+  const auto [at_one, at_two] = std::mismatch(one.begin(), one.end(), two.begin(), two.end());
+  return one != two && (at_one == one.end() || at_two == two.end());
 }
 
 }  // namespace hyades::core

@@ -31,7 +31,8 @@ bool read_keys(const ValueSite& site, const YamlNode& node, Animated<T>& target,
   reader.finish();
   if (keys == nullptr) return false;
   if (keys->kind != YamlNode::Kind::map || keys->map.empty()) {
-    complain_mismatch(site, *keys, "a map of frame numbers to values, such as {1: 0, 120: 1}");
+    const ValueSite keys_site{site.context, "keys of " + site.label, {}};
+    complain_mismatch(keys_site, *keys, "a map of frame numbers to values, such as {1: 0, 120: 1}");
     return false;
   }
   if (!site.context.spend(keys->map.size(), keys->where)) return false;

@@ -31,9 +31,9 @@ void read_named(MapReader& parent, std::string_view key, const std::string& noun
     if (!is_valid_name(entry.key) || reads_as_color) {
       context.complain(
           entry.key_where,
-          fmt::format("'{}' cannot be the name of a {}: expected letters, digits, '_', '-', '.'"
+          fmt::format("'{}' cannot be the name of {} {}: expected letters, digits, '_', '-', '.'"
                       " and inner spaces, at most 100{}",
-                      entry.key.substr(0, 60), noun,
+                      entry.key.substr(0, 60), noun.starts_with('o') ? "an" : "a", noun,
                       reads_as_color ? ", that do not read as a colour or number" : ""));
       continue;
     }

@@ -121,7 +121,8 @@ void read_output(MapReader& reader, Job& job) {
   }
   check_frame_marks(reader, where, output.file, job.frames);
   check_inside_folder(reader, where, output.file);
-  if (job.keep_films && same_output_path(output.file, film_file(job))) {
+  if (job.keep_films && (same_output_path(output.file, film_file(job)) ||
+                         nested_output_paths(output.file, film_file(job)))) {
     reader.complain(where, fmt::format("file is '{}', where keep_films puts the film, expected "
                                        "another name",
                                        output.file));
@@ -133,6 +134,12 @@ void read_output(MapReader& reader, Job& job) {
     if (same_output_path(other.file, output.file)) {
       reader.complain(where, fmt::format("file is '{}', which line {} writes already", output.file,
                                          other.where.line));
+      return;
+    }
+    if (nested_output_paths(other.file, output.file)) {
+      reader.complain(where, fmt::format("file is '{}', which cannot stand beside '{}' of line {}: "
+                                         "one would be the other's folder",
+                                         output.file, other.file, other.where.line));
       return;
     }
   }

@@ -113,10 +113,6 @@ class TreeBuilder : public YAML::EventHandler {
     if (static_cast<int>(stack_.size()) >= kMaxYamlDepth) {
       throw Refusal{at(mark), "nested deeper than " + std::to_string(kMaxYamlDepth) + " levels"};
     }
-    if (!stack_.empty() && stack_.back().node->kind == YamlNode::Kind::map &&
-        !stack_.back().key_pending) {
-      throw Refusal{at(mark), "a list or map as a key; keys are plain text"};
-    }
     count(1, mark);
     Open next;
     next.node = std::make_shared<YamlNode>();
@@ -169,16 +165,26 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  void take_key(Open& top, const YamlNode& node, const YamlPlace& where, bool alias) {
-    if (alias || node.kind != YamlNode::Kind::scalar) {
-      throw Refusal{where, "an empty key or an alias as a key; keys are plain text"};
-    }
+  /// What is to be complained about where `node` stands as a key; null: nothing.
+  static const char* wrong_as_key(const YamlNode& node, bool alias) {
+    if (alias) return "an alias as a key; keys are plain text";
+    if (node.kind == YamlNode::Kind::null) return "an empty key; keys are plain text";
+    if (node.kind != YamlNode::Kind::scalar) return "a list or map as a key; keys are plain text";
     if (node.scalar == "<<" && !node.quoted) {
-      throw Refusal{where, "'<<' is not supported; use `like: name` to copy another entry's keys"};
+      return "'<<' is not supported; use `like: name` to copy another entry's keys";
     }
+    return nullptr;
+  }
+
+  void take_key(Open& top, const YamlNode& node, const YamlPlace& where, bool alias) {
     top.key = node.scalar;
     top.key_where = where;
     top.key_pending = true;
+    if (const char* wrong = wrong_as_key(node, alias)) {
+      top.drop_value = true;
+      diagnostics_.add(where, wrong);
+      return;
+    }
     const auto [first, fresh] = top.keys.emplace(top.key, where.line);
     top.drop_value = !fresh;
     if (!fresh) {
@@ -249,7 +255,7 @@ std::string describe(const YamlNode& node) {
     case YamlNode::Kind::list:
       return "a list of " + std::to_string(node.list.size());
     case YamlNode::Kind::map:
-      return "a map";
+      return node.map.empty() ? "an empty map" : "a map";
     case YamlNode::Kind::scalar:
       break;
   }

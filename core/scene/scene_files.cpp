@@ -1,5 +1,6 @@
 #include "core/scene/scene_files.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -22,12 +23,37 @@ class Walk {
     for (const MaterialDesc& material : job.materials) materials_.emplace(material.name, &material);
     for (const TextureDesc& texture : job.textures) textures_.emplace(texture.name, &texture);
     visit(job.objects, "");
-    if (job.environment) files_.sky = job.environment->image;
+    add_sky(job);
+  }
+
+  /// Of all that the job holds. Follows no names, which may lead astray in a job with mistakes.
+  static SceneFiles all(const Job& job) {
+    Walk walk;
+    for (const GroupDesc& group : job.groups) walk.add_meshes(group.objects);
+    walk.add_meshes(job.objects);
+    for (const TextureDesc& texture : job.textures) walk.add_image(texture);
+    walk.add_sky(job);
+    return walk.take();
   }
 
   SceneFiles take() { return std::move(files_); }
 
  private:
+  Walk() = default;
+
+  void add_sky(const Job& job) {
+    if (!job.environment) return;
+    files_.sky = job.environment->image;
+    files_.sky_where = job.environment->where;
+  }
+
+  void add_meshes(const std::vector<ObjectDesc>& objects) {
+    for (const ObjectDesc& object : objects) {
+      add_mesh(object);
+      add_meshes(object.children);
+    }
+  }
+
   void visit(const std::vector<ObjectDesc>& objects, const std::string& inherited) {
     for (const ObjectDesc& object : objects) {
       const std::string& material = object.material.empty() ? inherited : object.material;
@@ -72,14 +98,18 @@ class Walk {
     const auto found = textures_.find(name);
     if (found == textures_.end() || !seen_textures_.insert(name).second) return;
     const TextureDesc& texture = *found->second;
-    if (!texture.file.empty()) {
-      const auto space = color_space_of(texture);
-      if (space && seen_images_.insert({texture.file, *space}).second) {
-        files_.images.push_back({texture.file, *space, "texture '" + name + "'", texture.where});
-      }
-    }
+    add_image(texture);
     visit_texture(texture.a.texture);
     visit_texture(texture.b.texture);
+  }
+
+  void add_image(const TextureDesc& texture) {
+    if (texture.file.empty()) return;
+    const auto space = color_space_of(texture);
+    if (space && seen_images_.insert({texture.file, *space}).second) {
+      files_.images.push_back(
+          {texture.file, *space, "texture '" + texture.name + "'", texture.where});
+    }
   }
 
   std::map<std::string, const GroupDesc*> groups_;
@@ -97,8 +127,23 @@ class Walk {
 
 SceneFiles files_of_scene(const Job& job) { return Walk(job).take(); }
 
-Status load_files(const Job& job, SceneCache& cache) {
-  const SceneFiles files = files_of_scene(job);
+SceneFiles files_of_job(const Job& job) { return Walk::all(job); }
+
+SceneFiles without(SceneFiles all, const SceneFiles& some) {
+  const auto remove = [](auto& from, const auto& these) {
+    std::erase_if(from, [&](const auto& file) {
+      return std::any_of(these.begin(), these.end(), [&](const auto& other) {
+        return other.file == file.file && other.how == file.how;
+      });
+    });
+  };
+  remove(all.meshes, some.meshes);
+  remove(all.images, some.images);
+  if (all.sky == some.sky) all.sky.clear();
+  return all;
+}
+
+Status load_files(const SceneFiles& files, SceneCache& cache, Diagnostics& diagnostics) {
   const size_t meshes = files.meshes.size();
   const size_t images = files.images.size();
   const size_t count = meshes + images + (files.sky.empty() ? 0 : 1);
@@ -115,18 +160,21 @@ Status load_files(const Job& job, SceneCache& cache) {
       const auto& image = files.images[i - meshes];
       note(i, cache.image(image.file, image.how), image.user, image.where);
     } else {
-      note(i, cache.environment_map(files.sky), "environment", job.environment->where);
+      note(i, cache.environment_map(files.sky), "environment", files.sky_where);
     }
   });
   if (!all) return all;
-  Diagnostics diagnostics;
   for (auto& failure : failures) {
     if (failure) diagnostics.add(failure->where, std::move(failure->message));
   }
+  return {};
+}
+
+Status load_files(const Job& job, SceneCache& cache) {
+  Diagnostics diagnostics;
+  if (Status loaded = load_files(files_of_scene(job), cache, diagnostics); !loaded) return loaded;
   if (diagnostics.empty()) return {};
-  std::string text = diagnostics.to_string();
-  text.pop_back();  // the last line's end
-  return Error{std::move(text)};
+  return diagnostics.to_error();
 }
 
 }  // namespace hyades::core

@@ -21,13 +21,24 @@ struct SceneFile {
 struct SceneFiles {
   std::vector<SceneFile<MeshNormals>> meshes;
   std::vector<SceneFile<ColorSpace>> images;
-  std::string sky;  ///< empty: none
+  std::string sky;           ///< empty: none
+  SourceLocation sky_where;  ///< of the environment
 };
 
 /// Those of what the scene shows: groups, materials and textures that nothing uses do not count.
 SceneFiles files_of_scene(const Job& job);
 
-/// Loads them into `cache`, several at once. The error lists all that cannot be loaded, a line each
+/// Those of everything that the job holds, used or not; also of a job with mistakes in it.
+SceneFiles files_of_job(const Job& job);
+
+/// Those of `all` that are not among `some`.
+SceneFiles without(SceneFiles all, const SceneFiles& some);
+
+/// Loads `files` into `cache`, several at once, and complains about each that cannot be loaded.
+Status load_files(const SceneFiles& files, SceneCache& cache, Diagnostics& diagnostics);
+
+/// Loads the files of the job's scene into `cache`, several at once. The error lists all that
+/// cannot be loaded, a line each
 /// ("job.yaml:7:3: object 'vase': vase.obj: line 4: ..."), in the order of the document, whatever
 /// failed first.
 Status load_files(const Job& job, SceneCache& cache);

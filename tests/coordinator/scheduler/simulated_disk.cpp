@@ -16,10 +16,6 @@ core::FilmLayout layout() {
   return core::make_film_layout(layers);
 }
 
-void must(const core::Status& status, const char* what) {
-  if (!status) throw std::string(what) + ": " + status.error().message;
-}
-
 }  // namespace
 
 LogContents SimulatedDisk::open() {

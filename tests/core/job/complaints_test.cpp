@@ -106,6 +106,43 @@ TEST(Complaints, Colors) {
             "job.yaml:2:22: color is '20K', expected a black body from 500K to 100000K\n");
 }
 
+TEST(Complaints, KeysThatAreNoTextHideNoOtherComplaint) {
+  EXPECT_EQ(
+      complaints("film: {size: 640}\nobjects:\n  ~: {shape: sphere}\n  [1, 2]: {shape: sphere}\n"
+                 "  a: &name {shape: cube}\n  *name : 3\n  <<: 2\n"),
+      "job.yaml:2:14: size is '640', expected a list of 2 whole numbers\n"
+      "job.yaml:4:3: an empty key; keys are plain text\n"
+      "job.yaml:5:3: a list or map as a key; keys are plain text\n"
+      "job.yaml:6:20: shape is 'cube', expected sphere, rectangle, disk, box or cylinder\n"
+      "job.yaml:7:3: an alias as a key; keys are plain text\n"
+      "job.yaml:8:3: '<<' is not supported; use `like: name` to copy another entry's keys\n");
+}
+
+TEST(Complaints, OneOutputIsNoFolderOfAnother) {
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: ./a.exr/b.exr}\n"),
+            "job.yaml:4:12: file is './a.exr/b.exr', which cannot stand beside 'a.exr' of line 3: "
+            "one would be the other's folder\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr/b.exr}\n  - {file: a.exr}\n"),
+            "job.yaml:4:12: file is 'a.exr', which cannot stand beside 'a.exr/b.exr' of line 3: "
+            "one would be the other's folder\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: a.exr.png}\n  - {file: b/a.exr}\n"),
+            "");
+}
+
+TEST(Complaints, AreWordedForTheirSubject) {
+  EXPECT_EQ(complaints("objects: {'#': {shape: sphere}}\n"),
+            "job.yaml:2:11: '#' cannot be the name of an object: expected letters, digits, '_', "
+            "'-', '.' and inner spaces, at most 100\n");
+  EXPECT_EQ(complaints("objects: {a: {shape: sphere, at: {keys: {}}}}\n"),
+            "job.yaml:2:41: keys of at is an empty map, expected a map of frame numbers to values, "
+            "such as {1: 0, 120: 1}\n");
+  EXPECT_EQ(complaints("film:\n"), "job.yaml:2:1: film is empty, expected a value\n");
+  EXPECT_EQ(complaints("materials:\n  a: {type: null, bump: {texture: t}}\n").find("surfaces"),
+            std::string::npos);
+  EXPECT_EQ(complaints("objects: {a: {mesh: \"a\\nb.obj\"}}\n"),
+            "job.yaml:2:21: mesh is the text \"a b.obj\", expected a file name on one line\n");
+}
+
 TEST(Complaints, AnUnquotedColorIsAYamlComment) {
   EXPECT_EQ(complaints("materials:\n  a:\n    type: lambert\n    color: #d8c8a8\n"),
             "job.yaml:5:5: color is empty, expected a value (a colour such as \"#d8c8a8\" needs "

@@ -137,8 +137,7 @@ TEST(HostileJob, DeepNesting) {
                  "job.yaml:2:73: nested deeper than 64 levels");
   EXPECT_FALSE(read("hyades: 1\nobjects: " + repeated("[", 3000)).diagnostics.empty());
   expect_refused(repeated("- ", 100000), "job.yaml:1:129: nested deeper than 64 levels");
-  expect_refused(repeated("? ", 100000),
-                 "job.yaml:1:3: a list or map as a key; keys are plain text");
+  expect_refused(repeated("? ", 100000), "job.yaml:1:129: nested deeper than 64 levels");
 }
 
 TEST(HostileJob, MillionsOfOpenBrackets) {
@@ -153,7 +152,7 @@ TEST(HostileJob, HugeTexts) {
   expect_refused(repeated("x", 100'000'000),
                  "job.yaml: the file has 100000000 bytes; a job may have at most 33554432");
   expect_refused("hyades: 1\nmaterials: {" + repeated("a", 70'000) + ": 1}\n",
-                 "job.yaml:2:13: an empty key or an alias as a key; keys are plain text");
+                 "job.yaml:2:13: an empty key; keys are plain text");
 }
 
 TEST(HostileJob, MillionsOfSmallValues) {
