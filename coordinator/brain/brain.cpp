@@ -92,7 +92,7 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
       set_quarantine(seat->second, odd->reason);
     }
   } else if (const auto* record = std::get_if<Persist>(&action)) {
-    persist(*record, delivery, later);
+    persist(*record, delivery);
   } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
     // The film takes memory only as units come in.
     for (const Action& next :
@@ -104,7 +104,7 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
   }
 }
 
-void Brain::persist(const Persist& persist, Delivery* delivery, std::vector<Action>& later) {
+void Brain::persist(const Persist& persist, Delivery* delivery) {
   const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;

@@ -186,7 +186,7 @@ class Brain {
 
   Brain(BrainOptions options, std::unique_ptr<JobStore> store,
         std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation);
-  bool has_room_for(const JobDesk& job) const;
+  bool has_room_for(const StoredJob& job) const;
   bool is_here(const v1::JobFile& file);
   grpc::Status files_are_here(const v1::JobSpec& spec);
   void set_paused(uint64_t id, bool paused, Told then);
@@ -223,7 +223,7 @@ class Brain {
   void act(const Action& action, Delivery* delivery, std::vector<Action>& later);
   void send_lease(const Lease& lease);
   void send(WorkerId worker, v1::CoordinatorMessage message);
-  void persist(const Persist& persist, Delivery* delivery, std::vector<Action>& later);
+  void persist(const Persist& persist, Delivery* delivery);
   // Without the lock.
   void carry_out(const std::vector<Action>& actions);
   void merged(JobId job, const Merge& merge);
@@ -280,6 +280,7 @@ class Brain {
   v1::Worker describe(const Seat& seat) const;
   std::string unmet_needs(const StoredJob& job) const;
   grpc::Status not_open(uint64_t job);
+  grpc::Status wait_until_away(uint64_t job);
   grpc::Status kept_film(uint64_t job, int32_t frame, const FilmTaker& then);
   grpc::Status steer_worker(const v1::WorkerRequest& request, v1::Worker& now,
                             const std::function<std::vector<Action>(Seat&)>& what);
@@ -316,6 +317,9 @@ class Brain {
   TimePoint room_made_;              ///< when keepers were last asked for room
   std::atomic<bool> disk_full_{false};
   std::condition_variable disk_wake_;
+
+  std::set<uint64_t> leaving_;  ///< jobs whose end is stored, but whose log is still open
+  std::condition_variable away_wake_;
 
   std::condition_variable clock_wake_;
   std::deque<Completed> to_finish_;

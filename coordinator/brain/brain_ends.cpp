@@ -149,6 +149,7 @@ bool Brain::store_end(uint64_t id) {
   {
     const std::lock_guard lock(mutex_);
     over = std::move(desks_.extract(JobId{id}).mapped());
+    leaving_.insert(id);
     told = take_waiters([&](const Waiter& waiter) { return waiter.job == id; });
     for (const auto& [number, watch] : watches_) {
       if (watch.job == id) tell_watcher(watch.poke);
@@ -159,6 +160,11 @@ bool Brain::store_end(uint64_t id) {
   // Films of frames that failed stay, should they be taken up again.
   std::error_code ignored;
   if (job.state == StoredState::done) std::filesystem::remove_all(films_folder(id), ignored);
+  {
+    const std::lock_guard lock(mutex_);
+    leaving_.erase(id);
+  }
+  away_wake_.notify_all();
   return true;
 }
 

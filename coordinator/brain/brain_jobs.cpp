@@ -18,6 +18,8 @@ constexpr size_t kLongestName = 200;
 constexpr int kMostPriority = 1'000'000;
 constexpr size_t kMostMissingTold = 100;  // an error travels in headers, which are short
 constexpr std::chrono::seconds kSubmitPatience{2};
+/// For what is left of a job that has ended: less than that for which others wait for this one.
+constexpr std::chrono::milliseconds kAwayPatience{1500};
 /// Of all open jobs together: what they have in memory.
 constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
@@ -29,6 +31,11 @@ grpc::Status failed(const core::Error& error) {
 
 grpc::Status overloaded(const char* why, std::chrono::milliseconds retry_after) {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, why, retry_after);
+}
+
+grpc::Status no_room() {
+  return overloaded("the open jobs have as many frames or files as there may be",
+                    std::chrono::seconds(60));
 }
 
 grpc::Status wrong(const std::string& message) {
@@ -73,9 +80,8 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   stored.submitted_ms = wall_ms();
   auto desk = make_desk(stored, request.spec(), *assets_, options_.film_memory);
   if (!desk) return wrong(desk.error().message);
-  if (!has_room_for(**desk)) {
-    return overloaded("the open jobs have as many frames or files as there may be",
-                      std::chrono::seconds(60));
+  if (!has_room_for((*desk)->stored)) {
+    return no_room();
   }
   const auto added = store_->add_job((*desk)->stored);
   if (!added) return failed(added.error());
@@ -104,10 +110,10 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
 }
 
 /// Whether the memory that open jobs may take holds another one.
-bool Brain::has_room_for(const JobDesk& job) const {
+bool Brain::has_room_for(const StoredJob& job) const {
   const std::lock_guard lock(mutex_);
-  uint64_t frames = job.numbers.size();
-  uint64_t bytes = job.stored.spec.size();
+  uint64_t frames = job.frames;
+  uint64_t bytes = job.spec.size();
   for (const auto& [id, desk] : desks_) {
     frames += desk->numbers.size();
     bytes += desk->stored.spec.size();
@@ -133,6 +139,19 @@ grpc::Status Brain::files_are_here(const v1::JobSpec& spec) {
                            fmt::format("{} of the job's files are not here yet", count), missing);
 }
 
+/// Waits for what is left of a job whose end is being stored; without the lock.
+grpc::Status Brain::wait_until_away(uint64_t id) {
+  std::unique_lock lock(mutex_);
+  const bool away = away_wake_.wait_for(lock, kAwayPatience, [&] {
+    const JobDesk* desk = desk_of(id);
+    return stop_ || ((desk == nullptr || !desk->ending) && !leaving_.contains(id));
+  });
+  if (away && !stop_) return grpc::Status::OK;
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                           fmt::format("the end of job {} is still being stored", id),
+                           std::chrono::seconds(1));
+}
+
 grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
   const std::unique_lock one(submit_mutex_, kSubmitPatience);
   if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
@@ -150,14 +169,17 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
   }
   carry_out(later);
   if (open) return grpc::Status::OK;
+  if (const grpc::Status away = wait_until_away(id); !away.ok()) return away;
   auto stored = store_->job(id);
   if (!stored) return failed(stored.error());
   if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
   StoredJob& job = **stored;
-  if (job.state != StoredState::failed && job.state != StoredState::cancelled) {
+  if (!has_ended(job.state)) return not_open(id);
+  if (job.state == StoredState::done) {
     return {grpc::StatusCode::FAILED_PRECONDITION,
             fmt::format("job {} is done: there is nothing to take up again", id)};
   }
+  if (!has_room_for(job)) return no_room();
   const auto frames = store_->frames(id);
   if (!frames) return failed(frames.error());
   for (const StoredFrame& frame : *frames) {
@@ -175,6 +197,12 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
     (void)store_->update_job(job);  // where this fails too it is tried again at the next start
     return {grpc::StatusCode::FAILED_PRECONDITION, taken.error().message};
   }
+  {
+    const std::lock_guard lock(mutex_);
+    if (JobDesk* desk = desk_of(id)) {
+      note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {}, "taken up again");
+    }
+  }
   v1::GetJobResponse got;
   const grpc::Status status = get(id, std::nullopt, got);
   now = got.job();
@@ -186,11 +214,13 @@ grpc::Status Brain::remove(uint64_t id) {
   if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
   {
     const std::lock_guard lock(mutex_);
-    if (desk_of(id) != nullptr) {
+    const JobDesk* desk = desk_of(id);
+    if (desk != nullptr && !desk->ending) {
       return {grpc::StatusCode::FAILED_PRECONDITION,
               fmt::format("job {} has not ended: cancel it first", id)};
     }
   }
+  if (const grpc::Status away = wait_until_away(id); !away.ok()) return away;
   const auto stored = store_->job(id);
   if (!stored) return failed(stored.error());
   if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};

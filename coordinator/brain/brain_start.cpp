@@ -84,6 +84,7 @@ void Brain::stop() {
   mind_waiters({});
   const std::lock_guard lock(mutex_);
   clock_wake_.notify_all();
+  away_wake_.notify_all();
   finish_wake_.notify_all();
   sweep_wake_.notify_all();
   disk_wake_.notify_all();
