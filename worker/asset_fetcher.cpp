@@ -22,6 +22,8 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kFirstPause{200};
 constexpr milliseconds kLongestPause{5000};
+/// For trouble of this machine, which the units need not wait for: another may have none.
+constexpr milliseconds kLocalPatience{5000};
 /// A download slower than this many bytes per millisecond is broken off and resumed.
 constexpr uint64_t kSlowest = 16;
 constexpr milliseconds kShortestDeadline{60'000};
@@ -124,11 +126,13 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(const Wanted& wanted) {
 }
 
 AssetFetcher::Outcome AssetFetcher::fetch_patiently(const v1::JobFile& file) {
-  const auto give_up = std::chrono::steady_clock::now() + patience_;
+  const auto begun = std::chrono::steady_clock::now();
   farm::Backoff backoff(kFirstPause, kLongestPause);
   for (;;) {
     Outcome failed = download(file);
-    if (!failed || !failed->again || std::chrono::steady_clock::now() >= give_up) return failed;
+    if (!failed || !failed->again) return failed;
+    const milliseconds patience = failed->local ? std::min(kLocalPatience, patience_) : patience_;
+    if (std::chrono::steady_clock::now() - begun >= patience) return failed;
     if (!pause(backoff.next(std::min(failed->retry_after, kLongestPause)))) return failed;
   }
 }
@@ -139,9 +143,18 @@ bool AssetFetcher::pause(farm::Backoff::Duration time) {
   return !wake_.wait_for(lock, time, [this] { return unwanted(); });
 }
 
+/// Nobody else's, the job's least of all.
+AssetFetcher::Failure AssetFetcher::local_trouble(const core::Error& error) {
+  Failure failure;
+  failure.reason = error.message;
+  failure.again = true;
+  failure.local = true;
+  return failure;
+}
+
 AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
   auto writer = store_.write(name_of(file), file.size());
-  if (!writer) return Failure{writer.error().in(file.path()).message, true};
+  if (!writer) return local_trouble(writer.error().in(file.path()));
   const auto stub = v1::Assets::NewStub(channel_);
   grpc::ClientContext context;
   farm::prepare(context, token_, std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
@@ -170,15 +183,15 @@ AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
     const std::lock_guard lock(mutex_);
     call_ = nullptr;
   }
-  if (!kept) return Failure{kept.error().in(file.path()).message};
+  if (!kept) return local_trouble(kept.error().in(file.path()));
   if (!status.ok()) {
     // Even a file that is not there may be uploaded again; and giving units back at once would only
     // bring them here again at once.
     return Failure{file.path() + " cannot be fetched: " + status.error_message(), false, true,
-                   milliseconds(farm::detail_of(status).retry_after_ms())};
+                   false, milliseconds(farm::detail_of(status).retry_after_ms())};
   }
   if (auto done = writer->commit(); !done) {
-    return Failure{done.error().in(file.path()).message, false, true};
+    return local_trouble(done.error().in(file.path()));
   }
   return std::nullopt;
 }

@@ -33,12 +33,12 @@ class AssetFetcher {
    public:
     virtual ~Owner() = default;
     virtual void files_are_there(uint64_t job) = 0;
-    /// `final`: trying again here, or elsewhere, gives the same.
+    /// `final`: trying again here, or elsewhere, gives the same. Trouble of the cache never is.
     virtual void files_failed(uint64_t job, const std::string& reason, bool final) = 0;
   };
 
   /// `store` and `owner` outlive the fetcher. A coordinator that cannot be reached is tried again
-  /// for `patience`.
+  /// for `patience`, a cache that takes no file for some seconds.
   AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store,
                Owner& owner, std::chrono::milliseconds patience);
   /// Breaks off what is being fetched.
@@ -60,12 +60,14 @@ class AssetFetcher {
     std::string reason;
     bool final = false;
     bool again = false;                        ///< the same may succeed soon
+    bool local = false;                        ///< the trouble is this machine's
     std::chrono::milliseconds retry_after{0};  ///< what the coordinator asked for
   };
   using Outcome = std::optional<Failure>;
 
   void loop();
   Outcome fetch_all(const Wanted& wanted);
+  static Failure local_trouble(const core::Error& error);
   Outcome fetch_patiently(const v1::JobFile& file);
   Outcome download(const v1::JobFile& file);
   bool pause(farm::Backoff::Duration time);

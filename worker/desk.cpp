@@ -115,6 +115,9 @@ void Desk::files_are_there(uint64_t id) {
   }
   job->second.fetching = false;
   job->second.has_files = true;
+  rests_.reset();
+  rests_until_.reset();
+  files_trouble_.clear();
   for (auto& [token, item] : items_) {
     if (item.leased.job() == id && item.state == Item::State::fetching) {
       item.state = Item::State::waiting;
@@ -124,7 +127,7 @@ void Desk::files_are_there(uint64_t id) {
   dispatch();
 }
 
-void Desk::files_failed(uint64_t id, const std::string& reason, bool final) {
+void Desk::files_failed(uint64_t id, const std::string& reason, bool final, TimePoint now) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) return;
   job->second.fetching = false;
@@ -143,7 +146,13 @@ void Desk::files_failed(uint64_t id, const std::string& reason, bool final) {
       drop(item);
     }
   }
-  if (!final && !waiting.empty() && welcomed_) ports_.send(std::move(message));
+  if (!final) {
+    // They would only come back at once.
+    rests_until_ = now + rests_.next();
+    if (files_trouble_ != reason) ports_.note("units go back: " + reason);
+    files_trouble_ = reason;
+    if (!waiting.empty() && welcomed_) ports_.send(std::move(message));
+  }
   top_up();
 }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "farm/backoff.h"
 #include "hyades/v1/work.pb.h"
 #include "worker/pipe/render_pipe.pb.h"
 #include "worker/render_watch.h"
@@ -66,7 +68,11 @@ struct DeskOptions {
 class Desk {
  public:
   Desk(DeskOptions options, DeskPorts& ports)
-      : options_(std::move(options)), ports_(ports), watch_(options_.hang_limit) {}
+      : options_(std::move(options)),
+        ports_(ports),
+        watch_(options_.hang_limit),
+        rests_(kFirstRest, kLongestRest,
+               static_cast<uint32_t>(std::hash<std::string>{}(options_.worker_id))) {}
 
   /// Another worker is known by this one's id: from the next stream on it has another.
   void rename(const std::string& worker_id) { options_.worker_id = worker_id; }
@@ -85,8 +91,10 @@ class Desk {
 
   // The job's files.
   void files_are_there(uint64_t job);
-  /// The units that wait for them go back; `final` where no other worker can have more luck.
-  void files_failed(uint64_t job, const std::string& reason, bool final);
+  /// The units that wait for them go back; `final` where no other worker can have more luck, and
+  /// then they have failed. Otherwise no more work is asked for during a rest, which grows with
+  /// each failure until the files of a job are there again.
+  void files_failed(uint64_t job, const std::string& reason, bool final, TimePoint now);
 
   /// Heartbeats, leases that ran out, films to be sent again. To be called at least every 100 ms.
   /// `flowing`: what was sent before has left, so that a heartbeat reaches the coordinator.
@@ -127,6 +135,9 @@ class Desk {
     bool over = false;
   };
   using Items = std::map<uint64_t, Item>;
+  /// A Backoff waits for at least half of these.
+  static constexpr std::chrono::seconds kFirstRest{10};
+  static constexpr std::chrono::seconds kLongestRest{120};
 
   static v1::LeaseProgress::Stage stage_of(const Item& item);
   void lose_renderer(const std::string& reason, const std::set<uint64_t>* hung);
@@ -164,6 +175,11 @@ class Desk {
   bool renderer_up_ = false;
   RenderWatch watch_;
   uint64_t renderer_memory_ = 0;
+
+  // Files cannot be had.
+  farm::Backoff rests_;
+  std::optional<TimePoint> rests_until_;  ///< asks for no work, and takes none that needs files
+  std::string files_trouble_;             ///< told to people
 
   bool open_ = false;
   bool welcomed_ = false;

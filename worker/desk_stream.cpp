@@ -131,11 +131,14 @@ void Desk::take_unit(const v1::LeasedUnit& leased, bool adopted) {
     return;
   }
   const auto job = jobs_.find(leased.job());
-  if (job == jobs_.end() || adopted || leaving_) {
+  // Asked for before the rest began.
+  const bool rests = rests_until_ && job != jobs_.end() && !job->second.has_files;
+  if (job == jobs_.end() || adopted || leaving_ || rests) {
     v1::WorkerMessage message;
     *message.mutable_returned()->add_units() = leased;
     message.mutable_returned()->set_reason(leaving_  ? leaving_reason_
                                            : adopted ? "given up meanwhile"
+                                           : rests   ? files_trouble_
                                                      : "the job is not known");
     ports_.send(std::move(message));
     return;
@@ -175,7 +178,7 @@ void Desk::send_result(const Item& item) {
 
 /// How many units more to ask for now; they are counted as asked for.
 uint32_t Desk::take_wish() {
-  if (leaving_ || kept_bytes_ > options_.max_kept_bytes) return 0;
+  if (leaving_ || rests_until_ || kept_bytes_ > options_.max_kept_bytes) return 0;
   const size_t in_work = items_.size() - kept_ + wished_;
   const size_t enough = size_t{options_.threads} + options_.ahead;
   const auto wish = static_cast<uint32_t>(enough - std::min(enough, in_work));

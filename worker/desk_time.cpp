@@ -13,6 +13,7 @@ namespace hyades::worker {
 void Desk::tick(TimePoint now, bool flowing) {
   fence(now);
   watch(now);
+  if (rests_until_ && now >= *rests_until_) rests_until_.reset();
   if (!welcomed_) return;
   if (now - last_heartbeat_ >= heartbeat_every_ && flowing) {
     heartbeat(now);

@@ -251,10 +251,7 @@ class Worker : private DeskPorts,
     post([this, job] { desk_.files_are_there(job); });
   }
   void files_failed(uint64_t job, const std::string& reason, bool final) override {
-    post([this, job, reason, final] {
-      note(reason);
-      desk_.files_failed(job, reason, final);
-    });
+    post([this, job, reason, final] { desk_.files_failed(job, reason, final, Clock::now()); });
   }
 
   void note(const std::string& text) override {

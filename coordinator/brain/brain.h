@@ -249,6 +249,7 @@ class Brain {
   std::vector<std::string> still_units(JobId job) const;
   void wait_for_more_holders();
   void on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result);
+  void note_return(const Seat& seat, JobId job, const std::string& reason);
   void want(Seat& seat, uint32_t units, std::vector<Action>& later);
   void reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result,
               v1::Rejected::Reason reason, const std::string& text, uint32_t retry_after_ms);

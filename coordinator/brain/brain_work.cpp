@@ -26,6 +26,14 @@ Brain::Seat* Brain::seat_of(WorkerId worker, const WorkerLink* link) {
   return seat == seats_.end() || seat->second.link.get() != link ? nullptr : &seat->second;
 }
 
+/// Why a worker that stays gives units back, in the job's log: once, for it may go on so.
+void Brain::note_return(const Seat& seat, JobId job, const std::string& reason) {
+  JobDesk* desk = seat.leaving || reason.empty() ? nullptr : desk_of(job);
+  if (desk == nullptr || !desk->gave_back.insert(seat.id).second) return;
+  note(*desk, v1::LOG_LEVEL_WARNING, {}, seat.hello.name(),
+       "gives units back: " + farm::wire_text(reason));
+}
+
 void Brain::want(Seat& seat, uint32_t units, std::vector<Action>& later) {
   if (units == 0 || seat.leaving) return;
   if (std::chrono::steady_clock::now() < adopting_until_) {
@@ -75,6 +83,7 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
       for (const v1::LeasedUnit& returned : message.returned().units()) {
         const auto unit = farm::from_wire(returned.unit());
         if (!unit) continue;
+        note_return(*seat, JobId{returned.job()}, message.returned().reason());
         say(UnitReturned{worker, lease_from_wire(returned.lease()), JobId{returned.job()}, *unit});
       }
     } else if (message.has_leaving()) {

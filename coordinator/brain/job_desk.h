@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -70,10 +71,11 @@ struct JobDesk {
   std::vector<StoredLine> lines;  ///< not stored yet
   uint64_t lines_dropped = 0;     ///< since lines were last taken: too many at once
   bool storing_lines = false;
-  bool storing_row = false;  ///< a chore will store what has changed in `stored`
-  std::string trouble;       ///< why its films cannot be stored
-  std::string row_trouble;   ///< why `stored` cannot be stored
-  bool ending = false;       ///< the scheduler has let go of it
+  bool storing_row = false;      ///< a chore will store what has changed in `stored`
+  std::string trouble;           ///< why its films cannot be stored
+  std::string row_trouble;       ///< why `stored` cannot be stored
+  std::set<WorkerId> gave_back;  ///< whose reason for giving units back is in the log
+  bool ending = false;           ///< the scheduler has let go of it
 
   FrameNote& touch(int32_t frame);
   void touch() { ++version; }

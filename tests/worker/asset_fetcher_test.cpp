@@ -1,5 +1,7 @@
 #include "worker/asset_fetcher.h"
 
+#include <filesystem>
+
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/security/server_credentials.h>
@@ -55,7 +57,9 @@ class StuckAssets : public v1::Assets::Service {
 class Reports : public AssetFetcher::Owner {
  public:
   void files_are_there(uint64_t job) override { add(job, "there"); }
-  void files_failed(uint64_t job, const std::string& reason, bool) override { add(job, reason); }
+  void files_failed(uint64_t job, const std::string& reason, bool final) override {
+    add(job, (final ? "final: " : "") + reason);
+  }
 
   /// Waits for the first report.
   std::vector<std::pair<uint64_t, std::string>> first() {
@@ -85,32 +89,70 @@ v1::JobSpec spec_of(const std::string& bytes) {
   return spec;
 }
 
-TEST(AssetFetcher, AReleasedJobIsBrokenOffAndNotReported) {
+struct Served {
+  Served() {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.RegisterService(&assets);
+    server = builder.BuildAndStart();
+  }
+  ~Served() { server->Shutdown(std::chrono::system_clock::now() + seconds(5)); }
+  Served(const Served&) = delete;
+  Served& operator=(const Served&) = delete;
+
+  std::shared_ptr<grpc::Channel> channel() const {
+    return grpc::CreateChannel("127.0.0.1:" + std::to_string(port),
+                               grpc::InsecureChannelCredentials());
+  }
+
   StuckAssets assets;
   int port = 0;
-  grpc::ServerBuilder builder;
-  builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
-  builder.RegisterService(&assets);
-  const std::unique_ptr<grpc::Server> server = builder.BuildAndStart();
-  ASSERT_NE(server, nullptr);
+  std::unique_ptr<grpc::Server> server;
+};
+
+TEST(AssetFetcher, AReleasedJobIsBrokenOffAndNotReported) {
+  Served served;
   const test::TempFolder folder;
   const auto store = farm::ContentStore::open({folder.file("cache"), 0});
   ASSERT_TRUE(store.ok());
   Reports reports;
-  {
-    AssetFetcher fetcher(grpc::CreateChannel("127.0.0.1:" + std::to_string(port),
-                                             grpc::InsecureChannelCredentials()),
-                         "", **store, reports, seconds(60));
-    fetcher.fetch(1, spec_of("something large"));
-    fetcher.fetch(2, spec_of("something else that never comes"));
-    ASSERT_TRUE(assets.wait_until_stuck());
-    fetcher.release(2);
-    fetcher.release(1);
-    fetcher.fetch(3, spec_of(kSmall));
-    const std::vector<std::pair<uint64_t, std::string>> expected{{3, "there"}};
-    EXPECT_EQ(reports.first(), expected);
-  }
-  server->Shutdown(std::chrono::system_clock::now() + seconds(5));
+  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  fetcher.fetch(1, spec_of("something large"));
+  fetcher.fetch(2, spec_of("something else that never comes"));
+  ASSERT_TRUE(served.assets.wait_until_stuck());
+  fetcher.release(2);
+  fetcher.release(1);
+  fetcher.fetch(3, spec_of(kSmall));
+  const std::vector<std::pair<uint64_t, std::string>> expected{{3, "there"}};
+  EXPECT_EQ(reports.first(), expected);
+}
+
+TEST(AssetFetcher, TroubleOfTheCacheIsNeverFinal) {
+  const Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), kSmall.size() - 1});
+  ASSERT_TRUE(store.ok());
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, std::chrono::milliseconds(100));
+  fetcher.fetch(1, spec_of(kSmall));
+  const auto said = reports.first();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_TRUE(said[0].second.starts_with("file: a file of ")) << said[0].second;
+}
+
+TEST(AssetFetcher, ACacheThatIsMendedSoonIsTriedAgain) {
+  const Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 1000});
+  ASSERT_TRUE(store.ok());
+  std::filesystem::rename(folder.file("cache"), folder.file("elsewhere"));
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  fetcher.fetch(1, spec_of(kSmall));
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  std::filesystem::rename(folder.file("elsewhere"), folder.file("cache"));
+  const std::vector<std::pair<uint64_t, std::string>> expected{{1, "there"}};
+  EXPECT_EQ(reports.first(), expected);
 }
 
 }  // namespace

@@ -383,14 +383,62 @@ TEST(Desk, UnitsWhoseFilesCannotBeHadGoBack) {
   world.begin();
   world.lease(DeskWorld::unit(0));
   world.take_sent();
-  world.desk->files_failed(DeskWorld::kJob, "not there", false);
+  world.desk->files_failed(DeskWorld::kJob, "not there", false, world.now);
   EXPECT_EQ(first(world.take_sent(), &Message::has_returned).returned().reason(), "not there");
   EXPECT_TRUE(world.desk->empty());
+  world.now += seconds(10);
+  world.desk->tick(world.now, true);
   world.lease(DeskWorld::unit(0, 2));
   EXPECT_EQ(world.ports.fetched.size(), 2U) << "and are tried again with the next lease";
-  world.desk->files_failed(DeskWorld::kJob, "the cache is too small", true);
+  world.take_sent();
+  world.desk->files_failed(DeskWorld::kJob, "its name is no SHA-256", true, world.now);
   EXPECT_EQ(first(world.take_sent(), &Message::has_failure).failure().reason(),
-            "the cache is too small");
+            "its name is no SHA-256");
+}
+
+TEST(Desk, RestsLongerEachTimeThatFilesCannotBeHad) {
+  DeskWorld world;
+  world.begin();
+  const auto fail = [&] {  // how long it asks for nothing
+    world.lease(DeskWorld::unit(0));
+    world.desk->files_failed(DeskWorld::kJob, "the disk is full", false, world.now);
+    world.take_sent();
+    for (milliseconds rest{0};; rest += milliseconds(100)) {
+      if (rest > seconds(200)) return rest;
+      world.desk->tick(world.now, true);
+      if (first(world.take_sent(), &Message::has_request).has_request()) return rest;
+      world.now += milliseconds(100);
+      world.welcome();
+    }
+  };
+  const auto rest = fail();
+  EXPECT_GE(rest, seconds(5));
+  EXPECT_LE(rest, seconds(11));
+  EXPECT_GE(fail(), seconds(10));
+  EXPECT_GE(fail(), seconds(20));
+  for (int i = 0; i < 5; ++i) EXPECT_LE(fail(), seconds(121));
+  EXPECT_EQ(world.ports.notes, std::vector<std::string>{"units go back: the disk is full"})
+      << "people are told of what changes";
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.film(world.token_of(0));
+  world.acknowledge(DeskWorld::unit(0));
+  EXPECT_LE(fail(), seconds(11));
+  EXPECT_EQ(world.ports.notes.size(), 2U);
+}
+
+TEST(Desk, WhatComesDuringARestGoesBackAtOnce) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_failed(DeskWorld::kJob, "the disk is full", false, world.now);
+  world.take_sent();
+  world.lease(DeskWorld::unit(0, 2));
+  const auto sent = world.take_sent();
+  EXPECT_EQ(first(sent, &Message::has_returned).returned().reason(), "the disk is full");
+  EXPECT_FALSE(first(sent, &Message::has_request).has_request());
+  EXPECT_EQ(world.ports.fetched.size(), 1U);
+  EXPECT_TRUE(world.desk->empty());
 }
 
 TEST(Desk, AJobThatIsOverIsForgotten) {

@@ -62,6 +62,36 @@ TEST(Steering, ACancelledJobCanBeTakenUpAgainAndDeleted) {
             grpc::StatusCode::NOT_FOUND);
 }
 
+TEST(Steering, WhyAWorkerGivesUnitsBackIsInTheJobsLogOnce) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  std::atomic<int> given{0};
+  ScriptedWorker::Script script = world.script();
+  script.meddle = [&](ScriptedWorker& worker, const v1::LeasedUnit& unit) {
+    if (++given > 3) return true;
+    v1::WorkerMessage message;
+    *message.mutable_returned()->add_units() = unit;
+    message.mutable_returned()->set_reason("the disk is full");
+    worker.write(message);
+    v1::WorkerMessage more;
+    more.mutable_request()->set_units(1);
+    worker.write(more);
+    return false;
+  };
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  v1::LogsRequest request;
+  request.set_job(job);
+  const auto context = world.context();
+  const auto reader = world.jobs->Logs(context.get(), request);
+  int told = 0;
+  v1::LogLine line;
+  while (reader->Read(&line)) told += line.text() == "gives units back: the disk is full" ? 1 : 0;
+  (void)reader->Finish();
+  EXPECT_EQ(told, 1);
+}
+
 TEST(Steering, AUnitThatFailsThreeTimesFailsItsFrameAndRetryMendsIt) {
   FarmWorld world;
   world.start();
