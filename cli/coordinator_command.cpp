@@ -11,6 +11,7 @@
 #include <google/protobuf/stubs/logging.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/address_option.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/server.h"
 #include "core/base/atomic_file.h"
@@ -104,6 +105,7 @@ int main(int argc, char** argv) {
   app.add_option("--data", arguments.brain.folder, "folder for everything that is kept")
       ->required();
   app.add_option("--listen", arguments.listen.address, "HOST:PORT; port 0 takes a free one")
+      ->check(hyades::cli::address_error)
       ->capture_default_str();
   app.add_option("--tls-cert", arguments.listen.cert_file, "certificate (PEM): TLS");
   app.add_option("--tls-key", arguments.listen.key_file, "its private key (PEM)");

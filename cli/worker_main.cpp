@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/address_option.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
 #include "worker/worker.h"
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   options.renderer = hyades::core::program_folder() + "hyades-worker-render";
   app.add_option("--coordinator", options.coordinator.address, "HOST:PORT")
       ->envname("HYADES_COORDINATOR")
+      ->check(hyades::cli::address_error)
       ->capture_default_str();
   app.add_option("--threads", options.threads, "units rendered at once")
       ->check(CLI::Range(1, 4096))
@@ -62,9 +64,11 @@ int main(int argc, char** argv) {
   app.add_option("--tags", options.tags, "what jobs may ask for: a,b")
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--token-file", options.coordinator.token_file, "file with the farm's token");
+  app.add_option("--token-file", options.coordinator.token_file, "file with the farm's token")
+      ->envname("HYADES_TOKEN_FILE");
   app.add_option("--tls-ca", options.coordinator.ca_file,
-                 "certificate (PEM) that signed the coordinator's");
+                 "certificate (PEM) that signed the coordinator's")
+      ->envname("HYADES_TLS_CA");
   app.add_flag("--insecure", options.coordinator.insecure,
                "plain text also to another machine's coordinator");
   app.add_option("--grace", options.grace, "seconds from SIGTERM to the end")

@@ -1,5 +1,7 @@
 #include "cli/client/client_app.h"
 
+#include "cli/address_option.h"
+
 namespace hyades::cli {
 
 ClientApp::ClientApp(const char* command, const std::string& description)
@@ -8,6 +10,7 @@ ClientApp::ClientApp(const char* command, const std::string& description)
   const auto group = [](CLI::Option* option) { option->group("The coordinator"); };
   group(app_.add_option("--coordinator", peer.address, "HOST:PORT of the coordinator")
             ->envname("HYADES_COORDINATOR")
+            ->check(address_error)
             ->capture_default_str());
   group(app_.add_option("--token-file", peer.token_file, "file with the farm's token")
             ->envname("HYADES_TOKEN_FILE"));

@@ -20,7 +20,9 @@ grpc::Status Admission::check(const grpc::CallbackServerContext& context) const 
                        CRYPTO_memcmp(shown->second.data(), expected.data(), expected.size()) == 0;
     if (!right) {
       return {grpc::StatusCode::UNAUTHENTICATED,
-              "this coordinator wants its token with every call (--token-file)"};
+              shown == metadata.end()
+                  ? "this coordinator wants its token with every call (--token-file)"
+                  : "this is not the coordinator's token"};
     }
   }
   uint32_t protocol = 0;

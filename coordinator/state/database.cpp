@@ -2,6 +2,15 @@
 
 namespace hyades::coordinator {
 
+namespace {
+
+std::string folder_of(const std::string& path) {
+  const size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "." : path.substr(0, slash);
+}
+
+}  // namespace
+
 Query::Query(sqlite3* db, std::string_view sql) : db_(db) {
   check(sqlite3_prepare_v2(db, sql.data(), static_cast<int>(sql.size()), &statement_, nullptr));
 }
@@ -80,13 +89,18 @@ core::Result<Database> open_database(const std::string& path) {
                       SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_NOMUTEX, nullptr);
   Database db(raw);
   if (code != SQLITE_OK) return core::Error{path + ": " + sqlite3_errstr(code)};
+  const auto failed = [&](const core::Status& what) {
+    const bool busy = (sqlite3_errcode(raw) & 0xff) == SQLITE_BUSY;  // less its extended part
+    return busy ? core::Error{"another coordinator works in " + folder_of(path)}
+                : what.error().in(path);
+  };
   // One process at a time; the WAL then needs no shared memory file.
   for (const char* pragma :
        {"PRAGMA locking_mode=EXCLUSIVE", "PRAGMA journal_mode=WAL", "PRAGMA synchronous=FULL",
         "PRAGMA foreign_keys=ON", "PRAGMA cache_size=-2000"}) {
-    if (core::Status set = Query(raw, pragma).run(); !set) return set.error().in(path);
+    if (core::Status set = Query(raw, pragma).run(); !set) return failed(set);
   }
-  if (core::Status migrated = migrate(raw); !migrated) return migrated.error().in(path);
+  if (core::Status migrated = migrate(raw); !migrated) return failed(migrated);
   return db;
 }
 

@@ -221,6 +221,15 @@ TEST_F(Client, TheCoordinatorComesFromTheEnvironment) {
   ::unsetenv("HYADES_COORDINATOR");
 }
 
+TEST_F(Client, WrongAddressesAreWrongArguments) {
+  const Ran ran = run(jobs_command, {"--coordinator", "127.0.0.1:99999"});
+  EXPECT_EQ(ran.status, kBadArguments);
+  EXPECT_TRUE(has(ran.err, "expected HOST:PORT")) << ran.err;
+  ::setenv("HYADES_COORDINATOR", "127.0.0.1", 1);
+  EXPECT_EQ(run(jobs_command, {}).status, kBadArguments);
+  ::unsetenv("HYADES_COORDINATOR");
+}
+
 TEST_F(Client, TokensOpenTheDoor) {
   farm_.token = "0123456789abcdef";
   const Ran none = run(jobs_command, at({}));

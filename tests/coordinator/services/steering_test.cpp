@@ -313,8 +313,17 @@ TEST(Steering, WithoutTheTokenNothingGoes) {
   world.how.token_file = file;
   world.start();
   v1::InfoResponse info;
-  EXPECT_EQ(world.farm_->Info(world.context().get(), {}, &info).error_code(),
-            grpc::StatusCode::UNAUTHENTICATED);
+  const auto refusal = [&] {
+    const grpc::Status status = world.farm_->Info(world.context().get(), {}, &info);
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAUTHENTICATED);
+    return status.error_message();
+  };
+  EXPECT_NE(refusal().find("wants its token"), std::string::npos) << refusal();
+  for (const char* wrong : {"a-token-of-some-lengtH", "another-token-of-another-length"}) {
+    world.token = wrong;
+    EXPECT_NE(refusal().find("not the coordinator's token"), std::string::npos) << refusal();
+  }
+  world.token.clear();
   ScriptedWorker::Script script = world.script();
   script.reconnect = false;
   {

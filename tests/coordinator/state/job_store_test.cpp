@@ -33,6 +33,15 @@ std::unique_ptr<JobStore> open(const std::string& path) {
   return store ? std::move(*store) : nullptr;
 }
 
+TEST(JobStore, ASecondOneIsToldWhoIsThere) {
+  const test::TempFolder folder;
+  const auto first = open(folder.file("state.db"));
+  const auto second = open_sqlite_job_store(folder.file("state.db"));
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.error().message + "/state.db",
+            "another coordinator works in " + folder.file("state.db"));
+}
+
 TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
   const test::TempFolder folder;
   const std::string path = folder.file("state.db");
