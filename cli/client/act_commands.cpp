@@ -17,8 +17,8 @@ using Deed = std::function<Outcome(FarmClient&, uint64_t id, v1::Job& after)>;
 
 /// Does `deed` to each of the jobs called `names`; the first failure's exit status, after all were
 /// tried.
-int for_each_job(const ClientApp& app, const std::vector<std::string>& names, bool json,
-                 const Deed& deed) {
+int for_each_job(const ClientApp& app, const std::vector<std::string>& names, Namesakes namesakes,
+                 bool json, const Deed& deed) {
   const auto client = app.connect();
   if (!client) return kBadArguments;
   int worst = kDone;
@@ -26,7 +26,7 @@ int for_each_job(const ClientApp& app, const std::vector<std::string>& names, bo
   for (const std::string& name : names) {
     uint64_t id = 0;
     v1::Job job;
-    Outcome failure = find_job(*client, name, id);
+    Outcome failure = find_job(*client, name, namesakes, id);
     if (!failure) failure = deed(*client, id, job);
     if (failure) {
       const int status = app.report(*failure);
@@ -48,24 +48,29 @@ int for_each_job(const ClientApp& app, const std::vector<std::string>& names, bo
 }
 
 /// The same for the jobs that the command line names.
-int for_each_job(ClientApp& app, int argc, char** argv, const Deed& deed) {
+int for_each_job(ClientApp& app, Namesakes namesakes, int argc, char** argv, const Deed& deed) {
   std::vector<std::string> names;
   bool json = false;
-  app.app().add_option("jobs", names, "their ids, or names that only one job has")->required();
+  app.app()
+      .add_option("jobs", names,
+                  namesakes == Namesakes::open ? "their ids, or names that only one (open) job has"
+                                               : "their ids, or names that only one job has")
+      ->required();
   app.app().add_flag("--json", json, "print the jobs as JSON (field id)");
   if (const auto status = app.parse(argc, argv)) return *status;
-  return for_each_job(app, names, json, deed);
+  return for_each_job(app, names, namesakes, json, deed);
 }
 
 int act(const char* command, const char* description, FarmClient::Action action, int argc,
         char** argv) {
   ClientApp app(command, description);
-  return for_each_job(app, argc, argv, [&](FarmClient& client, uint64_t id, v1::Job& after) {
-    v1::JobResponse response;
-    auto failure = client.act(action, id, response);
-    after = response.job();
-    return failure;
-  });
+  return for_each_job(app, Namesakes::open, argc, argv,
+                      [&](FarmClient& client, uint64_t id, v1::Job& after) {
+                        v1::JobResponse response;
+                        auto failure = client.act(action, id, response);
+                        after = response.job();
+                        return failure;
+                      });
 }
 
 }  // namespace
@@ -92,10 +97,11 @@ int retry_command(int argc, char** argv) {
 
 int delete_command(int argc, char** argv) {
   ClientApp app("delete", "Forgets jobs that have ended, with their films and outputs.");
-  return for_each_job(app, argc, argv, [](FarmClient& client, uint64_t id, v1::Job& after) {
-    after.set_id(id);
-    return client.remove(id);
-  });
+  return for_each_job(app, Namesakes::none, argc, argv,
+                      [](FarmClient& client, uint64_t id, v1::Job& after) {
+                        after.set_id(id);
+                        return client.remove(id);
+                      });
 }
 
 int priority_command(int argc, char** argv) {
@@ -103,19 +109,20 @@ int priority_command(int argc, char** argv) {
   std::string name;
   int32_t priority = 0;
   bool json = false;
-  app.app().add_option("job", name, "its id, or its name where only one has it")->required();
+  app.app().add_option("job", name, "its id, or the name of the only one (open)")->required();
   app.app()
       .add_option("priority", priority, "the new priority (write -- before a negative one)")
       ->check(CLI::Range(-1'000'000, 1'000'000))
       ->required();
   app.app().add_flag("--json", json, "print the job as JSON (field id)");
   if (const auto status = app.parse(argc, argv)) return *status;
-  return for_each_job(app, {name}, json, [&](FarmClient& client, uint64_t id, v1::Job& after) {
-    v1::JobResponse response;
-    auto failure = client.set_priority(id, priority, response);
-    after = response.job();
-    return failure;
-  });
+  return for_each_job(app, {name}, Namesakes::open, json,
+                      [&](FarmClient& client, uint64_t id, v1::Job& after) {
+                        v1::JobResponse response;
+                        auto failure = client.set_priority(id, priority, response);
+                        after = response.job();
+                        return failure;
+                      });
 }
 
 }  // namespace hyades::cli

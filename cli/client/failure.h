@@ -13,7 +13,7 @@ enum ExitCode {
   kBadArguments = 2,  ///< of the command, or of the job's text
   kNoAnswer = 3,      ///< the coordinator cannot be reached
   kRefused = 4,       ///< no token, or the wrong one
-  kUnknown = 5,       ///< no such job, worker or file
+  kUnknown = 5,       ///< no such job, frame, worker or file
   kCancelled = 6,     ///< the job was cancelled
   kInterrupted = 130,
 };

@@ -33,7 +33,7 @@ struct Options {
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("job", options.job, "its id, or its name where only one has it")->required();
+  app.add_option("job", options.job, "its id, or its name (of several: the newest)")->required();
   app.add_option("--output", options.folder, "folder for the files")->capture_default_str();
   app.add_option("--frame", options.frames, "only these frames")->delimiter(',');
   app.add_flag("--follow", options.follow, "stay, and bring each file as it is finished");
@@ -78,6 +78,26 @@ Outcome fetch_film(FarmClient& client, uint64_t id, const Options& options) {
   if (!written) return Failure{kFailed, written.error().message};
   if (!options.quiet) std::fprintf(stderr, "wrote %s\n", path.c_str());
   return std::nullopt;
+}
+
+/// Why there is no file to fetch.
+Failure why_nothing(FarmClient& client, uint64_t id) {
+  v1::GetJobResponse response;
+  if (auto failure = client.get(id, response)) return *failure;
+  switch (response.job().state()) {
+    case v1::JOB_STATE_FAILED:
+      return {kFailed, fmt::format("job {} failed, there is nothing to fetch: hyades status {} "
+                                   "tells why, hyades retry {} takes it up again",
+                                   id, id, id)};
+    case v1::JOB_STATE_CANCELLED:
+      return {kFailed, fmt::format("job {} was cancelled, there is nothing to fetch: hyades retry "
+                                   "{} takes it up again",
+                                   id, id)};
+    case v1::JOB_STATE_DONE:
+      return {kFailed, fmt::format("job {} is done and has no files", id)};
+    default:
+      return {kFailed, fmt::format("job {} has nothing to fetch yet (hyades watch {})", id, id)};
+  }
 }
 
 /// One run of the command.
@@ -159,18 +179,19 @@ int fetch_command(int argc, char** argv) {
   const auto client = app.connect();
   if (!client) return kBadArguments;
   uint64_t id = 0;
-  if (auto failure = find_job(*client, options.job, id)) return app.report(*failure);
+  if (auto failure = find_job(*client, options.job, Namesakes::newest, id))
+    return app.report(*failure);
   if (options.film) {
     const Outcome failure = fetch_film(*client, id, options);
     return failure ? app.report(*failure) : kDone;
   }
+  if (auto failure = check_frames(*client, id, options.frames)) return app.report(*failure);
   FetchRun run(*client, options, id);
   const Outcome failure = run.run();
   run.print();
   if (failure) return app.report(*failure);
   if (run.found_nothing() && !options.list && !options.json) {
-    return app.report(
-        {kFailed, fmt::format("job {} has nothing to fetch yet (hyades watch {})", id, id)});
+    return app.report(why_nothing(*client, id));
   }
   return kDone;
 }

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
+#include <set>
 
 #include <fmt/format.h>
 
+#include "cli/client/show.h"
 #include "core/base/text.h"
 
 namespace hyades::cli {
@@ -13,6 +16,25 @@ namespace {
 constexpr size_t kMostShown = 8;
 
 }  // namespace
+
+Outcome check_frames(FarmClient& client, uint64_t id, const std::vector<int32_t>& frames) {
+  if (frames.empty()) return std::nullopt;
+  v1::GetJobResponse response;
+  if (auto failure = client.get(id, response)) return failure;
+  std::set<int32_t> known;
+  for (const v1::Frame& frame : response.frames()) known.insert(frame.frame());
+  for (const int32_t frame : frames) {
+    if (!known.contains(frame)) {
+      return Failure{kUnknown, fmt::format("job {} has no frame {}", id, frame)};
+    }
+  }
+  return std::nullopt;
+}
+
+bool has_ended(const v1::Job& job) {
+  return job.state() == v1::JOB_STATE_DONE || job.state() == v1::JOB_STATE_FAILED ||
+         job.state() == v1::JOB_STATE_CANCELLED;
+}
 
 Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
                       std::vector<v1::Job>& jobs) {
@@ -28,7 +50,7 @@ Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
   return std::nullopt;
 }
 
-Outcome find_job(FarmClient& client, const std::string& text, uint64_t& id) {
+Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesakes, uint64_t& id) {
   const char* end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, id);
   if (error == std::errc() && last == end) return std::nullopt;
@@ -36,24 +58,34 @@ Outcome find_job(FarmClient& client, const std::string& text, uint64_t& id) {
   std::vector<v1::Job> jobs;
   if (auto failure = list_all_jobs(client, true, "", jobs)) return failure;
   std::vector<std::string> names;
-  std::vector<std::string> ids;
+  std::vector<uint64_t> ids;   // of all that are called so, the newest first
+  std::vector<uint64_t> open;  // of those that have not ended
   for (const v1::Job& job : jobs) {
     if (job.name() == text) {
-      id = job.id();
-      ids.push_back(std::to_string(job.id()));
+      ids.push_back(job.id());
+      if (!has_ended(job)) open.push_back(job.id());
     }
     if (std::find(names.begin(), names.end(), job.name()) == names.end()) {
       names.push_back(job.name());
     }
   }
-  if (ids.size() == 1) return std::nullopt;
   if (ids.empty()) {
     return Failure{kUnknown,
                    fmt::format("there is no job '{}'{}", text, core::did_you_mean(text, names))};
   }
+  id = ids.front();
+  if (ids.size() == 1) return std::nullopt;
+  const bool only_open = namesakes == Namesakes::open && open.size() == 1;
+  if (only_open || namesakes == Namesakes::newest) {
+    if (only_open) id = open.front();
+    std::fprintf(stderr, "%zu jobs are called '%s': this is job %lu, %s\n", ids.size(),
+                 printable(text).c_str(), id,
+                 only_open ? "the only one that is open" : "the newest");
+    return std::nullopt;
+  }
   const size_t shown = std::min(ids.size(), kMostShown);
   return Failure{
-      kUnknown,
+      kBadArguments,
       fmt::format("{} jobs are called '{}': say which by its id, {}{}", ids.size(), text,
                   fmt::join(ids.begin(), ids.begin() + static_cast<ptrdiff_t>(shown), ", "),
                   shown < ids.size() ? ", ..." : "")};

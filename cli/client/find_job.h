@@ -7,9 +7,23 @@
 
 namespace hyades::cli {
 
-/// Puts into `id` which job `text` means: its id, or its name where only one job has it. Failures
-/// name what is near.
-Outcome find_job(FarmClient& client, const std::string& text, uint64_t& id);
+/// Which of several jobs of one name is meant.
+enum class Namesakes {
+  none,    ///< none of them: only an id will do
+  open,    ///< the only one that has not ended
+  newest,  ///< the one submitted last
+};
+
+/// Puts into `id` which job `text` means: its id, or its name. Where several have that name
+/// standard error says which was taken, or, where `namesakes` does not tell, it is a wrong
+/// argument. Failures name what is near.
+Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesakes, uint64_t& id);
+
+/// A failure where `frames` are not all of the job; an empty list is not looked at.
+Outcome check_frames(FarmClient& client, uint64_t id, const std::vector<int32_t>& frames);
+
+/// Whether it is done, failed or cancelled.
+bool has_ended(const v1::Job& job);
 
 /// Every job, the newest first: those that have not ended, or all; of one owner, or of all ("").
 Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,

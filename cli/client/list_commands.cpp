@@ -130,14 +130,14 @@ int status_command(int argc, char** argv) {
   std::string job;
   bool all = false;
   bool json = false;
-  app.app().add_option("job", job, "its id, or its name where only one has it")->required();
+  app.app().add_option("job", job, "its id, or its name (of several: the newest)")->required();
   app.app().add_flag("--frames", all, "tell of every frame");
   app.app().add_flag("--json", json, "print the job as JSON (fields id and frame_list)");
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
   uint64_t id = 0;
-  if (auto failure = find_job(*client, job, id)) return app.report(*failure);
+  if (auto failure = find_job(*client, job, Namesakes::newest, id)) return app.report(*failure);
   v1::GetJobResponse response;
   if (auto failure = client->get(id, response)) return app.report(*failure);
   if (!json) {
@@ -155,13 +155,13 @@ int explain_command(int argc, char** argv) {
   ClientApp app("explain", "Tells why a job does or does not get on.");
   std::string job;
   bool json = false;
-  app.app().add_option("job", job, "its id, or its name where only one has it")->required();
+  app.app().add_option("job", job, "its id, or the name of the only one (open)")->required();
   app.app().add_flag("--json", json, "print JSON (fields id and reasons)");
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
   uint64_t id = 0;
-  if (auto failure = find_job(*client, job, id)) return app.report(*failure);
+  if (auto failure = find_job(*client, job, Namesakes::open, id)) return app.report(*failure);
   v1::ExplainResponse response;
   if (auto failure = client->explain(id, response)) return app.report(*failure);
   if (json) {
@@ -181,7 +181,7 @@ int logs_command(int argc, char** argv) {
   std::vector<int32_t> frames;
   bool follow = false;
   bool json = false;
-  app.app().add_option("job", job, "its id, or its name where only one has it")->required();
+  app.app().add_option("job", job, "its id, or its name (of several: the newest)")->required();
   app.app().add_option("--frame", frames, "only these frames")->delimiter(',');
   app.app().add_flag("--follow", follow, "stay until the job has ended");
   app.app().add_flag("--json", json, "print one JSON object a line (field id: its number)");
@@ -190,7 +190,8 @@ int logs_command(int argc, char** argv) {
   if (!client) return kBadArguments;
   v1::LogsRequest request;
   uint64_t id = 0;
-  if (auto failure = find_job(*client, job, id)) return app.report(*failure);
+  if (auto failure = find_job(*client, job, Namesakes::newest, id)) return app.report(*failure);
+  if (auto failure = check_frames(*client, id, frames)) return app.report(*failure);
   request.set_job(id);
   request.set_follow(follow);
   request.mutable_frames()->Add(frames.begin(), frames.end());

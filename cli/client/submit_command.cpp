@@ -67,7 +67,8 @@ void declare(CLI::App& app, Options& options) {
                  "frame first, then more")
       ->check(CLI::IsMember({"sequential", "progressive"}));
   app.add_flag("--quiet", options.quiet, "show no progress");
-  app.add_flag("--json", options.json, "print the job as JSON (field id)");
+  app.add_flag("--json", options.json,
+               "print the job as JSON (field id); with --watch as it is at the end");
   app.footer(
       "example:\n  hyades submit jobs/perlin-sphere/job.yaml --watch && hyades fetch perlin-sphere "
       "--output out\n"
@@ -155,16 +156,15 @@ int submit_command(int argc, char** argv) {
   if (auto failure = submit(*client, *package, *request, options.quiet, job)) {
     return app.report(*failure);
   }
-  if (options.json) {
-    print_json(to_json(job));
-  } else {
+  if (!options.json) {
     std::printf("job %lu: %s, %u frame%s\n", job.id(), printable(job.name()).c_str(), job.frames(),
                 job.frames() == 1 ? "" : "s");
   }
   std::fflush(stdout);
-  if (!options.watch) return kDone;
-  if (auto failure = watch_job(*client, job.id(), options.quiet)) return app.report(*failure);
-  return kDone;
+  Outcome failure;
+  if (options.watch) failure = watch_job(*client, job.id(), options.quiet, &job);
+  if (options.json) print_json(to_json(job));
+  return failure ? app.report(*failure) : kDone;
 }
 
 }  // namespace hyades::cli

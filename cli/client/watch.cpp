@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/client/find_job.h"
 #include "cli/client/show.h"
 #include "cli/progress_display.h"
 #include "core/base/text.h"
@@ -38,11 +39,6 @@ void leave_job_running_on_interrupt(uint64_t id) {
   struct sigaction action {};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
-}
-
-bool has_ended(const v1::Job& job) {
-  return job.state() == v1::JOB_STATE_DONE || job.state() == v1::JOB_STATE_FAILED ||
-         job.state() == v1::JOB_STATE_CANCELLED;
 }
 
 coordinator::Progress progress_of(const v1::Job& job) {
@@ -126,7 +122,7 @@ class Watcher {
 
 }  // namespace
 
-Outcome watch_job(FarmClient& client, uint64_t id, bool quiet) {
+Outcome watch_job(FarmClient& client, uint64_t id, bool quiet, v1::Job* last) {
   leave_job_running_on_interrupt(id);
   Watcher watcher(quiet);
   client.on_notice([&](const std::string& text) {
@@ -137,6 +133,7 @@ Outcome watch_job(FarmClient& client, uint64_t id, bool quiet) {
   while (!outcome && !watcher.ended()) {
     outcome = client.watch(id, [&](const v1::WatchEvent& event) {
       watcher.take(event);
+      if (last != nullptr) *last = event.job();
       return !watcher.ended();
     });
     // A coordinator that ends the stream in order before the job has ended is about to stop.

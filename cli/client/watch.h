@@ -8,7 +8,8 @@
 namespace hyades::cli {
 
 /// Shows how job `id` gets on until it has ended; Ctrl-C leaves it running. Nothing where it is
-/// done; a job that failed or was cancelled is a failure, told with its frames.
-Outcome watch_job(FarmClient& client, uint64_t id, bool quiet);
+/// done; a job that failed or was cancelled is a failure, told with its frames. `last`, if not
+/// null, becomes the job as it was told last.
+Outcome watch_job(FarmClient& client, uint64_t id, bool quiet, v1::Job* last = nullptr);
 
 }  // namespace hyades::cli

@@ -200,6 +200,14 @@ TEST_F(Client, WatchEndsWithTheJob) {
   EXPECT_EQ(run(watch_command, at({"1", "--quiet"})).status, kCancelled);
 }
 
+TEST_F(Client, SubmitAndWatchPrintsTheJobAsItEnds) {
+  farm_.events = {event(v1::JOB_STATE_RUNNING, 50), event(v1::JOB_STATE_FAILED, 60)};
+  const Ran ran = submit({"--watch", "--json"});
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_EQ(json::parse(ran.out)["state"], "failed") << ran.out;
+  EXPECT_EQ(json::parse(ran.out)["samples_done"], 60);
+}
+
 TEST_F(Client, NobodyThereIsSaidInOneLine) {
   const auto begin = std::chrono::steady_clock::now();
   const Ran ran = run(jobs_command, {"--coordinator", "127.0.0.1:1"});
@@ -271,9 +279,34 @@ TEST_F(Client, JobsHaveIdsAndNames) {
   EXPECT_EQ(typo.status, kUnknown);
   EXPECT_TRUE(has(typo.err, "did you mean 'forest'?")) << typo.err;
   const Ran both = run(cancel_command, at({"ocean"}));
-  EXPECT_EQ(both.status, kUnknown);
+  EXPECT_EQ(both.status, kBadArguments);
   EXPECT_TRUE(has(both.err, "3, 2")) << both.err;
   EXPECT_EQ(run(status_command, at({"17"})).status, kUnknown);
+}
+
+TEST_F(Client, OfNamesakesTheOpenOneOrTheNewestIsMeant) {
+  add_job("ocean", v1::JOB_STATE_DONE);
+  add_job("ocean", v1::JOB_STATE_PAUSED);
+  add_job("ocean", v1::JOB_STATE_FAILED);
+  const Ran newest = run(status_command, at({"ocean", "--json"}));
+  EXPECT_EQ(json::parse(newest.out)["id"], 3);
+  EXPECT_TRUE(has(newest.err, "this is job 3")) << newest.err;
+  farm_.outputs["ocean.exr"] = "wet";
+  const Ran fetched = run(fetch_command, at({"ocean", "--output", folder_.file("out")}));
+  EXPECT_EQ(fetched.status, kDone);
+  EXPECT_TRUE(has(fetched.err, "this is job 3")) << fetched.err;
+  for (const Command command : {pause_command, resume_command, retry_command}) {
+    const Ran ran = run(command, at({"ocean", "--json"}));
+    EXPECT_EQ(json::parse(ran.out)[0]["id"], 2) << ran.err;
+    EXPECT_TRUE(has(ran.err, "this is job 2")) << ran.err;
+  }
+  EXPECT_EQ(run(priority_command, at({"ocean", "9"})).status, kDone);
+  EXPECT_EQ(farm_.jobs[1].priority(), 9);
+  EXPECT_EQ(run(delete_command, at({"ocean"})).status, kBadArguments);
+  EXPECT_EQ(run(cancel_command, at({"ocean"})).status, kDone);
+  EXPECT_EQ(farm_.jobs[1].state(), v1::JOB_STATE_CANCELLED);
+  EXPECT_EQ(run(cancel_command, at({"ocean"})).status, kBadArguments) << "none is open";
+  EXPECT_EQ(farm_.jobs.size(), 3U);
 }
 
 TEST_F(Client, JobsAreSteered) {
@@ -330,6 +363,30 @@ TEST_F(Client, FetchChecksAndGoesOn) {
   EXPECT_EQ(read_file(out + "/a.0001.exr"), farm_.outputs["a.0001.exr"]);
   EXPECT_EQ(json::parse(run(fetch_command, at({"a", "--list", "--json"})).out)[1]["id"],
             "passes/a.0002.exr");
+}
+
+TEST_F(Client, FetchSaysWhyThereIsNothing) {
+  add_job("a", v1::JOB_STATE_DONE);
+  v1::Frame frame;
+  frame.set_frame(1);
+  farm_.frames = {frame};
+  for (const Command command : {fetch_command, logs_command}) {
+    const Ran ran = run(command, at({"1", "--frame", "1,99"}));
+    EXPECT_EQ(ran.status, kUnknown);
+    EXPECT_TRUE(has(ran.err, "job 1 has no frame 99")) << ran.err;
+  }
+  EXPECT_EQ(run(logs_command, at({"1", "--frame", "1"})).status, kDone);
+  const auto why = [&](v1::JobState state) {
+    farm_.jobs[0].set_state(state);
+    const Ran ran = run(fetch_command, at({"1", "--frame", "1"}));
+    EXPECT_EQ(ran.status, kFailed);
+    return ran.err;
+  };
+  const std::string failed = why(v1::JOB_STATE_FAILED);
+  EXPECT_TRUE(has(failed, "job 1 failed")) << failed;
+  EXPECT_TRUE(has(failed, "hyades retry 1")) << failed;
+  EXPECT_TRUE(has(why(v1::JOB_STATE_CANCELLED), "was cancelled"));
+  EXPECT_TRUE(has(why(v1::JOB_STATE_RUNNING), "nothing to fetch yet"));
 }
 
 TEST_F(Client, FetchKeepsNothingThatIsWrong) {
