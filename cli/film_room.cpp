@@ -35,7 +35,7 @@ FilmRoom film_room(const core::Job& job, const core::PixelRect& window, uint64_t
   room.channels = layout.channels.size();
   room.film = core::film_memory(layout, window);
   room.here = core::usable_memory();
-  room.most = most > 0 ? most : (room.here > 0 ? room.here / 2 : UINT64_MAX);
+  room.most = most > 0 ? most : core::half_of_memory();
   return room;
 }
 

@@ -18,6 +18,10 @@ grpc::Status retry_later(grpc::StatusCode code, const std::string& message,
   return wire_status(code, message, detail);
 }
 
+grpc::Status unavailable(const core::Error& error) {
+  return retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
+}
+
 v1::ErrorDetail detail_of(const grpc::Status& status) {
   v1::StatusDetails details;
   v1::ErrorDetail detail;

@@ -5,6 +5,7 @@
 
 #include <grpcpp/support/status.h>
 
+#include "core/base/result.h"
 #include "hyades/v1/common.pb.h"
 
 namespace hyades::farm {
@@ -16,6 +17,10 @@ grpc::Status wire_status(grpc::StatusCode code, const std::string& message,
 /// The same, told to come again after `retry_after`.
 grpc::Status retry_later(grpc::StatusCode code, const std::string& message,
                          std::chrono::milliseconds retry_after);
+
+/// UNAVAILABLE for now, as what the coordinator stores cannot be stored or read; to come again
+/// after a second.
+grpc::Status unavailable(const core::Error& error);
 
 /// What the error carries; empty where it carries nothing.
 v1::ErrorDetail detail_of(const grpc::Status& status);

@@ -186,6 +186,7 @@ class Brain {
 
   Brain(BrainOptions options, std::unique_ptr<JobStore> store,
         std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation);
+  static grpc::Status check_priority(int priority);
   bool has_room_for(const StoredJob& job) const;
   bool is_here(const v1::JobFile& file);
   grpc::Status files_are_here(const v1::JobSpec& spec);

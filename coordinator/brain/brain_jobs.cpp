@@ -15,7 +15,6 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr size_t kLongestName = 200;
-constexpr int kMostPriority = 1'000'000;
 constexpr size_t kMostMissingTold = 100;  // an error travels in headers, which are short
 constexpr std::chrono::seconds kSubmitPatience{2};
 /// For what is left of a job that has ended: less than that for which others wait for this one.
@@ -24,10 +23,6 @@ constexpr std::chrono::milliseconds kAwayPatience{1500};
 constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
 constexpr uint32_t kMostAttempts = 100;
-
-grpc::Status failed(const core::Error& error) {
-  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
-}
 
 grpc::Status overloaded(const char* why, std::chrono::milliseconds retry_after) {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, why, retry_after);
@@ -50,9 +45,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
     return wrong("idempotency_key has to have 16 to 64 characters");
   }
   if (request.owner().size() > kLongestName) return wrong("owner: at most 200 characters");
-  if (std::abs(int64_t{request.priority()}) > kMostPriority) {
-    return wrong("priority: expected -1000000 to 1000000");
-  }
+  if (const grpc::Status sane = check_priority(request.priority()); !sane.ok()) return sane;
   auto tags = farm::check_tags({request.tags().begin(), request.tags().end()});
   if (!tags) return wrong(tags.error().message);
   if (request.max_attempts() > kMostAttempts) return wrong("max_attempts: at most 100");
@@ -84,7 +77,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
     return no_room();
   }
   const auto added = store_->add_job((*desk)->stored);
-  if (!added) return failed(added.error());
+  if (!added) return farm::unavailable(added.error());
   core::failpoint("job-stored");
   response.set_existed(added->existed);
   if (!added->existed) {
@@ -100,7 +93,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
     if (core::Status started = start(std::move(*desk), {}); !started) {
       // Nothing was promised yet.
       (void)store_->remove_job(added->id);
-      return failed(started.error());
+      return farm::unavailable(started.error());
     }
   }
   v1::GetJobResponse now;
@@ -171,7 +164,7 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
   if (open) return grpc::Status::OK;
   if (const grpc::Status away = wait_until_away(id); !away.ok()) return away;
   auto stored = store_->job(id);
-  if (!stored) return failed(stored.error());
+  if (!stored) return farm::unavailable(stored.error());
   if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
   StoredJob& job = **stored;
   if (!has_ended(job.state)) return not_open(id);
@@ -181,15 +174,16 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
   }
   if (!has_room_for(job)) return no_room();
   const auto frames = store_->frames(id);
-  if (!frames) return failed(frames.error());
+  if (!frames) return farm::unavailable(frames.error());
   for (const StoredFrame& frame : *frames) {
     if (frame.done) continue;
-    if (auto gone = store_->forget_frame(id, frame.frame); !gone) return failed(gone.error());
+    if (auto gone = store_->forget_frame(id, frame.frame); !gone)
+      return farm::unavailable(gone.error());
   }
   job.state = StoredState::running;
   job.ended_ms = 0;
   job.reason.clear();
-  if (core::Status noted = store_->update_job(job); !noted) return failed(noted.error());
+  if (core::Status noted = store_->update_job(job); !noted) return farm::unavailable(noted.error());
   if (core::Status taken = take_up(id); !taken) {
     job.state = StoredState::failed;
     job.ended_ms = wall_ms();
@@ -222,7 +216,7 @@ grpc::Status Brain::remove(uint64_t id) {
   }
   if (const grpc::Status away = wait_until_away(id); !away.ok()) return away;
   const auto stored = store_->job(id);
-  if (!stored) return failed(stored.error());
+  if (!stored) return farm::unavailable(stored.error());
   if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
   const auto remove_folders = [&] {
     std::error_code ignored;  // what stays is found after the next start
@@ -235,7 +229,7 @@ grpc::Status Brain::remove(uint64_t id) {
     remove_folders();
     removed = store_->remove_job(id);
   }
-  if (!removed) return failed(removed.error());
+  if (!removed) return farm::unavailable(removed.error());
   remove_folders();
   // Its files have been of use until now: they stay for a while, should it come again.
   v1::JobSpec spec;

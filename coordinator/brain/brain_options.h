@@ -7,12 +7,9 @@
 #include "coordinator/local/local_log.h"
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/store/disk_room.h"
+#include "core/base/machine.h"
 
 namespace hyades::coordinator {
-
-/// Half of the memory that this process may take, in bytes; all there can be where that is not
-/// known.
-uint64_t default_film_memory();
 
 struct BrainOptions {
   std::string folder;                            ///< where all state lies; made if it is missing
@@ -35,7 +32,7 @@ struct BrainOptions {
   /// loads or waits, after six times this.
   Duration stall_time = std::chrono::minutes(10);
   /// Bytes that the film of a frame may take in memory; jobs of larger ones are refused.
-  uint64_t film_memory = default_film_memory();
+  uint64_t film_memory = core::half_of_memory();
   /// A job's film log is rewritten when it has grown by this much.
   uint64_t compact_bytes = LocalLog{}.compact_bytes;
 };

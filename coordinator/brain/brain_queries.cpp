@@ -16,10 +16,6 @@ constexpr uint32_t kMostListed = 1000;
 constexpr size_t kMostFrameBytes = size_t{64} << 10U;
 constexpr uint32_t kMostFramesAtOnce = 2000;
 
-grpc::Status failed(const core::Error& error) {
-  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
-}
-
 grpc::Status no_job(uint64_t id) {
   return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
 }
@@ -91,7 +87,7 @@ bool Brain::list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& 
 grpc::Status Brain::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
   const uint32_t limit = most_listed(request);
   const auto jobs = store_->list(request.ended(), request.owner(), request.before(), limit);
-  if (!jobs) return failed(jobs.error());
+  if (!jobs) return farm::unavailable(jobs.error());
   const std::lock_guard lock(mutex_);
   for (const StoredJob& job : *jobs) {
     const JobDesk* desk = desk_of(job.id);
@@ -119,11 +115,11 @@ grpc::Status Brain::get(uint64_t id, std::optional<int32_t> after, v1::GetJobRes
   if (get_open(id, after, response)) return grpc::Status::OK;
   FramePage page(*response.mutable_frames());
   const auto stored = store_->job(id);
-  if (!stored) return failed(stored.error());
+  if (!stored) return farm::unavailable(stored.error());
   if (!*stored) return no_job(id);
   *response.mutable_job() = coordinator::describe(**stored);
   const auto frames = store_->frames(id, after, kMostFramesAtOnce);
-  if (!frames) return failed(frames.error());
+  if (!frames) return farm::unavailable(frames.error());
   response.set_more(frames->size() == kMostFramesAtOnce);
   for (const StoredFrame& frame : *frames) {
     if (page.full()) {
@@ -185,10 +181,10 @@ void Brain::unwatch(uint64_t number) {
 /// Of a frame that is done; without the lock.
 grpc::Status Brain::kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
   const auto stored = store_->job(id);
-  if (!stored) return failed(stored.error());
+  if (!stored) return farm::unavailable(stored.error());
   if (!*stored) return no_job(id);
   const auto outputs = store_->outputs(id, 0, UINT32_MAX);
-  if (!outputs) return failed(outputs.error());
+  if (!outputs) return farm::unavailable(outputs.error());
   for (const StoredOutput& output : *outputs) {
     if (output.frame != frame || !output.path.ends_with(".film.exr")) continue;
     auto file = core::read_film_exr(output_folder(id) + "/" + output.path);

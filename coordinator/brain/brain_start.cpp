@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
-#include "core/base/machine.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -21,11 +20,6 @@ SchedulerOptions scheduler_options(const BrainOptions& options, uint64_t incarna
 }
 
 }  // namespace
-
-uint64_t default_film_memory() {
-  const uint64_t memory = core::usable_memory();
-  return memory > 0 ? memory / 2 : UINT64_MAX;
-}
 
 core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options,
                                                  std::unique_ptr<JobStore> store) {

@@ -12,11 +12,12 @@ namespace {
 
 constexpr int kMostPriority = 1'000'000;
 
-grpc::Status failed(const core::Error& error) {
-  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
-}
-
 }  // namespace
+
+grpc::Status Brain::check_priority(int priority) {
+  if (std::abs(int64_t{priority}) <= kMostPriority) return grpc::Status::OK;
+  return {grpc::StatusCode::INVALID_ARGUMENT, "priority: expected -1000000 to 1000000"};
+}
 
 void Brain::pause(uint64_t id, Told then) { set_paused(id, true, std::move(then)); }
 
@@ -33,9 +34,7 @@ void Brain::set_paused(uint64_t id, bool paused, Told then) {
 }
 
 void Brain::set_priority(uint64_t id, int priority, Told then) {
-  if (std::abs(int64_t{priority}) > kMostPriority) {
-    return then({grpc::StatusCode::INVALID_ARGUMENT, "priority: expected -1000000 to 1000000"}, {});
-  }
+  if (const grpc::Status sane = check_priority(priority); !sane.ok()) return then(sane, {});
   change(id, std::move(then), [&](JobDesk& desk, std::vector<Action>& later) {
     if (desk.stored.priority == priority) return;
     desk.stored.priority = priority;
@@ -85,7 +84,7 @@ void Brain::cancel(uint64_t id, Told then) {
 /// NOT_FOUND, or FAILED_PRECONDITION for a job that has ended; without the lock.
 grpc::Status Brain::not_open(uint64_t id) {
   const auto stored = store_->job(id);
-  if (!stored) return failed(stored.error());
+  if (!stored) return farm::unavailable(stored.error());
   if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
   if (!has_ended((*stored)->state)) {
     return farm::retry_later(

@@ -38,10 +38,6 @@ grpc::Status take_in(const Admission& admission, const grpc::CallbackServerConte
   return admitted.ok() ? parse(bytes, farm::kMaxRequestBytes, request) : admitted;
 }
 
-grpc::Status failed(const core::Error& error) {
-  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
-}
-
 /// Follows a job: wakes up whenever it has changed.
 template <class Message>
 class Follower : public Producer<Message> {
@@ -125,7 +121,7 @@ class OutputList final : public Follower<v1::OutputFile> {
       if (!status.ok()) return Step::end;
       auto outputs = brain_.store().outputs(job_, seen_, kRowsAtOnce);
       if (!outputs) {
-        status = failed(outputs.error());
+        status = farm::unavailable(outputs.error());
         return Step::end;
       }
       if (!outputs->empty()) seen_ = outputs->back().number;
@@ -173,7 +169,7 @@ class LogLines final : public Follower<v1::LogLine> {
       if (!status.ok()) return Step::end;
       auto lines = brain_.store().lines(job_, seen_, kRowsAtOnce);
       if (!lines) {
-        status = failed(lines.error());
+        status = farm::unavailable(lines.error());
         return Step::end;
       }
       if (!lines->empty()) seen_ = lines->back().number;
@@ -307,7 +303,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
   const auto open = [this, request = std::move(request)](core::Bytes& file) -> grpc::Status {
     // The path is looked up among the job's outputs and never taken for one of the file system's.
     const auto output = brain_.store().output(request.job(), request.path());
-    if (!output) return failed(output.error());
+    if (!output) return farm::unavailable(output.error());
     if (!*output) {
       return {grpc::StatusCode::NOT_FOUND,
               fmt::format("job {} has no output '{}' (yet)", request.job(), request.path())};

@@ -30,6 +30,11 @@ uint64_t usable_memory() {
   return least == UINT64_MAX ? 0 : least;
 }
 
+uint64_t half_of_memory() {
+  const uint64_t memory = usable_memory();
+  return memory > 0 ? memory / 2 : UINT64_MAX;
+}
+
 void ignore_file_size_signal() { std::signal(SIGXFSZ, SIG_IGN); }
 
 double thread_seconds() {

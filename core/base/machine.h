@@ -9,6 +9,9 @@ namespace hyades::core {
 /// container (cgroup) and its own (ulimit -v). 0 where that is not known.
 uint64_t usable_memory();
 
+/// Half of that; all there can be where it is not known.
+uint64_t half_of_memory();
+
 /// From now on a file that may not grow further (ulimit -f) is an error of whoever writes it, as a
 /// full disk is, and no signal that ends the process. Programs that are started inherit that.
 void ignore_file_size_signal();

@@ -14,6 +14,20 @@ v1::JobRequest about(uint64_t job) {
   return request;
 }
 
+/// A worker of other bits, which gives four films and keeps the first unit that it was leased.
+struct OddWorker {
+  explicit OddWorker(const FarmWorld& world) : script(world.script(1)) {
+    script.corrupt = [](core::Film& film) { film.mutable_plane(0)[0] += core::Fixed128{0, 1}; };
+    script.meddle = [this](ScriptedWorker&, const v1::LeasedUnit& unit) {
+      if (given == 0) first = unit;
+      return ++given <= 4;
+    };
+  }
+  std::atomic<int> given{0};
+  v1::LeasedUnit first;
+  ScriptedWorker::Script script;
+};
+
 TEST(Steering, APausedJobRestsAlsoOverARestart) {
   FarmWorld world;
   world.start();
@@ -194,21 +208,14 @@ TEST(Steering, AWorkerWithOtherBitsThanTwoOthersIsQuarantinedAndItsFilmsDoNotCou
   FarmWorld world;
   world.start();
   const uint64_t job = world.submit(1);
-  std::atomic<int> given{0};
-  v1::LeasedUnit first;
-  ScriptedWorker::Script odd = world.script(1);
-  odd.corrupt = [](core::Film& film) { film.mutable_plane(0)[0] += core::Fixed128{0, 1}; };
-  odd.meddle = [&](ScriptedWorker&, const v1::LeasedUnit& unit) {
-    if (given == 0) first = unit;
-    return ++given <= 4;
-  };
-  const ScriptedWorker broken(world.address, odd);
+  OddWorker odd(world);
+  const ScriptedWorker broken(world.address, odd.script);
   ASSERT_TRUE(eventually([&] { return broken.acknowledged() >= 4; }));
   // Another renders one of its units too, and then a third is asked.
   std::atomic<bool> compared{false};
   ScriptedWorker::Script good = world.script(2);
   good.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
-    if (!compared.exchange(true)) self.deliver(first);
+    if (!compared.exchange(true)) self.deliver(odd.first);
     return true;
   };
   const ScriptedWorker second(world.address, good);
@@ -243,20 +250,13 @@ TEST(Steering, WhatWorkersDisagreedAboutDoesNotCountAfterARestart) {
   world.start();
   const uint64_t job = world.submit(1);
   {
-    std::atomic<int> given{0};
-    v1::LeasedUnit first;
-    ScriptedWorker::Script odd = world.script(1);
-    odd.corrupt = [](core::Film& film) { film.mutable_plane(0)[0] += core::Fixed128{0, 1}; };
-    odd.meddle = [&](ScriptedWorker&, const v1::LeasedUnit& unit) {
-      if (given == 0) first = unit;
-      return ++given <= 4;
-    };
-    const ScriptedWorker broken(world.address, odd);
+    OddWorker odd(world);
+    const ScriptedWorker broken(world.address, odd.script);
     ASSERT_TRUE(eventually([&] { return broken.acknowledged() >= 4; }));
     std::atomic<bool> compared{false};
     ScriptedWorker::Script good = world.script(2);
     good.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
-      if (!compared.exchange(true)) self.deliver(first);
+      if (!compared.exchange(true)) self.deliver(odd.first);
       return false;
     };
     const ScriptedWorker second(world.address, good);
