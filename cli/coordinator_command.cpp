@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <utility>
 
 #include <google/protobuf/stubs/logging.h>
 #include <CLI/CLI.hpp>
@@ -52,6 +53,12 @@ void open_many_files() {
 }
 
 int serve(const Arguments& arguments) {
+  // Before the folder is touched.
+  auto door = hyades::farm::open_door(arguments.listen);
+  if (!door) {
+    std::fprintf(stderr, "hyades coordinator: %s\n", door.error().message.c_str());
+    return kBadArguments;
+  }
   open_many_files();
   // Who sends what is no message is told so; it does not fill the log.
   google::protobuf::SetLogHandler(nullptr);
@@ -68,7 +75,7 @@ int serve(const Arguments& arguments) {
     return 1;
   }
   {
-    auto server = Server::start(arguments.listen, **brain);
+    auto server = Server::start(std::move(*door), **brain);
     if (!server) {
       std::fprintf(stderr, "hyades coordinator: %s\n", server.error().message.c_str());
       return 1;
@@ -158,7 +165,7 @@ int main(int argc, char** argv) {
       "  hyades coordinator --data farm --listen 0.0.0.0:7700 --tls-cert c.pem --tls-key k.pem "
       "--token-file token\n"
       "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
-      "wrong arguments");
+      "wrong arguments (or a token, certificate or key that is none)");
   // argv[1] is the word "coordinator".
   try {
     app.parse(argc > 1 ? argc - 1 : argc, argc > 1 ? argv + 1 : argv);

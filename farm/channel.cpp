@@ -1,7 +1,6 @@
 #include "farm/channel.h"
 
-#include <fstream>
-#include <sstream>
+#include <utility>
 
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
@@ -9,6 +8,9 @@
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/security/server_credentials.h>
 
+#include "farm/grpc_log.h"
+#include "farm/small_file.h"
+#include "farm/tls_files.h"
 #include "farm/wire.h"
 
 namespace hyades::farm {
@@ -17,13 +19,6 @@ namespace {
 constexpr size_t kShortestToken = 16;
 constexpr int kKeepaliveMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
-
-core::Result<std::string> read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) return core::Error{path + ": cannot be read"};
-  return text.str();
-}
 
 core::Error plaintext_error(const std::string& address) {
   return {address +
@@ -34,7 +29,7 @@ core::Error plaintext_error(const std::string& address) {
 
 core::Result<std::string> read_token(const std::string& file) {
   if (file.empty()) return std::string();
-  auto text = read_file(file);
+  auto text = read_small_file(file);
   if (!text) return text;
   std::string token = *text;
   while (!token.empty() && (token.back() == '\n' || token.back() == '\r')) token.pop_back();
@@ -53,9 +48,10 @@ bool is_loopback(const std::string& address) {
 }
 
 core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer) {
+  quiet_grpc();
   std::shared_ptr<grpc::ChannelCredentials> credentials;
   if (!peer.ca_file.empty()) {
-    const auto ca = read_file(peer.ca_file);
+    const auto ca = read_certificates(peer.ca_file);
     if (!ca) return ca.error();
     grpc::SslCredentialsOptions options;
     options.pem_root_certs = *ca;
@@ -85,36 +81,41 @@ void prepare(grpc::ClientContext& context, const std::string& token,
   if (timeout.count() > 0) context.set_deadline(std::chrono::system_clock::now() + timeout);
 }
 
-core::Result<std::shared_ptr<grpc::ServerCredentials>> server_credentials(const Listen& listen) {
+core::Result<Door> open_door(const Listen& listen) {
+  quiet_grpc();
+  Door door{listen.address, nullptr, {}};
   const bool open = !is_loopback(listen.address) && !listen.insecure;
   if (listen.cert_file.empty() != listen.key_file.empty()) {
     return core::Error{"TLS needs both a certificate and its key"};
   }
+  auto token = read_token(listen.token_file);
+  if (!token) return token.error();
+  door.token = std::move(*token);
   if (listen.cert_file.empty()) {
     if (!listen.ca_file.empty()) {
       return core::Error{"clients' certificates need TLS: give a certificate and its key"};
     }
     if (open) return plaintext_error(listen.address);
-    return grpc::InsecureServerCredentials();
+    door.credentials = grpc::InsecureServerCredentials();
+    return door;
   }
   if (open && listen.token_file.empty()) {
     return core::Error{listen.address +
                        " is not this machine: give a token file, or --insecure to let anybody in"};
   }
-  const auto cert = read_file(listen.cert_file);
-  if (!cert) return cert.error();
-  const auto key = read_file(listen.key_file);
-  if (!key) return key.error();
+  auto pair = read_key_pair(listen.cert_file, listen.key_file);
+  if (!pair) return pair.error();
   grpc::SslServerCredentialsOptions options(
       listen.ca_file.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
                              : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
   if (!listen.ca_file.empty()) {
-    const auto ca = read_file(listen.ca_file);
+    const auto ca = read_certificates(listen.ca_file);
     if (!ca) return ca.error();
     options.pem_root_certs = *ca;
   }
-  options.pem_key_cert_pairs.push_back({*key, *cert});
-  return grpc::SslServerCredentials(options);
+  options.pem_key_cert_pairs.push_back({pair->key, pair->cert});
+  door.credentials = grpc::SslServerCredentials(options);
+  return door;
 }
 
 }  // namespace hyades::farm

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/base/result.h"
@@ -41,17 +42,32 @@ bool is_loopback(const std::string& address);
 
 /// A connection that reconnects by itself; the files of `peer` have been read. Keepalive pings
 /// notice a dead peer within 30 s, also between calls. Thread-safe; nothing is contacted yet. An
-/// error where plaintext would leave this machine without `insecure`.
+/// error where a file is not what it should be, or plaintext would leave this machine without
+/// `insecure`.
 core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer);
+
+/// What is amiss with TLS where gRPC could not connect to `peer` and says `message`; nothing where
+/// it is something else.
+std::optional<std::string> tls_trouble(const std::string& message, const Peer& peer);
+
+/// Why there is no connection to `peer`, in one line that stays the same while the reason does.
+std::string connection_trouble(const std::string& message, const Peer& peer);
 
 /// What every call carries: protocol version, token, and a deadline (none where `timeout` is 0, for
 /// streams without end).
 void prepare(grpc::ClientContext& context, const std::string& token,
              std::chrono::milliseconds timeout);
 
-/// The credentials that `listen` asks for; an error where they are not there, or where plaintext or
-/// an open door would be offered beyond this machine without `insecure`.
-core::Result<std::shared_ptr<grpc::ServerCredentials>> server_credentials(const Listen& listen);
+/// What a coordinator needs in order to listen; the files of its `Listen` have been read.
+struct Door {
+  std::string address;
+  std::shared_ptr<grpc::ServerCredentials> credentials;
+  std::string token;  ///< that every call must carry; empty: none
+};
+
+/// An error, which names the file if it is one's fault, where `listen` does not hold together, or
+/// where plaintext or an open door would be offered beyond this machine without `insecure`.
+core::Result<Door> open_door(const Listen& listen);
 
 /// The names of the metadata of every call.
 inline constexpr const char* kProtocolKey = "hyades-protocol";

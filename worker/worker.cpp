@@ -21,14 +21,17 @@ std::string host_name() {
 }
 
 int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals) {
-  const auto refuse = [](const core::Error& error) {
+  const auto refuse = [](const core::Error& error, int status = 1) {
     std::fprintf(stderr, "hyades worker: %s\n", error.message.c_str());
-    return 1;
+    return status;
   };
+  constexpr int kWrongInput = 2;
   auto token = farm::read_token(options.coordinator.token_file);
-  if (!token) return refuse(token.error());
+  if (!token) return refuse(token.error(), kWrongInput);
   auto channel = farm::connect(options.coordinator);
-  if (!channel) return refuse(channel.error());
+  if (!channel) return refuse(channel.error(), kWrongInput);
+  auto tags = farm::check_tags(options.tags);
+  if (!tags) return refuse(tags.error(), kWrongInput);
   std::error_code failed;
   std::filesystem::create_directories(options.cache, failed);
   if (failed) return refuse({options.cache + ": cannot be made: " + failed.message()});
@@ -38,8 +41,6 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   if (!id) return refuse(id.error());
   const auto instance = core::random_id();
   if (!instance) return refuse(instance.error());
-  auto tags = farm::check_tags(options.tags);
-  if (!tags) return refuse(tags.error());
   return work(options, std::move(*id), *instance, *channel, *token, **store, signals);
 }
 

@@ -23,8 +23,8 @@ struct WorkerOptions {
 };
 
 /// Works for a coordinator until `signals` is not 0 or it is drained. Returns the process' exit
-/// status: 0 when it was asked to leave, 1 where it cannot work here, 2 where the coordinator does
-/// not want it (token, version).
+/// status: 0 when it was asked to leave, 1 where it cannot work here, 2 where an option or its file
+/// is wrong, or the coordinator does not want it (token, version).
 int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals);
 
 }  // namespace hyades::worker

@@ -235,11 +235,12 @@ class Worker : private DeskPorts,
       if (end == StreamEnd::id_taken) rename();
       const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestPause));
       connect_at_ = Clock::now() + pause;
-      if (goodbye_by_ || reason == told_trouble_) return;
+      std::string trouble = farm::connection_trouble(reason, options_.coordinator);
+      if (goodbye_by_ || trouble == told_trouble_) return;
       note(fmt::format(
           "no connection to {} ({}); {} units in hand, {} films not acknowledged; trying again",
-          options_.coordinator.address, reason, desk_.in_hand(), desk_.unacknowledged()));
-      told_trouble_ = reason;
+          options_.coordinator.address, trouble, desk_.in_hand(), desk_.unacknowledged()));
+      told_trouble_ = std::move(trouble);
     });
   }
 

@@ -43,9 +43,6 @@ std::vector<std::string> hex_of(const v1::ErrorDetail& detail) {
   return names;
 }
 
-/// The first line of what gRPC has to say.
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace
 
 struct FarmClient::State {
@@ -64,6 +61,21 @@ struct FarmClient::State {
   void reached() {
     patience.reached();
     told = false;
+  }
+
+  std::string no_answer(const std::string& reason) const {
+    const std::string& address = options.peer.address;
+    if (const auto tls = farm::tls_trouble(reason, options.peer)) {
+      return fmt::format("cannot speak with the coordinator at {}: {}", address, *tls);
+    }
+    const std::string trouble = farm::connection_trouble(reason, options.peer);
+    if (patience.was_reached()) {
+      return fmt::format("the coordinator at {} answers no more ({})", address, trouble);
+    }
+    return fmt::format(
+        "no coordinator answers at {} ({}); --coordinator HOST:PORT or HYADES_COORDINATOR says "
+        "where it is",
+        address, trouble);
   }
 
   Failure failure(const grpc::Status& status) const {
@@ -95,13 +107,7 @@ struct FarmClient::State {
         // yet.
         if (farm::detail_of(status).retry_after_ms() != 0) break;
         out.code = kNoAnswer;
-        out.message = patience.was_reached()
-                          ? fmt::format("the coordinator at {} answers no more ({})",
-                                        options.peer.address, first_line(status.error_message()))
-                          : fmt::format(
-                                "no coordinator answers at {} ({}); --coordinator HOST:PORT or "
-                                "HYADES_COORDINATOR says where it is",
-                                options.peer.address, first_line(status.error_message()));
+        out.message = no_answer(status.error_message());
         break;
       default:
         break;
@@ -120,9 +126,10 @@ struct FarmClient::State {
     if (wait < 0) return false;
     if (bool& known = no_room ? told_room : told; !known && (no_room || patience.was_reached())) {
       known = true;
-      const std::string text = fmt::format("{} ({}): trying for up to {}", options.peer.address,
-                                           first_line(status.error_message()),
-                                           core::format_duration(options.later_patience));
+      const std::string text =
+          fmt::format("{} ({}): trying for up to {}", options.peer.address,
+                      farm::connection_trouble(status.error_message(), options.peer),
+                      core::format_duration(options.later_patience));
       tell ? tell(text) : static_cast<void>(std::fprintf(stderr, "%s\n", text.c_str()));
     }
     std::this_thread::sleep_for(std::chrono::duration<double>(wait));

@@ -1,6 +1,7 @@
 #include "coordinator/services/server.h"
 
 #include <chrono>
+#include <utility>
 
 #include <grpcpp/resource_quota.h>
 #include <grpcpp/server.h>
@@ -52,15 +53,11 @@ Server::~Server() {
   parts_->server->Wait();
 }
 
-core::Result<std::unique_ptr<Server>> Server::start(const farm::Listen& listen, Brain& brain) {
-  const auto credentials = farm::server_credentials(listen);
-  if (!credentials) return credentials.error();
-  auto token = farm::read_token(listen.token_file);
-  if (!token) return token.error();
-  auto parts = std::make_unique<Parts>(brain, std::move(*token));
+core::Result<std::unique_ptr<Server>> Server::start(farm::Door door, Brain& brain) {
+  auto parts = std::make_unique<Parts>(brain, std::move(door.token));
   grpc::ServerBuilder builder;
   int port = 0;
-  builder.AddListeningPort(listen.address, *credentials, &port);
+  builder.AddListeningPort(door.address, door.credentials, &port);
   builder.RegisterService(&parts->work);
   builder.RegisterService(&parts->jobs);
   builder.RegisterService(&parts->assets);
@@ -82,10 +79,10 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Listen& listen, 
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   parts->server = builder.BuildAndStart();
   if (!parts->server || port == 0) {
-    return core::Error{listen.address + ": cannot listen there (is the address taken?)"};
+    return core::Error{door.address + ": cannot listen there (is the address taken?)"};
   }
   std::unique_ptr<Server> server(new Server(std::move(parts)));
-  server->address_ = listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
+  server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
   return server;
 }
 

@@ -13,9 +13,9 @@ class Brain;
 /// The coordinator's gRPC server: services over a brain.
 class Server {
  public:
-  /// Listens; an error where the address is taken, or `listen` does not hold together. `brain`
-  /// outlives the server.
-  static core::Result<std::unique_ptr<Server>> start(const farm::Listen& listen, Brain& brain);
+  /// Listens; an error where the address is taken or not this machine's. `brain` outlives the
+  /// server.
+  static core::Result<std::unique_ptr<Server>> start(farm::Door door, Brain& brain);
 
   /// Ends all calls and stops listening.
   ~Server();

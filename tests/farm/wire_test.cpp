@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "farm/address.h"
 #include "farm/channel.h"
 #include "farm/wire_status.h"
@@ -115,11 +117,37 @@ TEST(Channel, PlaintextStaysOnThisMachine) {
   peer.insecure = true;
   EXPECT_TRUE(connect(peer).ok());
   Listen listen;
-  EXPECT_TRUE(server_credentials(listen).ok());
+  EXPECT_TRUE(open_door(listen).ok());
   listen.address = "0.0.0.0:7700";
-  EXPECT_FALSE(server_credentials(listen).ok());
+  EXPECT_FALSE(open_door(listen).ok());
   listen.insecure = true;
-  EXPECT_TRUE(server_credentials(listen).ok());
+  EXPECT_TRUE(open_door(listen).ok());
+}
+
+TEST(Channel, TroubleIsToldInOurWords) {
+  const std::string plain_to_tls =
+      "failed to connect to all addresses; last error: UNAVAILABLE: ipv4:10.0.0.1:7700: Socket "
+      "closed";
+  Peer peer;
+  EXPECT_NE(connection_trouble(plain_to_tls, peer).find("--tls-ca"), std::string::npos);
+  EXPECT_FALSE(tls_trouble("Socket closed", peer)) << "it was there, and has gone";
+  peer.ca_file = "ca.pem";
+  EXPECT_FALSE(tls_trouble(plain_to_tls, peer));
+  for (const auto& [message, words] : {
+           std::pair("Ssl handshake failed: SSL_ERROR_SSL: error:0A00010B:SSL routines::wrong "
+                     "version number",
+                     "does not speak TLS"),
+           std::pair("SSL routines::certificate verify failed", "not signed by one in ca.pem"),
+           std::pair("Hostname Verification Check failed.", "for another name"),
+       }) {
+    const auto told = tls_trouble(message, peer);
+    ASSERT_TRUE(told) << message;
+    EXPECT_NE(told->find(words), std::string::npos) << *told;
+  }
+  const std::string nobody =
+      "failed to connect to all addresses; last error: UNKNOWN: ipv4:127.0.0.1:1: Failed to "
+      "connect to remote host: Connection refused";
+  EXPECT_EQ(connection_trouble(nobody, peer), "Connection refused");
 }
 
 }  // namespace

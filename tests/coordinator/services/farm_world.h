@@ -67,7 +67,9 @@ class FarmWorld {
     brain = std::move(*opened);
     farm::Listen listen = how;
     listen.address = address.empty() ? "127.0.0.1:0" : address;
-    auto listening = Server::start(listen, *brain);
+    auto door = farm::open_door(listen);
+    ASSERT_TRUE(door.ok()) << (door ? "" : door.error().message);
+    auto listening = Server::start(std::move(*door), *brain);
     ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
     server = std::move(*listening);
     connect(server->address());

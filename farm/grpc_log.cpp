@@ -1,0 +1,25 @@
+#include "farm/grpc_log.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include <grpc/support/log.h>
+
+namespace hyades::farm {
+namespace {
+
+/// A failed assertion ends the process: that has to be seen.
+void say_last_words(gpr_log_func_args* line) {
+  if (std::string_view(line->message).find("ASSERTION FAILED") == std::string_view::npos) return;
+  std::fprintf(stderr, "%s:%d: %s\n", line->file, line->line, line->message);
+}
+
+}  // namespace
+
+void quiet_grpc() {
+  if (std::getenv("GRPC_VERBOSITY") != nullptr || std::getenv("GRPC_TRACE") != nullptr) return;
+  gpr_set_log_function(say_last_words);
+}
+
+}  // namespace hyades::farm
