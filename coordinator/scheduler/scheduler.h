@@ -139,18 +139,25 @@ class Scheduler {
   /// Highest priority first, then who has least, then by age.
   using ShareOrder = std::tuple<int, uint64_t, uint32_t>;
 
-  // scheduler.cpp: jobs and frames.
+  // jobs.cpp: jobs, and owners' turns.
   void on(const JobAdded& e);
   void on(const JobPaused& e);
   void on(const JobResumed& e);
   void on(const JobCancelled& e);
   void on(const JobReprioritised& e);
   void on(const FramesRetried& e);
+  void restore(JobState& job, const RestoredJob& restored);
+  void end_job_if_over(JobState& job);
+  uint32_t share_of(int priority, const std::string& owner);
+  void set_running(JobState& job, int64_t change);
+  void update_ready(JobState& job);
+  void list_ready(JobState& job, bool ready);
+
+  // frames.cpp: frames.
   void on(const FrameOpened& e);
   void on(const FrameRefused& e);
   void on(const FinishDone& e);
   void on(const FinishFailed& e);
-  void restore(JobState& job, const RestoredJob& restored);
   void open_frames(JobState& job);
   void complete_if_so(JobState& job, FrameSlot& slot);
   void finish(JobState& job, FrameSlot& slot);
@@ -161,7 +168,6 @@ class Scheduler {
   void frame_restarted(JobState& job, FrameSlot& slot);
   void restart_orphans();
   void frame_over(JobState& job, FrameSlot& slot, FramePhase phase);
-  void end_job_if_over(JobState& job);
 
   // workers.cpp: workers that come and go.
   void on(const WorkerJoined& e);
@@ -249,15 +255,11 @@ class Scheduler {
   bool any_in_doubt() const;
   void reopen_frame(JobState& job, FrameSlot& slot);
 
-  // Shared.
+  // scheduler.cpp: shared.
   JobState* find_job(JobId id);
   Worker* find_worker(WorkerId id);
   std::optional<Extent> extent_of(const JobState& job, const core::Unit& unit) const;
   core::Unit unit_of(const JobState& job, const FrameSlot& slot, const Extent& extent) const;
-  uint32_t share_of(int priority, const std::string& owner);
-  void set_running(JobState& job, int64_t change);
-  void update_ready(JobState& job);
-  void list_ready(JobState& job, bool ready);
   uint32_t intern_class(const std::string& name);
   std::vector<uint32_t> intern_tags(const std::vector<std::string>& tags);
   bool anybody_for(const JobState& job, uint32_t worker_class) const;
