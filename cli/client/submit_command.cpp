@@ -59,7 +59,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--memory", options.memory,
                  "render only on workers that have so much for scenes: 8G, 512M")
       ->transform(CLI::AsSizeValue(false));
-  app.add_option("--attempts", options.attempts, "failures of one unit that fail its frame")
+  app.add_option("--attempts", options.attempts,
+                 "a unit that fails on so many different workers stops its frame (where fewer are "
+                 "there: on all of them, and so often in all)")
       ->check(CLI::Range(1U, 100U))
       ->capture_default_str();
   app.add_option("--order", options.order,

@@ -165,15 +165,19 @@ const FrameState::Blame* FrameState::find_blame(const Extent& e) const {
   return nullptr;
 }
 
-uint32_t FrameState::blame(const Extent& e, WorkerId worker, const std::string& reason) {
+void FrameState::blame(const Extent& e, WorkerId worker, const std::string& reason) {
   for (Blame& b : blamed_) {
     if (b.extent != e) continue;
     b.workers.push_back(worker);
     b.reason = reason;
-    return static_cast<uint32_t>(b.workers.size());
+    return;
   }
   blamed_.push_back({e, {worker}, reason});
-  return 1;
+}
+
+std::vector<WorkerId> FrameState::blamed(const Extent& e) const {
+  const Blame* blame = find_blame(e);
+  return blame == nullptr ? std::vector<WorkerId>() : blame->workers;
 }
 
 FrameState::Failures FrameState::take_blame(const Extent& e) {

@@ -124,8 +124,9 @@ class FrameState {
 
   // Blame.
 
-  /// Notes the failure and returns how often this unit has failed.
-  uint32_t blame(const Extent& e, WorkerId worker, const std::string& reason);
+  void blame(const Extent& e, WorkerId worker, const std::string& reason);
+  /// With whom this unit has failed, one entry per failure.
+  std::vector<WorkerId> blamed(const Extent& e) const;
   /// Who failed this unit that has been rendered after all, each once, and how the last one failed.
   /// Forgets it.
   struct Failures {

@@ -185,6 +185,8 @@ bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
     JobState& job = *find_job(candidate.job);
     if (job.paused || job.slots[candidate.slot].worker_class != worker.worker_class) continue;
     if (!may_join(job, id, worker)) continue;
+    const FrameState& books = *job.slots[candidate.slot].books;
+    if (!may_try(job, id, worker, books.blamed(candidate.extent))) continue;
     // Those who have the scene come first.
     const Scene scene{job.id, job.slots[candidate.slot].frame};
     if (out < load_seconds(job) && !has_scene(worker, scene)) continue;
@@ -218,11 +220,17 @@ uint32_t Scheduler::run_length_of(const JobState& job, const FrameState& books,
 /// A unit that has failed goes to somebody who has not failed it yet, if there is anybody.
 bool Scheduler::may_try(const JobState& job, WorkerId id, const Worker& worker,
                         const std::vector<WorkerId>& blamed) const {
-  if (std::find(blamed.begin(), blamed.end(), id) == blamed.end()) return true;
-  return std::none_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
-    return !entry.second.barred && entry.second.worker_class == worker.worker_class &&
+  return std::find(blamed.begin(), blamed.end(), id) == blamed.end() ||
+         !anybody_besides(blamed, job, worker.worker_class);
+}
+
+/// Whether a worker of the class is there that may get units of the job and is none of `tried`.
+bool Scheduler::anybody_besides(const std::vector<WorkerId>& tried, const JobState& job,
+                                uint32_t worker_class) const {
+  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
+    return !entry.second.barred && entry.second.worker_class == worker_class &&
            suits(job, entry.second) &&
-           std::find(blamed.begin(), blamed.end(), entry.first) == blamed.end();
+           std::find(tried.begin(), tried.end(), entry.first) == tried.end();
   });
 }
 

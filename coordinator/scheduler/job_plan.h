@@ -38,8 +38,10 @@ struct JobPlan {
   uint32_t frames_in_flight = 3;
   FrameOrder order = FrameOrder::sequential;
   JobNeeds needs;
-  uint32_t max_workers = 0;   ///< that may have units of it at once; 0: no limit
-  uint32_t max_attempts = 3;  ///< failures of one unit that fail its frame
+  uint32_t max_workers = 0;  ///< that may have units of it at once; 0: no limit
+  /// A unit that has failed with so many different workers fails its frame; where fewer are there
+  /// that may try: with all of them, and so often in all.
+  uint32_t max_attempts = 3;
 };
 
 /// A unit whose film is durable.

@@ -128,9 +128,26 @@ void Scheduler::on(const UnitFailed& e) {
   if (slot == nullptr || !slot->books || !extent) return;
   const Assignment* assignment = slot->books->find_covering(*extent, e.lease);
   if (assignment == nullptr) return;
-  const uint32_t failures = slot->books->blame(assignment->extent, e.worker, e.reason);
+  const Extent whole = assignment->extent;
+  slot->books->blame(whole, e.worker, e.reason);
   end_unit(*job, *slot, *extent, e.lease);
-  if (failures >= job->plan.max_attempts) fail_frame(*job, *slot, e.reason);
+  if (hopeless(*job, *slot, whole)) fail_frame(*job, *slot, e.reason);
+}
+
+/// Whether a unit has failed with so many different workers that it is the unit's fault; or that
+/// often in all, and nobody is there who has not tried.
+bool Scheduler::hopeless(const JobState& job, const FrameSlot& slot, const Extent& extent) {
+  std::vector<WorkerId> tried = slot.books->blamed(extent);
+  const size_t failures = tried.size();
+  std::sort(tried.begin(), tried.end());
+  tried.erase(std::unique(tried.begin(), tried.end()), tried.end());
+  if (tried.size() >= job.plan.max_attempts) return true;
+  if (failures < job.plan.max_attempts) return false;
+  // Those whose films of it are the matter are not asked again.
+  if (const Dispute* dispute = slot.books->find_dispute(extent)) {
+    for (const Opinion& o : dispute->opinions) tried.push_back(o.worker);
+  }
+  return !anybody_besides(tried, job, slot.worker_class);
 }
 
 void Scheduler::persist(Record record, Pending pending) {

@@ -195,6 +195,8 @@ class Scheduler {
   uint32_t run_length_of(const JobState& job, const FrameState& books, uint32_t tile) const;
   bool may_try(const JobState& job, WorkerId id, const Worker& worker,
                const std::vector<WorkerId>& blamed) const;
+  bool anybody_besides(const std::vector<WorkerId>& tried, const JobState& job,
+                       uint32_t worker_class) const;
   void note_copy_candidate(const JobState& job, uint32_t slot, const Assignment& assignment);
   Assignment* live_copy_candidate(const CopyCandidate& c);
 
@@ -233,6 +235,7 @@ class Scheduler {
   void unit_persisted(const UnitRecord& record, const Pending& pending, RecordId id);
   void accept(JobState& job, FrameSlot& slot, const Extent& extent, const ResultArrived& e);
   void end_unit(JobState& job, FrameSlot& slot, const Extent& part, const LeaseId& lease);
+  bool hopeless(const JobState& job, const FrameSlot& slot, const Extent& extent);
   void forgive_and_blame(JobState& job, FrameSlot& slot, const Extent& extent, WorkerId worker);
   void learn_cost(JobState& job, const Extent& extent, Duration render_time);
   void persist(Record record, Pending pending);

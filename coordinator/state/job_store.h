@@ -26,7 +26,7 @@ struct StoredJob {
   uint32_t max_workers = 0;
   std::vector<std::string> tags;  ///< that a worker needs; no commas in them
   uint64_t memory = 0;            ///< bytes that a worker needs; 0: any
-  uint32_t max_attempts = 3;      ///< failures of one unit that fail its frame
+  uint32_t max_attempts = 3;      ///< JobPlan::max_attempts
   int frame_order = 1;            ///< v1::FrameOrder
   StoredState state = StoredState::running;
   uint32_t frames = 0;

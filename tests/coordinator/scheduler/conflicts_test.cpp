@@ -66,6 +66,16 @@ TEST_F(Conflicts, AThirdWorkerThatFailedOnceIsAskedAgainWhereThereIsNoOther) {
   EXPECT_EQ(b.ask(kCora).units, check.units) << "Anna and Bert have said what they think";
 }
 
+TEST_F(Conflicts, ThatTheOnlyThirdWorkerCannotRenderFailTheFrame) {
+  b.join(kCora);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(b.all<Persist>().empty());
+    const Lease check = b.ask(kCora);
+    b.tell(UnitFailed{kCora, check.lease, kJob, check.units.at(0), "no memory"});
+  }
+  EXPECT_EQ(std::get<FrameFailedRecord>(b.only<Persist>().record).failed.reason, "no memory");
+}
+
 TEST_F(Conflicts, TheSecondWasWrong) {
   deliver_durably(b.ask(kAnna), 1);
   b.join(kCora);

@@ -55,6 +55,86 @@ TEST(Scheduler, AUnitThatFailsThreeTimesFailsItsFrameOnly) {
   EXPECT_EQ(b.only<JobEnded>().failed, 1U);
 }
 
+/// A frame of one unit, and as many workers.
+class Failing : public testing::Test {
+ protected:
+  void begin(size_t workers) {
+    for (size_t i = 1; i <= workers; ++i) b.join(WorkerId{i});
+    JobPlan plan = small_plan({1}, 1);
+    plan.region = {0, 0, 32, 32};
+    b.add(plan);
+    b.tell(FrameOpened{kJob, 1});
+  }
+  /// The worker gets the unit and fails it. Whether that fails its frame.
+  bool fails(WorkerId worker) {
+    const Lease lease = b.ask(worker);
+    if (lease.units.empty()) return false;
+    b.tell(UnitFailed{worker, lease.lease, kJob, lease.units[0], "a NaN"});
+    return !b.all<Persist>().empty();
+  }
+  Bench b;
+  const WorkerId carl_{3};
+  const WorkerId dora_{4};
+};
+
+TEST_F(Failing, OnThreeWorkersStopsTheFrameThoughOthersAreThere) {
+  begin(4);
+  EXPECT_FALSE(fails(kAnna));
+  EXPECT_FALSE(fails(kBert));
+  EXPECT_TRUE(fails(carl_)) << "Dora is not asked any more";
+}
+
+TEST_F(Failing, GoesToEveryWorkerOfFewBeforeTheFrameStops) {
+  begin(2);
+  EXPECT_FALSE(fails(kAnna));
+  b.tell(WorkRequested{kAnna, 1});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "Bert is there";
+  EXPECT_FALSE(fails(kBert));
+  // Both have failed it: Anna, who waits, gets it again at once.
+  const Lease again = b.only<Lease>();
+  EXPECT_EQ(again.worker, kAnna);
+  b.tell(UnitFailed{kAnna, again.lease, kJob, again.units.at(0), "a NaN"});
+  EXPECT_EQ(std::get<FrameFailedRecord>(b.only<Persist>().record).failed.reason, "a NaN");
+}
+
+TEST_F(Failing, ThreeTimesWithOneWorkerSaysNothingWhileAnotherMayTry) {
+  begin(1);
+  EXPECT_FALSE(fails(kAnna));
+  EXPECT_FALSE(fails(kAnna));
+  const Lease third = b.ask(kAnna);
+  b.join(kBert);
+  b.tell(UnitFailed{kAnna, third.lease, kJob, third.units.at(0), "a NaN"});
+  EXPECT_TRUE(b.all<Persist>().empty());
+  b.tell(WorkRequested{kAnna, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  EXPECT_EQ(b.ask(kBert).units, third.units);
+}
+
+TEST_F(Failing, EndsThoughWhoeverMightTryGoesAgain) {
+  begin(1);
+  EXPECT_FALSE(fails(kAnna));
+  EXPECT_FALSE(fails(kAnna));
+  const Lease third = b.ask(kAnna);
+  b.join(kBert);
+  b.tell(UnitFailed{kAnna, third.lease, kJob, third.units.at(0), "a NaN"});
+  b.tell(WorkerBarred{kBert, true});
+  EXPECT_TRUE(fails(kAnna));
+}
+
+TEST_F(Failing, IsNoWorkerForACopyOfTheSameUnit) {
+  begin(2);
+  EXPECT_FALSE(fails(kAnna));
+  b.ask(kBert);
+  b.tell(WorkRequested{kAnna, 1});
+  b.now += std::chrono::seconds(20);
+  b.tell(WorkerAlive{kBert, {}});
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.join(carl_);
+  b.tell(WorkRequested{carl_, 1});
+  EXPECT_EQ(b.only<Lease>().worker, carl_);
+}
+
 TEST(Scheduler, AFinishedRecordThatFailsIsTriedAgain) {
   Bench b;
   b.join(kAnna);
