@@ -20,6 +20,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Jobs whose files are fetched at the same time.
+constexpr int kThreads = 4;
 constexpr milliseconds kFirstPause{200};
 constexpr milliseconds kLongestPause{5000};
 /// For trouble of this machine, which the units need not wait for: another may have none.
@@ -32,38 +34,70 @@ std::string name_of(const v1::JobFile& file) { return farm::hex_from_wire(file.s
 
 }  // namespace
 
+class AssetFetcher::Turn {
+ public:
+  /// Waits for those who are before; they may have brought the file.
+  Turn(AssetFetcher& fetcher, const Wanted& wanted, std::string name)
+      : fetcher_(fetcher), name_(std::move(name)) {
+    std::unique_lock lock(fetcher_.mutex_);
+    fetcher_.wake_.wait(
+        lock, [&] { return fetcher_.unwanted(wanted) || !fetcher_.turns_.contains(name_); });
+    mine_ = !fetcher_.unwanted(wanted) && fetcher_.turns_.insert(name_).second;
+  }
+  ~Turn() {
+    if (!mine_) return;
+    const std::lock_guard lock(fetcher_.mutex_);
+    fetcher_.turns_.erase(name_);
+    fetcher_.wake_.notify_all();
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+  /// Else the file is not wanted any more.
+  bool is_mine() const { return mine_; }
+
+ private:
+  AssetFetcher& fetcher_;
+  const std::string name_;
+  bool mine_ = false;
+};
+
 AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token,
                            farm::ContentStore& store, Owner& owner, milliseconds patience)
     : channel_(std::move(channel)),
       token_(std::move(token)),
       store_(store),
       owner_(owner),
-      patience_(patience),
-      thread_([this] { loop(); }) {}
+      patience_(patience) {
+  for (int i = 0; i < kThreads; ++i) threads_.emplace_back([this] { loop(); });
+}
 
 AssetFetcher::~AssetFetcher() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;
-    if (call_ != nullptr) call_->TryCancel();
+    for (const auto& wanted : in_work_) {
+      if (wanted->call != nullptr) wanted->call->TryCancel();
+    }
     wake_.notify_all();
   }
-  thread_.join();
+  for (std::thread& thread : threads_) thread.join();
 }
 
 void AssetFetcher::fetch(uint64_t job, const v1::JobSpec& spec) {
   const std::lock_guard lock(mutex_);
-  wanted_.push_back({job, spec});
-  wake_.notify_one();
+  wanted_.push_back(std::make_shared<Wanted>(Wanted{job, spec}));
+  wake_.notify_all();  // of those who wait not all wait for this
 }
 
 void AssetFetcher::release(uint64_t job) {
   std::vector<farm::ContentPin> released;  // let go of without the lock
   const std::lock_guard lock(mutex_);
-  std::erase_if(wanted_, [&](const Wanted& wanted) { return wanted.job == job; });
-  if (fetching_ == job) {
-    dropped_ = true;
-    if (call_ != nullptr) call_->TryCancel();
+  std::erase_if(wanted_, [&](const auto& wanted) { return wanted->job == job; });
+  for (const auto& wanted : in_work_) {
+    if (wanted->job != job) continue;
+    wanted->dropped = true;
+    if (wanted->call != nullptr) wanted->call->TryCancel();
     wake_.notify_all();
   }
   if (const auto pins = pins_.find(job); pins != pins_.end()) {
@@ -74,32 +108,31 @@ void AssetFetcher::release(uint64_t job) {
 
 void AssetFetcher::loop() {
   for (;;) {
-    Wanted wanted;
+    std::shared_ptr<Wanted> wanted;
     {
       std::unique_lock lock(mutex_);
       wake_.wait(lock, [this] { return stop_ || !wanted_.empty(); });
       if (stop_) return;
       wanted = std::move(wanted_.front());
       wanted_.pop_front();
-      fetching_ = wanted.job;
-      dropped_ = false;
+      in_work_.push_back(wanted);
     }
-    const Outcome failed = fetch_all(wanted);
+    const Outcome failed = fetch_all(*wanted);
     {
       const std::lock_guard lock(mutex_);
       if (stop_) return;
-      fetching_.reset();
-      if (dropped_) continue;
+      std::erase(in_work_, wanted);
+      if (wanted->dropped) continue;
     }
     if (failed) {
-      owner_.files_failed(wanted.job, failed->reason, failed->final);
+      owner_.files_failed(wanted->job, failed->reason, failed->final);
     } else {
-      owner_.files_are_there(wanted.job);
+      owner_.files_are_there(wanted->job);
     }
   }
 }
 
-AssetFetcher::Outcome AssetFetcher::fetch_all(const Wanted& wanted) {
+AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
   std::vector<farm::ContentPin> pins;
   for (const v1::JobFile& file : wanted.spec.files()) {
     if (file.sha256().size() != sizeof(core::Sha256)) {
@@ -108,9 +141,7 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(const Wanted& wanted) {
     const std::string name = name_of(file);
     // Another process may evict a file before it is pinned.
     for (int attempt = 0;; ++attempt) {
-      if (!store_.contains(name, file.size())) {
-        if (auto failed = fetch_patiently(file)) return failed;
-      }
+      if (auto failed = fetch_file(wanted, file)) return failed;
       auto pin = store_.pin(name);
       if (pin) {
         pins.push_back(std::move(*pin));
@@ -120,27 +151,37 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(const Wanted& wanted) {
     }
   }
   const std::lock_guard lock(mutex_);
-  if (unwanted()) return Failure{"no longer wanted"};  // the pins go
+  if (unwanted(wanted)) return Failure{"no longer wanted"};  // the pins go
   pins_[wanted.job] = std::move(pins);
   return std::nullopt;
 }
 
-AssetFetcher::Outcome AssetFetcher::fetch_patiently(const v1::JobFile& file) {
+/// Nothing to do where the file is there.
+AssetFetcher::Outcome AssetFetcher::fetch_file(Wanted& wanted, const v1::JobFile& file) {
+  const std::string name = name_of(file);
+  if (store_.contains(name, file.size())) return std::nullopt;
+  const Turn turn(*this, wanted, name);
+  if (!turn.is_mine()) return Failure{"no longer wanted"};
+  if (store_.contains(name, file.size())) return std::nullopt;
+  return fetch_patiently(wanted, file);
+}
+
+AssetFetcher::Outcome AssetFetcher::fetch_patiently(Wanted& wanted, const v1::JobFile& file) {
   const auto begun = std::chrono::steady_clock::now();
   farm::Backoff backoff(kFirstPause, kLongestPause);
   for (;;) {
-    Outcome failed = download(file);
+    Outcome failed = download(wanted, file);
     if (!failed || !failed->again) return failed;
     const milliseconds patience = failed->local ? std::min(kLocalPatience, patience_) : patience_;
     if (std::chrono::steady_clock::now() - begun >= patience) return failed;
-    if (!pause(backoff.next(std::min(failed->retry_after, kLongestPause)))) return failed;
+    if (!pause(wanted, backoff.next(std::min(failed->retry_after, kLongestPause)))) return failed;
   }
 }
 
 /// Waits; false when the files are no longer wanted.
-bool AssetFetcher::pause(farm::Backoff::Duration time) {
+bool AssetFetcher::pause(const Wanted& wanted, farm::Backoff::Duration time) {
   std::unique_lock lock(mutex_);
-  return !wake_.wait_for(lock, time, [this] { return unwanted(); });
+  return !wake_.wait_for(lock, time, [&] { return unwanted(wanted); });
 }
 
 /// Nobody else's, the job's least of all.
@@ -152,7 +193,7 @@ AssetFetcher::Failure AssetFetcher::local_trouble(const core::Error& error) {
   return failure;
 }
 
-AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
+AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& file) {
   auto writer = store_.write(name_of(file), file.size());
   if (!writer) return local_trouble(writer.error().in(file.path()));
   const auto stub = v1::Assets::NewStub(channel_);
@@ -160,8 +201,8 @@ AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
   farm::prepare(context, token_, std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
   {
     const std::lock_guard lock(mutex_);
-    if (unwanted()) return Failure{"no longer wanted"};
-    call_ = &context;
+    if (unwanted(wanted)) return Failure{"no longer wanted"};
+    wanted.call = &context;
   }
   v1::DownloadRequest request;
   request.set_sha256(file.sha256());
@@ -181,7 +222,7 @@ AssetFetcher::Outcome AssetFetcher::download(const v1::JobFile& file) {
   const grpc::Status status = stream->Finish();
   {
     const std::lock_guard lock(mutex_);
-    call_ = nullptr;
+    wanted.call = nullptr;
   }
   if (!kept) return local_trouble(kept.error().in(file.path()));
   if (!status.ok()) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,11 +25,12 @@ class ClientContext;
 
 namespace hyades::worker {
 
-/// Brings the files of jobs into the cache, one after the other, by a thread of its own. What has
-/// come of a file stays when the connection breaks. Thread-safe.
+/// Brings the files of jobs into the cache: those of a job one after the other, those of a few jobs
+/// at the same time, so that a file that does not come holds up nobody else. What has come of a
+/// file stays when the connection breaks. Thread-safe.
 class AssetFetcher {
  public:
-  /// Called from the fetching thread; must not block.
+  /// Called from the fetching threads; must not block.
   class Owner {
    public:
     virtual ~Owner() = default;
@@ -52,10 +54,15 @@ class AssetFetcher {
   void release(uint64_t job);
 
  private:
+  /// The files of a job. What changes is guarded by mutex_.
   struct Wanted {
     uint64_t job = 0;
     v1::JobSpec spec;
+    bool dropped = false;                 ///< it was released meanwhile
+    grpc::ClientContext* call = nullptr;  ///< the download in progress
   };
+  /// Of a file: nobody else fetches it meanwhile.
+  class Turn;
   struct Failure {
     std::string reason;
     bool final = false;
@@ -66,12 +73,13 @@ class AssetFetcher {
   using Outcome = std::optional<Failure>;
 
   void loop();
-  Outcome fetch_all(const Wanted& wanted);
+  Outcome fetch_all(Wanted& wanted);
+  Outcome fetch_file(Wanted& wanted, const v1::JobFile& file);
   static Failure local_trouble(const core::Error& error);
-  Outcome fetch_patiently(const v1::JobFile& file);
-  Outcome download(const v1::JobFile& file);
-  bool pause(farm::Backoff::Duration time);
-  bool unwanted() const { return stop_ || dropped_; }
+  Outcome fetch_patiently(Wanted& wanted, const v1::JobFile& file);
+  Outcome download(Wanted& wanted, const v1::JobFile& file);
+  bool pause(const Wanted& wanted, farm::Backoff::Duration time);
+  bool unwanted(const Wanted& wanted) const { return stop_ || wanted.dropped; }
 
   const std::shared_ptr<grpc::Channel> channel_;
   const std::string token_;
@@ -82,14 +90,13 @@ class AssetFetcher {
   std::mutex mutex_;
   std::condition_variable wake_;
   // Guarded by mutex_.
-  std::deque<Wanted> wanted_;
+  std::deque<std::shared_ptr<Wanted>> wanted_;    ///< those that nobody has begun with
+  std::vector<std::shared_ptr<Wanted>> in_work_;  ///< one for each busy thread
+  std::set<std::string> turns_;                   ///< files that are being fetched
   std::map<uint64_t, std::vector<farm::ContentPin>> pins_;
-  std::optional<uint64_t> fetching_;     ///< the job whose files are being fetched
-  bool dropped_ = false;                 ///< it was released meanwhile
-  grpc::ClientContext* call_ = nullptr;  ///< the download in progress
   bool stop_ = false;
 
-  std::thread thread_;
+  std::vector<std::thread> threads_;
 };
 
 }  // namespace hyades::worker

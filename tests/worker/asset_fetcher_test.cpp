@@ -37,21 +37,33 @@ class StuckAssets : public v1::Assets::Service {
     chunk.set_data("x");
     writer->Write(chunk);
     std::unique_lock lock(mutex_);
-    stuck_ = true;
+    ++stuck_;
     changed_.notify_all();
     while (!context->IsCancelled()) changed_.wait_for(lock, std::chrono::milliseconds(5));
+    ++gone_;
+    changed_.notify_all();
     return grpc::Status::CANCELLED;
   }
 
-  bool wait_until_stuck() {
+  bool wait_until_stuck(int calls) {
     std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, seconds(20), [this] { return stuck_; });
+    return changed_.wait_for(lock, seconds(20), [&] { return stuck_ >= calls; });
+  }
+  /// Waits until so many callers have given up.
+  bool wait_until_gone(int calls) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, seconds(20), [&] { return gone_ >= calls; });
+  }
+  int stuck() {
+    const std::lock_guard lock(mutex_);
+    return stuck_;
   }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool stuck_ = false;
+  int stuck_ = 0;  ///< calls
+  int gone_ = 0;   ///< of these
 };
 
 class Reports : public AssetFetcher::Owner {
@@ -119,12 +131,32 @@ TEST(AssetFetcher, AReleasedJobIsBrokenOffAndNotReported) {
   AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
   fetcher.fetch(1, spec_of("something large"));
   fetcher.fetch(2, spec_of("something else that never comes"));
-  ASSERT_TRUE(served.assets.wait_until_stuck());
+  ASSERT_TRUE(served.assets.wait_until_stuck(2));
   fetcher.release(2);
   fetcher.release(1);
+  EXPECT_TRUE(served.assets.wait_until_gone(2));
   fetcher.fetch(3, spec_of(kSmall));
   const std::vector<std::pair<uint64_t, std::string>> expected{{3, "there"}};
   EXPECT_EQ(reports.first(), expected);
+}
+
+TEST(AssetFetcher, AFileThatDoesNotComeHoldsUpNobodyElse) {
+  Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 0});
+  ASSERT_TRUE(store.ok());
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  fetcher.fetch(1, spec_of("something large"));
+  fetcher.fetch(2, spec_of("something else that never comes"));
+  ASSERT_TRUE(served.assets.wait_until_stuck(2));
+  fetcher.fetch(3, spec_of("something large"));  // waits for job 1's
+  fetcher.fetch(4, spec_of(kSmall));
+  const std::vector<std::pair<uint64_t, std::string>> expected{{4, "there"}};
+  EXPECT_EQ(reports.first(), expected);
+  EXPECT_EQ(served.assets.stuck(), 2) << "no file is fetched twice at once";
+  fetcher.release(1);
+  EXPECT_TRUE(served.assets.wait_until_stuck(3)) << "now it is job 3's turn";
 }
 
 TEST(AssetFetcher, TroubleOfTheCacheIsNeverFinal) {
