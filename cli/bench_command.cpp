@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/command_line.h"
 #include "cli/film_room.h"
 #include "cli/load_job.h"
 #include "core/base/parallel.h"
@@ -87,11 +88,7 @@ int bench_command(int argc, char** argv) {
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   command->add_option("--samples", samples, "samples per pixel (default: the job's)");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kBadInput;
-  }
+  if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   return scaling(path, threads, samples);
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/command_line.h"
 #include "cli/film_room.h"
 #include "cli/frame_range.h"
 #include "cli/load_job.h"
@@ -104,11 +105,7 @@ int check_command(int argc, char** argv) {
   app.add_flag("--no-probe", no_probe, "do not render a few pixels to estimate the time");
   app.footer(
       "example:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kBadInput;
-  }
+  if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   core::Diagnostics diagnostics;
   auto loaded = read_job_file(path, diagnostics);
   if (!loaded) return kBadInput;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/command_line.h"
 #include "core/finish/common_part.h"
 #include "core/finish/compare.h"
 #include "core/finish/picture.h"
@@ -165,11 +166,7 @@ int compare_command(int argc, char** argv) {
   CLI::App app("compares two pictures, statistically where both carry variances", "hyades compare");
   Options options;
   declare(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kUnusable;
-  }
+  if (const auto status = parse_command_line(app, argc, argv, kUnusable)) return *status;
   return compare(options);
 }
 

@@ -6,6 +6,11 @@
 
 namespace hyades::cli {
 
+std::string no_frames_error(const std::string& text) {
+  if (!text.empty()) return {};
+  return "expected frames such as 7, 1-10 or 1-10x2";
+}
+
 core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::string& text) {
   FrameRange range{job.first, job.last, job.step};
   if (text.empty()) return range;

@@ -24,4 +24,7 @@ inline int64_t frame_count(int first, int last, int step) {
 /// that form or names a frame outside the job's range.
 core::Result<FrameRange> parse_frames(const core::FramesDesc& job, const std::string& text);
 
+/// What is wrong with the text of --frames whatever the job: it says nothing. For options of CLI11.
+std::string no_frames_error(const std::string& text);
+
 }  // namespace hyades::cli

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "core/film/film_exr.h"
 #include "core/film/unit.h"
 
@@ -97,11 +98,7 @@ int merge_command(int argc, char** argv) {
   CLI::App app("joins films of the same frame into one", "hyades merge");
   Options options;
   declare(app, options);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kRefused;
-  }
+  if (const auto status = parse_command_line(app, argc, argv, kRefused)) return *status;
   return merge(options);
 }
 

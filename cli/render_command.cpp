@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/command_line.h"
 #include "cli/film_room.h"
 #include "cli/frame_range.h"
 #include "cli/interrupt.h"
@@ -46,9 +47,7 @@ std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options
   app.add_option("job", options.path, "the job (.yaml) or mesh (.obj, .ply)")->required();
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
-      ->check([](const std::string& text) {
-        return text.empty() ? "expected frames such as 7, 1-10 or 1-10x2" : std::string();
-      });
+      ->check(no_frames_error);
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
       ->check(CLI::Range(1U, 1U << 24U));
   app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
@@ -75,12 +74,7 @@ std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options
       "Ctrl-C stops; --resume continues, also after a crash.\n"
       "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
       "interrupted");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kBadInput;
-  }
-  return std::nullopt;
+  return parse_command_line(app, argc, argv, kBadInput);
 }
 
 /// The job as the command line changes it; nothing (and a message) where that makes no sense.

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/command_line.h"
 #include "cli/load_job.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/build_scene.h"
@@ -28,11 +29,7 @@ int replay_command(int argc, char** argv) {
       ->expected(2);
   app.add_option("--sample", sample, "index of the sample within the pixel")->default_val(0);
   app.footer("example:\n  hyades replay jobs/cornell/job.yaml --pixel 120,80 --sample 3");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kBadInput;
-  }
+  if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   auto loaded = load_job(path);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;

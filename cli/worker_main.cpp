@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/address_option.h"
+#include "cli/command_line.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
 #include "worker/worker.h"
@@ -24,6 +25,16 @@ volatile std::sig_atomic_t g_signals = 0;
 void on_signal(int signal) {
   g_signals = g_signals + 1;
   if (g_signals > 1) _exit(128 + signal);
+}
+
+/// Less than a second would kill healthy renderers.
+std::string hang_limit_error(const std::string& text) {
+  double seconds = -1;
+  if (CLI::detail::lexical_cast(text, seconds) &&
+      (seconds == 0 || (seconds >= 1 && seconds <= 1e6))) {
+    return {};
+  }
+  return text + ": expected 1 to 1000000 seconds, or 0 for never";
 }
 
 std::string default_cache() {
@@ -77,7 +88,7 @@ int main(int argc, char** argv) {
   app.add_option("--hang-limit", options.hang_limit,
                  "seconds without a new sample of a unit after which the process that renders is "
                  "killed; 0: never")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(hang_limit_error)
       ->capture_default_str();
   app.footer(
       "examples:\n"
@@ -89,10 +100,8 @@ int main(int argc, char** argv) {
       "coordinator");
   // Where `hyades` has started this program, argv[1] is the word "worker".
   const int skipped = argc > 1 && std::string_view(argv[1]) == "worker" ? 1 : 0;
-  try {
-    app.parse(argc - skipped, argv + skipped);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+  if (const auto status = hyades::cli::parse_command_line(app, argc - skipped, argv + skipped)) {
+    return *status;
   }
   struct sigaction action {};
   action.sa_handler = on_signal;

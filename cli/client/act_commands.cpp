@@ -54,7 +54,9 @@ int for_each_job(ClientApp& app, Namesakes namesakes, int argc, char** argv, con
   app.app()
       .add_option("jobs", names,
                   namesakes == Namesakes::open ? "their ids, or names that only one (open) job has"
-                                               : "their ids, or names that only one job has")
+                  : namesakes == Namesakes::failed
+                      ? "their ids, or names that only one (failed or cancelled) job has"
+                      : "their ids, or names that only one job has")
       ->required();
   app.app().add_flag("--json", json, "print the jobs as JSON (field id)");
   if (const auto status = app.parse(argc, argv)) return *status;
@@ -62,9 +64,9 @@ int for_each_job(ClientApp& app, Namesakes namesakes, int argc, char** argv, con
 }
 
 int act(const char* command, const char* description, FarmClient::Action action, int argc,
-        char** argv) {
+        char** argv, Namesakes namesakes = Namesakes::open) {
   ClientApp app(command, description);
-  return for_each_job(app, Namesakes::open, argc, argv,
+  return for_each_job(app, namesakes, argc, argv,
                       [&](FarmClient& client, uint64_t id, v1::Job& after) {
                         v1::JobResponse response;
                         auto failure = client.act(action, id, response);
@@ -92,7 +94,7 @@ int cancel_command(int argc, char** argv) {
 int retry_command(int argc, char** argv) {
   return act("retry",
              "Takes up again the failed frames of jobs, or all that a cancelled job has left.",
-             FarmClient::Action::retry, argc, argv);
+             FarmClient::Action::retry, argc, argv, Namesakes::failed);
 }
 
 int delete_command(int argc, char** argv) {

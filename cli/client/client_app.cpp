@@ -1,6 +1,7 @@
 #include "cli/client/client_app.h"
 
 #include "cli/address_option.h"
+#include "cli/command_line.h"
 
 namespace hyades::cli {
 
@@ -25,12 +26,7 @@ ClientApp::ClientApp(const char* command, const std::string& description)
 }
 
 std::optional<int> ClientApp::parse(int argc, char** argv) {
-  try {
-    app_.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app_.exit(e) == 0 ? kDone : kBadArguments;
-  }
-  return std::nullopt;
+  return parse_command_line(app_, argc, argv, kBadArguments);
 }
 
 std::unique_ptr<FarmClient> ClientApp::connect() const {

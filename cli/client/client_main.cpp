@@ -1,5 +1,6 @@
 #include "cli/client/commands.h"
 #include "cli/program.h"
+#include "core/base/machine.h"
 
 int main(int argc, char** argv) {
   using namespace hyades::cli;
@@ -14,5 +15,6 @@ int main(int argc, char** argv) {
       {"drain", drain_command},     {"quarantine", quarantine_command},
       {"release", release_command},
   };
+  hyades::core::ignore_file_size_signal();
   return run_program(kCommands, argc, argv);
 }

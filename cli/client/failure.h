@@ -23,6 +23,7 @@ struct Failure {
   ExitCode code = kFailed;
   std::string message;
   std::vector<std::string> missing = {};  ///< SHA-256 in hexadecimal: files to be uploaded first
+  bool lines = false;                     ///< the message may have several
   bool damaged = false;                   ///< bytes were not what their digest says
   bool from_start = false;                ///< the other side lacks what it was believed to have
   bool again = false;                     ///< another try is due now

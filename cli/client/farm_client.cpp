@@ -82,6 +82,7 @@ struct FarmClient::State {
     Failure out;
     out.missing = hex_of(farm::detail_of(status));
     out.message = status.error_message();
+    out.lines = true;  // every complaint about a job, say
     switch (status.error_code()) {
       case grpc::StatusCode::INVALID_ARGUMENT:
         out.code = kBadArguments;

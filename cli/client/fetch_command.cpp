@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -20,6 +21,8 @@
 
 namespace hyades::cli {
 namespace {
+
+constexpr size_t kMostNamed = 10;
 
 struct Options {
   std::string job;
@@ -47,8 +50,10 @@ void declare(CLI::App& app, Options& options) {
       "Goes on where an earlier run stopped; every file is checked against its SHA-256 before it "
       "gets its\n"
       "name, and those that are there already are left alone.\n"
-      "exit status: 0 fine, 1 something failed or there is nothing to fetch yet; others: "
-      "docs/client.md");
+      "exit status: 0 all that was asked for and is finished is here, 1 something failed, a frame "
+      "of "
+      "the job has\n"
+      "failed, or there is nothing to fetch yet; others: docs/client.md");
 }
 
 Json to_json(const v1::OutputFile& file) {
@@ -76,15 +81,14 @@ Outcome fetch_film(FarmClient& client, uint64_t id, const Options& options) {
   const std::string path = options.folder + "/" + name;
   auto written = core::write_film_exr(path, {std::move(*info), std::move(*film)});
   if (!written) return Failure{kFailed, written.error().message};
-  if (!options.quiet) std::fprintf(stderr, "wrote %s\n", path.c_str());
+  if (!options.quiet) std::fprintf(stderr, "wrote %s\n", printable(path).c_str());
   return std::nullopt;
 }
 
 /// Why there is no file to fetch.
-Failure why_nothing(FarmClient& client, uint64_t id) {
-  v1::GetJobResponse response;
-  if (auto failure = client.get(id, response)) return *failure;
-  switch (response.job().state()) {
+Failure why_nothing(const v1::Job& job) {
+  const uint64_t id = job.id();
+  switch (job.state()) {
     case v1::JOB_STATE_FAILED:
       return {kFailed, fmt::format("job {} failed, there is nothing to fetch: hyades status {} "
                                    "tells why, hyades retry {} takes it up again",
@@ -98,6 +102,57 @@ Failure why_nothing(FarmClient& client, uint64_t id) {
     default:
       return {kFailed, fmt::format("job {} has nothing to fetch yet (hyades watch {})", id, id)};
   }
+}
+
+/// "4, 7-9", the first few of them.
+std::string in_words(const std::vector<int32_t>& frames) {
+  std::string text;
+  size_t parts = 0;
+  for (size_t i = 0; i < frames.size(); ++parts) {
+    if (parts == kMostNamed) return text + ", ...";
+    size_t last = i;
+    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+    if (parts > 0) text += ", ";
+    text += std::to_string(frames[i]);
+    if (last > i) text += "-" + std::to_string(frames[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+/// What is not here of what was asked for: a failure where it will not come by itself. Else
+/// standard error tells of it unless `quiet`.
+Outcome what_is_missing(const v1::GetJobResponse& response, const std::vector<int32_t>& asked,
+                        bool quiet) {
+  const v1::Job& job = response.job();
+  std::vector<int32_t> failed;
+  size_t unfinished = 0;
+  for (const v1::Frame& frame : response.frames()) {
+    if (!asked.empty() && std::find(asked.begin(), asked.end(), frame.frame()) == asked.end()) {
+      continue;
+    }
+    if (frame.state() == v1::FRAME_STATE_FAILED) failed.push_back(frame.frame());
+    if (frame.state() != v1::FRAME_STATE_FAILED && frame.state() != v1::FRAME_STATE_DONE) {
+      ++unfinished;
+    }
+  }
+  if (!failed.empty()) {
+    return Failure{kFailed, fmt::format("of job {} {} {} failed and {} no files: hyades status {} "
+                                        "tells why, hyades retry {} takes {} up again",
+                                        job.id(), failed.size() == 1 ? "frame" : "frames",
+                                        in_words(failed), failed.size() == 1 ? "has" : "have",
+                                        job.id(), job.id(), failed.size() == 1 ? "it" : "them")};
+  }
+  if (job.state() == v1::JOB_STATE_CANCELLED && asked.empty()) {
+    return Failure{kFailed, fmt::format("job {} was cancelled when {} of its {} frames were done: "
+                                        "hyades retry {} takes it up again",
+                                        job.id(), job.frames_done(), job.frames(), job.id())};
+  }
+  if (unfinished > 0 && !quiet) {
+    std::fprintf(stderr, "%zu frame%s not finished yet (--follow waits for %s)\n", unfinished,
+                 unfinished == 1 ? " is" : "s are", unfinished == 1 ? "it" : "them");
+  }
+  return std::nullopt;
 }
 
 /// One run of the command.
@@ -129,7 +184,7 @@ class FetchRun {
     } else if (!options_.list && !options_.quiet && totals_.files > 0) {
       std::fprintf(
           stderr, "%lu file%s in %s, %s fetched%s\n", totals_.files, totals_.files == 1 ? "" : "s",
-          options_.folder.c_str(), core::format_bytes(totals_.bytes).c_str(),
+          printable(options_.folder).c_str(), core::format_bytes(totals_.bytes).c_str(),
           totals_.present > 0 ? fmt::format(" ({} were there)", totals_.present).c_str() : "");
     }
   }
@@ -190,10 +245,12 @@ int fetch_command(int argc, char** argv) {
   const Outcome failure = run.run();
   run.print();
   if (failure) return app.report(*failure);
-  if (run.found_nothing() && !options.list && !options.json) {
-    return app.report(why_nothing(*client, id));
-  }
-  return kDone;
+  if (options.list) return kDone;
+  v1::GetJobResponse now;
+  if (auto gone = client->get(id, now)) return app.report(*gone);
+  if (run.found_nothing()) return app.report(why_nothing(now.job()));
+  const Outcome missing = what_is_missing(now, options.frames, options.quiet || options.json);
+  return missing ? app.report(*missing) : kDone;
 }
 
 }  // namespace hyades::cli

@@ -50,6 +50,32 @@ Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
   return std::nullopt;
 }
 
+namespace {
+
+/// Whether the job is one of those that `namesakes` means.
+bool is_meant(const v1::Job& job, Namesakes namesakes) {
+  switch (namesakes) {
+    case Namesakes::none:
+      return false;
+    case Namesakes::open:
+      return !has_ended(job);
+    case Namesakes::failed:
+      return job.state() == v1::JOB_STATE_CANCELLED || job.state() == v1::JOB_STATE_FAILED ||
+             job.frames_failed() > 0;
+    case Namesakes::newest:
+      return true;
+  }
+  return false;
+}
+
+const char* in_words(Namesakes namesakes) {
+  return namesakes == Namesakes::newest ? "the newest"
+         : namesakes == Namesakes::open ? "the only one that is open"
+                                        : "the only one with something to take up";
+}
+
+}  // namespace
+
 Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesakes, uint64_t& id) {
   const char* end = text.data() + text.size();
   const auto [last, error] = std::from_chars(text.data(), end, id);
@@ -58,12 +84,12 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
   std::vector<v1::Job> jobs;
   if (auto failure = list_all_jobs(client, true, "", jobs)) return failure;
   std::vector<std::string> names;
-  std::vector<uint64_t> ids;   // of all that are called so, the newest first
-  std::vector<uint64_t> open;  // of those that have not ended
+  std::vector<uint64_t> ids;    // of all that are called so, the newest first
+  std::vector<uint64_t> meant;  // of those that may be meant
   for (const v1::Job& job : jobs) {
     if (job.name() == text) {
       ids.push_back(job.id());
-      if (!has_ended(job)) open.push_back(job.id());
+      if (is_meant(job, namesakes)) meant.push_back(job.id());
     }
     if (std::find(names.begin(), names.end(), job.name()) == names.end()) {
       names.push_back(job.name());
@@ -75,12 +101,10 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
   }
   id = ids.front();
   if (ids.size() == 1) return std::nullopt;
-  const bool only_open = namesakes == Namesakes::open && open.size() == 1;
-  if (only_open || namesakes == Namesakes::newest) {
-    if (only_open) id = open.front();
+  if (meant.size() == 1 || namesakes == Namesakes::newest) {
+    id = meant.front();
     std::fprintf(stderr, "%zu jobs are called '%s': this is job %lu, %s\n", ids.size(),
-                 printable(text).c_str(), id,
-                 only_open ? "the only one that is open" : "the newest");
+                 printable(text).c_str(), id, in_words(namesakes));
     return std::nullopt;
   }
   const size_t shown = std::min(ids.size(), kMostShown);

@@ -11,6 +11,7 @@ namespace hyades::cli {
 enum class Namesakes {
   none,    ///< none of them: only an id will do
   open,    ///< the only one that has not ended
+  failed,  ///< the only one that was cancelled, or of which a frame has failed
   newest,  ///< the one submitted last
 };
 

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/printable.h"
 #include "hyades/v1/farm.pb.h"
 #include "hyades/v1/jobs.pb.h"
 
@@ -34,9 +35,6 @@ std::string percent(uint64_t part, uint64_t whole);
 
 /// Local time of day and date of milliseconds since 1970: "2026-11-21 17:54:38".
 std::string format_time(int64_t ms);
-
-/// Text with control characters (which could steer the terminal) replaced by '?'.
-std::string printable(const std::string& text);
 
 /// Prints rows in columns to standard output; the first row is the heading.
 void print_table(const std::vector<std::vector<std::string>>& rows);

@@ -49,7 +49,8 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::Range(-1'000'000, 1'000'000))
       ->capture_default_str();
   app.add_option("--owner", options.owner, "whose job it is; owners share the farm (default: you)");
-  app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)");
+  app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)")
+      ->check(no_frames_error);
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
       ->check(CLI::Range(1U, 1U << 24U));
   app.add_option("--max-workers", options.max_workers, "render on no more than so many at once");
@@ -123,6 +124,17 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Op
   return request;
 }
 
+/// Several lines: every complaint about the job, with its path as it can be shown.
+void print_complaints(std::string text, const std::string& path) {
+  const std::string shown = printable(path);
+  if (shown != path) {
+    for (size_t at = 0; (at = text.find(path, at)) != std::string::npos; at += shown.size()) {
+      text.replace(at, path.size(), shown);
+    }
+  }
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
 Outcome submit(FarmClient& client, const farm::JobPackage& package,
                const v1::SubmitRequest& request, bool quiet, v1::Job& job) {
   for (int round = 1;; ++round) {
@@ -147,7 +159,7 @@ int submit_command(int argc, char** argv) {
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto package = farm::package_job(options.path);
   if (!package) {
-    std::fprintf(stderr, "%s\n", package.error().message.c_str());
+    print_complaints(package.error().message, options.path);
     return kBadArguments;
   }
   const auto request = make_request(*package, options);

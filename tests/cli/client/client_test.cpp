@@ -295,13 +295,20 @@ TEST_F(Client, OfNamesakesTheOpenOneOrTheNewestIsMeant) {
   const Ran fetched = run(fetch_command, at({"ocean", "--output", folder_.file("out")}));
   EXPECT_EQ(fetched.status, kDone);
   EXPECT_TRUE(has(fetched.err, "this is job 3")) << fetched.err;
-  for (const Command command : {pause_command, resume_command, retry_command}) {
+  for (const Command command : {pause_command, resume_command}) {
     const Ran ran = run(command, at({"ocean", "--json"}));
     EXPECT_EQ(json::parse(ran.out)[0]["id"], 2) << ran.err;
     EXPECT_TRUE(has(ran.err, "this is job 2")) << ran.err;
   }
   EXPECT_EQ(run(priority_command, at({"ocean", "9"})).status, kDone);
   EXPECT_EQ(farm_.jobs[1].priority(), 9);
+  const Ran again = run(retry_command, at({"ocean", "--json"}));
+  EXPECT_EQ(json::parse(again.out)[0]["id"], 3) << again.err;
+  EXPECT_TRUE(has(again.err, "this is job 3, the only one with something to take up"));
+  farm_.jobs[2].set_state(v1::JOB_STATE_DONE);
+  EXPECT_EQ(run(retry_command, at({"ocean"})).status, kBadArguments) << "nothing to take up";
+  farm_.jobs[1].set_frames_failed(1);
+  EXPECT_EQ(json::parse(run(retry_command, at({"ocean", "--json"})).out)[0]["id"], 2);
   EXPECT_EQ(run(delete_command, at({"ocean"})).status, kBadArguments);
   EXPECT_EQ(run(cancel_command, at({"ocean"})).status, kDone);
   EXPECT_EQ(farm_.jobs[1].state(), v1::JOB_STATE_CANCELLED);
@@ -387,6 +394,80 @@ TEST_F(Client, FetchSaysWhyThereIsNothing) {
   EXPECT_TRUE(has(failed, "hyades retry 1")) << failed;
   EXPECT_TRUE(has(why(v1::JOB_STATE_CANCELLED), "was cancelled"));
   EXPECT_TRUE(has(why(v1::JOB_STATE_RUNNING), "nothing to fetch yet"));
+}
+
+TEST_F(Client, FetchSaysWhichFramesFailedOrAreMissing) {
+  add_job("a", v1::JOB_STATE_FAILED);
+  for (int i = 1; i <= 5; ++i) {
+    v1::Frame frame;
+    frame.set_frame(i);
+    frame.set_state(i == 2 || i > 3 ? v1::FRAME_STATE_FAILED : v1::FRAME_STATE_DONE);
+    farm_.frames.push_back(frame);
+  }
+  farm_.outputs["a.0001.exr"] = "one";
+  const std::vector<std::string> words = at({"a", "--output", folder_.file("out")});
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(fetch_command, all);
+  };
+  Ran ran = with({});
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "frames 2, 4-5 failed and have no files")) << ran.err;
+  EXPECT_TRUE(has(ran.err, "hyades retry 1")) << ran.err;
+  EXPECT_EQ(read_file(folder_.file("out/a.0001.exr")), "one") << "what there is comes first";
+  ran = with({"--json", "--quiet"});
+  EXPECT_EQ(ran.status, kFailed) << "the same for scripts";
+  EXPECT_EQ(json::parse(ran.out).size(), 1U);
+  EXPECT_EQ(with({"--frame", "1,3"}).status, kDone) << "they are all right";
+  EXPECT_EQ(with({"--list"}).status, kDone);
+
+  farm_.jobs[0].set_state(v1::JOB_STATE_RUNNING);
+  for (v1::Frame& frame : farm_.frames) {
+    if (frame.state() == v1::FRAME_STATE_FAILED) frame.set_state(v1::FRAME_STATE_RENDERING);
+  }
+  ran = with({});
+  EXPECT_EQ(ran.status, kDone) << ran.err;
+  EXPECT_TRUE(has(ran.err, "3 frames are not finished yet (--follow waits for them)")) << ran.err;
+  farm_.jobs[0].set_state(v1::JOB_STATE_CANCELLED);
+  ran = with({});
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "was cancelled when 0 of its")) << ran.err;
+
+  farm_.outputs.clear();
+  ran = with({"--json"});
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_EQ(ran.out, "[]\n");
+  EXPECT_TRUE(has(ran.err, "there is nothing to fetch")) << ran.err;
+  ran = with({"--json", "--list"});
+  EXPECT_EQ(ran.status, kDone);
+  EXPECT_EQ(ran.out, "[]\n");
+}
+
+TEST_F(Client, WrongCommandLinesAreToldInOneLine) {
+  const auto wrong = [&](Command command, const std::vector<std::string>& words) {
+    const Ran ran = run(command, at(words));
+    EXPECT_EQ(ran.status, kBadArguments) << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    return ran.err;
+  };
+  EXPECT_EQ(
+      wrong(jobs_command, {"--onwer", "ann"}),
+      "hyades jobs: there is no option '--onwer', did you mean '--owner'? (hyades jobs --help "
+      "tells more)\n");
+  EXPECT_TRUE(has(wrong(status_command, {"a", "b"}), "'b' is one argument too many"));
+  EXPECT_TRUE(has(wrong(status_command, {}), "hyades status: job is missing"));
+  EXPECT_TRUE(
+      has(wrong(submit_command, {"a", "--samples", "0"}), "--samples 0: expected 1 to 16777216"));
+  EXPECT_TRUE(has(wrong(submit_command, {"a", "--max-workers", "x"}),
+                  "--max-workers x: expected a number"));
+  EXPECT_TRUE(has(wrong(submit_command, {folder_.file("job.yaml"), "--frames", ""}),
+                  "--frames: expected frames such as 7"));
+  EXPECT_TRUE(
+      has(wrong(jobs_command, {"--patience", "-1"}), "--patience -1: expected 0 to 1000000000"));
+  EXPECT_TRUE(has(wrong(submit_command, {"gone\nhyades submit: fine.yaml"}), "gone?hyades"));
+  EXPECT_TRUE(has(wrong(jobs_command, {"--token-file", "gone\ntoken"}), "gone?token"));
+  EXPECT_EQ(farm_.calls, 0);
 }
 
 TEST_F(Client, FetchKeepsNothingThatIsWrong) {

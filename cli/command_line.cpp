@@ -1,0 +1,64 @@
+#include "cli/command_line.h"
+
+#include <cstdio>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "cli/printable.h"
+#include "core/base/text.h"
+
+namespace hyades::cli {
+namespace {
+
+/// What is wrong with a command line, in our words; CLI11's where it has others than these.
+std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
+  std::string text = error.what();
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
+    const std::vector<std::string> extras = app.remaining();
+    const std::string extra = extras.empty() ? std::string() : extras.front();
+    if (!extra.starts_with('-')) return "'" + extra + "' is one argument too many";
+    std::vector<std::string> options;
+    for (const CLI::Option* option : app.get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    const std::string name = extra.substr(0, extra.find('='));
+    return "there is no option '" + name + "'" + core::did_you_mean(name, options);
+  }
+  // "--grace: Value 0 not in range 0.300000 to 3600.000000"
+  static const std::regex range("(.*): Value (.*) not in range (\\S+) to (\\S+)");
+  static const std::regex zeros("(\\.\\d*?)0+(?!\\d)");
+  static const std::regex point("\\.(?!\\d)");
+  std::smatch parts;
+  if (std::regex_match(text, parts, range)) {
+    const std::string bounds = parts[3].str() + " to " + parts[4].str();
+    return parts[1].str() + " " + parts[2].str() + ": expected " +
+           std::regex_replace(std::regex_replace(bounds, zeros, "$1"), point, "");
+  }
+  static const std::regex conversion("Could not convert: (\\S+) = (.*)");
+  if (std::regex_match(text, parts, conversion)) {
+    return parts[1].str() + " " + parts[2].str() + ": expected a number";
+  }
+  static const std::regex missing("(\\S+) is required");
+  if (std::regex_match(text, parts, missing)) return parts[1].str() + " is missing";
+  static const std::regex no_value("(\\S+): 1 required .* missing");
+  if (std::regex_match(text, parts, no_value)) return parts[1].str() + ": expected a value";
+  return text;
+}
+
+}  // namespace
+
+std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv, int wrong) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "%s: %s (%s --help tells more)\n", app.get_name().c_str(),
+                 printable(in_our_words(app, error)).c_str(), app.get_name().c_str());
+    return wrong;
+  }
+  return std::nullopt;
+}
+
+}  // namespace hyades::cli
