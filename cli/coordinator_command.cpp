@@ -13,10 +13,12 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/address_option.h"
+#include "cli/command_line.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/server.h"
 #include "core/base/atomic_file.h"
 #include "core/base/machine.h"
+#include "farm/last_words.h"
 
 namespace {
 
@@ -106,6 +108,8 @@ int serve(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   hyades::core::ignore_file_size_signal();
+  hyades::farm::die_with_words("hyades coordinator",
+                               "what was promised is durable: start it again");
   Arguments arguments;
   CLI::App app("Owns jobs, leases their units to workers, merges the films and writes the outputs.",
                "hyades coordinator");
@@ -167,10 +171,10 @@ int main(int argc, char** argv) {
       "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
       "wrong arguments (or a token, certificate or key that is none)");
   // argv[1] is the word "coordinator".
-  try {
-    app.parse(argc > 1 ? argc - 1 : argc, argc > 1 ? argv + 1 : argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : kBadArguments;
+  const int skipped = argc > 1 ? 1 : 0;
+  if (const auto status =
+          hyades::cli::parse_command_line(app, argc - skipped, argv + skipped, kBadArguments)) {
+    return *status;
   }
   arguments.brain.finisher = hyades::core::program_folder() + "hyades-film";
   arguments.brain.unit_time = seconds(arguments.unit_seconds);

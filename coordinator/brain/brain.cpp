@@ -53,9 +53,9 @@ int64_t wall_ms() {
 
 std::vector<Action> Brain::tell(const Event& event, Delivery* delivery) {
   std::vector<Action> later;
-  for (const Action& action : scheduler_.handle(event, std::chrono::steady_clock::now())) {
-    act(action, delivery, later);
-  }
+  const std::vector<Action> actions = scheduler_.handle(event, std::chrono::steady_clock::now());
+  for (const Action& action : actions) act(action, delivery, later);
+  note_expired(actions);
   return later;
 }
 
@@ -90,6 +90,7 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
   } else if (const auto* odd = std::get_if<Quarantine>(&action)) {
     if (const auto seat = seats_.find(odd->worker); seat != seats_.end()) {
       set_quarantine(seat->second, odd->reason);
+      note_quarantine(seat->second);
     }
   } else if (const auto* record = std::get_if<Persist>(&action)) {
     persist(*record, delivery);

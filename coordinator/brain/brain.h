@@ -206,10 +206,12 @@ class Brain {
   void store_row(JobDesk& desk);
   bool store_row_now(uint64_t id);
   bool store_end(uint64_t id);
+  bool store_lines(JobId id);
   std::vector<Waiter> take_waiters(const std::function<bool(const Waiter&)>& which);
   void mind_waiters(TimePoint now);
   core::Status take_up_jobs();
   bool take_up_later(uint64_t id);
+  bool try_to_take_up(uint64_t id);
   core::Status give_up(uint64_t id, const core::Error& why);
   core::Status take_up(uint64_t id);
   core::Result<std::set<int32_t>> frames_without_outputs(uint64_t id) const;
@@ -242,13 +244,16 @@ class Brain {
   void storage_failed(JobId job, const std::string& reason);
 
   // Messages of workers.
-  bool has_seat();
+  bool has_seat(std::vector<Action>& later);
   grpc::Status meet_twin(Seat& seat, const v1::Hello& hello);
   std::optional<Duration> patience_with(v1::LeaseProgress::Stage stage) const;
   std::vector<Event> feel_pulses(Seat& seat, const v1::Heartbeat& beat);
   std::vector<Event> take_back(Seat& seat, const LeaseId& lease, const Pulse& pulse);
   std::vector<std::string> still_units(JobId job) const;
   void wait_for_more_holders();
+  void note_losses(const Seat& seat, const std::vector<UnitInHand>& units, const std::string& why);
+  void note_expired(const std::vector<Action>& actions);
+  void note_quarantine(const Seat& seat);
   void on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result);
   void note_return(const Seat& seat, JobId job, const std::string& reason);
   void want(Seat& seat, uint32_t units, std::vector<Action>& later);
@@ -281,7 +286,11 @@ class Brain {
   v1::Job describe(const JobDesk& desk) const;
   v1::Worker describe(const Seat& seat) const;
   std::string unmet_needs(const StoredJob& job) const;
+  std::vector<std::string> barred_workers() const;
+  std::vector<std::string> where_units_are(JobId job) const;
+  std::vector<Action> forget(WorkerId worker);
   grpc::Status not_open(uint64_t job);
+  grpc::Status cancel_waiting(uint64_t job, v1::Job& now);
   grpc::Status wait_until_away(uint64_t job);
   grpc::Status kept_film(uint64_t job, int32_t frame, const FilmTaker& then);
   grpc::Status steer_worker(const v1::WorkerRequest& request, v1::Worker& now,
@@ -320,6 +329,7 @@ class Brain {
   std::atomic<bool> disk_full_{false};
   std::condition_variable disk_wake_;
 
+  std::map<uint64_t, StoredJob> waiting_jobs_;  ///< open, but not taken up yet, with the reason
   std::set<uint64_t> leaving_;  ///< jobs whose end is stored, but whose log is still open
   std::condition_variable away_wake_;
 

@@ -55,14 +55,13 @@ std::string complaint(const v1::Hello& hello) {
 
 /// Whether another worker may come; with the lock. Where all seats are taken, one that is gone is
 /// forgotten sooner than others.
-bool Brain::has_seat() {
+bool Brain::has_seat(std::vector<Action>& later) {
   if (seats_.size() < kMostWorkers) return true;
   const auto gone = std::find_if(seats_.begin(), seats_.end(), [](const auto& seat) {
     return seat.second.lost_at && !seat.second.joined;
   });
   if (gone == seats_.end()) return false;
-  worker_ids_.erase(gone->second.hello.worker_id());
-  seats_.erase(gone);
+  later = forget(gone->first);
   return true;
 }
 
@@ -105,7 +104,7 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
   std::vector<Action> later;
   {
     const std::lock_guard lock(mutex_);
-    if (!worker_ids_.contains(hello.worker_id()) && !has_seat()) {
+    if (!worker_ids_.contains(hello.worker_id()) && !has_seat(later)) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                fmt::format("there are {} workers already", kMostWorkers),
                                std::chrono::seconds(10));
@@ -119,6 +118,7 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
     if (seat.link) {
       seat.link->close({grpc::StatusCode::ABORTED, "the worker has a newer stream"});
     }
+    const bool new_process = seat.joined && seat.hello.instance() != hello.instance();
     seat.id = worker;
     seat.hello = hello;
     seat.hello.clear_in_hand();
@@ -151,8 +151,11 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
     link->send(std::move(message));
 
     joined.worker = worker;
+    if (new_process) {
+      note_losses(seat, scheduler_.units_of(worker), "has been started again");
+    }
     seat.joined = true;
-    later = tell(joined);
+    for (Action& action : tell(joined)) later.push_back(std::move(action));
     if (seat.state == v1::WORKER_STATE_QUARANTINED) {
       for (Action& action : tell(WorkerBarred{worker, true})) later.push_back(std::move(action));
     }

@@ -12,6 +12,8 @@ namespace {
 
 /// After this somebody who waits for a change to be stored is told to come again.
 constexpr Duration kStorePatience = std::chrono::milliseconds(500);
+/// For the last lines of a job that has ended; Chores::kAgain apart.
+constexpr int kMostTries = 20;
 
 grpc::Status not_stored(const std::string& why) {
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
@@ -143,7 +145,14 @@ bool Brain::store_end(uint64_t id) {
     }
     lines = over->take_lines();
   }
-  if (!lines.empty()) (void)store_->add_lines(id, lines);
+  if (!lines.empty() && !store_->add_lines(id, lines)) {
+    // The job is over for whoever waits for it; its last words come as long as there is hope.
+    chores_.add(id, [this, id, lines = std::move(lines), tries = 0]() mutable {
+      const auto still = store_->state(id);
+      const bool deleted = still && !*still;
+      return deleted || store_->add_lines(id, lines).ok() || ++tries == kMostTries;
+    });
+  }
   std::unique_ptr<JobDesk> over;
   std::vector<Waiter> told;
   {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "coordinator/brain/counted.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -22,16 +23,20 @@ class Reasons {
   /// One of many `kind`s ("frames have failed"), which end_kind() sums up.
   template <class... Parts>
   void say_one(fmt::format_string<Parts...> format, Parts&&... parts) {
-    if (++told_ <= kMostTold) say(fmt::format(format, std::forward<Parts>(parts)...));
+    if (++told_ > kMostTold + 1) return;
+    last_ = fmt::format(format, std::forward<Parts>(parts)...);
+    if (told_ <= kMostTold) say(last_);
   }
   void end_kind(const char* kind) {
-    if (told_ > kMostTold) say(fmt::format("{} more {}", told_ - kMostTold, kind));
+    if (told_ == kMostTold + 1) say(last_);
+    if (told_ > kMostTold + 1) say(fmt::format("{} more {}", told_ - kMostTold, kind));
     told_ = 0;
   }
 
  private:
   v1::ExplainResponse& response_;
   size_t told_ = 0;
+  std::string last_;
 };
 
 }  // namespace
@@ -86,9 +91,12 @@ bool Brain::explain_open(uint64_t id, v1::ExplainResponse& response) {
     ++active;
     ++classes[seat.hello.worker_class()];
   }
-  const std::string unmet = active > 0 ? unmet_needs(desk->stored) : std::string();
+  const std::string unmet = unmet_needs(desk->stored);
   if (active == 0) say("no worker is there that could take units");
   if (!unmet.empty()) say(unmet);
+  if (active == 0 || !unmet.empty()) {
+    for (const std::string& barred : barred_workers()) say(barred);
+  }
   uint32_t waiting = 0;
   for (const auto& [number, note] : desk->frames) {
     if (note.state == v1::FRAME_STATE_WAITING) ++waiting;
@@ -116,17 +124,19 @@ bool Brain::explain_open(uint64_t id, v1::ExplainResponse& response) {
   }
   reasons.end_kind("frames were begun by workers of classes of which none is there");
   if (const uint32_t disputed = scheduler_.disputed_units(desk->id); disputed > 0) {
-    say(
-        fmt::format("{} units were rendered differently by two workers of one class and wait for "
-                    "another worker of it to say who is right",
-                    disputed));
+    say(fmt::format(
+        "{} rendered differently by two workers of one class and {} for another worker of it to "
+        "say who is right",
+        counted(disputed, "unit") + (disputed == 1 ? " was" : " were"),
+        disputed == 1 ? "waits" : "wait"));
   }
   for (const std::string& still : still_units(desk->id)) say(still);
   const uint32_t leased = scheduler_.leased_units(desk->id);
   if (leased > 0) {
-    say(fmt::format("{} units are being rendered", leased));
+    for (const std::string& where : where_units_are(desk->id)) say(where);
     if (desk->stored.max_workers > 0) {
-      say(fmt::format("at most {} workers may render it at once", desk->stored.max_workers));
+      say(fmt::format("at most {} may render it at once",
+                      counted(desk->stored.max_workers, "worker")));
     }
   } else if (active > 0 && !orphans && unmet.empty() &&
              desk->stored.state == StoredState::running) {
@@ -142,7 +152,10 @@ bool Brain::explain_open(uint64_t id, v1::ExplainResponse& response) {
       say("the coordinator has just started and waits for its workers to come back");
     }
   }
-  if (waiting > 0) say(fmt::format("{} frames wait for their turn", waiting));
+  if (waiting > 0) {
+    say(counted(waiting, "frame") +
+        (waiting == 1 ? " waits for its turn" : " wait for their turn"));
+  }
   if (response.reasons().empty()) say("nothing stands in its way");
   return true;
 }

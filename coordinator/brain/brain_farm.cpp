@@ -125,6 +125,7 @@ void Brain::store_quarantine(std::function<core::Status()> what) {
 grpc::Status Brain::quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now) {
   return steer_worker(request, now, [&](Seat& seat) {
     set_quarantine(seat, seat.reason);
+    note_quarantine(seat);
     return tell(WorkerBarred{seat.id, true});
   });
 }

@@ -21,6 +21,8 @@ struct BrainOptions {
   Duration class_patience = std::chrono::minutes(5);
   /// A worker whose stream has ended is lost if it has not come again after this.
   Duration reconnect_time = std::chrono::seconds(3);
+  /// ... and forgotten after this.
+  Duration forget_time = std::chrono::hours(1);
   DiskLimits disk;
   /// Files that no job needs any more stay for so long after they were last used.
   Duration asset_grace = std::chrono::hours(1);

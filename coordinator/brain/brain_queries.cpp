@@ -1,5 +1,6 @@
 // What clients want to know of jobs.
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -71,12 +72,19 @@ bool Brain::list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& 
   if (request.ended()) return false;
   const int limit = static_cast<int>(most_listed(request));
   const std::lock_guard lock(mutex_);
-  auto desk = request.before() == 0 ? desks_.end() : desks_.lower_bound(JobId{request.before()});
-  while (desk != desks_.begin()) {
-    --desk;
-    const StoredJob& stored = desk->second->stored;
+  const bool all = request.before() == 0;
+  auto desk = all ? desks_.end() : desks_.lower_bound(JobId{request.before()});
+  auto waiting = all ? waiting_jobs_.end() : waiting_jobs_.lower_bound(request.before());
+  while (desk != desks_.begin() || waiting != waiting_jobs_.begin()) {
+    // The newest of both.
+    const bool taken_up =
+        waiting == waiting_jobs_.begin() ||
+        (desk != desks_.begin() && std::prev(desk)->second->stored.id > std::prev(waiting)->first);
+    const StoredJob& stored = taken_up ? (--desk)->second->stored : (--waiting)->second;
     if (!request.owner().empty() && stored.owner != request.owner()) continue;
-    *response.add_jobs() = describe(*desk->second);
+    // One that waits is open already, for an instant, while it is taken up.
+    if (!taken_up && desks_.contains(JobId{stored.id})) continue;
+    *response.add_jobs() = taken_up ? describe(*desk->second) : coordinator::describe(stored);
     if (response.jobs_size() < limit) continue;
     response.set_next_before(stored.id);
     break;

@@ -11,6 +11,7 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr int kMostPriority = 1'000'000;
+constexpr std::chrono::seconds kPatience{2};
 
 }  // namespace
 
@@ -78,7 +79,37 @@ void Brain::cancel(uint64_t id, Told then) {
   }
   carry_out(later);
   if (stop_) mind_waiters({});
-  if (!open) then(not_open(id), {});
+  if (open) return;
+  v1::Job now;
+  const grpc::Status status = cancel_waiting(id, now);
+  then(status, now);
+}
+
+/// A job that waits to be taken up ends without; any other is not_open(). Without the lock.
+grpc::Status Brain::cancel_waiting(uint64_t id, v1::Job& now) {
+  const auto waits = [&] {
+    const std::lock_guard lock(mutex_);
+    return waiting_jobs_.contains(id) && desk_of(id) == nullptr;
+  };
+  if (!waits()) return not_open(id);
+  // Nobody takes it up meanwhile.
+  const std::unique_lock one(submit_mutex_, kPatience);
+  auto stored = store_->job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!one || !waits() || !*stored || has_ended((*stored)->state)) {
+    return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                             fmt::format("job {} is just being taken up", id),
+                             std::chrono::seconds(1));
+  }
+  (*stored)->state = StoredState::cancelled;
+  (*stored)->ended_ms = wall_ms();
+  (*stored)->reason.clear();
+  if (const core::Status done = store_->update_job(**stored); !done)
+    return farm::unavailable(done.error());
+  now = coordinator::describe(**stored);
+  const std::lock_guard lock(mutex_);
+  waiting_jobs_.erase(id);
+  return grpc::Status::OK;
 }
 
 /// NOT_FOUND, or FAILED_PRECONDITION for a job that has ended; without the lock.

@@ -57,10 +57,13 @@ core::Status Brain::take_up_jobs() {
     if (taken) continue;
     if (!lasting_obstacle(*store_, *assets_, id, options_.film_memory)) {
       // Perhaps the disk is full, or did not answer: the job waits, and says why.
-      if (auto stored = store_->job(id); stored && *stored) {
-        (*stored)->reason = "waits to be taken up again: " + taken.error().message;
-        (void)store_->update_job(**stored);
-      }
+      StoredJob waiting;
+      if (auto stored = store_->job(id); stored && *stored) waiting = std::move(**stored);
+      waiting.id = id;
+      waiting.reason = "waits to be taken up again: " + taken.error().message;
+      if (!waiting.spec.empty()) (void)store_->update_job(waiting);
+      const std::lock_guard lock(mutex_);
+      waiting_jobs_[id] = std::move(waiting);
       chores_.add(id, [this, id] { return take_up_later(id); });
       continue;
     }
@@ -73,6 +76,13 @@ core::Status Brain::take_up_jobs() {
 
 /// Whether there is nothing left to try; for the job's chores.
 bool Brain::take_up_later(uint64_t id) {
+  if (!try_to_take_up(id)) return false;
+  const std::lock_guard lock(mutex_);
+  waiting_jobs_.erase(id);
+  return true;
+}
+
+bool Brain::try_to_take_up(uint64_t id) {
   if (stop_) return true;
   // Not while somebody deletes it, or unused files are swept.
   const std::unique_lock one(submit_mutex_, kPatience);

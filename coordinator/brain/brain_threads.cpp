@@ -15,8 +15,8 @@ namespace {
 
 constexpr Duration kClock = std::chrono::milliseconds(50);
 constexpr Duration kPokeEvery = std::chrono::milliseconds(200);
-constexpr Duration kForgetAfter = std::chrono::hours(1);
 constexpr Duration kFinishAgain = std::chrono::seconds(1);
+constexpr Duration kLinesAgain = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -121,17 +121,15 @@ std::vector<Action> Brain::mind_workers(TimePoint now) {
         (seat.leaving || now - *seat.lost_at > options_.reconnect_time)) {
       seat.joined = false;
       if (seat.state != v1::WORKER_STATE_QUARANTINED) seat.state = v1::WORKER_STATE_GONE;
+      note_losses(seat, scheduler_.units_of(seat.id), seat.leaving ? "has left" : "is lost");
       add(tell(WorkerLost{seat.id}));
     }
     if (seat.held_wish > 0 && seat.joined && now >= adopting_until_) {
       add(tell(WorkRequested{seat.id, std::exchange(seat.held_wish, 0)}));
     }
-    if (seat.lost_at && now - *seat.lost_at > kForgetAfter) {
-      worker_ids_.erase(seat.hello.worker_id());
-      it = seats_.erase(it);
-    } else {
-      ++it;
-    }
+    const WorkerId id = it->first;
+    ++it;
+    if (seat.lost_at && now - *seat.lost_at > options_.forget_time) add(forget(id));
   }
   return later;
 }
@@ -141,13 +139,9 @@ void Brain::mind_jobs(TimePoint now) {
   for (auto& [id, desk] : desks_) {
     desk->speed.note(desk->samples_done, now);
     if (desk->lines.empty() || desk->storing_lines || desk->ending || disk_full_) continue;
+    if (now < desk->lines_again) continue;
     desk->storing_lines = true;
-    chores_.add(desk->stored.id, [this, id = desk->id, lines = desk->take_lines()] {
-      (void)store_->add_lines(static_cast<uint64_t>(id), lines);
-      const std::lock_guard lock(mutex_);
-      if (JobDesk* still = desk_of(id)) still->storing_lines = false;
-      return true;
-    });
+    chores_.add(desk->stored.id, [this, id = desk->id] { return store_lines(id); });
   }
   for (auto& [number, watch] : watches_) {
     const JobDesk* desk = desk_of(watch.job);
@@ -155,6 +149,26 @@ void Brain::mind_jobs(TimePoint now) {
     watch.version = desk->version;
     tell_watcher(watch.poke);
   }
+}
+
+/// Where they cannot be stored they wait in memory, and hold up none of the job's chores.
+bool Brain::store_lines(JobId id) {
+  std::vector<StoredLine> lines;
+  {
+    const std::lock_guard lock(mutex_);
+    JobDesk* desk = desk_of(id);
+    if (desk == nullptr) return true;
+    if (!desk->lines.empty()) lines = desk->take_lines();
+  }
+  const core::Status stored = store_->add_lines(static_cast<uint64_t>(id), lines);
+  const std::lock_guard lock(mutex_);
+  JobDesk* still = desk_of(id);
+  if (still == nullptr) return true;
+  still->storing_lines = false;
+  if (stored) return true;
+  still->put_back(std::move(lines));
+  still->lines_again = std::chrono::steady_clock::now() + kLinesAgain;
+  return true;
 }
 
 /// By another thread, as it is told with the lock.

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "coordinator/brain/counted.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/job/layers.h"
@@ -113,9 +115,20 @@ std::vector<StoredLine> JobDesk::take_lines() {
   std::vector<StoredLine> taken = std::exchange(lines, {});
   if (const uint64_t dropped = std::exchange(lines_dropped, 0); dropped > 0) {
     taken.push_back({taken.back().time_ms, v1::LOG_LEVEL_WARNING, std::nullopt, "",
-                     fmt::format("{} lines were dropped: too many at once", dropped)});
+                     counted(dropped, "line") + (dropped == 1 ? " was" : " were") +
+                         " dropped: too many at once"});
   }
   return taken;
+}
+
+void JobDesk::put_back(std::vector<StoredLine> taken) {
+  taken.insert(taken.end(), std::make_move_iterator(lines.begin()),
+               std::make_move_iterator(lines.end()));
+  lines = std::move(taken);
+  if (lines.size() <= kMostLinesWaiting) return;
+  const size_t over = lines.size() - kMostLinesWaiting;
+  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(over));
+  lines_dropped += over;
 }
 
 v1::Job describe(const StoredJob& job) {

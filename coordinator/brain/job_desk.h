@@ -71,6 +71,7 @@ struct JobDesk {
   std::vector<StoredLine> lines;  ///< not stored yet
   uint64_t lines_dropped = 0;     ///< since lines were last taken: too many at once
   bool storing_lines = false;
+  TimePoint lines_again;         ///< not before: storing them has failed
   bool storing_row = false;      ///< a chore will store what has changed in `stored`
   std::string trouble;           ///< why its films cannot be stored
   std::string row_trouble;       ///< why `stored` cannot be stored
@@ -83,6 +84,9 @@ struct JobDesk {
   void note(StoredLine line);
   /// The lines that wait, and a last one that tells of those dropped.
   std::vector<StoredLine> take_lines();
+  /// Lines that could not be stored come again, before all others; the oldest of them go where too
+  /// many wait.
+  void put_back(std::vector<StoredLine> taken);
   v1::Job describe(uint32_t leased) const;
   v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
   core::FilmInfo film_info(int32_t frame) const;

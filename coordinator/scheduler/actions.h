@@ -34,6 +34,7 @@ struct Revoke {
   LeaseId lease;
   JobId job{};
   core::Unit unit;
+  bool expired = false;  ///< the lease was not renewed in time
 };
 
 // Records: what is to be durable.

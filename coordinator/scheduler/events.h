@@ -143,6 +143,11 @@ struct WorkerLost {
   WorkerId worker{};
 };
 
+/// The worker is gone for good: nobody will come under this id any more.
+struct WorkerForgotten {
+  WorkerId worker{};
+};
+
 // The store: answers to Persist.
 
 struct Persisted {
@@ -160,6 +165,6 @@ using Event =
     std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised, FramesRetried,
                  FrameOpened, FrameRefused, FinishDone, FinishFailed, WorkerJoined, WorkRequested,
                  LeasingHeld, WorkerAlive, ResultArrived, UnitFailed, UnitReturned, WorkerBarred,
-                 WorkerLost, Persisted, PersistFailed, Tick>;
+                 WorkerLost, WorkerForgotten, Persisted, PersistFailed, Tick>;
 
 }  // namespace hyades::coordinator

@@ -30,13 +30,13 @@ void Scheduler::expire_leases() {
     if (it->second.deadline > now_) {
       deadlines_.emplace(it->second.deadline, number);
     } else {
-      release_lease(number, true);
+      release_lease(number, true, true);
     }
   }
 }
 
 /// Takes the lease back: what it still held is free again.
-void Scheduler::release_lease(uint64_t number, bool revoke) {
+void Scheduler::release_lease(uint64_t number, bool revoke, bool expired) {
   const auto it = leases_.find(number);
   const LeaseState lease = std::move(it->second);
   leases_.erase(it);
@@ -46,7 +46,7 @@ void Scheduler::release_lease(uint64_t number, bool revoke) {
   const LeaseId id{options_.incarnation, number};
   for (const Extent& e : lease.units) {
     slot.books->release(e, id);
-    if (revoke) say(Revoke{lease.worker, id, job.id, unit_of(job, slot, e)});
+    if (revoke) say(Revoke{lease.worker, id, job.id, unit_of(job, slot, e), expired});
   }
   set_running(job, -static_cast<int64_t>(lease.units.size()));
   leave_job(job, lease.worker);

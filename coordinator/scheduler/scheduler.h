@@ -66,6 +66,11 @@ class Scheduler {
   /// What the worker has under the lease; nothing where it has no such lease.
   std::vector<UnitInHand> units_of(WorkerId worker, const LeaseId& lease) const;
 
+  /// All that the worker has.
+  std::vector<UnitInHand> units_of(WorkerId worker) const;
+  /// What is out of the job, and with whom.
+  std::vector<std::pair<WorkerId, UnitInHand>> units_of(JobId job) const;
+
   /// How many units of the job, rendered differently by two workers, wait for one who has not
   /// rendered them.
   uint32_t disputed_units(JobId job) const;
@@ -176,6 +181,7 @@ class Scheduler {
   void on(const WorkerAlive& e);
   void on(const WorkerBarred& e);
   void on(const WorkerLost& e);
+  void on(const WorkerForgotten& e);
   void on(const Tick& e);
   void adopt(WorkerId id, Worker& worker, const UnitInHand& held);
   void count_class(uint32_t worker_class, int change);
@@ -221,7 +227,7 @@ class Scheduler {
   void new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t slot, bool adopted,
                  std::vector<Extent> extents);
   void expire_leases();
-  void release_lease(uint64_t number, bool revoke);
+  void release_lease(uint64_t number, bool revoke, bool expired = false);
   void drop_from_lease(const LeaseId& id, const Extent& e);
   void leave_job(JobState& job, WorkerId worker);
   bool may_join(const JobState& job, WorkerId id, const Worker& worker) const;

@@ -105,6 +105,12 @@ void Scheduler::on(const WorkerLost& e) {
   work_appeared_ = true;
 }
 
+void Scheduler::on(const WorkerForgotten& e) {
+  on(WorkerLost{e.worker});
+  quarantined_.erase(e.worker);
+  strikes_.erase(e.worker);
+}
+
 void Scheduler::on(const Tick&) {
   expire_leases();
   retry_persisting();

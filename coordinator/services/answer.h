@@ -109,7 +109,7 @@ grpc::ServerUnaryReactor* answer_or_by(Clerks& clerks, const Call& call, Known k
     call.finish(grpc::Status::OK, response);
   } else if (!clerks.hand([call, what, request = std::move(request)] {
                Response found;
-               const grpc::Status done = what(request, found);
+               const grpc::Status done = within_memory([&] { return what(request, found); });
                call.finish(done, found);
              })) {
     call.reactor->Finish(crowded());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <new>
 
 #include <grpcpp/support/status.h>
 
@@ -22,6 +23,18 @@ inline grpc::Status crowded() {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                            "more requests wait for the coordinator's disk than may",
                            std::chrono::seconds(2));
+}
+
+/// What `question` answers; or that there is no memory for the answer now. For what changes
+/// nothing: a change that breaks off in its middle ends the process (farm/last_words.h).
+template <class Question>
+grpc::Status within_memory(const Question& question) {
+  try {
+    return question();
+  } catch (const std::bad_alloc&) {
+    return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                             "the coordinator has no memory for this now", std::chrono::seconds(2));
+  }
 }
 
 }  // namespace hyades::coordinator

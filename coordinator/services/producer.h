@@ -120,7 +120,11 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
       if (cancelled) {
         status = {grpc::StatusCode::CANCELLED, "the client is gone"};
       } else {
-        step = next(message_, status, may_wait);
+        status = within_memory([&] {
+          grpc::Status end;
+          step = next(message_, end, may_wait);
+          return end;
+        });
         if (step == Step::message) {
           status = serialise(message_, bytes_);
           if (!status.ok()) step = Step::end;

@@ -214,6 +214,28 @@ TEST(Preference, AWorkerThatFailsWhatOthersCanRenderIsQuarantined) {
   EXPECT_EQ(b.only<Lease>().worker, kAnna) << "released";
 }
 
+TEST(Preference, AForgottenWorkerLeavesNothingBehind) {
+  SchedulerOptions options;
+  options.max_strikes = 2;
+  Bench b(options);
+  b.begin(plan_of("eve", 100));
+  const auto strike = [&] {
+    const Lease failed = b.ask(kAnna);
+    b.tell(UnitFailed{kAnna, failed.lease, kJob, failed.units[0], "bad memory"});
+    b.deliver(b.ask(kBert));
+  };
+  strike();
+  b.tell(WorkerForgotten{kAnna});
+  b.join(kAnna);
+  strike();
+  EXPECT_TRUE(b.all<Quarantine>().empty()) << "a strike of another life";
+  strike();
+  EXPECT_EQ(b.only<Quarantine>().worker, kAnna);
+  b.tell(WorkerForgotten{kAnna});
+  b.join(kAnna);
+  EXPECT_EQ(b.ask(kAnna).worker, kAnna);
+}
+
 TEST(Preference, AUnitOfItsOwnEndsAWorkersStrikes) {
   SchedulerOptions options;
   options.max_strikes = 3;

@@ -5,9 +5,11 @@
 #include <atomic>
 #include <future>
 #include <mutex>
+#include <new>
 #include <vector>
 
 #include "coordinator/brain/clerks.h"
+#include "farm/last_words.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -61,6 +63,17 @@ TEST(Chores, AreTriedOnceMoreInTheEnd) {
   EXPECT_LE(tried, 2);
   EXPECT_EQ(after, 0) << "what comes after something that was not done";
   EXPECT_EQ(done, 8);
+}
+
+TEST(ChoresDeathTest, WithoutMemoryTheProcessSaysSoAndEnds) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_DEATH(
+      {
+        farm::die_with_words("hyades coordinator", "start it again");
+        Chores chores(1);
+        chores.add(1, []() -> bool { throw std::bad_alloc(); });
+      },
+      "hyades coordinator stops: it has no memory left; start it again");
 }
 
 TEST(Clerks, TakeNoMoreThanMayWait) {

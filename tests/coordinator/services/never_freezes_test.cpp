@@ -237,10 +237,8 @@ TEST_F(NeverFreezes, AJobThatCannotBeTakenUpNowWaitsAndSaysWhy) {
   world.stop();
   trouble->of_frames(Trouble::Kind::fails);
   world.start();
-  v1::ListJobsRequest all;
-  all.set_ended(true);
   v1::ListJobsResponse list;
-  ASSERT_TRUE(world.jobs->List(world.context().get(), all, &list).ok());
+  ASSERT_TRUE(world.jobs->List(world.context().get(), {}, &list).ok());
   ASSERT_EQ(list.jobs_size(), 1);
   EXPECT_EQ(list.jobs(0).state(), v1::JOB_STATE_RUNNING) << list.jobs(0).reason();
   EXPECT_NE(list.jobs(0).reason().find("disk is full"), std::string::npos);
@@ -248,11 +246,42 @@ TEST_F(NeverFreezes, AJobThatCannotBeTakenUpNowWaitsAndSaysWhy) {
   ASSERT_TRUE(world.jobs->Explain(world.context().get(), about(job), &why).ok());
   ASSERT_EQ(why.reasons_size(), 1);
   EXPECT_NE(why.reasons(0).find("waits to be taken up again"), std::string::npos) << why.reasons(0);
-  EXPECT_EQ(cancel(job).error_code(), grpc::StatusCode::UNAVAILABLE);
   trouble->of_frames(Trouble::Kind::none);
   const auto busy = worker();
   EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
   EXPECT_EQ(world.get(job).job().reason(), "");
+}
+
+TEST_F(NeverFreezes, AJobThatWaitsToBeTakenUpCanBeCancelled) {
+  const uint64_t first = world.submit(1);
+  const uint64_t job = world.submit(2);
+  const uint64_t last = world.submit(1);
+  world.stop();
+  trouble->of_frames(Trouble::Kind::fails);
+  world.start();
+  trouble->of_writes(Trouble::Kind::fails);
+  EXPECT_EQ(cancel(job).error_code(), grpc::StatusCode::UNAVAILABLE) << "it would not last";
+  trouble->of_writes(Trouble::Kind::none);
+  v1::JobResponse over;
+  ASSERT_TRUE(world.jobs->Cancel(world.context().get(), about(job), &over).ok());
+  EXPECT_EQ(over.job().state(), v1::JOB_STATE_CANCELLED);
+  EXPECT_EQ(cancel(job).error_code(), grpc::StatusCode::FAILED_PRECONDITION) << "it has ended";
+  v1::ListJobsRequest page;
+  page.set_limit(1);
+  v1::ListJobsResponse list;
+  ASSERT_TRUE(world.jobs->List(world.context().get(), page, &list).ok());
+  ASSERT_EQ(list.jobs_size(), 1);
+  EXPECT_EQ(list.jobs(0).id(), last);
+  page.set_before(list.next_before());
+  ASSERT_TRUE(world.jobs->List(world.context().get(), page, &list).ok());
+  ASSERT_EQ(list.jobs_size(), 1);
+  EXPECT_EQ(list.jobs(0).id(), first) << "not the cancelled one";
+  trouble->of_frames(Trouble::Kind::none);
+  const auto busy = worker();
+  EXPECT_TRUE(world.wait_for(last, v1::JOB_STATE_DONE));
+  EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_CANCELLED) << "taken up all the same";
+  EXPECT_TRUE(retry(job).ok());
+  EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
 }
 
 TEST_F(NeverFreezes, WhatIsStoredLastOfAJobIsWhatWasLast) {

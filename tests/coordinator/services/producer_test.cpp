@@ -5,6 +5,7 @@
 #include <grpcpp/server_builder.h>
 #include <gtest/gtest.h>
 
+#include <new>
 #include <thread>
 
 #include "farm/wire.h"
@@ -49,17 +50,19 @@ TEST(Producer, IsNotAskedBeforeItBegins) {
 /// 64 MiB for anybody, of whom it expects to take something every 200 ms.
 class Chunks final : public Producer<v1::Chunk> {
  public:
-  Chunks(grpc::CallbackServerContext& context, Clerks& clerks)
-      : Producer(context, clerks, std::chrono::milliseconds(200)) {
+  Chunks(grpc::CallbackServerContext& context, Clerks& clerks, bool hungry)
+      : Producer(context, clerks, std::chrono::milliseconds(200)), hungry_(hungry) {
     begin();
   }
 
  private:
   Step next(v1::Chunk& chunk, grpc::Status&, bool) override {
+    if (hungry_ && sent_ == 2) throw std::bad_alloc();
     if (++sent_ > 64) return Step::end;
     chunk.set_data(std::string(farm::kMaxChunkBytes, 'x'));
     return Step::message;
   }
+  const bool hungry_;  ///< finds no memory for its third message
   int sent_ = 0;
 };
 
@@ -67,8 +70,9 @@ class ChunkService final : public v1::Assets::WithRawCallbackMethod_Download<v1:
  public:
   grpc::ServerWriteReactor<grpc::ByteBuffer>* Download(grpc::CallbackServerContext* context,
                                                        const grpc::ByteBuffer*) override {
-    return new Chunks(*context, clerks_);
+    return new Chunks(*context, clerks_, hungry);
   }
+  bool hungry = false;
 
  private:
   Clerks clerks_{1, 1};
@@ -95,6 +99,27 @@ TEST(Producer, BreaksOffWhereNobodyReads) {
     const grpc::Status status = reader->Finish();
     EXPECT_EQ(status.ok(), reads) << status.error_message();
     EXPECT_EQ(come == 64, reads) << come;
+  }
+}
+
+TEST(Producer, EndsAloneWhereThereIsNoMemory) {
+  ChunkService service;
+  service.hungry = true;
+  grpc::ServerBuilder builder;
+  int port = 0;
+  builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+  builder.RegisterService(&service);
+  const auto server = builder.BuildAndStart();
+  const auto stub = v1::Assets::NewStub(
+      grpc::CreateChannel("127.0.0.1:" + std::to_string(port), grpc::InsecureChannelCredentials()));
+  for (int i = 0; i < 2; ++i) {
+    grpc::ClientContext context;
+    const auto reader = stub->Download(&context, {});
+    v1::Chunk chunk;
+    int come = 0;
+    while (reader->Read(&chunk)) ++come;
+    EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_EQ(come, 2);
   }
 }
 
