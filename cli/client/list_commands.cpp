@@ -27,6 +27,8 @@ std::string left_text(const v1::Job& job) {
              : "-";
 }
 
+constexpr const char* kInDoubt = "in doubt: an odd worker had a part in it";
+
 void print_jobs(const std::vector<v1::Job>& jobs) {
   std::vector<std::vector<std::string>> rows = {
       {"id", "name", "owner", "prio", "state", "frames", "samples", "units out", "left", "reason"}};
@@ -48,8 +50,8 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
       {"frame", "state", "samples", "class", "restarts", "reason"}};
   size_t more = 0;
   for (const v1::Frame& frame : response.frames()) {
-    const bool telling =
-        frame.state() != v1::FRAME_STATE_WAITING && frame.state() != v1::FRAME_STATE_DONE;
+    const bool telling = frame.doubtful() || (frame.state() != v1::FRAME_STATE_WAITING &&
+                                              frame.state() != v1::FRAME_STATE_DONE);
     if (!all && !telling) continue;
     if (!all && rows.size() > kMostFrames) {
       ++more;
@@ -58,7 +60,7 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
     rows.push_back({std::to_string(frame.frame()), state_name(frame.state()),
                     percent(frame.samples_done(), frame.samples()),
                     frame.worker_class().substr(0, 12), std::to_string(frame.restarts()),
-                    frame.reason()});
+                    frame.doubtful() ? kInDoubt : frame.reason()});
   }
   if (rows.size() == 1) return;
   std::printf("\n");

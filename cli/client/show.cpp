@@ -61,10 +61,10 @@ Json to_json(const v1::Job& job) {
 }
 
 Json to_json(const v1::Frame& frame) {
-  return {{"id", frame.frame()},         {"state", state_name(frame.state())},
-          {"samples", frame.samples()},  {"samples_done", frame.samples_done()},
-          {"reason", frame.reason()},    {"worker_class", frame.worker_class()},
-          {"restarts", frame.restarts()}};
+  return {{"id", frame.frame()},          {"state", state_name(frame.state())},
+          {"samples", frame.samples()},   {"samples_done", frame.samples_done()},
+          {"reason", frame.reason()},     {"worker_class", frame.worker_class()},
+          {"restarts", frame.restarts()}, {"doubtful", frame.doubtful()}};
 }
 
 Json to_json(const v1::Worker& worker) {

@@ -92,6 +92,8 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
       set_quarantine(seat->second, odd->reason);
       note_quarantine(seat->second);
     }
+  } else if (const auto* sure = std::get_if<Confirmed>(&action)) {
+    confirmed(*sure);
   } else if (const auto* record = std::get_if<Persist>(&action)) {
     persist(*record, delivery);
   } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
@@ -106,6 +108,9 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
 }
 
 void Brain::persist(const Persist& persist, Delivery* delivery) {
+  if (const auto* odd = std::get_if<WorkerOddRecord>(&persist.record)) {
+    return keep_odd(persist.id, *odd);
+  }
   const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
@@ -176,6 +181,7 @@ void Brain::send_lease(const Lease& lease) {
   FrameNote& frame = desk->touch(number);
   if (frame.state == v1::FRAME_STATE_WAITING) {
     frame.state = v1::FRAME_STATE_RENDERING;
+    frame.begun = moment_;
     note(*desk, v1::LOG_LEVEL_INFO, number, seat.hello.name(), "begun");
   }
   if (frame.worker_class.empty()) frame.worker_class = seat.hello.worker_class();

@@ -170,6 +170,14 @@ class Brain {
     JobId job{};
     int32_t frame = 0;
     std::shared_ptr<const core::Film> film;
+    std::vector<std::string> parts;  ///< StoredFrame::parts
+  };
+  /// A worker that was found odd, on its way into the store.
+  struct Odd {
+    RecordId record{};
+    StoredQuarantine worker;
+    uint64_t since = 0;
+    StoredLine line;
   };
   struct Watch {
     uint64_t job = 0;
@@ -242,6 +250,14 @@ class Brain {
   void persisted(JobId job, RecordId record);
   void not_persisted(JobId job, RecordId record, const std::string& reason);
   void storage_failed(JobId job, const std::string& reason);
+
+  // Workers that are found odd (brain_odd.cpp).
+  std::vector<std::string> names_of(const std::vector<WorkerId>& workers) const;
+  void confirmed(const Confirmed& sure);
+  bool store_trust();
+  void keep_odd(RecordId record, const WorkerOddRecord& odd);
+  bool store_odd(const Odd& odd);
+  bool doubt_frames(const JobFrames& doubted);
 
   // Messages of workers.
   bool has_seat(std::vector<Action>& later);
@@ -318,6 +334,11 @@ class Brain {
   std::map<std::string, WorkerId> worker_ids_;  ///< by what they call themselves
   uint64_t next_worker_ = 1;
   std::map<std::string, std::string> quarantines_;  ///< by worker_id: the reason; as stored
+  uint64_t moment_;                                 ///< of the last frame that was finished
+  /// By worker_id: when (moment_) another agreed with it, ascending.
+  std::map<std::string, std::vector<uint64_t>> trust_;
+  std::set<std::string> trust_to_store_;
+  bool storing_trust_ = false;
   std::map<uint64_t, Watch> watches_;
   uint64_t next_watch_ = 1;
 

@@ -66,6 +66,15 @@ grpc::Status Brain::explain(uint64_t id, v1::ExplainResponse& response) {
       reasons.say("it is over, but not all of it is done: " + (*stored)->reason +
                   "; 'retry' takes it up again");
   }
+  const auto doubtful = store_->doubtful(id, UINT32_MAX);
+  if (!doubtful) return farm::unavailable(doubtful.error());
+  for (const int32_t frame : *doubtful) {
+    reasons.say_one(
+        "frame {} is in doubt: a worker that had a part in it was found odd after it was finished; "
+        "'retry' renders it again",
+        frame);
+  }
+  reasons.end_kind("frames are in doubt");
   return grpc::Status::OK;
 }
 

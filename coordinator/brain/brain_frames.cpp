@@ -79,7 +79,7 @@ void Brain::finish_frame(const FinishFrame& finish) {
   auto& film = desk->complete[finish.frame];
   if (!film) film = desk->keeper->film(finish.frame);
   desk->touch(finish.frame).state = v1::FRAME_STATE_FINISHING;
-  to_finish_.push_back({finish.job, finish.frame, film});
+  to_finish_.push_back({finish.job, finish.frame, film, names_of(finish.unconfirmed)});
   finish_wake_.notify_one();
 }
 
@@ -114,6 +114,7 @@ void Brain::frame_restarted(JobId job, int32_t frame) {
   if (desk == nullptr) return;
   FrameNote& noted = desk->touch(frame);
   if (noted.state == v1::FRAME_STATE_FAILED) --desk->stored.frames_failed;
+  if (noted.state == v1::FRAME_STATE_DONE) --desk->stored.frames_done;
   desk->complete.erase(frame);
   noted.state = v1::FRAME_STATE_WAITING;
   noted.reason.clear();

@@ -168,7 +168,9 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
   if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
   StoredJob& job = **stored;
   if (!has_ended(job.state)) return not_open(id);
-  if (job.state == StoredState::done) {
+  const auto doubtful = store_->doubtful(id, 1);
+  if (!doubtful) return farm::unavailable(doubtful.error());
+  if (job.state == StoredState::done && doubtful->empty()) {
     return {grpc::StatusCode::FAILED_PRECONDITION,
             fmt::format("job {} is done: there is nothing to take up again", id)};
   }

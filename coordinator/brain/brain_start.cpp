@@ -47,6 +47,9 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options,
   for (const StoredQuarantine& kept : *quarantines) {
     brain->quarantines_[kept.worker] = kept.reason;
   }
+  const auto trusted = brain->store_->trusted();
+  if (!trusted) return trusted.error();
+  for (const StoredTrust& kept : *trusted) brain->trust_[kept.worker] = {kept.moment};
   if (auto taken = brain->take_up_jobs(); !taken) return taken.error();
   // From here on workers can come: to take up many jobs may take longer than they are given.
   // Where no job is open nobody holds anything.
@@ -71,6 +74,7 @@ Brain::Brain(BrainOptions options, std::unique_ptr<JobStore> store,
       incarnation_(incarnation),
       started_ms_(wall_ms()),
       scheduler_(scheduler_options(options_, incarnation)),
+      moment_(incarnation << 32U),
       disk_(options_.disk) {}
 
 void Brain::stop() {

@@ -129,11 +129,13 @@ core::Status Brain::take_up(uint64_t id) {
   if (!damaged) return damaged.error();
   for (const StoredFrame& frame : *frames) {
     FrameNote& note = (*desk)->frames[frame.frame];
-    if (damaged->contains(frame.frame)) {
+    if (frame.doubtful || damaged->contains(frame.frame)) {
       if (auto gone = store_->forget_frame(id, frame.frame); !gone) return gone;
       note.restarts = frame.restarts + 1;
       this->note(**desk, v1::LOG_LEVEL_WARNING, frame.frame, {},
-                 "its outputs are gone or damaged: it is rendered again");
+                 frame.doubtful
+                     ? "a worker that had a part in it was found odd: it is rendered again"
+                     : "its outputs are gone or damaged: it is rendered again");
       continue;
     }
     note.worker_class = frame.worker_class;

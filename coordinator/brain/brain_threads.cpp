@@ -38,7 +38,8 @@ void Brain::finish_loop() {
     task.outputs = desk->read.job.outputs;
     if (desk->read.job.keep_films) task.film = core::film_file(desk->read.job);
     task.folder = output_folder(id);
-    StoredFrame over{completed.frame, true, {}, note.worker_class, note.restarts};
+    const StoredFrame over{completed.frame, true,     {}, note.worker_class, note.restarts,
+                           completed.parts, ++moment_};
     lock.unlock();
 
     const std::string scratch = fmt::format("{}/tmp/{}-{}", options_.folder, id, completed.frame);

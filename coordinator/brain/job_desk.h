@@ -25,6 +25,7 @@ struct FrameNote {
   std::string reason;
   std::string worker_class;
   uint32_t restarts = 0;
+  uint64_t begun = 0;  ///< StoredFrame::moment of the last frame that was finished then; 0: unknown
   uint64_t version = 0;  ///< of the job when this last changed
 };
 

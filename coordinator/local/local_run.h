@@ -93,6 +93,7 @@ class LocalRun : private FilmKeeper::Owner {
   void act(const Acknowledge&) {}
   void act(const Conflict&) {}
   void act(const Quarantine&) {}
+  void act(const Confirmed&) {}
   void act(const TileVoided&) {}
   void act(const FrameReopened&) {}
   void act(const FrameRestarted&) {}

@@ -67,8 +67,17 @@ struct DisputeRecord {
   JobId job{};
   bool open = true;
 };
+/// The worker rendered a unit of this frame to other bits than two others did: what it had a part
+/// in that is finished is in doubt, in whatever job. Answered once that is so, and durable; there
+/// will be FramesDoubted for jobs that have not ended.
+struct WorkerOddRecord {
+  JobId job{};
+  int32_t frame = 0;
+  WorkerId worker{};
+  std::string reason;
+};
 using Record = std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord,
-                            FrameRestartedRecord, TileVoidedRecord, DisputeRecord>;
+                            FrameRestartedRecord, TileVoidedRecord, DisputeRecord, WorkerOddRecord>;
 
 /// Make this durable; answered by Persisted or PersistFailed. For a unit that means the film that
 /// came with the result now being handled.
@@ -126,6 +135,13 @@ struct Quarantine {
   std::string reason;
 };
 
+/// Another worker of its class rendered a unit of the frame to the same bits as this one.
+struct Confirmed {
+  WorkerId worker{};
+  JobId job{};
+  int32_t frame = 0;
+};
+
 /// The films of the tile are void, and that is durable: take out all that the frame's film holds of
 /// it. They are rendered again.
 struct TileVoided {
@@ -146,6 +162,9 @@ struct FrameReopened {
 struct FinishFrame {
   JobId job{};
   int32_t frame = 0;
+  /// Whose films of it nobody else agreed on, each worker once; 0: somebody's from before a
+  /// restart.
+  std::vector<WorkerId> unconfirmed;
 };
 
 /// The frame is over, and that is durable: its films may be dropped.
@@ -174,7 +193,7 @@ struct JobEnded {
 };
 
 using Action = std::variant<OpenFrame, Lease, Revoke, Persist, Merge, Acknowledge, Reject, Conflict,
-                            Quarantine, TileVoided, FrameReopened, FinishFrame, FrameDone,
-                            FrameFailed, FrameRestarted, JobEnded>;
+                            Quarantine, Confirmed, TileVoided, FrameReopened, FinishFrame,
+                            FrameDone, FrameFailed, FrameRestarted, JobEnded>;
 
 }  // namespace hyades::coordinator

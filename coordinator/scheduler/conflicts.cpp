@@ -25,7 +25,11 @@ bool Scheduler::weigh(JobState& job, FrameSlot& slot, const Extent& extent,
   if (dispute == nullptr) {
     if (held.digest == e.digest) {
       // Who sends the same again agrees with nobody, and who it was before a restart is not known.
-      if (held.worker != WorkerId{} && held.worker != e.worker) books.verify(extent);
+      if (held.worker != WorkerId{} && held.worker != e.worker) {
+        books.verify(extent);
+        confirm(job, slot, held.worker);
+        confirm(job, slot, e.worker);
+      }
       return false;
     }
     dispute = &books.open_dispute(extent, {held.worker, held.digest});
@@ -72,21 +76,29 @@ void Scheduler::decide(JobState& job, FrameSlot& slot, const Dispute& dispute,
     books.doubt_tile(extent.tile);
   }
   for (const Opinion& o : dispute.opinions) {
-    if (o.digest == e.digest) continue;
-    if (o.worker == WorkerId{}) {
-      doubt_films_of(o.worker);
-    } else if (quarantine(
-                   o.worker,
-                   fmt::format("rendered job {} frame {} tile {},{} batches {}-{} to other "
-                               "bits than two other workers",
-                               static_cast<uint64_t>(job.id), slot.frame, e.unit.tile.x0,
-                               e.unit.tile.y0, extent.batches.first, extent.batches.end() - 1))) {
-      doubt_films_of(o.worker);
+    if (o.digest == e.digest) {
+      confirm(job, slot, o.worker);
+      continue;
     }
+    doubt_films_of(o.worker);
+    if (o.worker == WorkerId{}) continue;
+    const std::string reason = fmt::format(
+        "rendered job {} frame {} tile {},{} batches {}-{} to other bits than two "
+        "other workers",
+        static_cast<uint64_t>(job.id), slot.frame, e.unit.tile.x0, e.unit.tile.y0,
+        extent.batches.first, extent.batches.end() - 1);
+    quarantine(o.worker, reason);
+    ++odd_records_;
+    persist(WorkerOddRecord{job.id, slot.frame, o.worker, reason}, {});
   }
   void_doubted(job, slot);
   update_ready(job);
   complete_if_so(job, slot);
+}
+
+/// The worker could be trusted when it rendered a unit of this frame.
+void Scheduler::confirm(const JobState& job, const FrameSlot& slot, WorkerId worker) {
+  if (worker != WorkerId{}) say(Confirmed{worker, job.id, slot.frame});
 }
 
 /// Gives the worker a disputed unit that it has not rendered.
@@ -212,6 +224,7 @@ bool Scheduler::any_in_doubt() const {
 
 /// Disputes that are over, and all that followed from them.
 void Scheduler::end_marks() {
+  if (odd_records_ > 0) return;
   for (const JobId id : marked_) {
     JobState& job = *find_job(id);
     if (job.mark != DisputeMark::open || has_dispute(job) || any_in_doubt()) continue;
@@ -223,6 +236,7 @@ void Scheduler::end_marks() {
 /// A conflict showed while the outputs were made: the frame goes on until it is settled.
 void Scheduler::reopen_frame(JobState& job, FrameSlot& slot) {
   slot.phase = FramePhase::rendering;
+  slot.doubted = false;
   say(FrameReopened{job.id, slot.frame});
   void_doubted(job, slot);
   update_ready(job);

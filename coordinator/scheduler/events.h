@@ -39,6 +39,13 @@ struct FramesRetried {
   JobId job{};
 };
 
+/// A worker that had a part in these finished frames was found odd: they are to be rendered again,
+/// from their beginning.
+struct FramesDoubted {
+  JobId job{};
+  std::vector<int32_t> frames;
+};
+
 // Frames: answers to OpenFrame and FinishFrame.
 
 /// There is room for the frame's film (and, on a single machine, its scene is loaded).
@@ -163,8 +170,8 @@ struct Tick {};
 
 using Event =
     std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised, FramesRetried,
-                 FrameOpened, FrameRefused, FinishDone, FinishFailed, WorkerJoined, WorkRequested,
-                 LeasingHeld, WorkerAlive, ResultArrived, UnitFailed, UnitReturned, WorkerBarred,
-                 WorkerLost, WorkerForgotten, Persisted, PersistFailed, Tick>;
+                 FramesDoubted, FrameOpened, FrameRefused, FinishDone, FinishFailed, WorkerJoined,
+                 WorkRequested, LeasingHeld, WorkerAlive, ResultArrived, UnitFailed, UnitReturned,
+                 WorkerBarred, WorkerLost, WorkerForgotten, Persisted, PersistFailed, Tick>;
 
 }  // namespace hyades::coordinator

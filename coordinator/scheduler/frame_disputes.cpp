@@ -1,5 +1,6 @@
 // Films that differ, and films that are taken back.
 #include <algorithm>
+#include <set>
 
 #include "coordinator/scheduler/frame_state.h"
 
@@ -56,6 +57,16 @@ std::vector<uint32_t> FrameState::unverified_tiles(WorkerId worker) const {
   }
   std::sort(tiles.begin(), tiles.end());
   return tiles;
+}
+
+std::vector<WorkerId> FrameState::unconfirmed() const {
+  std::set<WorkerId> workers;
+  for (const auto& [tile, records] : records_) {
+    for (const HeldRecord& record : records) {
+      if (!record.verified) workers.insert(record.worker);
+    }
+  }
+  return {workers.begin(), workers.end()};
 }
 
 void FrameState::doubt_tile(uint32_t tile) {

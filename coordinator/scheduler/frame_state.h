@@ -152,6 +152,8 @@ class FrameState {
   void verify(const Extent& e);
   /// Tiles that hold films of this worker on which no other agreed, in order.
   std::vector<uint32_t> unverified_tiles(WorkerId worker) const;
+  /// Whose films no other worker agreed on, each once.
+  std::vector<WorkerId> unconfirmed() const;
   /// The films of the tile do not count any more once that is durable; until then it takes none.
   void doubt_tile(uint32_t tile);
   bool in_doubt(uint32_t tile) const { return voiding_.contains(tile); }

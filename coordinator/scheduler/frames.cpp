@@ -29,6 +29,7 @@ void Scheduler::on(const FinishDone& e) {
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
   if (!slot->books->settled()) return reopen_frame(*job, *slot);
+  if (slot->doubted) return restart_frame(*job, *slot);
   slot->phase = FramePhase::closing;
   persist(FrameFinishedRecord{job->id, slot->frame}, {});
 }
@@ -39,7 +40,7 @@ void Scheduler::on(const FinishFailed& e) {
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
   if (!slot->books->settled()) return reopen_frame(*job, *slot);
   if (++slot->finish_attempts < job->plan.max_attempts) {
-    say(FinishFrame{job->id, slot->frame});
+    say(FinishFrame{job->id, slot->frame, slot->books->unconfirmed()});
   } else {
     fail_frame(*job, *slot, e.reason);
   }
@@ -88,7 +89,7 @@ void Scheduler::finish(JobState& job, FrameSlot& slot) {
   // Late films may have overtaken units that are still out.
   take_back_frame(job, slot);
   slot.phase = FramePhase::finishing;
-  say(FinishFrame{job.id, slot.frame});
+  say(FinishFrame{job.id, slot.frame, slot.books->unconfirmed()});
 }
 
 void Scheduler::fail_frame(JobState& job, FrameSlot& slot, std::string reason) {
@@ -103,6 +104,7 @@ void Scheduler::fail_frame(JobState& job, FrameSlot& slot, std::string reason) {
 /// What is on its way to the disk of this frame's films is durable before the record, and void.
 void Scheduler::restart_frame(JobState& job, FrameSlot& slot) {
   slot.phase = FramePhase::restarting;
+  slot.doubted = false;
   take_back_frame(job, slot);
   slot.books.reset();
   update_ready(job);
@@ -165,6 +167,10 @@ void Scheduler::take_back_frame(JobState& job, FrameSlot& slot) {
 }
 
 void Scheduler::frame_over(JobState& job, FrameSlot& slot, FramePhase phase) {
+  // While that was stored a worker that had a part in it was found odd.
+  if (phase == FramePhase::done && (slot.doubted || !slot.books->settled())) {
+    return restart_frame(job, slot);
+  }
   slot.phase = phase;
   slot.books.reset();
   std::erase(job.in_flight, static_cast<uint32_t>(&slot - job.slots.data()));

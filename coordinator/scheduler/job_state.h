@@ -30,6 +30,7 @@ struct FrameSlot {
   int32_t frame = 0;
   FramePhase phase = FramePhase::waiting;
   uint32_t finish_attempts = 0;
+  bool doubted = false;  ///< while it is finished, a worker that had a part in it was found odd
   uint32_t worker_class = 0;  ///< interned; 0 until the first unit is leased
   uint64_t crew = 0;          ///< threads of the workers that render it
   uint64_t coming = 0;        ///< ... that load its scene while they render another

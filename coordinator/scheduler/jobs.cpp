@@ -113,6 +113,23 @@ void Scheduler::on(const JobReprioritised& e) {
   update_ready(*job);
 }
 
+void Scheduler::on(const FramesDoubted& e) {
+  JobState* job = find_job(e.job);
+  if (job == nullptr) return;
+  for (const int32_t frame : e.frames) {
+    FrameSlot* slot = job->slot(frame);
+    if (slot == nullptr) continue;
+    if (slot->phase == FramePhase::done) {
+      --job->frames_done;
+      job->in_flight.push_back(static_cast<uint32_t>(slot - job->slots.data()));
+      restart_frame(*job, *slot);
+    } else if (slot->phase == FramePhase::finishing ||
+               (slot->phase == FramePhase::closing && slot->books)) {
+      slot->doubted = true;
+    }
+  }
+}
+
 void Scheduler::on(const FramesRetried& e) {
   JobState* job = find_job(e.job);
   if (job == nullptr) return;

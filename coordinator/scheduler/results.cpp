@@ -179,6 +179,10 @@ void Scheduler::on(const Persisted& e) {
     if (JobState* job = find_job(dispute->job)) dispute_marked(*job, dispute->open);
     return;
   }
+  if (std::holds_alternative<WorkerOddRecord>(pending.record)) {
+    --odd_records_;
+    return;
+  }
   JobState* job = find_job(finished ? finished->job : failed->job);
   if (job == nullptr) return;
   FrameSlot& slot = *job->slot(finished ? finished->frame : failed->failed.frame);

@@ -151,6 +151,7 @@ class Scheduler {
   void on(const JobCancelled& e);
   void on(const JobReprioritised& e);
   void on(const FramesRetried& e);
+  void on(const FramesDoubted& e);
   void restore(JobState& job, const RestoredJob& restored);
   void end_job_if_over(JobState& job);
   uint32_t share_of(int priority, const std::string& owner);
@@ -252,6 +253,7 @@ class Scheduler {
   void decide(JobState& job, FrameSlot& slot, const Dispute& dispute, const ResultArrived& e);
   bool grant_check(JobState& job, uint32_t slot, WorkerId id, Worker& worker,
                    const MayTry& may_try);
+  void confirm(const JobState& job, const FrameSlot& slot, WorkerId worker);
   bool quarantine(WorkerId id, const std::string& reason);
   void doubt_films_of(WorkerId id);
   void void_doubted(JobState& job, FrameSlot& slot);
@@ -288,6 +290,7 @@ class Scheduler {
   std::unordered_map<WorkerId, Worker> workers_;  ///< looked up; walked only where order is nothing
   std::set<WorkerId> quarantined_;                ///< by what they did; stays when they go and come
   std::set<JobId> marked_;                        ///< jobs with a mark of a dispute
+  uint32_t odd_records_ = 0;                      ///< WorkerOddRecords that are not durable yet
   bool distrust_restored_ = false;                ///< a dispute was open before the restart
   std::map<WorkerId, Strikes> strikes_;           ///< of those that failed last
   std::map<uint64_t, WorkerId> waiting_;          ///< those with a wish, longest waiting first

@@ -51,6 +51,25 @@ struct StoredFrame {
   std::string reason;  ///< why it failed
   std::string worker_class;
   uint32_t restarts = 0;
+  /// Of a finished frame: who rendered a part of it on which nobody else agreed, by what workers
+  /// call themselves (v1::Hello.worker_id); an empty name: somebody who is not known any more. It
+  /// is not read again: found_odd() looks at it.
+  std::vector<std::string> parts;
+  uint64_t moment = 0;    ///< when it was finished: greater than that of any frame before
+  bool doubtful = false;  ///< a worker that had a part in it was found odd afterwards
+};
+
+/// That a worker could be trusted at some moment (StoredFrame::moment): another one of its class
+/// rendered a unit to the same bits.
+struct StoredTrust {
+  std::string worker;
+  uint64_t moment = 0;
+};
+
+/// Finished frames of a job, in order.
+struct JobFrames {
+  uint64_t job = 0;
+  std::vector<int32_t> frames;
 };
 
 /// A file that a finished frame has written.
@@ -136,6 +155,19 @@ class JobStore {
   virtual core::Status quarantine(const StoredQuarantine& worker) = 0;
   virtual core::Status end_quarantine(const std::string& worker) = 0;
   virtual core::Result<std::vector<StoredQuarantine>> quarantines() = 0;
+
+  /// Replaces what is known of these workers.
+  virtual core::Status trust(const std::vector<StoredTrust>& workers) = 0;
+  virtual core::Result<std::vector<StoredTrust>> trusted() = 0;
+  /// The worker was found odd, and is quarantined: all frames of all jobs, also of those that have
+  /// ended, that were finished after `since` and that it had a part in, or may have had, are
+  /// doubtful from now on. Each job's log gets `line` (its text with the frames behind it). All of
+  /// it at once, or nothing. Returns the frames that were not doubtful before.
+  virtual core::Result<std::vector<JobFrames>> found_odd(const StoredQuarantine& worker,
+                                                         uint64_t since,
+                                                         const StoredLine& line) = 0;
+  /// Frames of the job that are doubtful, in order, at most `limit`.
+  virtual core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) = 0;
 
   /// Where the oldest lines had to go, the first that is left says so.
   virtual core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) = 0;

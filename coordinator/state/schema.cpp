@@ -66,6 +66,17 @@ ALTER TABLE jobs ADD COLUMN memory INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE jobs ADD COLUMN max_attempts INTEGER NOT NULL DEFAULT 3;
 ALTER TABLE jobs ADD COLUMN frame_order INTEGER NOT NULL DEFAULT 1;
 )",
+    R"(
+ALTER TABLE frames ADD COLUMN doubtful INTEGER NOT NULL DEFAULT 0;
+CREATE INDEX doubtful_frames ON frames (job, frame) WHERE doubtful;
+CREATE TABLE parts (  -- of finished frames: who had one
+  job INTEGER NOT NULL REFERENCES jobs (id) ON DELETE CASCADE,
+  frame INTEGER NOT NULL,
+  moment INTEGER NOT NULL,
+  workers BLOB NOT NULL,  -- see parts.h
+  PRIMARY KEY (job, frame)) WITHOUT ROWID;
+CREATE TABLE trusted (worker TEXT PRIMARY KEY, moment INTEGER NOT NULL) WITHOUT ROWID;
+)",
 };
 
 }  // namespace

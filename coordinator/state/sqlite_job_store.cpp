@@ -6,6 +6,7 @@
 #include "coordinator/state/database.h"
 #include "coordinator/state/incarnation_file.h"
 #include "coordinator/state/job_store.h"
+#include "coordinator/state/parts.h"
 #include "coordinator/state/reserve_file.h"
 
 namespace hyades::coordinator {
@@ -208,6 +209,7 @@ class SqliteJobStore final : public JobStore {
                             .bind(frame.worker_class)
                             .bind(int64_t{frame.restarts})
                             .run();
+    if (done) done = store_parts(db_.get(), job, frame);
     for (const StoredOutput& output : outputs) {
       if (!done) return done;
       done = query(
@@ -237,13 +239,18 @@ class SqliteJobStore final : public JobStore {
                                                 uint32_t limit) override {
     const std::lock_guard lock(mutex_);
     Query rows(db_.get(),
-               "SELECT frame, done, reason, class, restarts FROM frames "
+               "SELECT frame, done, reason, class, restarts, doubtful FROM frames "
                "WHERE job = ? AND frame > ? ORDER BY frame LIMIT ?");
     rows.bind(number(job)).bind(after ? int64_t{*after} : INT64_MIN).bind(int64_t{limit});
     std::vector<StoredFrame> frames;
     while (rows.next()) {
-      frames.push_back({static_cast<int32_t>(rows.integer(0)), rows.integer(1) != 0, rows.bytes(2),
-                        rows.bytes(3), static_cast<uint32_t>(rows.integer(4))});
+      StoredFrame& frame = frames.emplace_back();
+      frame.frame = static_cast<int32_t>(rows.integer(0));
+      frame.done = rows.integer(1) != 0;
+      frame.reason = rows.bytes(2);
+      frame.worker_class = rows.bytes(3);
+      frame.restarts = static_cast<uint32_t>(rows.integer(4));
+      frame.doubtful = rows.integer(5) != 0;
     }
     if (core::Status status = rows.status(); !status) return status.error();
     return frames;
@@ -274,10 +281,7 @@ class SqliteJobStore final : public JobStore {
 
   core::Status quarantine(const StoredQuarantine& worker) override {
     const std::lock_guard lock(mutex_);
-    return query("INSERT OR REPLACE INTO quarantines (worker, reason) VALUES (?, ?)")
-        .bind(worker.worker)
-        .bind(worker.reason)
-        .run();
+    return put_quarantine(worker);
   }
 
   core::Status end_quarantine(const std::string& worker) override {
@@ -294,22 +298,48 @@ class SqliteJobStore final : public JobStore {
     return workers;
   }
 
+  core::Status trust(const std::vector<StoredTrust>& workers) override {
+    const std::lock_guard lock(mutex_);
+    return store_trust(db_.get(), workers);
+  }
+
+  core::Result<std::vector<StoredTrust>> trusted() override {
+    const std::lock_guard lock(mutex_);
+    return read_trust(db_.get());
+  }
+
+  core::Result<std::vector<JobFrames>> found_odd(const StoredQuarantine& worker, uint64_t since,
+                                                 const StoredLine& line) override {
+    const std::lock_guard lock(mutex_);
+    Transaction transaction(db_.get());
+    if (core::Status begun = transaction.status(); !begun) return begun.error();
+    if (core::Status kept = put_quarantine(worker); !kept) return kept.error();
+    auto jobs = doubt_parts_of(db_.get(), worker.worker, since);
+    if (!jobs) return jobs;
+    for (const JobFrames& job : *jobs) {
+      StoredLine told = line;
+      told.text += tell_frames(job.frames);
+      if (core::Status added = insert_lines(job.job, {told}); !added) return added.error();
+    }
+    if (core::Status done = transaction.commit(); !done) return done.error();
+    return jobs;
+  }
+
+  core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
+    const std::lock_guard lock(mutex_);
+    Query rows =
+        query("SELECT frame FROM frames WHERE job = ? AND doubtful ORDER BY frame LIMIT ?");
+    rows.bind(number(job)).bind(int64_t{limit});
+    std::vector<int32_t> frames;
+    while (rows.next()) frames.push_back(static_cast<int32_t>(rows.integer(0)));
+    if (core::Status status = rows.status(); !status) return status.error();
+    return frames;
+  }
+
   core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
     const std::lock_guard lock(mutex_);
     Transaction transaction(db_.get());
-    for (const StoredLine& line : lines) {
-      Query insert(db_.get(),
-                   "INSERT INTO lines (job, time_ms, level, frame, worker, text) "
-                   "VALUES (?, ?, ?, ?, ?, ?)");
-      insert.bind(number(job)).bind(line.time_ms).bind(int64_t{line.level});
-      if (line.frame) {
-        insert.bind(int64_t{*line.frame});
-      } else {
-        insert.bind_null();
-      }
-      if (core::Status done = insert.bind(line.worker).bind(line.text).run(); !done) return done;
-    }
-    if (core::Status kept = drop_old_lines(job, lines.size()); !kept) return kept;
+    if (core::Status added = insert_lines(job, lines); !added) return added;
     return transaction.commit();
   }
 
@@ -336,6 +366,30 @@ class SqliteJobStore final : public JobStore {
   }
 
  private:
+  /// Within a transaction.
+  core::Status insert_lines(uint64_t job, const std::vector<StoredLine>& lines) {
+    for (const StoredLine& line : lines) {
+      Query insert(db_.get(),
+                   "INSERT INTO lines (job, time_ms, level, frame, worker, text) "
+                   "VALUES (?, ?, ?, ?, ?, ?)");
+      insert.bind(number(job)).bind(line.time_ms).bind(int64_t{line.level});
+      if (line.frame) {
+        insert.bind(int64_t{*line.frame});
+      } else {
+        insert.bind_null();
+      }
+      if (core::Status done = insert.bind(line.worker).bind(line.text).run(); !done) return done;
+    }
+    return drop_old_lines(job, lines.size());
+  }
+
+  core::Status put_quarantine(const StoredQuarantine& worker) {
+    return query("INSERT OR REPLACE INTO quarantines (worker, reason) VALUES (?, ?)")
+        .bind(worker.worker)
+        .bind(worker.reason)
+        .run();
+  }
+
   /// What has to be stored on a full disk too, as it makes room: the ends of jobs.
   core::Status with_reserve(const std::function<core::Status()>& what) {
     core::Status done = what();
@@ -360,7 +414,8 @@ class SqliteJobStore final : public JobStore {
         .bind(job.reason);
   }
 
-  /// Within add_lines' transaction. Jobs' lines are counted once, and kept count of from there on.
+  /// Within insert_lines' transaction. Jobs' lines are counted once, and kept count of from there
+  /// on.
   core::Status drop_old_lines(uint64_t job, uint64_t added) {
     const auto [counted, fresh] = line_counts_.try_emplace(job, 0);
     if (fresh) {
@@ -393,6 +448,7 @@ class SqliteJobStore final : public JobStore {
 
   core::Status delete_frame(uint64_t job, int32_t frame) {
     for (const char* sql : {"DELETE FROM frames WHERE job = ? AND frame = ?",
+                            "DELETE FROM parts WHERE job = ? AND frame = ?",
                             "DELETE FROM outputs WHERE job = ? AND frame = ?"}) {
       if (core::Status done = query(sql).bind(number(job)).bind(int64_t{frame}).run(); !done) {
         return done;

@@ -41,6 +41,13 @@ class Conflicts : public testing::Test {
     b.tell(Persisted{b.only<Persist>().id});
   }
 
+  /// What a worker is found odd for has followed, and is durable.
+  void odd_is_stored() {
+    const Persist odd = b.all<Persist>().back();
+    ASSERT_TRUE(std::holds_alternative<WorkerOddRecord>(odd.record));
+    b.tell(Persisted{odd.id});
+  }
+
   Bench b;
   Lease anna_;
 };
@@ -82,8 +89,14 @@ TEST_F(Conflicts, TheSecondWasWrong) {
   b.deliver(b.ask(kCora), 0, 1);
   EXPECT_EQ(b.only<Quarantine>().worker, kBert);
   EXPECT_EQ(b.only<Acknowledge>().worker, kCora);
-  EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open) << "all is well";
   EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+  EXPECT_EQ(std::get<WorkerOddRecord>(b.only<Persist>().record).worker, kBert);
+  const auto sure = b.all<Confirmed>();
+  ASSERT_EQ(sure.size(), 2U);
+  EXPECT_EQ(sure[0].worker, kAnna);
+  EXPECT_EQ(sure[1].worker, kCora);
+  odd_is_stored();
+  EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open) << "all is well";
 }
 
 TEST_F(Conflicts, TheFirstWasWrongAndAllItDidIsRenderedAgain) {
@@ -95,7 +108,8 @@ TEST_F(Conflicts, TheFirstWasWrongAndAllItDidIsRenderedAgain) {
   EXPECT_EQ(b.only<Quarantine>().worker, kAnna);
   EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
   const auto voids = b.all<Persist>();
-  ASSERT_EQ(voids.size(), 2U);
+  ASSERT_EQ(voids.size(), 3U);
+  EXPECT_EQ(std::get<WorkerOddRecord>(voids[2].record).worker, kAnna);
   EXPECT_EQ(std::get<TileVoidedRecord>(voids[0].record).tile, anna_.units[0].tile);
   EXPECT_EQ(std::get<TileVoidedRecord>(voids[1].record).tile, other.units[0].tile);
   b.deliver(by(kBert), 0, 2);  // too early
@@ -119,7 +133,8 @@ TEST_F(Conflicts, WhatAnotherAgreedOnIsKept) {
   b.deliver(same, 0, 1);
   b.join(kCora);
   b.deliver(b.ask(kCora), 0, 2);
-  EXPECT_EQ(std::get<TileVoidedRecord>(b.only<Persist>().record).tile, anna_.units[0].tile);
+  EXPECT_EQ(b.all<Persist>().size(), 2U);
+  EXPECT_EQ(std::get<TileVoidedRecord>(b.all<Persist>().at(0).record).tile, anna_.units[0].tile);
 }
 
 TEST_F(Conflicts, AQuarantinedWorkerIsNotBelievedAndGetsNothing) {
@@ -163,6 +178,7 @@ TEST_F(Conflicts, FiveDifferentAnswersFailTheFrameAndBlameNobody) {
 TEST_F(Conflicts, ThatShowWhileTheOutputsAreMadeAreStillDecided) {
   b.join(kCora);
   b.deliver(b.ask(kCora), 0, 1);
+  odd_is_stored();
   b.tell(Persisted{b.only<Persist>().id});
   const Lease last = b.ask(kAnna);
   deliver_durably(last, 1);
@@ -186,6 +202,7 @@ TEST_F(Conflicts, NobodyIsAnsweredBeforeTheLogKnowsOfTheDispute) {
   const Lease other = b.ask(kAnna);
   deliver_durably(other, 1);
   b.deliver(b.ask(kCora), 0, 1);
+  odd_is_stored();
   b.tell(Persisted{b.only<Persist>().id});  // that it is over
   Lease late = other;
   late.worker = kCora;
@@ -214,11 +231,88 @@ TEST_F(Conflicts, TheDisputeIsOverWhenAllThatFollowsIsDurable) {
   b.join(kCora);
   b.deliver(b.ask(kCora), 0, 2);  // Anna was wrong
   const auto voids = b.all<Persist>();
-  ASSERT_EQ(voids.size(), 2U);
+  ASSERT_EQ(voids.size(), 3U);
   b.tell(Persisted{voids[0].id});
   EXPECT_TRUE(b.all<Persist>().empty());
   b.tell(Persisted{voids[1].id});
+  EXPECT_TRUE(b.all<Persist>().empty()) << "nobody would know of Anna after a restart";
+  b.tell(Persisted{voids[2].id});
   EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open);
+}
+
+/// A job of two frames; Anna has rendered the first, and its outputs are made.
+class DoubtedFrames : public testing::Test {
+ protected:
+  void SetUp() override {
+    b.join(kAnna);
+    JobPlan plan = small_plan({1, 2}, 1);
+    plan.region = {0, 0, 32, 32};
+    plan.frames_in_flight = 1;
+    b.add(plan);
+    b.tell(FrameOpened{kJob, 1});
+    const Lease lease = b.ask(kAnna);
+    b.deliver(lease);
+    b.tell(Persisted{b.only<Persist>().id});
+    EXPECT_EQ(b.only<FinishFrame>().unconfirmed, std::vector<WorkerId>{kAnna});
+    b.tell(FinishDone{kJob, 1});
+    stored_ = b.only<Persist>().id;
+  }
+  void doubt() { b.tell(FramesDoubted{kJob, {1, 2, 7}}); }
+  void expect_again() {
+    const Persist again = b.only<Persist>();
+    EXPECT_EQ(std::get<FrameRestartedRecord>(again.record).frame, 1);
+    b.tell(Persisted{again.id});
+    EXPECT_EQ(b.only<FrameRestarted>().frame, 1);
+  }
+  Bench b;
+  RecordId stored_{};
+};
+
+TEST_F(DoubtedFrames, BeginAgain) {
+  b.tell(Persisted{stored_});
+  EXPECT_EQ(b.only<FrameDone>().frame, 1);
+  doubt();
+  expect_again();
+  b.tell(FrameOpened{kJob, 2});
+  b.deliver_durably(b.ask(kAnna));
+  b.tell(FinishDone{kJob, 2});
+  b.tell(Persisted{b.only<Persist>().id});
+  EXPECT_TRUE(b.all<JobEnded>().empty());
+  b.tell(FrameOpened{kJob, 1});
+  b.deliver_durably(b.ask(kAnna));
+  b.tell(FinishDone{kJob, 1});
+  b.tell(Persisted{b.only<Persist>().id});
+  EXPECT_EQ(b.only<JobEnded>().done, 2U);
+}
+
+TEST_F(DoubtedFrames, BeginAgainWhenTheirEndIsStored) {
+  doubt();
+  EXPECT_TRUE(b.all<Persist>().empty());
+  b.tell(Persisted{stored_});
+  EXPECT_TRUE(b.all<FrameDone>().empty());
+  expect_again();
+}
+
+TEST_F(DoubtedFrames, BeginAgainWhereTheWorkerIsFoundOutWhileTheirEndIsStored) {
+  // Its films of frame 2 differ from two others'.
+  b.join(kBert);
+  b.join(WorkerId{3});
+  JobPlan plan = small_plan({5}, 1);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan, {}, JobId{2});
+  b.tell(FrameOpened{JobId{2}, 5});
+  Lease lease = b.ask(kAnna);
+  b.deliver(lease, 0, 1);
+  b.tell(Persisted{b.only<Persist>().id});
+  lease.worker = kBert;
+  b.deliver(lease, 0, 2);
+  b.tell(Persisted{b.only<Persist>().id});
+  lease.worker = WorkerId{3};
+  b.deliver(lease, 0, 2);
+  EXPECT_EQ(b.only<Quarantine>().worker, kAnna);
+  b.tell(Persisted{stored_});
+  EXPECT_TRUE(b.all<FrameDone>().empty());
+  expect_again();
 }
 
 /// What a coordinator finds of two jobs, each with a film in its frame 1.
@@ -277,14 +371,14 @@ TEST_F(ConflictsBeforeARestart, AreNotTheOnlyReasonToDoubtWhatNobodyIsKnownToHav
   lease.worker = kCora;
   b.deliver(lease, 0, 1);
   EXPECT_EQ(b.only<Quarantine>().worker, kBert);
-  EXPECT_EQ(std::get<TileVoidedRecord>(b.only<Persist>().record).tile,
+  EXPECT_EQ(std::get<TileVoidedRecord>(b.all<Persist>().at(0).record).tile,
             (core::PixelRect{0, 0, 32, 32}));
 }
 
 TEST_F(Conflicts, AVoidThatIsNotDurableIsTriedAgain) {
   b.join(kCora);
   b.deliver(b.ask(kCora), 0, 2);
-  const Persist first = b.only<Persist>();
+  const Persist first = b.all<Persist>().at(0);
   b.tell(PersistFailed{first.id, "disk full"});
   EXPECT_TRUE(b.all<TileVoided>().empty());
   b.now = *b.scheduler.next_wake();

@@ -1,4 +1,6 @@
 // What the coordinator says of frames and jobs, held against what may be.
+#include <algorithm>
+
 #include "tests/coordinator/scheduler/simulated_world.h"
 
 namespace hyades::coordinator {
@@ -23,9 +25,11 @@ void SimulatedWorld::act(const FinishFrame& a) {
     }
   }
   bool wrong = false;
+  SimRow row{a.unconfirmed, {}};
   for (const auto& [place, batch] : frame.batches) {
     if (batch.corrupted_by == 0) continue;
     wrong = true;
+    row.corrupted_by.insert(batch.corrupted_by);
     // It may never have been compared.
     if (workers_[batch.corrupted_by - 1U].quarantined_by != 0) {
       fail("a film is finished with what a worker did that had been found out");
@@ -46,7 +50,11 @@ void SimulatedWorld::act(const FinishFrame& a) {
   if (frame.unfinishable || fault()) {
     tell_later(FinishFailed{a.job, a.frame, "no room for a picture"});
   } else {
-    tell_later(FinishDone{a.job, a.frame});
+    after(delay(), [this, a, row, g = generation_] {
+      if (g != generation_ || jobs_.at(a.job).ended) return;
+      jobs_.at(a.job).rows[a.frame] = row;
+      tell_later(FinishDone{a.job, a.frame});
+    });
   }
 }
 
@@ -99,6 +107,43 @@ void SimulatedWorld::act(const Quarantine& a) {
   w.quarantined_by = generation_ + 1;
 }
 
-void SimulatedWorld::act(const FrameReopened&) { ++frames_reopened; }
+void SimulatedWorld::act(const FrameReopened& a) {
+  ++frames_reopened;
+  jobs_.at(a.job).rows.erase(a.frame);
+}
+
+/// The worker is odd, and that is durable: so is the doubt about what it had a part in.
+void SimulatedWorld::found_odd(const WorkerOddRecord& odd) {
+  workers_[index_of(odd.worker)].known_odd = true;
+  for (auto& [id, job] : jobs_) {
+    FramesDoubted doubted{id, {}};
+    for (auto& [frame, row] : job.rows) {
+      const auto& by = row.unconfirmed;
+      if (std::find(by.begin(), by.end(), odd.worker) == by.end() &&
+          std::find(by.begin(), by.end(), WorkerId{}) == by.end()) {
+        continue;
+      }
+      row.doubtful = true;
+      doubted.frames.push_back(frame);
+    }
+    if (doubted.frames.empty() || job.ended) continue;
+    frames_doubted += doubted.frames.size();
+    tell_later(doubted);
+  }
+}
+
+/// All jobs have ended: whatever shows what an odd worker did must be known to be doubtful.
+void SimulatedWorld::check_rows() {
+  for (const auto& [id, job] : jobs_) {
+    for (const auto& [frame, row] : job.rows) {
+      left_doubtful += row.doubtful;
+      for (const uint8_t by : row.corrupted_by) {
+        if (workers_[by - 1U].known_odd && !row.doubtful) {
+          fail("outputs show what an odd worker did, and nobody knows");
+        }
+      }
+    }
+  }
+}
 
 }  // namespace hyades::coordinator

@@ -27,8 +27,12 @@ void SimulatedWorld::act(const Persist& a) {
     records_[a.id] = unit->accepted;
     unsettled_.insert({unit->job, a.id});
   }
-  // What failed is not in the film log.
-  if (real_store_ && !std::holds_alternative<FrameFailedRecord>(a.record)) {
+  if (const auto* again = std::get_if<FrameRestartedRecord>(&a.record)) {
+    jobs_.at(again->job).rows.erase(again->frame);
+  }
+  // What failed, and who is odd, is not in the film log.
+  if (real_store_ && !std::holds_alternative<FrameFailedRecord>(a.record) &&
+      !std::holds_alternative<WorkerOddRecord>(a.record)) {
     return append(jobs_.at(frame_of(a.record).first), a);
   }
   ++storing_[frame_of(a.record)];
@@ -51,6 +55,7 @@ std::pair<JobId, int32_t> SimulatedWorld::frame_of(const Record& record) {
   if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
     return {dispute->job, INT32_MIN};
   }
+  if (const auto* odd = std::get_if<WorkerOddRecord>(&record)) return {odd->job, INT32_MIN};
   const auto& again = std::get<FrameRestartedRecord>(record);
   return {again.job, again.frame};
 }
@@ -116,9 +121,12 @@ void SimulatedWorld::store(const Record& record) {
     });
   } else if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
     jobs_.at(dispute->job).stored.disputed = dispute->open;
+  } else if (const auto* odd = std::get_if<WorkerOddRecord>(&record)) {
+    found_odd(*odd);
   } else {
     const auto& again = std::get<FrameRestartedRecord>(record);
     SimJob& job = jobs_.at(again.job);
+    std::erase(job.stored.finished, again.frame);
     std::erase_if(job.stored.failed, [&](const FailedFrame& f) { return f.frame == again.frame; });
     std::erase_if(job.stored.accepted,
                   [&](const AcceptedUnit& u) { return u.unit.frame == again.frame; });

@@ -46,6 +46,7 @@ struct SimWorker {
   uint64_t memory = 0;
   /// The coordinator (by generation) that found it out; 0: none.
   uint64_t quarantined_by = 0;
+  bool known_odd = false;             ///< ... and that is durable
   std::map<uint64_t, UnitHeld> held;  ///< by order of arrival
 };
 
@@ -75,8 +76,16 @@ struct SimFrame {
   bool over = false;
 };
 
+/// What the job store has of a finished frame.
+struct SimRow {
+  std::vector<WorkerId> unconfirmed;  ///< as FinishFrame said
+  std::set<uint8_t> corrupted_by;     ///< whose wrong films its outputs show
+  bool doubtful = false;
+};
+
 struct SimJob {
   JobPlan plan;
+  std::map<int32_t, SimRow> rows;
   RestoredJob stored;  ///< what the store holds
   std::set<UnitName> stored_units;
   /// What is stored of these is not what another worker has rendered, and has been told so.

@@ -46,8 +46,10 @@ class SimulatedWorld {
   uint64_t quarantines = 0;
   uint64_t tiles_voided = 0;
   uint64_t frames_reopened = 0;
-  uint64_t struck_out = 0;    ///< workers in quarantine because they failed unit after unit
-  uint64_t frames_wrong = 0;  ///< finished before anybody compared
+  uint64_t frames_doubted = 0;  ///< finished, with a part of a worker that was found odd later
+  uint64_t left_doubtful = 0;   ///< ... after their job had ended
+  uint64_t struck_out = 0;      ///< workers in quarantine because they failed unit after unit
+  uint64_t frames_wrong = 0;    ///< finished before anybody compared
   // Of the real store.
   uint64_t films_replayed = 0;
   uint64_t power_cuts = 0;
@@ -116,7 +118,10 @@ class SimulatedWorld {
   void act(const JobEnded& a);
   void act(const Conflict&);
   void act(const Quarantine& a);
-  void act(const FrameReopened&);
+  void act(const Confirmed&) {}
+  void act(const FrameReopened& a);
+  void found_odd(const WorkerOddRecord& odd);
+  void check_rows();
 
   // simulated_workers.cpp
   // The scheduler's number 0 is nobody's.

@@ -29,6 +29,8 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   uint64_t quarantines = 0;
   uint64_t voided = 0;
   uint64_t reopened = 0;
+  uint64_t doubted = 0;
+  uint64_t left = 0;
   uint64_t struck = 0;
   uint64_t wrong = 0;
   uint64_t replayed = 0;
@@ -56,6 +58,8 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
     quarantines += world.quarantines;
     voided += world.tiles_voided;
     reopened += world.frames_reopened;
+    doubted += world.frames_doubted;
+    left += world.left_doubtful;
     struck += world.struck_out;
     wrong += world.frames_wrong;
     replayed += world.films_replayed;
@@ -75,11 +79,12 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
       static_cast<unsigned long long>(adopted), static_cast<unsigned long long>(revoked),
       static_cast<unsigned long long>(overlaps));
   std::printf(
-      "%llu conflicts, %llu quarantines, %llu tiles voided, %llu frames reopened; %llu frames "
-      "wrong "
-      "that nobody had compared in time\n",
+      "%llu conflicts, %llu quarantines, %llu tiles voided, %llu frames reopened, %llu finished "
+      "ones in doubt, %llu of them of jobs that had ended; %llu frames wrong that nobody had "
+      "compared in time\n",
       static_cast<unsigned long long>(conflicts), static_cast<unsigned long long>(quarantines),
       static_cast<unsigned long long>(voided), static_cast<unsigned long long>(reopened),
+      static_cast<unsigned long long>(doubted), static_cast<unsigned long long>(left),
       static_cast<unsigned long long>(wrong));
   std::printf(
       "%llu power cuts, %llu groups not stored, %llu films refused, %llu compactions, %llu films "
@@ -101,6 +106,8 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   EXPECT_GE(quarantines, worlds / 50);
   EXPECT_GE(voided, worlds / 20);
   EXPECT_GE(reopened, 1U);
+  EXPECT_GE(doubted, worlds / 100);
+  EXPECT_GE(left, worlds / 500);
   EXPECT_GE(struck, worlds / 50);
   EXPECT_GE(replayed, worlds);
   EXPECT_GE(power_cuts, worlds / 20);

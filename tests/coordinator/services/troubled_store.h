@@ -115,6 +115,17 @@ class TroubledStore final : public JobStore {
   core::Result<std::vector<StoredQuarantine>> quarantines() override {
     return store_->quarantines();
   }
+  core::Status trust(const std::vector<StoredTrust>& workers) override {
+    return written([&] { return store_->trust(workers); });
+  }
+  core::Result<std::vector<StoredTrust>> trusted() override { return store_->trusted(); }
+  core::Result<std::vector<JobFrames>> found_odd(const StoredQuarantine& worker, uint64_t since,
+                                                 const StoredLine& line) override {
+    return written([&] { return store_->found_odd(worker, since, line); });
+  }
+  core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
+    return read([&] { return store_->doubtful(job, limit); });
+  }
   core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
     return written([&] { return store_->add_lines(job, lines); });
   }

@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include "coordinator/state/database.h"
+#include "coordinator/state/parts.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
@@ -134,6 +135,102 @@ TEST(JobStore, KeepsQuarantinesUntilTheyEnd) {
   ASSERT_EQ(kept->size(), 1U);
   EXPECT_EQ(kept->front().worker, "worker-0001");
   EXPECT_EQ(kept->front().reason, "odd as well");
+}
+
+class OddWorkers : public testing::Test {
+ protected:
+  void SetUp() override {
+    store_ = open(path_);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(store_->add_job(some_job("", "ada")).ok());
+    StoredJob over = **store_->job(2);
+    over.state = StoredState::done;
+    ASSERT_TRUE(store_->update_job(over).ok());
+  }
+  void done(uint64_t job, int32_t frame, uint64_t moment, std::vector<std::string> parts) {
+    const StoredFrame over{frame, true, "", "class", 0, std::move(parts), moment};
+    ASSERT_TRUE(store_->frame_over(job, over, {}).ok());
+  }
+  std::vector<int32_t> found_odd(uint64_t job, uint64_t since) {
+    const auto jobs = store_->found_odd({"odd-worker", "odd"}, since, {7, 2, {}, "w", "frames "});
+    EXPECT_TRUE(jobs.ok());
+    for (const JobFrames& doubted : *jobs) {
+      if (doubted.job == job) return doubted.frames;
+    }
+    return {};
+  }
+  const test::TempFolder folder_;
+  const std::string path_ = folder_.file("state.db");
+  std::unique_ptr<JobStore> store_;
+};
+
+TEST_F(OddWorkers, MakeWhatTheyHadAPartInDoubtful) {
+  done(1, 3, 10, {"good-worker"});
+  done(1, 4, 11, {"good-worker", "odd-worker"});
+  done(1, 5, 12, {"", "good-worker"});  // before a restart
+  done(1, 6, 13, {});                   // all of it was rendered twice
+  done(2, 4, 14, {"odd-worker"});
+  EXPECT_EQ(found_odd(1, 0), (std::vector<int32_t>{4, 5}));
+  EXPECT_EQ(*store_->doubtful(1, 10), (std::vector<int32_t>{4, 5}));
+  EXPECT_EQ(*store_->doubtful(2, 10), std::vector<int32_t>{4}) << "it has ended";
+  EXPECT_TRUE(store_->doubtful(3, 10)->empty());
+  EXPECT_EQ(store_->lines(1, 0, 10)->at(0).text, "frames 4-5");
+  EXPECT_EQ(store_->lines(2, 0, 10)->at(0).text, "frames 4");
+  EXPECT_TRUE(found_odd(1, 0).empty()) << "nothing new";
+  EXPECT_EQ(store_->lines(1, 0, 10)->size(), 1U);
+  store_.reset();
+  store_ = open(path_);
+  EXPECT_EQ(store_->quarantines()->at(0).worker, "odd-worker");
+  EXPECT_TRUE(store_->frames(1)->at(1).doubtful);
+  done(1, 4, 20, {"good-worker"});  // again
+  ASSERT_TRUE(store_->forget_frame(1, 5).ok());
+  EXPECT_TRUE(store_->doubtful(1, 10)->empty());
+  EXPECT_TRUE(found_odd(1, 0).empty());
+}
+
+TEST_F(OddWorkers, CouldBeTrustedOnce) {
+  ASSERT_TRUE(store_->trust({{"odd-worker", 3}}).ok());
+  ASSERT_TRUE(store_->trust({{"odd-worker", 11}, {"other", 5}}).ok());
+  done(1, 3, 11, {"odd-worker"});
+  done(1, 4, 12, {"odd-worker"});
+  store_.reset();
+  store_ = open(path_);
+  const auto trusted = store_->trusted();
+  ASSERT_EQ(trusted->size(), 2U);
+  EXPECT_EQ(trusted->at(0).moment, 11U);
+  EXPECT_EQ(found_odd(1, trusted->at(0).moment), std::vector<int32_t>{4});
+}
+
+TEST_F(OddWorkers, AreNotToldApartWhereTheyAreTooMany) {
+  std::vector<std::string> crowd;
+  for (size_t i = 0; i < kMostParts; ++i) crowd.push_back("worker " + std::to_string(i));
+  done(1, 3, 1, crowd);
+  crowd.emplace_back("one more");
+  done(1, 4, 2, crowd);
+  EXPECT_EQ(found_odd(1, 0), std::vector<int32_t>{4});
+}
+
+TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("state.db");
+  {
+    auto store = open(path);
+    ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
+    ASSERT_TRUE(store->frame_over(1, {3, true, "", "class", 2}, {}).ok());
+  }
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db,
+                         "DROP INDEX doubtful_frames; ALTER TABLE frames DROP COLUMN doubtful; "
+                         "DROP TABLE parts; DROP TABLE trusted; PRAGMA user_version=3",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(db);
+  auto store = open(path);
+  const auto frames = store->frames(1);
+  ASSERT_EQ(frames->size(), 1U);
+  EXPECT_FALSE(frames->at(0).doubtful);
+  EXPECT_TRUE(store->found_odd({"worker", "odd"}, 0, {})->empty())
+      << "whose films an older program finished is not known";
 }
 
 TEST(JobStore, OneKeyOneJob) {
