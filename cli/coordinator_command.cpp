@@ -156,8 +156,8 @@ int main(int argc, char** argv) {
                  "bytes of the disk to keep free (default: a twentieth of it, at most 2G)")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--film-memory", arguments.brain.film_memory,
-                 "most bytes that the film of a frame may take in memory; jobs of larger ones are "
-                 "refused (default: half of the machine's memory)")
+                 "most bytes that films of frames in work may take in memory; jobs of which one "
+                 "takes more are refused (default: half of the machine's memory)")
       ->transform(CLI::AsSizeValue(false));
   app.add_option("--asset-grace", arguments.asset_grace,
                  "seconds that files which no job needs any more stay after their last use")

@@ -5,6 +5,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/counted.h"
+#include "core/base/text.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -138,6 +139,13 @@ bool Brain::explain_open(uint64_t id, v1::ExplainResponse& response) {
         "say who is right",
         counted(disputed, "unit") + (disputed == 1 ? " was" : " were"),
         disputed == 1 ? "waits" : "wait"));
+  }
+  if (active > 0 && scheduler_.waits_for_film(desk->id)) {
+    say(
+        fmt::format("a frame waits for memory for its film of {}: those of frames in work, of all "
+                    "jobs, take {} of {} (--film-memory)",
+                    core::format_bytes(desk->film_bytes), core::format_bytes(scheduler_.films()),
+                    core::format_bytes(options_.film_memory)));
   }
   for (const std::string& still : still_units(desk->id)) say(still);
   const uint32_t leased = scheduler_.leased_units(desk->id);

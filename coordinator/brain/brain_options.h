@@ -33,7 +33,8 @@ struct BrainOptions {
   /// A lease whose rendering makes no progress is not renewed any more after this; where the worker
   /// loads or waits, after six times this.
   Duration stall_time = std::chrono::minutes(10);
-  /// Bytes that the film of a frame may take in memory; jobs of larger ones are refused.
+  /// Bytes that films of frames in work, of all jobs, may take in memory. Jobs of which one frame
+  /// takes more are refused.
   uint64_t film_memory = core::half_of_memory();
   /// A job's film log is rewritten when it has grown by this much.
   uint64_t compact_bytes = LocalLog{}.compact_bytes;

@@ -16,6 +16,7 @@ SchedulerOptions scheduler_options(const BrainOptions& options, uint64_t incarna
   scheduler.lease_time = options.lease_time;
   scheduler.copy_after = options.copy_after;
   scheduler.class_patience = options.class_patience;
+  scheduler.film_memory = options.film_memory;
   return scheduler;
 }
 

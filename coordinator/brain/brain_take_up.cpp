@@ -292,6 +292,7 @@ core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) 
   if (desk.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE) {
     added.plan.order = FrameOrder::progressive;
   }
+  added.plan.film_bytes = desk.film_bytes;
   added.plan.frames_in_flight = frames_at_once(desk, options_.film_memory);
   added.restored = std::move(restored);
   std::vector<Action> later;

@@ -28,9 +28,11 @@ std::string Scheduler::audit() const {
     }
   }
   std::vector<uint64_t> running(shares_.size());
+  uint64_t films = 0;
   for (const auto& [id, job] : jobs_) {
     for (uint32_t i = 0; i < job->slots.size(); ++i) {
       const FrameSlot& slot = job->slots[i];
+      films += slot.film ? job->plan.film_bytes : 0;
       const auto units = out.find({id, i});
       const size_t leased = units == out.end() ? 0 : units->second;
       running[job->share] += leased;
@@ -50,6 +52,7 @@ std::string Scheduler::audit() const {
   for (size_t i = 0; i < shares_.size(); ++i) {
     if (shares_[i].running != running[i]) return "an owner's running units are miscounted";
   }
+  if (films != films_) return fmt::format("films take {} bytes, {} counted", films, films_);
   return {};
 }
 

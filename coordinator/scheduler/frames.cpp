@@ -121,6 +121,7 @@ void Scheduler::restart_waiting(JobState& job, uint32_t slot) {
 void Scheduler::frame_restarted(JobState& job, FrameSlot& slot) {
   const auto index = static_cast<uint32_t>(&slot - job.slots.data());
   slot.phase = FramePhase::waiting;
+  drop_film(job, slot);
   ++job.waiting;
   slot.worker_class = 0;
   slot.orphaned.reset();
@@ -172,6 +173,7 @@ void Scheduler::frame_over(JobState& job, FrameSlot& slot, FramePhase phase) {
     return restart_frame(job, slot);
   }
   slot.phase = phase;
+  drop_film(job, slot);
   slot.books.reset();
   std::erase(job.in_flight, static_cast<uint32_t>(&slot - job.slots.data()));
   if (phase == FramePhase::done) {

@@ -53,6 +53,8 @@ bool Scheduler::grant(WorkerId id, Worker& worker) {
 /// only; where all have, the one with most to do is. `fresh`: of the scenes that the worker does
 /// not have.
 std::optional<Scheduler::Place> Scheduler::in_turn(WorkerId id, const Worker& worker, bool fresh) {
+  // Where a frame waits for room for its film none behind it begins, so that a large one gets some.
+  bool begun = false;
   for (const auto& [priority, running, index] : ready_shares_) {
     std::optional<Place> roomiest;
     double most = -1;
@@ -61,7 +63,7 @@ std::optional<Scheduler::Place> Scheduler::in_turn(WorkerId id, const Worker& wo
       if (looked == kPlacesLookedAt) break;
       if (!may_join(*job, id, worker)) continue;
       if (job->plan.order == FrameOrder::progressive) {
-        const auto slot = find_pass(*job, id, worker);
+        const auto slot = find_pass(*job, id, worker, begun);
         if (slot && !(fresh && has_scene(worker, Place{job, *slot}.scene()))) {
           return Place{job, *slot};
         }
@@ -69,6 +71,11 @@ std::optional<Scheduler::Place> Scheduler::in_turn(WorkerId id, const Worker& wo
       }
       for (const uint32_t slot : job->in_flight) {
         const Place place{job, slot};
+        const FrameSlot& frame = job->slots[slot];
+        if (frame.phase == FramePhase::rendering && !frame.film) {
+          begun = begun || !film_fits(*job, frame);
+          if (begun) continue;
+        }
         if (!has_work_for(*job, job->slots[slot], id, worker)) continue;
         const bool here = has_scene(worker, place.scene());
         if (here && fresh) continue;
@@ -106,7 +113,7 @@ bool Scheduler::suits(const JobState& job, const Worker& worker) {
 /// Whether there is something of the frame for this worker.
 bool Scheduler::has_work_for(const JobState& job, const FrameSlot& slot, WorkerId id,
                              const Worker& worker) const {
-  if (slot.phase != FramePhase::rendering) return false;
+  if (slot.phase != FramePhase::rendering || !film_fits(job, slot)) return false;
   if (slot.worker_class != 0 && slot.worker_class != worker.worker_class) return false;
   const auto judge = [&](const std::vector<WorkerId>& blamed) {
     return may_try(job, id, worker, blamed);
@@ -115,12 +122,13 @@ bool Scheduler::has_work_for(const JobState& job, const FrameSlot& slot, WorkerI
   return slot.books->has_work(allowed) || slot.books->next_check(id, allowed).has_value();
 }
 
-/// Of a progressive job, the frame in the lowest pass.
-std::optional<uint32_t> Scheduler::find_pass(const JobState& job, WorkerId id,
-                                             const Worker& worker) const {
+/// Of a progressive job, the frame in the lowest pass; `begun`: of those that have begun.
+std::optional<uint32_t> Scheduler::find_pass(const JobState& job, WorkerId id, const Worker& worker,
+                                             bool begun) const {
   std::optional<uint32_t> best;
   uint32_t best_pass = 0;
   for (const uint32_t index : job.in_flight) {
+    if (begun && !job.slots[index].film) continue;
     if (!has_work_for(job, job.slots[index], id, worker)) continue;
     const uint32_t pass = pass_of(*job.slots[index].books, job.grid.size());
     if (best && pass >= best_pass) continue;

@@ -36,6 +36,7 @@ struct JobPlan {
 
   /// Frames that may be opened, rendered or finished at once: each costs its film's memory.
   uint32_t frames_in_flight = 3;
+  uint64_t film_bytes = 0;  ///< that the film of a frame takes in memory
   FrameOrder order = FrameOrder::sequential;
   JobNeeds needs;
   uint32_t max_workers = 0;  ///< that may have units of it at once; 0: no limit

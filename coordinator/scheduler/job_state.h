@@ -29,6 +29,7 @@ enum class FramePhase : uint8_t {
 struct FrameSlot {
   int32_t frame = 0;
   FramePhase phase = FramePhase::waiting;
+  bool film = false;  ///< its film is in memory, or will be with its first unit
   uint32_t finish_attempts = 0;
   bool doubted = false;  ///< while it is finished, a worker that had a part in it was found odd
   uint32_t worker_class = 0;  ///< interned; 0 until the first unit is leased

@@ -68,6 +68,7 @@ void Scheduler::restore(JobState& job, const RestoredJob& restored) {
     if (!slot->books) {
       slot->books = std::make_unique<FrameState>(job.grid.order(), job.plan.batches);
       slot->worker_class = intern_class(accepted.worker_class);
+      take_film(job, *slot);
     }
     if (slot->books->any_held(*extent)) continue;
     slot->books->hold(*extent, {extent->batches, accepted.digest, WorkerId{}, RecordId{}});
@@ -93,6 +94,7 @@ void Scheduler::on(const JobCancelled& e) {
   JobState* job = find_job(e.job);
   if (job == nullptr) return;
   for (const uint32_t i : job->in_flight) take_back_frame(*job, job->slots[i]);
+  for (FrameSlot& slot : job->slots) drop_film(*job, slot);
   job->in_flight.clear();
   update_ready(*job);
   say(JobEnded{e.job, job->frames_done, job->frames_failed, true});

@@ -14,6 +14,7 @@ void Scheduler::new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t s
   Lease action{id, lease, job.id, {}, deadline, adopted};
   for (const Extent& e : extents) action.units.push_back(unit_of(job, job.slots[slot], e));
   say(std::move(action));
+  take_film(job, job.slots[slot]);
   set_running(job, static_cast<int64_t>(extents.size()));
   leases_.emplace(lease.number, LeaseState{id, job.id, slot, std::move(extents), deadline});
   worker.leases.push_back(lease.number);

@@ -65,6 +65,7 @@ void Scheduler::on(const ResultArrived& e) {
 /// The film counts once it is durable. Whoever else renders the unit can stop.
 void Scheduler::accept(JobState& job, FrameSlot& slot, const Extent& extent,
                        const ResultArrived& e) {
+  take_film(job, slot);
   slot.books->hold(extent, {extent.batches, e.digest, e.worker, RecordId{next_record_}});
   for (const Holder& holder : slot.books->end_assignment(extent)) {
     drop_from_lease(holder.lease, extent);

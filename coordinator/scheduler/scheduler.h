@@ -40,6 +40,9 @@ struct SchedulerOptions {
   /// So many units that a worker has failed one after the other and others then rendered put it
   /// into quarantine.
   uint32_t max_strikes = 5;
+  /// Bytes that films of frames in work may take together; a frame begins (gets its first unit)
+  /// when its own fits, or nothing else is in work.
+  uint64_t film_memory = UINT64_MAX;
   /// Nothing is leased for this long after something could not be made durable.
   Duration storage_retry = std::chrono::seconds(1);
 };
@@ -74,6 +77,11 @@ class Scheduler {
   /// How many units of the job, rendered differently by two workers, wait for one who has not
   /// rendered them.
   uint32_t disputed_units(JobId job) const;
+
+  /// Bytes of the films of all frames that have begun and are not over.
+  uint64_t films() const { return films_; }
+  /// Whether a frame of the job could begin if there were more room for films.
+  bool waits_for_film(JobId job) const;
 
   /// What is wrong with the books, or nothing. Slow; for tests and audits.
   std::string audit() const;
@@ -196,7 +204,8 @@ class Scheduler {
   bool has_work_for(const JobState& job, const FrameSlot& slot, WorkerId id,
                     const Worker& worker) const;
   std::optional<Place> in_turn(WorkerId id, const Worker& worker, bool fresh);
-  std::optional<uint32_t> find_pass(const JobState& job, WorkerId id, const Worker& worker) const;
+  std::optional<uint32_t> find_pass(const JobState& job, WorkerId id, const Worker& worker,
+                                    bool begun) const;
   bool grant_from(const Place& place, WorkerId id, Worker& worker, bool ahead);
   bool grant_copy(WorkerId id, Worker& worker);
   uint32_t run_length_of(const JobState& job, const FrameState& books, uint32_t tile) const;
@@ -223,6 +232,13 @@ class Scheduler {
   std::optional<Place> find_loaded(WorkerId id, const Worker& worker, const JobState& first,
                                    bool loads);
   void learn_load(JobState& job, Worker& worker, const ResultArrived& e);
+
+  // film_room.cpp: films in memory.
+  void take_film(const JobState& job, FrameSlot& slot);
+  void drop_film(const JobState& job, FrameSlot& slot);
+  bool film_fits(const JobState& job, const FrameSlot& slot) const;
+  bool any_film_in_work() const;
+  void serve_those_without_film();
 
   // leasing.cpp: leases.
   void new_lease(WorkerId id, Worker& worker, JobState& job, uint32_t slot, bool adopted,
@@ -296,6 +312,8 @@ class Scheduler {
   std::map<uint64_t, WorkerId> waiting_;          ///< those with a wish, longest waiting first
   uint64_t next_waiting_ = 1;
   bool work_appeared_ = false;           ///< since the waiting were last served
+  uint64_t films_ = 0;                   ///< bytes of all films in memory
+  mutable bool film_refused_ = false;    ///< somebody went without, as a film did not fit
   bool turned_away_ = false;             ///< somebody, by too_late(): to be looked at again
   double load_seconds_ = -1;             ///< to load a scene, of any job; -1: not known
   uint64_t threads_ = 0;                 ///< of all workers

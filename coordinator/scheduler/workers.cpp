@@ -140,6 +140,7 @@ void Scheduler::serve(WorkerId id, Worker& worker, bool copies) {
 /// Serves those who wait, where something has turned up for them.
 void Scheduler::dispatch() {
   if (!may_lease()) return;
+  if (film_refused_ && !any_film_in_work()) serve_those_without_film();
   const bool copies = options_.copy_after > Duration{0} && now_ >= next_copy_round_;
   if (copies) next_copy_round_ = now_ + kCopyRound;
   if (!copies && !work_appeared_) return;

@@ -39,6 +39,7 @@ SimulatedWorld::SimulatedWorld(uint64_t seed) : random_(seed) {
   options_.affinity_time = std::chrono::milliseconds(chance(0.5) ? 0 : number(1, 20'000));
   options_.scene_time = std::chrono::milliseconds(chance(0.5) ? 0 : number(1, 3000));
   real_store_ = chance(0.5);
+  if (chance(0.4)) options_.film_memory = static_cast<uint64_t>(number(1, 5));
   const int jobs = number(1, 3);
   for (int i = 1; i <= jobs; ++i) make_job(JobId{static_cast<uint64_t>(i)});
 }
@@ -73,6 +74,7 @@ void SimulatedWorld::make_job(JobId id) {
   plan.priority = number(0, 2);
   plan.owner = chance(0.5) ? "eve" : "fay";
   plan.frames_in_flight = static_cast<uint32_t>(number(1, 3));
+  plan.film_bytes = static_cast<uint64_t>(number(0, 3));
   plan.max_workers = chance(0.3) ? static_cast<uint32_t>(number(1, 3)) : 0;
   if (chance(0.3)) plan.order = FrameOrder::progressive;
   if (choosy_) {

@@ -1,0 +1,131 @@
+// Films of all jobs together have so much memory.
+#include "tests/coordinator/scheduler/scheduler_testing.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using Bench = SchedulerBench;
+
+constexpr JobId kOther{2};
+constexpr JobId kThird{3};
+
+class FilmRoom : public testing::Test {
+ protected:
+  static SchedulerOptions with_memory() {
+    SchedulerOptions options;
+    options.film_memory = 100;
+    return options;
+  }
+  static JobPlan plan(uint64_t film_bytes, int32_t tiles = 1) {
+    JobPlan plan = small_plan({1}, 1);
+    plan.region = {0, 0, 32 * tiles, 32};
+    plan.film_bytes = film_bytes;
+    return plan;
+  }
+  void SetUp() override {
+    b.join(kAnna);
+    b.join(kBert);
+  }
+  void add(JobId job, const JobPlan& plan, RestoredJob restored = {}) {
+    b.add(plan, std::move(restored), job);
+    b.tell(FrameOpened{job, 1});
+  }
+  void expect_bert_waits() {
+    b.tell(WorkRequested{kBert, 1});
+    EXPECT_TRUE(b.all<Lease>().empty());
+  }
+  void expect_bert_gets(JobId job) {
+    const Lease lease = b.only<Lease>();
+    EXPECT_EQ(lease.worker, kBert);
+    EXPECT_EQ(lease.job, job);
+  }
+  Bench b{with_memory()};
+};
+
+TEST_F(FilmRoom, AFrameBeginsWhenItsFilmFitsBesideTheOthers) {
+  add(kJob, plan(60));
+  add(kOther, plan(41));
+  const Lease lease = b.ask(kAnna);
+  expect_bert_waits();
+  EXPECT_TRUE(b.scheduler.waits_for_film(kOther));
+  EXPECT_FALSE(b.scheduler.waits_for_film(kJob));
+  EXPECT_EQ(b.scheduler.films(), 60U);
+  b.deliver_durably(lease);
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(FinishDone{kJob, 1});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "the finished film is still there";
+  b.tell(Persisted{b.only<Persist>().id});
+  expect_bert_gets(kOther);
+  EXPECT_EQ(b.scheduler.films(), 41U);
+}
+
+TEST_F(FilmRoom, FilmsThatFitAreInWorkTogether) {
+  add(kJob, plan(60));
+  add(kOther, plan(40));
+  b.ask(kAnna);
+  b.tell(WorkRequested{kBert, 1});
+  expect_bert_gets(kOther);
+}
+
+TEST_F(FilmRoom, OneFrameIsAlwaysPossible) {
+  add(kJob, plan(200));
+  EXPECT_EQ(b.ask(kAnna).job, kJob);
+}
+
+TEST_F(FilmRoom, PausedJobsHoldNobodyUp) {
+  add(kJob, plan(60, 2));
+  add(kOther, plan(60));
+  const Lease lease = b.ask(kAnna);
+  b.tell(JobPaused{kJob});
+  expect_bert_waits();  // for what Anna still has
+  b.deliver_durably(lease);
+  b.tell(Tick{});
+  EXPECT_EQ(b.scheduler.films(), 120U);
+  EXPECT_GT(b.scheduler.leased_units(kOther), 0U);
+}
+
+TEST_F(FilmRoom, JobsWithoutWorkersHoldNobodyUp) {
+  add(kJob, plan(60, 2));
+  add(kOther, plan(60));
+  b.ask(kAnna);
+  b.tell(JobPaused{kJob});
+  expect_bert_waits();
+  b.tell(WorkerLost{kAnna});
+  expect_bert_gets(kOther);
+}
+
+TEST_F(FilmRoom, SmallFilmsDoNotOvertakeForEver) {
+  add(kJob, plan(60));
+  add(kOther, plan(60));
+  add(kThird, plan(10));
+  b.ask(kAnna);
+  expect_bert_waits();
+  b.tell(JobCancelled{kJob});
+  expect_bert_gets(kOther);
+}
+
+TEST_F(FilmRoom, FilmsFromBeforeARestartTakeRoom) {
+  RestoredJob restored;
+  restored.accepted.push_back({{1, {0, 0, 32, 32}, {0, 1}}, digest(1), "class"});
+  add(kJob, plan(60, 2), restored);
+  add(kOther, plan(60));
+  EXPECT_EQ(b.scheduler.films(), 60U);
+  EXPECT_EQ(b.ask(kAnna).job, kJob);
+  expect_bert_waits();
+}
+
+TEST_F(FilmRoom, AFrameThatFailsLeavesItsRoom) {
+  JobPlan broken = plan(60);
+  broken.max_attempts = 1;
+  add(kJob, broken);
+  add(kOther, plan(60));
+  const Lease lease = b.ask(kAnna);
+  expect_bert_waits();
+  b.tell(UnitFailed{kAnna, lease.lease, kJob, lease.units[0], "a NaN"});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(Persisted{b.only<Persist>().id});
+  expect_bert_gets(kOther);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
