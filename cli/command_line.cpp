@@ -43,6 +43,18 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
   if (std::regex_match(text, parts, missing)) return parts[1].str() + " is missing";
   static const std::regex no_value("(\\S+): 1 required .* missing");
   if (std::regex_match(text, parts, no_value)) return parts[1].str() + ": expected a value";
+  static const std::regex size("(\\S+): .* unit not recognized.*");
+  if (std::regex_match(text, parts, size)) return parts[1].str() + ": expected a size such as 8G";
+  static const std::regex member("(\\S+): (.*) not in \\{(.*)\\}");
+  if (std::regex_match(text, parts, member)) {
+    static const std::regex comma(",");
+    return parts[1].str() + " " + parts[2].str() + ": expected " +
+           std::regex_replace(parts[3].str(), comma, " or ");
+  }
+  static const std::regex ours("(--\\S+): (.+): (expected .*)");
+  if (std::regex_match(text, parts, ours)) {
+    return parts[1].str() + " " + parts[2].str() + ": " + parts[3].str();
+  }
   return text;
 }
 

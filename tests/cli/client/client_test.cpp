@@ -461,6 +461,12 @@ TEST_F(Client, WrongCommandLinesAreToldInOneLine) {
       has(wrong(submit_command, {"a", "--samples", "0"}), "--samples 0: expected 1 to 16777216"));
   EXPECT_TRUE(has(wrong(submit_command, {"a", "--max-workers", "x"}),
                   "--max-workers x: expected a number"));
+  EXPECT_TRUE(
+      has(wrong(submit_command, {"a", "--memory", "8x"}), "--memory: expected a size such as 8G"));
+  EXPECT_TRUE(has(wrong(submit_command, {"a", "--order", "odd"}),
+                  "--order odd: expected sequential or progressive"));
+  EXPECT_TRUE(has(run(jobs_command, {"--coordinator", "a:99999"}).err,
+                  "--coordinator: expected HOST:PORT"));
   EXPECT_TRUE(has(wrong(submit_command, {folder_.file("job.yaml"), "--frames", ""}),
                   "--frames: expected frames such as 7"));
   EXPECT_TRUE(

@@ -149,7 +149,7 @@ TEST_F(Losses, LinesThatCannotBeStoredWait) {
   begin();
   std::optional<ScriptedWorker> anna;
   anna.emplace(world_.address, holder());
-  ASSERT_TRUE(eventually([&] { return leased() == 2; }));
+  ASSERT_TRUE(eventually([&] { return leased() == 2 && !lines("begun").empty(); }));
   trouble->of_writes(Trouble::Kind::fails);
   anna.reset();
   std::this_thread::sleep_for(1s);
