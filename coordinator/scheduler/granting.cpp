@@ -10,12 +10,8 @@
 namespace hyades::coordinator {
 namespace {
 
-/// How many of the oldest units are considered before a worker goes without a copy.
-constexpr size_t kCopySearch = 16;
 /// How many frames of an owner's are considered that have workers enough.
 constexpr size_t kPlacesLookedAt = 12;
-
-double seconds(Duration duration) { return std::chrono::duration<double>(duration).count(); }
 
 /// Which doubling of its samples a frame is in: 0 until every tile has had one batch, p until every
 /// tile has had 2^p.
@@ -177,40 +173,14 @@ bool Scheduler::grant_from(const Place& place, WorkerId id, Worker& worker, bool
   return true;
 }
 
-/// Hands out a second copy of one of the oldest units: purity makes it safe, and whichever comes
-/// first counts. No unit is copied twice.
-bool Scheduler::grant_copy(WorkerId id, Worker& worker) {
-  if (options_.copy_after <= Duration{0}) return false;
-  while (!copy_candidates_.empty() && !live_copy_candidate(copy_candidates_.front())) {
-    copy_candidates_.pop_front();
-  }
-  for (size_t i = 0; i < std::min(kCopySearch, copy_candidates_.size()); ++i) {
-    const CopyCandidate candidate = copy_candidates_[i];
-    const double out = seconds(now_ - candidate.since - options_.copy_after);
-    if (out < 0) return false;
-    Assignment* assignment = live_copy_candidate(candidate);
-    if (assignment == nullptr || assignment->holders.front().worker == id) continue;
-    JobState& job = *find_job(candidate.job);
-    if (job.paused || job.slots[candidate.slot].worker_class != worker.worker_class) continue;
-    if (!may_join(job, id, worker)) continue;
-    const FrameState& books = *job.slots[candidate.slot].books;
-    if (!may_try(job, id, worker, books.blamed(candidate.extent))) continue;
-    // Those who have the scene come first.
-    const Scene scene{job.id, job.slots[candidate.slot].frame};
-    if (out < load_seconds(job) && !has_scene(worker, scene)) continue;
-    assignment->copied = true;
-    assignment->holders.push_back({id, {options_.incarnation, next_lease_}});
-    --worker.wanted;
-    remember_scene(worker, scene, false);
-    new_lease(id, worker, job, candidate.slot, false, {candidate.extent});
-    return true;
-  }
-  return false;
+/// What a batch of the tile takes one thread, as far as is known [s]; 0: nothing is known.
+double Scheduler::batch_seconds(const JobState& job, uint32_t tile) {
+  return job.tile_cost[tile] > 0 ? job.tile_cost[tile] : job.mean_cost;
 }
 
 uint32_t Scheduler::run_length_of(const JobState& job, const FrameState& books,
                                   uint32_t tile) const {
-  const double cost = job.tile_cost[tile] > 0 ? job.tile_cost[tile] : job.mean_cost;
+  const double cost = batch_seconds(job, tile);
   if (cost <= 0) return 1;
   uint64_t left = std::max(offered_, books.free());
   if (job.in_flight.size() < job.plan.frames_in_flight) {
@@ -240,26 +210,6 @@ bool Scheduler::anybody_besides(const std::vector<WorkerId>& tried, const JobSta
            suits(job, entry.second) &&
            std::find(tried.begin(), tried.end(), entry.first) == tried.end();
   });
-}
-
-void Scheduler::note_copy_candidate(const JobState& job, uint32_t slot,
-                                    const Assignment& assignment) {
-  if (options_.copy_after <= Duration{0}) return;
-  if (copy_candidates_.size() >= copy_candidates_checked_) {
-    std::erase_if(copy_candidates_,
-                  [&](const CopyCandidate& c) { return !live_copy_candidate(c); });
-    copy_candidates_checked_ = std::max<size_t>(64, 2 * copy_candidates_.size());
-  }
-  copy_candidates_.push_back({now_, assignment.serial, job.id, slot, assignment.extent});
-}
-
-/// The assignment that may still be copied, or null.
-Assignment* Scheduler::live_copy_candidate(const CopyCandidate& c) {
-  JobState* job = find_job(c.job);
-  if (job == nullptr || !job->slots[c.slot].books) return nullptr;
-  Assignment* assignment = job->slots[c.slot].books->find_assignment(c.extent);
-  if (assignment == nullptr || assignment->serial != c.serial || assignment->copied) return nullptr;
-  return assignment;
 }
 
 }  // namespace hyades::coordinator

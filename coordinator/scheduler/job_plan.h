@@ -34,8 +34,9 @@ struct JobPlan {
   int priority = 0;   ///< higher goes first
   std::string owner;  ///< owners of one priority share the farm alike
 
-  /// Frames that may be opened, rendered or finished at once: each costs its film's memory.
-  uint32_t frames_in_flight = 3;
+  /// Frames that may be opened, rendered or finished at once: each costs its film's memory. They
+  /// are begun with as the workers need them, so a farm wants more of them than one machine.
+  uint32_t frames_in_flight = 16;
   uint64_t film_bytes = 0;  ///< that the film of a frame takes in memory
   FrameOrder order = FrameOrder::sequential;
   JobNeeds needs;

@@ -96,7 +96,7 @@ std::optional<TimePoint> Scheduler::next_wake() const {
   }
   if (!leasing_held_ && !waiting_.empty() && !copy_candidates_.empty() &&
       options_.copy_after > Duration{0}) {
-    at(std::max(copy_candidates_.front().since + options_.copy_after, next_copy_round_));
+    at(std::max(first_copy(copy_candidates_.front()), next_copy_round_));
   }
   return wake;
 }

@@ -26,7 +26,8 @@ struct SchedulerOptions {
   Duration lease_time = std::chrono::seconds(60);
   /// What rendering one unit shall take one thread: runs of batches are as long as that needs.
   Duration unit_time = std::chrono::milliseconds(500);
-  /// Idle workers get a copy of a unit that has been out for this long; 0: no copies.
+  /// Idle workers get a copy of a unit that has been out for this long, and sooner where it should
+  /// have taken much less; 0: no copies.
   Duration copy_after = std::chrono::seconds(5);
   /// A frame whose class of workers has been gone for this long begins again with another; 0:
   /// never.
@@ -207,12 +208,17 @@ class Scheduler {
   std::optional<uint32_t> find_pass(const JobState& job, WorkerId id, const Worker& worker,
                                     bool begun) const;
   bool grant_from(const Place& place, WorkerId id, Worker& worker, bool ahead);
-  bool grant_copy(WorkerId id, Worker& worker);
+  static double batch_seconds(const JobState& job, uint32_t tile);
   uint32_t run_length_of(const JobState& job, const FrameState& books, uint32_t tile) const;
   bool may_try(const JobState& job, WorkerId id, const Worker& worker,
                const std::vector<WorkerId>& blamed) const;
   bool anybody_besides(const std::vector<WorkerId>& tried, const JobState& job,
                        uint32_t worker_class) const;
+
+  // copies.cpp: second copies of units that are late.
+  bool grant_copy(WorkerId id, Worker& worker);
+  TimePoint first_copy(const CopyCandidate& candidate) const;
+  double late_after(const JobState& job, const Extent& extent) const;
   void note_copy_candidate(const JobState& job, uint32_t slot, const Assignment& assignment);
   Assignment* live_copy_candidate(const CopyCandidate& c);
 

@@ -146,8 +146,8 @@ void Scheduler::dispatch() {
   if (!copies && !work_appeared_) return;
   work_appeared_ = false;
   for (auto it = waiting_.begin(); it != waiting_.end();) {
-    const bool due = copies && !copy_candidates_.empty() &&
-                     copy_candidates_.front().since + options_.copy_after <= now_;
+    const bool due =
+        copies && !copy_candidates_.empty() && first_copy(copy_candidates_.front()) <= now_;
     if (ready_shares_.empty() && !due) return;
     const WorkerId id = it->second;
     Worker& worker = *find_worker(id);

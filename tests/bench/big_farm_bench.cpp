@@ -1,6 +1,7 @@
 // The scheduler of a simulated farm (tests/coordinator/scheduler/big_world.h) of 10,000 workers
 // with four threads each: how much of the threads' time counts, and what the scheduler takes of a
-// processor. bench_big_farm [WORKERS [MINUTES]]: about so many minutes of work for so many.
+// processor. bench_big_farm [WORKERS [MINUTES [SEED [JOBS [OWNERS]]]]]: about so many minutes of
+// work.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -13,6 +14,9 @@ int main(int argc, char** argv) {
   BigWorldOptions options;
   if (argc > 1) options.workers = std::strtoull(argv[1], nullptr, 10);
   const double minutes = argc > 2 ? std::strtod(argv[2], nullptr) : 30;
+  if (argc > 3) options.seed = std::strtoull(argv[3], nullptr, 10);
+  if (argc > 4) options.jobs = std::strtoull(argv[4], nullptr, 10);
+  if (argc > 5) options.owners = std::strtoull(argv[5], nullptr, 10);
   // A frame is 2,040 tiles of 64 batches; machines are a little faster than one in the mean.
   const double frame_seconds = 2040.0 * 64 * options.batch_seconds / 1.1;
   const double frames = 60 * minutes * static_cast<double>(options.workers) * options.threads /

@@ -14,6 +14,7 @@ constexpr double kHeartbeat = 5;
 constexpr double kSync = 0.004;  ///< group commit of the film log
 constexpr double kNoticed = 3;   ///< a worker that is gone is taken for lost
 constexpr size_t kScenesKept = 3;
+constexpr size_t kMoments = 20;
 constexpr uint64_t kMeasureEvery = 16;  ///< events; asking for the time costs more than most
 
 double cpu_now() {
@@ -64,6 +65,10 @@ void print(const BigWorldReport& r) {
       static_cast<double>(r.preempted) / r.duration * 60,
       static_cast<double>(r.events) / r.duration,
       1e6 * r.cpu_seconds / static_cast<double>(r.events), 100 * r.cpu_seconds / r.duration);
+  for (const Moment& m : r.end) {
+    std::printf("  %6.0f s: %zu threads, %zu render, %zu wait for a scene, %zu for a unit\n", m.at,
+                m.threads, m.rendering, m.loading, m.starved);
+  }
 }
 
 BigWorld::BigWorld(const BigWorldOptions& options)
@@ -77,7 +82,7 @@ BigWorldReport BigWorld::run() {
     for (int f = 1; f <= options_.frames; ++f) plan.frames.push_back(f);
     plan.region = options_.region;
     plan.batches = options_.batches;
-    plan.owner = "owner " + std::to_string(j % 6);
+    plan.owner = "owner " + std::to_string(j % options_.owners);
     ++open_jobs_;
     const TileGrid grid(plan.region, plan.tile_size);
     for (uint32_t t = 0; t < grid.size(); ++t) {
@@ -88,6 +93,7 @@ BigWorldReport BigWorld::run() {
   for (size_t i = 0; i < machines_.size(); ++i) {
     after(uniform(), [this, i] { start(i); });
   }
+  look_at_the_clock();
   while (open_jobs_ > 0) {
     if (events_.empty()) throw std::string("nothing happens any more, and jobs are left");
     const Happening next = events_.top();
@@ -121,6 +127,25 @@ void BigWorld::look_whether_enough() {
   for (Machine& m : machines_) account(m);
   phase_ = &report_.tail;
   report_.enough_until = seconds_now();
+}
+
+/// Notes every second what the threads do.
+void BigWorld::look_at_the_clock() {
+  Moment moment{.at = seconds_now()};
+  for (const Machine& m : machines_) {
+    if (!m.there) continue;
+    size_t busy = 0;
+    for (const Unit& u : m.units) busy += u.began >= 0;
+    const size_t idle = options_.threads - busy;
+    const size_t loading = std::min(idle, m.units.size() - busy);
+    moment.threads += options_.threads;
+    moment.rendering += busy;
+    moment.loading += loading;
+    moment.starved += idle - loading;
+  }
+  report_.end.push_back(moment);
+  if (report_.end.size() > kMoments) report_.end.pop_front();
+  after(1, [this] { look_at_the_clock(); });
 }
 
 void BigWorld::after(double seconds, std::function<void()> what) {

@@ -19,6 +19,7 @@ struct BigWorldOptions {
   size_t workers = 10'000;
   uint32_t threads = 4;  ///< of each
   size_t jobs = 30;
+  size_t owners = 6;
   int frames = 20;  ///< of each job
   core::PixelRect region{0, 0, 1920, 1080};
   uint32_t batches = 64;       ///< of 16 samples
@@ -39,6 +40,15 @@ struct ThreadTime {
   double efficiency() const { return (rendering - lost) / there; }
 };
 
+/// What the threads that are there do at one moment.
+struct Moment {
+  double at = 0;
+  size_t threads = 0;
+  size_t rendering = 0;
+  size_t loading = 0;  ///< with a unit whose scene is not there yet
+  size_t starved = 0;  ///< without a unit
+};
+
 /// What happened, in seconds of simulated time where nothing else is said.
 struct BigWorldReport {
   double duration = 0;
@@ -52,6 +62,7 @@ struct BigWorldReport {
   uint64_t frames_done = 0;
   uint64_t events = 0;     ///< that the scheduler has answered
   double cpu_seconds = 0;  ///< of this machine for them
+  std::deque<Moment> end;  ///< the last seconds, one by one
   double thread_seconds() const { return enough.there + tail.there; }
   double efficiency() const { return counted / thread_seconds(); }
 };
@@ -110,6 +121,7 @@ class BigWorld {
 
   void account(Machine& machine);
   void look_whether_enough();
+  void look_at_the_clock();
   void start(size_t machine);
   void leave(size_t machine);
   void beat(size_t machine, uint64_t life);

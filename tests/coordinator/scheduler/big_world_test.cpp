@@ -31,5 +31,22 @@ TEST(BigWorld, IsBusyThoughWorkersArePreempted) {
   EXPECT_GE(r.efficiency(), 0.95);
 }
 
+/// Its last jobs are where a farm has more workers than frames to spread them over.
+TEST(BigWorld, OneJobIsEnoughForManyWorkers) {
+  BigWorldOptions options = some_minutes();
+  options.workers = 400;
+  options.jobs = 1;
+  options.frames = 12;
+  BigWorldReport r;
+  try {
+    r = BigWorld(options).run();
+  } catch (const std::string& wrong) {
+    FAIL() << wrong;
+  }
+  print(r);
+  EXPECT_LE(r.enough.loading / r.enough.there, 0.001);
+  EXPECT_LE(r.duration - r.enough_until, 20);
+}
+
 }  // namespace
 }  // namespace hyades::coordinator

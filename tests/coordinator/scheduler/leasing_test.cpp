@@ -113,6 +113,77 @@ TEST(Scheduler, IdleWorkersGetOneCopyOfTheOldestUnits) {
   EXPECT_EQ(b.only<Revoke>().lease, slow.lease);
 }
 
+/// A frame of one tile and two batches, of which Anna has rendered one and has the other.
+Lease last_batch_out(Bench& b) {
+  b.join(kAnna);
+  JobPlan plan = small_plan({1}, 2);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  b.deliver_durably(b.ask(kAnna));  // 10 ms
+  return b.ask(kAnna);
+}
+
+TEST(Copies, AUnitThatShouldTakeLittleIsCopiedSooner) {
+  SchedulerOptions options;
+  options.copy_after = seconds(10);
+  Bench b(options);
+  b.join(kBert);
+  const Lease late = last_batch_out(b);
+  b.tell(WorkRequested{kBert, 1});
+  b.now += milliseconds(900);
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "films travel too";
+  b.now += milliseconds(300);
+  ASSERT_TRUE(b.scheduler.next_wake());
+  EXPECT_LE(*b.scheduler.next_wake(), b.now);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Lease>().units, late.units);
+}
+
+TEST(Copies, AUnitThatShouldTakeLongIsNotLateBeforeThat) {
+  SchedulerOptions options;
+  options.copy_after = seconds(10);
+  options.unit_time = seconds(1);
+  Bench b(options);
+  b.begin(small_plan({1}, 1));
+  const Lease first = b.ask(kAnna);
+  const Lease second = b.ask(kAnna);
+  b.tell(ResultArrived{kAnna, first.lease, kJob, first.units[0], digest(1), seconds(2)});
+  b.tell(WorkRequested{kBert, 1});
+  b.now += seconds(6);
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "two seconds for it, and as much in the queue";
+  b.now += seconds(2);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Lease>().units, second.units);
+}
+
+TEST(Copies, WhoHasToLoadTheSceneWaitsLongerAndTakesOne) {
+  SchedulerOptions options;
+  options.copy_after = seconds(5);
+  options.unit_time = seconds(2);
+  Bench b(options, seconds(3));
+  b.join(kAnna);
+  b.add(small_plan({1}, 2));
+  b.tell(FrameOpened{kJob, 1});
+  const Lease first = b.ask(kAnna);
+  b.now += seconds(6);
+  b.tell(ResultArrived{kAnna, first.lease, kJob, first.units[0], digest(1), seconds(2)});
+  ASSERT_EQ(b.ask(kAnna, 3).units.size(), 3U);
+  b.join(kBert);
+  b.tell(WorkRequested{kBert, 3});
+  b.now += seconds(8);
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "five seconds, and four to load";
+  b.now += seconds(2);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Lease>().units.size(), 1U);
+  b.now += seconds(1);
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "the scene may come too late for the rest";
+}
+
 TEST(Scheduler, NothingIsLeasedWhileLeasingIsHeld) {
   SchedulerOptions options;
   options.copy_after = seconds(5);
