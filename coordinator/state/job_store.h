@@ -47,14 +47,14 @@ struct StoredSpec {
 /// A frame that is over. Others are not stored: their films tell.
 struct StoredFrame {
   int32_t frame = 0;
-  bool done = false;   ///< finished; else failed
-  std::string reason;  ///< why it failed
-  std::string worker_class;
+  bool done = false;     ///< finished; else failed
+  std::string reason{};  ///< why it failed
+  std::string worker_class{};
   uint32_t restarts = 0;
   /// Of a finished frame: who rendered a part of it on which nobody else agreed, by what workers
   /// call themselves (v1::Hello.worker_id); an empty name: somebody who is not known any more. It
   /// is not read again: found_odd() looks at it.
-  std::vector<std::string> parts;
+  std::vector<std::string> parts{};
   uint64_t moment = 0;    ///< when it was finished: greater than that of any frame before
   bool doubtful = false;  ///< a worker that had a part in it was found odd afterwards
 };
