@@ -8,8 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/address_option.h"
 #include "cli/command_line.h"
+#include "cli/peer_options.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
 #include "worker/worker.h"
@@ -56,10 +56,7 @@ int main(int argc, char** argv) {
   options.cache = default_cache();
   options.cache_size = uint64_t{16} << 30U;
   options.renderer = hyades::core::program_folder() + "hyades-worker-render";
-  app.add_option("--coordinator", options.coordinator.address, "HOST:PORT")
-      ->envname("HYADES_COORDINATOR")
-      ->check(hyades::cli::address_error)
-      ->capture_default_str();
+  hyades::cli::add_peer_options(app, options.coordinator, "The coordinator");
   app.add_option("--threads", options.threads, "units rendered at once")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
@@ -75,13 +72,6 @@ int main(int argc, char** argv) {
   app.add_option("--tags", options.tags, "what jobs may ask for: a,b")
       ->delimiter(',')
       ->allow_extra_args(false);
-  app.add_option("--token-file", options.coordinator.token_file, "file with the farm's token")
-      ->envname("HYADES_TOKEN_FILE");
-  app.add_option("--tls-ca", options.coordinator.ca_file,
-                 "certificate (PEM) that signed the coordinator's")
-      ->envname("HYADES_TLS_CA");
-  app.add_flag("--insecure", options.coordinator.insecure,
-               "plain text also to another machine's coordinator");
   app.add_option("--grace", options.grace, "seconds from SIGTERM to the end")
       ->check(CLI::Range(0.3, 3600.0))
       ->capture_default_str();

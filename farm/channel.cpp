@@ -50,11 +50,23 @@ bool is_loopback(const std::string& address) {
 core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer) {
   quiet_grpc();
   std::shared_ptr<grpc::ChannelCredentials> credentials;
+  if (peer.cert_file.empty() != peer.key_file.empty()) {
+    return core::Error{"a certificate to show needs its key, and a key its certificate"};
+  }
+  if (peer.ca_file.empty() && !peer.cert_file.empty()) {
+    return core::Error{"a certificate is shown with TLS only: give --tls-ca too"};
+  }
   if (!peer.ca_file.empty()) {
     const auto ca = read_certificates(peer.ca_file);
     if (!ca) return ca.error();
     grpc::SslCredentialsOptions options;
     options.pem_root_certs = *ca;
+    if (!peer.cert_file.empty()) {
+      const auto pair = read_key_pair(peer.cert_file, peer.key_file);
+      if (!pair) return pair.error();
+      options.pem_cert_chain = pair->cert;
+      options.pem_private_key = pair->key;
+    }
     credentials = grpc::SslCredentials(options);
   } else if (is_loopback(peer.address) || peer.insecure) {
     credentials = grpc::InsecureChannelCredentials();

@@ -18,7 +18,9 @@ namespace hyades::farm {
 /// How a client or a worker reaches its coordinator.
 struct Peer {
   std::string address = "127.0.0.1:7700";  ///< HOST:PORT
-  std::string ca_file;     ///< PEM: who signed the coordinator's certificate; empty: plaintext
+  std::string ca_file;    ///< PEM: who signed the coordinator's certificate; empty: plaintext
+  std::string cert_file;  ///< PEM, with key_file: shown to a coordinator that asks; empty: none
+  std::string key_file;
   std::string token_file;  ///< holds the farm's token; empty: none
   bool insecure = false;   ///< plaintext also beyond this machine
 };
