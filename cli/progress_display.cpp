@@ -22,12 +22,6 @@ std::string rate(double samples_per_second) {
   return fmt::format("{:.0f} ksamples/s", samples_per_second * 1e-3);
 }
 
-/// "the disk is full" of "cannot write FILE: the disk is full".
-std::string reason_of(const std::string& trouble) {
-  const size_t colon = trouble.rfind(": ");
-  return colon == std::string::npos ? trouble : trouble.substr(colon + 2);
-}
-
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
@@ -45,7 +39,7 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
   if (p.frames > 1)
     text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);
   // In front: a line that is cut to the terminal's width still says why nothing happens.
-  if (!p.trouble.empty()) return text + "  waits for the disk: " + reason_of(p.trouble);
+  if (!p.trouble.empty()) return text + "  " + p.trouble;
   if (p.samples_per_second > 0.0) text += "  " + rate(p.samples_per_second);
   if (p.noise >= 0.0) text += fmt::format("  noise {:.2g} %", 100.0 * p.noise);
   if (p.seconds_left >= 0.0) text += "  " + core::format_duration(p.seconds_left) + " left";

@@ -28,7 +28,7 @@ class ProgressDisplay {
   StatusLine status_;
   std::chrono::steady_clock::time_point last_;
   int last_percent_ = -1;
-  bool waiting_ = false;  ///< for the disk
+  bool waiting_ = false;  ///< it has been told why nothing happens
 };
 
 }  // namespace hyades::cli

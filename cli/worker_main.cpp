@@ -37,6 +37,14 @@ std::string hang_limit_error(const std::string& text) {
   return text + ": expected 1 to 1000000 seconds, or 0 for never";
 }
 
+/// Less than a few megabytes is meant to be something else: 8, say, for 8G.
+std::string memory_error(const std::string& text) {
+  uint64_t bytes = 0;
+  if (CLI::detail::lexical_cast(text, bytes) && (bytes == 0 || bytes >= uint64_t{16} << 20U))
+    return {};
+  return text + " bytes: expected at least 16M (8G, 512M), or 0 for no limit";
+}
+
 std::string default_cache() {
   if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache == '/') {
     return std::string(cache) + "/hyades";
@@ -63,7 +71,8 @@ int main(int argc, char** argv) {
   app.add_option("--memory", options.memory,
                  "most memory of the process that renders: 8G, 512M (default: four fifths of what "
                  "is here)")
-      ->transform(CLI::AsSizeValue(false));
+      ->transform(CLI::AsSizeValue(false))
+      ->check(memory_error);
   app.add_option("--cache", options.cache, "folder for the files of jobs; workers may share it")
       ->capture_default_str();
   app.add_option("--cache-size", options.cache_size, "most bytes in it (default: 16G)")

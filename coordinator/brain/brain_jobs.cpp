@@ -24,6 +24,11 @@ constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
 constexpr uint32_t kMostAttempts = 100;
 
+bool is_one_line(const std::string& text) {
+  return std::none_of(text.begin(), text.end(),
+                      [](unsigned char c) { return c < ' ' || c == 127; });
+}
+
 grpc::Status overloaded(const char* why, std::chrono::milliseconds retry_after) {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, why, retry_after);
 }
@@ -45,6 +50,9 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
     return wrong("idempotency_key has to have 16 to 64 characters");
   }
   if (request.owner().size() > kLongestName) return wrong("owner: at most 200 characters");
+  if (!is_one_line(request.owner())) {
+    return wrong("owner: expected one line of printable characters");
+  }
   if (const grpc::Status sane = check_priority(request.priority()); !sane.ok()) return sane;
   auto tags = farm::check_tags({request.tags().begin(), request.tags().end()});
   if (!tags) return wrong(tags.error().message);
@@ -182,13 +190,13 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
     if (auto gone = store_->forget_frame(id, frame.frame); !gone)
       return farm::unavailable(gone.error());
   }
+  const StoredJob before = job;
   job.state = StoredState::running;
   job.ended_ms = 0;
   job.reason.clear();
   if (core::Status noted = store_->update_job(job); !noted) return farm::unavailable(noted.error());
   if (core::Status taken = take_up(id); !taken) {
-    job.state = StoredState::failed;
-    job.ended_ms = wall_ms();
+    job = before;  // done, if only some of its pictures are in doubt
     job.reason = "could not be taken up again: " + taken.error().message;
     (void)store_->update_job(job);  // where this fails too it is tried again at the next start
     return {grpc::StatusCode::FAILED_PRECONDITION, taken.error().message};

@@ -35,11 +35,17 @@ void Brain::confirmed(const Confirmed& sure) {
   const auto seat = seats_.find(sure.worker);
   if (desk == nullptr || seat == seats_.end()) return;
   const uint64_t begun = desk->frames[sure.frame].begun;
+  if (begun == 0) return;
   const std::string& name = seat->second.hello.worker_id();
   std::vector<uint64_t>& moments = trust_[name];
-  if (begun == 0 || (!moments.empty() && moments.back() >= begun)) return;
+  if (!moments.empty() && moments.back() >= begun) return;
   if (moments.size() == kMostMoments) moments.erase(moments.begin() + 1);
   moments.push_back(begun);
+  if (trust_.size() > kMostTrusted) {
+    trust_.erase(std::min_element(trust_.begin(), trust_.end(), [](const auto& a, const auto& b) {
+      return a.second.back() < b.second.back();
+    }));
+  }
   trust_to_store_.insert(name);
   if (std::exchange(storing_trust_, true)) return;
   chores_.add(kWorkersChores, [this] { return store_trust(); });
@@ -49,7 +55,11 @@ bool Brain::store_trust() {
   std::vector<StoredTrust> workers;
   {
     const std::lock_guard lock(mutex_);
-    for (const std::string& name : trust_to_store_) workers.push_back({name, trust_[name].back()});
+    for (const std::string& name : trust_to_store_) {
+      if (const auto kept = trust_.find(name); kept != trust_.end()) {
+        workers.push_back({name, kept->second.back()});
+      }
+    }
     trust_to_store_.clear();
     storing_trust_ = false;
   }

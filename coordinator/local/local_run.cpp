@@ -6,6 +6,12 @@
 namespace hyades::coordinator {
 namespace {
 
+/// "the disk is full" of "cannot write FILE: the disk is full".
+std::string reason_of(const std::string& trouble) {
+  const size_t colon = trouble.rfind(": ");
+  return colon == std::string::npos ? trouble : trouble.substr(colon + 2);
+}
+
 constexpr JobId kJob{1};
 
 SchedulerOptions scheduler_options(const LocalPlan& plan) {
@@ -129,7 +135,9 @@ Progress LocalRun::progress() const {
       }
     }
   }
-  p.trouble = keeper_.trouble();
+  if (const std::string trouble = keeper_.trouble(); !trouble.empty()) {
+    p.trouble = "waits for the disk: " + reason_of(trouble);
+  }
   return p;
 }
 

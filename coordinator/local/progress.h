@@ -20,7 +20,7 @@ struct Progress {
   double seconds_left = -1;  ///< -1: cannot be told yet
   double noise = -1;         ///< of the newest film, see estimate_noise; -1: not known
   int32_t noise_frame = 0;   ///< which frame that is
-  std::string trouble;       ///< why films cannot be stored at the moment; empty where they can
+  std::string trouble;  ///< why nothing happens at the moment: "paused"; empty where something does
 };
 
 /// Why a frame has no picture.

@@ -6,7 +6,8 @@ namespace hyades::coordinator {
 
 grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked, Bytes* said) {
   return answer<v1::InfoRequest, v1::InfoResponse>(
-      {admission_, context, asked, said}, [&](const v1::InfoRequest&, v1::InfoResponse& response) {
+      {admission_, context, asked, said},
+      [this](const v1::InfoRequest&, v1::InfoResponse& response) {
         brain_.info(response);
         return grpc::Status::OK;
       });
@@ -15,35 +16,37 @@ grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked
 grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* asked, Bytes* said) {
   return answer<v1::WorkersRequest, v1::WorkersResponse>(
       {admission_, context, asked, said},
-      [&](const v1::WorkersRequest& request, v1::WorkersResponse& response) {
+      [this](const v1::WorkersRequest& request, v1::WorkersResponse& response) {
         brain_.workers(request, response);
         return grpc::Status::OK;
       });
 }
 
-grpc::ServerUnaryReactor* FarmService::steer(Context* context, const Bytes* asked, Bytes* said,
-                                             grpc::Status (Brain::*what)(const v1::WorkerRequest&,
-                                                                         v1::Worker&)) {
-  return answer<v1::WorkerRequest, v1::WorkerResponse>(
-      {admission_, context, asked, said},
-      [&](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
-        return (brain_.*what)(request, *response.mutable_worker());
-      });
-}
-
 grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context, const Bytes* asked,
                                                    Bytes* said) {
-  return steer(context, asked, said, &Brain::drain_worker);
+  return answer<v1::WorkerRequest, v1::WorkerResponse>(
+      {admission_, context, asked, said},
+      [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
+        return brain_.drain_worker(request, *response.mutable_worker());
+      });
 }
 
 grpc::ServerUnaryReactor* FarmService::QuarantineWorker(Context* context, const Bytes* asked,
                                                         Bytes* said) {
-  return steer(context, asked, said, &Brain::quarantine_worker);
+  return answer<v1::WorkerRequest, v1::WorkerResponse>(
+      {admission_, context, asked, said},
+      [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
+        return brain_.quarantine_worker(request, *response.mutable_worker());
+      });
 }
 
 grpc::ServerUnaryReactor* FarmService::ReleaseWorker(Context* context, const Bytes* asked,
                                                      Bytes* said) {
-  return steer(context, asked, said, &Brain::release_worker);
+  return answer<v1::WorkerRequest, v1::WorkerResponse>(
+      {admission_, context, asked, said},
+      [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
+        return brain_.release_worker(request, *response.mutable_worker());
+      });
 }
 
 }  // namespace hyades::coordinator

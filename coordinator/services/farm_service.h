@@ -27,11 +27,6 @@ class FarmService final : public RawFarm {
                                           Bytes* said) override;
 
  private:
-  /// What a method does that takes a worker and answers with how it is now.
-  grpc::ServerUnaryReactor* steer(Context* context, const Bytes* asked, Bytes* said,
-                                  grpc::Status (Brain::*what)(const v1::WorkerRequest&,
-                                                              v1::Worker&));
-
   Brain& brain_;
   const Admission& admission_;
 };

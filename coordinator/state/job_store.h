@@ -59,6 +59,9 @@ struct StoredFrame {
   bool doubtful = false;  ///< a worker that had a part in it was found odd afterwards
 };
 
+/// Workers of which it is kept when they could be trusted: the last ones.
+inline constexpr size_t kMostTrusted = 10'000;
+
 /// That a worker could be trusted at some moment (StoredFrame::moment): another one of its class
 /// rendered a unit to the same bits.
 struct StoredTrust {

@@ -84,6 +84,13 @@ core::Status store_trust(sqlite3* db, const std::vector<StoredTrust>& workers) {
                             .run();
     if (!done) return done;
   }
+  // Ids of workers that never come again must not heap up; of whom is forgotten more is doubted.
+  core::Status cut = Query(db,
+                           "DELETE FROM trusted WHERE worker NOT IN "
+                           "(SELECT worker FROM trusted ORDER BY moment DESC LIMIT ?)")
+                         .bind(int64_t{kMostTrusted})
+                         .run();
+  if (!cut) return cut;
   return transaction.commit();
 }
 

@@ -187,6 +187,17 @@ TEST_F(OddWorkers, MakeWhatTheyHadAPartInDoubtful) {
   EXPECT_TRUE(found_odd(1, 0).empty());
 }
 
+TEST_F(OddWorkers, ThatWereTrustedLongAgoAreForgotten) {
+  std::vector<StoredTrust> workers;
+  for (size_t i = 0; i < kMostTrusted + 3; ++i) {
+    workers.push_back({"worker-" + std::to_string(i), 1 + i});
+  }
+  ASSERT_TRUE(store_->trust(workers).ok());
+  const auto kept = store_->trusted();
+  ASSERT_EQ(kept->size(), kMostTrusted);
+  for (const StoredTrust& worker : *kept) EXPECT_GT(worker.moment, 3U) << worker.worker;
+}
+
 TEST_F(OddWorkers, CouldBeTrustedOnce) {
   ASSERT_TRUE(store_->trust({{"odd-worker", 3}}).ok());
   ASSERT_TRUE(store_->trust({{"odd-worker", 11}, {"other", 5}}).ok());
