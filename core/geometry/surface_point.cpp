@@ -44,6 +44,10 @@ Ray spawn_ray_to(const SurfacePoint& p, const Vec3& target, float target_clearan
                  kTargetMargin * static_cast<double>(target_clearance));
 }
 
+Ray ray_between(const Vec3& from, const Vec3& target, float time) {
+  return segment(from, target, time, 0.0);
+}
+
 Ray spawn_ray_to(const SurfacePoint& p, const SurfacePoint& target) {
   const Vec3 d = target.position - p.position;
   return segment(offset_position(p, d), offset_position(target, -d), p.time, 0.0);

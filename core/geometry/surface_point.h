@@ -36,6 +36,9 @@ Ray spawn_ray(const SurfacePoint& p, const Vec3& direction, float t_max = kInfin
 /// already moved off its surface (offset_position), pass 0.
 Ray spawn_ray_to(const SurfacePoint& p, const Vec3& target, float target_clearance);
 
+/// A ray from a place in space to just before `target`, which has been moved off its surface.
+Ray ray_between(const Vec3& from, const Vec3& target, float time);
+
 /// A ray from `p` to `target`, both moved off their surfaces: exact at grazing angles too.
 Ray spawn_ray_to(const SurfacePoint& p, const SurfacePoint& target);
 

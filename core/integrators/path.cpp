@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "core/integrators/mis.h"
+#include "core/integrators/visibility.h"
 #include "core/materials/shaded_surface.h"
+#include "core/media/shares.h"
 
 namespace hyades::core {
 namespace {
@@ -18,10 +20,6 @@ enum BounceDimension : uint32_t {
   kPerBounce = 8,
 };
 
-/// Surfaces that a ray may pass without scattering (null materials) before it counts as caught in a
-/// bad mesh.
-constexpr int kMaxNullCrossings = 1000;
-
 /// A path that survives roulette less often than this would be all noise.
 constexpr float kMinSurvival = 0.05F;
 
@@ -32,7 +30,13 @@ class Path {
  public:
   Path(const IntegratorDesc& settings, const Scene& scene, const Ray& ray, Sampler& sampler,
        Workspace& work)
-      : settings_(settings), scene_(scene), ray_(ray), sampler_(sampler), work_(work) {}
+      : settings_(settings),
+        scene_(scene),
+        ray_(ray),
+        sampler_(sampler),
+        work_(work),
+        around_(scene.around_camera),
+        numbers_(sampler, 0, MediaNumbers::Purpose::flight) {}
 
   PixelSample trace() {
     previous_.position = ray_.origin;
@@ -40,7 +44,14 @@ class Path {
     while (true) {
       ++work_.rays;
       SurfacePoint point;
-      if (!scene_.world->nearest(ray_, depth_ == 0 ? RayKind::camera : RayKind::other, point)) {
+      const bool met =
+          scene_.world->nearest(ray_, depth_ == 0 ? RayKind::camera : RayKind::other, point);
+      if (const Medium* medium = around_.medium(); medium != nullptr) {
+        const Flight flight = fly(*medium, met ? &point : nullptr);
+        if (flight == Flight::ended) break;
+        if (flight == Flight::scattered) continue;
+      }
+      if (!met) {
         add_sky();
         break;
       }
@@ -48,6 +59,7 @@ class Path {
       if (object.material->is_null()) {
         add_emission(point, object);
         if (++null_crossings > kMaxNullCrossings) break;
+        cross(object, point, ray_.direction, around_);
         ray_ = spawn_ray(point, ray_.direction);
         ray_.time = point.time;
         continue;
@@ -63,8 +75,8 @@ class Path {
       const Vec3 wo = -ray_.direction;
       if (!albedo_noted_) note_albedo(surface, wo);
       const uint32_t dimension = kCameraDimensions + static_cast<uint32_t>(depth_) * kPerBounce;
-      if (surface.has_smooth()) add_direct_light(surface, wo, dimension);
-      if (!scatter(surface, wo, dimension)) break;
+      if (surface.has_smooth()) add_direct_light(surface, object, wo, dimension);
+      if (!scatter(surface, object, wo, dimension)) break;
     }
     return out_;
   }
@@ -117,63 +129,142 @@ class Path {
     add(radiance * bsdf_weight(object.light, pdf), depth_);
   }
 
-  void add_direct_light(const ShadedSurface& surface, const Vec3& wo, uint32_t dimension) {
-    if (scene_.lights.empty()) return;
+  void add_direct_light(const ShadedSurface& surface, const SceneObject& object, const Vec3& wo,
+                        uint32_t dimension) {
     const SurfacePoint& point = surface.point();
+    const auto chosen = choose_light(point.position, point.ng, point.time, dimension);
+    if (!chosen) return;
+    const LightSample& sample = chosen->sample;
+    const Rgb f = surface.evaluate(wo, sample.direction, TransportMode::radiance);
+    if (is_black(f)) return;
+    Ray shadow = sample.distance == kInfinity ? spawn_ray(point, sample.direction)
+                                              : spawn_ray_to(point, sample.position, 0.0F);
+    shadow.time = point.time;
+    MediumStack around = around_;
+    if (passes_through(point, wo, sample.direction)) cross(object, point, sample.direction, around);
+    add_light(*chosen, f, surface.pdf(wo, sample.direction, TransportMode::radiance), shadow,
+              around);
+  }
+
+  /// The same for a place in a medium.
+  void add_direct_light(const Phase& phase, const Vec3& position, const Rgb& shares,
+                        uint32_t dimension) {
+    const auto chosen = choose_light(position, Vec3(0.0F), ray_.time, dimension);
+    if (!chosen) return;
+    const LightSample& sample = chosen->sample;
+    const float cosine = glm::dot(ray_.direction, sample.direction);
+    const Ray shadow = sample.distance == kInfinity
+                           ? Ray{position, sample.direction, kInfinity, ray_.time}
+                           : ray_between(position, sample.position, ray_.time);
+    add_light(*chosen, phase.evaluate(cosine), phase.pdf(cosine, shares), shadow, around_);
+  }
+
+  /// A place on a light that may be seen from where the path is.
+  struct ChosenLight {
+    uint32_t index = 0;
+    float probability = 0.0F;
+    LightSample sample;
+  };
+
+  std::optional<ChosenLight> choose_light(const Vec3& from, const Vec3& normal, float time,
+                                          uint32_t dimension) {
+    if (scene_.lights.empty()) return std::nullopt;
     sampler_.set_dimension(dimension + kLight);
     const Vec4 u = sampler_.next_4d();
-    const auto chosen = scene_.selector->select(point.position, point.ng, u.z);
-    if (!chosen) return;
-    const Light& light = *scene_.lights[chosen->index];
-    const auto sample = light.sample_direct(point.position, point.time, u.w, Vec2(u));
-    if (!sample || is_black(sample->radiance)) return;
-    const Rgb f = surface.evaluate(wo, sample->direction, TransportMode::radiance);
-    if (is_black(f)) return;
+    const auto selected = scene_.selector->select(from, normal, u.z);
+    if (!selected) return std::nullopt;
+    const auto sample = scene_.lights[selected->index]->sample_direct(from, time, u.w, Vec2(u));
+    if (!sample || is_black(sample->radiance)) return std::nullopt;
+    return ChosenLight{selected->index, selected->probability, *sample};
+  }
 
-    Ray shadow = sample->distance == kInfinity ? spawn_ray(point, sample->direction)
-                                               : spawn_ray_to(point, sample->position, 0.0F);
-    shadow.time = point.time;
-    ++work_.rays;
-    if (scene_.world->occluded(shadow)) return;
-    const float light_pdf = chosen->probability * sample->pdf;
-    const float weight =
-        sample->delta ? 1.0F
-                      : power_heuristic(
-                            light_pdf, surface.pdf(wo, sample->direction, TransportMode::radiance));
+  /// Adds what `chosen` sends along `shadow`, scattered by `f`; scattering by chance would go there
+  /// with density `pdf`.
+  void add_light(const ChosenLight& chosen, const Rgb& f, float pdf, const Ray& shadow,
+                 const MediumStack& around) {
+    const Rgb share =
+        visible_share(scene_, shadow, around,
+                      MediaNumbers(sampler_, depth_, MediaNumbers::Purpose::shadow), work_);
+    if (is_black(share)) return;
+    const float light_pdf = chosen.probability * chosen.sample.pdf;
+    const float weight = chosen.sample.delta ? 1.0F : power_heuristic(light_pdf, pdf);
     if (work_.log != nullptr) {
       work_.log->lines.push_back(fmt::format("    chooses light '{}', weight {:.4g}",
-                                             scene_.light_names[chosen->index], weight));
+                                             scene_.light_names[chosen.index], weight));
     }
-    add(f * sample->radiance * (weight / light_pdf), depth_ + 1);
+    add(f * chosen.sample.radiance * share * (weight / light_pdf), depth_ + 1);
+  }
+
+  static bool passes_through(const SurfacePoint& point, const Vec3& wo, const Vec3& wi) {
+    return glm::dot(wo, point.ng) * glm::dot(wi, point.ng) < 0.0F;
+  }
+
+  enum class Flight { passed, scattered, ended };
+
+  /// Goes through `medium` to the surface that the ray meets (null: to infinity), or to where it
+  /// scatters: there light is added and a new direction taken.
+  Flight fly(const Medium& medium, const SurfacePoint* surface) {
+    const float t_max = surface != nullptr ? surface->t : kInfinity;
+    const Vec4 u = numbers_.next();
+    if (const Rgb emitted = medium.emitted(ray_, t_max, u); !is_black(emitted))
+      add(emitted, depth_);
+    const MediumSample sample = medium.sample(ray_, t_max, channel_shares(throughput_), u);
+    throughput_ *= sample.weight;
+    if (is_black(throughput_)) return Flight::ended;
+    if (!sample.scattered) return Flight::passed;
+    return scatter(medium, place_in_medium(sample.t, surface)) ? Flight::scattered : Flight::ended;
+  }
+
+  /// The point at `t`, but clear of the surface behind it: rounding must not put it on the other
+  /// side, where the path would never meet that surface again.
+  Vec3 place_in_medium(float t, const SurfacePoint* surface) const {
+    if (surface != nullptr) {
+      const float height = (surface->t - t) * std::abs(glm::dot(ray_.direction, surface->ng));
+      if (height < surface->clearance) return offset_position(*surface, -ray_.direction);
+    }
+    return ray_.at(t);
+  }
+
+  bool scatter(const Medium& medium, const Vec3& position) {
+    if (depth_ == 0) out_.alpha = 1.0F;
+    if (!albedo_noted_) {
+      out_.albedo = throughput_;
+      albedo_noted_ = true;
+    }
+    if (work_.log != nullptr)
+      work_.log->lines.push_back("  scatters in the medium at " + show(position));
+    if (depth_ >= settings_.max_depth) return false;
+    const uint32_t dimension = kCameraDimensions + static_cast<uint32_t>(depth_) * kPerBounce;
+    const Phase& phase = medium.phase();
+    const Rgb shares = channel_shares(throughput_);
+    add_direct_light(phase, position, shares, dimension);
+
+    sampler_.set_dimension(dimension + kBsdf);
+    const Vec4 u = sampler_.next_4d();
+    const Vec3 direction = phase.sample(ray_.direction, shares, u.z, Vec2(u));
+    const float cosine = glm::dot(ray_.direction, direction);
+    const float pdf = phase.pdf(cosine, shares);
+    if (!(pdf > 0.0F)) return false;
+    throughput_ *= phase.evaluate(cosine) / pdf;
+    if (!count_event(u.w)) return false;
+    previous_ = {.position = position, .normal = Vec3(0.0F), .pdf = pdf, .specular = false};
+    ray_ = {position, direction, kInfinity, ray_.time};
+    return true;
   }
 
   /// Goes on along the BSDF; false where the path ends.
-  bool scatter(const ShadedSurface& surface, const Vec3& wo, uint32_t dimension) {
+  bool scatter(const ShadedSurface& surface, const SceneObject& object, const Vec3& wo,
+               uint32_t dimension) {
     sampler_.set_dimension(dimension + kBsdf);
     const Vec4 u = sampler_.next_4d();
     const auto sample = surface.sample(wo, u.z, Vec2(u), TransportMode::radiance);
     if (!sample || is_black(sample->weight)) return false;
-    ++work_.bounces;
     throughput_ *= sample->weight;
     eta_scale_ *= sample->eta * sample->eta;
-    ++depth_;
-
-    if (depth_ >= settings_.roulette_depth) {
-      // Without the factor of refraction, which is undone when the path leaves the glass again.
-      const float keep = std::max(max_component(throughput_) * eta_scale_, kMinSurvival);
-      if (keep < 1.0F) {
-        if (u.w >= keep) {
-          if (work_.log != nullptr) work_.log->lines.emplace_back("  ended by roulette");
-          return false;
-        }
-        throughput_ /= keep;
-      }
-    }
+    if (!count_event(u.w)) return false;
     const SurfacePoint& point = surface.point();
-    previous_.specular = sample->delta;
-    previous_.pdf = sample->pdf;
-    previous_.position = point.position;
-    previous_.normal = point.ng;
+    previous_ = {point.position, point.ng, sample->pdf, sample->delta};
+    if (passes_through(point, wo, sample->wi)) cross(object, point, sample->wi, around_);
     ray_ = spawn_ray(point, sample->wi);
     ray_.time = point.time;
     if (work_.log != nullptr) {
@@ -182,6 +273,23 @@ class Path {
                                              sample->transmitted ? "transmission" : "reflection",
                                              show(sample->wi), show(sample->weight)));
     }
+    return true;
+  }
+
+  /// One more scattering event; false where roulette, decided by `u`, ends the path.
+  bool count_event(float u) {
+    ++work_.bounces;
+    ++depth_;
+    numbers_ = MediaNumbers(sampler_, depth_, MediaNumbers::Purpose::flight);
+    if (depth_ < settings_.roulette_depth) return true;
+    // Without the factor of refraction, which is undone when the path leaves the glass again.
+    const float keep = std::max(max_component(throughput_) * eta_scale_, kMinSurvival);
+    if (keep >= 1.0F) return true;
+    if (u >= keep) {
+      if (work_.log != nullptr) work_.log->lines.emplace_back("  ended by roulette");
+      return false;
+    }
+    throughput_ /= keep;
     return true;
   }
 
@@ -221,6 +329,8 @@ class Path {
   PixelSample out_;
   Rgb throughput_{1.0F};
   Previous previous_;
+  MediumStack around_;    ///< what the ray begins in
+  MediaNumbers numbers_;  ///< for the way from the last event on
   float eta_scale_ = 1.0F;
   int depth_ = 0;  ///< scattering events so far
   bool albedo_noted_ = false;

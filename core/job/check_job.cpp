@@ -33,9 +33,10 @@ std::vector<std::string> names_of(const std::vector<Desc>& list) {
 }
 
 void check_names(ReadContext& context) {
-  static const char* const kNouns[] = {"texture", "material", "group", "object"};
-  std::array<std::set<std::string>, 4> given;
-  for (size_t i = 0; i < 4; ++i) given[i] = {context.given[i].begin(), context.given[i].end()};
+  static const char* const kNouns[] = {"texture", "material", "group", "object", "medium"};
+  std::array<std::set<std::string>, 5> given;
+  for (size_t i = 0; i < given.size(); ++i)
+    given[i] = {context.given[i].begin(), context.given[i].end()};
   for (const NameUse& use : context.names) {
     const auto kind = static_cast<size_t>(use.kind);
     if (given[kind].contains(use.name)) continue;

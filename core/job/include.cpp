@@ -14,8 +14,8 @@ constexpr size_t kMaxDepth = 16;
 constexpr size_t kMaxFiles = 256;
 constexpr size_t kMaxBytes = size_t{64} << 20;
 
-const std::array<std::string_view, 5> kNamed = {"textures", "materials", "groups", "objects",
-                                                "lights"};
+const std::array<std::string_view, 6> kNamed = {"textures", "materials", "media",
+                                                "groups",   "objects",   "lights"};
 const std::array<std::string_view, 6> kSections = {"frames",     "film",   "sampling",
                                                    "integrator", "camera", "environment"};
 

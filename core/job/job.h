@@ -139,6 +139,24 @@ struct MaterialDesc {
   std::optional<BumpDesc> bump;
 };
 
+/// What fills space. Coefficients are per unit of length; they are given as they are, or by an
+/// albedo with a mean free path or an extinction coefficient.
+struct MediumDesc {
+  std::string name;
+  SourceLocation where;
+  Animated<Rgb> absorption{Rgb(0.0F)};          ///< 1/length
+  Animated<Rgb> scattering{Rgb(0.0F)};          ///< 1/length
+  std::optional<Animated<Rgb>> albedo;          ///< scattering / (absorption + scattering)
+  std::optional<Animated<Rgb>> mean_free_path;  ///< length
+  std::optional<Animated<Rgb>> density;         ///< absorption + scattering, 1/length
+  std::string phase = "henyey-greenstein";      ///< henyey-greenstein | rayleigh
+  Animated<Rgb> g{Rgb(0.0F)};                   ///< mean cosine, (-1, 1)
+  Animated<Rgb> g2{Rgb(0.0F)};                  ///< of a second lobe
+  Animated<float> blend{0.0F};                  ///< share of the second lobe
+  Animated<Rgb> emission{Rgb(0.0F)};            ///< W/(length^3 sr)
+  Animated<float> scale{1.0F};                  ///< multiplies all coefficients
+};
+
 /// Light that a shape gives off.
 struct EmitDesc {
   Animated<Rgb> color{Rgb(1.0F)};
@@ -160,6 +178,7 @@ struct ObjectDesc {
   bool caps = true;             ///< cylinder
   std::string smooth = "file";  ///< mesh normals: file | flat | smooth
   std::string material;         ///< empty: inherited from the group, else grey lambert
+  std::string interior;         ///< name in Job::media of what fills it; empty: nothing
   TransformList transform;
   Animated<Vec3> at{Vec3(0.0F)};  ///< translation after `transform`
   std::optional<EmitDesc> emit;
@@ -217,10 +236,12 @@ struct Job {
   CameraDesc camera;
   std::vector<TextureDesc> textures;
   std::vector<MaterialDesc> materials;
+  std::vector<MediumDesc> media;
   std::vector<GroupDesc> groups;
   std::vector<ObjectDesc> objects;
   std::vector<LightDesc> lights;
   std::optional<EnvironmentDesc> environment;
+  std::string atmosphere;  ///< name in Job::media of what fills all space; empty: nothing
   std::vector<OutputDesc> outputs;
   bool keep_films = false;  ///< each finished frame's film stays, as film_file() says
   ValueChecks checks;       ///< what its animated values must keep to at every frame (check_frame)

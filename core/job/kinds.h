@@ -21,6 +21,9 @@ std::span<const std::string> wrap_names();
 std::span<const std::string> texture_filter_names();
 std::span<const std::string> mapping_names();
 
+/// The values of a medium's `phase`.
+std::span<const std::string> phase_names();
+
 /// The values of a mesh's `normals`.
 std::span<const std::string> mesh_normals_names();
 

@@ -146,13 +146,13 @@ void MapReader::choice(std::string_view key, std::string& target,
 
 void MapReader::name_of(std::string_view key, std::string& target, NameKind kind) {
   static const char* const kNouns[] = {"a texture's name", "a material's name", "a group's name",
-                                       "an object's name"};
+                                       "an object's name", "a medium's name"};
   std::string name;
   text(key, name, kNouns[static_cast<int>(kind)]);
   if (name.empty()) return;
   target = name;
-  context_.names.push_back(
-      {kind, name, map_.find(key)->value->where, fmt::format("{} of {}", key, what_)});
+  const std::string label = what_.empty() ? std::string(key) : fmt::format("{} of {}", key, what_);
+  context_.names.push_back({kind, name, map_.find(key)->value->where, label});
 }
 
 void MapReader::file(std::string_view key, std::string& target) {
@@ -270,13 +270,6 @@ void MapReader::map(std::string_view key, const std::string& section,
   reader.finish();
 }
 
-void MapReader::later(std::string_view key) {
-  const YamlEntry* entry = map_.find(key);
-  if (entry == nullptr) return;
-  later_.emplace_back(key);
-  complain(entry->key_where, fmt::format("'{}' is not available in this version", key));
-}
-
 void MapReader::mismatch(std::string_view key, const YamlNode& found, const std::string& expected) {
   complain_mismatch({context_, std::string(key), {}}, found, expected);
 }
@@ -287,7 +280,6 @@ void MapReader::finish() {
   asked_.erase(std::unique(asked_.begin(), asked_.end()), asked_.end());
   for (const YamlEntry& entry : map_.map) {
     if (std::binary_search(asked_.begin(), asked_.end(), entry.key)) continue;
-    if (std::find(later_.begin(), later_.end(), entry.key) != later_.end()) continue;
     if (context_.diagnostics.full()) return;
     std::string hint = belongs_elsewhere(section_, entry.key);
     if (hint.empty()) hint = did_you_mean(entry.key, asked_);

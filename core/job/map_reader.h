@@ -71,9 +71,6 @@ class MapReader {
   void map(std::string_view key, const std::string& section,
            const std::function<void(MapReader&)>& read);
 
-  /// A key that later versions will have: complains where it is there.
-  void later(std::string_view key);
-
   /// Complains about the value of `key`: "fov is 'wide', expected ...".
   void mismatch(std::string_view key, const YamlNode& found, const std::string& expected);
   void complain(const SourceLocation& where, const std::string& message) {
@@ -95,7 +92,6 @@ class MapReader {
   std::string section_;
   SourceLocation where_;
   std::vector<std::string> asked_;
-  std::vector<std::string> later_;
 };
 
 /// One row of a table "type name -> who reads its keys". No reader: the type is known but not in

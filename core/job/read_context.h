@@ -16,7 +16,7 @@
 namespace hyades::core {
 
 /// What a name in a job may stand for.
-enum class NameKind { texture, material, group, object };
+enum class NameKind { texture, material, group, object, medium };
 
 /// A name that was used somewhere and must exist.
 struct NameUse {
@@ -41,7 +41,7 @@ struct ReadContext {
   Diagnostics& diagnostics;
   /// Every name that the job gives, by NameKind; those of entries with mistakes too, so that one
   /// mistake is one complaint. Objects: those of the top level.
-  std::array<std::vector<std::string>, 4> given;
+  std::array<std::vector<std::string>, 5> given;
   std::vector<NameUse> names;
   std::vector<FileUse> files;
   bool in_shutter = false;  ///< what is read now counts all the while the shutter is open

@@ -77,14 +77,14 @@ void read_job(MapReader& top, Job& job) {
   read_camera(top, job.camera);
   read_textures(top);
   read_materials(top);
+  read_media(top);
   read_groups(top);
   read_objects(top);
   read_lights(top);
   read_environment(top, job);
+  read_atmosphere(top, job);
   top.flag("keep_films", job.keep_films);
   read_outputs(top, job);
-  top.later("media");
-  top.later("atmosphere");
   top.finish();
 }
 

@@ -31,6 +31,23 @@ void read_emit(MapReader& reader, ObjectDesc& object) {
   object.emit = emit;
 }
 
+void read_interior(MapReader& reader, ObjectDesc& object) {
+  reader.enter_section("objects.bodies");
+  reader.name_of("interior", object.interior, NameKind::medium);
+}
+
+/// Shapes that nothing can be inside of.
+void refuse_interior(MapReader& reader, const ObjectDesc& object) {
+  const YamlNode* node = reader.find("interior");
+  if (node == nullptr || object.shape == "sphere" || object.shape == "box") return;
+  if (object.shape == "cylinder" && object.caps) return;
+  reader.complain(node->where,
+                  fmt::format("{} is a {}, which has no inside: interior needs a mesh, a sphere, a "
+                              "box or a cylinder with caps",
+                              reader.what(),
+                              object.shape == "cylinder" ? "cylinder without caps" : object.shape));
+}
+
 void read_sphere(MapReader& reader, ObjectDesc& object) {
   reader.number("radius", object.radius, kPositive);
 }
@@ -80,6 +97,9 @@ void read_shape(MapReader& reader, ObjectDesc& object) {
     reader.enter_section(std::string("objects.") + row.name);
     row.read(reader, object);
   }
+  if (object.shape.empty()) return;
+  read_interior(reader, object);
+  if (!reader.listing()) refuse_interior(reader, object);
 }
 
 void read_mesh(MapReader& reader, ObjectDesc& object) {
@@ -88,6 +108,7 @@ void read_mesh(MapReader& reader, ObjectDesc& object) {
   read_emit(reader, object);
   reader.enter_section("objects.mesh");
   reader.choice("normals", object.smooth, kMeshNormals);
+  read_interior(reader, object);
 }
 
 void read_instance(MapReader& reader, ObjectDesc& object) {
@@ -154,7 +175,6 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
     reader.context().listing->insert({"objects.group", "objects"});
     return;
   }
-  reader.later("interior");
   const KindRow* kind = find_kind(reader);
   if (kind == nullptr) return;
   kind->read(reader, object);

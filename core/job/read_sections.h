@@ -17,10 +17,12 @@ void read_integrator(MapReader& top, IntegratorDesc& integrator);
 void read_camera(MapReader& top, CameraDesc& camera);
 void read_textures(MapReader& top);
 void read_materials(MapReader& top);
+void read_media(MapReader& top);
 void read_groups(MapReader& top);
 void read_objects(MapReader& top);
 void read_lights(MapReader& top);
 void read_environment(MapReader& top, Job& job);
+void read_atmosphere(MapReader& top, Job& job);
 void read_outputs(MapReader& top, Job& job);
 
 /// The `transform` and `at` of an object.

@@ -94,6 +94,23 @@ void write(FieldWriter& out, const MaterialDesc& material) {
   out.leave();
 }
 
+void write(FieldWriter& out, const MediumDesc& medium) {
+  out.enter("medium");
+  out.put("name", medium.name);
+  out.put("absorption", medium.absorption);
+  out.put("scattering", medium.scattering);
+  if (medium.albedo) out.put("albedo", *medium.albedo);
+  if (medium.mean_free_path) out.put("mean_free_path", *medium.mean_free_path);
+  if (medium.density) out.put("density", *medium.density);
+  out.put("phase", medium.phase);
+  out.put("g", medium.g);
+  out.put("g2", medium.g2);
+  out.put("blend", medium.blend);
+  out.put("emission", medium.emission);
+  out.put("scale", medium.scale);
+  out.leave();
+}
+
 void write(FieldWriter& out, const TransformList& steps) {
   for (const TransformStep& step : steps) {
     out.enter("step");
@@ -126,6 +143,7 @@ void write(FieldWriter& out, const ObjectDesc& object) {
   out.put("caps", object.caps);
   out.put("smooth", object.smooth);
   out.put("material", object.material);
+  if (!object.interior.empty()) out.put("interior", object.interior);
   write(out, object.transform);
   out.put("at", object.at);
   if (object.emit) write(out, *object.emit);
@@ -190,10 +208,12 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   write(out, job.camera);
   for (const TextureDesc& texture : job.textures) write(out, texture);
   for (const MaterialDesc& material : job.materials) write(out, material);
+  for (const MediumDesc& medium : job.media) write(out, medium);
   for (const GroupDesc& group : job.groups) write(out, group);
   for (const ObjectDesc& object : job.objects) write(out, object);
   for (const LightDesc& light : job.lights) write(out, light);
   if (job.environment) write(out, *job.environment);
+  if (!job.atmosphere.empty()) out.put("atmosphere", job.atmosphere);
   out.put_other_files(job.includes);
   return out.take();
 }

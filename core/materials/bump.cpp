@@ -35,6 +35,7 @@ class Bump final : public Material {
   }
 
   bool is_null() const override { return base_->is_null(); }
+  bool leads_inside() const override { return base_->leads_inside(); }
 
  private:
   /// Change of height per unit of the parameter whose tangent is `tangent`, through space.

@@ -82,6 +82,7 @@ class Dielectric final : public Material {
     if (ior_ == 1.0F) return arena.make<MatchedBsdf>(transmission_);
     return arena.make<DielectricBsdf>(ior_, transmission_, reflection_);
   }
+  bool leads_inside() const override { return true; }
 
  private:
   float ior_;

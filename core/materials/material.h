@@ -18,6 +18,10 @@ class Material {
 
   /// True for the null material: the integrator walks through without a scattering event.
   virtual bool is_null() const { return false; }
+
+  /// Whether what it transmits comes into the body whose surface it is, as through glass (and not
+  /// through a thin pane), so that another medium begins there.
+  virtual bool leads_inside() const { return false; }
 };
 
 }  // namespace hyades::core

@@ -145,6 +145,7 @@ class RoughDielectric final : public Material {
     if (alpha < Ggx::kLeastAlpha || ior_ == 1.0F) return smooth_->bsdf_at(point, frame, arena);
     return arena.make<RoughDielectricBsdf>(ior_, alpha, transmission_, reflection_);
   }
+  bool leads_inside() const override { return true; }
 
  private:
   float ior_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/scene/material_makers.h"
+#include "core/scene/medium_makers.h"
 #include "core/scene/texture_makers.h"
 
 namespace hyades::core {
@@ -46,6 +47,14 @@ Result<MaterialPtr> Appearance::material(const std::string& name) {
     result = make_bump(result, *height, desc->bump->height.at(time_) * job_.units);
   }
   return materials_[name] = result;
+}
+
+Result<MediumPtr> Appearance::medium(const std::string& name) {
+  if (name.empty()) return MediumPtr();
+  if (const auto it = media_.find(name); it != media_.end()) return it->second;
+  const MediumDesc* desc = find_named(job_.media, name);
+  if (desc == nullptr) return Error{"there is no medium '" + name + "'"};
+  return media_[name] = make_medium(*desc, time_, job_.units);
 }
 
 Result<ColorParam> Appearance::color(const ColorInput& input) {

@@ -6,13 +6,14 @@
 #include "core/base/result.h"
 #include "core/job/job.h"
 #include "core/materials/make_material.h"
+#include "core/media/make_medium.h"
 #include "core/scene/scene_cache.h"
 
 namespace hyades::core {
 
-/// The textures and materials of a job at one moment, made on first use and shared afterwards. What
-/// the kinds are made of stands in make_texture.h and make_material.h, which ask here for what they
-/// refer to.
+/// The textures, materials and media of a job at one moment, made on first use and shared
+/// afterwards. What the kinds are made of stands in make_texture.h and make_material.h, which ask
+/// here for what they refer to.
 class Appearance {
  public:
   Appearance(const Job& job, const JobTime& time, SceneCache& cache)
@@ -23,6 +24,9 @@ class Appearance {
 
   /// The material called `name`; the grey default for "".
   Result<MaterialPtr> material(const std::string& name);
+
+  /// The medium called `name`; null for "".
+  Result<MediumPtr> medium(const std::string& name);
 
   // A parameter at this moment: its value, or the texture that it names.
   Result<ColorParam> color(const ColorInput& input);
@@ -41,6 +45,7 @@ class Appearance {
   SceneCache& cache_;
   std::map<std::string, TexturePtr> textures_;
   std::map<std::string, MaterialPtr> materials_;
+  std::map<std::string, MediumPtr> media_;
   int depth_ =
       0;  ///< of references in progress: the parser refuses cycles, this stops what slips through
 };

@@ -11,6 +11,7 @@
 #include "core/scene/appearance.h"
 #include "core/scene/flatten.h"
 #include "core/scene/light_makers.h"
+#include "core/scene/media_around.h"
 #include "core/scene/scene_files.h"
 
 namespace hyades::core {
@@ -43,6 +44,7 @@ class SceneBuilder {
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
     if (auto done = add_camera(); !done) return done.error();
+    add_media_around_camera();
     scene_->selector = make_power_selector(scene_->lights);
     scene_->resolution = {job_.film.width, job_.film.height};
     scene_->texture_memory = cache_.image_memory();
@@ -53,12 +55,17 @@ class SceneBuilder {
   Status add_objects() {
     auto flat = flatten_objects(job_, frame_, cache_);
     if (!flat) return flat.error();
+    if (auto done = add_atmosphere(*flat); !done) return done;
     std::vector<Placement> placements;
     placements.reserve(flat->size());
     for (const FlatObject& object : *flat) {
       auto material = looks_.material(object.material);
       if (!material) return at(object, material.error());
-      scene_->objects.push_back({*material, SceneObject::kNoLight, object.name});
+      SceneObject added;
+      added.material = *material;
+      added.name = object.name;
+      if (auto done = add_interior(object, added); !done) return done;
+      scene_->objects.push_back(std::move(added));
       placements.push_back(object.placement);
       placements.back().blocks_light = !(*material)->is_null();
       if (object.placement.shape.mesh)
@@ -71,6 +78,45 @@ class SceneBuilder {
       if ((*flat)[i].emit) scene_->objects[i].light = add_emitter(i, *(*flat)[i].emit);
     }
     return {};
+  }
+
+  Status add_atmosphere(const std::vector<FlatObject>& objects) {
+    auto atmosphere = looks_.medium(job_.atmosphere);
+    if (!atmosphere) return atmosphere.error().in("atmosphere");
+    scene_->atmosphere = *atmosphere;
+    scene_->has_media = *atmosphere != nullptr ||
+                        std::any_of(objects.begin(), objects.end(), [](const FlatObject& object) {
+                          return !object.interior.empty();
+                        });
+    return {};
+  }
+
+  /// What is inside of `object`, in scenes with media: there even an empty glass matters, for it
+  /// keeps the atmosphere out.
+  Status add_interior(const FlatObject& object, SceneObject& added) {
+    if (!scene_->has_media) return {};
+    auto interior = looks_.medium(object.interior);
+    if (!interior) return at(object, interior.error());
+    added.interior = *interior;
+    const bool closed = is_closed(*object.desc);
+    if (*interior == nullptr && !(closed && added.material->leads_inside())) return {};
+    added.body = static_cast<uint32_t>(object.body);
+    scene_->has_shells |= added.material->is_null();
+    return {};
+  }
+
+  /// Whether the shape has an inside; of meshes it is believed.
+  static bool is_closed(const ObjectDesc& object) {
+    return object.shape == "mesh" || object.shape == "sphere" || object.shape == "box" ||
+           (object.shape == "cylinder" && object.caps);
+  }
+
+  /// At the middle of the lens when the shutter opens: a camera that goes through a surface in
+  /// mid-frame is taken to be on the side where it began.
+  void add_media_around_camera() {
+    if (!scene_->has_media) return;
+    const Vec3 eye = job_.camera.look_from.at(time_) * job_.units;
+    scene_->around_camera = media_around(*scene_, eye, 0.0F);
   }
 
   static Error at(const FlatObject& object, const Error& error) {

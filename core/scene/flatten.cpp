@@ -56,6 +56,8 @@ class Flattener {
     flat.desc = &object;
     flat.name = name;
     flat.material = material;
+    flat.interior = object.interior;
+    flat.body = flat_.size();
     flat.emit = object.emit;
     flat.placement.shape = *shape;
     flat.placement.visible_to_camera = visible;
@@ -74,11 +76,14 @@ class Flattener {
   /// The two discs that close a cylinder.
   void add_caps(const ObjectDesc& object, const std::string& name, const std::string& material,
                 bool visible) {
+    const size_t body = flat_.size() - 1;
     for (const bool top : {false, true}) {
       FlatObject cap;
       cap.desc = &object;
       cap.name = name + (top ? "/top" : "/bottom");
       cap.material = material;
+      cap.interior = object.interior;
+      cap.body = body;
       cap.emit = object.emit;
       cap.placement.shape.kind = Shape::Kind::disk;
       cap.placement.shape.radius = object.radius;

@@ -22,21 +22,8 @@ using core::Vec3d;
 constexpr Promise kPromise{
     .significance = 0.01, .tests = 60, .relative_error = 0.01, .power = 0.99};
 
-/// Whether each channel's mean over the picture is `expected`.
 void expect_picture_mean(const YamlScene& scene, const Vec3d& expected) {
-  const PictureMean picture = picture_mean(scene.render().film);
-  const double alpha = sidak(kPromise.significance, kPromise.tests);
-  for (int c = 0; c < 3; ++c) {
-    const double variance = picture.sigma[c] * picture.sigma[c];
-    EXPECT_LE(detectable_effect(variance, alpha, kPromise.power),
-              kPromise.relative_error * std::abs(expected[c]))
-        << "underpowered: mean " << picture.mean[c] << " +- " << picture.sigma[c];
-    // Where nothing varies, float rounding is all there is.
-    const double rounding = 1e-5 * std::abs(expected[c]);
-    EXPECT_GE(z_test(picture.mean[c] - expected[c], variance + rounding * rounding), alpha)
-        << "channel " << c << ": mean " << picture.mean[c] << " +- " << picture.sigma[c]
-        << ", expected " << expected[c];
-  }
+  test::expect_picture_mean(scene, expected, kPromise);
 }
 
 /// A white-ish Lambert plane y = 0, one point of it looked at from above, and `lights`.

@@ -127,7 +127,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, References,
                          testing::Values(Reference{"box-grey", 96}, Reference{"box-diffuse", 96},
                                          Reference{"box-glass-mirror", 192},
                                          Reference{"rough-glass", 256, 0.08, 0.13},
-                                         Reference{"lens", 64}, Reference{"env-bunny-gold", 64}),
+                                         Reference{"lens", 64}, Reference{"env-bunny-gold", 64},
+                                         Reference{"fog-room", 128},
+                                         Reference{"subsurface-grey", 96}),
                          [](const auto& scene) {
                            std::string name = scene.param.name;
                            std::replace(name.begin(), name.end(), '-', '_');

@@ -1,5 +1,7 @@
 #include "tests/truth/render_yaml.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -45,6 +47,23 @@ PictureMean picture_mean(const core::Film& film) {
     result.sigma[c] = std::sqrt(result.sigma[c]) / pixels;
   }
   return result;
+}
+
+void expect_picture_mean(const YamlScene& scene, const core::Vec3d& expected,
+                         const Promise& promise) {
+  const PictureMean picture = picture_mean(scene.render().film);
+  const double alpha = sidak(promise.significance, promise.tests);
+  for (int c = 0; c < 3; ++c) {
+    const double variance = picture.sigma[c] * picture.sigma[c];
+    EXPECT_LE(detectable_effect(variance, alpha, promise.power),
+              promise.relative_error * std::abs(expected[c]))
+        << "underpowered: mean " << picture.mean[c] << " +- " << picture.sigma[c];
+    // Where nothing varies, float rounding is all there is.
+    const double rounding = 1e-5 * std::abs(expected[c]);
+    EXPECT_GE(z_test(picture.mean[c] - expected[c], variance + rounding * rounding), alpha)
+        << "channel " << c << ": mean " << picture.mean[c] << " +- " << picture.sigma[c]
+        << ", expected " << expected[c];
+  }
 }
 
 std::string shared_folder() {

@@ -7,6 +7,7 @@
 #include "core/job/job.h"
 #include "core/render/render_frame.h"
 #include "core/scene/scene_cache.h"
+#include "tests/support/means.h"
 
 namespace hyades::test {
 
@@ -39,6 +40,11 @@ struct PictureMean {
   core::Vec3d sigma{0.0};
 };
 PictureMean picture_mean(const core::Film& film);
+
+/// Whether each channel's mean over the rendered picture is `expected`; fails too where the picture
+/// could not have told.
+void expect_picture_mean(const YamlScene& scene, const core::Vec3d& expected,
+                         const Promise& promise);
 
 /// The folder of real-world inputs beside the repository; empty where it is absent.
 std::string shared_folder();

@@ -172,12 +172,28 @@ TEST(Complaints, WhatLaterVersionsKnowIsNotCalledAMistake) {
             "job.yaml:2:20: type 'bdpt' is not available in this version; available: path\n");
   EXPECT_EQ(complaints("integrator: mlt\n"),
             "job.yaml:2:13: type 'mlt' is not available in this version; available: path\n");
-  EXPECT_EQ(complaints("media: {fog: {g: 0.5}}\natmosphere: fog\n"),
-            "job.yaml:2:1: 'media' is not available in this version\n"
-            "job.yaml:3:1: 'atmosphere' is not available in this version\n");
   EXPECT_EQ(complaints("outputs: [{file: a.mp4}]\n"),
             "job.yaml:2:18: file is 'a.mp4', expected the ending .exr, .png, .jpg or .jpeg (.mp4 "
             "is not available in this version)\n");
+}
+
+TEST(Complaints, Media) {
+  EXPECT_EQ(complaints("media: {fog: {g: 1}}\n"),
+            "job.yaml:2:18: g is '1', expected a number above -1 and below 1\n");
+  EXPECT_EQ(complaints("media: {fog: {albedo: 0.5}}\n"),
+            "job.yaml:2:23: medium 'fog' has albedo alone, expected albedo together with "
+            "mean_free_path or density\n");
+  EXPECT_EQ(complaints("media: {fog: {albedo: 0.5, density: 2, scattering: 1}}\n"),
+            "job.yaml:2:23: medium 'fog' has both albedo and scattering, expected one way of "
+            "saying how dense it is\n");
+  EXPECT_EQ(complaints("media: {fog: {phase: rayleigh, g: 0.5}}\n"),
+            "job.yaml:2:35: g belongs to phase henyey-greenstein, not to rayleigh\n");
+  EXPECT_EQ(complaints("media: {fog: {}}\nobjects: {a: {shape: disk, interior: fog}}\n"),
+            "job.yaml:3:38: object 'a' is a disk, which has no inside: interior needs a mesh, a "
+            "sphere, a box or a cylinder with caps\n");
+  EXPECT_EQ(complaints("media: {fog: {}}\natmosphere: smog\n"),
+            "job.yaml:3:13: atmosphere names the medium 'smog', which does not exist; there are "
+            "fog\n");
 }
 
 TEST(Complaints, DanglingNames) {

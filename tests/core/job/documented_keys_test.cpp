@@ -140,6 +140,8 @@ const std::map<std::string, Place>& places() {
       p[std::string("objects.") + shape] = object("shape", shape);
     }
     p["objects.shapes"] = p["objects"];
+    p["objects.bodies"] = p["objects"];
+    p["media"] = {"media: {x: {", {}, "}}"};
     p["objects.mesh"] = object("mesh", "chair.obj");
     p["objects.emit"] = {"objects: {x: {shape: sphere, emit: {", {}, "}}}"};
     p["objects.group"] = {"objects: {x: {group: {", {}, "}}}"};
@@ -165,6 +167,9 @@ const std::map<std::string, Place>& places() {
 Pairs company(const JobKey& id) {
   if (id == JobKey{"materials.conductor", "eta"}) return {{"k", "3"}};
   if (id == JobKey{"materials.conductor", "k"}) return {{"eta", "1.2"}};
+  if (id == JobKey{"media", "albedo"}) return {{"density", "2"}};
+  if (id == JobKey{"media", "density"}) return {{"albedo", "0.5"}};
+  if (id == JobKey{"media", "mean_free_path"}) return {{"albedo", "0.5"}};
   return {};
 }
 
@@ -180,6 +185,7 @@ bool excludes(const JobKey& id, const std::string& other) {
 constexpr const char* kBase = R"yaml(
 textures: {marble: {type: fbm3d, octaves: 5}, tiles: {type: checker, scale: 3}}
 materials: {clay: {type: lambert, color: 0.3}, steel: {type: conductor, metal: iron}}
+media: {mist: {scattering: 0.1}, milk: {scattering: 5}}
 groups: {tree: {objects: {a: {shape: sphere}, b: {shape: box}}}}
 objects: {ball: {shape: sphere, radius: 3, at: ["= t", 0, 0]}}
 lights: {bulb: {type: point, power: 5}}
@@ -247,7 +253,8 @@ Pairs base_pairs(const JobKey& id) {
 /// The sample job as it is before the key is tried.
 std::string sample_text(const JobKey& id) {
   Pairs pairs = base_pairs(id);
-  if (!company(id).empty()) pairs.emplace_back("metal", "gold");
+  if (id.section == "materials.conductor" && !company(id).empty())
+    pairs.emplace_back("metal", "gold");
   return job_text(id, pairs);
 }
 

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/samplers/sampler.h"
+
+namespace hyades::core {
+
+/// Surfaces that a ray may pass without scattering (null materials) before it counts as caught in a
+/// bad mesh.
+inline constexpr int kMaxNullCrossings = 1000;
+
+/// The random numbers that media ask for, in dimensions that nothing else uses: what surfaces draw
+/// does not depend on whether there are media. Each way between two events of a path has a run of
+/// groups of its own, so that the first way from the camera is well stratified in every pixel.
+class MediaNumbers {
+ public:
+  enum class Purpose : uint32_t { flight, shadow };
+
+  /// Of the way after `depth` scattering events.
+  MediaNumbers(Sampler& sampler, int depth, Purpose purpose)
+      : sampler_(&sampler),
+        dimension_(kFirst + static_cast<uint32_t>(depth) * 2 * kPerWay +
+                   static_cast<uint32_t>(purpose) * kPerWay) {}
+
+  /// For the next part of the way.
+  Vec4 next() {
+    sampler_->set_dimension(dimension_);
+    dimension_ += 4;
+    return sampler_->next_4d();
+  }
+
+ private:
+  static constexpr uint32_t kFirst = 1U << 20U;   ///< above all that 65,536 bounces draw
+  static constexpr uint32_t kPerWay = 1U << 12U;  ///< kMaxNullCrossings + 1 parts of four
+
+  Sampler* sampler_;
+  uint32_t dimension_;
+};
+static_assert(4 * (kMaxNullCrossings + 2) <= 1 << 12);
+
+}  // namespace hyades::core

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "core/integrators/integrator.h"
+#include "core/integrators/media_numbers.h"
+
+namespace hyades::core {
+
+/// An unbiased estimate of the share of light that comes along `shadow` neither blocked nor
+/// scattered: 0 where a surface stands in the way; what media between, which begin and end at null
+/// surfaces, let through. `around`: the bodies that the ray begins in.
+Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
+                  MediaNumbers numbers, Workspace& work);
+
+/// Tells `around` that a path crossed the surface of `object` at `point` towards `direction`.
+void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,
+           MediumStack& around);
+
+}  // namespace hyades::core
