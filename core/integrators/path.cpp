@@ -140,10 +140,13 @@ class Path {
     Ray shadow = sample.distance == kInfinity ? spawn_ray(point, sample.direction)
                                               : spawn_ray_to(point, sample.position, 0.0F);
     shadow.time = point.time;
-    MediumStack around = around_;
-    if (passes_through(point, wo, sample.direction)) cross(object, point, sample.direction, around);
-    add_light(*chosen, f, surface.pdf(wo, sample.direction, TransportMode::radiance), shadow,
-              around);
+    const float pdf = surface.pdf(wo, sample.direction, TransportMode::radiance);
+    if (!passes_through(point, wo, sample.direction)) {
+      return add_light(*chosen, f, pdf, shadow, around_);
+    }
+    MediumStack beyond = around_;
+    cross(object, point, sample.direction, beyond);
+    add_light(*chosen, f, pdf, shadow, beyond);
   }
 
   /// The same for a place in a medium.

@@ -9,11 +9,15 @@
 /// for each; a test there holds the two together.
 namespace hyades::core {
 
+struct ObjectDesc;
+
 std::vector<std::string> texture_types();
 std::vector<std::string> material_types();
 std::vector<std::string> light_types();
 /// What has a surface: the values of `shape`, and "mesh".
 std::vector<std::string> shape_names();
+/// Whether a shape is closed, so that something can be inside of it; of meshes it is believed.
+bool has_inside(const ObjectDesc& object);
 
 // Of image textures and mappings.
 std::span<const std::string> color_space_names();

@@ -240,6 +240,14 @@ void MapReader::color(std::string_view key, Animated<Rgb>& target, const Range& 
   if (node != nullptr) read_animated_color({context_, std::string(key), range}, *node, target);
 }
 
+void MapReader::color(std::string_view key, std::optional<Animated<Rgb>>& target,
+                      const Range& range) {
+  if (find(key) == nullptr) return;
+  Animated<Rgb> value(Rgb(1.0F));
+  color(key, value, range);
+  target = value;
+}
+
 void MapReader::color_input(std::string_view key, ColorInput& target, const Range& range) {
   const YamlNode* node = find_color(key);
   if (node == nullptr) return;

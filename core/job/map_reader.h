@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -64,6 +65,8 @@ class MapReader {
   /// A vector; a single number stands for all three, and [x, y] leaves z as it is.
   void animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range);
   void color(std::string_view key, Animated<Rgb>& target, const Range& range);
+  /// As above; stays empty where the key is absent.
+  void color(std::string_view key, std::optional<Animated<Rgb>>& target, const Range& range);
   void color_input(std::string_view key, ColorInput& target, const Range& range);
   void scalar_input(std::string_view key, ScalarInput& target, const Range& range);
 

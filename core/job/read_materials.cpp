@@ -45,18 +45,10 @@ void read_dielectric(MapReader& reader, MaterialDesc& material) {
   read_thin_dielectric(reader, material);
 }
 
-void read_measured(MapReader& reader, std::string_view key, std::optional<Animated<Rgb>>& target,
-                   const Range& range) {
-  if (reader.find(key) == nullptr) return;
-  Animated<Rgb> value(Rgb(1.0F));
-  reader.color(key, value, range);
-  target = value;
-}
-
 void read_conductor(MapReader& reader, MaterialDesc& material) {
   reader.choice("metal", material.metal, metal_names_in_jobs());
-  read_measured(reader, "eta", material.eta, {0.0, 100.0, true});
-  read_measured(reader, "k", material.k, {0.0, 100.0});
+  reader.color("eta", material.eta, {0.0, 100.0, true});
+  reader.color("k", material.k, {0.0, 100.0});
   if (material.eta.has_value() != material.k.has_value()) {
     const char* there = material.eta.has_value() ? "eta" : "k";
     reader.complain(reader.find(there)->where, "eta and k belong together, found only one of them");

@@ -25,21 +25,13 @@ bool stands_beside(MapReader& reader, std::string_view key,
   return false;
 }
 
-void read_color_of(MapReader& reader, std::string_view key, std::optional<Animated<Rgb>>& target,
-                   const Range& range) {
-  if (reader.find(key) == nullptr) return;
-  Animated<Rgb> value(Rgb(1.0F));
-  reader.color(key, value, range);
-  target = value;
-}
-
 /// Coefficients, or an albedo with a length or a density.
 void read_density(MapReader& reader, MediumDesc& medium) {
   reader.color("absorption", medium.absorption, kNotNegative);
   reader.color("scattering", medium.scattering, kNotNegative);
-  read_color_of(reader, "albedo", medium.albedo, kUnitInterval);
-  read_color_of(reader, "mean_free_path", medium.mean_free_path, kPositive);
-  read_color_of(reader, "density", medium.density, kNotNegative);
+  reader.color("albedo", medium.albedo, kUnitInterval);
+  reader.color("mean_free_path", medium.mean_free_path, kPositive);
+  reader.color("density", medium.density, kNotNegative);
   static constexpr std::array<std::string_view, 2> kCoefficients = {"absorption", "scattering"};
   static constexpr std::array<std::string_view, 1> kLength = {"mean_free_path"};
   if (stands_beside(reader, "albedo", kCoefficients) ||

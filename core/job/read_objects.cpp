@@ -39,8 +39,7 @@ void read_interior(MapReader& reader, ObjectDesc& object) {
 /// Shapes that nothing can be inside of.
 void refuse_interior(MapReader& reader, const ObjectDesc& object) {
   const YamlNode* node = reader.find("interior");
-  if (node == nullptr || object.shape == "sphere" || object.shape == "box") return;
-  if (object.shape == "cylinder" && object.caps) return;
+  if (node == nullptr || has_inside(object)) return;
   reader.complain(node->where,
                   fmt::format("{} is a {}, which has no inside: interior needs a mesh, a sphere, a "
                               "box or a cylinder with caps",
@@ -201,6 +200,11 @@ std::vector<std::string> shape_names() {
   std::vector<std::string> names = {"mesh"};
   for (const ShapeRow& row : kShapes) names.emplace_back(row.name);
   return names;
+}
+
+bool has_inside(const ObjectDesc& object) {
+  return object.shape == "mesh" || object.shape == "sphere" || object.shape == "box" ||
+         (object.shape == "cylinder" && object.caps);
 }
 
 std::span<const std::string> mesh_normals_names() { return kMeshNormals; }

@@ -8,6 +8,7 @@
 #include "core/base/elementary.h"
 #include "core/geometry/placement_check.h"
 #include "core/job/check_frame.h"
+#include "core/job/kinds.h"
 #include "core/scene/appearance.h"
 #include "core/scene/flatten.h"
 #include "core/scene/light_makers.h"
@@ -86,7 +87,7 @@ class SceneBuilder {
     scene_->atmosphere = *atmosphere;
     scene_->has_media = *atmosphere != nullptr ||
                         std::any_of(objects.begin(), objects.end(), [](const FlatObject& object) {
-                          return !object.interior.empty();
+                          return !object.desc->interior.empty();
                         });
     return {};
   }
@@ -95,20 +96,14 @@ class SceneBuilder {
   /// keeps the atmosphere out.
   Status add_interior(const FlatObject& object, SceneObject& added) {
     if (!scene_->has_media) return {};
-    auto interior = looks_.medium(object.interior);
+    auto interior = looks_.medium(object.desc->interior);
     if (!interior) return at(object, interior.error());
     added.interior = *interior;
-    const bool closed = is_closed(*object.desc);
+    const bool closed = has_inside(*object.desc);
     if (*interior == nullptr && !(closed && added.material->leads_inside())) return {};
     added.body = static_cast<uint32_t>(object.body);
     scene_->has_shells |= added.material->is_null();
     return {};
-  }
-
-  /// Whether the shape has an inside; of meshes it is believed.
-  static bool is_closed(const ObjectDesc& object) {
-    return object.shape == "mesh" || object.shape == "sphere" || object.shape == "box" ||
-           (object.shape == "cylinder" && object.caps);
   }
 
   /// At the middle of the lens when the shutter opens: a camera that goes through a surface in

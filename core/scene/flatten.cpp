@@ -56,7 +56,6 @@ class Flattener {
     flat.desc = &object;
     flat.name = name;
     flat.material = material;
-    flat.interior = object.interior;
     flat.body = flat_.size();
     flat.emit = object.emit;
     flat.placement.shape = *shape;
@@ -82,7 +81,6 @@ class Flattener {
       cap.desc = &object;
       cap.name = name + (top ? "/top" : "/bottom");
       cap.material = material;
-      cap.interior = object.interior;
       cap.body = body;
       cap.emit = object.emit;
       cap.placement.shape.kind = Shape::Kind::disk;

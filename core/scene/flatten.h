@@ -16,7 +16,6 @@ struct FlatObject {
   const ObjectDesc* desc = nullptr;  ///< in the job
   std::string name;                  ///< "tree1/trunk"
   std::string material;  ///< name; inherited from the enclosing group where the object has none
-  std::string interior;  ///< name of the medium that fills it; empty: nothing
   size_t body = 0;       ///< index of the first of all parts of its closed surface
   std::optional<EmitDesc> emit;
   Placement placement;  ///< in metres

@@ -19,8 +19,6 @@ class MediumStack {
   /// What is around; null: nothing.
   const Medium* medium() const { return size_ > 0 ? inside_[size_ - 1].medium : atmosphere_; }
 
-  bool is_outside() const { return size_ == 0; }
-
   /// Comes into `body`, which is filled with `medium` (may be null).
   void enter(uint32_t body, const Medium* medium) {
     leave(body);
