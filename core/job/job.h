@@ -155,6 +155,7 @@ struct MediumDesc {
   Animated<float> blend{0.0F};                  ///< share of the second lobe
   Animated<Rgb> emission{Rgb(0.0F)};            ///< W/(length^3 sr)
   Animated<float> scale{1.0F};                  ///< multiplies all coefficients
+  std::optional<float> index;  ///< of refraction, of bodies of it that have no material
 };
 
 /// Light that a shape gives off.
@@ -177,7 +178,8 @@ struct ObjectDesc {
   float height = 1.0F;          ///< cylinder, along y
   bool caps = true;             ///< cylinder
   std::string smooth = "file";  ///< mesh normals: file | flat | smooth
-  std::string material;         ///< empty: inherited from the group, else grey lambert
+  std::string material;         ///< empty: inherited from the group, else of the medium's index
+                                ///< of refraction, else grey lambert
   std::string interior;         ///< name in Job::media of what fills it; empty: nothing
   TransformList transform;
   Animated<Vec3> at{Vec3(0.0F)};  ///< translation after `transform`

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "core/job/kinds.h"
+#include "core/job/read_preset.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
@@ -76,8 +77,10 @@ void read_media(MapReader& top) {
                medium.name = name;
                medium.where = node.where;
                reader.find("like");
+               read_preset(reader, medium);
                read_density(reader, medium);
                read_phase(reader, medium);
+               read_index(reader, medium);
                reader.color("emission", medium.emission, kNotNegative);
                reader.animated("scale", medium.scale, kNotNegative);
                reader.finish();

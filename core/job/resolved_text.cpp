@@ -108,6 +108,7 @@ void write(FieldWriter& out, const MediumDesc& medium) {
   out.put("blend", medium.blend);
   out.put("emission", medium.emission);
   out.put("scale", medium.scale);
+  if (medium.index) out.put("index", *medium.index);
   out.leave();
 }
 

@@ -49,6 +49,13 @@ Result<MaterialPtr> Appearance::material(const std::string& name) {
   return materials_[name] = result;
 }
 
+Result<MaterialPtr> Appearance::surface(const std::string& material, const std::string& interior) {
+  const MediumDesc* inside = find_named(job_.media, interior);
+  if (!material.empty() || inside == nullptr || !inside->index) return this->material(material);
+  if (*inside->index == 1.0F) return make_null();
+  return make_dielectric(*inside->index, Rgb(1.0F), Rgb(1.0F));
+}
+
 Result<MediumPtr> Appearance::medium(const std::string& name) {
   if (name.empty()) return MediumPtr();
   if (const auto it = media_.find(name); it != media_.end()) return it->second;

@@ -25,6 +25,10 @@ class Appearance {
   /// The material called `name`; the grey default for "".
   Result<MaterialPtr> material(const std::string& name);
 
+  /// What an object of that material is seen as. Without one, a body whose medium has an index of
+  /// refraction has a smooth surface of it.
+  Result<MaterialPtr> surface(const std::string& material, const std::string& interior);
+
   /// The medium called `name`; null for "".
   Result<MediumPtr> medium(const std::string& name);
 

@@ -60,7 +60,7 @@ class SceneBuilder {
     std::vector<Placement> placements;
     placements.reserve(flat->size());
     for (const FlatObject& object : *flat) {
-      auto material = looks_.material(object.material);
+      auto material = looks_.surface(object.material, object.desc->interior);
       if (!material) return at(object, material.error());
       SceneObject added;
       added.material = *material;
