@@ -16,6 +16,7 @@ using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using Vec4 = glm::vec4;
 using Vec2i = glm::ivec2;
+using Vec3i = glm::ivec3;
 using Vec3d = glm::dvec3;
 using Mat3 = glm::mat3;
 using Mat4 = glm::mat4;  ///< column-major; a point transforms as M * (p, 1)

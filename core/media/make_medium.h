@@ -2,7 +2,9 @@
 
 #include <memory>
 
+#include "core/media/field_place.h"
 #include "core/media/medium.h"
+#include "core/media/volume.h"
 
 /// One maker per kind of medium.
 namespace hyades::core {
@@ -13,5 +15,18 @@ using MediumPtr = std::shared_ptr<const Medium>;
 /// W/(m^3 sr), each >= 0 per channel.
 MediumPtr make_homogeneous(const Rgb& absorption, const Rgb& scattering, const Rgb& emission,
                            const Phase& phase);
+
+/// What a medium is where its density is 1, in the units of make_homogeneous().
+struct Coefficients {
+  Rgb absorption{0.0F};
+  Rgb scattering{0.0F};
+  Rgb emission{0.0F};
+};
+
+/// A medium that varies as `volume`, put into the world by `place`: absorption and scattering are
+/// those of `per_density` times the density. Light scatters there times the volume's tint (what
+/// that takes is absorbed). Emission is times the volume's glow.
+MediumPtr make_varying(std::shared_ptr<const Volume> volume, const FieldPlace& place,
+                       const Coefficients& per_density, const Phase& phase);
 
 }  // namespace hyades::core

@@ -5,6 +5,7 @@
 
 #include "core/media/make_medium.h"
 #include "core/media/shares.h"
+#include "tests/core/media/volumes.h"
 #include "tests/support/means.h"
 #include "tests/support/random.h"
 
@@ -16,12 +17,6 @@ const Rgb kScattering(0.4F, 2.0F, 0.05F);
 
 MediumPtr coloured(const Rgb& emission = Rgb(0.0F)) {
   return make_homogeneous(kAbsorption, kScattering, emission, Phase::henyey_greenstein(Rgb(0.0F)));
-}
-
-Vec4 random4(test::Random& random) {
-  const Vec2 a = random.uniform2();
-  const Vec2 b = random.uniform2();
-  return {a.x, a.y, b.x, b.y};
 }
 
 double extinction(int c) { return double{kAbsorption[c]} + double{kScattering[c]}; }

@@ -1,0 +1,100 @@
+// Fields say truly between which values they lie, and walks through their bounds miss nothing.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/core/media/volumes.h"
+
+namespace hyades::core {
+namespace {
+
+Vec3 within(const Bounds& bounds, test::Random& random) {
+  const Vec3 u(random.uniform(), random.uniform(), random.uniform());
+  return bounds.lower + u * bounds.size();
+}
+
+TEST(BrickGrid, InterpolatesTrilinearlyAcrossBricks) {
+  const auto value = [](const Vec3i& p) {
+    return static_cast<float>(p.x) + 0.5F * static_cast<float>(p.y) -
+           0.25F * static_cast<float>(p.z);
+  };
+  const BrickGrid<float> grid(Vec3i(-9, 0, 2), Vec3i(20, 17, 30), value,
+                              [](const Vec3i&, const Vec3i&) { return true; });
+  test::Random random(1);
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 p = within({Vec3(-9, 0, 2), Vec3(20, 17, 30)}, random);
+    EXPECT_NEAR(grid.at(p), p.x + 0.5F * p.y - 0.25F * p.z, 1e-4F);
+  }
+  EXPECT_EQ(grid.at(Vec3(-10.1F, 3.0F, 5.0F)), 0.0F);
+  EXPECT_NEAR(grid.at(Vec3(-9.75F, 3.0F, 5.0F)), 0.25F * value({-9, 3, 5}), 1e-5F);
+  EXPECT_EQ(grid.at(Vec3(std::nanf(""), 3.0F, 5.0F)), 0.0F);
+}
+
+TEST(BrickGrid, KeepsOnlyBricksThatHoldSomething) {
+  const auto value = [](const Vec3i& p) { return p == Vec3i(50, 60, 70) ? 2.0F : 0.0F; };
+  const BrickGrid<float> grid(Vec3i(0), Vec3i(127), value,
+                              [](const Vec3i&, const Vec3i&) { return true; });
+  EXPECT_LE(grid.brick_count(), 8U);
+  EXPECT_EQ(grid.at(Vec3(50.0F, 60.0F, 70.0F)), 2.0F);
+  EXPECT_FLOAT_EQ(grid.at(Vec3(50.5F, 60.5F, 69.5F)), 0.25F);
+}
+
+void expect_bounded(const DensityField& field, uint64_t seed) {
+  test::Random random(seed);
+  const Bounds all = field.bounds();
+  for (int n = 0; n < 400; ++n) {
+    Bounds box;
+    box.include(within(all, random));
+    box.include(box.lower + random.uniform() * random.uniform() * all.size());
+    const Extent extent = field.over(box);
+    for (int k = 0; k < 40; ++k) {
+      const float value = field.at(within(box, random));
+      ASSERT_GE(value, extent.least - 1e-6F);
+      ASSERT_LE(value, extent.greatest + 1e-6F);
+    }
+  }
+}
+
+TEST(Fields, LieBetweenTheirBounds) { expect_bounded(GridDensity(random_grid(30, 5)), 2); }
+
+// Each part of a way lies in the cell whose bounds it is told with, and the parts make the whole.
+TEST(MajorantGrid, WalksWithoutGapsAndWithTheRightBounds) {
+  const auto grid = random_grid(24, 11);
+  const GridDensity field(grid);
+  test::Random random(9);
+  for (const Vec3i& cells : {Vec3i(1), Vec3i(3, 9, 5), Vec3i(24)}) {
+    const MajorantGrid majorants(field, cells);
+    for (int n = 0; n < 3000; ++n) {
+      const Vec3 from = within({Vec3(-20.0F), Vec3(45.0F)}, random);
+      Vec3 direction = random.direction();
+      if (n % 5 == 0) direction[n % 3] = 0.0F;
+      if (n % 10 == 0) direction = Vec3(0.0F, n % 20 == 0 ? 1.0F : -1.0F, 0.0F);
+      const float t_max = n % 7 == 0 ? kInfinity : 60.0F * random.uniform();
+      const auto span = majorants.inside(from, direction, t_max);
+      float reached = span.begin;
+      int parts = 0;
+      majorants.walk(from, direction, t_max, [&](float begin, float end, const Extent& extent) {
+        EXPECT_EQ(begin, reached);
+        EXPECT_GT(end, begin);
+        reached = end;
+        ++parts;
+        for (int k = 0; k < 3; ++k) {
+          const float value = field.at(from + glm::mix(begin, end, random.uniform()) * direction);
+          EXPECT_GE(value, extent.least - 1e-4F);
+          EXPECT_LE(value, extent.greatest + 1e-4F);
+        }
+        return true;
+      });
+      if (span.begin < span.end) {
+        EXPECT_EQ(reached, span.end);
+        EXPECT_LE(parts, cells.x + cells.y + cells.z + 1);
+      } else {
+        EXPECT_EQ(parts, 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hyades::core
