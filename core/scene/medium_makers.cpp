@@ -3,17 +3,23 @@
 namespace hyades::core {
 namespace {
 
-struct Coefficients {
-  Rgb absorption{0.0F};
-  Rgb scattering{0.0F};
-};
-
-Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time) {
-  if (!desc.albedo) return {desc.absorption.at(time), desc.scattering.at(time)};
-  const Rgb extinction =
-      desc.density ? desc.density->at(time) : Rgb(1.0F) / desc.mean_free_path->at(time);
-  const Rgb scattering = desc.albedo->at(time) * extinction;
-  return {extinction - scattering, scattering};
+/// Of `desc`, in metres.
+Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float units) {
+  Coefficients found;
+  if (desc.albedo) {
+    const Rgb extinction =
+        desc.density ? desc.density->at(time) : Rgb(1.0F) / desc.mean_free_path->at(time);
+    found.scattering = desc.albedo->at(time) * extinction;
+    found.absorption = extinction - found.scattering;
+  } else {
+    found.absorption = desc.absorption.at(time);
+    found.scattering = desc.scattering.at(time);
+  }
+  const float scale = desc.scale.at(time) / units;
+  found.absorption *= scale;
+  found.scattering *= scale;
+  found.emission = desc.emission.at(time) / units;
+  return found;
 }
 
 Phase phase_of(const MediumDesc& desc, const JobTime& time) {
@@ -26,11 +32,8 @@ Phase phase_of(const MediumDesc& desc, const JobTime& time) {
 }  // namespace
 
 MediumPtr make_medium(const MediumDesc& desc, const JobTime& time, float units) {
-  const Coefficients per_unit = coefficients_of(desc, time);
-  const float scale = desc.scale.at(time) / units;
-  const Rgb emission = desc.emission.at(time) / units;
-  return make_homogeneous(per_unit.absorption * scale, per_unit.scattering * scale, emission,
-                          phase_of(desc, time));
+  const Coefficients made = coefficients_of(desc, time, units);
+  return make_homogeneous(made.absorption, made.scattering, made.emission, phase_of(desc, time));
 }
 
 }  // namespace hyades::core
