@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <utility>
+
+#include "core/job/media_file.h"
 
 namespace hyades::core {
 
@@ -43,6 +46,7 @@ class Loader {
     seen_.insert(reference);
     const YamlEntry* include = own->find("include");
     if (include != nullptr) own = merge_below(*own, included_by(*include->value, reference), true);
+    own = with_media_files(own, reference);
     open_.pop_back();
     return own;
   }
@@ -68,37 +72,52 @@ class Loader {
     return merged;
   }
 
-  YamlPtr load_named(const YamlNode& name, const std::string& from) {
+  struct Opened {
+    std::string reference;
+    std::string shown;
+    Bytes bytes;
+  };
+
+  /// The file that `name` stands for, as `what` ("include") names it. Nothing where it was read
+  /// already, or after a complaint.
+  std::optional<Opened> open_named(const YamlNode& name, const std::string& from,
+                                   const std::string& what) {
     if (name.kind != YamlNode::Kind::scalar || name.scalar.empty()) {
       diagnostics_.add(name.where,
-                       "include is " + describe(name) + ", expected a file name or a list of them");
-      return nullptr;
+                       what + " is " + describe(name) + ", expected a file name or a list of them");
+      return std::nullopt;
     }
     const std::string reference = resolve_reference(name.scalar, from);
     if (std::find(open_.begin(), open_.end(), reference) != open_.end()) {
       diagnostics_.add(name.where, "'" + name.scalar + "' includes itself in the end");
-      return nullptr;
+      return std::nullopt;
     }
-    if (seen_.contains(reference)) return nullptr;
+    if (seen_.contains(reference)) return std::nullopt;
     if (open_.size() > kMaxDepth || seen_.size() > kMaxFiles) {
       diagnostics_.add(name.where, "too many includes: at most " + std::to_string(kMaxDepth) +
                                        " deep and " + std::to_string(kMaxFiles) + " in all");
-      return nullptr;
+      return std::nullopt;
     }
-    const auto bytes = assets_.open(name.scalar, from);
+    auto bytes = assets_.open(name.scalar, from);
     if (!bytes) {
-      diagnostics_.add(name.where, "include: " + bytes.error().message);
-      return nullptr;
+      diagnostics_.add(name.where, what + ": " + bytes.error().message);
+      return std::nullopt;
     }
     if (bytes->size() + bytes_ > kMaxBytes) {
       diagnostics_.add(name.where, "the included files have more than " +
                                        std::to_string(kMaxBytes >> 20) + " MiB in all");
-      return nullptr;
+      return std::nullopt;
     }
     const std::string shown = (main_.parent_path() / reference).lexically_normal().string();
     tree.includes.push_back(reference);
     tree.shown[shown] = reference;
-    YamlPtr root = load({bytes->chars(), bytes->size()}, reference, shown);
+    return Opened{reference, shown, std::move(*bytes)};
+  }
+
+  YamlPtr load_named(const YamlNode& name, const std::string& from) {
+    const auto file = open_named(name, from, "include");
+    if (!file) return nullptr;
+    YamlPtr root = load({file->bytes.chars(), file->bytes.size()}, file->reference, file->shown);
     if (root == nullptr) return nullptr;
     if (root->kind != YamlNode::Kind::map) {
       diagnostics_.add(root->where, "the included file holds " + describe(*root) +
@@ -106,6 +125,37 @@ class Loader {
       return nullptr;
     }
     return root;
+  }
+
+  /// `own` with what the files hold that its `media: {file: ...}` names, and without that key. A
+  /// map under it is a medium called so.
+  YamlPtr with_media_files(const YamlPtr& own, const std::string& reference) {
+    const YamlEntry* media = own->find("media");
+    if (media == nullptr || media->value->kind != YamlNode::Kind::map) return own;
+    const YamlEntry* files = media->value->find("file");
+    if (files == nullptr || files->value->kind == YamlNode::Kind::map) return own;
+    auto others = std::make_shared<YamlNode>(*media->value);
+    std::erase_if(others->map, [](const YamlEntry& entry) { return entry.key == "file"; });
+    YamlPtr all = others;
+    const auto add = [&](const YamlNode& name) {
+      const auto file = open_named(name, reference, "file of media");
+      if (!file) return;
+      seen_.insert(file->reference);
+      bytes_ += file->bytes.size();
+      const YamlPtr section =
+          read_media_file({file->bytes.chars(), file->bytes.size()}, file->shown, diagnostics_);
+      if (section != nullptr) all = join(*all, *section, false);
+    };
+    if (files->value->kind == YamlNode::Kind::list) {
+      for (const YamlPtr& name : files->value->list) add(*name);
+    } else {
+      add(*files->value);
+    }
+    auto result = std::make_shared<YamlNode>(*own);
+    for (YamlEntry& entry : result->map) {
+      if (entry.key == "media") entry.value = all;
+    }
+    return result;
   }
 
   /// `upper` with the keys of `lower` added. `overrides`: a key in both is upper's; otherwise they

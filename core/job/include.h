@@ -21,8 +21,9 @@ struct JobTree {
 /// file that says so). A file's own keys win over those of the files it includes: sections such as
 /// `camera` key by key, lists and plain values as a whole. Maps of names (textures, materials,
 /// groups, objects, lights) are joined; the same name twice, or the same key in two files of one
-/// list, is a complaint that names both places. A file that is reached twice counts once; cycles,
-/// depth above 16, more than 256 files or 64 MiB are refused.
+/// list, is a complaint that names both places. `media: {file: ...}` brings media the same way. A
+/// file that is reached twice counts once; cycles, depth above 16, more than 256 files or 64 MiB
+/// are refused.
 JobTree load_job_tree(const std::string& text, const std::string& file_name, AssetResolver& assets,
                       Diagnostics& diagnostics);
 

@@ -228,7 +228,7 @@ struct OutputDesc {
 
 struct Job {
   std::string file;                   ///< path of the YAML; relative references start at its folder
-  std::vector<std::string> includes;  ///< files of `include:`, relative to the job's folder
+  std::vector<std::string> includes;  ///< files of `include:` and of media, relative to its folder
   std::string name;
   float units = 1.0F;  ///< metres per unit of length in the job
   FramesDesc frames;
