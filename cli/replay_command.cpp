@@ -5,6 +5,7 @@
 
 #include "cli/command_line.h"
 #include "cli/load_job.h"
+#include "core/job/layers.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/build_scene.h"
 
@@ -51,7 +52,7 @@ int replay_command(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", scene.error().message.c_str());
     return 1;
   }
-  const core::FrameRenderer renderer(*scene, job, frame, {});
+  const core::FrameRenderer renderer(*scene, job, frame, core::needed_layers(job));
   core::PathLog log;
   const core::PixelSample result = renderer.replay({pixel[0], pixel[1]}, sample, log);
   std::printf("%s, frame %d, pixel %d,%d, sample %u\n", job.name.c_str(), frame, pixel[0], pixel[1],

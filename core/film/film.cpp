@@ -41,7 +41,10 @@ std::string describe(const CoverageBox& box) {
 
 }  // namespace
 
-Film::Film(FilmLayout layout, PixelRect window) : layout_(std::move(layout)), window_(window) {
+Film::Film(FilmLayout layout, PixelRect window, PixelRect region)
+    : layout_(std::move(layout)),
+      window_(window),
+      splats_(layout_.layers.splats ? region : PixelRect{}) {
   const auto pixels = static_cast<size_t>(window_.area());
   planes_.reserve(layout_.channels.size());
   for (const FilmChannel& channel : layout_.channels) {
@@ -89,10 +92,18 @@ void Film::deposit(const PixelRect& tile, uint32_t batch, uint32_t samples,
   }
 }
 
+void Film::deposit_splats(std::vector<PixelSplat> splats) {
+  assert(layout_.layers.splats);
+  splats_.deposit(std::move(splats));
+}
+
 Status Film::merge(const Film& other) {
   if (layout_ != other.layout_) return Error{"the films have different layers"};
   if (other.window_.empty()) return {};
   if (!window_.contains(other.window_)) return Error{"the film reaches beyond the other's window"};
+  if (splats_.region() != other.splats_.region()) {
+    return Error{"the films' splats belong to different parts of the frame"};
+  }
   for (const CoverageBox& box : other.coverage_.boxes()) {
     if (const auto both = coverage_.overlap(box)) {
       return Error{fmt::format("both films hold {}", describe(*both))};
@@ -112,6 +123,7 @@ Status Film::merge(const Film& other) {
       }
     }
   }
+  splats_.merge(other.splats_);
   for (const CoverageBox& box : other.coverage_.boxes()) coverage_.add(box);
   return {};
 }
@@ -119,6 +131,10 @@ Status Film::merge(const Film& other) {
 void Film::erase(const PixelRect& tile) {
   const PixelRect gone = intersection(window_, tile);
   if (gone.empty()) return;
+  if (layout_.layers.splats) {
+    assert(gone == window_);
+    splats_ = SplatLayer(splats_.region());
+  }
   for (size_t c = 0; c < planes_.size(); ++c) {
     const bool sums = layout_.channels[c].rule == MergeRule::sum;
     for (int y = gone.y0; y < gone.y1; ++y) {
@@ -217,7 +233,18 @@ Status Film::check() const {
       }
     }
   }
-  return {};
+  return check_splats();
+}
+
+Status Film::check_splats() const {
+  if (!layout_.layers.splats) return {};
+  if (!splats_.region().contains(window_)) {
+    return Error{"the film reaches beyond the region of its splats"};
+  }
+  if (coverage_.boxes().empty() && !splats_.empty()) {
+    return Error{"the film has splats, but holds no batch"};
+  }
+  return splats_.check();
 }
 
 }  // namespace hyades::core

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/rect.h"
@@ -9,6 +11,7 @@
 #include "core/film/coverage.h"
 #include "core/film/fixed128.h"
 #include "core/film/layout.h"
+#include "core/film/splats.h"
 #include "core/film/unit.h"
 #include "core/image/image.h"
 
@@ -20,11 +23,15 @@ namespace hyades::core {
 class Film {
  public:
   Film() = default;
-  Film(FilmLayout layout, PixelRect window);
+  Film(FilmLayout layout, PixelRect window) : Film(std::move(layout), window, window) {}
+  /// A film with splats (layout.layers.splats) has them in all of `region`, the part of the frame
+  /// that its job renders, which contains the window.
+  Film(FilmLayout layout, PixelRect window, PixelRect region);
 
   const FilmLayout& layout() const { return layout_; }
   const PixelRect& window() const { return window_; }
   const Coverage& coverage() const { return coverage_; }
+  const SplatLayer& splats() const { return splats_; }
 
   /// Adds one batch of all pixels of `tile` (inside the window). `values` holds layout().deposited
   /// floats per pixel, row by row: for sum channels the batch's sum over `samples` samples, rounded
@@ -34,11 +41,18 @@ class Film {
   void deposit(const PixelRect& tile, uint32_t batch, uint32_t samples,
                std::span<const float> values);
 
+  /// Adds what the light paths of a batch brought that deposit() adds as well. Only for films with
+  /// splats.
+  void deposit_splats(std::vector<PixelSplat> splats);
+
   /// Adds all of `other`, whose window lies inside this one's. Refused, with nothing changed, where
-  /// the layouts differ or a batch of a pixel is in both (the message names tile and batches).
+  /// the layouts or the regions of splats differ or a batch of a pixel is in both (the message
+  /// names tile and batches).
   Status merge(const Film& other);
 
-  /// Takes out all that the film holds of the pixels of `tile`, as if it had never been there.
+  /// Takes out all that the film holds of the pixels of `tile`, as if it had never been there. The
+  /// splats of a tile cannot be told from others': of a film with splats all goes or nothing, so
+  /// that `tile` must contain its window.
   void erase(const PixelRect& tile);
 
   /// The exact sum of a pixel's channel (min channels: the minimum, +inf where nothing was hit).
@@ -48,11 +62,12 @@ class Film {
   /// The picture so far: sums divided by the pixel's sample count, as float. Channels: "R","G","B",
   /// "A", then those of the chosen layers under their names, then "variance.R","G","B": the
   /// variance of the pixel's mean, estimated over batches (0 where fewer than two are there), and
-  /// "samples.N". Pixels without samples are 0. depth is the minimum (+inf where samples hit
-  /// nothing); normal is the mean vector, not normalised.
+  /// "samples.N". R, G and B have the sum of the splats on top, divided by the number of all
+  /// samples of the window: each traced one light path. Pixels without samples are 0. depth is the
+  /// minimum (+inf where samples hit nothing); normal is the mean vector, not normalised.
   Image normalised() const;
 
-  /// SHA-256 over layout, window, coverage (in canonical form) and sums: equal films, equal
+  /// SHA-256 over layout, window, coverage (in canonical form), sums and splats: equal films, equal
   /// digests.
   std::string digest() const;
 
@@ -61,9 +76,11 @@ class Film {
   std::span<const Fixed128> plane(int channel) const;
   std::span<Fixed128> mutable_plane(int channel);
   Coverage& mutable_coverage() { return coverage_; }
+  SplatLayer& mutable_splats() { return splats_; }
 
   /// Whether the parts agree, for films that were read: boxes lie inside the window, and every
   /// pixel holds a whole number of samples that its batches can hold, zeros where it has none.
+  /// Splats are there only where a batch is.
   Status check() const;
 
   /// How many batches each pixel of the window holds, row by row.
@@ -74,8 +91,11 @@ class Film {
   PixelRect window_;
   Coverage coverage_;
   std::vector<std::vector<Fixed128>> planes_;
+  SplatLayer splats_;
 
   size_t offset(int x, int y) const;
+  Status check_splats() const;
+  void add_splats(Image& image) const;
 };
 
 }  // namespace hyades::core

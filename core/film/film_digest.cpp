@@ -19,6 +19,11 @@ std::string Film::digest() const {
     text += fmt::format("{} {} {}\n", channel.rule == MergeRule::min ? "min" : "sum", channel.name,
                         to_hex(sha256(std::as_bytes(plane))));
   }
+  if (layout_.layers.splats) {
+    const PixelRect& region = splats_.region();
+    text += fmt::format("splats {} {} {} {} {}\n", region.x0, region.y0, region.x1, region.y1,
+                        splats_.digest());
+  }
   return to_hex(sha256(text));
 }
 

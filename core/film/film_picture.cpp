@@ -60,7 +60,32 @@ Image Film::normalised() const {
     }
     pixel[count] = to_float(n);
   }
+  if (layout_.layers.splats) add_splats(image);
   return image;
+}
+
+void Film::add_splats(Image& image) const {
+  double paths = 0.0;
+  for (const Fixed128& n : planes_[static_cast<size_t>(layout_.samples)]) paths += to_double(n);
+  const auto first_variance = static_cast<size_t>(layout_.deposited);
+  splats_.for_each([&](uint32_t index, const SplatLayer::Sums& sums) {
+    const auto width = static_cast<uint32_t>(splats_.region().width());
+    const int x = splats_.region().x0 + static_cast<int>(index % width);
+    const int y = splats_.region().y0 + static_cast<int>(index / width);
+    if (!window_.contains(x, y)) return;
+    const size_t i = offset(x, y);
+    if (planes_[static_cast<size_t>(layout_.samples)][i] == Fixed128{}) return;
+    float* const pixel = image.data.data() + i * image.channels.size();
+    for (size_t c = 0; c < 3; ++c) {
+      const double mean =
+          to_double(planes_[c][i]) / to_double(planes_[static_cast<size_t>(layout_.samples)][i]);
+      pixel[c] = to_float(mean + to_double(sums.value[c]) / paths);
+      // Most paths bring nothing to a pixel, so that the square of the mean does not matter.
+      pixel[first_variance + c] =
+          to_float(double{pixel[first_variance + c]} +
+                   to_double(sums.square[c]) * kSplatSquareUnit / (paths * paths));
+    }
+  });
 }
 
 }  // namespace hyades::core

@@ -1,6 +1,7 @@
 #include "core/film/layout.h"
 
 #include "core/film/fixed128.h"
+#include "core/film/splats.h"
 
 namespace hyades::core {
 
@@ -25,7 +26,9 @@ FilmLayout make_film_layout(const LayerSet& layers) {
 }
 
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window) {
-  return static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
+  const uint64_t pixel = layout.channels.size() * sizeof(Fixed128) +
+                         (layout.layers.splats ? sizeof(SplatLayer::Sums) : 0);
+  return static_cast<uint64_t>(window.area()) * pixel;
 }
 
 }  // namespace hyades::core

@@ -19,6 +19,7 @@ struct LayerSet {
   bool depth = false;   ///< distance to the camera plane (camera-space z) of the nearest first hit
   bool albedo = false;  ///< reflectance at the first non-specular hit
   bool normal = false;  ///< world-space shading normal at the first hit
+  bool splats = false;  ///< not a layer of the picture: beauty has a part that light paths brought
   friend bool operator==(const LayerSet&, const LayerSet&) = default;
 };
 
@@ -46,7 +47,7 @@ struct FilmLayout {
 
 FilmLayout make_film_layout(const LayerSet& layers);
 
-/// Bytes that the sums of a film take in memory.
+/// Bytes that the sums of a film take in memory; where there are splats, of a frame's whole film.
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window);
 
 }  // namespace hyades::core

@@ -55,7 +55,7 @@ Status merge_film_files(FilmFile& into, const FilmFile& from) {
   const PixelRect both = a.empty() ? b
                                    : PixelRect{std::min(a.x0, b.x0), std::min(a.y0, b.y0),
                                                std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
-  Film grown(into.film.layout(), both);
+  Film grown(into.film.layout(), both, into.film.splats().region());
   if (Status s = grown.merge(into.film); !s) return s;
   if (Status s = grown.merge(from.film); !s) return s;
   into.film = std::move(grown);

@@ -22,6 +22,14 @@ struct PixelSample {
   Vec3 normal{0.0F};  ///< shading normal of the first surface
 };
 
+/// What a light path brings to the film, wherever it ends.
+struct Splat {
+  Vec2 film{0.0F};  ///< place in pixels of the full frame, y down; pixel centres are at .5
+  /// An estimate of a pixel's value is the filter around its centre, at `film`, times this: as
+  /// radiance is, but for all pixels.
+  Rgb value{0.0F};
+};
+
 /// A path in words, for `hyades replay`.
 struct PathLog {
   std::vector<std::string> lines;
@@ -30,6 +38,8 @@ struct PathLog {
 /// Scratch memory and counters of one rendering thread.
 struct Workspace {
   BsdfArena arena;
+  /// Of the sample that is being taken: integrators append, the renderer takes them away.
+  std::vector<Splat> splats;
   uint64_t rays = 0;       ///< closest-hit and occlusion queries
   uint64_t bounces = 0;    ///< scattering events
   PathLog* log = nullptr;  ///< where to tell the path; null while rendering

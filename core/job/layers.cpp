@@ -2,6 +2,10 @@
 
 namespace hyades::core {
 
+bool makes_splats(const IntegratorDesc& integrator) {
+  return integrator.type == "bdpt" || integrator.type == "mlt";
+}
+
 LayerSet needed_layers(const Job& job) {
   LayerSet layers;
   for (const OutputDesc& output : job.outputs) {
@@ -11,6 +15,7 @@ LayerSet needed_layers(const Job& job) {
       if (layer == "normal") layers.normal = true;
     }
   }
+  layers.splats = makes_splats(job.integrator);
   return layers;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/base/text.h"
 #include "core/job/job_keys.h"
+#include "core/job/layers.h"
 #include "core/job/read_sections.h"
 #include "core/job/read_values.h"
 
@@ -63,6 +64,16 @@ void read_units(MapReader& top, Job& job) {
   top.mismatch("units", *node, "mm, cm, m, km, in, ft or metres per unit (1e-12 to 1e12)");
 }
 
+/// Splats are weighed by the filter around where they land, and this one has no around.
+void check_splats(MapReader& top, const Job& job) {
+  if (!makes_splats(job.integrator) || job.film.filter != FilterKind::center) return;
+  top.complain(
+      top.find("integrator")->where,
+      fmt::format("the integrator is {}, whose light paths may end anywhere on the film, but "
+                  "film.filter is center; expected a filter with a radius",
+                  job.integrator.type));
+}
+
 }  // namespace
 
 void read_job(MapReader& top, Job& job) {
@@ -74,6 +85,7 @@ void read_job(MapReader& top, Job& job) {
   read_film(top, job.film);
   read_sampling(top, job.sampling);
   read_integrator(top, job.integrator);
+  check_splats(top, job);
   read_camera(top, job.camera);
   read_textures(top);
   read_materials(top);

@@ -7,12 +7,15 @@
 #include <fmt/format.h>
 
 #include "core/base/fp_mode.h"
+#include "core/samplers/sample_key.h"
 
 namespace hyades::core {
 namespace {
 
 constexpr size_t kBadExamples = 8;
 constexpr int kMaxDeposited = 16;
+/// Keeps the numbers that place splats apart from those of samplers.
+constexpr uint64_t kSplatNumbers = uint64_t{0x53504C41} << 32U;
 
 FilterShape filter_shape(FilterKind kind) {
   switch (kind) {
@@ -72,13 +75,19 @@ void RenderCounters::add(const RenderCounters& other) {
 
 FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                              const LayerSet& layers)
+    : FrameRenderer(std::move(scene), job, frame, layers, make_integrator(job.integrator)) {}
+
+FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
+                             const LayerSet& layers, std::unique_ptr<Integrator> integrator)
     : scene_(std::move(scene)),
-      integrator_(make_integrator(job.integrator)),
+      integrator_(std::move(integrator)),
       filter_(make_pixel_filter(filter_shape(job.film.filter), job.film.filter_radius)),
       layout_(make_film_layout(layers)),
       sampling_(job.sampling),
       frame_(static_cast<uint32_t>(frame)),
-      needs_time_(job.frames.shutter > 0.0F) {}
+      needs_time_(job.frames.shutter > 0.0F) {
+  if (layers.splats) placer_.emplace(*filter_, job.film.filter_radius, scene_->window);
+}
 
 PixelSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
                                         Workspace& work) const {
@@ -96,13 +105,38 @@ PixelSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sam
   return out;
 }
 
+uint64_t FrameRenderer::splat_random(const Vec2i& pixel, uint32_t sample, size_t index) const {
+  // Not of the sampler: a path may use any number of its dimensions.
+  const uint64_t key = pixel_key({sampling_.seed, frame_, pixel, sample});
+  return hash_combine(hash_combine(key, kSplatNumbers + sample), index);
+}
+
+void FrameRenderer::take_splats(const Vec2i& pixel, uint32_t sample, Workspace& work,
+                                std::vector<PixelSplat>& into, RenderCounters& counters) const {
+  for (size_t i = 0; placer_ && i < work.splats.size(); ++i) {
+    const Splat& splat = work.splats[i];
+    const bool somewhere = std::isfinite(splat.film.x) && std::isfinite(splat.film.y);
+    const auto placed = placer_->place(splat, splat_random(pixel, sample, i));
+    if (somewhere && !placed) continue;
+    const auto [r, g, b] = placed.value_or(PixelSplat{}).value;
+    if (!somewhere || !is_usable(Vec3(r, g, b))) {
+      ++counters.bad_samples;
+      if (counters.examples.size() < kBadExamples) counters.examples.push_back({pixel, sample});
+    } else if (r != 0.0F || g != 0.0F || b != 0.0F) {
+      into.push_back(*placed);
+    }
+  }
+  work.splats.clear();
+}
+
 bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& sampler,
-                                 Workspace& work, std::vector<float>& sums,
-                                 RenderCounters& counters, const std::atomic<bool>* stop,
+                                 Workspace& work, BatchSums& sums, RenderCounters& counters,
+                                 const std::atomic<bool>* stop,
                                  std::atomic<uint64_t>* samples_done) const {
   const uint32_t first = batch * kBatchSamples;
   const uint32_t count = samples_in_batch(batch, sampling_.samples);
-  float* out = sums.data();
+  float* out = sums.values.data();
+  sums.splats.clear();
   for (int y = unit.tile.y0; y < unit.tile.y1; ++y) {
     for (int x = unit.tile.x0; x < unit.tile.x1; ++x) {
       std::array<double, kMaxDeposited> sum{};
@@ -114,8 +148,10 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
         if (!is_usable(sample)) {
           ++counters.bad_samples;
           if (counters.examples.size() < kBadExamples) counters.examples.push_back({{x, y}, s});
+          work.splats.clear();
           continue;
         }
+        if (!work.splats.empty()) take_splats({x, y}, s, work, sums.splats, counters);
         for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(c)] += double{sample.radiance[c]};
         sum[3] += double{sample.alpha};
         depth = sample.depth < depth ? sample.depth : depth;
@@ -142,18 +178,20 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
                                    std::atomic<uint32_t>* batches_done,
                                    std::atomic<uint64_t>* samples_done) const {
   const FpMode fp_mode;
-  RenderedUnit result{Film(layout_, unit.tile), {}, false};
+  RenderedUnit result{Film(layout_, unit.tile, scene_->window), {}, false};
   const auto sampler = make_sampler(
       sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol : SamplerKind::independent);
   Workspace work;
-  std::vector<float> sums(static_cast<size_t>(unit.tile.area()) *
-                          static_cast<size_t>(layout_.deposited));
+  BatchSums sums;
+  sums.values.resize(static_cast<size_t>(unit.tile.area()) *
+                     static_cast<size_t>(layout_.deposited));
   for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
     if (!render_batch(unit, b, *sampler, work, sums, result.counters, stop, samples_done)) {
       result.stopped = true;
       break;
     }
-    result.film.deposit(unit.tile, b, samples_in_batch(b, sampling_.samples), sums);
+    result.film.deposit(unit.tile, b, samples_in_batch(b, sampling_.samples), sums.values);
+    if (layout_.layers.splats) result.film.deposit_splats(sums.splats);
     if (batches_done != nullptr) batches_done->fetch_add(1, std::memory_order_relaxed);
   }
   result.counters.rays = work.rays;
@@ -167,7 +205,27 @@ PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& 
       sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol : SamplerKind::independent);
   Workspace work;
   work.log = &log;
-  return sample_pixel(pixel, sample, *sampler, work);
+  const PixelSample result = sample_pixel(pixel, sample, *sampler, work);
+  for (size_t i = 0; placer_ && i < work.splats.size(); ++i) {
+    const Splat& splat = work.splats[i];
+    const auto placed = placer_->place(splat, splat_random(pixel, sample, i));
+    std::string line = fmt::format("splat {} at {:.3f}, {:.3f}: ", i, splat.film.x, splat.film.y);
+    if (!std::isfinite(splat.film.x) || !std::isfinite(splat.film.y)) {
+      line += "it is not counted";
+    } else if (!placed) {
+      line += "outside of what is rendered";
+    } else {
+      const auto& [r, g, b] = placed->value;
+      const PixelRect& region = scene_->window;
+      const auto width = static_cast<uint32_t>(region.width());
+      line += fmt::format("{:.4g} {:.4g} {:.4g} for pixel {}, {}{}", r, g, b,
+                          region.x0 + static_cast<int>(placed->pixel % width),
+                          region.y0 + static_cast<int>(placed->pixel / width),
+                          is_usable(Vec3(r, g, b)) ? "" : ", which is not counted");
+    }
+    log.lines.push_back(std::move(line));
+  }
+  return result;
 }
 
 }  // namespace hyades::core

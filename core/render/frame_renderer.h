@@ -11,6 +11,7 @@
 #include "core/film/fixed128.h"
 #include "core/integrators/integrator.h"
 #include "core/job/job.h"
+#include "core/render/splat_placer.h"
 #include "core/samplers/filter.h"
 #include "core/scene/scene.h"
 
@@ -40,7 +41,7 @@ struct RenderCounters {
   uint64_t samples = 0;  ///< of whole batches, bad ones too
   uint64_t rays = 0;
   uint64_t bounces = 0;
-  uint64_t bad_samples = 0;
+  uint64_t bad_samples = 0;         ///< and single splats that do not count
   std::vector<BadSample> examples;  ///< the first few bad ones
 
   void add(const RenderCounters& other);
@@ -58,6 +59,9 @@ class FrameRenderer {
  public:
   FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                 const LayerSet& layers);
+  /// The same with an integrator that no job names.
+  FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
+                const LayerSet& layers, std::unique_ptr<Integrator> integrator);
 
   /// Renders `unit` on the calling thread. `stop` is looked at before every sample;
   /// `batches_done` and `samples_done` (after every pixel of a batch) count along, for whoever
@@ -66,22 +70,32 @@ class FrameRenderer {
                       std::atomic<uint32_t>* batches_done = nullptr,
                       std::atomic<uint64_t>* samples_done = nullptr) const;
 
-  /// One sample of one pixel; `log` gets the path in words.
+  /// One sample of one pixel; `log` gets the path in words, and what it splats where.
   PixelSample replay(const Vec2i& pixel, uint32_t sample, PathLog& log) const;
 
   const Scene& scene() const { return *scene_; }
   const FilmLayout& layout() const { return layout_; }
 
  private:
+  /// What a batch brings.
+  struct BatchSums {
+    std::vector<float> values;  ///< as Film::deposit takes them
+    std::vector<PixelSplat> splats;
+  };
+
   PixelSample sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
                            Workspace& work) const;
   bool render_batch(const Unit& unit, uint32_t batch, Sampler& sampler, Workspace& work,
-                    std::vector<float>& sums, RenderCounters& counters,
-                    const std::atomic<bool>* stop, std::atomic<uint64_t>* samples_done) const;
+                    BatchSums& sums, RenderCounters& counters, const std::atomic<bool>* stop,
+                    std::atomic<uint64_t>* samples_done) const;
+  void take_splats(const Vec2i& pixel, uint32_t sample, Workspace& work,
+                   std::vector<PixelSplat>& into, RenderCounters& counters) const;
+  uint64_t splat_random(const Vec2i& pixel, uint32_t sample, size_t index) const;
 
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<Integrator> integrator_;
   std::unique_ptr<PixelFilter> filter_;
+  std::optional<SplatPlacer> placer_;  ///< of films with splats
   FilmLayout layout_;
   SamplingDesc sampling_;
   uint32_t frame_ = 0;

@@ -101,6 +101,7 @@ class SeparableFilter final : public PixelFilter {
   float evaluate(const Vec2& offset) const override {
     return profile_.evaluate(offset.x) * profile_.evaluate(offset.y);
   }
+  float evaluate_along(float x) const override { return profile_.evaluate(x); }
 
  private:
   Profile profile_;
@@ -110,6 +111,7 @@ class CenterFilter final : public PixelFilter {
  public:
   FilterSample sample(const Vec2& /*u*/) const override { return {}; }
   float evaluate(const Vec2& /*offset*/) const override { return 0.0F; }
+  float evaluate_along(float /*x*/) const override { return 0.0F; }
 };
 
 /// exp(-x^2 / (2 sigma^2)) with sigma = radius / 3, lowered to be 0 at the radius. x in radii.

@@ -22,6 +22,8 @@ class PixelFilter {
   virtual ~PixelFilter() = default;
   virtual FilterSample sample(const Vec2& u) const = 0;
   virtual float evaluate(const Vec2& offset) const = 0;  ///< normalised to integral 1 (center: 0)
+  /// The profile: evaluate({x, y}) is evaluate_along(x) * evaluate_along(y).
+  virtual float evaluate_along(float x) const = 0;
 };
 
 /// `radius` in pixels (half the support): mitchell usually 2, triangle 1, box 0.5; 0 is `center`.

@@ -48,6 +48,7 @@ class SceneBuilder {
     add_media_around_camera();
     scene_->selector = make_power_selector(scene_->lights);
     scene_->resolution = {job_.film.width, job_.film.height};
+    scene_->window = render_window(job_.film);
     scene_->texture_memory = cache_.image_memory();
     return std::shared_ptr<const Scene>(std::move(scene_));
   }

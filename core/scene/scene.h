@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/rect.h"
 #include "core/cameras/camera.h"
 #include "core/geometry/world.h"
 #include "core/lights/light_selector.h"
@@ -44,6 +45,7 @@ struct Scene {
   MediumStack around_camera;  ///< what the camera stands in
   bool environment_visible = true;  ///< whether camera rays see the infinite lights
   Vec2i resolution{0, 0};           ///< full frame, pixels
+  PixelRect window;                 ///< what the job renders of it: splats elsewhere are lost
 
   size_t triangles = 0;       ///< as placed: instances count each time
   size_t texture_memory = 0;  ///< bytes of image pixels

@@ -26,8 +26,8 @@ inline float rendered(int x, int y, uint32_t batch, int channel, const FilmLayou
 
 /// A film of one tile with some of its batches, of a job of `samples` samples per pixel.
 inline Film render(const FilmLayout& layout, const PixelRect& tile, BatchRange batches,
-                   uint32_t samples = 1000000) {
-  Film film(layout, tile);
+                   uint32_t samples, const PixelRect& region) {
+  Film film(layout, tile, region);
   std::vector<float> values(static_cast<size_t>(tile.area()) *
                             static_cast<size_t>(layout.deposited));
   for (uint32_t b = batches.first; b < batches.end(); ++b) {
@@ -39,6 +39,39 @@ inline Film render(const FilmLayout& layout, const PixelRect& tile, BatchRange b
     }
     film.deposit(tile, b, samples_in_batch(b, samples), values);
   }
+  return film;
+}
+
+inline Film render(const FilmLayout& layout, const PixelRect& tile, BatchRange batches,
+                   uint32_t samples = 1000000) {
+  return render(layout, tile, batches, samples, tile);
+}
+
+/// The same with splats in `region`: two of each sample, a pure function of pixel and batch.
+inline Film render_with_splats(const FilmLayout& layout, const PixelRect& tile, BatchRange batches,
+                               const PixelRect& region, uint32_t samples = 1000000) {
+  Film film = render(layout, tile, batches, samples, region);
+  std::vector<PixelSplat> splats;
+  for (uint32_t b = batches.first; b < batches.end(); ++b) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        for (uint32_t i = 0; i < 2 * samples_in_batch(b, samples); ++i) {
+          const uint64_t path =
+              hash_combine(hash_combine(static_cast<uint32_t>(x), static_cast<uint32_t>(y)), b);
+          const uint64_t random = hash_combine(path, i);
+          PixelSplat splat;
+          splat.pixel = static_cast<uint32_t>(random % static_cast<uint64_t>(region.area()));
+          for (uint32_t c = 0; c < 3; ++c) {
+            splat.value[c] =
+                std::ldexp(static_cast<float>(hash_combine(random, c) % 0x1000000) - 1e6F,
+                           static_cast<int>(random >> 32U) % 12 - 20);
+          }
+          splats.push_back(splat);
+        }
+      }
+    }
+  }
+  film.deposit_splats(std::move(splats));
   return film;
 }
 

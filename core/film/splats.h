@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/rect.h"
+#include "core/base/result.h"
+#include "core/film/fixed128.h"
+
+namespace hyades::core {
+
+/// What one light path brings to one pixel.
+struct PixelSplat {
+  uint32_t pixel = 0;  ///< of the region, row by row
+  std::array<float, 3> value{};
+};
+
+/// Squares are kept in this unit, so that those of the brightest splats that count (about 2^35)
+/// stay within what a film can hold. Splats below 2^-17 have none.
+inline constexpr double kSplatSquareUnit = 0x1p30;
+
+/// What light paths, which may end at any pixel, brought to the pixels of a region: exact sums, so
+/// that layers add up to the same bits in any order and grouping (invariant 2). Holds only the
+/// pixels that were touched while those are few, all of them otherwise. Not thread-safe.
+class SplatLayer {
+ public:
+  /// A pixel's sums, by channel.
+  struct Sums {
+    std::array<Fixed128, 3> value{};
+    std::array<Fixed128, 3> square{};  ///< of single splats, in units of kSplatSquareUnit
+    friend bool operator==(const Sums&, const Sums&) = default;
+    Sums& operator+=(const Sums& other);
+  };
+  struct Entry {
+    uint32_t pixel = 0;
+    Sums sums;
+    friend bool operator==(const Entry&, const Entry&) = default;
+  };
+
+  SplatLayer() = default;
+  /// `region`: full-frame pixels, at most 2^32 - 1 of them.
+  explicit SplatLayer(PixelRect region) : region_(region) {}
+
+  const PixelRect& region() const { return region_; }
+
+  /// Whether no pixel holds anything.
+  bool empty() const;
+
+  /// Adds splats, in any order. Values are finite; beyond +-kMaxDeposit they are clamped.
+  void deposit(std::vector<PixelSplat> splats);
+
+  /// Adds all of `other`, which has the same region. A frame's layer, to which many small ones
+  /// come, soon holds all pixels: adding one of those costs no more than its entries then.
+  void merge(const SplatLayer& other);
+
+  /// What a pixel of the region holds.
+  Sums at(int x, int y) const;
+
+  /// How many pixels hold something.
+  uint64_t count() const;
+
+  /// Calls visit(pixel, sums) for every pixel that holds something, in ascending order.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const Entry& entry : entries_) {
+      if (entry.sums != Sums{}) visit(entry.pixel, entry.sums);
+    }
+    for (size_t i = 0; i < all_.size(); ++i) {
+      if (all_[i] != Sums{}) visit(static_cast<uint32_t>(i), all_[i]);
+    }
+  }
+
+  /// Adds entries in ascending order of their pixels, each once. For readers of files.
+  void add(std::vector<Entry> entries);
+
+  /// Whether no sum of squares is negative, for layers that were read.
+  Status check() const;
+
+  /// SHA-256, in hex, of what the pixels hold: equal sums, equal digests, however they are kept.
+  std::string digest() const;
+
+ private:
+  void spread();
+  void add(std::vector<Entry> entries, size_t sparse);
+
+  PixelRect region_;
+  std::vector<Entry> entries_;  ///< ascending; empty once all_ is there
+  std::vector<Sums> all_;       ///< of every pixel of the region, or empty
+};
+
+/// What a single splat of `value` leaves in a pixel.
+SplatLayer::Sums sums_of(const std::array<float, 3>& value);
+
+}  // namespace hyades::core

@@ -1,0 +1,49 @@
+#include "core/render/splat_placer.h"
+
+#include <cmath>
+
+namespace hyades::core {
+
+SplatPlacer::Choice SplatPlacer::choose(float at, float u) const {
+  // All pixels whose centres are within the radius; the filter is 0 for one too many at either end.
+  const int first = static_cast<int>(std::floor(at - 0.5F - radius_));
+  const int last = static_cast<int>(std::ceil(at - 0.5F + radius_));
+  const auto filter_at = [&](int pixel) {
+    return filter_.evaluate_along(at - (static_cast<float>(pixel) + 0.5F));
+  };
+  float total = 0.0F;
+  for (int pixel = first; pixel <= last; ++pixel) total += std::fabs(filter_at(pixel));
+  Choice choice;
+  float left = u * total;
+  for (int pixel = first; pixel <= last; ++pixel) {
+    const float f = filter_at(pixel);
+    if (f == 0.0F) continue;
+    choice = {pixel, f < 0.0F ? -total : total};
+    left -= std::fabs(f);
+    if (left < 0.0F) break;
+  }
+  return choice;
+}
+
+std::optional<PixelSplat> SplatPlacer::place(const Splat& splat, uint64_t random) const {
+  // Also false for NaN; what is far outside is no integer.
+  const float margin = radius_ + 1.0F;
+  if (!(splat.film.x > static_cast<float>(region_.x0) - margin &&
+        splat.film.x < static_cast<float>(region_.x1) + margin &&
+        splat.film.y > static_cast<float>(region_.y0) - margin &&
+        splat.film.y < static_cast<float>(region_.y1) + margin)) {
+    return std::nullopt;
+  }
+  const Choice x = choose(splat.film.x, static_cast<float>(random >> 40U) * 0x1p-24F);
+  const Choice y = choose(splat.film.y, static_cast<float>(random >> 16U & 0xFFFFFFU) * 0x1p-24F);
+  if (!region_.contains(x.pixel, y.pixel)) return std::nullopt;
+  const float weight = x.weight * y.weight;
+  if (weight == 0.0F) return std::nullopt;
+  PixelSplat placed;
+  placed.pixel = static_cast<uint32_t>(int64_t{y.pixel - region_.y0} * region_.width() +
+                                       (x.pixel - region_.x0));
+  for (int c = 0; c < 3; ++c) placed.value[static_cast<size_t>(c)] = splat.value[c] * weight;
+  return placed;
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/base/rect.h"
+#include "core/film/splats.h"
+#include "core/integrators/integrator.h"
+#include "core/samplers/filter.h"
+
+namespace hyades::core {
+
+/// Which pixel a splat counts for. A splat at x is an estimate of filter(x - centre) times its
+/// value for every pixel; instead of all those within the filter's reach one gets it, chosen with
+/// probability |filter(x - centre)| / S, where S is the sum of |filter| over them: it gets S times
+/// the value, with the filter's sign. The mean is the same, for every shape of filter.
+class SplatPlacer {
+ public:
+  /// `radius`: of the filter, pixels, > 0. `region`: full-frame pixels that there are.
+  SplatPlacer(const PixelFilter& filter, float radius, PixelRect region)
+      : filter_(filter), radius_(radius), region_(region) {}
+
+  /// What `splat` brings to which pixel; nothing where that is outside of the region. `random`: 64
+  /// independent bits.
+  std::optional<PixelSplat> place(const Splat& splat, uint64_t random) const;
+
+ private:
+  struct Choice {
+    int pixel = 0;        ///< column or row
+    float weight = 0.0F;  ///< S with the sign of the filter; 0: there is none
+  };
+  Choice choose(float at, float u) const;
+
+  const PixelFilter& filter_;
+  float radius_;
+  PixelRect region_;
+};
+
+}  // namespace hyades::core
