@@ -9,6 +9,7 @@
 
 #include "core/base/result.h"
 #include "core/geometry/mesh.h"
+#include "core/geometry/read_mesh.h"
 
 namespace hyades::core {
 
@@ -41,5 +42,8 @@ inline constexpr const char* kNoMesh = "it is no mesh file that is known; expect
 /// Readers of one format each, from the bytes of a whole file. Errors do not name the file.
 Result<std::shared_ptr<TriangleMesh>> read_ply(std::span<const char> bytes);
 Result<std::shared_ptr<TriangleMesh>> read_obj(std::span<const char> bytes);
+
+/// The same, cut into its materials.
+Result<MeshParts> read_obj_parts(std::span<const char> bytes);
 
 }  // namespace hyades::core

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/result.h"
@@ -17,16 +18,24 @@ struct ObjCorner {
   int32_t vn = -1;
 };
 
+/// From face `first` on, until the next of these, faces are of material `name`.
+struct ObjMaterial {
+  size_t first = 0;
+  std::string name;
+};
+
 /// What an OBJ file (Wavefront, "Advanced Visualizer Manual", appendix B1) holds of polygons.
 struct ObjData {
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;
   std::vector<Vec3> normals;
   std::vector<ObjCorner> corners;
-  std::vector<uint32_t> sizes;  ///< corners of each face
+  std::vector<uint32_t> sizes;         ///< corners of each face
+  std::vector<ObjMaterial> materials;  ///< in order; may be none, or begin after face 0
+  std::vector<std::string> libraries;  ///< what follows each mtllib
 };
 
-/// Parses the lines v, vt, vn and f, in parallel; other lines (groups, materials, curves) are
+/// Parses the lines v, vt, vn, f, usemtl and mtllib, in parallel; other lines (groups, curves) are
 /// passed over. Indices are in range. Errors name the line: that of the first one.
 Result<ObjData> parse_obj(std::span<const char> bytes);
 

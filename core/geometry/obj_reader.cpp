@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "core/geometry/mesh_source.h"
@@ -44,14 +45,23 @@ class VertexSplitter {
   std::vector<Key> keys_;
 };
 
-}  // namespace
+/// A face's run in the list of corners.
+struct ObjCorners {
+  size_t first;
+  uint32_t size;
+};
 
-Result<std::shared_ptr<TriangleMesh>> read_obj(std::span<const char> bytes) {
+Result<ObjData> parse(std::span<const char> bytes) {
   auto parsed = parse_obj(bytes);
-  if (!parsed) return parsed.error();
-  ObjData& data = *parsed;
   // Any text is an OBJ file whose lines mean nothing.
-  if (!bytes.empty() && data.positions.empty() && data.sizes.empty()) return Error{kNoMesh};
+  if (parsed && !bytes.empty() && parsed->positions.empty() && parsed->sizes.empty()) {
+    return Error{kNoMesh};
+  }
+  return parsed;
+}
+
+/// A mesh of all faces of `data`, which is used up.
+Result<std::shared_ptr<TriangleMesh>> make_mesh(ObjData& data) {
   const auto uses = [&](int32_t ObjCorner::*index) {
     return std::any_of(data.corners.begin(), data.corners.end(),
                        [&](const ObjCorner& c) { return c.*index >= 0; });
@@ -78,6 +88,56 @@ Result<std::shared_ptr<TriangleMesh>> read_obj(std::span<const char> bytes) {
   }
   if (Status s = complete_mesh(*mesh); !s) return s.error();
   return mesh;
+}
+
+/// The faces of each material, in order of their first use; those before any are of kNoMaterial.
+std::vector<std::pair<std::string, std::vector<ObjCorners>>> faces_by_material(
+    const ObjData& data) {
+  std::vector<std::pair<std::string, std::vector<ObjCorners>>> parts;
+  std::map<std::string, size_t> index;
+  size_t corner = 0;
+  size_t next = 0;
+  std::string name = kNoMaterial;
+  for (size_t face = 0; face < data.sizes.size(); ++face) {
+    while (next < data.materials.size() && data.materials[next].first <= face) {
+      name = data.materials[next++].name;
+    }
+    const auto [found, fresh] = index.emplace(name, parts.size());
+    if (fresh) parts.emplace_back(name, std::vector<ObjCorners>());
+    parts[found->second].second.push_back({corner, data.sizes[face]});
+    corner += data.sizes[face];
+  }
+  return parts;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<TriangleMesh>> read_obj(std::span<const char> bytes) {
+  auto data = parse(bytes);
+  if (!data) return data.error();
+  return make_mesh(*data);
+}
+
+Result<MeshParts> read_obj_parts(std::span<const char> bytes) {
+  auto data = parse(bytes);
+  if (!data) return data.error();
+  MeshParts result;
+  result.libraries = data->libraries;
+  for (const auto& [name, faces] : faces_by_material(*data)) {
+    ObjData part;
+    part.positions = data->positions;
+    part.uvs = data->uvs;
+    part.normals = data->normals;
+    for (const ObjCorners& face : faces) {
+      const auto from = data->corners.begin() + static_cast<ptrdiff_t>(face.first);
+      part.corners.insert(part.corners.end(), from, from + face.size);
+      part.sizes.push_back(face.size);
+    }
+    auto mesh = make_mesh(part);
+    if (!mesh) return mesh.error().in("material '" + name + "'");
+    result.parts.push_back({name, *mesh});
+  }
+  return result;
 }
 
 }  // namespace hyades::core

@@ -22,24 +22,59 @@ bool is_text(std::string_view text) {
   return text.substr(0, 4096).find('\0') == std::string_view::npos;
 }
 
+/// A mesh file in memory, without a byte order mark.
+struct MeshText {
+  Bytes bytes;
+  std::span<const char> chars;
+  enum class Format { ply, obj, unknown } format = Format::unknown;
+};
+
+Result<MeshText> open_mesh(AssetResolver& assets, const std::string& reference) {
+  const Result<Bytes> bytes = assets.open(reference);
+  if (!bytes) return bytes.error();
+  MeshText text;
+  text.bytes = *bytes;
+  text.chars = {bytes->chars(), bytes->size()};
+  if (std::string_view(text.chars.data(), text.chars.size()).starts_with(kByteOrderMark)) {
+    text.chars = text.chars.subspan(kByteOrderMark.size());
+  }
+  const std::string_view view(text.chars.data(), text.chars.size());
+  if (is_ply(view)) {
+    text.format = MeshText::Format::ply;
+  } else if (is_text(view)) {
+    text.format = MeshText::Format::obj;
+  }
+  return text;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<TriangleMesh>> read_mesh(AssetResolver& assets,
                                                 const std::string& reference) {
-  const Result<Bytes> bytes = assets.open(reference);
-  if (!bytes) return bytes.error();
+  const auto text = open_mesh(assets, reference);
+  if (!text) return text.error();
   const FpMode mode;
-  std::span<const char> chars(bytes->chars(), bytes->size());
-  if (std::string_view(chars.data(), chars.size()).starts_with(kByteOrderMark)) {
-    chars = chars.subspan(kByteOrderMark.size());
-  }
-  const std::string_view text(chars.data(), chars.size());
-  Result<std::shared_ptr<TriangleMesh>> mesh = is_ply(text)    ? read_ply(chars)
-                                               : is_text(text) ? read_obj(chars)
-                                                               : Error{kNoMesh};
+  using Format = MeshText::Format;
+  Result<std::shared_ptr<TriangleMesh>> mesh = text->format == Format::ply   ? read_ply(text->chars)
+                                               : text->format == Format::obj ? read_obj(text->chars)
+                                                                             : Error{kNoMesh};
   if (!mesh) return mesh.error().in(reference);
   (*mesh)->name = reference;
   return mesh;
+}
+
+Result<MeshParts> read_mesh_parts(AssetResolver& assets, const std::string& reference) {
+  const auto text = open_mesh(assets, reference);
+  if (!text) return text.error();
+  if (text->format != MeshText::Format::obj) {
+    auto whole = read_mesh(assets, reference);
+    if (!whole) return whole.error();
+    return MeshParts{{{kNoMaterial, *whole}}, {}};
+  }
+  const FpMode mode;
+  auto parts = read_obj_parts(text->chars);
+  if (!parts) return parts.error().in(reference);
+  return parts;
 }
 
 }  // namespace hyades::core

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/assets.h"
 #include "core/base/result.h"
@@ -15,5 +16,21 @@ namespace hyades::core {
 /// non-finite positions, absurd counts (checked against the file's size before memory is taken).
 Result<std::shared_ptr<TriangleMesh>> read_mesh(AssetResolver& assets,
                                                 const std::string& reference);
+
+/// The triangles of an OBJ file that have one material (usemtl).
+struct MeshPart {
+  std::string name;  ///< the material's; kNoMaterial where the file names none
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+
+inline constexpr const char* kNoMaterial = "default";
+
+struct MeshParts {
+  std::vector<MeshPart> parts;         ///< in order of first use; of a file with triangles
+  std::vector<std::string> libraries;  ///< what follows each mtllib: files of materials
+};
+
+/// Reads a mesh cut into its materials. A PLY file is one part. Errors as read_mesh's.
+Result<MeshParts> read_mesh_parts(AssetResolver& assets, const std::string& reference);
 
 }  // namespace hyades::core

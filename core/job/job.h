@@ -171,6 +171,7 @@ struct ObjectDesc {
   SourceLocation where;
   std::string shape;  ///< mesh | sphere | rectangle | disk | box | cylinder | instance | group
   std::string mesh;   ///< file
+  std::string part;   ///< mesh: the material of the file whose triangles are meant; empty: all
   std::string instance_of;           ///< name in Job::groups
   std::vector<ObjectDesc> children;  ///< group written in place
   float radius = 1.0F;

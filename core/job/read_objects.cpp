@@ -107,6 +107,7 @@ void read_mesh(MapReader& reader, ObjectDesc& object) {
   read_emit(reader, object);
   reader.enter_section("objects.mesh");
   reader.choice("normals", object.smooth, kMeshNormals);
+  reader.text("part", object.part, "the name of a material in the mesh's file (usemtl)");
   read_interior(reader, object);
 }
 

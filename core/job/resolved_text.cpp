@@ -137,6 +137,7 @@ void write(FieldWriter& out, const ObjectDesc& object) {
   out.put("name", object.name);
   out.put("shape", object.shape);
   out.put_file("mesh", object.mesh);
+  if (!object.part.empty()) out.put("part", object.part);
   out.put("instance_of", object.instance_of);
   out.put("radius", object.radius);
   out.put("size", object.size);

@@ -1,5 +1,7 @@
 #include "core/scene/scene_cache.h"
 
+#include "core/base/text.h"
+
 namespace hyades::core {
 namespace {
 
@@ -16,14 +18,37 @@ bool same_placements(const std::vector<Placement>& a, const std::vector<Placemen
 
 }  // namespace
 
+Result<std::shared_ptr<TriangleMesh>> SceneCache::read(const std::string& file,
+                                                       const std::string& part) {
+  if (part.empty()) return read_mesh(assets_, file);
+  const auto all = mesh_parts_.get(file, [&]() -> Result<std::shared_ptr<const MeshParts>> {
+    auto loaded = read_mesh_parts(assets_, file);
+    if (!loaded) return loaded.error();
+    return std::make_shared<const MeshParts>(std::move(*loaded));
+  });
+  if (!all) return all.error();
+  std::vector<std::string> names;
+  for (const MeshPart& each : (*all)->parts) {
+    names.push_back(each.name);
+    if (each.name != part) continue;
+    auto mesh = std::make_shared<TriangleMesh>(*each.mesh);
+    mesh->name = file;
+    finish_mesh(*mesh);  // a copy has no padding
+    return mesh;
+  }
+  const std::string hint = did_you_mean(part, names);
+  return Error{file + ": it has no material '" + part + "'" +
+               (hint.empty() ? "; there is " + join_names(names) : hint)};
+}
+
 Result<std::shared_ptr<const TriangleMesh>> SceneCache::mesh(const std::string& file,
-                                                             MeshNormals normals) {
-  return meshes_.get({file, normals}, [&]() -> Result<std::shared_ptr<const TriangleMesh>> {
-    auto loaded = read_mesh(assets_, file);
+                                                             const MeshUse& use) {
+  return meshes_.get({file, use}, [&]() -> Result<std::shared_ptr<const TriangleMesh>> {
+    auto loaded = read(file, use.part);
     if (!loaded) return loaded.error();
     const std::shared_ptr<TriangleMesh> mesh = *loaded;
-    if (normals == MeshNormals::flat) mesh->normals.clear();
-    if (normals == MeshNormals::smooth) compute_smooth_normals(*mesh);
+    if (use.normals == MeshNormals::flat) mesh->normals.clear();
+    if (use.normals == MeshNormals::smooth) compute_smooth_normals(*mesh);
     return std::shared_ptr<const TriangleMesh>(mesh);
   });
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -19,6 +20,15 @@ namespace hyades::core {
 /// its triangles, or smooth ones.
 enum class MeshNormals { file, flat, smooth };
 
+/// What of a mesh's file is asked for.
+struct MeshUse {
+  MeshUse(MeshNormals which, std::string material = {})  // NOLINT: implicit, mostly it is just that
+      : normals(which), part(std::move(material)) {}
+  MeshNormals normals;
+  std::string part;  ///< the material (usemtl) whose triangles are meant; empty: all
+  auto operator<=>(const MeshUse&) const = default;
+};
+
 /// What the frames of a job share: meshes, images, acceleration structures, and the whole world
 /// while nothing in it moves. Thread-safe: the next frame's scene loads while this one renders, and
 /// several files load at once.
@@ -26,7 +36,7 @@ class SceneCache {
  public:
   explicit SceneCache(AssetResolver& assets) : assets_(assets) {}
 
-  Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file, MeshNormals normals);
+  Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file, const MeshUse& use);
 
   Result<std::shared_ptr<const Image>> image(const std::string& file, ColorSpace space);
 
@@ -45,8 +55,12 @@ class SceneCache {
   size_t image_memory() const;
 
  private:
+  /// One part of a mesh, or all of it; not shared with anybody.
+  Result<std::shared_ptr<TriangleMesh>> read(const std::string& file, const std::string& part);
+
   AssetResolver& assets_;
-  OnceMap<std::pair<std::string, MeshNormals>, TriangleMesh> meshes_;
+  OnceMap<std::pair<std::string, MeshUse>, TriangleMesh> meshes_;
+  OnceMap<std::string, MeshParts> mesh_parts_;
   OnceMap<std::string, TriangleMesh> made_meshes_;
   OnceMap<std::pair<std::string, ColorSpace>, Image> images_;
   OnceMap<std::string, EnvironmentMap> environment_maps_;

@@ -74,9 +74,10 @@ class Walk {
   void add_mesh(const ObjectDesc& object) {
     if (object.shape != "mesh") return;
     const auto normals = mesh_normals_of(object);
-    if (normals && seen_meshes_.insert({object.mesh, *normals}).second) {
-      files_.meshes.push_back(
-          {object.mesh, *normals, "object '" + object.name + "'", object.where});
+    if (!normals) return;
+    const MeshUse use(*normals, object.part);
+    if (seen_meshes_.insert({object.mesh, use}).second) {
+      files_.meshes.push_back({object.mesh, use, "object '" + object.name + "'", object.where});
     }
   }
 
@@ -118,7 +119,7 @@ class Walk {
   std::set<std::pair<std::string, std::string>> seen_groups_;  ///< with the material they inherit
   std::set<std::string> seen_materials_;
   std::set<std::string> seen_textures_;
-  std::set<std::pair<std::string, MeshNormals>> seen_meshes_;
+  std::set<std::pair<std::string, MeshUse>> seen_meshes_;
   std::set<std::pair<std::string, ColorSpace>> seen_images_;
   SceneFiles files_;
 };

@@ -12,14 +12,14 @@ namespace hyades::core {
 template <class How>
 struct SceneFile {
   std::string file;
-  How how;               ///< MeshNormals or ColorSpace
+  How how;               ///< MeshUse or ColorSpace
   std::string user;      ///< "object 'vase'", for messages
   SourceLocation where;  ///< of that user
 };
 
 /// The files that a scene of a job is made of; each once, in the order in which building asks.
 struct SceneFiles {
-  std::vector<SceneFile<MeshNormals>> meshes;
+  std::vector<SceneFile<MeshUse>> meshes;
   std::vector<SceneFile<ColorSpace>> images;
   std::string sky;           ///< empty: none
   SourceLocation sky_where;  ///< of the environment

@@ -49,7 +49,7 @@ Result<Shape> box(const ObjectDesc& object, SceneCache& cache) {
 Result<Shape> mesh(const ObjectDesc& object, SceneCache& cache) {
   const auto normals = mesh_normals_of(object);
   if (!normals) return normals.error();
-  auto loaded = cache.mesh(object.mesh, *normals);
+  auto loaded = cache.mesh(object.mesh, MeshUse(*normals, object.part));
   if (!loaded) return loaded.error();
   return shape_of(*loaded);
 }

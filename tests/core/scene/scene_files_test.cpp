@@ -269,5 +269,27 @@ TEST(SceneFiles, WhatCouldNotBeLoadedIsTriedAgain) {
   EXPECT_TRUE(cache.mesh("m0.obj", MeshNormals::file));
 }
 
+TEST(SceneFiles, PartsOfAMeshAreReadFromOneFileOnce) {
+  WatchedAssets assets;
+  assets.add("two.obj", std::string(kTriangle) + "usemtl glass\nf 1 2 3\nf 3 2 1\n");
+  const Job job = parsed(R"yaml(
+objects:
+  all: {mesh: two.obj}
+  rest: {mesh: two.obj, part: default}
+  pane: {mesh: two.obj, part: glass, normals: smooth}
+)yaml",
+                         assets);
+  SceneCache cache(assets);
+  const auto scene = build_scene(job, 1, cache);
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ((*scene)->triangles, 6U);
+  EXPECT_EQ((*cache.mesh("two.obj", {MeshNormals::file, "glass"}))->triangles.size(), 2U);
+  EXPECT_LE(assets.opened()["two.obj"],
+            3);  // by the check of the job, for all of it, for its parts
+  const auto gone = cache.mesh("two.obj", {MeshNormals::file, "clay"});
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error().message, "two.obj: it has no material 'clay'; there is default or glass");
+}
+
 }  // namespace
 }  // namespace hyades::core
