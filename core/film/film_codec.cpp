@@ -9,6 +9,7 @@
 
 #include "core/base/hash.h"
 #include "core/film/byte_planes.h"
+#include "core/film/splat_codec.h"
 
 namespace hyades::core {
 namespace {
@@ -16,7 +17,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the format is little-endian");
 
 constexpr uint32_t kMagic = 0x4D465948;  // "HYFM"
-constexpr uint16_t kVersion = 1;
+constexpr uint16_t kVersion = 2;
+constexpr uint16_t kPlainVersion = 1;  ///< of films without splats, as before there were any
 constexpr uint64_t kFreeBytes = uint64_t{64} << 20U;
 constexpr uint64_t kMaxExpansion = 4096;
 constexpr int32_t kMaxCoordinate = 1 << 24;
@@ -32,7 +34,7 @@ enum class ChannelForm : uint8_t {
 
 uint16_t layer_bits(const LayerSet& layers) {
   return static_cast<uint16_t>((layers.depth ? 1 : 0) | (layers.albedo ? 2 : 0) |
-                               (layers.normal ? 4 : 0));
+                               (layers.normal ? 4 : 0) | (layers.splats ? 8 : 0));
 }
 
 bool float_of(const Fixed128& value, float& result) {
@@ -96,6 +98,11 @@ Status read_channel(ByteReader& in, std::span<Fixed128> plane, const FilmChannel
   return damaged;
 }
 
+/// What a film takes while it is read, at most; `splats`: pixels that have some.
+uint64_t memory_to_read(const FilmLayout& layout, const PixelRect& window, uint64_t splats) {
+  return film_memory(layout, window) + splat_memory(splats);
+}
+
 Result<PixelRect> read_window(ByteReader& in) {
   PixelRect window;
   for (int32_t* side : {&window.x0, &window.y0, &window.x1, &window.y1}) {
@@ -133,12 +140,26 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
     return Error{"its checksum does not match: it is damaged or truncated"};
   }
   const auto bits = in.number<uint16_t>();
-  if (version == 0 || bits > 7) return Error{"it has unknown layers"};
-  FilmLayout layout = make_film_layout({(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0});
+  if (version == 0 || bits > 15 || ((bits & 8) != 0) != (version == kVersion)) {
+    return Error{"it has unknown layers"};
+  }
+  FilmLayout layout =
+      make_film_layout({(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0});
 
   const Result<PixelRect> window = read_window(in);
   if (!window) return window.error();
-  const uint64_t memory = film_memory(layout, *window);
+  PixelRect region = *window;
+  uint32_t splats = 0;
+  if (layout.layers.splats) {
+    const Result<PixelRect> whole = read_window(in);
+    if (!whole) return whole.error();
+    region = *whole;
+    splats = in.number<uint32_t>();
+    if (splats > region.area() || region.area() > UINT32_MAX) {
+      return Error{"it has more splats than pixels"};
+    }
+  }
+  const uint64_t memory = memory_to_read(layout, *window, splats);
   if (memory > limits.max_bytes) {
     return Error{fmt::format("it is {} x {} pixels and would take {} MB; the limit is {} MB",
                              window->width(), window->height(), memory >> 20U,
@@ -151,11 +172,15 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
   Result<Coverage> coverage = read_coverage(in);
   if (!coverage) return coverage.error().in("its coverage is damaged");
 
-  Film film(std::move(layout), *window);
+  Film film(std::move(layout), *window, region);
   film.mutable_coverage() = std::move(*coverage);
   for (size_t c = 0; c < film.layout().channels.size(); ++c) {
     const Status read =
         read_channel(in, film.mutable_plane(static_cast<int>(c)), film.layout().channels[c]);
+    if (!read) return read.error();
+  }
+  if (film.layout().layers.splats) {
+    const Status read = read_splats(in, splats, film.mutable_splats());
     if (!read) return read.error();
   }
   const Status agrees = film.check();
@@ -168,18 +193,25 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
 std::vector<std::byte> encode_film(const Film& film) {
   std::vector<std::byte> out;
   append_number(out, kMagic);
-  append_number(out, kVersion);
+  const bool splats = film.layout().layers.splats;
+  append_number(out, splats ? kVersion : kPlainVersion);
   append_number(out, layer_bits(film.layout().layers));
   append_number(out, film.window());
+  const auto touched = static_cast<uint32_t>(film.splats().count());
+  if (splats) {
+    append_number(out, film.splats().region());
+    append_number(out, touched);
+  }
   const std::vector<CoverageBox> boxes = film.coverage().canonical();
   append_number(out, static_cast<uint32_t>(boxes.size()));
   for (const CoverageBox& box : boxes) append_number(out, box);
   for (size_t c = 0; c < film.layout().channels.size(); ++c) {
     append_channel(out, film.plane(static_cast<int>(c)), film.layout().channels[c].rule);
   }
+  if (splats) append_splats(out, film.splats());
   // Large and nearly empty films are padded, so that a reader can tell them from bytes that claim
   // more than they hold.
-  const uint64_t memory = film_memory(film.layout(), film.window());
+  const uint64_t memory = memory_to_read(film.layout(), film.window(), touched);
   if (memory > kFreeBytes) {
     const uint64_t least = (memory - kFreeBytes) / kMaxExpansion + 1;
     if (out.size() < least) out.resize(static_cast<size_t>(least));

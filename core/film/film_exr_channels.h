@@ -17,15 +17,19 @@ inline constexpr const char* kDigestAttribute = "hyades.digest";
 /// One channel of part "sums": 32 bits of every pixel of a film's plane.
 struct WordChannel {
   std::string name;       ///< "R.sum0" (the lowest bits) .. "R.sum3"; minima: "depth.Z.min"
-  int channel = 0;        ///< of the film
+  int channel = 0;        ///< of the film; behind those the splats' values and squares, R G B each
   int word = 0;           ///< 0 lowest
   bool required = false;  ///< others are left out where they are zero everywhere
 };
 
 std::vector<WordChannel> word_channels(const FilmLayout& layout);
 
-/// The word as OpenEXR sees it, lying where the film keeps it: nothing is copied.
+/// The word as OpenEXR sees it, lying where the film keeps it: nothing is copied. Splats are held
+/// for all pixels of the window (SplatLayer::all).
 Imf::Slice word_slice(const Film& film, const WordChannel& word);
+
+/// Whether the word is 0 in all pixels.
+bool is_zero(const Film& film, const WordChannel& word);
 
 /// What identifies the film's sums and all facts about it; detects damage that compression did not.
 std::string film_file_digest(const std::string& header, const Film& film);

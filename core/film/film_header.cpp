@@ -10,6 +10,7 @@
 namespace hyades::core {
 namespace {
 
+constexpr int kPlainVersion = 1;  ///< of films without splats, as before there were any
 constexpr std::string_view kTitle = "hyades film ";
 constexpr int32_t kMaxSide = 1 << 20;
 
@@ -100,13 +101,14 @@ bool inside_range(const PixelRect& r) {
 std::string write_film_header(const FilmFile& file) {
   const FilmInfo& info = file.info;
   const LayerSet& layers = file.film.layout().layers;
-  std::string text = fmt::format("{}{}\n", kTitle, kFilmFileVersion);
+  std::string text =
+      fmt::format("{}{}\n", kTitle, layers.splats ? kFilmFileVersion : kPlainVersion);
   text += fmt::format("job {}\nkey {}\nframe {}\nsize {} {}\ncrop {}\nsamples {}\n",
                       escape(info.job_name), escape(info.render_key), info.frame, info.width,
                       info.height, rect_text(info.crop), info.samples);
   text += fmt::format("class {}\nbuild {}\n", escape(info.worker_class), escape(info.build));
-  text += fmt::format("layers {} {} {}\nwindow {}\n", int{layers.depth}, int{layers.albedo},
-                      int{layers.normal}, rect_text(file.film.window()));
+  text += fmt::format("layers {} {} {}{}\nwindow {}\n", int{layers.depth}, int{layers.albedo},
+                      int{layers.normal}, layers.splats ? " 1" : "", rect_text(file.film.window()));
   for (const CoverageBox& box : file.film.coverage().canonical()) {
     text +=
         fmt::format("holds {} {} {}\n", rect_text(box.tile), box.batches.first, box.batches.count);
@@ -139,8 +141,13 @@ Result<FilmHeader> parse_film_header(std::string_view text) {
   int depth = 0;
   int albedo = 0;
   int normal = 0;
-  lines.numbers("layers", depth, albedo, normal);
-  header.layers = {depth != 0, albedo != 0, normal != 0};
+  int splats = 0;
+  if (version > kPlainVersion) {
+    lines.numbers("layers", depth, albedo, normal, splats);
+  } else {
+    lines.numbers("layers", depth, albedo, normal);
+  }
+  header.layers = {depth != 0, albedo != 0, normal != 0, splats != 0};
   lines.rect("window", header.window);
   std::vector<CoverageBox> boxes;
   while (lines.next_is("holds")) {

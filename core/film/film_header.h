@@ -12,7 +12,7 @@
 
 namespace hyades::core {
 
-inline constexpr int kFilmFileVersion = 1;
+inline constexpr int kFilmFileVersion = 2;
 
 /// Everything about a film but its sums.
 struct FilmHeader {

@@ -47,7 +47,8 @@ struct FilmLayout {
 
 FilmLayout make_film_layout(const LayerSet& layers);
 
-/// Bytes that the sums of a film take in memory; where there are splats, of a frame's whole film.
+/// Bytes that the sums of a film take in memory; with splats for all pixels of its window (the
+/// splats of a unit may lie in all of the frame, see splat_memory in splat_codec.h).
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window);
 
 }  // namespace hyades::core

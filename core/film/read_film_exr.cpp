@@ -93,6 +93,7 @@ Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
   }
 
   FilmFile file{std::move(header->info), Film(std::move(layout), window)};
+  if (file.film.layout().layers.splats) file.film.mutable_splats().spread();
   Imf::FrameBuffer buffer;
   for (const WordChannel& word : *words) buffer.insert(word.name, word_slice(file.film, word));
   Imf::InputPart part(in, index);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,12 @@ class SplatLayer {
   /// come, soon holds all pixels: adding one of those costs no more than its entries then.
   void merge(const SplatLayer& other);
 
+  /// Takes memory for every pixel.
+  void spread();
+
+  /// Every pixel's sums, row by row; empty while only those are held that were touched.
+  std::span<const Sums> all() const { return all_; }
+
   /// What a pixel of the region holds.
   Sums at(int x, int y) const;
 
@@ -82,7 +89,6 @@ class SplatLayer {
   std::string digest() const;
 
  private:
-  void spread();
   void add(std::vector<Entry> entries, size_t sparse);
 
   PixelRect region_;

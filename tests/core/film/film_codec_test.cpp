@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include "core/base/hash.h"
@@ -29,6 +30,18 @@ Film patchwork() {
   return film;
 }
 
+/// The same with splats; of some pixels one, of others several.
+Film splatted_patchwork() {
+  LayerSet layers = kAllLayers;
+  layers.splats = true;
+  const FilmLayout layout = make_film_layout(layers);
+  const PixelRect region{-5, 8, 40, 60};
+  Film film(layout, {-4, 10, 28, 30}, region);
+  EXPECT_TRUE(film.merge(render_with_splats(layout, {-4, 10, 0, 13}, {0, 3}, region)));
+  EXPECT_TRUE(film.merge(render_with_splats(layout, {5, 10, 10, 12}, {2, 1}, region)));
+  return film;
+}
+
 TEST(FilmCodec, GivesBackTheSameFilm) {
   for (const LayerSet& layers : {LayerSet{}, LayerSet{true, false, false}, kAllLayers}) {
     const FilmLayout layout = make_film_layout(layers);
@@ -46,10 +59,59 @@ TEST(FilmCodec, GivesBackTheSameFilm) {
       }
     }
   }
-  const Film film = patchwork();
+  for (const Film& film : {patchwork(), splatted_patchwork()}) {
+    const Encoded bytes = encode_film(film);
+    const Result<Film> back = decode_film(bytes);
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(back->digest(), film.digest());
+    EXPECT_EQ(encode_film(*back), bytes);
+  }
+}
+
+TEST(FilmCodec, GivesBackSplatsThatAreFewOrEverywhere) {
+  const FilmLayout layout = make_film_layout({.splats = true});
+  const PixelRect region{3, 2, 203, 102};
+  const PixelRect tile{4, 4, 8, 6};
+  for (const BatchRange& batches : {BatchRange{0, 0}, BatchRange{1, 1}, BatchRange{0, 300}}) {
+    const Film film = render_with_splats(layout, tile, batches, region);
+    // Kept otherwise in memory, the same in bytes.
+    Film spread = film;
+    spread.mutable_splats().spread();
+    const Encoded bytes = encode_film(film);
+    EXPECT_EQ(encode_film(spread), bytes);
+    const Result<Film> back = decode_film(bytes);
+    ASSERT_TRUE(back.ok()) << back.error().message;
+    EXPECT_EQ(back->digest(), film.digest());
+    EXPECT_EQ(back->splats().region(), region);
+    EXPECT_EQ(encode_film(*back), bytes);
+  }
+}
+
+TEST(FilmCodec, ExtremeSplatsSurvive) {
+  const FilmLayout layout = make_film_layout({.splats = true});
+  Film film = render(layout, {0, 0, 4, 1}, {0, 1}, 16, {0, 0, 9, 9});
+  film.deposit_splats({{0, {3e38F, -3e38F, 1e-40F}},
+                       {1, {-1e-40F, 1e-20F, -1e-20F}},
+                       {2, {0x1p35F, -0x1p-17F, 0x1.fffffep-18F}},
+                       {80, {0.0F, -0.0F, 1.0F}}});
+  SplatLayer::Entry odd{3, {}};
+  odd.sums.value = {{{0, INT64_MIN}, {~uint64_t{0}, INT64_MAX}, {1, 0}}};
+  odd.sums.square = {{{~uint64_t{0}, INT64_MAX}, {1, 0}, {0, 0}}};
+  film.mutable_splats().add({odd});
   const Result<Film> back = decode_film(encode_film(film));
   ASSERT_TRUE(back.ok()) << back.error().message;
   EXPECT_EQ(back->digest(), film.digest());
+}
+
+TEST(FilmCodec, ASplatTakesAboutTwelveBytesAndItsPlace) {
+  const FilmLayout layout = make_film_layout({.splats = true});
+  const PixelRect region{0, 0, 1000, 500};
+  const Film with = render_with_splats(layout, {0, 0, 16, 16}, {0, 1}, region);
+  const Film without = render(layout, {0, 0, 16, 16}, {0, 1}, 1000000, region);
+  const double splats = 16.0 * 16 * 32;
+  const double size =
+      static_cast<double>(encode_film(with).size() - encode_film(without).size()) / splats;
+  EXPECT_LT(size, 13.5);
 }
 
 TEST(FilmCodec, ExtremeSumsSurvive) {
@@ -74,19 +136,25 @@ TEST(FilmCodec, OneBatchTakesAboutFourBytesPerValue) {
 }
 
 TEST(FilmCodec, TruncationIsRefusedAtEveryLength) {
-  const Encoded bytes = encode_film(render(make_film_layout({}), {0, 0, 6, 5}, {0, 2}));
-  for (size_t size = 0; size < bytes.size(); ++size) {
-    ASSERT_FALSE(decode_film(std::span(bytes).first(size)).ok()) << size;
-    Encoded cut(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(size));
-    mend_checksum(cut);
-    ASSERT_FALSE(decode_film(cut).ok()) << size;
+  for (const Film& film : {render(make_film_layout({}), {0, 0, 6, 5}, {0, 2}),
+                           render_with_splats(make_film_layout({.splats = true}), {0, 0, 3, 1},
+                                              {0, 2}, {0, 0, 9, 9})}) {
+    const Encoded bytes = encode_film(film);
+    for (size_t size = 0; size < bytes.size(); ++size) {
+      ASSERT_FALSE(decode_film(std::span(bytes).first(size)).ok()) << size;
+      Encoded cut(bytes.begin(), bytes.begin() + static_cast<ptrdiff_t>(size));
+      mend_checksum(cut);
+      ASSERT_FALSE(decode_film(cut).ok()) << size;
+    }
   }
 }
 
 TEST(FilmCodec, FlippedBitsAreRefused) {
-  const Encoded bytes = encode_film(patchwork());
+  const std::array<Encoded, 2> films = {encode_film(patchwork()),
+                                        encode_film(splatted_patchwork())};
   std::mt19937 random(1);
-  for (int i = 0; i < 3000; ++i) {
+  for (size_t i = 0; i < 3000; ++i) {
+    const Encoded& bytes = films[i % 2];
     Encoded flipped = bytes;
     for (int k = 1 + static_cast<int>(random() % 3); k > 0; --k) {
       flipped[random() % flipped.size()] ^= std::byte{1} << (random() % 8);
@@ -97,11 +165,12 @@ TEST(FilmCodec, FlippedBitsAreRefused) {
 
 /// Behind a right checksum (an enemy's, or a bug's): refused or a consistent film, never a crash.
 TEST(FilmCodec, HostileBytesAreRefusedOrHarmless) {
-  const Encoded bytes = encode_film(patchwork());
+  const Encoded plain = encode_film(patchwork());
+  const Encoded splatted = encode_film(splatted_patchwork());
   std::mt19937 random(2);
   int refused = 0;
-  for (int i = 0; i < 4000; ++i) {
-    Encoded hostile = bytes;
+  for (int i = 0; i < 6000; ++i) {
+    Encoded hostile = i % 3 == 0 ? plain : splatted;
     // Mostly in the header and coverage, where numbers steer.
     const size_t range = i % 2 == 0 ? std::min<size_t>(300, hostile.size()) : hostile.size();
     for (int k = 1 + static_cast<int>(random() % 4); k > 0; --k) {
@@ -113,7 +182,7 @@ TEST(FilmCodec, HostileBytesAreRefusedOrHarmless) {
     refused += film.ok() ? 0 : 1;
     ASSERT_TRUE(!film.ok() || film->check().ok());
   }
-  EXPECT_GT(refused, 2000);
+  EXPECT_GT(refused, 3000);
 }
 
 TEST(FilmCodec, ClaimsAreCheckedBeforeMemoryIsTaken) {
@@ -131,6 +200,19 @@ TEST(FilmCodec, ClaimsAreCheckedBeforeMemoryIsTaken) {
   mend_checksum(bytes);
   EXPECT_NE(decode_film(bytes).error().message.find("cannot hold"), std::string::npos);
 
+  // Splats of more pixels than there are, or than the bytes can hold: their number is behind the
+  // window and the region.
+  for (const uint32_t count : {uint32_t{17}, uint32_t{1000001}}) {
+    Encoded many = encode_film(Film(make_film_layout({.splats = true}), {0, 0, 4, 4},
+                                    {0, 0, count == 17 ? 4 : 1000, count == 17 ? 4 : 2000}));
+    std::copy_n(std::as_bytes(std::span(&count, 1)).begin(), 4, many.begin() + 40);
+    mend_checksum(many);
+    EXPECT_NE(decode_film(many).error().message.find(count == 17 ? "more splats than pixels"
+                                                                 : "cannot hold"),
+              std::string::npos)
+        << decode_film(many).error().message;
+  }
+
   // A real film that is large and black has the padding that its size asks for.
   const Film black(layout, {0, 0, 2048, 1024});
   const Encoded padded = encode_film(black);
@@ -143,8 +225,12 @@ TEST(FilmCodec, ClaimsAreCheckedBeforeMemoryIsTaken) {
 
 TEST(FilmCodec, ANewerVersionIsNamed) {
   Encoded bytes = encode_film(patchwork());
+  EXPECT_EQ(bytes[4], std::byte{1}) << "as builds that know no splats can read";
   bytes[4] = std::byte{2};
-  EXPECT_NE(decode_film(bytes).error().message.find("format version 2; this build knows 1"),
+  mend_checksum(bytes);
+  EXPECT_NE(decode_film(bytes).error().message.find("unknown layers"), std::string::npos);
+  bytes[4] = std::byte{3};
+  EXPECT_NE(decode_film(bytes).error().message.find("format version 3; this build knows 2"),
             std::string::npos);
 }
 
@@ -155,6 +241,9 @@ TEST(FilmCodec, FilmsThatDoNotAgreeWithThemselvesAreRefused) {
   film = patchwork();
   film.mutable_coverage().add({{27, 29, 29, 30}, {100, 1}});
   EXPECT_FALSE(decode_film(encode_film(film)).ok()) << "outside the window";
+  film = Film(make_film_layout({.splats = true}), {0, 0, 2, 2});
+  film.deposit_splats({{1, {1, 1, 1}}});
+  EXPECT_FALSE(decode_film(encode_film(film)).ok()) << "splats of no batch";
 }
 
 }  // namespace

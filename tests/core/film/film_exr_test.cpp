@@ -73,6 +73,39 @@ FilmFile patchwork(const LayerSet& layers = kAllLayers) {
   return file;
 }
 
+const LayerSet kSplats{.depth = true, .splats = true};
+
+/// Splats lie in all of the crop, so that the file's window is that.
+FilmFile splatted(const PixelRect& window, BatchRange batches) {
+  return {info(), render_with_splats(make_film_layout(kSplats), window, batches, info().crop, 200)};
+}
+
+TEST_F(FilmExr, SplatsComeBackFromAllOfTheRegion) {
+  const FilmFile file = splatted(info().crop, {0, 1});
+  ASSERT_TRUE(write_film_exr(path("a.exr"), file).ok());
+  const Result<FilmFile> back = read_film_exr(path("a.exr"));
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->film.digest(), file.film.digest());
+
+  // Half of the picture holds its part of the splats everywhere.
+  const FilmFile north = splatted({4, 2, 60, 20}, {0, 1});
+  const FilmFile south = splatted({4, 20, 60, 40}, {0, 1});
+  ASSERT_TRUE(write_film_exr(path("north.exr"), north).ok());
+  ASSERT_TRUE(write_film_exr(path("south.exr"), south).ok());
+  Result<FilmFile> half = read_film_exr(path("north.exr"));
+  ASSERT_TRUE(half.ok()) << half.error().message;
+  EXPECT_EQ(half->film.window(), info().crop);
+  EXPECT_EQ(half->film.coverage().canonical(), north.film.coverage().canonical());
+  EXPECT_EQ(half->film.splats().digest(), north.film.splats().digest());
+  const Result<FilmFile> other = read_film_exr(path("south.exr"));
+  ASSERT_TRUE(other.ok()) << other.error().message;
+  ASSERT_TRUE(merge_film_files(*half, *other));
+  EXPECT_EQ(half->film.digest(), file.film.digest());
+  FilmFile in_memory = north;
+  ASSERT_TRUE(merge_film_files(in_memory, south));
+  EXPECT_EQ(in_memory.film.digest(), file.film.digest());
+}
+
 TEST_F(FilmExr, GivesBackTheSameBits) {
   for (const LayerSet& layers : {LayerSet{}, LayerSet{true, false, false}, kAllLayers}) {
     const FilmFile file = patchwork(layers);
@@ -165,13 +198,17 @@ TEST_F(FilmExr, TruncatedFilesAreRefused) {
 
 /// A damaged byte is noticed, or it lies where it cannot change the film (the picture part).
 TEST_F(FilmExr, DamagedFilesAreRefusedOrGiveTheSameFilm) {
-  const FilmFile file = patchwork({true, false, false});
-  ASSERT_TRUE(write_film_exr(path("a.exr"), file).ok());
-  const std::string digest = file.film.digest();
-  const std::string whole = read_bytes(path("a.exr"));
+  const FilmFile plain = patchwork({true, false, false});
+  const FilmFile splats = splatted(info().crop, {0, 1});
+  ASSERT_TRUE(write_film_exr(path("a.exr"), plain).ok());
+  ASSERT_TRUE(write_film_exr(path("b.exr"), splats).ok());
+  const std::string digests[] = {plain.film.digest(), splats.film.digest()};
+  const std::string files[] = {read_bytes(path("a.exr")), read_bytes(path("b.exr"))};
   std::mt19937 random(4);
   int refused = 0;
   for (int i = 0; i < 2500; ++i) {
+    const std::string& whole = files[i % 5 == 0 ? 1 : 0];
+    const std::string& digest = digests[i % 5 == 0 ? 1 : 0];
     std::string damaged = whole;
     const size_t range = i % 2 == 0 ? std::min<size_t>(2000, whole.size()) : whole.size();
     for (int k = 1 + static_cast<int>(random() % 2); k > 0; --k) {
@@ -183,7 +220,7 @@ TEST_F(FilmExr, DamagedFilesAreRefusedOrGiveTheSameFilm) {
       continue;
     }
     ASSERT_EQ(back->film.digest(), digest);
-    ASSERT_EQ(back->info.render_key, file.info.render_key);
+    ASSERT_EQ(back->info.render_key, plain.info.render_key);
   }
   EXPECT_GT(refused, 1000);
 }
@@ -211,7 +248,9 @@ TEST_F(FilmExr, HeadersThatDoNotAgreeAreRefused) {
     const Result<FilmHeader> parsed = parse_film_header(text);
     return parsed.ok() ? std::string() : parsed.error().message;
   };
-  EXPECT_NE(changed("film 1", "film 2").find("newer version"), std::string::npos);
+  EXPECT_NE(changed("film 1", "film 3").find("newer version"), std::string::npos);
+  EXPECT_NE(changed("film 1", "film 2").find("damaged"), std::string::npos)
+      << "of films with splats";
   EXPECT_NE(changed("film 1", "film 0"), "");
   EXPECT_NE(changed("holds 10 5", "holds 9 5").find("outside its window"), std::string::npos);
   EXPECT_NE(changed("window 10 5", "window 3 5").find("not inside the crop"), std::string::npos);
