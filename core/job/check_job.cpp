@@ -208,6 +208,17 @@ void check_frames(ReadContext& context) {
   check_values(context, checks.vectors, frames, stride);
 }
 
+/// Density varies from place to place of a body; all space has no bounds.
+void check_atmosphere(ReadContext& context) {
+  for (const MediumDesc& medium : context.job.media) {
+    if (medium.name != context.job.atmosphere || !medium.varying) continue;
+    context.complain(medium.where,
+                     fmt::format("medium '{}' is the atmosphere and has a density that varies, "
+                                 "expected it to be inside of an object",
+                                 medium.name));
+  }
+}
+
 }  // namespace
 
 void check_job(ReadContext& context, AssetResolver& assets) {
@@ -215,6 +226,7 @@ void check_job(ReadContext& context, AssetResolver& assets) {
   check_texture_cycles(context);
   check_material_cycles(context);
   check_groups(context);
+  check_atmosphere(context);
   check_files(context, assets);
   check_frames(context);
 }

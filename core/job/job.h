@@ -8,6 +8,7 @@
 
 #include "core/base/rect.h"
 #include "core/job/animated.h"
+#include "core/job/density_desc.h"
 #include "core/job/source.h"
 #include "core/job/value_checks.h"
 
@@ -155,6 +156,7 @@ struct MediumDesc {
   Animated<float> blend{0.0F};                  ///< share of the second lobe
   Animated<Rgb> emission{Rgb(0.0F)};            ///< W/(length^3 sr)
   Animated<float> scale{1.0F};                  ///< multiplies all coefficients
+  std::optional<DensityDesc> varying;           ///< multiplies them from place to place in a body
   std::optional<float> index;  ///< of refraction, of bodies of it that have no material
 };
 

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "core/job/kinds.h"
+#include "core/job/read_density.h"
 #include "core/job/read_preset.h"
 #include "core/job/read_sections.h"
 
@@ -32,15 +33,16 @@ void read_density(MapReader& reader, MediumDesc& medium) {
   reader.color("scattering", medium.scattering, kNotNegative);
   reader.color("albedo", medium.albedo, kUnitInterval);
   reader.color("mean_free_path", medium.mean_free_path, kPositive);
-  reader.color("density", medium.density, kNotNegative);
+  if (!medium.varying) reader.color("density", medium.density, kNotNegative);
   static constexpr std::array<std::string_view, 2> kCoefficients = {"absorption", "scattering"};
   static constexpr std::array<std::string_view, 1> kLength = {"mean_free_path"};
   if (stands_beside(reader, "albedo", kCoefficients) ||
       stands_beside(reader, "mean_free_path", kCoefficients) ||
-      stands_beside(reader, "density", kCoefficients) ||
-      stands_beside(reader, "density", kLength)) {
+      (!medium.varying && (stands_beside(reader, "density", kCoefficients) ||
+                           stands_beside(reader, "density", kLength)))) {
     return;
   }
+  if (medium.varying && medium.albedo) return;
   if (medium.albedo.has_value() != (medium.density || medium.mean_free_path)) {
     const char* there = medium.albedo ? "albedo" : medium.density ? "density" : "mean_free_path";
     reader.complain(reader.find(there)->where, reader.what() + " has " + there +
@@ -77,6 +79,7 @@ void read_media(MapReader& top) {
                medium.name = name;
                medium.where = node.where;
                reader.find("like");
+               read_varying_density(reader, medium.varying);
                read_preset(reader, medium);
                read_density(reader, medium);
                read_phase(reader, medium);

@@ -27,7 +27,7 @@ void read_preset(MapReader& reader, MediumDesc& medium) {
     return;
   }
   for (const char* key : kBrought) {
-    if (!reader.has(key)) continue;
+    if (!reader.has(key) || (medium.varying && key == std::string_view("density"))) continue;
     reader.complain(reader.find(key)->where, reader.what() + " has both preset and " + key +
                                                  ", expected a preset with scale, emission or "
                                                  "index alone");

@@ -1,6 +1,7 @@
 #include "core/job/resolved_text.h"
 
 #include "core/base/version.h"
+#include "core/job/density_text.h"
 #include "core/job/field_writer.h"
 
 namespace hyades::core {
@@ -108,6 +109,7 @@ void write(FieldWriter& out, const MediumDesc& medium) {
   out.put("blend", medium.blend);
   out.put("emission", medium.emission);
   out.put("scale", medium.scale);
+  if (medium.varying) write_density(out, *medium.varying);
   if (medium.index) out.put("index", *medium.index);
   out.leave();
 }

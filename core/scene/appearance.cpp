@@ -61,7 +61,24 @@ Result<MediumPtr> Appearance::medium(const std::string& name) {
   if (const auto it = media_.find(name); it != media_.end()) return it->second;
   const MediumDesc* desc = find_named(job_.media, name);
   if (desc == nullptr) return Error{"there is no medium '" + name + "'"};
+  if (desc->varying) return Error{"medium '" + name + "' varies from place to place of a body"};
   return media_[name] = make_medium(*desc, time_, job_.units);
+}
+
+Result<MediumPtr> Appearance::medium_in(const std::string& name, const Placement& body) {
+  const MediumDesc* desc = find_named(job_.media, name);
+  if (desc == nullptr || !desc->varying) return medium(name);
+  const Bounds bounds = bounds_of(body.shape);
+  const Vec3& a = bounds.lower;
+  const Vec3& b = bounds.upper;
+  const auto key = std::make_pair(name, std::array<float, 6>{a.x, a.y, a.z, b.x, b.y, b.z});
+  auto found = volumes_.find(key);
+  if (found == volumes_.end()) {
+    auto volume = make_volume(*desc->varying, time_, bounds, cache_);
+    if (!volume) return volume.error().in("medium '" + name + "'");
+    found = volumes_.emplace(key, std::move(*volume)).first;
+  }
+  return make_medium_in(*desc, time_, job_.units, found->second, body.to_world);
 }
 
 Result<ColorParam> Appearance::color(const ColorInput& input) {

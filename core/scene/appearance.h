@@ -1,13 +1,16 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "core/base/result.h"
 #include "core/job/job.h"
 #include "core/materials/make_material.h"
 #include "core/media/make_medium.h"
 #include "core/scene/scene_cache.h"
+#include "core/scene/volume_makers.h"
 
 namespace hyades::core {
 
@@ -29,8 +32,11 @@ class Appearance {
   /// refraction has a smooth surface of it.
   Result<MaterialPtr> surface(const std::string& material, const std::string& interior);
 
-  /// The medium called `name`; null for "".
+  /// The medium called `name`, the same everywhere; null for "".
   Result<MediumPtr> medium(const std::string& name);
+
+  /// The medium called `name` as it fills `body`, in which it may vary; null for "".
+  Result<MediumPtr> medium_in(const std::string& name, const Placement& body);
 
   // A parameter at this moment: its value, or the texture that it names.
   Result<ColorParam> color(const ColorInput& input);
@@ -50,6 +56,8 @@ class Appearance {
   std::map<std::string, TexturePtr> textures_;
   std::map<std::string, MaterialPtr> materials_;
   std::map<std::string, MediumPtr> media_;
+  std::map<std::pair<std::string, std::array<float, 6>>, PlacedVolume>
+      volumes_;  ///< by medium and bounds of the body
   int depth_ =
       0;  ///< of references in progress: the parser refuses cycles, this stops what slips through
 };

@@ -97,7 +97,7 @@ class SceneBuilder {
   /// keeps the atmosphere out.
   Status add_interior(const FlatObject& object, SceneObject& added) {
     if (!scene_->has_media) return {};
-    auto interior = looks_.medium(object.desc->interior);
+    auto interior = interior_of(object);
     if (!interior) return at(object, interior.error());
     added.interior = *interior;
     const bool closed = has_inside(*object.desc);
@@ -105,6 +105,12 @@ class SceneBuilder {
     added.body = static_cast<uint32_t>(object.body);
     scene_->has_shells |= added.material->is_null();
     return {};
+  }
+
+  /// All parts of a body's surface share what is inside.
+  Result<MediumPtr> interior_of(const FlatObject& object) {
+    if (object.body < scene_->objects.size()) return scene_->objects[object.body].interior;
+    return looks_.medium_in(object.desc->interior, object.placement);
   }
 
   /// At the middle of the lens when the shutter opens: a camera that goes through a surface in

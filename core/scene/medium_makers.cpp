@@ -1,5 +1,7 @@
 #include "core/scene/medium_makers.h"
 
+#include <utility>
+
 namespace hyades::core {
 namespace {
 
@@ -7,8 +9,9 @@ namespace {
 Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float units) {
   Coefficients found;
   if (desc.albedo) {
-    const Rgb extinction =
-        desc.density ? desc.density->at(time) : Rgb(1.0F) / desc.mean_free_path->at(time);
+    const Rgb extinction = desc.density          ? desc.density->at(time)
+                           : desc.mean_free_path ? Rgb(1.0F) / desc.mean_free_path->at(time)
+                                                 : Rgb(1.0F);
     found.scattering = desc.albedo->at(time) * extinction;
     found.absorption = extinction - found.scattering;
   } else {
@@ -34,6 +37,15 @@ Phase phase_of(const MediumDesc& desc, const JobTime& time) {
 MediumPtr make_medium(const MediumDesc& desc, const JobTime& time, float units) {
   const Coefficients made = coefficients_of(desc, time, units);
   return make_homogeneous(made.absorption, made.scattering, made.emission, phase_of(desc, time));
+}
+
+MediumPtr make_medium_in(const MediumDesc& desc, const JobTime& time, float units,
+                         const PlacedVolume& volume, const std::vector<Mat4>& body_to_world) {
+  std::vector<Mat4> to_world;
+  to_world.reserve(body_to_world.size());
+  for (const Mat4& m : body_to_world) to_world.push_back(m * volume.to_body);
+  return make_varying(volume.volume, FieldPlace(std::move(to_world)),
+                      coefficients_of(desc, time, units), phase_of(desc, time));
 }
 
 }  // namespace hyades::core

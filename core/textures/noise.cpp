@@ -1,9 +1,10 @@
 #include "core/textures/noise.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+
+#include "core/textures/noise_octaves.h"
 
 namespace hyades::core {
 namespace {
@@ -140,15 +141,6 @@ F4 mix(F4 a, F4 b, float t) { return a * all(1.0F - t) + b * all(t); }
 constexpr float kScale3 = 1.0F / 1.0363539F;
 constexpr float kScale4 = 1.0F / 1.5365825F;
 
-constexpr int kMaxOctaves = 32;
-
-/// Shift of octave i along axis d, cells: irrational steps (powers of the reciprocal of the
-/// generalised golden ratio of four dimensions), nothing for the first octave.
-float shift(int octave, int axis) {
-  constexpr float kSteps[4] = {17.85667488F, 31.73389186F, 47.62870672F, 59.53859726F};
-  return static_cast<float>(octave) * kSteps[axis];
-}
-
 }  // namespace
 
 Noise3 perlin(const Vec3& p) {
@@ -203,17 +195,11 @@ Noise4 perlin(const Vec4& p) {
 
 Noise3 fbm(const Vec3& p, int octaves, float lacunarity, float gain) {
   Noise3 total;
-  float frequency = 1.0F;
-  float amplitude = 1.0F;
-  float norm = 0.0F;
-  for (int i = 0; i < std::clamp(octaves, 1, kMaxOctaves); ++i) {
-    const Noise3 n = perlin(p * frequency + Vec3(shift(i, 0), shift(i, 1), shift(i, 2)));
-    total.value += amplitude * n.value;
-    total.gradient += amplitude * frequency * n.gradient;
-    norm += std::fabs(amplitude);
-    frequency *= lacunarity;
-    amplitude *= gain;
-  }
+  const float norm = for_each_octave(octaves, lacunarity, gain, [&](const Octave& octave) {
+    const Noise3 n = perlin(p * octave.frequency + Vec3(octave.shift));
+    total.value += octave.amplitude * n.value;
+    total.gradient += octave.amplitude * octave.frequency * n.gradient;
+  });
   total.value /= norm;
   total.gradient /= norm;
   return total;
@@ -221,18 +207,11 @@ Noise3 fbm(const Vec3& p, int octaves, float lacunarity, float gain) {
 
 Noise4 fbm(const Vec4& p, int octaves, float lacunarity, float gain) {
   Noise4 total;
-  float frequency = 1.0F;
-  float amplitude = 1.0F;
-  float norm = 0.0F;
-  for (int i = 0; i < std::clamp(octaves, 1, kMaxOctaves); ++i) {
-    const Noise4 n =
-        perlin(p * frequency + Vec4(shift(i, 0), shift(i, 1), shift(i, 2), shift(i, 3)));
-    total.value += amplitude * n.value;
-    total.gradient += amplitude * frequency * n.gradient;
-    norm += std::fabs(amplitude);
-    frequency *= lacunarity;
-    amplitude *= gain;
-  }
+  const float norm = for_each_octave(octaves, lacunarity, gain, [&](const Octave& octave) {
+    const Noise4 n = perlin(p * octave.frequency + octave.shift);
+    total.value += octave.amplitude * n.value;
+    total.gradient += octave.amplitude * octave.frequency * n.gradient;
+  });
   total.value /= norm;
   total.gradient /= norm;
   return total;

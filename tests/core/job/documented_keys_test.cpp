@@ -142,6 +142,8 @@ const std::map<std::string, Place>& places() {
     p["objects.shapes"] = p["objects"];
     p["objects.bodies"] = p["objects"];
     p["media"] = {"media: {x: {", {}, "}}"};
+    p["media.density"] = {"media: {x: {scattering: 2, density: {", {{"noise", "{}"}}, "}}}"};
+    p["media.density.noise"] = {"media: {x: {scattering: 2, density: {noise: {", {}, "}}}}"};
     p["objects.mesh"] = object("mesh", "chair.obj");
     p["objects.emit"] = {"objects: {x: {shape: sphere, emit: {", {}, "}}}"};
     p["objects.group"] = {"objects: {x: {group: {", {}, "}}}"};

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/media/noise_density.h"
 #include "tests/core/media/volumes.h"
 
 namespace hyades::core {
@@ -56,7 +57,22 @@ void expect_bounded(const DensityField& field, uint64_t seed) {
   }
 }
 
-TEST(Fields, LieBetweenTheirBounds) { expect_bounded(GridDensity(random_grid(30, 5)), 2); }
+TEST(Fields, LieBetweenTheirBounds) {
+  expect_bounded(GridDensity(random_grid(30, 5)), 2);
+  const Bounds body{Vec3(-1.0F, -2.0F, 0.5F), Vec3(2.0F, 1.0F, 2.5F)};
+  for (const float fade : {0.0F, 0.6F}) {
+    for (const float high : {0.6F, 0.45F}) {
+      NoiseDensity noise;
+      noise.scale = {1.3F, -0.8F, 1.0F};
+      noise.offset = Vec3(3.0F, 0.2F, -7.0F);
+      noise.time = 0.37F;
+      noise.low = 0.45F;
+      noise.high = high;
+      noise.fade = fade;
+      expect_bounded(*make_noise_density(noise, body), 3);
+    }
+  }
+}
 
 // Each part of a way lies in the cell whose bounds it is told with, and the parts make the whole.
 TEST(MajorantGrid, WalksWithoutGapsAndWithTheRightBounds) {
