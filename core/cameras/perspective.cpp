@@ -10,6 +10,9 @@ namespace hyades::core {
 
 namespace {
 
+/// Directions further from the view axis are behind the film's edge for any field of view.
+constexpr float kLeastCosine = 1e-4F;
+
 /// A pose made ready for rays: orthonormal axes and the size of half the picture at distance 1.
 struct View {
   Vec3 from{0.0F};
@@ -105,12 +108,48 @@ class PerspectiveCamera : public Camera {
     return ray;
   }
 
+  std::optional<CameraConnection> connect(const Vec3& point, const Vec2& lens,
+                                          float time) const override {
+    const View view = view_at(time);
+    CameraConnection seen;
+    seen.position = view.from;
+    Vec2 on_lens(0.0F);
+    if (view.lens_radius > 0.0F) {
+      on_lens = view.lens_radius * place_in_aperture(lens);
+      seen.position += on_lens.x * view.right + on_lens.y * view.up;
+    }
+    const Vec3 to_point = point - seen.position;
+    seen.distance = std::sqrt(glm::dot(to_point, to_point));
+    const float depth = glm::dot(to_point, view.forward);
+    if (!(depth > kLeastCosine * seen.distance)) return std::nullopt;
+    seen.direction = to_point / seen.distance;
+    const Vec2 slope = Vec2(glm::dot(to_point, view.right), glm::dot(to_point, view.up)) / depth +
+                       on_lens * view.inverse_focus;
+    const float to_plane = view.half_height / resolution_.y;
+    seen.film = 0.5F * (Vec2(slope.x, -slope.y) / to_plane + Vec2(resolution_));
+    seen.density = density(view, depth / seen.distance);
+    return seen;
+  }
+
+  float film_density(const Vec3& direction, float time) const override {
+    const View view = view_at(time);
+    return density(view, glm::dot(direction, view.forward));
+  }
+
   float depth_of(const Vec3& point, float time) const override {
     const View view = view_at(time);
     return glm::dot(point - view.from, view.forward);
   }
 
  private:
+  /// The film lies at distance 1, where a pixel is `edge` wide; an area there is seen under the
+  /// cosine and from 1 / cosine away.
+  float density(const View& view, float cosine) const {
+    if (!(cosine > kLeastCosine)) return 0.0F;
+    const float edge = 2.0F * view.half_height / resolution_.y;
+    return 1.0F / (edge * edge * cosine * cosine * cosine);
+  }
+
   Vec2 place_in_aperture(const Vec2& u) const {
     return blades_ < 3 ? square_to_disk(u) : square_to_polygon(u, blades_, rotation_);
   }

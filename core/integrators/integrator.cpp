@@ -1,5 +1,6 @@
 #include "core/integrators/integrator.h"
 
+#include "core/integrators/bdpt.h"
 #include "core/integrators/path.h"
 
 namespace hyades::core {
@@ -12,6 +13,7 @@ struct Maker {
 
 constexpr Maker kMakers[] = {
     {"path", make_path_integrator},
+    {"bdpt", make_bdpt_integrator},
 };
 
 }  // namespace

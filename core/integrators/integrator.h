@@ -35,14 +35,20 @@ struct PathLog {
   std::vector<std::string> lines;
 };
 
-/// Scratch memory and counters of one rendering thread.
+/// What an integrator keeps from one sample to the next to save work; no result depends on it.
+struct IntegratorScratch {
+  virtual ~IntegratorScratch() = default;
+};
+
+/// Scratch memory and counters of one rendering thread, for one integrator.
 struct Workspace {
   BsdfArena arena;
   /// Of the sample that is being taken: integrators append, the renderer takes them away.
   std::vector<Splat> splats;
-  uint64_t rays = 0;       ///< closest-hit and occlusion queries
-  uint64_t bounces = 0;    ///< scattering events
-  PathLog* log = nullptr;  ///< where to tell the path; null while rendering
+  std::unique_ptr<IntegratorScratch> scratch;  ///< made by the integrator when it is first needed
+  uint64_t rays = 0;                           ///< closest-hit and occlusion queries
+  uint64_t bounces = 0;                        ///< scattering events
+  PathLog* log = nullptr;                      ///< where to tell the path; null while rendering
 };
 
 /// How paths are found and weighed. Immutable and thread-safe. Integrators that work sample by

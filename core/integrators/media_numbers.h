@@ -15,13 +15,12 @@ inline constexpr int kMaxNullCrossings = 1000;
 /// groups of its own, so that the first way from the camera is well stratified in every pixel.
 class MediaNumbers {
  public:
-  enum class Purpose : uint32_t { flight, shadow };
+  enum class Purpose : uint32_t { flight, shadow, light_flight, connection };
 
-  /// Of the way after `depth` scattering events.
+  /// Of the way after `depth` scattering events; of connections: their number, modulo 2^17.
   MediaNumbers(Sampler& sampler, int depth, Purpose purpose)
       : sampler_(&sampler),
-        dimension_(kFirst + static_cast<uint32_t>(depth) * 2 * kPerWay +
-                   static_cast<uint32_t>(purpose) * kPerWay) {}
+        dimension_(first(purpose) + (static_cast<uint32_t>(depth) % kWays) * 2 * kPerWay) {}
 
   /// For the next part of the way.
   Vec4 next() {
@@ -32,7 +31,14 @@ class MediaNumbers {
 
  private:
   static constexpr uint32_t kFirst = 1U << 20U;   ///< above all that 65,536 bounces draw
+  static constexpr uint32_t kSecond = 1U << 31U;  ///< of light paths and connections
   static constexpr uint32_t kPerWay = 1U << 12U;  ///< kMaxNullCrossings + 1 parts of four
+  static constexpr uint32_t kWays = 1U << 17U;
+
+  static constexpr uint32_t first(Purpose purpose) {
+    const auto p = static_cast<uint32_t>(purpose);
+    return (p < 2 ? kFirst : kSecond) + p % 2 * kPerWay;
+  }
 
   Sampler* sampler_;
   uint32_t dimension_;

@@ -67,13 +67,15 @@ class Path {
       if (depth_ == 0) note_first_surface(point);
       if (work_.log != nullptr) log_hit(point, object);
       add_emission(point, object);
-      if (depth_ >= settings_.max_depth) break;
+      const bool last = depth_ >= settings_.max_depth;
+      if (last && albedo_noted_) break;
 
       work_.arena.reset();
       const ShadedSurface surface(point, *object.material, work_.arena);
       if (surface.bsdf() == nullptr) break;
       const Vec3 wo = -ray_.direction;
       if (!albedo_noted_) note_albedo(surface, wo);
+      if (last) break;
       const uint32_t dimension = kCameraDimensions + static_cast<uint32_t>(depth_) * kPerBounce;
       if (surface.has_smooth()) add_direct_light(surface, object, wo, dimension);
       if (!scatter(surface, object, wo, dimension)) break;
@@ -85,6 +87,7 @@ class Path {
   /// Adds `light` times the path's throughput; what came by more than one bounce may be clamped on
   /// request.
   void add(const Rgb& light, int events) {
+    if (events < settings_.min_events) return;
     Rgb contribution = throughput_ * light;
     if (settings_.clamp > 0.0F && events > 1)
       contribution = glm::min(contribution, Rgb(settings_.clamp));

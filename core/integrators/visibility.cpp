@@ -12,39 +12,56 @@ void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& dir
   }
 }
 
-Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
-                  MediaNumbers numbers, Workspace& work) {
-  ++work.rays;
-  if (scene.world->occluded(shadow)) return Rgb(0.0F);
+namespace {
+
+/// Follows `ray` through null surfaces to its end. 0 where another surface stands in the way.
+Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
+                         const MediumStack& around, MediaNumbers numbers, Workspace& work) {
   Rgb share(1.0F);
-  if (!scene.has_media) return share;
   const auto pass = [&](const Medium* medium, const Ray& way, float t_max) {
     if (medium != nullptr) share *= medium->transmittance(way, t_max, numbers.next());
   };
-  if (!scene.has_shells) {
-    pass(around.medium(), shadow, shadow.t_max);
-    return share;
-  }
-  // Nothing on the way blocks light, so every surface there is a shell.
   MediumStack inside = around;
-  Ray way = shadow;
+  Ray way = ray;
   SurfacePoint point;
   for (int crossings = 0; crossings < kMaxNullCrossings; ++crossings) {
     ++work.rays;
-    if (!scene.world->nearest(way, RayKind::other, point)) {
+    if (!scene.world->nearest(way, kind, point)) {
       pass(inside.medium(), way, way.t_max);
       return share;
     }
+    const SceneObject& object = scene.objects[point.object];
+    if (!object.material->is_null()) return Rgb(0.0F);
     pass(inside.medium(), way, point.t);
     if (is_black(share)) return share;
-    cross(scene.objects[point.object], point, way.direction, inside);
+    cross(object, point, way.direction, inside);
     const float left = way.t_max - point.t;
     way = spawn_ray(point, way.direction);
-    way.time = shadow.time;
+    way.time = ray.time;
     way.t_max = left;
     if (!(left > 0.0F)) return share;
   }
   return Rgb(0.0F);
+}
+
+}  // namespace
+
+Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
+                  MediaNumbers numbers, Workspace& work) {
+  ++work.rays;
+  if (scene.world->occluded(shadow)) return Rgb(0.0F);
+  if (!scene.has_media) return Rgb(1.0F);
+  // Nothing on the way blocks light, so every surface there is a shell.
+  if (scene.has_shells)
+    return share_through_shells(scene, shadow, RayKind::other, around, numbers, work);
+  const Medium* medium = around.medium();
+  return medium != nullptr ? medium->transmittance(shadow, shadow.t_max, numbers.next())
+                           : Rgb(1.0F);
+}
+
+Rgb visible_share_from_camera(const Scene& scene, const Ray& ray, MediaNumbers numbers,
+                              Workspace& work) {
+  return share_through_shells(scene, ray, RayKind::camera, scene.around_camera, numbers, work);
 }
 
 }  // namespace hyades::core

@@ -11,6 +11,10 @@ namespace hyades::core {
 Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
                   MediaNumbers numbers, Workspace& work);
 
+/// The same for a ray from the camera, which sees other objects than shadow rays do.
+Rgb visible_share_from_camera(const Scene& scene, const Ray& ray, MediaNumbers numbers,
+                              Workspace& work);
+
 /// Tells `around` that a path crossed the surface of `object` at `point` towards `direction`.
 void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,
            MediumStack& around);

@@ -75,7 +75,14 @@ struct IntegratorDesc {
   std::string type = "path";
   int max_depth = 32;      ///< most scattering events between light and camera
   int roulette_depth = 4;  ///< Russian roulette may end a path after this many
-  float clamp = 0.0F;      ///< biased: largest radiance of one indirect sample; 0 = off
+  float clamp = 0.0F;      ///< path; biased: largest radiance of one indirect sample; 0 = off
+
+  // bdpt: to look at one strategy alone.
+  int light_vertices = -1;   ///< s: only paths of which the light path gives so many; -1: all
+  int camera_vertices = -1;  ///< t, likewise
+  bool mis = true;           ///< false: unweighted
+
+  int min_events = 0;  ///< not a job's key: fewer scattering events bring no light
 };
 
 struct CameraDesc {

@@ -122,9 +122,29 @@ void read_path(MapReader& reader, IntegratorDesc& integrator) {
   reader.number("clamp", integrator.clamp, kNotNegative);
 }
 
+void read_bdpt(MapReader& reader, IntegratorDesc& integrator) {
+  reader.integer("max_depth", integrator.max_depth, 0, 65536);
+  reader.integer("roulette_depth", integrator.roulette_depth, 0, 65536);
+  const YamlNode* node = reader.find("strategy");
+  std::array<int32_t, 2> strategy = {0, 2};
+  if (node != nullptr && reader.integers("strategy", strategy, 0, 65538)) {
+    const auto [s, t] = strategy;
+    if (t < 1 || s + t < 2 || (s == 1 && t == 1)) {
+      reader.complain(node->where,
+                      fmt::format("strategy is [{}, {}], expected [s, t]: how many vertices come "
+                                  "from the light and from the camera, such as [0, 2], [1, 2] or "
+                                  "[2, 1]",
+                                  s, t));
+    }
+    integrator.light_vertices = s;
+    integrator.camera_vertices = t;
+  }
+  reader.flag("mis", integrator.mis);
+}
+
 const std::array<TypeRow<IntegratorDesc>, 3> kIntegrators = {{
     {"path", read_path},
-    {"bdpt", nullptr},
+    {"bdpt", read_bdpt},
     {"mlt", nullptr},
 }};
 

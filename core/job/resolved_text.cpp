@@ -3,6 +3,7 @@
 #include "core/base/version.h"
 #include "core/job/density_text.h"
 #include "core/job/field_writer.h"
+#include "core/job/layers.h"
 
 namespace hyades::core {
 
@@ -14,6 +15,17 @@ void write(FieldWriter& out, const FilmDesc& film) {
   out.put("height", film.height);
   out.put("filter", static_cast<int32_t>(film.filter));
   out.put("filter_radius", film.filter_radius);
+  out.leave();
+}
+
+/// Light paths bring light to all pixels that are rendered, and their number is that of these.
+void write_region(FieldWriter& out, const FilmDesc& film) {
+  const PixelRect region = render_window(film);
+  out.enter("region");
+  out.put("x0", region.x0);
+  out.put("y0", region.y0);
+  out.put("x1", region.x1);
+  out.put("y1", region.y1);
   out.leave();
 }
 
@@ -31,6 +43,11 @@ void write(FieldWriter& out, const IntegratorDesc& integrator) {
   out.put("max_depth", integrator.max_depth);
   out.put("roulette_depth", integrator.roulette_depth);
   out.put("clamp", integrator.clamp);
+  if (integrator.type == "bdpt") {
+    out.put("light_vertices", integrator.light_vertices);
+    out.put("camera_vertices", integrator.camera_vertices);
+    out.put("mis", integrator.mis);
+  }
   out.leave();
 }
 
@@ -207,6 +224,7 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   out.put("shutter", job.frames.shutter);
   out.put("units", job.units);
   write(out, job.film);
+  if (makes_splats(job.integrator)) write_region(out, job.film);
   write(out, job.sampling);
   write(out, job.integrator);
   write(out, job.camera);

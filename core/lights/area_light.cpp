@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "core/base/frame.h"
+#include "core/base/warp.h"
+
 namespace hyades::core {
 
 AreaLight::AreaLight(const Rgb& radiance, bool two_sided, double area)
@@ -13,6 +16,36 @@ AreaLight::AreaLight(const Rgb& radiance, bool two_sided, double area)
 
 Rgb AreaLight::radiance(const SurfacePoint& on, const Vec3& outward) const {
   return emitted(on.ng, outward);
+}
+
+std::optional<EmissionSample> AreaLight::sample_emission(float time, float pick, const Vec2& place,
+                                                         const Vec2& direction) const {
+  if (is_dark()) return std::nullopt;
+  const std::optional<Place> chosen = choose_place(time, pick, place);
+  if (!chosen || !(chosen->pdf > 0.0F)) return std::nullopt;
+  EmissionSample sample;
+  sample.on = chosen->on;
+  sample.pdf_place = chosen->pdf;
+  Vec2 u = direction;
+  Vec3 normal = sample.on.ng;
+  if (two_sided_) {
+    const bool inner = u.x >= 0.5F;
+    if (inner) normal = -normal;
+    u.x = inner ? 2.0F * u.x - 1.0F : 2.0F * u.x;
+  }
+  const Vec3 local = square_to_cosine_hemisphere(u);
+  sample.direction = glm::normalize(Frame::around(normal).to_world(local));
+  const float cosine = std::abs(glm::dot(sample.direction, sample.on.ng));
+  sample.pdf_direction = pdf_outward(sample.on.ng, sample.direction);
+  if (!(sample.pdf_direction > 0.0F)) return std::nullopt;
+  sample.weight = radiance_ * (cosine / (sample.pdf_place * sample.pdf_direction));
+  return sample;
+}
+
+float AreaLight::pdf_outward(const Vec3& normal, const Vec3& outward) const {
+  const float cosine = glm::dot(normal, outward);
+  return two_sided_ ? 0.5F * cosine_hemisphere_pdf(std::abs(cosine))
+                    : cosine_hemisphere_pdf(cosine);
 }
 
 Rgb AreaLight::emitted(const Vec3& ng, const Vec3& outward) const {
@@ -32,6 +65,8 @@ std::optional<LightSample> AreaLight::seen_from(const Vec3& from, const Vec3& po
   sample.pdf = area_to_solid_angle(pdf_area, from, position, ng);
   if (is_black(sample.radiance) || !(sample.pdf > 0.0F)) return std::nullopt;
   sample.position = position + ng * std::copysign(clearance, -glm::dot(ng, to_light));
+  sample.normal = ng;
+  sample.pdf_place = pdf_area;
   return sample;
 }
 

@@ -16,7 +16,21 @@ class AreaLight : public Light {
   Rgb radiance(const SurfacePoint& on, const Vec3& outward) const override;
   float power() const override { return power_; }
 
+  /// A place as choose_place has it, a direction in proportion to its cosine with the normal; of
+  /// two-sided lights on either side alike.
+  std::optional<EmissionSample> sample_emission(float time, float pick, const Vec2& place,
+                                                const Vec2& direction) const override;
+  float pdf_outward(const Vec3& normal, const Vec3& outward) const override;
+
  protected:
+  /// A place of the surface and the density per area with which it was chosen (pdf_place tells it
+  /// again).
+  struct Place {
+    SurfacePoint on;
+    float pdf = 0.0F;
+  };
+  virtual std::optional<Place> choose_place(float time, float pick, const Vec2& u) const = 0;
+
   /// The radiance that leaves a place with unit outer normal `ng` towards `outward`.
   Rgb emitted(const Vec3& ng, const Vec3& outward) const;
 

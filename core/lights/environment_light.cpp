@@ -2,6 +2,7 @@
 
 #include "core/base/warp.h"
 #include "core/lights/environment_map.h"
+#include "core/lights/infinite_light.h"
 #include "core/lights/make_light.h"
 
 namespace hyades::core {
@@ -14,7 +15,7 @@ float flux(const Rgb& integral, float world_radius) {
 }
 
 /// The same radiance from everywhere.
-class ConstantSky : public Light {
+class ConstantSky : public InfiniteLight {
  public:
   ConstantSky(const Rgb& radiance, float world_radius)
       : radiance_(radiance), power_(flux(4.0F * kPi * radiance, world_radius)) {}
@@ -25,6 +26,7 @@ class ConstantSky : public Light {
     LightSample sample;
     sample.radiance = radiance_;
     sample.pdf = uniform_sphere_pdf();
+    sample.pdf_place = sample.pdf;
     sample.direction = square_to_uniform_sphere(u);
     sample.distance = kInfinity;
     return sample;
@@ -40,7 +42,6 @@ class ConstantSky : public Light {
   }
 
   float power() const override { return power_; }
-  bool is_infinite() const override { return true; }
 
  private:
   Rgb radiance_;
@@ -48,7 +49,7 @@ class ConstantSky : public Light {
 };
 
 /// Radiance from a lat-long map, turned about +y.
-class ImageSky : public Light {
+class ImageSky : public InfiniteLight {
  public:
   ImageSky(std::shared_ptr<const EnvironmentMap> map, float rotate_y, const Rgb& scale,
            float world_radius)
@@ -66,6 +67,7 @@ class ImageSky : public Light {
     // Looked up again from the rounded direction: the same numbers that a ray will find there.
     const EnvironmentMap::View view = map_->view(sample.direction, turn_);
     sample.pdf = view.pdf;
+    sample.pdf_place = sample.pdf;
     sample.radiance = scale_ * view.radiance;
     sample.distance = kInfinity;
     if (!(sample.pdf > 0.0F) || is_black(sample.radiance)) return std::nullopt;
@@ -82,7 +84,6 @@ class ImageSky : public Light {
   }
 
   float power() const override { return power_; }
-  bool is_infinite() const override { return true; }
 
  private:
   bool is_dark() const { return !(luminance(scale_ * map_->integral()) > 0.0F); }

@@ -27,6 +27,12 @@ class LightSelector {
 
   /// The probability with which select returns `light`.
   virtual float probability(const Vec3& from, const Vec3& normal, uint32_t light) const = 0;
+
+  /// A light for a light path to begin at; nothing where no light has power.
+  virtual std::optional<SelectedLight> select_emitter(float u) const = 0;
+
+  /// The probability with which select_emitter returns `light`.
+  virtual float emitter_probability(uint32_t light) const = 0;
 };
 
 /// Finite lights in proportion to their power, infinite ones likewise, and either kind half of the

@@ -18,17 +18,30 @@ MeshLight::MeshLight(const World& world, uint32_t object, const Rgb& radiance, b
 
 std::optional<LightSample> MeshLight::sample_direct(const Vec3& from, float time, float pick,
                                                     const Vec2& u) const {
-  if (is_dark() || triangles_.empty()) return std::nullopt;
+  if (is_dark()) return std::nullopt;
+  const std::optional<Place> place = choose_place(time, pick, u);
+  if (!place) return std::nullopt;
+  const SurfacePoint& on = place->on;
+  return seen_from(from, on.position, on.ng, on.clearance, place->pdf);
+}
+
+std::optional<AreaLight::Place> MeshLight::choose_place(float time, float pick,
+                                                        const Vec2& u) const {
+  if (triangles_.empty()) return std::nullopt;
   const Distribution1D::Choice choice = triangles_.sample(pick);
   const Vec2 b = square_to_triangle(u);
-  const SurfacePoint on = world_.triangle_point(object_, choice.index, b.x, b.y, time);
-  return seen_from(from, on.position, on.ng, on.clearance, pdf_area(choice.index, time));
+  return Place{world_.triangle_point(object_, choice.index, b.x, b.y, time),
+               pdf_area(choice.index, time)};
 }
 
 float MeshLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
                             const SurfacePoint& on) const {
   if (is_dark() || triangles_.empty()) return 0.0F;
   return area_to_solid_angle(pdf_area(on.primitive, on.time), from, on.position, on.ng);
+}
+
+float MeshLight::pdf_place(const SurfacePoint& on, const Vec3& /*direction*/) const {
+  return is_dark() || triangles_.empty() ? 0.0F : pdf_area(on.primitive, on.time);
 }
 
 float MeshLight::pdf_area(uint32_t triangle, float time) const {

@@ -20,6 +20,10 @@ class MeshLight : public AreaLight {
   std::optional<LightSample> sample_direct(const Vec3& from, float time, float pick,
                                            const Vec2& u) const override;
   float pdf_direct(const Vec3& from, const Vec3& direction, const SurfacePoint& on) const override;
+  float pdf_place(const SurfacePoint& on, const Vec3& direction) const override;
+
+ protected:
+  std::optional<Place> choose_place(float time, float pick, const Vec2& u) const override;
 
  private:
   float pdf_area(uint32_t triangle, float time) const;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/frame.h"
+#include "core/base/warp.h"
 #include "core/lights/make_light.h"
 
 namespace hyades::core {
@@ -13,7 +15,7 @@ class SpotLight : public Light {
   SpotLight(const Vec3& position, const Vec3& axis, const Rgb& power, float cos_inner,
             float cos_outer)
       : position_(position),
-        axis_(axis),
+        axis_(Frame::around(axis)),
         intensity_(power / (4.0F * kPi)),
         cos_inner_(std::clamp(cos_inner, -1.0F, 1.0F)),
         cos_outer_(std::clamp(std::min(cos_outer, cos_inner), -1.0F, 1.0F)) {}
@@ -27,7 +29,7 @@ class SpotLight : public Light {
     sample.distance = std::sqrt(distance2);
     sample.direction = to_light / sample.distance;
     sample.radiance =
-        intensity_ * (falloff(std::max(glm::dot(-sample.direction, axis_), -1.0F)) / distance2);
+        intensity_ * (falloff(std::max(glm::dot(-sample.direction, axis_.n), -1.0F)) / distance2);
     if (is_black(sample.radiance)) return std::nullopt;
     sample.pdf = 1.0F;
     sample.position = position_;
@@ -50,7 +52,36 @@ class SpotLight : public Light {
     return luminance(intensity_) * solid_angle;
   }
 
+  bool is_delta() const override { return true; }
+
+  /// Uniformly within the outer cone.
+  std::optional<EmissionSample> sample_emission(float time, float /*pick*/, const Vec2& /*place*/,
+                                                const Vec2& direction) const override {
+    if (!(cone() > 0.0F)) return std::nullopt;
+    EmissionSample sample;
+    sample.direction = glm::normalize(axis_.to_world(square_to_cone(direction, cone())));
+    sample.pdf_place = 1.0F;
+    sample.pdf_direction = cone_pdf(cone());
+    sample.weight = intensity_ * (falloff(glm::dot(sample.direction, axis_.n)) / cone_pdf(cone()));
+    if (is_black(sample.weight)) return std::nullopt;
+    sample.on.position = position_;
+    sample.on.ng = Vec3(0.0F);
+    sample.on.time = time;
+    return sample;
+  }
+
+  float pdf_place(const SurfacePoint& /*on*/, const Vec3& /*direction*/) const override {
+    return 1.0F;
+  }
+
+  float pdf_outward(const Vec3& /*normal*/, const Vec3& outward) const override {
+    const bool inside = cone() >= 2.0F || glm::dot(outward, axis_.n) >= cos_outer_;
+    return inside && cone() > 0.0F ? cone_pdf(cone()) : 0.0F;
+  }
+
  private:
+  float cone() const { return 1.0F - cos_outer_; }
+
   /// 1 inside the inner cone, 0 outside the outer one, 3 t^2 - 2 t^3 in the cosine in between.
   float falloff(float cosine) const {
     if (cosine >= cos_inner_) return 1.0F;
@@ -60,7 +91,7 @@ class SpotLight : public Light {
   }
 
   Vec3 position_;
-  Vec3 axis_;
+  Frame axis_;     ///< n is its axis
   Rgb intensity_;  ///< [W/sr]
   float cos_inner_;
   float cos_outer_;

@@ -14,12 +14,20 @@ class PowerSelector : public LightSelector {
 
   std::optional<SelectedLight> select(const Vec3& /*from*/, const Vec3& /*normal*/,
                                       float u) const override {
+    return select_emitter(u);
+  }
+
+  float probability(const Vec3& /*from*/, const Vec3& /*normal*/, uint32_t light) const override {
+    return emitter_probability(light);
+  }
+
+  std::optional<SelectedLight> select_emitter(float u) const override {
     if (distribution_.empty()) return std::nullopt;
     const Distribution1D::Choice choice = distribution_.sample(u);
     return SelectedLight{choice.index, choice.probability};
   }
 
-  float probability(const Vec3& /*from*/, const Vec3& /*normal*/, uint32_t light) const override {
+  float emitter_probability(uint32_t light) const override {
     return light < distribution_.size() ? distribution_.probability(light) : 0.0F;
   }
 

@@ -72,20 +72,36 @@ QuadricLight::QuadricLight(const World& world, uint32_t object, const Rgb& radia
 std::optional<LightSample> QuadricLight::sample_direct(const Vec3& from, float time, float /*pick*/,
                                                        const Vec2& u) const {
   if (is_dark()) return std::nullopt;
+  const Place place = place_at(time, u);
+  return seen_from(from, place.on.position, place.on.ng, place.on.clearance, place.pdf);
+}
+
+AreaLight::Place QuadricLight::place_at(float time, const Vec2& u) const {
   const Mat4 matrix = to_world(time);
   const Mat3 linear(matrix);
-  const ShapePlace place = place_on(shape_, u);
-  const Vec3 position = transform_point(matrix, place.position);
-  const Vec3 ng = glm::normalize(glm::inverseTranspose(linear) * place.normal);
-  const float pdf_area = 1.0F / (shape_area(shape_) * stretch(linear, ng));
-  return seen_from(from, position, ng, quadric_clearance(position, ng), pdf_area);
+  const ShapePlace on_shape = place_on(shape_, u);
+  Place place;
+  place.on.position = transform_point(matrix, on_shape.position);
+  place.on.ng = glm::normalize(glm::inverseTranspose(linear) * on_shape.normal);
+  place.on.clearance = quadric_clearance(place.on.position, place.on.ng);
+  place.on.time = time;
+  place.pdf = 1.0F / (shape_area(shape_) * stretch(linear, place.on.ng));
+  return place;
+}
+
+std::optional<AreaLight::Place> QuadricLight::choose_place(float time, float /*pick*/,
+                                                           const Vec2& u) const {
+  return place_at(time, u);
+}
+
+float QuadricLight::pdf_place(const SurfacePoint& on, const Vec3& /*direction*/) const {
+  return is_dark() ? 0.0F : 1.0F / (shape_area(shape_) * stretch(Mat3(to_world(on.time)), on.ng));
 }
 
 float QuadricLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
                                const SurfacePoint& on) const {
   if (is_dark()) return 0.0F;
-  const float pdf_area = 1.0F / (shape_area(shape_) * stretch(Mat3(to_world(on.time)), on.ng));
-  return area_to_solid_angle(pdf_area, from, on.position, on.ng);
+  return area_to_solid_angle(pdf_place(on, Vec3(0.0F)), from, on.position, on.ng);
 }
 
 }  // namespace hyades::core

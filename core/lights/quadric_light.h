@@ -16,12 +16,16 @@ class QuadricLight : public AreaLight {
   std::optional<LightSample> sample_direct(const Vec3& from, float time, float pick,
                                            const Vec2& u) const override;
   float pdf_direct(const Vec3& from, const Vec3& direction, const SurfacePoint& on) const override;
+  float pdf_place(const SurfacePoint& on, const Vec3& direction) const override;
 
  protected:
+  std::optional<Place> choose_place(float time, float pick, const Vec2& u) const override;
   const Shape& shape() const { return shape_; }
   Mat4 to_world(float time) const { return moves_ ? world_.transform_at(object_, time) : first_; }
 
  private:
+  Place place_at(float time, const Vec2& u) const;
+
   const World& world_;
   uint32_t object_;
   const Shape& shape_;

@@ -146,20 +146,38 @@ std::optional<LightSample> RectangleLight::sample_direct(const Vec3& from, float
   const double x0 = glm::dot(to_corner, x_);
   const double y0 = glm::dot(to_corner, y_);
   const double z0 = glm::dot(to_corner, z_);
-  const auto density = static_cast<float>(1.0 / (width_ * height_));
   if (is_near(x0, y0, z0)) {
     const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, z0);
     if (seen.solid_angle > kLeastSolidAngle) {
       const glm::dvec2 place = seen.place(u);
       const Vec3d position = rectangle_.corner + x_ * (place.x - x0) + y_ * (place.y - y0);
-      auto sample = seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance, density);
+      auto sample =
+          seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance, pdf_area());
       if (sample) sample->pdf = static_cast<float>(1.0 / seen.solid_angle);
       return sample;
     }
   }
-  const Vec3d position = rectangle_.corner + rectangle_.edge[0] * static_cast<double>(u.x) +
-                         rectangle_.edge[1] * static_cast<double>(u.y);
-  return seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance, density);
+  return seen_from(from, place_at(u), rectangle_.ng, rectangle_.clearance, pdf_area());
+}
+
+Vec3 RectangleLight::place_at(const Vec2& u) const {
+  return Vec3(rectangle_.corner + rectangle_.edge[0] * static_cast<double>(u.x) +
+              rectangle_.edge[1] * static_cast<double>(u.y));
+}
+
+std::optional<AreaLight::Place> RectangleLight::choose_place(float time, float /*pick*/,
+                                                             const Vec2& u) const {
+  Place place;
+  place.on.position = place_at(u);
+  place.on.ng = rectangle_.ng;
+  place.on.clearance = rectangle_.clearance;
+  place.on.time = time;
+  place.pdf = pdf_area();
+  return place;
+}
+
+float RectangleLight::pdf_place(const SurfacePoint& /*on*/, const Vec3& /*direction*/) const {
+  return is_dark() ? 0.0F : pdf_area();
 }
 
 float RectangleLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
@@ -173,8 +191,7 @@ float RectangleLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
     const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, z0);
     if (seen.solid_angle > kLeastSolidAngle) return static_cast<float>(1.0 / seen.solid_angle);
   }
-  return area_to_solid_angle(static_cast<float>(1.0 / (width_ * height_)), from, on.position,
-                             on.ng);
+  return area_to_solid_angle(pdf_area(), from, on.position, on.ng);
 }
 
 }  // namespace hyades::core

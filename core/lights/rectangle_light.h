@@ -29,11 +29,20 @@ class RectangleLight : public AreaLight {
   std::optional<LightSample> sample_direct(const Vec3& from, float time, float pick,
                                            const Vec2& u) const override;
   float pdf_direct(const Vec3& from, const Vec3& direction, const SurfacePoint& on) const override;
+  float pdf_place(const SurfacePoint& on, const Vec3& direction) const override;
+
+ protected:
+  std::optional<Place> choose_place(float time, float pick, const Vec2& u) const override;
 
  private:
   /// Whether it may cover a large solid angle, seen from where its corner is at (x0, y0, z0) along
   /// its edges.
   bool is_near(double x0, double y0, double z0) const;
+
+  float pdf_area() const { return static_cast<float>(1.0 / (width_ * height_)); }
+
+  /// u = (0, 0) is the corner.
+  Vec3 place_at(const Vec2& u) const;
 
   Rectangle rectangle_;
   Vec3d x_;  ///< unit, along edge[0]

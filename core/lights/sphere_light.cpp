@@ -93,6 +93,9 @@ std::optional<LightSample> SphereLight::sample_direct(const Vec3& from, float ti
   const Vec3 ng(normal);
   sample.position = Vec3(position);
   sample.position += ng * quadric_clearance(sample.position, ng);
+  sample.normal = ng;
+  sample.pdf_place =
+      static_cast<float>(0.25 / (static_cast<double>(kPi) * cap->radius * cap->radius));
   return sample;
 }
 

@@ -4,6 +4,7 @@
 #include "core/base/elementary.h"
 #include "core/base/frame.h"
 #include "core/base/warp.h"
+#include "core/lights/infinite_light.h"
 #include "core/lights/make_light.h"
 
 namespace hyades::core {
@@ -15,7 +16,7 @@ namespace {
 constexpr float kSmallestRadius = 5e-5F;
 
 /// A disc of uniform radiance infinitely far away, or (radius 0) a single direction.
-class SunLight : public Light {
+class SunLight : public InfiniteLight {
  public:
   SunLight(const Vec3& direction, const Rgb& irradiance, float angle, float world_radius)
       : axis_(Frame::around(-direction)), irradiance_(irradiance) {
@@ -44,6 +45,7 @@ class SunLight : public Light {
     }
     sample.radiance = radiance_;
     sample.pdf = pdf_;
+    sample.pdf_place = pdf_;
     sample.direction = glm::normalize(axis_.to_world(square_to_cone(u, one_minus_cos_)));
     return sample;
   }
@@ -58,11 +60,9 @@ class SunLight : public Light {
   }
 
   float power() const override { return power_; }
-  bool is_infinite() const override { return true; }
+  bool is_delta() const override { return pdf_ == 0.0F; }
 
  private:
-  bool is_delta() const { return pdf_ == 0.0F; }
-
   /// Compared by the sine where that is the surer measure: the cosine of a small disc's edge is too
   /// near 1 for float, the sine of a wide one's.
   bool covers(const Vec3& direction) const {

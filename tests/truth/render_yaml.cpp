@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "core/job/layers.h"
 #include "core/job/parse.h"
 #include "core/scene/build_scene.h"
 
@@ -21,7 +22,9 @@ YamlScene::YamlScene(const std::string& yaml, int32_t frame, const core::LayerSe
   cache_ = std::make_unique<core::SceneCache>(*assets_);
   auto scene = core::build_scene(job_, frame, *cache_);
   if (!scene) throw std::runtime_error(scene.error().message);
-  renderer_ = std::make_unique<core::FrameRenderer>(*scene, job_, frame, layers);
+  core::LayerSet all = layers;
+  all.splats = core::makes_splats(job_.integrator);
+  renderer_ = std::make_unique<core::FrameRenderer>(*scene, job_, frame, all);
 }
 
 core::RenderedFrame YamlScene::render(const core::RenderFrameOptions& options) const {

@@ -167,11 +167,19 @@ TEST(Complaints, TypesAndChoicesListWhatThereIs) {
             "job.yaml:2:22: shape is 'cube', expected sphere, rectangle, disk, box or cylinder\n");
 }
 
+TEST(Complaints, StrategiesThatCannotBe) {
+  for (const char* strategy : {"[1, 1]", "[0, 1]", "[3, 0]"}) {
+    const std::string text = std::string("integrator: {type: bdpt, strategy: ") + strategy + "}\n";
+    EXPECT_EQ(complaints(text),
+              std::string("job.yaml:2:36: strategy is ") + strategy +
+                  ", expected [s, t]: how many vertices come from the light and from the camera, "
+                  "such as [0, 2], [1, 2] or [2, 1]\n");
+  }
+}
+
 TEST(Complaints, WhatLaterVersionsKnowIsNotCalledAMistake) {
-  EXPECT_EQ(complaints("integrator: {type: bdpt}\n"),
-            "job.yaml:2:20: type 'bdpt' is not available in this version; available: path\n");
   EXPECT_EQ(complaints("integrator: mlt\n"),
-            "job.yaml:2:13: type 'mlt' is not available in this version; available: path\n");
+            "job.yaml:2:13: type 'mlt' is not available in this version; available: path or bdpt\n");
   EXPECT_EQ(complaints("outputs: [{file: a.mp4}]\n"),
             "job.yaml:2:18: file is 'a.mp4', expected the ending .exr, .png, .jpg or .jpeg (.mp4 "
             "is not available in this version)\n");

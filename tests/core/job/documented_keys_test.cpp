@@ -107,6 +107,7 @@ const std::map<std::string, Place>& places() {
     p["sampling"] = {"sampling: {", {}, "}"};
     p["integrator"] = {"integrator: {", {}, "}"};
     p["integrator.path"] = p["integrator"];
+    p["integrator.bdpt"] = {"integrator: {", {{"type", "bdpt"}}, "}"};
     p["camera"] = {"camera: {", {}, "}"};
     p["camera.perspective"] = p["camera"];
     p["camera.aperture"] = {"camera: {aperture: {", {}, "}}"};
@@ -273,8 +274,7 @@ std::string text_with(const JobKey& id, const std::optional<std::string>& value)
 
 /// Keys whose range has one value in this version: any other one must be refused.
 bool has_one_value(const JobKey& id) {
-  return id == JobKey{"job", "hyades"} || id == JobKey{"integrator", "type"} ||
-         id == JobKey{"camera", "type"};
+  return id == JobKey{"job", "hyades"} || id == JobKey{"camera", "type"};
 }
 
 TEST(DocumentedKeys, AreThoseThatTheReaderKnows) {

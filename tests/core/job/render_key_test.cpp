@@ -41,6 +41,13 @@ TEST(RenderKey, IgnoresNameOutputsRangeAndFiles) {
                        {{"part.yaml", "objects: {a: {shape: sphere}} # split\n"}}));
 }
 
+TEST(RenderKey, KnowsTheCropOnlyWhereLightPathsSplat) {
+  const std::string crop = "film: {size: [64, 64], crop: [0, 0, 32, 32]}\n";
+  const std::string whole = "film: {size: [64, 64]}\n";
+  EXPECT_EQ(key(crop), key(whole));
+  EXPECT_NE(key(crop + "integrator: bdpt\n"), key(whole + "integrator: bdpt\n"));
+}
+
 TEST(RenderKey, DependsOnTheFrameAndOnMotionWithinTheShutter) {
   const std::string moving =
       "frames: {range: 1-9, shutter: SHUTTER}\nobjects: {a: {shape: sphere, "

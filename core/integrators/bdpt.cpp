@@ -1,0 +1,322 @@
+#include "core/integrators/bdpt.h"
+
+#include <cmath>
+
+#include "core/integrators/light_path.h"
+#include "core/integrators/random_walk.h"
+#include "core/integrators/visibility.h"
+
+namespace hyades::core {
+namespace {
+
+// Dimensions of one event of the camera path, those of path tracing: two groups of four.
+constexpr uint32_t kLightChoice = 0;  // place on it (2), which light, which part of it
+constexpr uint32_t kScattering = 4;   // direction (2), lobe, roulette
+constexpr uint32_t kPerEvent = 8;
+
+struct BdptScratch : IntegratorScratch {
+  Subpath camera;
+  Subpath light;
+};
+
+double square(double x) { return x * x; }
+
+/// One sample: a camera path, a light path, and all that joins them.
+class BidirectionalSample final : public WalkWatcher {
+ public:
+  BidirectionalSample(const IntegratorDesc& settings, const Scene& scene, const Ray& ray,
+                      Sampler& sampler, Workspace& work, BdptScratch& scratch)
+      : settings_(settings),
+        scene_(scene),
+        ray_(ray),
+        sampler_(sampler),
+        work_(work),
+        camera_(scratch.camera),
+        light_(scratch.light),
+        film_pixels_(static_cast<double>(scene.window.area())) {}
+
+  PixelSample trace() {
+    const LightPathStart start = begin_light_path(scene_, ray_.time, sampler_, light_);
+    if (start.way) walk_from_light(*start.way);
+    walk_from_camera();
+    if (wanted(1)) {
+      for (int t = 2; t <= camera_.size(); ++t) choose_light(t);
+    }
+    for (int t = 2; t <= camera_.size(); ++t) {
+      for (int s = 2; s <= light_.size() && s + t - 2 <= settings_.max_depth; ++s) join(s, t);
+    }
+    for (int s = 2; s <= light_.size() && s - 1 <= settings_.max_depth; ++s) {
+      join_lens(s, start.lens);
+    }
+    return out_;
+  }
+
+ private:
+  bool wanted(int s) const { return settings_.light_vertices < 0 || settings_.light_vertices == s; }
+
+  bool wanted(int s, int t) const {
+    return wanted(s) && (settings_.camera_vertices < 0 || settings_.camera_vertices == t);
+  }
+
+  /// The weight of a strategy from the sums on either side.
+  float weight(double light_side, double camera_side) const {
+    return settings_.mis ? static_cast<float>(1.0 / (1.0 + light_side + camera_side)) : 1.0F;
+  }
+
+  void walk_from_camera() {
+    camera_.clear();
+    PathVertex& lens = camera_.add(PathVertex::Kind::lens);
+    lens.position = ray_.origin;
+    Way way{.ray = ray_, .around = scene_.around_camera};
+    way.pdf =
+        static_cast<double>(scene_.camera->film_density(ray_.direction, ray_.time)) / film_pixels_;
+    const WalkNumbers numbers{kCameraDimensions + kScattering, kPerEvent,
+                              MediaNumbers::Purpose::flight};
+    RandomWalk(settings_, scene_, sampler_, work_, TransportMode::radiance, numbers)
+        .go(camera_, way, settings_.max_depth + 2, *this);
+  }
+
+  void walk_from_light(const Way& way) {
+    FirstLightVertex watcher(scene_, light_);
+    const WalkNumbers numbers{kLightPathDimensions + kLightPathStart, 4,
+                              MediaNumbers::Purpose::light_flight};
+    RandomWalk(settings_, scene_, sampler_, work_, TransportMode::importance, numbers)
+        .go(light_, way, settings_.max_depth + 1, watcher);
+  }
+
+  // What the camera path meets.
+
+  /// Whether light that the camera path meets next has been scattered often enough.
+  bool enough_events() const { return camera_.size() - 1 >= settings_.min_events; }
+
+  void medium_emits(const Way& way, const Rgb& radiance) override {
+    if (wanted(0) && enough_events()) out_.radiance += way.throughput * radiance;
+  }
+
+  void arrives(const PathVertex& v) override {
+    if (camera_.size() == 2) {
+      out_.alpha = 1.0F;
+      if (v.kind == PathVertex::Kind::surface) {
+        out_.depth = scene_.camera->depth_of(v.position, ray_.time);
+        out_.normal = v.point.ns;
+      }
+    }
+    if (albedo_noted_ || !v.joins()) return;
+    out_.albedo = v.throughput;
+    if (v.kind == PathVertex::Kind::surface)
+      out_.albedo *= v.surface->bsdf()->albedo(v.surface->frame().to_local(v.wo));
+    albedo_noted_ = true;
+  }
+
+  void meets(const Way& way, const SurfacePoint& point, const SceneObject& object) override {
+    if (object.light == SceneObject::kNoLight || !wanted(0, camera_.size() + 1)) return;
+    if (!enough_events()) return;
+    const Light& light = *scene_.lights[object.light];
+    const Rgb radiance = light.radiance(point, -way.ray.direction);
+    if (is_black(radiance)) return;
+    PathVertex& on = met_light_;
+    on.kind = PathVertex::Kind::light;
+    on.position = point.position;
+    on.point = point;
+    on.light = object.light;
+    on.infinitely_far = false;
+    add_met_light(way, on, radiance);
+  }
+
+  void leaves(const Way& way) override {
+    if (!wanted(0, camera_.size() + 1) || !enough_events()) return;
+    if (camera_.size() == 1 && !scene_.environment_visible) return;
+    for (const uint32_t index : scene_.infinite_lights) {
+      const Light& light = *scene_.lights[index];
+      const Rgb radiance = light.radiance(SurfacePoint(), -way.ray.direction);
+      if (is_black(radiance)) continue;
+      PathVertex& sky = met_light_;
+      sky.kind = PathVertex::Kind::light;
+      sky.light = index;
+      sky.infinitely_far = true;
+      add_met_light(way, sky, radiance);
+    }
+  }
+
+  /// s = 0: the way from the last vertex of the camera path has come to a light.
+  void add_met_light(const Way& way, const PathVertex& on, const Rgb& radiance) {
+    double others = 0.0;
+    if (camera_.size() > 1) {
+      const PathVertex& before = camera_.back();
+      const Vec3& direction = way.ray.direction;
+      const double met = way.density_at(on, before.position);
+      const LightDensities densities = light_densities(scene_, on, before, direction);
+      const double back = densities.towards / before.density;
+      others = (way.specular ? 0.0 : square(densities.chosen / met)) +
+               square(densities.emitted / met * back) * before.chain;
+    }
+    out_.radiance += way.throughput * radiance * weight(0.0, others);
+  }
+
+  /// s = 1: a place on a light is chosen from the camera path's vertex t - 1.
+  void choose_light(int t) {
+    const PathVertex& v = camera_[t - 1];
+    if (!v.joins() || t - 1 > settings_.max_depth || !wanted(1, t) || scene_.lights.empty()) return;
+    sampler_.set_dimension(kCameraDimensions + static_cast<uint32_t>(t - 2) * kPerEvent +
+                           kLightChoice);
+    const Vec4 u = sampler_.next_4d();
+    const auto selected = scene_.selector->select(v.position, v.selection_normal(), u.z);
+    if (!selected) return;
+    const Light& light = *scene_.lights[selected->index];
+    const auto sample = light.sample_direct(v.position, ray_.time, u.w, Vec2(u));
+    if (!sample || is_black(sample->radiance)) return;
+    const Vec3& direction = sample->direction;
+    const Rgb f = v.evaluate(v.wo, direction, TransportMode::radiance);
+    if (is_black(f)) return;
+    const Rgb share =
+        visible_share(scene_, shadow_ray(v, *sample), v.around_towards(direction),
+                      MediaNumbers(sampler_, t - 2, MediaNumbers::Purpose::shadow), work_);
+    if (is_black(share)) return;
+
+    PathVertex& on = met_light_;
+    on.kind = PathVertex::Kind::light;
+    on.position = sample->position;
+    on.point.ng = sample->normal;
+    on.infinitely_far = light.is_infinite();
+    const double chosen =  // per solid angle; of delta lights a probability
+        static_cast<double>(selected->probability) * static_cast<double>(sample->pdf);
+    const double met = sample->delta ? 0.0 : v.pdf(v.wo, direction, TransportMode::radiance);
+    // In the light's own measure.
+    const double chosen_place =
+        sample->delta ? chosen : chosen * on.per_direction(v.position, direction);
+    const double emitted =
+        static_cast<double>(scene_.selector->emitter_probability(selected->index)) *
+        static_cast<double>(sample->pdf_place);
+    const double towards = emission_density(scene_, light, on, v, direction);
+    const double camera_side = square(emitted / chosen_place * towards / v.density) *
+                               sum_before(camera_, t - 1, direction, TransportMode::importance);
+    out_.radiance += v.throughput * f * sample->radiance * share *
+                     (weight(square(met / chosen), camera_side) / static_cast<float>(chosen));
+  }
+
+  Ray shadow_ray(const PathVertex& v, const LightSample& sample) const {
+    const bool on_surface = v.kind == PathVertex::Kind::surface;
+    Ray ray;
+    if (sample.distance == kInfinity) {
+      ray = on_surface ? spawn_ray(v.point, sample.direction) : Ray{v.position, sample.direction};
+    } else {
+      ray = on_surface ? spawn_ray_to(v.point, sample.position, 0.0F)
+                       : ray_between(v.position, sample.position, ray_.time);
+    }
+    ray.time = ray_.time;
+    return ray;
+  }
+
+  /// edge + beyond reverse^2 of vertex `i` of `path` where light comes to it along `from`, and
+  /// `mode` is what travels from there to the vertex before.
+  static double sum_before(const Subpath& path, int i, const Vec3& from, TransportMode mode) {
+    const PathVertex& v = path[i];
+    if (!(v.beyond > 0.0)) return v.edge;
+    const double reverse = v.pdf(from, v.wo, mode) * path[i - 1].per_direction(v.position, v.wo);
+    return v.edge + v.beyond * square(reverse);
+  }
+
+  /// Vertex s - 1 of the light path and t - 1 of the camera path.
+  void join(int s, int t) {
+    const PathVertex& y = light_[s - 1];
+    const PathVertex& z = camera_[t - 1];
+    if (!y.joins() || !z.joins() || !wanted(s, t)) return;
+    const Vec3d way = Vec3d(y.position) - Vec3d(z.position);
+    const double distance2 = glm::dot(way, way);
+    if (!(distance2 > 0.0)) return;
+    const Vec3 to_light = Vec3(way / std::sqrt(distance2));
+    const Rgb f_camera = z.evaluate(z.wo, to_light, TransportMode::radiance);
+    if (is_black(f_camera)) return;
+    const Rgb f_light = y.evaluate(y.wo, -to_light, TransportMode::importance);
+    if (is_black(f_light)) return;
+    const MediaNumbers numbers(sampler_, s * 256 + t, MediaNumbers::Purpose::connection);
+    const Rgb share = visible_share(scene_, ray_between(z, y, ray_.time),
+                                    z.around_towards(to_light), numbers, work_);
+    if (is_black(share)) return;
+    const double to_y =
+        z.pdf(z.wo, to_light, TransportMode::radiance) * y.per_direction(z.position, to_light);
+    const double to_z =
+        y.pdf(y.wo, -to_light, TransportMode::importance) * z.per_direction(y.position, -to_light);
+    const double light_side =
+        square(to_y / y.density) * sum_before(light_, s - 1, -to_light, TransportMode::radiance);
+    const double camera_side =
+        square(to_z / z.density) * sum_before(camera_, t - 1, to_light, TransportMode::importance);
+    out_.radiance += z.throughput * f_camera * f_light * y.throughput * share *
+                     (weight(light_side, camera_side) / static_cast<float>(distance2));
+  }
+
+  /// t = 1: vertex s - 1 of the light path is seen through a place of the lens.
+  void join_lens(int s, const Vec2& lens) {
+    const PathVertex& y = light_[s - 1];
+    if (!y.joins() || !wanted(s, 1)) return;
+    if (y.kind == PathVertex::Kind::surface &&
+        !scene_.world->placement(y.point.object).visible_to_camera) {
+      return;
+    }
+    const auto seen = scene_.camera->connect(y.position, lens, ray_.time);
+    if (!seen || !near_film(seen->film)) return;
+    const Rgb f = y.evaluate(y.wo, -seen->direction, TransportMode::importance);
+    if (is_black(f)) return;
+    const Vec3 end = y.kind == PathVertex::Kind::surface
+                         ? offset_position(y.point, -seen->direction)
+                         : y.position;
+    const MediaNumbers numbers(sampler_, s * 256 + 1, MediaNumbers::Purpose::connection);
+    const Rgb share = visible_share_from_camera(scene_, ray_between(seen->position, end, ray_.time),
+                                                numbers, work_);
+    if (is_black(share)) return;
+    const double density = static_cast<double>(seen->density);
+    const double to_y = density / film_pixels_ * y.per_direction(seen->position, seen->direction);
+    const double light_side = square(to_y / y.density) *
+                              sum_before(light_, s - 1, -seen->direction, TransportMode::radiance);
+    const Rgb value = y.throughput * f * share *
+                      (weight(light_side, 0.0) *
+                       static_cast<float>(density / square(static_cast<double>(seen->distance))));
+    work_.splats.push_back({seen->film, value});
+  }
+
+  /// Whether pixels that are rendered may see film position `film`, whatever the filter.
+  bool near_film(const Vec2& film) const {
+    constexpr float kWidestFilter = 64.0F;
+    const PixelRect& w = scene_.window;
+    return film.x > static_cast<float>(w.x0) - kWidestFilter &&
+           film.x < static_cast<float>(w.x1) + kWidestFilter &&
+           film.y > static_cast<float>(w.y0) - kWidestFilter &&
+           film.y < static_cast<float>(w.y1) + kWidestFilter;
+  }
+
+  const IntegratorDesc& settings_;
+  const Scene& scene_;
+  const Ray& ray_;
+  Sampler& sampler_;
+  Workspace& work_;
+  Subpath& camera_;
+  Subpath& light_;
+  double film_pixels_;  ///< how many samples, so light paths, a pass over the film has
+  PathVertex met_light_;
+  PixelSample out_;
+  bool albedo_noted_ = false;
+};
+
+class BdptIntegrator : public Integrator {
+ public:
+  explicit BdptIntegrator(const IntegratorDesc& settings) : settings_(settings) {}
+
+  PixelSample sample(const Scene& scene, const Ray& ray, Sampler& sampler,
+                     Workspace& work) const override {
+    if (!work.scratch) work.scratch = std::make_unique<BdptScratch>();
+    return BidirectionalSample(settings_, scene, ray, sampler, work,
+                               static_cast<BdptScratch&>(*work.scratch))
+        .trace();
+  }
+
+ private:
+  IntegratorDesc settings_;
+};
+
+}  // namespace
+
+std::unique_ptr<Integrator> make_bdpt_integrator(const IntegratorDesc& desc) {
+  return std::make_unique<BdptIntegrator>(desc);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,252 @@
+// T12: path tracing, bidirectional path tracing and Metropolis are estimators of the same picture.
+// Each scene has something that one of them could get wrong.
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+
+#include "tests/truth/replicates.h"
+
+namespace hyades::test {
+namespace {
+
+struct ParityScene {
+  const char* name;
+  const char* text;              ///< without film, sampling, integrator
+  int samples = 64;              ///< of each of path's renderings; bdpt takes half
+  double relative_error = 0.02;  ///< of the picture's mean that is noticed with 99 % probability
+  int max_depth = 6;
+};
+
+void PrintTo(const ParityScene& scene, std::ostream* out) { *out << scene.name; }
+
+constexpr int kRuns = 24;
+
+const ParityScene kScenes[] = {
+    {"room_with_area_light", R"(
+camera: {look_from: [0, 1, 3.4], look_at: [0, 1, 0], fov: 40}
+materials:
+  white: {type: lambert, color: 0.7}
+  red: {type: lambert, color: [0.6, 0.05, 0.05]}
+  shiny: {type: glossy, color: [0.2, 0.4, 0.6], reflectiveness: 0.6, glossiness: 0.7}
+objects:
+  floor: {shape: rectangle, size: [2, 2], material: white}
+  ceiling: {shape: rectangle, size: [2, 2], transform: [{rotate_x: 180}], at: [0, 2, 0], material: white}
+  back: {shape: rectangle, size: [2, 2], transform: [{rotate_x: 90}], at: [0, 1, -1], material: white}
+  left: {shape: rectangle, size: [2, 2], transform: [{rotate_z: -90}], at: [-1, 1, 0], material: red}
+  ball: {shape: sphere, radius: 0.4, at: [0.3, 0.4, 0], material: shiny}
+  lamp: {shape: rectangle, size: [0.5, 0.5], transform: [{rotate_x: 180}], at: [0, 1.95, 0], emit: {radiance: 12}}
+)"},
+    {"point_and_spot", R"(
+camera: {look_from: [0, 1, 3.4], look_at: [0, 0.8, 0], fov: 40}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+objects:
+  floor: {shape: rectangle, size: [4, 4], material: white}
+  back: {shape: rectangle, size: [4, 4], transform: [{rotate_x: 90}], at: [0, 1, -1], material: white}
+  ball: {shape: sphere, radius: 0.4, at: [0.3, 0.4, 0], material: white}
+lights:
+  a: {type: point, at: [-0.8, 1.5, 0.4], power: 40}
+  b: {type: spot, at: [0.9, 1.6, 0.5], look_at: [0.2, 0, 0], angle: 35, blend: 0.4, power: 60, color: [1, 0.6, 0.3]}
+)"},
+    {"sky_and_sun", R"(
+camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  chrome: {type: conductor, metal: copper, roughness: 0.4}
+objects:
+  floor: {shape: disk, radius: 3, material: white}
+  ball: {shape: sphere, radius: 0.6, at: [0.5, 0.6, 0], material: chrome}
+  box: {shape: box, size: [0.7, 1, 0.7], at: [-0.7, 0.5, 0], material: white}
+lights:
+  sun: {type: sun, direction: [1, -2, -1], irradiance: 2, angle: 8}
+  moon: {type: sun, direction: [-1, -1, 0], irradiance: 0.7, angle: 0}
+environment: {image: jobs/quickstart/dusk.exr, strength: 0.8}
+)"},
+    {"glass_ball_over_a_floor", R"(
+camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  glass: {type: dielectric, ior: 1.5, transmission: [0.9, 1, 0.9]}
+objects:
+  floor: {shape: disk, radius: 2, material: white}
+  ball: {shape: sphere, radius: 0.6, at: [0, 0.7, 0], material: glass}
+  lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.6, 0], emit: {radiance: 8}}
+)",
+     256, 0.03},
+    {"rough_glass_and_a_mix", R"(
+camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  frosted: {type: dielectric, ior: 1.5, roughness: 0.5}
+  mirror: {type: mirror}
+  half: {type: mix, first: white, second: mirror, amount: 0.5}
+  pane: {type: thin-dielectric, ior: 1.5}
+objects:
+  floor: {shape: disk, radius: 2, material: half}
+  ball: {shape: sphere, radius: 0.5, at: [-0.6, 0.6, 0], material: frosted}
+  plate: {shape: rectangle, size: [1, 1], transform: [{rotate_x: 80}], at: [0.6, 0.6, 0.5], material: pane}
+  wall: {shape: rectangle, size: [1, 1], transform: [{rotate_x: 90}], at: [0.6, 0.6, -0.5], material: white}
+  lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.6, 0.6], emit: {radiance: 8}}
+)",
+     128, 0.03},
+    {"bumped_gloss", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.5, 0], fov: 40}
+textures:
+  waves: {type: perlin3d, scale: 4, octaves: 2}
+materials:
+  white: {type: lambert, color: 0.7, bump: {texture: waves, height: 0.1}}
+  shiny: {type: glossy, color: [0.6, 0.4, 0.2], reflectiveness: 0.5, glossiness: 0.7, bump: {texture: waves, height: 0.1}}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  ball: {shape: sphere, radius: 0.5, at: [0, 0.55, 0], material: shiny}
+  lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.6, 0.8], emit: {radiance: 15}}
+)"},
+    {"smooth_normals_of_a_coarse_mesh", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.5, 0], fov: 40}
+materials:
+  white: {type: lambert, color: 0.7}
+  shiny: {type: glossy, color: [0.6, 0.4, 0.2], reflectiveness: 0.5, glossiness: 0.7}
+  glass: {type: dielectric, ior: 1.4, roughness: 0.4}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  ball: {mesh: tests/truth/coarse_ball.obj, normals: smooth, transform: [{scale: 0.5}], at: [-0.55, 0.5, 0], material: shiny}
+  drop: {mesh: tests/truth/coarse_ball.obj, normals: smooth, transform: [{scale: 0.45}], at: [0.55, 0.5, 0], material: glass}
+  lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.6, 0.8], emit: {radiance: 15}}
+)"},
+    {"sphere_light_behind_a_null_boundary", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.5, 0], fov: 40}
+materials:
+  white: {type: lambert, color: [0.7, 0.5, 0.3]}
+  air: {type: "null"}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  ball: {shape: sphere, radius: 0.3, at: [0, 0.4, 0], material: white}
+  shell: {shape: sphere, radius: 0.6, at: [0.8, 1.6, 0.3], material: air}
+  lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.6, 0.3], emit: {radiance: 15}}
+  glow: {shape: rectangle, size: [0.5, 0.5], transform: [{rotate_z: -90}], at: [-0.8, 0.6, 0], material: air, emit: {radiance: 3, two_sided: true}}
+)"},
+    {"thin_lens", R"(
+camera: {look_from: [0, 1, 3], look_at: [0, 0.5, 0], fov: 45, aperture: {radius: 0.15, blades: 5}, focus: 2.5}
+materials:
+  white: {type: lambert, color: [0.7, 0.5, 0.3]}
+objects:
+  floor: {shape: rectangle, size: [6, 6], material: white}
+  near: {shape: sphere, radius: 0.15, at: [0.2, 0.7, 1.6], material: white}
+  far: {shape: sphere, radius: 0.5, at: [-0.7, 0.5, -1], material: white}
+  lamp: {shape: sphere, radius: 0.2, at: [0.8, 1.6, 0.3], emit: {radiance: 25}}
+)"},
+    {"motion_blur", R"(
+frames: {range: 1, fps: 24, shutter: 1}
+camera: {look_from: ["= 0.2 * 24 * t", 1, 3], look_at: [0, 0.5, 0], fov: 45}
+materials:
+  white: {type: lambert, color: [0.7, 0.5, 0.3]}
+objects:
+  floor: {shape: rectangle, size: [6, 6], material: white}
+  ball: {shape: sphere, radius: 0.4, at: ["= 24 * t", 0.5, 0], material: white}
+  lamp: {shape: sphere, radius: 0.2, at: [0.8, "= 1.4 + 10 * t", 0.3], emit: {radiance: 25}, visible_to_camera: false}
+)"},
+    {"lamp_with_back_and_unseen_things", R"(
+camera: {look_from: [0, 1, 3], look_at: [0, 0.7, 0], fov: 45}
+materials:
+  white: {type: lambert, color: [0.7, 0.5, 0.3]}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  hidden: {shape: sphere, radius: 0.3, at: [0, 0.5, 1], material: white, visible_to_camera: false}
+  lamp: {shape: disk, radius: 0.4, transform: [{rotate_x: 60}], at: [0, 1, 0], emit: {radiance: 9, two_sided: true}}
+  tube: {shape: cylinder, radius: 0.1, height: 0.8, at: [-1, 0.2, 0], emit: {radiance: 4}, visible_to_camera: false}
+environment: {color: [0.2, 0.3, 0.5], visible_to_camera: false}
+)"},
+    {"camera_in_coloured_fog", R"(
+camera: {look_from: [0, 1, 3], look_at: [0, 0.7, 0], fov: 45}
+media: {fog: {scattering: [0.3, 0.2, 0.1], absorption: [0.02, 0.05, 0.1], g: 0.5}}
+atmosphere: fog
+materials:
+  white: {type: lambert, color: [0.7, 0.5, 0.3]}
+objects:
+  floor: {shape: rectangle, size: [4, 4], material: white}
+  ball: {shape: sphere, radius: 0.4, at: [0, 0.5, 0], material: white}
+  lamp: {shape: sphere, radius: 0.25, at: [0.7, 1.7, 0.2], emit: {radiance: 15}}
+)",
+     96, 0.03, 4},
+    {"coloured_glass_over_milk", R"(
+camera: {look_from: [0, 1.4, 3], look_at: [0, 0.5, 0], fov: 40}
+media:
+  milk: {scattering: [6, 7, 8], absorption: [0.2, 0.1, 0.05], g: 0.4}
+  tint: {absorption: [0.1, 1, 2]}
+materials:
+  white: {type: lambert, color: 0.6}
+  air: {type: "null"}
+  glass: {type: dielectric, ior: 1.3}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  block: {shape: box, size: [1, 0.6, 1], at: [0, 0.32, 0], material: air, interior: milk}
+  plate: {shape: box, size: [1.2, 0.15, 1.2], at: [0, 0.8, 0], material: glass, interior: tint}
+  lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.2, 0.8], emit: {radiance: 8}}
+)",
+     256, 0.03, 12},
+    {"two_nested_media", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
+media:
+  mist: {scattering: [0.5, 0.6, 0.8], absorption: 0.05, g: 0.3}
+  ink: {scattering: [1, 0.3, 0.2], absorption: [0.1, 1, 2], g: -0.3}
+materials:
+  white: {type: lambert, color: 0.6}
+  air: {type: "null"}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  outer: {shape: sphere, radius: 0.7, at: [0, 0.72, 0], material: air, interior: mist}
+  inner: {shape: sphere, radius: 0.35, at: [0.1, 0.7, 0], material: air, interior: ink}
+lights:
+  key: {type: point, at: [1, 2, 1], power: 60}
+  rim: {type: sun, direction: [1, -1, 1], irradiance: 1, angle: 4}
+)",
+     128, 0.02, 8},
+    {"glowing_gas", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
+media:
+  flame: {scattering: 0.5, absorption: [0.5, 1, 2], emission: [2, 1, 0.3]}
+materials:
+  white: {type: lambert, color: 0.6}
+  air: {type: "null"}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  gas: {shape: sphere, radius: 0.5, at: [0, 0.7, 0], material: air, interior: flame}
+lights:
+  key: {type: point, at: [1, 2, 1], power: 20}
+)",
+     128},
+};
+
+YamlScene scene_with(const ParityScene& scene, const std::string& integrator, int samples) {
+  return YamlScene(
+      "hyades: 1\nname: parity\nfilm: {size: [24, 18], filter: {type: box, radius: 0.5}}\n"
+      "sampling: {samples: " +
+      std::to_string(samples) + ", seed: 11}\nintegrator: {type: " + integrator +
+      ", max_depth: " + std::to_string(scene.max_depth) + "}\n" + scene.text);
+}
+
+class Parity : public testing::TestWithParam<ParityScene> {
+ protected:
+  /// Most one of a hundred runs of all of them fails by chance.
+  Promise promise() const {
+    return {.significance = 0.01,
+            .tests = 3 * static_cast<int>(std::size(kScenes)) * 2,
+            .relative_error = GetParam().relative_error,
+            .power = 0.99};
+  }
+};
+
+TEST_P(Parity, BdptIsPath) {
+  const ParityScene& scene = GetParam();
+  const Replicates path = render_replicates(scene_with(scene, "path", scene.samples), kRuns, 6);
+  const Replicates bdpt = render_replicates(scene_with(scene, "bdpt", scene.samples / 2), kRuns, 6);
+  expect_same_picture(path, bdpt, promise());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Parity, testing::ValuesIn(kScenes),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace hyades::test

@@ -1,0 +1,70 @@
+#include "tests/truth/replicates.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace hyades::test {
+
+Replicates render_replicates(const YamlScene& scene, int runs, int block) {
+  Replicates result;
+  // The scene outlives its renderers.
+  const std::shared_ptr<const core::Scene> shared(std::shared_ptr<void>(),
+                                                  &scene.renderer().scene());
+  core::Job job = scene.job();
+  for (int run = 0; run < runs; ++run) {
+    job.sampling.seed = scene.job().sampling.seed + static_cast<uint64_t>(run);
+    const core::FrameRenderer renderer(shared, job, 1, scene.renderer().layout().layers);
+    const core::RenderedFrame frame = core::render_frame(renderer, core::render_window(job.film),
+                                                         job.sampling.samples, 1, {.threads = 2});
+    result.bad_samples += frame.counters.bad_samples;
+    const core::Image picture = frame.film.normalised();
+    const int columns = (picture.width + block - 1) / block;
+    const int rows = (picture.height + block - 1) / block;
+    result.blocks.resize(static_cast<size_t>(columns * rows));
+    std::vector<std::array<double, 3>> sums(result.blocks.size());
+    std::vector<double> counts(result.blocks.size());
+    std::array<double, 3> total{};
+    for (int y = 0; y < picture.height; ++y) {
+      for (int x = 0; x < picture.width; ++x) {
+        const auto i = static_cast<size_t>(y / block * columns + x / block);
+        counts[i] += 1.0;
+        for (int c = 0; c < 3; ++c) {
+          sums[i][static_cast<size_t>(c)] += static_cast<double>(picture.at(x, y, c));
+          total[static_cast<size_t>(c)] += static_cast<double>(picture.at(x, y, c));
+        }
+      }
+    }
+    for (size_t c = 0; c < 3; ++c) {
+      result.picture[c].add(total[c] / (picture.width * picture.height));
+      for (size_t i = 0; i < sums.size(); ++i) result.blocks[i][c].add(sums[i][c] / counts[i]);
+    }
+  }
+  return result;
+}
+
+void expect_same_picture(const Replicates& a, const Replicates& b, const Promise& promise) {
+  EXPECT_EQ(a.bad_samples + b.bad_samples, 0U);
+  const Promise each{promise.significance / 2.0, promise.tests, promise.relative_error,
+                     promise.power};
+  for (size_t c = 0; c < 3; ++c) {
+    EXPECT_TRUE(means_agree(a.picture[c], b.picture[c], each)) << "channel " << c;
+  }
+  double least = 1.0;
+  size_t worst = 0;
+  for (size_t i = 0; i < a.blocks.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      const double p = t_test(a.blocks[i][c], b.blocks[i][c]);
+      if (p >= least) continue;
+      least = p;
+      worst = 3 * i + c;
+    }
+  }
+  const double alpha = sidak(each.significance, static_cast<int>(a.blocks.size()) * each.tests);
+  const Moments& of_a = a.blocks[worst / 3][worst % 3];
+  const Moments& of_b = b.blocks[worst / 3][worst % 3];
+  EXPECT_GE(least, alpha) << "block " << worst / 3 << " channel " << worst % 3 << ": "
+                          << of_a.mean() << " and " << of_b.mean();
+}
+
+}  // namespace hyades::test

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tests/truth/render_yaml.h"
+
+namespace hyades::test {
+
+/// Means of a picture and of its square blocks over independent renderings of it: honest variances
+/// also where pixels are correlated (splats of one light path, mutations of one chain).
+struct Replicates {
+  std::array<Moments, 3> picture;              ///< by channel
+  std::vector<std::array<Moments, 3>> blocks;  ///< row by row
+  uint64_t bad_samples = 0;
+};
+
+/// Renders the job of `scene` `runs` times with different seeds; `block` pixels make a block's
+/// side.
+Replicates render_replicates(const YamlScene& scene, int runs, int block);
+
+/// Whether two estimates of one picture agree: the picture's mean in the sense of `promise` (its
+/// tests are the channels of all comparisons), and all blocks together (Sidak).
+void expect_same_picture(const Replicates& a, const Replicates& b, const Promise& promise);
+
+}  // namespace hyades::test
