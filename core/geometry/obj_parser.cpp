@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -49,13 +50,19 @@ const char* line_end(const char* at, const char* end, size_t& lines) {
   return end;
 }
 
-enum class Keyword { other, position, uv, normal, face };
+enum class Keyword { other, position, uv, normal, face, material, library };
 
 Keyword keyword_at(const char*& at, const char* end) {
   while (at < end && (*at == ' ' || *at == '\t')) ++at;
   const auto blank = [&](size_t i) { return at + i >= end || is_space(at[i]); };
   if (at >= end) return Keyword::other;
   if (*at == 'f' && blank(1)) return at += 1, Keyword::face;
+  const auto word = [&](std::string_view text) {
+    return std::string_view(at, static_cast<size_t>(end - at)).starts_with(text) &&
+           blank(text.size());
+  };
+  if (word("usemtl")) return at += 6, Keyword::material;
+  if (word("mtllib")) return at += 6, Keyword::library;
   if (*at != 'v') return Keyword::other;
   if (blank(1)) return at += 1, Keyword::position;
   if (blank(2) && at[1] == 't') return at += 2, Keyword::uv;
@@ -131,6 +138,12 @@ class ObjChunk {
       }
       case Keyword::face:
         return parse_face(at, end);
+      case Keyword::material:
+        data_.materials.push_back({data_.sizes.size(), rest_of_line(at, end)});
+        return nullptr;
+      case Keyword::library:
+        data_.libraries.push_back(rest_of_line(at, end));
+        return nullptr;
       case Keyword::other:
         return nullptr;
     }
@@ -139,6 +152,13 @@ class ObjChunk {
 
   static void skip_blanks(const char*& at, const char* end) {
     while (at < end && (is_space(*at) || (*at == '\\' && is_line_break(at + 1, end)))) ++at;
+  }
+
+  /// Without blanks around it; there may be some within.
+  static std::string rest_of_line(const char* at, const char* end) {
+    while (at < end && is_space(*at)) ++at;
+    while (at < end && is_space(end[-1])) --end;
+    return {at, end};
   }
 
   static bool is_line_break(const char* at, const char* end) {
@@ -266,6 +286,11 @@ Result<ObjData> parse_obj(std::span<const char> bytes) {
     append(all.uvs, c.data().uvs);
     append(all.normals, c.data().normals);
     append(all.corners, c.data().corners);
+    append(all.libraries, c.data().libraries);
+    for (ObjMaterial& material : c.data().materials) {
+      material.first += all.sizes.size();
+      all.materials.push_back(std::move(material));
+    }
     append(all.sizes, c.data().sizes);
     c.data() = {};
   }
