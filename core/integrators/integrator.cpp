@@ -6,6 +6,12 @@
 namespace hyades::core {
 namespace {
 
+std::unique_ptr<Integrator> make_direct_view_integrator(const IntegratorDesc& desc) {
+  IntegratorDesc direct = desc;
+  direct.max_depth = 0;
+  return make_path_integrator(direct);
+}
+
 struct Maker {
   const char* name;
   std::unique_ptr<Integrator> (*make)(const IntegratorDesc&);
@@ -14,6 +20,7 @@ struct Maker {
 constexpr Maker kMakers[] = {
     {"path", make_path_integrator},
     {"bdpt", make_bdpt_integrator},
+    {"mlt", make_direct_view_integrator},
 };
 
 }  // namespace

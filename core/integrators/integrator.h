@@ -67,7 +67,8 @@ class Integrator {
 /// Film position (2), lens (2), time (1), and up to the next group of the Sobol sampler.
 inline constexpr uint32_t kCameraDimensions = 8;
 
-/// The integrator that `desc.type` names.
+/// The integrator that `desc.type` names; of mlt what is found sample by sample: light that the
+/// camera meets directly, and the layers (metropolis.h has the rest).
 std::unique_ptr<Integrator> make_integrator(const IntegratorDesc& desc);
 
 /// The names that make_integrator knows.

@@ -82,6 +82,10 @@ struct IntegratorDesc {
   int camera_vertices = -1;  ///< t, likewise
   bool mis = true;           ///< false: unweighted
 
+  // mlt.
+  std::string over = "bdpt";  ///< path | bdpt: whose samples the chains mutate
+  float large_step = 0.3F;    ///< probability of an independent sample, (0, 1]
+
   int min_events = 0;  ///< not a job's key: fewer scattering events bring no light
 };
 

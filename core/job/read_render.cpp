@@ -142,10 +142,18 @@ void read_bdpt(MapReader& reader, IntegratorDesc& integrator) {
   reader.flag("mis", integrator.mis);
 }
 
+void read_mlt(MapReader& reader, IntegratorDesc& integrator) {
+  static const std::array<std::string, 2> kOver = {"bdpt", "path"};
+  reader.choice("over", integrator.over, kOver);
+  reader.integer("max_depth", integrator.max_depth, 0, 65536);
+  reader.integer("roulette_depth", integrator.roulette_depth, 0, 65536);
+  reader.number("large_step", integrator.large_step, {0.01, 1.0});
+}
+
 const std::array<TypeRow<IntegratorDesc>, 3> kIntegrators = {{
     {"path", read_path},
     {"bdpt", read_bdpt},
-    {"mlt", nullptr},
+    {"mlt", read_mlt},
 }};
 
 }  // namespace

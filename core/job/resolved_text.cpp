@@ -48,6 +48,10 @@ void write(FieldWriter& out, const IntegratorDesc& integrator) {
     out.put("camera_vertices", integrator.camera_vertices);
     out.put("mis", integrator.mis);
   }
+  if (integrator.type == "mlt") {
+    out.put("over", integrator.over);
+    out.put("large_step", integrator.large_step);
+  }
   out.leave();
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/base/fp_mode.h"
+#include "core/render/chain_batch.h"
 #include "core/samplers/sample_key.h"
 
 namespace hyades::core {
@@ -75,7 +76,10 @@ void RenderCounters::add(const RenderCounters& other) {
 
 FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                              const LayerSet& layers)
-    : FrameRenderer(std::move(scene), job, frame, layers, make_integrator(job.integrator)) {}
+    : FrameRenderer(std::move(scene), job, frame, layers, make_integrator(job.integrator)) {
+  if (job.integrator.type == "mlt" && job.integrator.max_depth > 0)
+    metropolis_ = std::make_unique<Metropolis>(job.integrator);
+}
 
 FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                              const LayerSet& layers, std::unique_ptr<Integrator> integrator)
@@ -86,6 +90,7 @@ FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job,
       sampling_(job.sampling),
       frame_(static_cast<uint32_t>(frame)),
       needs_time_(job.frames.shutter > 0.0F) {
+  chain_film_ = {job.film.filter_radius, needs_time_};
   if (layers.splats) placer_.emplace(*filter_, job.film.filter_radius, scene_->window);
 }
 
@@ -174,6 +179,19 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
   return true;
 }
 
+bool FrameRenderer::run_chains(const Unit& unit, uint32_t batch, Workspace& work, BatchSums& sums,
+                               RenderCounters& counters, const std::atomic<bool>* stop,
+                               std::atomic<uint64_t>* samples_done) const {
+  if (!metropolis_ || !placer_) return true;
+  ChainName name;
+  name.seed = sampling_.seed;
+  name.frame = frame_;
+  name.batch = batch;
+  name.samples = samples_in_batch(batch, sampling_.samples);
+  return ChainBatch(*metropolis_, *scene_, chain_film_, *placer_)
+      .run(name, unit.tile, work, sums.splats, counters, {stop, samples_done});
+}
+
 RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* stop,
                                    std::atomic<uint32_t>* batches_done,
                                    std::atomic<uint64_t>* samples_done) const {
@@ -182,11 +200,14 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
   const auto sampler = make_sampler(
       sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol : SamplerKind::independent);
   Workspace work;
+  Workspace chain_work;
   BatchSums sums;
   sums.values.resize(static_cast<size_t>(unit.tile.area()) *
                      static_cast<size_t>(layout_.deposited));
   for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
-    if (!render_batch(unit, b, *sampler, work, sums, result.counters, stop, samples_done)) {
+    if (!render_batch(unit, b, *sampler, work, sums, result.counters, stop,
+                      metropolis_ ? nullptr : samples_done) ||
+        !run_chains(unit, b, chain_work, sums, result.counters, stop, samples_done)) {
       result.stopped = true;
       break;
     }
@@ -194,8 +215,8 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
     if (layout_.layers.splats) result.film.deposit_splats(sums.splats);
     if (batches_done != nullptr) batches_done->fetch_add(1, std::memory_order_relaxed);
   }
-  result.counters.rays = work.rays;
-  result.counters.bounces = work.bounces;
+  result.counters.rays = work.rays + chain_work.rays;
+  result.counters.bounces = work.bounces + chain_work.bounces;
   return result;
 }
 

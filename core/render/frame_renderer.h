@@ -8,44 +8,15 @@
 #include <vector>
 
 #include "core/film/film.h"
-#include "core/film/fixed128.h"
 #include "core/integrators/integrator.h"
+#include "core/integrators/metropolis.h"
 #include "core/job/job.h"
+#include "core/render/render_counters.h"
 #include "core/render/splat_placer.h"
 #include "core/samplers/filter.h"
 #include "core/scene/scene.h"
 
 namespace hyades::core {
-
-/// The largest magnitude of a sample's radiance (times its filter weight), albedo and normal that
-/// counts, about 3.4e10: sums of batches stay well within what a film can hold.
-inline constexpr float kMaxSample = kMaxDeposit / static_cast<float>(2 * kBatchSamples);
-
-/// Why `sample` does not count, in words that fit behind "this sample is not counted: "; nothing
-/// where it does.
-std::optional<std::string> why_not_counted(const PixelSample& sample);
-
-/// What is wrong with samples that do not count, in words that fit behind "they are ": "not finite
-/// or beyond 3.44e+10".
-std::string bad_sample_words();
-
-/// A sample that does not count, for it is not finite or beyond kMaxSample: left out of the film
-/// (as if it were black), reported so that it can be replayed.
-struct BadSample {
-  Vec2i pixel{0, 0};
-  uint32_t sample = 0;
-};
-
-/// What rendering a unit took.
-struct RenderCounters {
-  uint64_t samples = 0;  ///< of whole batches, bad ones too
-  uint64_t rays = 0;
-  uint64_t bounces = 0;
-  uint64_t bad_samples = 0;         ///< and single splats that do not count
-  std::vector<BadSample> examples;  ///< the first few bad ones
-
-  void add(const RenderCounters& other);
-};
 
 struct RenderedUnit {
   Film film;
@@ -90,10 +61,15 @@ class FrameRenderer {
                     std::atomic<uint64_t>* samples_done) const;
   void take_splats(const Vec2i& pixel, uint32_t sample, Workspace& work,
                    std::vector<PixelSplat>& into, RenderCounters& counters) const;
+  bool run_chains(const Unit& unit, uint32_t batch, Workspace& work, BatchSums& sums,
+                  RenderCounters& counters, const std::atomic<bool>* stop,
+                  std::atomic<uint64_t>* samples_done) const;
   uint64_t splat_random(const Vec2i& pixel, uint32_t sample, size_t index) const;
 
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<Metropolis> metropolis_;  ///< of mlt
+  ChainFilm chain_film_;
   std::unique_ptr<PixelFilter> filter_;
   std::optional<SplatPlacer> placer_;  ///< of films with splats
   FilmLayout layout_;

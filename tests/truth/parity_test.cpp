@@ -17,6 +17,7 @@ struct ParityScene {
   int samples = 64;              ///< of each of path's renderings; bdpt takes half
   double relative_error = 0.02;  ///< of the picture's mean that is noticed with 99 % probability
   int max_depth = 6;
+  const char* mlt_over = "bdpt";
 };
 
 void PrintTo(const ParityScene& scene, std::ostream* out) { *out << scene.name; }
@@ -114,7 +115,8 @@ objects:
   ball: {mesh: tests/truth/coarse_ball.obj, normals: smooth, transform: [{scale: 0.5}], at: [-0.55, 0.5, 0], material: shiny}
   drop: {mesh: tests/truth/coarse_ball.obj, normals: smooth, transform: [{scale: 0.45}], at: [0.55, 0.5, 0], material: glass}
   lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.6, 0.8], emit: {radiance: 15}}
-)"},
+)",
+     64, 0.02, 6, "path"},
     {"sphere_light_behind_a_null_boundary", R"(
 camera: {look_from: [0, 1.2, 3], look_at: [0, 0.5, 0], fov: 40}
 materials:
@@ -202,7 +204,7 @@ lights:
   key: {type: point, at: [1, 2, 1], power: 60}
   rim: {type: sun, direction: [1, -1, 1], irradiance: 1, angle: 4}
 )",
-     128, 0.02, 8},
+     128, 0.02, 8, "path"},
     {"glowing_gas", R"(
 camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
 media:
@@ -227,22 +229,29 @@ YamlScene scene_with(const ParityScene& scene, const std::string& integrator, in
       ", max_depth: " + std::to_string(scene.max_depth) + "}\n" + scene.text);
 }
 
-class Parity : public testing::TestWithParam<ParityScene> {
- protected:
-  /// Most one of a hundred runs of all of them fails by chance.
-  Promise promise() const {
-    return {.significance = 0.01,
-            .tests = 3 * static_cast<int>(std::size(kScenes)) * 2,
-            .relative_error = GetParam().relative_error,
-            .power = 0.99};
-  }
-};
+class Parity : public testing::TestWithParam<ParityScene> {};
 
-TEST_P(Parity, BdptIsPath) {
+// Metropolis has most of its error in common to all of a picture, from the samples that its chains
+// begin with: a larger one of the mean is noticed.
+TEST_P(Parity, PathBdptAndMltAgree) {
   const ParityScene& scene = GetParam();
+  Promise promise{.significance = 0.01,
+                  .tests = 3 * 2 * static_cast<int>(std::size(kScenes)),
+                  .relative_error = scene.relative_error,
+                  .power = 0.99};
   const Replicates path = render_replicates(scene_with(scene, "path", scene.samples), kRuns, 6);
-  const Replicates bdpt = render_replicates(scene_with(scene, "bdpt", scene.samples / 2), kRuns, 6);
-  expect_same_picture(path, bdpt, promise());
+  {
+    SCOPED_TRACE("bdpt");
+    const YamlScene other = scene_with(scene, "bdpt", scene.samples / 2);
+    expect_same_picture(path, render_replicates(other, kRuns, 6), promise);
+  }
+  {
+    SCOPED_TRACE("mlt over " + std::string(scene.mlt_over));
+    promise.relative_error *= 3.0;
+    const YamlScene other =
+        scene_with(scene, "mlt, over: " + std::string(scene.mlt_over), scene.samples);
+    expect_same_picture(path, render_replicates(other, kRuns, 6), promise);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Parity, testing::ValuesIn(kScenes),

@@ -178,8 +178,6 @@ TEST(Complaints, StrategiesThatCannotBe) {
 }
 
 TEST(Complaints, WhatLaterVersionsKnowIsNotCalledAMistake) {
-  EXPECT_EQ(complaints("integrator: mlt\n"),
-            "job.yaml:2:13: type 'mlt' is not available in this version; available: path or bdpt\n");
   EXPECT_EQ(complaints("outputs: [{file: a.mp4}]\n"),
             "job.yaml:2:18: file is 'a.mp4', expected the ending .exr, .png, .jpg or .jpeg (.mp4 "
             "is not available in this version)\n");

@@ -108,6 +108,7 @@ const std::map<std::string, Place>& places() {
     p["integrator"] = {"integrator: {", {}, "}"};
     p["integrator.path"] = p["integrator"];
     p["integrator.bdpt"] = {"integrator: {", {{"type", "bdpt"}}, "}"};
+    p["integrator.mlt"] = {"integrator: {", {{"type", "mlt"}}, "}"};
     p["camera"] = {"camera: {", {}, "}"};
     p["camera.perspective"] = p["camera"];
     p["camera.aperture"] = {"camera: {aperture: {", {}, "}}"};
