@@ -13,41 +13,67 @@ using core::Diagnostics;
 
 namespace {
 
+/// What `path` is called from `folder` on.
+std::string reference_from(const std::string& path, const std::string& folder) {
+  if (path.empty()) return path;
+  const auto normal = [](const std::filesystem::path& p) {
+    return std::filesystem::absolute(p).lexically_normal();
+  };
+  const std::filesystem::path from = normal(folder.empty() ? "." : folder + "/");
+  return normal(path).lexically_relative(from).string();
+}
+
+std::string folder_of(const std::string& path) {
+  const std::filesystem::path file(path);
+  return file.has_parent_path() ? file.parent_path().string() : ".";
+}
+
+}  // namespace
+
 bool is_mesh(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   return extension == ".obj" || extension == ".ply" || extension == ".OBJ" || extension == ".PLY";
 }
 
-}  // namespace
+core::Result<std::string> text_of_mesh_job(const std::string& mesh, const std::string& media,
+                                           const std::string& folder) {
+  const auto assets = core::make_file_resolver(folder);
+  return mesh_job_text({reference_from(mesh, folder), reference_from(media, folder)}, *assets);
+}
 
-std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& diagnostics) {
-  const std::filesystem::path file(path);
+std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& diagnostics,
+                                       const std::string& media) {
   LoadedJob loaded;
-  loaded.files =
-      core::make_file_resolver(file.has_parent_path() ? file.parent_path().string() : ".");
+  const std::string folder = folder_of(path);
+  loaded.files = core::make_file_resolver(folder);
   loaded.assets = std::make_unique<core::RecordingResolver>(*loaded.files);
+  std::string text;
   if (is_mesh(path)) {
-    auto made = make_mesh_job(file.filename().string(), *loaded.assets);
+    auto made = text_of_mesh_job(path, media, folder);
     if (!made) {
       std::fprintf(stderr, "%s\n", made.error().message.c_str());
       return std::nullopt;
     }
-    loaded.job = std::move(*made);
-    return loaded;
-  }
-  auto text = loaded.files->open(file.filename().string());
-  if (!text) {
-    std::fprintf(stderr, "%s\n", text.error().message.c_str());
+    text = *made;
+  } else if (!media.empty()) {
+    std::fprintf(stderr, "%s: --media is for meshes (.obj, .ply); a job names its media itself\n",
+                 path.c_str());
     return std::nullopt;
+  } else {
+    const auto bytes = loaded.files->open(std::filesystem::path(path).filename().string());
+    if (!bytes) {
+      std::fprintf(stderr, "%s\n", bytes.error().message.c_str());
+      return std::nullopt;
+    }
+    text.assign(bytes->chars(), bytes->size());
   }
-  loaded.job =
-      core::parse_job(std::string(text->chars(), text->size()), path, *loaded.assets, diagnostics);
+  loaded.job = core::parse_job(text, path, *loaded.assets, diagnostics);
   return loaded;
 }
 
-std::optional<LoadedJob> load_job(const std::string& path) {
+std::optional<LoadedJob> load_job(const std::string& path, const std::string& media) {
   Diagnostics diagnostics;
-  auto loaded = read_job_file(path, diagnostics);
+  auto loaded = read_job_file(path, diagnostics, media);
   if (!diagnostics.empty()) {
     std::fprintf(stderr, "%s\n", diagnostics.to_string().c_str());
     return std::nullopt;

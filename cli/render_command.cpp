@@ -32,6 +32,8 @@ struct RenderOptions {
   std::string path;
   std::string frames;
   std::string folder = ".";
+  std::string media;
+  std::string save_job;
   int threads = core::hardware_threads();
   uint32_t samples = 0;
   uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
@@ -45,6 +47,11 @@ struct RenderOptions {
 std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options) {
   CLI::App app("Renders a job (or a mesh file) on this machine.", "hyades render");
   app.add_option("job", options.path, "the job (.yaml) or mesh (.obj, .ply)")->required();
+  app.add_option("--media", options.media,
+                 "of a mesh: file of media (.json, .yaml) that fill its materials (usemtl) of the "
+                 "same names");
+  app.add_option("--save-job", options.save_job,
+                 "of a mesh: write the job that it is rendered as, and render nothing");
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
       ->check(no_frames_error);
@@ -71,6 +78,7 @@ std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options
       "  hyades render jobs/quickstart/job.yaml\n"
       "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
       "  hyades render dragon.ply --samples 64\n"
+      "  hyades render bottles.obj --media media.json\n"
       "Ctrl-C stops; --resume continues, also after a crash.\n"
       "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
       "interrupted");
@@ -79,7 +87,7 @@ std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options
 
 /// The job as the command line changes it; nothing (and a message) where that makes no sense.
 std::optional<LoadedJob> load(const RenderOptions& options) {
-  auto loaded = load_job(options.path);
+  auto loaded = load_job(options.path, options.media);
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
   if (options.samples > 0) job.sampling.samples = options.samples;
@@ -94,6 +102,27 @@ std::optional<LoadedJob> load(const RenderOptions& options) {
     }
   }
   return loaded;
+}
+
+/// Writes the job that the mesh is rendered as; the exit status.
+int save_job(const RenderOptions& options) {
+  if (!is_mesh(options.path)) {
+    std::fprintf(stderr, "%s: --save-job is for meshes (.obj, .ply)\n", options.path.c_str());
+    return kBadInput;
+  }
+  const std::string folder = std::filesystem::path(options.save_job).parent_path().string();
+  const auto text = text_of_mesh_job(options.path, options.media, folder);
+  if (!text) {
+    std::fprintf(stderr, "%s\n", text.error().message.c_str());
+    return kBadInput;
+  }
+  if (auto written = core::write_file(options.save_job, std::as_bytes(std::span(*text)));
+      !written) {
+    std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    return 1;
+  }
+  if (!options.quiet) std::fprintf(stderr, "wrote %s\n", options.save_job.c_str());
+  return 0;
 }
 
 /// Remembers how outputs were made, so that a resumed run does not take pictures for finished that
@@ -193,6 +222,7 @@ int render_command(int argc, char** argv) {
   const auto begin = std::filesystem::file_time_type::clock::now();
   RenderOptions options;
   if (const auto status = parse_arguments(argc, argv, options)) return *status;
+  if (!options.save_job.empty()) return save_job(options);
   auto loaded = load(options);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;
