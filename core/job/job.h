@@ -131,6 +131,15 @@ struct BumpDesc {
   Animated<float> height{0.01F};  ///< length that the texture's value 1 stands for
 };
 
+/// What fills bodies of a material, said as one sees it; core/media/albedo_inversion.h makes
+/// coefficients of it.
+struct SubsurfaceDesc {
+  Animated<Rgb> color{Rgb(0.8F)};   ///< share of the light that comes back out of a thick body
+  Animated<Rgb> radius{Rgb(1.0F)};  ///< how far light goes until it has lost its direction [length]
+  Animated<float> scale{1.0F};      ///< multiplies radius
+  Animated<float> g{0.0F};          ///< mean cosine, (-1, 1)
+};
+
 struct MaterialDesc {
   std::string name;
   SourceLocation where;
@@ -149,6 +158,7 @@ struct MaterialDesc {
   std::string first, second;         ///< mix: material names
   ScalarInput amount{Animated<float>(0.5F), {}};  ///< mix: share of `second`
   std::optional<BumpDesc> bump;
+  std::optional<SubsurfaceDesc> subsurface;  ///< dielectric, null: of bodies without an interior
 };
 
 /// What fills space. Coefficients are per unit of length; they are given as they are, or by an

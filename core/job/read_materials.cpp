@@ -28,6 +28,23 @@ void read_bump(MapReader& reader, MaterialDesc& material) {
   material.bump = bump;
 }
 
+void read_subsurface(MapReader& reader, MaterialDesc& material) {
+  reader.enter_section("materials.subsurface");
+  if (!reader.has("subsurface") && !reader.listing()) {
+    reader.find("subsurface");
+    return;
+  }
+  SubsurfaceDesc subsurface;
+  reader.map("subsurface", "materials.subsurface.body", [&](MapReader& map) {
+    map.require("radius", "how far light goes in it: a length, or one for each channel");
+    map.color("color", subsurface.color, kUnitInterval);
+    map.color("radius", subsurface.radius, kPositive);
+    map.animated("scale", subsurface.scale, kPositive);
+    map.animated("g", subsurface.g, {-1.0, 1.0, true, true});
+  });
+  material.subsurface = subsurface;
+}
+
 void read_lambert(MapReader& reader, MaterialDesc& material) {
   reader.color_input("color", material.color, kUnitInterval);
   read_bump(reader, material);
@@ -43,6 +60,7 @@ void read_thin_dielectric(MapReader& reader, MaterialDesc& material) {
 void read_dielectric(MapReader& reader, MaterialDesc& material) {
   reader.scalar_input("roughness", material.roughness, kUnitInterval);
   read_thin_dielectric(reader, material);
+  read_subsurface(reader, material);
 }
 
 void read_conductor(MapReader& reader, MaterialDesc& material) {
@@ -96,7 +114,7 @@ const std::array<TypeRow<MaterialDesc>, 9> kTypes = {{
     {"glossy", read_glossy},
     {"mirror", read_mirror},
     {"mix", read_mix},
-    {"null", read_nothing},
+    {"null", read_subsurface},
     {"black", read_nothing},
 }};
 

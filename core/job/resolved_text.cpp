@@ -113,6 +113,14 @@ void write(FieldWriter& out, const MaterialDesc& material) {
     out.put("bump.texture", material.bump->texture);
     out.put("bump.height", material.bump->height);
   }
+  if (material.subsurface) {
+    out.enter("subsurface");
+    out.put("color", material.subsurface->color);
+    out.put("radius", material.subsurface->radius);
+    out.put("scale", material.subsurface->scale);
+    out.put("g", material.subsurface->g);
+    out.leave();
+  }
   out.leave();
 }
 

@@ -81,6 +81,17 @@ Result<MediumPtr> Appearance::medium_in(const std::string& name, const Placement
   return make_medium_in(*desc, time_, job_.units, found->second, body.to_world);
 }
 
+bool Appearance::has_subsurface(const std::string& name) const {
+  const MaterialDesc* desc = find_named(job_.materials, name);
+  return desc != nullptr && desc->subsurface;
+}
+
+MediumPtr Appearance::subsurface(const std::string& name) {
+  MediumPtr& made = subsurfaces_[name];
+  if (!made) made = make_subsurface(*find_named(job_.materials, name), time_, job_.units);
+  return made;
+}
+
 Result<ColorParam> Appearance::color(const ColorInput& input) {
   if (input.texture.empty()) return ColorParam{input.value.at(time_), nullptr};
   auto found = texture(input.texture);

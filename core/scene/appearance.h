@@ -38,6 +38,10 @@ class Appearance {
   /// The medium called `name` as it fills `body`, in which it may vary; null for "".
   Result<MediumPtr> medium_in(const std::string& name, const Placement& body);
 
+  /// Whether bodies of material `name` are filled with what its `subsurface` says, and with what.
+  bool has_subsurface(const std::string& name) const;
+  MediumPtr subsurface(const std::string& name);
+
   // A parameter at this moment: its value, or the texture that it names.
   Result<ColorParam> color(const ColorInput& input);
   Result<ScalarParam> scalar(const ScalarInput& input);
@@ -56,6 +60,7 @@ class Appearance {
   std::map<std::string, TexturePtr> textures_;
   std::map<std::string, MaterialPtr> materials_;
   std::map<std::string, MediumPtr> media_;
+  std::map<std::string, MediumPtr> subsurfaces_;  ///< by material
   std::map<std::pair<std::string, std::array<float, 6>>, PlacedVolume>
       volumes_;  ///< by medium and bounds of the body
   int depth_ =

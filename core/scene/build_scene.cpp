@@ -86,10 +86,11 @@ class SceneBuilder {
     auto atmosphere = looks_.medium(job_.atmosphere);
     if (!atmosphere) return atmosphere.error().in("atmosphere");
     scene_->atmosphere = *atmosphere;
-    scene_->has_media = *atmosphere != nullptr ||
-                        std::any_of(objects.begin(), objects.end(), [](const FlatObject& object) {
-                          return !object.desc->interior.empty();
-                        });
+    scene_->has_media =
+        *atmosphere != nullptr ||
+        std::any_of(objects.begin(), objects.end(), [&](const FlatObject& object) {
+          return !object.desc->interior.empty() || looks_.has_subsurface(object.material);
+        });
     return {};
   }
 
@@ -110,7 +111,15 @@ class SceneBuilder {
   /// All parts of a body's surface share what is inside.
   Result<MediumPtr> interior_of(const FlatObject& object) {
     if (object.body < scene_->objects.size()) return scene_->objects[object.body].interior;
-    return looks_.medium_in(object.desc->interior, object.placement);
+    if (!object.desc->interior.empty() || !looks_.has_subsurface(object.material)) {
+      return looks_.medium_in(object.desc->interior, object.placement);
+    }
+    if (!has_inside(*object.desc)) {
+      return Error{"material '" + object.material +
+                   "' has a subsurface, for which it needs an "
+                   "inside: a mesh, a sphere, a box or a cylinder with caps"};
+    }
+    return looks_.subsurface(object.material);
   }
 
   /// At the middle of the lens when the shutter opens: a camera that goes through a surface in

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/media/albedo_inversion.h"
+
 namespace hyades::core {
 namespace {
 
@@ -46,6 +48,18 @@ MediumPtr make_medium_in(const MediumDesc& desc, const JobTime& time, float unit
   for (const Mat4& m : body_to_world) to_world.push_back(m * volume.to_body);
   return make_varying(volume.volume, FieldPlace(std::move(to_world)),
                       coefficients_of(desc, time, units), phase_of(desc, time));
+}
+
+MediumPtr make_subsurface(const MaterialDesc& desc, const JobTime& time, float units) {
+  const SubsurfaceDesc& subsurface = *desc.subsurface;
+  BodyColor body;
+  body.color = subsurface.color.at(time);
+  body.radius = subsurface.radius.at(time) * subsurface.scale.at(time) * units;
+  body.g = subsurface.g.at(time);
+  body.index = desc.type == "null" ? 1.0F : desc.ior.at(time);
+  const ScatteringNumbers made = scattering_of(body);
+  return make_homogeneous(made.absorption, made.scattering, Rgb(0.0F),
+                          Phase::henyey_greenstein(Rgb(body.g)));
 }
 
 }  // namespace hyades::core

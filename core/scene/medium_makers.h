@@ -17,4 +17,7 @@ MediumPtr make_medium(const MediumDesc& desc, const JobTime& time, float units);
 MediumPtr make_medium_in(const MediumDesc& desc, const JobTime& time, float units,
                          const PlacedVolume& volume, const std::vector<Mat4>& body_to_world);
 
+/// What fills bodies of a material that has a `subsurface`.
+MediumPtr make_subsurface(const MaterialDesc& desc, const JobTime& time, float units);
+
 }  // namespace hyades::core

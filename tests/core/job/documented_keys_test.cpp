@@ -132,6 +132,9 @@ const std::map<std::string, Place>& places() {
     }
     p["materials.mix"] = named("materials", "mix", {{"first", "steel"}, {"second", "clay"}});
     p["materials.surfaces"] = p["materials"];
+    p["materials.subsurface"] = named("materials", "dielectric", {});
+    p["materials.subsurface.body"] = {
+        "materials: {x: {type: dielectric, subsurface: {", {{"radius", "0.1"}}, "}}}"};
     p["materials.bump"] = {
         "materials: {x: {type: lambert, bump: {", {{"texture", "marble"}}, "}}}"};
     const auto object = [](const std::string& key, const std::string& value) {

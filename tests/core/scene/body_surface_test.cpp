@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
 #include <string>
 
 #include "core/job/parse.h"
@@ -45,6 +47,48 @@ objects:
     EXPECT_FALSE(objects[opaque].material->leads_inside()) << opaque;
   }
   for (const SceneObject& object : objects) EXPECT_NE(object.interior, nullptr) << object.name;
+}
+
+TEST(BodySurface, WithASubsurfaceFillsBodies) {
+  const auto scene = scene_of(R"(
+materials:
+  wax: {type: dielectric, ior: 1.4, subsurface: {color: [0.9, 0.6, 0.4], radius: 0.01, scale: 2}}
+  glass: {type: dielectric}
+media: {fog: {scattering: 1}}
+objects:
+  wax: {shape: cylinder, material: wax}
+  other: {shape: sphere, material: wax}
+  own: {shape: sphere, material: wax, interior: fog}
+  glass: {shape: sphere, material: glass}
+)");
+  ASSERT_TRUE(scene->has_media);
+  std::map<std::string, const Medium*> inside;
+  for (const SceneObject& object : scene->objects) inside[object.name] = object.interior.get();
+  EXPECT_NE(inside["wax"], nullptr);
+  EXPECT_EQ(inside["wax"], inside["wax/top"]);
+  EXPECT_EQ(inside["wax"], inside["other"]);
+  EXPECT_NE(inside["own"], inside["wax"]);
+  EXPECT_EQ(inside["glass"], nullptr);
+  // Of extinction 1 / 0.02 per metre, since g is 0.
+  const Ray ray{Vec3(0.0F), Vec3(0.0F, 1.0F, 0.0F), kInfinity, 0.0F};
+  EXPECT_NEAR(inside["wax"]->transmittance(ray, 0.02F, Vec4(0.5F)).x, std::exp(-1.0F), 1e-4F);
+}
+
+TEST(BodySurface, WithASubsurfaceNeedsAnInside) {
+  MemoryAssets assets;
+  Diagnostics diagnostics;
+  const Job job = parse_job(
+      "hyades: 1\nmaterials: {wax: {type: dielectric, subsurface: {radius: 1}}}\n"
+      "objects: {sheet: {shape: rectangle, material: wax}}\n",
+      "body.yaml", assets, diagnostics);
+  ASSERT_EQ(diagnostics.to_string(), "");
+  SceneCache cache(assets);
+  const auto scene = build_scene(job, 1, cache);
+  ASSERT_FALSE(scene);
+  EXPECT_EQ(
+      scene.error().message,
+      "body.yaml:3:18: object 'sheet': material 'wax' has a subsurface, for which it needs an "
+      "inside: a mesh, a sphere, a box or a cylinder with caps");
 }
 
 }  // namespace
