@@ -55,7 +55,8 @@ class BidirectionalSample final : public WalkWatcher {
   bool wanted(int s) const { return settings_.light_vertices < 0 || settings_.light_vertices == s; }
 
   bool wanted(int s, int t) const {
-    return wanted(s) && (settings_.camera_vertices < 0 || settings_.camera_vertices == t);
+    return s + t - 2 >= settings_.min_events && wanted(s) &&
+           (settings_.camera_vertices < 0 || settings_.camera_vertices == t);
   }
 
   /// The weight of a strategy from the sums on either side.
@@ -86,11 +87,9 @@ class BidirectionalSample final : public WalkWatcher {
 
   // What the camera path meets.
 
-  /// Whether light that the camera path meets next has been scattered often enough.
-  bool enough_events() const { return camera_.size() - 1 >= settings_.min_events; }
-
   void medium_emits(const Way& way, const Rgb& radiance) override {
-    if (wanted(0) && enough_events()) out_.radiance += way.throughput * radiance;
+    if (wanted(0) && camera_.size() - 1 >= settings_.min_events)
+      out_.radiance += way.throughput * radiance;
   }
 
   void arrives(const PathVertex& v) override {
@@ -110,7 +109,6 @@ class BidirectionalSample final : public WalkWatcher {
 
   void meets(const Way& way, const SurfacePoint& point, const SceneObject& object) override {
     if (object.light == SceneObject::kNoLight || !wanted(0, camera_.size() + 1)) return;
-    if (!enough_events()) return;
     const Light& light = *scene_.lights[object.light];
     const Rgb radiance = light.radiance(point, -way.ray.direction);
     if (is_black(radiance)) return;
@@ -124,7 +122,7 @@ class BidirectionalSample final : public WalkWatcher {
   }
 
   void leaves(const Way& way) override {
-    if (!wanted(0, camera_.size() + 1) || !enough_events()) return;
+    if (!wanted(0, camera_.size() + 1)) return;
     if (camera_.size() == 1 && !scene_.environment_visible) return;
     for (const uint32_t index : scene_.infinite_lights) {
       const Light& light = *scene_.lights[index];

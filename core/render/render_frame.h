@@ -17,8 +17,8 @@ struct RenderedFrame {
   RenderCounters counters;
 };
 
-/// Renders all of `window` in memory, nothing durable: for tests, benchmarks and tools. Jobs go
-/// through the scheduler (coordinator/local) instead.
+/// Renders all of `window` (where films have splats, the scene's) in memory, nothing durable: for
+/// tests, benchmarks and tools. Jobs go through the scheduler (coordinator/local) instead.
 RenderedFrame render_frame(const FrameRenderer& renderer, const PixelRect& window, uint32_t samples,
                            int32_t frame, const RenderFrameOptions& options = {});
 

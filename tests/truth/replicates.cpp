@@ -7,11 +7,17 @@
 namespace hyades::test {
 
 Replicates render_replicates(const YamlScene& scene, int runs, int block) {
+  return render_replicates(scene, scene.job().integrator, runs, block);
+}
+
+Replicates render_replicates(const YamlScene& scene, const core::IntegratorDesc& integrator,
+                             int runs, int block) {
   Replicates result;
   // The scene outlives its renderers.
   const std::shared_ptr<const core::Scene> shared(std::shared_ptr<void>(),
                                                   &scene.renderer().scene());
   core::Job job = scene.job();
+  job.integrator = integrator;
   for (int run = 0; run < runs; ++run) {
     job.sampling.seed = scene.job().sampling.seed + static_cast<uint64_t>(run);
     const core::FrameRenderer renderer(shared, job, 1, scene.renderer().layout().layers);

@@ -19,6 +19,10 @@ struct Replicates {
 /// side.
 Replicates render_replicates(const YamlScene& scene, int runs, int block);
 
+/// The same with other settings of the integrator than the job's.
+Replicates render_replicates(const YamlScene& scene, const core::IntegratorDesc& integrator,
+                             int runs, int block);
+
 /// Whether two estimates of one picture agree: the picture's mean in the sense of `promise` (its
 /// tests are the channels of all comparisons), and all blocks together (Sidak).
 void expect_same_picture(const Replicates& a, const Replicates& b, const Promise& promise);
