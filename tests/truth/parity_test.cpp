@@ -188,6 +188,21 @@ objects:
   lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.2, 0.8], emit: {radiance: 8}}
 )",
      256, 0.03, 12},
+    {"milk_in_a_glass_ball", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 30}
+media:
+  milk: {scattering: [4, 5, 6], absorption: [0.3, 0.1, 0.05], g: 0.5}
+materials:
+  white: {type: lambert, color: 0.6}
+  glass: {type: dielectric, ior: 1.5}
+  frosted: {type: dielectric, ior: 1.5, roughness: 0.4}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  ball: {shape: sphere, radius: 0.5, at: [-0.55, 0.6, 0], material: glass, interior: milk}
+  cube: {shape: box, size: [0.8, 0.8, 0.8], at: [0.55, 0.5, 0], material: frosted, interior: milk}
+  lamp: {shape: sphere, radius: 0.6, at: [0.5, 2.2, 0.8], emit: {radiance: 8}}
+)",
+     128, 0.06, 10},
     {"two_nested_media", R"(
 camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
 media:

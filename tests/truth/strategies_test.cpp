@@ -71,6 +71,18 @@ TEST(Strategies, EachFindsAllLightBetweenSurfaces) {
   expect_strategies_agree(scene, 3, 1, 4, promise);
 }
 
+// What light paths scatter is not what camera paths scatter where shading normals are not those of
+// the surface (Veach 1997, section 5.3).
+TEST(Strategies, EachFindsAllLightOnSmoothedMeshes) {
+  const YamlScene scene(scene_with(
+      "  ball: {mesh: tests/truth/coarse_ball.obj, normals: smooth, transform: [{scale: 0.5}], at: "
+      "[0, 0.75, 0], material: satin}\n"));
+  const Promise promise{
+      .significance = 0.005, .tests = 3 * (4 + 4), .relative_error = 0.14, .power = 0.99};
+  expect_strategies_agree(scene, 1, 0, 2, promise);
+  expect_strategies_agree(scene, 2, 1, 3, promise);
+}
+
 // Places in a medium may come as near to each other as they like: of what joins them alone only
 // the weighted sum can be tested, which is so with all integrators.
 TEST(Strategies, EachFindsAllLightInAMedium) {
