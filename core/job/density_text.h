@@ -3,9 +3,11 @@
 #include "core/job/density_desc.h"
 #include "core/job/field_writer.h"
 
+/// What decides how media vary, as lines of a resolved job.
 namespace hyades::core {
 
-/// What decides how a medium varies, as lines of a resolved job.
+void write_transform(FieldWriter& out, const TransformList& steps);
 void write_density(FieldWriter& out, const DensityDesc& density);
+void write_glow(FieldWriter& out, const GlowDesc& glow);
 
 }  // namespace hyades::core

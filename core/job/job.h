@@ -29,16 +29,6 @@ struct ScalarInput {
   std::string texture;
 };
 
-/// One step of a transform list; steps apply top to bottom.
-struct TransformStep {
-  enum class Kind { translate, scale, rotate_x, rotate_y, rotate_z, rotate, matrix };
-  Kind kind = Kind::translate;
-  Animated<Vec3> vector{Vec3(0.0F)};  ///< translate [length]; scale [factor per axis]; rotate: axis
-  Animated<float> angle{0.0F};        ///< degrees
-  Mat4 matrix{1.0F};                  ///< matrix only
-};
-using TransformList = std::vector<TransformStep>;
-
 struct FramesDesc {
   int32_t first = 1;
   int32_t last = 1;
@@ -177,7 +167,9 @@ struct MediumDesc {
   Animated<float> blend{0.0F};                  ///< share of the second lobe
   Animated<Rgb> emission{Rgb(0.0F)};            ///< W/(length^3 sr)
   Animated<float> scale{1.0F};                  ///< multiplies all coefficients
+  Animated<float> emission_strength{1.0F};      ///< multiplies emission
   std::optional<DensityDesc> varying;           ///< multiplies them from place to place in a body
+  std::optional<GlowDesc> glow;                 ///< where emission varies in its own way
   std::optional<float> index;  ///< of refraction, of bodies of it that have no material
 };
 

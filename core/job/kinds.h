@@ -28,6 +28,9 @@ std::span<const std::string> mapping_names();
 /// The values of a medium's `phase`.
 std::span<const std::string> phase_names();
 
+/// The values of `place` of a density of a vdb.
+std::span<const std::string> vdb_places();
+
 /// The values of a mesh's `normals`.
 std::span<const std::string> mesh_normals_names();
 

@@ -84,7 +84,7 @@ void read_media(MapReader& top) {
                read_density(reader, medium);
                read_phase(reader, medium);
                read_index(reader, medium);
-               reader.color("emission", medium.emission, kNotNegative);
+               read_emission(reader, medium);
                reader.animated("scale", medium.scale, kNotNegative);
                reader.finish();
                top.context().job.media.push_back(std::move(medium));

@@ -29,6 +29,11 @@ class FileList {
 std::vector<std::string> referenced_files(const Job& job) {
   FileList list;
   for (const TextureDesc& texture : job.textures) list.add(texture.file);
+  for (const MediumDesc& medium : job.media) {
+    if (!medium.varying) continue;
+    list.add(medium.varying->vdb);
+    if (medium.varying->shell) list.add(medium.varying->shell->image);
+  }
   for (const GroupDesc& group : job.groups) list.add_meshes(group.objects);
   list.add_meshes(job.objects);
   if (job.environment) list.add(job.environment->image);

@@ -137,21 +137,12 @@ void write(FieldWriter& out, const MediumDesc& medium) {
   out.put("g2", medium.g2);
   out.put("blend", medium.blend);
   out.put("emission", medium.emission);
+  out.put("emission_strength", medium.emission_strength);
   out.put("scale", medium.scale);
   if (medium.varying) write_density(out, *medium.varying);
+  if (medium.glow) write_glow(out, *medium.glow);
   if (medium.index) out.put("index", *medium.index);
   out.leave();
-}
-
-void write(FieldWriter& out, const TransformList& steps) {
-  for (const TransformStep& step : steps) {
-    out.enter("step");
-    out.put("kind", static_cast<int32_t>(step.kind));
-    out.put("vector", step.vector);
-    out.put("angle", step.angle);
-    out.put("matrix", step.matrix);
-    out.leave();
-  }
 }
 
 void write(FieldWriter& out, const EmitDesc& emit) {
@@ -177,7 +168,7 @@ void write(FieldWriter& out, const ObjectDesc& object) {
   out.put("smooth", object.smooth);
   out.put("material", object.material);
   if (!object.interior.empty()) out.put("interior", object.interior);
-  write(out, object.transform);
+  write_transform(out, object.transform);
   out.put("at", object.at);
   if (object.emit) write(out, *object.emit);
   out.put("visible_to_camera", object.visible_to_camera);

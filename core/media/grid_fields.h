@@ -1,35 +1,30 @@
 #pragma once
 
-#include <algorithm>
 #include <memory>
-#include <utility>
 
-#include "core/media/brick_grid.h"
 #include "core/media/density_field.h"
+#include "core/media/read_vdb.h"
 
 /// Fields that are read off grids of values.
 namespace hyades::core {
 
-/// The grid's own points are the integer points of the field's space.
-class GridDensity final : public DensityField {
- public:
-  explicit GridDensity(std::shared_ptr<const BrickGrid<float>> grid) : grid_(std::move(grid)) {}
+/// A density whose space has the grid's points at its integers.
+std::shared_ptr<const DensityField> make_grid_density(std::shared_ptr<const BrickGrid<float>> grid);
 
-  float at(const Vec3& p) const override { return grid_->at(p); }
+/// Colours of a grid; `to_grid` leads from the space of the field into the grid's.
+std::shared_ptr<const ColorField> make_grid_color(std::shared_ptr<const BrickGrid<Rgb>> grid,
+                                                  const Mat4& to_grid);
 
-  Extent over(const Bounds& box) const override {
-    Extent extent{3.0e38F, 0.0F};
-    grid_->visit_values(box, [&](float v) {
-      extent.least = std::min(extent.least, v);
-      extent.greatest = std::max(extent.greatest, v);
-    });
-    return extent;
-  }
-
-  Bounds bounds() const override { return grid_->bounds(); }
-
- private:
-  std::shared_ptr<const BrickGrid<float>> grid_;
+/// How bright something glows: numbers of one grid times the light of black bodies whose
+/// temperatures are those of another. Either may be missing. `kelvin` is what a temperature of 1
+/// stands for; colours have luminance (T / 1500 K)^4 (Stefan and Boltzmann), 0 below 500 K.
+struct GridGlow {
+  std::shared_ptr<const BrickGrid<float>> factor;
+  Mat4 to_factor{1.0F};
+  std::shared_ptr<const BrickGrid<float>> temperature;
+  Mat4 to_temperature{1.0F};
+  float kelvin = 1.0F;
 };
+std::shared_ptr<const ColorField> make_grid_glow(const GridGlow& glow);
 
 }  // namespace hyades::core

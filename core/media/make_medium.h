@@ -2,9 +2,9 @@
 
 #include <memory>
 
+#include "core/media/coefficients.h"
 #include "core/media/field_place.h"
 #include "core/media/medium.h"
-#include "core/media/volume.h"
 
 /// One maker per kind of medium.
 namespace hyades::core {
@@ -16,17 +16,14 @@ using MediumPtr = std::shared_ptr<const Medium>;
 MediumPtr make_homogeneous(const Rgb& absorption, const Rgb& scattering, const Rgb& emission,
                            const Phase& phase);
 
-/// What a medium is where its density is 1, in the units of make_homogeneous().
-struct Coefficients {
-  Rgb absorption{0.0F};
-  Rgb scattering{0.0F};
-  Rgb emission{0.0F};
-};
-
 /// A medium that varies as `volume`, put into the world by `place`: absorption and scattering are
 /// those of `per_density` times the density. Light scatters there times the volume's tint (what
 /// that takes is absorbed). Emission is times the volume's glow.
 MediumPtr make_varying(std::shared_ptr<const Volume> volume, const FieldPlace& place,
                        const Coefficients& per_density, const Phase& phase);
+
+/// The same found by marching in steps of about `step` metres (above 0): biased, for comparison.
+MediumPtr make_marching(std::shared_ptr<const Volume> volume, const FieldPlace& place,
+                        const Coefficients& per_density, const Phase& phase, float step);
 
 }  // namespace hyades::core

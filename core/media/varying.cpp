@@ -39,13 +39,12 @@ class Varying final : public Medium {
           const Coefficients& per_density, const Phase& phase)
       : volume_(std::move(volume)),
         place_(place),
-        scattering_(per_density.scattering),
-        extinction_(per_density.absorption + per_density.scattering),
-        emission_(per_density.emission),
+        per_density_(per_density),
+        extinction_(per_density.extinction()),
         phase_(phase),
         grey_(extinction_.x == extinction_.y && extinction_.y == extinction_.z),
-        scatters_(!is_black(scattering_)),
-        emits_(!is_black(emission_)) {}
+        scatters_(!is_black(per_density.scattering)),
+        emits_(!is_black(per_density.emission)) {}
 
   /// Delta tracking in one channel, chosen by what the path carries. The density with which another
   /// channel would have gone the same way differs in the rate of proposals alone (a proposal is
@@ -59,7 +58,7 @@ class Varying final : public Medium {
       result.weight = transmittance(ray, t_max, u);
       return result;
     }
-    const FieldRay way = in_field(ray);
+    const FieldRay way = place_.in_field(ray);
     const double rate = extinction_[choose_channel(shares, u.x).index];
     CollisionNumbers numbers(u, static_cast<uint64_t>(Purpose::flight));
     // As a length times a density; the first one is of the numbers that are well spread in a pixel.
@@ -68,7 +67,7 @@ class Varying final : public Medium {
     int collisions = 0;
     float place = 0.0F;
     const DensityField& density = *volume_->density;
-    volume_->majorants.walk(
+    volume_->majorants->walk(
         way.origin, way.direction, t_max, [&](float begin, float end, const Extent& bound) {
           const double majorant = bound.greatest;
           double t = begin;
@@ -98,7 +97,7 @@ class Varying final : public Medium {
     result.weight = over_all_channels(shares, collisions, passed);
     if (!result.scattered) return result;
     result.t = std::min(place, std::nextafter(t_max, 0.0F));
-    result.weight *= albedo_at(way.at(result.t));
+    result.weight *= per_density_.albedo(*volume_, way.at(result.t));
     return result;
   }
 
@@ -106,12 +105,12 @@ class Varying final : public Medium {
   /// closed form (Novak, Selle and Jarosz 2014, "Residual ratio tracking for estimating attenuation
   /// in participating media").
   Rgb transmittance(const Ray& ray, float t_max, const Vec4& u) const override {
-    const FieldRay way = in_field(ray);
+    const FieldRay way = place_.in_field(ray);
     CollisionNumbers numbers(u, static_cast<uint64_t>(Purpose::transmittance));
     Carried carried;
     int collisions = 0;
     const DensityField& density = *volume_->density;
-    volume_->majorants.walk(
+    volume_->majorants->walk(
         way.origin, way.direction, t_max, [&](float begin, float end, const Extent& bound) {
           if (bound.least > 0.0F)
             lose(carried, double{bound.least} * (double{end} - double{begin}));
@@ -143,8 +142,8 @@ class Varying final : public Medium {
   /// ratio tracking of what gets from there to the ray's origin.
   Rgb emitted(const Ray& ray, float t_max, const Vec4& u) const override {
     if (!emits_) return Rgb(0.0F);
-    const FieldRay way = in_field(ray);
-    const auto span = volume_->majorants.inside(way.origin, way.direction, t_max);
+    const FieldRay way = place_.in_field(ray);
+    const auto span = volume_->majorants->inside(way.origin, way.direction, t_max);
     if (!(span.begin < span.end)) return Rgb(0.0F);
     const double glances = kGlances / (double{span.end} - double{span.begin});
     CollisionNumbers numbers(u, static_cast<uint64_t>(Purpose::emission));
@@ -152,7 +151,7 @@ class Varying final : public Medium {
     std::array<double, 3> sum{};
     int collisions = 0;
     const DensityField& density = *volume_->density;
-    volume_->majorants.walk(
+    volume_->majorants->walk(
         way.origin, way.direction, t_max, [&](float begin, float end, const Extent& bound) {
           if (bound.greatest == 0.0F && volume_->glow == nullptr) return true;
           double t = begin;
@@ -164,10 +163,10 @@ class Varying final : public Medium {
             if (++collisions >= kMostCollisions) return false;
             const Vec3 place = way.at(static_cast<float>(t));
             const float dense = std::min(density.at(place), bound.greatest);
-            const Rgb glow = volume_->glow != nullptr ? volume_->glow->at(place) : Rgb(dense);
+            const Rgb glow = per_density_.glow(*volume_, place, dense);
             for (int c = 0; c < 3; ++c) {
               const auto i = static_cast<size_t>(c);
-              sum[i] += carried[i] * double{emission_[c]} * double{glow[c]} / rate;
+              sum[i] += carried[i] * double{glow[c]} / rate;
               carried[i] *= 1.0 - double{extinction_[c]} * double{dense} / rate;
             }
           }
@@ -178,26 +177,14 @@ class Varying final : public Medium {
   const Phase& phase() const override { return phase_; }
 
   Rgb albedo(const Vec3& position) const override {
-    return albedo_at(transform_point(place_.to_field(0.0F), position));
+    return per_density_.albedo(*volume_, transform_point(place_.to_field(0.0F), position));
   }
 
  private:
-  /// A ray in the field's space, where t stays the same: a distance in the world.
-  struct FieldRay {
-    Vec3 origin;
-    Vec3 direction;
-    Vec3 at(float t) const { return origin + t * direction; }
-  };
-
   /// What is left in each channel.
   struct Carried : std::array<double, 3> {
     Carried(double r = 1.0, double g = 1.0, double b = 1.0) : std::array<double, 3>{r, g, b} {}
   };
-
-  FieldRay in_field(const Ray& ray) const {
-    const Mat4 to_field = place_.to_field(ray.time);
-    return {transform_point(to_field, ray.origin), transform_vector(to_field, ray.direction)};
-  }
 
   static Rgb to_rgb(const std::array<double, 3>& x) {
     return {static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])};
@@ -269,19 +256,10 @@ class Varying final : public Medium {
     return weight;
   }
 
-  Rgb albedo_at(const Vec3& place) const {
-    Rgb share(0.0F);
-    for (int c = 0; c < 3; ++c) {
-      if (extinction_[c] > 0.0F) share[c] = scattering_[c] / extinction_[c];
-    }
-    return volume_->tint != nullptr ? share * glm::min(volume_->tint->at(place), Rgb(1.0F)) : share;
-  }
-
   std::shared_ptr<const Volume> volume_;
   FieldPlace place_;
-  Rgb scattering_;
+  Coefficients per_density_;
   Rgb extinction_;
-  Rgb emission_;
   Phase phase_;
   bool grey_;
   bool scatters_;

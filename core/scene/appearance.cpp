@@ -74,7 +74,7 @@ Result<MediumPtr> Appearance::medium_in(const std::string& name, const Placement
   const auto key = std::make_pair(name, std::array<float, 6>{a.x, a.y, a.z, b.x, b.y, b.z});
   auto found = volumes_.find(key);
   if (found == volumes_.end()) {
-    auto volume = make_volume(*desc->varying, time_, bounds, cache_);
+    auto volume = make_volume(*desc, time_, bounds, cache_);
     if (!volume) return volume.error().in("medium '" + name + "'");
     found = volumes_.emplace(key, std::move(*volume)).first;
   }

@@ -23,7 +23,7 @@ Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float 
   const float scale = desc.scale.at(time) / units;
   found.absorption *= scale;
   found.scattering *= scale;
-  found.emission = desc.emission.at(time) / units;
+  found.emission = desc.emission.at(time) * desc.emission_strength.at(time) / units;
   return found;
 }
 
@@ -46,8 +46,11 @@ MediumPtr make_medium_in(const MediumDesc& desc, const JobTime& time, float unit
   std::vector<Mat4> to_world;
   to_world.reserve(body_to_world.size());
   for (const Mat4& m : body_to_world) to_world.push_back(m * volume.to_body);
-  return make_varying(volume.volume, FieldPlace(std::move(to_world)),
-                      coefficients_of(desc, time, units), phase_of(desc, time));
+  const FieldPlace place(std::move(to_world));
+  const Coefficients made = coefficients_of(desc, time, units);
+  const float step = desc.varying->march * units;
+  return step > 0.0F ? make_marching(volume.volume, place, made, phase_of(desc, time), step)
+                     : make_varying(volume.volume, place, made, phase_of(desc, time));
 }
 
 MediumPtr make_subsurface(const MaterialDesc& desc, const JobTime& time, float units) {

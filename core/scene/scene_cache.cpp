@@ -1,9 +1,16 @@
 #include "core/scene/scene_cache.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/base/text.h"
 
 namespace hyades::core {
 namespace {
+
+// Of the bounds of a grid's density, along the longest side.
+constexpr int kVoxelsPerCell = 6;
+constexpr int kMostCells = 128;
 
 bool same_placement(const Placement& a, const Placement& b) {
   return a.shape.kind == b.shape.kind && a.shape.mesh == b.shape.mesh &&
@@ -68,6 +75,43 @@ Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const 
     auto picture = image(file, ColorSpace::automatic);
     if (!picture) return picture.error();
     return std::make_shared<const EnvironmentMap>(*picture);
+  });
+}
+
+Result<std::shared_ptr<const VdbGrid<float>>> SceneCache::vdb_numbers(const std::string& file,
+                                                                      const std::string& grid) {
+  return vdb_numbers_.get({file, grid}, [&]() -> Result<std::shared_ptr<const VdbGrid<float>>> {
+    auto bytes = assets_.open(file);
+    if (!bytes) return bytes.error();
+    auto read = read_vdb_numbers(*bytes, grid);
+    if (!read) return read.error().in(file);
+    return *read;
+  });
+}
+
+Result<std::shared_ptr<const VdbGrid<Rgb>>> SceneCache::vdb_colors(const std::string& file,
+                                                                   const std::string& grid) {
+  return vdb_colors_.get({file, grid}, [&]() -> Result<std::shared_ptr<const VdbGrid<Rgb>>> {
+    auto bytes = assets_.open(file);
+    if (!bytes) return bytes.error();
+    auto read = read_vdb_colors(*bytes, grid);
+    if (!read) return read.error().in(file);
+    return *read;
+  });
+}
+
+Result<std::shared_ptr<const VdbDensity>> SceneCache::vdb_density(const std::string& file,
+                                                                  const std::string& grid) {
+  return vdb_densities_.get({file, grid}, [&]() -> Result<std::shared_ptr<const VdbDensity>> {
+    auto numbers = vdb_numbers(file, grid);
+    if (!numbers) return numbers.error();
+    const std::shared_ptr<const BrickGrid<float>> voxels(*numbers, &(*numbers)->voxels);
+    VdbDensity density{*numbers, make_grid_density(voxels), nullptr};
+    const Bounds bounds = voxels->bounds();
+    const auto bricks = static_cast<int>(max_component(bounds.size())) / kVoxelsPerCell;
+    density.majorants = std::make_shared<const MajorantGrid>(
+        *density.field, MajorantGrid::cells_for(bounds, std::clamp(bricks, 1, kMostCells)));
+    return std::make_shared<const VdbDensity>(std::move(density));
   });
 }
 

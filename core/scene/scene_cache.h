@@ -12,6 +12,8 @@
 #include "core/geometry/world.h"
 #include "core/image/read_image.h"
 #include "core/lights/environment_map.h"
+#include "core/media/grid_fields.h"
+#include "core/media/majorant_grid.h"
 #include "core/scene/once_map.h"
 
 namespace hyades::core {
@@ -29,6 +31,13 @@ struct MeshUse {
   auto operator<=>(const MeshUse&) const = default;
 };
 
+/// A grid as a density, in the space of its voxels.
+struct VdbDensity {
+  std::shared_ptr<const VdbGrid<float>> grid;
+  std::shared_ptr<const DensityField> field;
+  std::shared_ptr<const MajorantGrid> majorants;
+};
+
 /// What the frames of a job share: meshes, images, acceleration structures, and the whole world
 /// while nothing in it moves. Thread-safe: the next frame's scene loads while this one renders, and
 /// several files load at once.
@@ -42,6 +51,16 @@ class SceneCache {
 
   /// An image as a sky, ready to be sampled.
   Result<std::shared_ptr<const EnvironmentMap>> environment_map(const std::string& file);
+
+  /// A grid of numbers of a .vdb, and what tracking needs to know of it as a density.
+  Result<std::shared_ptr<const VdbGrid<float>>> vdb_numbers(const std::string& file,
+                                                            const std::string& grid);
+  Result<std::shared_ptr<const VdbDensity>> vdb_density(const std::string& file,
+                                                        const std::string& grid);
+
+  /// A grid of colours of a .vdb.
+  Result<std::shared_ptr<const VdbGrid<Rgb>>> vdb_colors(const std::string& file,
+                                                         const std::string& grid);
 
   /// A mesh made here (rectangle, box), shared between equal requests under `key`.
   std::shared_ptr<const TriangleMesh> made_mesh(const std::string& key,
@@ -64,6 +83,9 @@ class SceneCache {
   OnceMap<std::string, TriangleMesh> made_meshes_;
   OnceMap<std::pair<std::string, ColorSpace>, Image> images_;
   OnceMap<std::string, EnvironmentMap> environment_maps_;
+  OnceMap<std::pair<std::string, std::string>, VdbGrid<float>> vdb_numbers_;
+  OnceMap<std::pair<std::string, std::string>, VdbGrid<Rgb>> vdb_colors_;
+  OnceMap<std::pair<std::string, std::string>, VdbDensity> vdb_densities_;
   GeometryCache geometry_;
   std::mutex world_mutex_;
   // Guarded by world_mutex_.

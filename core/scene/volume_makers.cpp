@@ -1,8 +1,12 @@
 #include "core/scene/volume_makers.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/media/noise_density.h"
+#include "core/media/shell_field.h"
+#include "core/scene/name_table.h"
+#include "core/scene/transforms.h"
 
 namespace hyades::core {
 namespace {
@@ -11,11 +15,16 @@ namespace {
 /// below its own cells, and take their time.
 constexpr int kProceduralCells = 32;
 
-PlacedVolume in_body(std::shared_ptr<const DensityField> density) {
-  const Vec3i cells = MajorantGrid::cells_for(density->bounds(), kProceduralCells);
-  MajorantGrid majorants(*density, cells);
-  return {std::make_shared<const Volume>(
-      Volume{std::move(density), std::move(majorants), nullptr, nullptr})};
+enum class VdbPlace { fit, native };
+constexpr std::array<NameRow<VdbPlace>, 2> kVdbPlaces = {{
+    {"fit", VdbPlace::fit},
+    {"native", VdbPlace::native},
+}};
+
+PlacedVolume in_body(Volume volume) {
+  const Vec3i cells = MajorantGrid::cells_for(volume.density->bounds(), kProceduralCells);
+  volume.majorants = std::make_shared<const MajorantGrid>(*volume.density, cells);
+  return {std::make_shared<const Volume>(std::move(volume))};
 }
 
 PlacedVolume make_noise(const NoiseDensityDesc& desc, const JobTime& time, const Bounds& body) {
@@ -29,15 +38,106 @@ PlacedVolume make_noise(const NoiseDensityDesc& desc, const JobTime& time, const
   noise.low = desc.low.at(time);
   noise.high = desc.high.at(time);
   noise.fade = desc.fade.at(time);
-  return in_body(make_noise_density(noise, body));
+  return in_body({make_noise_density(noise, body), nullptr, nullptr, nullptr});
+}
+
+Result<PlacedVolume> make_image_shell(const MediumDesc& medium, const JobTime& time,
+                                      SceneCache& cache) {
+  const ShellDensityDesc& desc = *medium.varying->shell;
+  auto image = cache.image(desc.image, ColorSpace::automatic);
+  if (!image) return image.error();
+  Shell shell;
+  shell.image = *image;
+  shell.inner = desc.inner;
+  shell.outer = desc.outer;
+  shell.turn = desc.rotate_y.at(time) / 360.0F;
+  shell.low = desc.low.at(time);
+  shell.high = desc.high.at(time);
+  shell.swirl = desc.swirl.at(time);
+  shell.scale = desc.scale.at(time);
+  shell.octaves = desc.octaves;
+  shell.time = desc.time.at(time);
+  const ShellFields fields = make_shell(shell);
+  return in_body({fields.density, nullptr, desc.tint ? fields.tint : nullptr, fields.glow});
+}
+
+Bounds transformed(const Mat4& m, const Bounds& box) {
+  Bounds bounds;
+  for (int corner = 0; corner < 8; ++corner) {
+    bounds.include(transform_point(m, {(corner & 1) != 0 ? box.lower.x : box.upper.x,
+                                       (corner & 2) != 0 ? box.lower.y : box.upper.y,
+                                       (corner & 4) != 0 ? box.lower.z : box.upper.z}));
+  }
+  return bounds;
+}
+
+/// Moves `box` to the middle of `body`, as large as fits.
+Mat4 fitted(const Bounds& box, const Bounds& body) {
+  float scale = kInfinity;
+  for (int a = 0; a < 3; ++a) {
+    if (box.size()[a] > 0.0F) scale = std::min(scale, body.size()[a] / box.size()[a]);
+  }
+  if (scale == kInfinity) scale = 1.0F;
+  Mat4 m(scale);
+  m[3] = Vec4(body.center() - scale * box.center(), 1.0F);
+  return m;
+}
+
+Result<std::shared_ptr<const ColorField>> make_glow(const MediumDesc& desc, const Mat4& to_file,
+                                                    SceneCache& cache) {
+  GridGlow glow;
+  glow.kelvin = desc.glow->kelvin;
+  const auto add = [&](const std::string& name, std::shared_ptr<const BrickGrid<float>>& voxels,
+                       Mat4& to_grid) -> Status {
+    if (name.empty()) return {};
+    auto grid = cache.vdb_numbers(desc.varying->vdb, name);
+    if (!grid) return grid.error();
+    voxels = {*grid, &(*grid)->voxels};
+    to_grid = glm::inverse((*grid)->to_file) * to_file;
+    return {};
+  };
+  if (auto done = add(desc.glow->grid, glow.factor, glow.to_factor); !done) return done.error();
+  if (auto done = add(desc.glow->temperature, glow.temperature, glow.to_temperature); !done)
+    return done.error();
+  return make_grid_glow(glow);
+}
+
+Result<PlacedVolume> make_vdb(const MediumDesc& medium, const JobTime& time, const Bounds& body,
+                              SceneCache& cache) {
+  const DensityDesc& desc = *medium.varying;
+  const auto place = look_up(kVdbPlaces, desc.place, "place of a vdb");
+  if (!place) return place.error();
+  auto density = cache.vdb_density(desc.vdb, desc.grid);
+  if (!density) return density.error();
+  const Mat4& to_file = (*density)->grid->to_file;
+  Volume volume{(*density)->field, (*density)->majorants, nullptr, nullptr};
+  if (!desc.tint.empty()) {
+    auto tint = cache.vdb_colors(desc.vdb, desc.tint);
+    if (!tint) return tint.error();
+    volume.tint =
+        make_grid_color({*tint, &(*tint)->voxels}, glm::inverse((*tint)->to_file) * to_file);
+  }
+  if (medium.glow) {
+    auto glow = make_glow(medium, to_file, cache);
+    if (!glow) return glow.error();
+    volume.glow = *glow;
+  }
+  const Mat4 placed = (*place)->value == VdbPlace::native
+                          ? Mat4(1.0F)
+                          : fitted(transformed(to_file, volume.density->bounds()), body);
+  return PlacedVolume{std::make_shared<const Volume>(std::move(volume)),
+                      transform_at(desc.transform, desc.at, time) * placed * to_file};
 }
 
 }  // namespace
 
-Result<PlacedVolume> make_volume(const DensityDesc& desc, const JobTime& time, const Bounds& body,
-                                 SceneCache&) {
-  if (desc.noise) return make_noise(*desc.noise, time, body);
-  return Error{"a density that varies in no known way"};
+Result<PlacedVolume> make_volume(const MediumDesc& desc, const JobTime& time, const Bounds& body,
+                                 SceneCache& cache) {
+  if (desc.varying->noise) return make_noise(*desc.varying->noise, time, body);
+  if (desc.varying->shell) return make_image_shell(desc, time, cache);
+  return make_vdb(desc, time, body, cache);
 }
+
+std::vector<std::string> made_vdb_places() { return names_of(kVdbPlaces); }
 
 }  // namespace hyades::core

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/base/result.h"
-#include "core/job/density_desc.h"
-#include "core/job/time.h"
+#include "core/job/job.h"
 #include "core/media/volume.h"
 #include "core/scene/scene_cache.h"
 
@@ -16,8 +17,11 @@ struct PlacedVolume {
   Mat4 to_body{1.0F};
 };
 
-/// What `desc` describes at `time` in a body of bounds `body`.
-Result<PlacedVolume> make_volume(const DensityDesc& desc, const JobTime& time, const Bounds& body,
+/// How the medium `desc`, which varies, does so at `time` in a body of bounds `body`.
+Result<PlacedVolume> make_volume(const MediumDesc& desc, const JobTime& time, const Bounds& body,
                                  SceneCache& cache);
+
+/// The names that can be made: those of core/job/kinds.h.
+std::vector<std::string> made_vdb_places();
 
 }  // namespace hyades::core

@@ -147,7 +147,11 @@ const std::map<std::string, Place>& places() {
     p["objects.shapes"] = p["objects"];
     p["objects.bodies"] = p["objects"];
     p["media"] = {"media: {x: {", {}, "}}"};
-    p["media.density"] = {"media: {x: {scattering: 2, density: {", {{"noise", "{}"}}, "}}}"};
+    p["media.density"] = {"media: {x: {scattering: 2, density: {", {{"vdb", "smoke.vdb"}}, "}}}"};
+    p["media.density.shell"] = {
+        "media: {x: {scattering: 2, density: {shell: {", {{"image", "bricks.png"}}, "}}}}"};
+    p["media.emission"] = {
+        "media: {x: {scattering: 2, density: {vdb: smoke.vdb}, emission: {", {}, "}}}"};
     p["media.density.noise"] = {"media: {x: {scattering: 2, density: {noise: {", {}, "}}}}"};
     p["objects.mesh"] = object("mesh", "chair.obj");
     p["objects.emit"] = {"objects: {x: {shape: sphere, emit: {", {}, "}}}"};
@@ -174,6 +178,7 @@ const std::map<std::string, Place>& places() {
 Pairs company(const JobKey& id) {
   if (id == JobKey{"materials.conductor", "eta"}) return {{"k", "3"}};
   if (id == JobKey{"materials.conductor", "k"}) return {{"eta", "1.2"}};
+  if (id == JobKey{"media.emission", "kelvin"}) return {{"temperature", "heat"}};
   if (id == JobKey{"media", "albedo"}) return {{"density", "2"}};
   if (id == JobKey{"media", "density"}) return {{"albedo", "0.5"}};
   if (id == JobKey{"media", "mean_free_path"}) return {{"albedo", "0.5"}};
@@ -182,11 +187,14 @@ Pairs company(const JobKey& id) {
 
 bool excludes(const JobKey& id, const std::string& other) {
   if (id.key == other || id.key == "like") return true;
-  const std::vector<std::string> kinds = {"shape", "mesh", "instance", "group"};
+  const bool of_density = id.section == "media.density";
+  const std::vector<std::string> kinds =
+      of_density ? std::vector<std::string>{"vdb", "noise", "shell"}
+                 : std::vector<std::string>{"shape", "mesh", "instance", "group"};
   const auto is_kind = [&](const std::string& k) {
     return std::find(kinds.begin(), kinds.end(), k) != kinds.end();
   };
-  return id.section == "objects" && is_kind(id.key) && is_kind(other);
+  return (of_density || id.section == "objects") && is_kind(id.key) && is_kind(other);
 }
 
 constexpr const char* kBase = R"yaml(
@@ -226,7 +234,8 @@ Outcome read(const std::string& text) {
   MemoryAssets inner;
   inner.add("base.yaml", kBase);
   inner.add("sky.yaml", "environment: {color: 0.3}\n");
-  for (const char* file : {"knot.ply", "chair.obj", "wood.png", "bricks.png", "sky.hdr"}) {
+  for (const char* file : {"knot.ply", "chair.obj", "wood.png", "bricks.png", "sky.hdr", "smoke.vdb",
+                           "cloud.vdb"}) {
     inner.add(file, std::string("content of ") + file);
   }
   RecordingResolver assets(inner);

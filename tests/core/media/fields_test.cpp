@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/media/noise_density.h"
+#include "core/media/shell_field.h"
 #include "tests/core/media/volumes.h"
 
 namespace hyades::core {
@@ -58,7 +59,7 @@ void expect_bounded(const DensityField& field, uint64_t seed) {
 }
 
 TEST(Fields, LieBetweenTheirBounds) {
-  expect_bounded(GridDensity(random_grid(30, 5)), 2);
+  expect_bounded(*make_grid_density(random_grid(30, 5)), 2);
   const Bounds body{Vec3(-1.0F, -2.0F, 0.5F), Vec3(2.0F, 1.0F, 2.5F)};
   for (const float fade : {0.0F, 0.6F}) {
     for (const float high : {0.6F, 0.45F}) {
@@ -74,10 +75,52 @@ TEST(Fields, LieBetweenTheirBounds) {
   }
 }
 
+TEST(Fields, ShellsLieBetweenTheirBounds) {
+  auto image = std::make_shared<Image>(make_image(70, 33, {"R", "G", "B"}));
+  test::Random random(6);
+  for (float& value : image->data) value = random.uniform() < 0.1F ? random.uniform() : 0.0F;
+  Shell shell;
+  shell.image = image;
+  shell.inner = 0.7F;
+  shell.low = 0.1F;
+  shell.high = 0.5F;
+  for (const float swirl : {0.0F, 0.2F}) {
+    shell.swirl = swirl;
+    expect_bounded(*make_shell(shell).density, 5);
+  }
+}
+
+// +x is in the middle of the image, -z a quarter to the left of it, +y on top.
+TEST(Fields, ShellsWrapTheImageAsAnEnvironmentDoes) {
+  auto image = std::make_shared<Image>(make_image(400, 200, {"R", "G", "B"}));
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      image->at(x, y, 0) = static_cast<float>(x) / 400.0F;
+      image->at(x, y, 1) = static_cast<float>(y) / 200.0F;
+      image->at(x, y, 2) = 1.0F;
+    }
+  }
+  Shell shell;
+  shell.image = image;
+  const ShellFields fields = make_shell(shell);
+  const auto glow = [&](const Vec3& direction) { return fields.glow->at(0.9F * direction); };
+  EXPECT_NEAR(glow({1.0F, 0.0F, 0.0F}).x, 0.5F, 0.01F);
+  EXPECT_NEAR(glow({0.0F, 0.0F, -1.0F}).x, 0.25F, 0.01F);
+  EXPECT_NEAR(glow({1.0F, 0.0F, 0.0F}).y, 0.5F, 0.01F);
+  EXPECT_NEAR(glow({0.0F, 1.0F, 0.0F}).y, 0.0F, 0.01F);
+  EXPECT_NEAR(glow({0.6F, -0.8F, 0.0F}).y, 0.795F, 0.01F);
+  EXPECT_NEAR(fields.density->at(Vec3(0.85F, 0.0F, 0.0F)),
+              0.75F * (0.2126F * 0.5F + 0.7152F * 0.5F + 0.0722F), 0.01F);
+  EXPECT_EQ(fields.density->at(Vec3(0.79F, 0.0F, 0.0F)), 0.0F);
+  EXPECT_EQ(fields.density->at(Vec3(0.0F, 1.01F, 0.0F)), 0.0F);
+  EXPECT_NEAR(fields.tint->at(Vec3(0.9F, 0.0F, 0.0F)).z, 1.0F, 1e-6F);
+}
+
 // Each part of a way lies in the cell whose bounds it is told with, and the parts make the whole.
 TEST(MajorantGrid, WalksWithoutGapsAndWithTheRightBounds) {
   const auto grid = random_grid(24, 11);
-  const GridDensity field(grid);
+  const auto density = make_grid_density(grid);
+  const DensityField& field = *density;
   test::Random random(9);
   for (const Vec3i& cells : {Vec3i(1), Vec3i(3, 9, 5), Vec3i(24)}) {
     const MajorantGrid majorants(field, cells);

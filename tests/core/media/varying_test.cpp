@@ -42,7 +42,7 @@ void add(Three& to, const Rgb& value) {
 }
 
 TEST(Varying, TransmittanceIsUnbiasedWhateverTheBoundsAre) {
-  const auto field = std::make_shared<GridDensity>(random_grid(20, 3));
+  const auto field = make_grid_density(random_grid(20, 3));
   test::Promise promise{.tests = 6 * kBoundCount, .relative_error = 0.02};
   const double passed = density_along(*field, oblique(), 10.0);
   ASSERT_GT(passed, 2.0);
@@ -65,7 +65,7 @@ TEST(Varying, TransmittanceIsUnbiasedWhateverTheBoundsAre) {
 
 // Per channel: the weight of what passes, and of what scatters in the first half of the way.
 TEST(Varying, FreeFlightIsUnbiasedInEveryChannelWhateverTheBoundsAre) {
-  const auto field = std::make_shared<GridDensity>(random_grid(20, 3));
+  const auto field = make_grid_density(random_grid(20, 3));
   const float t_max = 10.0F;
   test::Promise promise{.tests = 6 * 3 * kBoundCount, .relative_error = 0.05};
   const double half = density_along(*field, oblique(), 5.0);
@@ -136,7 +136,7 @@ TEST(Varying, AnEvenDensityIsAHomogeneousMedium) {
 
 // The integral of density times transmittance is (1 - exp(-sigma passed)) / sigma.
 TEST(Varying, GlowsByWhatIsSeenWhateverTheBoundsAre) {
-  const auto field = std::make_shared<GridDensity>(random_grid(20, 3));
+  const auto field = make_grid_density(random_grid(20, 3));
   test::Promise promise{.tests = 6 * kBoundCount};
   const Coefficients flame{Rgb(0.0F), Rgb(0.0F), {1.0F, 0.5F, 2.0F}};
   const double passed = density_along(*field, oblique(), 10.0);
@@ -160,7 +160,7 @@ TEST(Varying, GlowsByWhatIsSeenWhateverTheBoundsAre) {
 }
 
 TEST(Varying, WeightsAreBoundedByTheSharesAndNeverUndefined) {
-  const auto field = std::make_shared<GridDensity>(random_grid(12, 9));
+  const auto field = make_grid_density(random_grid(12, 9));
   const Coefficients wild{Rgb(0.0F), {300.0F, 1.0F, 0.0F}, Rgb(0.0F)};
   const MediumPtr medium =
       make_varying(volume_of(field, Vec3i(4), 3.0F), FieldPlace({Mat4(1.0F)}), wild, even());
@@ -184,7 +184,7 @@ TEST(Varying, WeightsAreBoundedByTheSharesAndNeverUndefined) {
 
 // The same numbers give the same bits; other ones another walk.
 TEST(Varying, AWalkIsAFunctionOfItsNumbers) {
-  const auto field = std::make_shared<GridDensity>(random_grid(20, 3));
+  const auto field = make_grid_density(random_grid(20, 3));
   const auto make = [&] {
     return make_varying(volume_of(field, Vec3i(2), 5.0F), FieldPlace({Mat4(1.0F)}), kSmoke, even());
   };

@@ -41,7 +41,7 @@ inline std::shared_ptr<const BrickGrid<float>> random_grid(int n, uint64_t seed)
 inline std::shared_ptr<const Volume> volume_of(std::shared_ptr<const DensityField> field,
                                                const Vec3i& cells, float slack = 1.0F) {
   return std::make_shared<const Volume>(
-      Volume{field, MajorantGrid(*field, cells, slack), nullptr, nullptr});
+      Volume{field, std::make_shared<const MajorantGrid>(*field, cells, slack), nullptr, nullptr});
 }
 
 /// Integral of the field's density over the first `t` of the way.

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+
+#include "core/base/vec.h"
+#include "core/media/vdb_cursor.h"
+
+namespace hyades::core {
+
+/// How the values of a tree are stored.
+struct VdbEncoding {
+  uint32_t compression = 0;  ///< bits: 1 zip, 2 active values alone, 4 blosc
+  int components = 1;        ///< of a value: 1 or 3
+  int component_bytes = 4;   ///< 4: float, 8: double
+  bool half = false;         ///< values, but for those of the root, are halves of floats
+};
+
+/// The active voxels of a tree of the usual shape (5, 4, 3), by blocks of 8 x 8 x 8. T: float or
+/// Rgb. Values below 0 count as 0.
+template <class T>
+class VdbTree {
+ public:
+  struct Block {
+    std::array<T, 512> values{};       ///< 0 where not active; z runs fastest, as in the file
+    std::array<uint64_t, 8> active{};  ///< bit by bit
+  };
+
+  /// Reads the tree at the cursor, which may fail: the bytes end, something cannot be decompressed,
+  /// a value is not finite, or there are more than `most_blocks`.
+  static VdbTree read(VdbCursor& cursor, const VdbEncoding& encoding, size_t most_blocks);
+
+  /// The block that voxel `p` lies in; null where nothing in it is active.
+  const Block* block(const Vec3i& p) const {
+    const auto found = blocks_.find(key(p));
+    return found == blocks_.end() ? nullptr : &found->second;
+  }
+  static size_t place(const Vec3i& p) {
+    return static_cast<size_t>(((p.x & 7) << 6) | ((p.y & 7) << 3) | (p.z & 7));
+  }
+
+  size_t block_count() const { return blocks_.size(); }
+  /// The active voxels lie in lower..upper, both included; lower > upper where there are none.
+  const Vec3i& lower() const { return lower_; }
+  const Vec3i& upper() const { return upper_; }
+
+ private:
+  template <class>
+  friend class VdbTreeReader;
+
+  /// 21 bits per axis: files reach as far as 2^23 voxels from the origin, which is enough.
+  static uint64_t key(const Vec3i& p) {
+    const auto part = [](int x) { return static_cast<uint64_t>(x >> 3) & 0x1FFFFFU; };
+    return part(p.x) << 42U | part(p.y) << 21U | part(p.z);
+  }
+
+  std::unordered_map<uint64_t, Block> blocks_;
+  Vec3i lower_{1 << 30};
+  Vec3i upper_{-(1 << 30)};
+};
+
+}  // namespace hyades::core
