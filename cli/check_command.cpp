@@ -150,6 +150,7 @@ int check_command(int argc, char** argv) {
   coordinator::LocalPlan plan;
   plan.region = window;
   plan.samples = job.sampling.samples;
+  if (layers.splats) plan.tile_size = coordinator::kSplatTile;
   const uint64_t tiles = coordinator::TileGrid(window, plan.tile_size).size();
   const double seconds = no_probe ? 0.0 : seconds_per_sample(renderer, window, job.frames.first);
   if (no_probe) {

@@ -33,7 +33,7 @@ FilmRoom film_room(const core::Job& job, const core::PixelRect& window, uint64_t
   FilmRoom room;
   room.window = window;
   room.channels = layout.channels.size();
-  room.film = core::film_memory(layout, window);
+  room.film = core::film_memory(layout, window, core::render_window(job.film));
   room.here = core::usable_memory();
   room.most = most > 0 ? most : core::half_of_memory();
   return room;

@@ -20,10 +20,12 @@
 #include "cli/load_job.h"
 #include "cli/progress_display.h"
 #include "coordinator/local/local_run.h"
+#include "coordinator/scheduler/tile_grid.h"
 #include "core/base/atomic_file.h"
 #include "core/base/hash.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/job/layers.h"
 
 namespace hyades::cli {
 namespace {
@@ -274,6 +276,7 @@ int render_command(int argc, char** argv) {
   plan.region = window;
   plan.samples = job.sampling.samples;
   plan.threads = options.threads;
+  if (core::makes_splats(job.integrator)) plan.tile_size = coordinator::kSplatTile;
   plan.frames_in_flight = room.frames_in_flight();
   coordinator::LocalLog log;
   log.folder = kept;

@@ -85,7 +85,7 @@ grpc::Status Brain::admit(uint64_t bytes) {
 /// Whether the disk may be why a frame could not be finished; without the lock.
 bool Brain::disk_is_short_for(const core::Film& film) {
   mind_disk();
-  const uint64_t memory = core::film_memory(film.layout(), film.window());
+  const uint64_t memory = film.memory();
   const std::lock_guard lock(mutex_);
   // The film is written for the finisher, and its outputs are hardly larger.
   return disk_.level() != DiskLevel::roomy || disk_free_ < 2 * memory;

@@ -27,6 +27,10 @@ uint32_t frames_at_once(const JobDesk& desk, uint64_t film_memory) {
   return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
 }
 
+int32_t tile_size_for(const JobDesk& desk) {
+  return tile_size_of(desk.region, desk.read.job.sampling.samples, desk.layout.layers.splats);
+}
+
 /// Whether a job can never be taken up as it is: its record is damaged, its files are gone, or what
 /// they say is not allowed here. All else (a full disk, one that does not answer) may pass.
 bool lasting_obstacle(JobStore& store, farm::ContentStore& assets, uint64_t id,
@@ -254,7 +258,7 @@ bool Brain::open_keeper(JobId job) {
     JobDesk* desk = desk_of(job);
     if (desk == nullptr || desk->ending) return true;  // or its end would wait for this
     keeper = desk->keeper.get();
-    tile_size = tile_size_of(desk->region, desk->read.job.sampling.samples);
+    tile_size = tile_size_for(*desk);
   }
   core::Status opened;
   if (const auto contents = keeper->open(); !contents) opened = contents.error();
@@ -266,7 +270,7 @@ bool Brain::open_keeper(JobId job) {
 /// Reads the films that are there, and hands the job to the scheduler.
 core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) {
   JobDesk& desk = *owned;
-  int32_t tile_size = tile_size_of(desk.region, desk.read.job.sampling.samples);
+  int32_t tile_size = tile_size_for(desk);
   std::error_code unknown;
   const bool films = std::filesystem::exists(films_folder(desk.stored.id), unknown);
   if (unknown) return core::Error{films_folder(desk.stored.id) + ": " + unknown.message()};
@@ -292,6 +296,7 @@ core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) 
   if (desk.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE) {
     added.plan.order = FrameOrder::progressive;
   }
+  added.plan.whole_frames = desk.layout.layers.splats;
   added.plan.film_bytes = desk.film_bytes;
   added.plan.frames_in_flight = frames_at_once(desk, options_.film_memory);
   added.restored = std::move(restored);

@@ -7,6 +7,7 @@
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/wire_ids.h"
 #include "core/film/film_codec.h"
+#include "core/film/splat_codec.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -132,6 +133,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
   using Rejected = v1::Rejected;
   const JobId job{result.job()};
   core::FilmLayout layout;
+  core::PixelRect region;
   FrameKey key{};
   Delivery delivery;
   {
@@ -143,6 +145,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
     delivery.unit.worker_class = seat->hello.worker_class();
     if (const JobDesk* desk = desk_of(job)) {
       layout = desk->layout;
+      region = desk->region;
       key = desk->key;
     }
   }
@@ -158,11 +161,14 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
   }
   const auto area = static_cast<uint64_t>(unit->tile.area());
   const std::span<const std::byte> bytes = std::as_bytes(std::span(result.film()));
-  auto film = core::decode_film(bytes, {core::film_memory(layout, unit->tile) + kFilmOverhead});
+  uint64_t memory = core::film_memory(layout, unit->tile) + kFilmOverhead;
+  if (layout.layers.splats) memory += core::splat_memory(static_cast<uint64_t>(region.area()));
+  auto film = core::decode_film(bytes, {memory});
   if (!film) {
     return reject(worker, link, result, Rejected::REASON_DAMAGED, film.error().message, 0);
   }
   if (film->layout() != layout || film->window() != unit->tile ||
+      film->splats().region() != (layout.layers.splats ? region : core::PixelRect{}) ||
       film->coverage().volume() != area * unit->batches.count ||
       !film->coverage().contains({unit->tile, unit->batches})) {
     return reject(worker, link, result, Rejected::REASON_MALFORMED,

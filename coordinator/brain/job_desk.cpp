@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/counted.h"
+#include "coordinator/scheduler/tile_grid.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/job/layers.h"
@@ -76,7 +77,8 @@ Digest key_of(const v1::JobSpec& spec, const core::LayerSet& layers) {
 
 }  // namespace
 
-int32_t tile_size_of(const core::PixelRect& region, uint32_t samples) {
+int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats) {
+  if (splats) return kSplatTile;
   const auto along = [](int32_t pixels) { return (pixels + kLargeTile - 1) / kLargeTile; };
   const uint64_t pieces = static_cast<uint64_t>(along(region.width())) *
                           static_cast<uint64_t>(along(region.height())) *

@@ -95,8 +95,9 @@ struct JobDesk {
 
 /// Pixels along the side of a job's tiles, by its crop window and samples per pixel. Every unit
 /// costs the farm some milliseconds, and none is larger than a tile with all its samples: 64 where
-/// these are few, if the frame is still cut into enough pieces for many threads; else 32.
-int32_t tile_size_of(const core::PixelRect& region, uint32_t samples);
+/// these are few, if the frame is still cut into enough pieces for many threads; else 32. Where
+/// films have `splats`: kSplatTile.
+int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats);
 
 /// A stored job as the wire shows it.
 v1::Job describe(const StoredJob& job);

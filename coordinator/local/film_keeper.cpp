@@ -26,8 +26,9 @@ constexpr const char* kLogKey = "hyades render, films by frame";
 
 TimePoint now() { return std::chrono::steady_clock::now(); }
 
-uint64_t memory_of(const core::Film& film) {
-  return core::film_memory(film.layout(), film.window());
+/// Whether the film's record may become longer than a log takes: one with splats is in one.
+bool too_large(const core::Film& film) {
+  return film.layout().layers.splats && film.memory() > FilmLog::kMaxRecordBytes;
 }
 
 }  // namespace
@@ -137,7 +138,7 @@ void FilmKeeper::keep(RecordId record, int32_t frame, core::Film film) {
   item.frame = frame;
   // Packing takes longer than anything else here and so is done by the thread that hands over.
   if (logs()) item.bytes = encode_unit(frame, key_of(frame), film);
-  item.memory = memory_of(film) + item.bytes.size();
+  item.memory = film.memory() + item.bytes.size();
   item.film = std::move(film);
   push(std::move(item), true);
 }
@@ -148,7 +149,7 @@ void FilmKeeper::keep_delivered(RecordId record, const AcceptedUnit& unit, core:
   item.record = record;
   item.frame = unit.unit.frame;
   if (logs()) item.bytes = std::move(bytes);
-  item.memory = memory_of(film) + item.bytes.size();
+  item.memory = film.memory() + item.bytes.size();
   item.film = std::move(film);
   item.worker_class = unit.worker_class;
   push(std::move(item), false);
@@ -348,8 +349,11 @@ core::Status FilmKeeper::merge(RecordId record) {
     return core::Error{"a film is to be merged that is not at hand"};
   }
   auto& whole = films_[settling_->frame];
-  if (!whole) whole = std::make_shared<core::Film>(settling_->film.layout(), plan_.region);
-  const core::Status merged = whole->merge(settling_->film);
+  const core::Film& film = settling_->film;
+  if (!whole) {
+    whole = std::make_shared<core::Film>(film.layout(), plan_.region, film.splats().region());
+  }
+  const core::Status merged = whole->merge(film);
   core::failpoint("mid-merge");
   return merged;
 }
@@ -383,6 +387,11 @@ void FilmKeeper::compact_if_worthwhile(bool room_wanted) {
       log_bytes_ < std::max(options_.compact_bytes, 2 * snapshot_bytes_)) {
     return;
   }
+  for (const auto* films : {&films_, &unfinished_}) {
+    for (const auto& [frame, film] : *films) {
+      if (too_large(*film)) return;
+    }
+  }
   const uint64_t snapshot_before = std::exchange(snapshot_bytes_, 0);
   std::map<int32_t, uint64_t> frames_before = std::exchange(frame_bytes_, {});
   const core::Status done = log_->compact(
@@ -403,11 +412,12 @@ void FilmKeeper::compact_if_worthwhile(bool room_wanted) {
 }
 
 core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
-  const auto put = [&](const std::vector<std::byte>& bytes) {
+  const auto put = [&](std::span<const std::byte> bytes) {
     snapshot_bytes_ += bytes.size();
     return sink(bytes);
   };
-  core::Status status = put(encode_cut({plan_.region, tile_size_, plan_.samples}));
+  const CutRecord cut{plan_.region, tile_size_, plan_.samples};
+  core::Status status = put(encode_cut(cut));
   if (status && disputed_) status = put(encode_dispute(true));
   for (const auto& [frame, finished] : finished_) {
     if (status) status = put(encode_finished(frame, finished));
@@ -415,22 +425,18 @@ core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
   std::map<int32_t, std::shared_ptr<core::Film>> films = films_;
   films.insert(unfinished_.begin(), unfinished_.end());
   for (const auto& [frame, film] : films) {
-    const std::vector<core::Unit> units = units_of(frame, *film, plan_.region, tile_size_);
-    for (size_t first = 0; status && first < units.size();) {
-      size_t end = first;
-      while (end < units.size() && units[end].tile == units[first].tile) ++end;
-      const core::Film part = cut_film(*film, {units.data() + first, end - first});
-      const auto known = classes_.find(frame);
-      const std::vector<std::byte> bytes =
-          known == classes_.end() ? encode_unit(frame, key_of(frame), part)
-                                  : encode_delivered({units[first], Digest{}, known->second},
-                                                     key_of(frame), core::encode_film(part));
-      frame_bytes_[frame] += bytes.size();
-      status = put(bytes);
-      first = end;
+    if (!status) break;
+    const auto known = classes_.find(frame);
+    const auto put_part =
+        [&, &of_frame = frame_bytes_[frame]](std::span<const std::byte> bytes) -> core::Status {
+      of_frame += bytes.size();
+      if (core::Status done = put(bytes); !done) return done;
       const std::lock_guard lock(mutex_);
       if (draining_) return core::Error{"the run ends"};
-    }
+      return {};
+    };
+    status = write_film(frame, key_of(frame), *film, cut,
+                        known == classes_.end() ? std::string() : known->second, put_part);
   }
   return status;
 }

@@ -61,6 +61,25 @@ FrameKey get_key(std::span<const std::byte> bytes, size_t at) {
   return key;
 }
 
+/// The part of a film within one tile, of which `units` are all that it holds.
+core::Film cut_film(const core::Film& film, std::span<const core::Unit> units) {
+  const core::PixelRect& tile = units.front().tile;
+  core::Film part(film.layout(), tile);
+  const auto width = static_cast<size_t>(tile.width());
+  const auto stride = static_cast<size_t>(film.window().width());
+  for (size_t c = 0; c < film.layout().channels.size(); ++c) {
+    const core::Fixed128* from = film.plane(static_cast<int>(c)).data();
+    core::Fixed128* into = part.mutable_plane(static_cast<int>(c)).data();
+    for (int32_t y = tile.y0; y < tile.y1; ++y, into += width) {
+      const size_t row = static_cast<size_t>(y - film.window().y0) * stride +
+                         static_cast<size_t>(tile.x0 - film.window().x0);
+      std::copy_n(from + row, width, into);
+    }
+  }
+  for (const core::Unit& unit : units) part.mutable_coverage().add({tile, unit.batches});
+  return part;
+}
+
 constexpr size_t kHead = 2;
 constexpr size_t kFrameAndKey = 4 + sizeof(FrameKey);
 
@@ -118,9 +137,12 @@ class Reader {
     if (!is_wanted(frame) || !has_key(frame, get_key(bytes, 4))) return {};
     auto film = core::decode_film(bytes.subspan(kFrameAndKey));
     if (!film) return film.error();
+    const bool splats = film->layout().layers.splats;
+    // Splats of tiles that are not wanted cannot be told from those of others.
+    if (splats && contents_.cut.region != wish_.region) return {};
     auto& whole = contents_.films[frame];
-    if (!whole) whole = std::make_shared<core::Film>(film->layout(), wish_.region);
-    return other_regions_ ? merge_tiles(*film, *whole) : whole->merge(*film);
+    if (!whole) whole = blank_like(*film);
+    return other_regions_ && !splats ? merge_tiles(*film, *whole) : whole->merge(*film);
   }
 
   core::Status read_delivered(std::span<const std::byte> bytes) {
@@ -137,7 +159,7 @@ class Reader {
     auto film = core::decode_film(bytes.subspan(kFixed + length));
     if (!film) return film.error();
     auto& whole = contents_.films[frame];
-    if (!whole) whole = std::make_shared<core::Film>(film->layout(), wish_.region);
+    if (!whole) whole = blank_like(*film);
     if (core::Status merged = whole->merge(*film); !merged) return merged;
     if (contents_.cut.tile_size < 1) return {};
     const auto units = units_of(frame, *film, wish_.region, contents_.cut.tile_size);
@@ -177,6 +199,10 @@ class Reader {
     contents_.films.erase(frame);
     contents_.units.erase(frame);
     return {};
+  }
+
+  std::shared_ptr<core::Film> blank_like(const core::Film& film) const {
+    return std::make_shared<core::Film>(film.layout(), wish_.region, film.splats().region());
   }
 
   bool is_wanted(int32_t frame) {
@@ -326,22 +352,25 @@ std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,
   return units;
 }
 
-core::Film cut_film(const core::Film& film, std::span<const core::Unit> units) {
-  const core::PixelRect& tile = units.front().tile;
-  core::Film part(film.layout(), tile);
-  const auto width = static_cast<size_t>(tile.width());
-  const auto stride = static_cast<size_t>(film.window().width());
-  for (size_t c = 0; c < film.layout().channels.size(); ++c) {
-    const core::Fixed128* from = film.plane(static_cast<int>(c)).data();
-    core::Fixed128* into = part.mutable_plane(static_cast<int>(c)).data();
-    for (int32_t y = tile.y0; y < tile.y1; ++y, into += width) {
-      const size_t row = static_cast<size_t>(y - film.window().y0) * stride +
-                         static_cast<size_t>(tile.x0 - film.window().x0);
-      std::copy_n(from + row, width, into);
-    }
+core::Status write_film(int32_t frame, const FrameKey& key, const core::Film& film,
+                        const CutRecord& cut, const std::string& worker_class,
+                        const FilmLog::Sink& sink) {
+  const std::vector<core::Unit> units = units_of(frame, film, cut.region, cut.tile_size);
+  if (units.empty()) return {};
+  const auto put = [&](const core::Unit& first, const core::Film& part) {
+    return sink(worker_class.empty() ? encode_unit(frame, key, part)
+                                     : encode_delivered({first, Digest{}, worker_class}, key,
+                                                        core::encode_film(part)));
+  };
+  if (film.layout().layers.splats) return put(units.front(), film);
+  for (size_t first = 0; first < units.size();) {
+    size_t end = first;
+    while (end < units.size() && units[end].tile == units[first].tile) ++end;
+    const core::Film part = cut_film(film, {units.data() + first, end - first});
+    if (core::Status done = put(units[first], part); !done) return done;
+    first = end;
   }
-  for (const core::Unit& unit : units) part.mutable_coverage().add({tile, unit.batches});
-  return part;
+  return {};
 }
 
 }  // namespace hyades::coordinator

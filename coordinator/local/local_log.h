@@ -75,16 +75,20 @@ struct LogWish {
 };
 
 /// Reads all of `log`, which has just been opened, merging the films of the frames of `wish`;
-/// others are skipped. Of films of another region the tiles are taken that lie within both. Fails
-/// where the log has films of these frames that have other pixels: another key, or another number
-/// of samples.
+/// others are skipped. Of films of another region the tiles are taken that lie within both, where
+/// the films have no splats. Fails where the log has films of these frames that have other pixels:
+/// another key, or another number of samples.
 core::Result<LogContents> read_log(FilmLog& log, const LogWish& wish);
 
 /// The units that a film holds: its coverage, cut along the tiles; those of a tile stand together.
 std::vector<core::Unit> units_of(int32_t frame, const core::Film& film,
                                  const core::PixelRect& region, int32_t tile_size);
 
-/// The part of a film within one tile, of which `units` are all that it holds.
-core::Film cut_film(const core::Film& film, std::span<const core::Unit> units);
+/// Says what a film holds in records, one for each tile. Splats belong to no tile: with them, and
+/// what they belong to, it is one record, so that all of it is lost or nothing. `worker_class`: of
+/// those who delivered it; empty: nobody did.
+core::Status write_film(int32_t frame, const FrameKey& key, const core::Film& film,
+                        const CutRecord& cut, const std::string& worker_class,
+                        const FilmLog::Sink& sink);
 
 }  // namespace hyades::coordinator

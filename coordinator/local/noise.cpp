@@ -19,6 +19,7 @@ double estimate_noise(const core::Film& film) {
   const double all = static_cast<double>(window.area());
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(all / kPixels))));
   const core::FilmLayout& layout = film.layout();
+  const double paths = layout.layers.splats ? film.all_samples() : 0;
   int pixels = 0;
   double variance = 0;
   double luminance = 0;
@@ -28,6 +29,8 @@ double estimate_noise(const core::Film& film) {
       const double batches = std::ceil(n / core::kBatchSamples);
       if (batches < 2) continue;
       ++pixels;
+      const core::SplatLayer::Sums splats =
+          layout.layers.splats ? film.splats().at(x, y) : core::SplatLayer::Sums{};
       for (int c = 0; c < 3; ++c) {
         const double sum = to_double(film.sum(x, y, c));
         const double squares = to_double(film.sum(x, y, layout.moment2 + c));
@@ -36,6 +39,11 @@ double estimate_noise(const core::Film& film) {
         const double spread = std::max(0.0, squares - sum * sum / n) / (batches - 1) / n;
         variance += kWeights[c] * spread;
         luminance += kWeights[c] * sum / n;
+        if (!layout.layers.splats) continue;
+        const auto i = static_cast<size_t>(c);
+        luminance += kWeights[c] * to_double(splats.value[i]) / paths;
+        variance +=
+            kWeights[c] * to_double(splats.square[i]) * core::kSplatSquareUnit / (paths * paths);
       }
     }
   }

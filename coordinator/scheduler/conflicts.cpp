@@ -70,8 +70,11 @@ void Scheduler::decide(JobState& job, FrameSlot& slot, const Dispute& dispute,
     if (holder.lease != e.lease) say(Revoke{holder.worker, holder.lease, job.id, e.unit});
   }
   books.end_dispute(extent);
-  if (books.find_held(extent)->digest == e.digest) {
+  const bool right = books.find_held(extent)->digest == e.digest;
+  if (right) {
     books.verify(extent);
+  } else if (job.plan.whole_frames) {
+    doubt_frame(job, slot);  // and its books with it
   } else {
     books.doubt_tile(extent.tile);
   }
@@ -151,11 +154,21 @@ void Scheduler::doubt_films_of(WorkerId id) {
         restart_waiting(*job, i);
         continue;
       }
+      if (job->plan.whole_frames) {
+        doubt_frame(*job, slot);
+        continue;
+      }
       for (const uint32_t tile : tiles) slot.books->doubt_tile(tile);
       void_doubted(*job, slot);
     }
     update_ready(*job);
   }
+}
+
+/// Nothing of the frame counts any more. It begins again, at once or after what it waits for.
+void Scheduler::doubt_frame(JobState& job, FrameSlot& slot) {
+  if (slot.phase == FramePhase::rendering) return restart_frame(job, slot);
+  slot.doubted = true;
 }
 
 /// Has tiles in doubt voided; of a frame whose outputs are being made when that is over.
@@ -217,7 +230,7 @@ bool Scheduler::any_in_doubt() const {
     return std::any_of(job.in_flight.begin(), job.in_flight.end(), [&](uint32_t i) {
       const FrameSlot& slot = job.slots[i];
       // Without books it fails or begins again, and its films with it.
-      return slot.books ? slot.books->any_doubted() : slot.in_flight();
+      return slot.books ? slot.books->any_doubted() || job.begins_again(slot) : slot.in_flight();
     });
   });
 }

@@ -12,6 +12,7 @@ void Scheduler::on(const FrameOpened& e) {
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
   if (slot == nullptr || slot->phase != FramePhase::opening) return;
   slot->phase = FramePhase::rendering;
+  if (slot->doubted) return restart_frame(*job, *slot);
   void_doubted(*job, *slot);  // what it has from before a restart
   update_ready(*job);
   complete_if_so(*job, *slot);  // a frame without pixels
@@ -28,6 +29,7 @@ void Scheduler::on(const FinishDone& e) {
   JobState* job = find_job(e.job);
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
+  if (job->begins_again(*slot)) return restart_frame(*job, *slot);
   if (!slot->books->settled()) return reopen_frame(*job, *slot);
   if (slot->doubted) return restart_frame(*job, *slot);
   slot->phase = FramePhase::closing;
@@ -38,6 +40,7 @@ void Scheduler::on(const FinishFailed& e) {
   JobState* job = find_job(e.job);
   FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
+  if (job->begins_again(*slot)) return restart_frame(*job, *slot);
   if (!slot->books->settled()) return reopen_frame(*job, *slot);
   if (++slot->finish_attempts < job->plan.max_attempts) {
     say(FinishFrame{job->id, slot->frame, slot->books->unconfirmed()});

@@ -39,6 +39,9 @@ struct JobPlan {
   uint32_t frames_in_flight = 16;
   uint64_t film_bytes = 0;  ///< that the film of a frame takes in memory
   FrameOrder order = FrameOrder::sequential;
+  /// What a tile's films hold cannot be taken out of a frame's (splats): where one is wrong the
+  /// whole frame begins again.
+  bool whole_frames = false;
   JobNeeds needs;
   uint32_t max_workers = 0;  ///< that may have units of it at once; 0: no limit
   /// A unit that has failed with so many different workers fails its frame; where fewer are there

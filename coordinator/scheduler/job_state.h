@@ -31,7 +31,7 @@ struct FrameSlot {
   FramePhase phase = FramePhase::waiting;
   bool film = false;  ///< its film is in memory, or will be with its first unit
   uint32_t finish_attempts = 0;
-  bool doubted = false;  ///< while it is finished, a worker that had a part in it was found odd
+  bool doubted = false;  ///< while it is opened or finished, a worker that had a part was found odd
   uint32_t worker_class = 0;  ///< interned; 0 until the first unit is leased
   uint64_t crew = 0;          ///< threads of the workers that render it
   uint64_t coming = 0;        ///< ... that load its scene while they render another
@@ -87,6 +87,9 @@ struct JobState {
   double mean_cost = 0;
   uint64_t costs_known = 0;  ///< films that told
   double load_seconds = -1;  ///< what it takes to load a scene, measured; -1: not known
+
+  /// Whether the frame begins again when what it waits for is over.
+  bool begins_again(const FrameSlot& slot) const { return plan.whole_frames && slot.doubted; }
 
   FrameSlot* slot(int32_t frame) {
     const auto it = by_number.find(frame);

@@ -25,7 +25,9 @@ void Scheduler::on(const ResultArrived& e) {
   if (quarantined_.contains(e.worker)) return reject(RejectReason::unknown);
   FrameState& books = *slot->books;
   // Its films are about to be void; this one may count then.
-  if (books.in_doubt(extent->tile)) return reject(RejectReason::not_now);
+  if (books.in_doubt(extent->tile) || job->begins_again(*slot)) {
+    return reject(RejectReason::not_now);
+  }
   const HeldRecord* held = books.find_held(*extent);
   if (const Dispute* dispute = held ? books.find_dispute(*extent) : nullptr;
       dispute != nullptr && job->mark != DisputeMark::open) {

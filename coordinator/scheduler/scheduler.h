@@ -278,6 +278,7 @@ class Scheduler {
   void confirm(const JobState& job, const FrameSlot& slot, WorkerId worker);
   bool quarantine(WorkerId id, const std::string& reason);
   void doubt_films_of(WorkerId id);
+  void doubt_frame(JobState& job, FrameSlot& slot);
   void void_doubted(JobState& job, FrameSlot& slot);
   void tile_voided(const TileVoidedRecord& record);
   bool still_wanted(const Record& record);

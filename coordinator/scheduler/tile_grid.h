@@ -16,6 +16,10 @@ inline int32_t tile_begin(int32_t at, int32_t tile_size) {
   return past < 0 ? at - past - tile_size : at - past;
 }
 
+/// Pixels along the side of a tile of films with splats. Their layer lies over the frame however
+/// small the tile is, so that a unit should be of many samples.
+inline constexpr int32_t kSplatTile = 128;
+
 /// How a frame's pixels are cut into tiles, and in which order the tiles are leased: along a
 /// Hilbert curve, so that what is rendered together lies together; or shuffled, which must not
 /// change any picture and exists so that tests can show it.

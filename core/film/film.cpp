@@ -159,6 +159,11 @@ void Film::erase(const PixelRect& tile) {
   coverage_ = std::move(left);
 }
 
+uint64_t Film::memory() const {
+  return static_cast<uint64_t>(window_.area()) * planes_.size() * sizeof(Fixed128) +
+         splats_.memory();
+}
+
 Fixed128 Film::sum(int x, int y, int channel) const {
   return planes_[static_cast<size_t>(channel)][offset(x, y)];
 }

@@ -33,6 +33,9 @@ class Film {
   const Coverage& coverage() const { return coverage_; }
   const SplatLayer& splats() const { return splats_; }
 
+  /// Bytes that it takes.
+  uint64_t memory() const;
+
   /// Adds one batch of all pixels of `tile` (inside the window). `values` holds layout().deposited
   /// floats per pixel, row by row: for sum channels the batch's sum over `samples` samples, rounded
   /// once to float32; for min channels the minimum (+inf where nothing was hit). All sums are
@@ -58,6 +61,9 @@ class Film {
   /// The exact sum of a pixel's channel (min channels: the minimum, +inf where nothing was hit).
   Fixed128 sum(int x, int y, int channel) const;
   float minimum(int x, int y, int channel) const;
+
+  /// All samples of all pixels: each traced one light path, where there are splats.
+  double all_samples() const;
 
   /// The picture so far: sums divided by the pixel's sample count, as float. Channels: "R","G","B",
   /// "A", then those of the chosen layers under their names, then "variance.R","G","B": the

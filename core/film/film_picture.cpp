@@ -64,9 +64,14 @@ Image Film::normalised() const {
   return image;
 }
 
+double Film::all_samples() const {
+  double all = 0.0;  // exact: whole numbers
+  for (const Fixed128& n : planes_[static_cast<size_t>(layout_.samples)]) all += to_double(n);
+  return all;
+}
+
 void Film::add_splats(Image& image) const {
-  double paths = 0.0;
-  for (const Fixed128& n : planes_[static_cast<size_t>(layout_.samples)]) paths += to_double(n);
+  const double paths = all_samples();
   const auto first_variance = static_cast<size_t>(layout_.deposited);
   splats_.for_each([&](uint32_t index, const SplatLayer::Sums& sums) {
     const auto width = static_cast<uint32_t>(splats_.region().width());

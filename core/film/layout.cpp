@@ -26,9 +26,14 @@ FilmLayout make_film_layout(const LayerSet& layers) {
 }
 
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window) {
-  const uint64_t pixel = layout.channels.size() * sizeof(Fixed128) +
-                         (layout.layers.splats ? sizeof(SplatLayer::Sums) : 0);
-  return static_cast<uint64_t>(window.area()) * pixel;
+  return film_memory(layout, window, window);
+}
+
+uint64_t film_memory(const FilmLayout& layout, const PixelRect& window, const PixelRect& region) {
+  const uint64_t sums =
+      static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
+  if (!layout.layers.splats) return sums;
+  return sums + static_cast<uint64_t>(region.area()) * sizeof(SplatLayer::Sums);
 }
 
 }  // namespace hyades::core

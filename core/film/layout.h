@@ -47,8 +47,9 @@ struct FilmLayout {
 
 FilmLayout make_film_layout(const LayerSet& layers);
 
-/// Bytes that the sums of a film take in memory; with splats for all pixels of its window (the
-/// splats of a unit may lie in all of the frame, see splat_memory in splat_codec.h).
+/// Bytes that the sums of a film take in memory at most, splats being those of its window's pixels.
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window);
+/// The same where the splats are those of all of `region`, which contains the window.
+uint64_t film_memory(const FilmLayout& layout, const PixelRect& window, const PixelRect& region);
 
 }  // namespace hyades::core

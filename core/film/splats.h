@@ -65,6 +65,9 @@ class SplatLayer {
   /// What a pixel of the region holds.
   Sums at(int x, int y) const;
 
+  /// Bytes that it takes.
+  uint64_t memory() const { return entries_.size() * sizeof(Entry) + all_.size() * sizeof(Sums); }
+
   /// How many pixels hold something.
   uint64_t count() const;
 

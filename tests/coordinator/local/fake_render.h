@@ -27,11 +27,14 @@ inline double fake_sample(int32_t frame, int x, int y, uint32_t sample, int chan
   return static_cast<double>(h >> 11U) * 0x1p-53;
 }
 
-/// The film of a unit, without light: what the real renderer does with its samples.
-inline core::Film fake_film(const core::Unit& unit, uint32_t samples) {
-  core::LayerSet layers;
-  layers.depth = true;
-  core::Film film(core::make_film_layout(layers), unit.tile);
+/// The film of a unit, without light: what the real renderer does with its samples. Where there is
+/// a `region`, every batch of a pixel splats onto one of it.
+inline core::Film fake_film(const core::Unit& unit, uint32_t samples,
+                            const core::PixelRect& region = {}) {
+  const core::FilmLayout layout =
+      core::make_film_layout({.depth = true, .splats = !region.empty()});
+  core::Film film(layout, unit.tile, region);
+  std::vector<core::PixelSplat> splats;
   const auto channels = static_cast<size_t>(film.layout().deposited);
   std::vector<float> values(static_cast<size_t>(unit.tile.area()) * channels);
   for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
@@ -49,16 +52,24 @@ inline core::Film fake_film(const core::Unit& unit, uint32_t samples) {
           }
           values[i++] = static_cast<float>(c == film.layout().depth ? least : sum);
         }
+        if (region.empty()) continue;
+        const float value = values[i - 1];
+        const auto area = static_cast<double>(region.area());
+        const double where = fake_sample(unit.frame, x, y, b, 99) * area;
+        splats.push_back({static_cast<uint32_t>(where), {value, 2 * value, 1.0F}});
       }
     }
     film.deposit(unit.tile, b, n, values);
   }
+  if (!region.empty()) film.deposit_splats(std::move(splats));
   return film;
 }
 
 /// What every way of rendering must give.
-inline std::string oracle_digest(int32_t frame, const core::PixelRect& region, uint32_t samples) {
-  return fake_film({frame, region, {0, core::batch_count(samples)}}, samples).digest();
+inline std::string oracle_digest(int32_t frame, const core::PixelRect& region, uint32_t samples,
+                                 const core::PixelRect& splat_region = {}) {
+  return fake_film({frame, region, {0, core::batch_count(samples)}}, samples, splat_region)
+      .digest();
 }
 
 /// A renderer without light, and where its films go.
@@ -67,6 +78,7 @@ class FakeRender final : public FrameSource, public FrameSink {
   explicit FakeRender(uint32_t samples) : samples_(samples) {}
 
   // What shall happen; to be set before the run.
+  core::PixelRect splat_region;             ///< empty: there are none
   std::chrono::microseconds unit_delay{0};  ///< given up at once on stop
   std::chrono::milliseconds finish_delay{0};
   std::function<core::Status(const core::Unit&)> unit_fault;
@@ -141,7 +153,7 @@ class FakeRender final : public FrameSource, public FrameSink {
       }
       if (stop) return core::Error{"stopped"};
       ++owner_.units_;
-      return fake_film(unit, owner_.samples_);
+      return fake_film(unit, owner_.samples_, owner_.splat_region);
     }
 
     FakeRender& owner_;

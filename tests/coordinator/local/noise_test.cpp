@@ -38,5 +38,18 @@ TEST(Noise, LooksAtSomePixelsOfABigFilm) {
   EXPECT_EQ(estimate_noise(film), -1);
 }
 
+TEST(Noise, IsThatOfSplatsToo) {
+  const core::PixelRect region{0, 0, 8, 8};
+  core::Film film(core::make_film_layout({.splats = true}), region);
+  const std::vector<float> white(64 * 4, 16.0F);
+  for (uint32_t b = 0; b < 4; ++b) film.deposit(region, b, 16, white);
+  EXPECT_EQ(estimate_noise(film), 0.0);
+  // Every pixel gets 64 splats of 4096 light paths, so that 64 give as much as the camera's.
+  std::vector<core::PixelSplat> splats;
+  for (uint32_t i = 0; i < 64 * 64; ++i) splats.push_back({i % 64, {64, 64, 64}});
+  film.deposit_splats(splats);
+  EXPECT_NEAR(estimate_noise(film), std::sqrt(1.0 / 64) / 2, 1e-6);
+}
+
 }  // namespace
 }  // namespace hyades::coordinator

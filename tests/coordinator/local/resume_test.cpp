@@ -46,7 +46,9 @@ void expect_the_truth(const LocalPlan& plan, const FakeRender& render) {
   for (const int32_t frame : plan.frames) {
     const auto digests = render.digests();
     ASSERT_TRUE(digests.contains(frame)) << frame;
-    EXPECT_EQ(digests.at(frame), oracle_digest(frame, plan.region, plan.samples)) << frame;
+    EXPECT_EQ(digests.at(frame),
+              oracle_digest(frame, plan.region, plan.samples, render.splat_region))
+        << frame;
   }
 }
 
@@ -92,6 +94,28 @@ TEST(Resume, TenInterruptionsChangeNoBit) {
     expect_the_truth(plan, render);
     // What was durable was not rendered again: each stop costs at most what was in the threads.
     EXPECT_LE(render.units(), units + 10 * 3);
+  }
+}
+
+TEST(Resume, InterruptionsChangeNoBitOfFilmsWithSplats) {
+  for (const uint64_t compact_bytes : {uint64_t{1} << 30U, uint64_t{10'000}}) {
+    test::TempFolder folder;
+    LocalPlan plan = small_plan();
+    FakeRender render(plan.samples);
+    // What is rendered is a part of what the job renders, as with --crop.
+    render.splat_region = {0, 0, 50, 44};
+    render.unit_delay = milliseconds(4);
+    int runs = 0;
+    for (bool complete = false; !complete; ++runs) {
+      ASSERT_LT(runs, 100);
+      plan.threads = 1 + runs % 3;
+      LocalLog log = log_in(folder.file("log"), runs > 0);
+      log.compact_bytes = compact_bytes;
+      complete = run_for(plan, log, render, runs < 10 ? milliseconds(20) : kLong);
+    }
+    EXPECT_GE(runs, 11) << "it was too quick to be interrupted ten times";
+    expect_the_truth(plan, render);
+    EXPECT_LE(render.units(), uint64_t{9 * 3 * 4} + 10 * 3);
   }
 }
 
@@ -229,6 +253,30 @@ TEST(Resume, AnotherCropKeepsTheTilesThatItShares) {
     EXPECT_EQ(new_units({0, 0, 40, 40}), 0U);
     EXPECT_EQ(new_units({0, 0, 49, 48}), 3 * per_tile);
   }
+}
+
+TEST(Resume, FilmsWithSplatsAreOfNoUseToAnotherCrop) {
+  test::TempFolder folder;
+  LocalPlan plan = small_plan();
+  plan.frames = {1};
+  FakeRender render(plan.samples);
+  render.splat_region = {0, 0, 48, 48};
+  const LocalLog begin = log_in(folder.file("log"), false);
+  render_without_outputs(plan, begin, render);
+  const LocalLog log = log_in(folder.file("log"), true);
+  uint64_t before = render.units();
+  plan.region = {0, 0, 16, 32};  // two whole tiles
+  render_without_outputs(plan, log, render);
+  EXPECT_EQ(render.units(), before + uint64_t{2 * 3});
+  before = render.units();
+  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  EXPECT_EQ(render.units(), before) << "only outputs were missing";
+  expect_the_truth(plan, render);
+  // The films of the first run are still there.
+  plan.region = small_plan().region;
+  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  EXPECT_EQ(render.units(), before);
+  expect_the_truth(plan, render);
 }
 
 TEST(Resume, AFrameFinishedForAnotherCropIsNotTakenForThisOne) {

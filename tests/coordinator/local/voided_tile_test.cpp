@@ -65,5 +65,45 @@ TEST(VoidedTile, LeavesNothingOfAFrameThatHadNoOther) {
   EXPECT_TRUE(contents.problems.empty());
 }
 
+/// A snapshot of a film with splats is one record: none of it can be lost without the rest.
+TEST(WrittenFilm, IsOneRecordWhereThereAreSplats) {
+  const core::PixelRect region{0, 0, 40, 20};
+  for (const bool splats : {false, true}) {
+    const core::PixelRect of = splats ? region : core::PixelRect{};
+    core::Film whole(fake_film(kLeft, kSamples, of).layout(), kRegion, of);
+    ASSERT_TRUE(whole.merge(fake_film(kLeft, kSamples, of)));
+    ASSERT_TRUE(whole.merge(fake_film(kRight, kSamples, of)));
+    for (const std::string worker_class : {"", "class"}) {
+      std::vector<std::vector<std::byte>> records;
+      ASSERT_TRUE(write_film(1, {}, whole, {kRegion, 16, kSamples}, worker_class,
+                             [&](std::span<const std::byte> record) -> core::Status {
+                               records.emplace_back(record.begin(), record.end());
+                               return {};
+                             }));
+      EXPECT_EQ(records.size(), splats ? 1U : 2U);
+      const LogContents contents = replayed(records);
+      EXPECT_EQ(contents.films.at(1)->digest(), whole.digest());
+      if (worker_class.empty()) continue;
+      ASSERT_EQ(contents.units.at(1).size(), 2U);
+      EXPECT_EQ(contents.units.at(1)[0].unit, kLeft);
+      EXPECT_EQ(contents.units.at(1)[1].unit, kRight);
+    }
+  }
+}
+
+TEST(BegunAgain, LeavesNothingOfTheSplatsThatCameBefore) {
+  const core::PixelRect region{0, 0, 40, 20};
+  const auto splatted = [&](const core::Unit& unit, uint32_t samples) {
+    return encode_delivered({unit, {}, "class"}, {},
+                            core::encode_film(fake_film(unit, samples, region)));
+  };
+  const LogContents contents = replayed({splatted(kLeft, kSamples - 10), splatted(kRight, kSamples),
+                                         encode_begun_again(1), splatted(kLeft, kSamples)});
+  core::Film right(fake_film(kLeft, kSamples, region).layout(), kRegion, region);
+  ASSERT_TRUE(right.merge(fake_film(kLeft, kSamples, region)));
+  EXPECT_EQ(contents.films.at(1)->digest(), right.digest());
+  EXPECT_EQ(contents.units.at(1).size(), 1U);
+}
+
 }  // namespace
 }  // namespace hyades::coordinator

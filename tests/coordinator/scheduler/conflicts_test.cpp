@@ -16,7 +16,9 @@ class Conflicts : public testing::Test {
   void SetUp() override {
     b.join(kAnna);
     b.join(kBert);
-    b.add(small_plan({1}, 1));
+    JobPlan plan = small_plan({1}, 1);
+    plan_it(plan);
+    b.add(plan);
     b.tell(FrameOpened{kJob, 1});
     anna_ = b.ask(kAnna);
     deliver_durably(anna_, 1);
@@ -30,6 +32,8 @@ class Conflicts : public testing::Test {
     EXPECT_TRUE(b.all<Conflict>().empty());
     EXPECT_EQ(b.only<Reject>().reason, RejectReason::conflict);
   }
+
+  virtual void plan_it(JobPlan& /*plan*/) {}
 
   Lease by(WorkerId worker) const {
     Lease lease = anna_;
@@ -384,6 +388,101 @@ TEST_F(Conflicts, AVoidThatIsNotDurableIsTriedAgain) {
   b.now = *b.scheduler.next_wake();
   b.tell(Tick{});
   EXPECT_EQ(b.only<Persist>().id, first.id);
+}
+
+/// The same of a job whose films cannot be taken apart.
+class WholeFrames : public Conflicts {
+ protected:
+  void plan_it(JobPlan& plan) override { plan.whole_frames = true; }
+  void expect_again(const Persist& again) {
+    EXPECT_EQ(std::get<FrameRestartedRecord>(again.record).frame, 1);
+    b.tell(Persisted{again.id});
+    EXPECT_EQ(b.only<FrameRestarted>().frame, 1);
+    b.tell(FrameOpened{kJob, 1});
+  }
+};
+
+TEST_F(WholeFrames, BeginAgainWhereOneOfTheirFilmsIsWrong) {
+  const Lease other = b.ask(kAnna);
+  deliver_durably(other, 1);
+  b.join(kCora);
+  const Lease check = b.ask(kCora);
+  b.deliver(check, 0, 2);
+  EXPECT_EQ(b.only<Quarantine>().worker, kAnna);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
+  const auto said = b.all<Persist>();
+  ASSERT_EQ(said.size(), 2U);
+  EXPECT_EQ(std::get<WorkerOddRecord>(said[1].record).worker, kAnna);
+  b.deliver(check, 0, 2);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::unknown) << "nothing of then counts";
+  expect_again(said[0]);
+  b.tell(Persisted{said[1].id});
+  EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open);
+  deliver_durably(b.ask(kBert), 2);
+  deliver_durably(b.ask(kCora), 2);
+  EXPECT_EQ(b.only<FinishFrame>().unconfirmed, (std::vector<WorkerId>{kBert, kCora}));
+}
+
+TEST_F(WholeFrames, TakeBackWhatIsOutWhenTheyBeginAgain) {
+  const Lease other = b.ask(kBert);
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 2);
+  EXPECT_EQ(b.only<Revoke>().lease, other.lease);
+  expect_again(b.all<Persist>().at(0));
+  EXPECT_EQ(b.scheduler.disputed_units(kJob), 0U);
+}
+
+TEST_F(WholeFrames, GoOnWhereTheSecondWasWrong) {
+  deliver_durably(b.ask(kAnna), 1);
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 1);
+  EXPECT_EQ(b.only<Quarantine>().worker, kBert);
+  EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+}
+
+TEST_F(WholeFrames, BeginAgainOnceTheirOutputsAreMade) {
+  // Frame 1 is Anna's and Bert's of one mind, but for one film of Anna's of another job.
+  b.join(kCora);
+  b.deliver(b.ask(kCora), 0, 1);
+  EXPECT_EQ(b.only<Quarantine>().worker, kBert);
+  odd_is_stored();
+  b.tell(Persisted{b.only<Persist>().id});
+  deliver_durably(b.ask(kAnna), 1);
+  ASSERT_EQ(b.all<FinishFrame>().size(), 1U);
+  for (const WorkerId worker : {kDora, kEmil}) b.join(worker);
+  JobPlan plan = small_plan({5}, 1);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan, {}, JobId{2});
+  b.tell(FrameOpened{JobId{2}, 5});
+  Lease lease = b.ask(kAnna);
+  deliver_durably(lease, 1);
+  lease.worker = kDora;
+  b.deliver(lease, 0, 2);
+  const RecordId dispute = b.only<Persist>().id;
+  b.tell(Persisted{dispute});
+  lease.worker = kEmil;
+  b.deliver(lease, 0, 2);
+  EXPECT_EQ(b.only<Quarantine>().worker, kAnna);
+  for (const Persist& p : b.all<Persist>()) {
+    EXPECT_FALSE(std::holds_alternative<FrameRestartedRecord>(p.record)) << "not yet";
+    if (!std::holds_alternative<DisputeRecord>(p.record)) continue;
+    EXPECT_EQ(std::get<DisputeRecord>(p.record).job, kJob);
+  }
+  // Even where its outputs could not be made they are not tried again of that film.
+  b.tell(FinishFailed{kJob, 1, "no room"});
+  EXPECT_TRUE(b.all<FinishFrame>().empty());
+  expect_again(b.only<Persist>());
+}
+
+TEST_F(ConflictsBeforeARestart, LetWholeFramesBeginAgain) {
+  JobPlan plan = small_plan({1}, 1);
+  plan.whole_frames = true;
+  b.add(plan, with_a_film(false), JobId{2});
+  // While it is being opened.
+  b.add(small_plan({1}, 1), with_a_film(true), JobId{1});
+  EXPECT_EQ(b.all<Persist>().size(), 2U);
+  b.tell(FrameOpened{JobId{2}, 1});
+  EXPECT_EQ(std::get<FrameRestartedRecord>(b.only<Persist>().record).job, JobId{2});
 }
 
 }  // namespace

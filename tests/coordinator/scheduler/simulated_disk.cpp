@@ -10,10 +10,8 @@ namespace {
 
 constexpr const char* kFolder = "films";
 
-core::FilmLayout layout() {
-  core::LayerSet layers;
-  layers.depth = true;
-  return core::make_film_layout(layers);
+core::FilmLayout layout_of(const JobPlan& plan) {
+  return core::make_film_layout({.depth = true, .splats = plan.whole_frames});
 }
 
 }  // namespace
@@ -67,21 +65,13 @@ core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark)
 core::Status SimulatedDisk::compact(uint64_t through, const std::vector<int32_t>& finished,
                                     const std::map<int32_t, Frame>& frames) {
   return log_->compact(through, [&](const FilmLog::Sink& sink) {
-    core::Status status = sink(encode_cut({plan_.region, plan_.tile_size, samples()}));
+    const CutRecord cut{plan_.region, plan_.tile_size, samples()};
+    core::Status status = sink(encode_cut(cut));
     for (const int32_t frame : finished) {
       if (status) status = sink(encode_finished(frame, {{}, plan_.region}));
     }
     for (const auto& [number, frame] : frames) {
-      const std::vector<core::Unit> units =
-          units_of(number, *frame.film, plan_.region, plan_.tile_size);
-      for (size_t first = 0; status && first < units.size();) {
-        size_t end = first;
-        while (end < units.size() && units[end].tile == units[first].tile) ++end;
-        const core::Film part = cut_film(*frame.film, {units.data() + first, end - first});
-        status = sink(encode_delivered({units[first], Digest{}, frame.worker_class}, {},
-                                       core::encode_film(part)));
-        first = end;
-      }
+      if (status) status = write_film(number, {}, *frame.film, cut, frame.worker_class, sink);
     }
     return status;
   });
@@ -93,10 +83,11 @@ uint64_t SimulatedDisk::used() {
   return used;
 }
 
-core::Film SimulatedDisk::blank() const { return {layout(), plan_.region}; }
+core::Film SimulatedDisk::blank() const { return {layout_of(plan_), plan_.region}; }
 
-core::Film SimulatedDisk::film_of(const core::Unit& unit, uint8_t mark) {
-  core::Film film(layout(), unit.tile);
+core::Film SimulatedDisk::film_of(const core::Unit& unit, uint8_t mark) const {
+  core::Film film(layout_of(plan_), unit.tile, plan_.region);
+  std::vector<core::PixelSplat> splats;
   const auto channels = static_cast<size_t>(film.layout().deposited);
   std::vector<float> values(static_cast<size_t>(unit.tile.area()) * channels);
   for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
@@ -109,10 +100,14 @@ core::Film SimulatedDisk::film_of(const core::Unit& unit, uint8_t mark) {
         for (size_t c = 0; c < channels; ++c) {
           values[i++] = static_cast<float>((h >> (3 * c)) & 0xffffU) * 0.001F;
         }
+        if (!plan_.whole_frames) continue;
+        const auto area = static_cast<uint64_t>(plan_.region.area());
+        splats.push_back({static_cast<uint32_t>(h % area), {values[i - 1], 1.0F, values[i - 2]}});
       }
     }
     film.deposit(unit.tile, b, core::kBatchSamples, values);
   }
+  if (plan_.whole_frames) film.deposit_splats(std::move(splats));
   return film;
 }
 

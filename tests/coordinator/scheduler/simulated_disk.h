@@ -50,7 +50,7 @@ class SimulatedDisk {
 
   core::Film blank() const;
   /// What a worker renders of the unit; films with different marks are different.
-  static core::Film film_of(const core::Unit& unit, uint8_t mark);
+  core::Film film_of(const core::Unit& unit, uint8_t mark) const;
   /// The whole frame's.
   core::Film oracle(int32_t frame) const;
 

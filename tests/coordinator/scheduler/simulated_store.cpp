@@ -145,7 +145,7 @@ void SimulatedWorld::act(const Merge& a) {
   SimFrame& frame = frame_of(a.job, a.unit.frame);
   frame.worker_class = accepted.worker_class;
   const core::Status merged =
-      frame.film.merge(SimulatedDisk::film_of(accepted.unit, accepted.digest[1]));
+      frame.film.merge(jobs_.at(a.job).disk->film_of(accepted.unit, accepted.digest[1]));
   if (!merged) fail("a film cannot be merged: " + merged.error().message);
 }
 
@@ -162,6 +162,7 @@ void SimulatedWorld::act(const TileVoided& a) {
   ++tiles_voided;
   SimFrame& frame = frame_of(a.job, a.frame);
   if (frame.over) fail("a tile of a frame that is over is voided");
+  if (jobs_.at(a.job).plan.whole_frames) fail("a tile is voided that cannot be taken out");
   if (real_store_) frame.film.erase(a.tile);
   std::erase_if(frame.batches, [&](const auto& entry) {
     const auto& [place, batch] = entry;

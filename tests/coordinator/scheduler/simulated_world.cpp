@@ -77,6 +77,7 @@ void SimulatedWorld::make_job(JobId id) {
   plan.film_bytes = static_cast<uint64_t>(number(0, 3));
   plan.max_workers = chance(0.3) ? static_cast<uint32_t>(number(1, 3)) : 0;
   if (chance(0.3)) plan.order = FrameOrder::progressive;
+  plan.whole_frames = chance(0.4);
   if (choosy_) {
     if (chance(0.4)) plan.needs.tags.emplace_back("gpu");
     if (chance(0.3)) plan.needs.tags.emplace_back("quiet");
