@@ -1,24 +1,34 @@
 #include "core/render/splat_placer.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace hyades::core {
+namespace {
+
+constexpr int kMostPixels = 40;  ///< in the reach of the widest filter (16 pixels), along one axis
+
+}  // namespace
 
 SplatPlacer::Choice SplatPlacer::choose(float at, float u) const {
   // All pixels whose centres are within the radius; the filter is 0 for one too many at either end.
   const int first = static_cast<int>(std::floor(at - 0.5F - radius_));
   const int last = static_cast<int>(std::ceil(at - 0.5F + radius_));
-  const auto filter_at = [&](int pixel) {
-    return filter_.evaluate_along(at - (static_cast<float>(pixel) + 0.5F));
-  };
+  std::array<float, kMostPixels> values;
+  const int count = std::min(last - first + 1, kMostPixels);
   float total = 0.0F;
-  for (int pixel = first; pixel <= last; ++pixel) total += std::fabs(filter_at(pixel));
+  for (int i = 0; i < count; ++i) {
+    const float f = filter_.evaluate_along(at - (static_cast<float>(first + i) + 0.5F));
+    values[static_cast<size_t>(i)] = f;
+    total += std::fabs(f);
+  }
   Choice choice;
   float left = u * total;
-  for (int pixel = first; pixel <= last; ++pixel) {
-    const float f = filter_at(pixel);
+  for (int i = 0; i < count; ++i) {
+    const float f = values[static_cast<size_t>(i)];
     if (f == 0.0F) continue;
-    choice = {pixel, f < 0.0F ? -total : total};
+    choice = {first + i, f < 0.0F ? -total : total};
     left -= std::fabs(f);
     if (left < 0.0F) break;
   }

@@ -28,6 +28,7 @@ class Profile {
       f_.push_back(f[i]);
     }
     const size_t cells = x_.size() - 1;
+    cells_per_unit_ = static_cast<float>(cells) / (x_.back() - x_.front());
     std::vector<double> area(cells);
     double total = 0.0;
     double signed_total = 0.0;
@@ -70,8 +71,11 @@ class Profile {
   /// f / integral of f.
   float evaluate(float x) const {
     if (!(x >= x_.front() && x < x_.back())) return 0.0F;
-    const auto above = std::upper_bound(x_.begin(), x_.end(), x);
-    const auto i = static_cast<size_t>(above - x_.begin()) - 1;
+    // The nodes are evenly spaced, up to rounding.
+    const size_t last = x_.size() - 2;
+    auto i = std::min(static_cast<size_t>((x - x_.front()) * cells_per_unit_), last);
+    while (i > 0 && x < x_[i]) --i;
+    while (i < last && x >= x_[i + 1]) ++i;
     const float t = (x - x_[i]) / (x_[i + 1] - x_[i]);
     return (f_[i] + (f_[i + 1] - f_[i]) * t) * scale_;
   }
@@ -83,6 +87,7 @@ class Profile {
   std::vector<float> f_;
   std::vector<float> cumulative_;      // of |f|, at the nodes
   std::array<uint32_t, 256> guide_{};  // cell of u = i / 256: the search starts there
+  float cells_per_unit_ = 1.0F;
   float scale_ = 1.0F;
   float weight_ = 1.0F;  // integral of |f| over integral of f
 };
