@@ -4,6 +4,7 @@
 namespace hyades::cli {
 int bench_command(int argc, char** argv);
 int check_command(int argc, char** argv);
+int media_command(int argc, char** argv);
 int render_command(int argc, char** argv);
 int replay_command(int argc, char** argv);
 }  // namespace hyades::cli
@@ -12,10 +13,8 @@ int main(int argc, char** argv) {
   using namespace hyades::cli;
   hyades::core::ignore_file_size_signal();
   constexpr ProgramCommand kCommands[] = {
-      {"render", render_command},
-      {"check", check_command},
-      {"replay", replay_command},
-      {"bench", bench_command},
+      {"render", render_command}, {"check", check_command}, {"replay", replay_command},
+      {"media", media_command},   {"bench", bench_command},
   };
   return run_program(kCommands, argc, argv);
 }

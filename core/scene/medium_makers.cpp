@@ -7,7 +7,15 @@
 namespace hyades::core {
 namespace {
 
-/// Of `desc`, in metres.
+Phase phase_of(const MediumDesc& desc, const JobTime& time) {
+  if (desc.phase == "rayleigh") return Phase::rayleigh();
+  const float blend = desc.blend.at(time);
+  if (blend == 0.0F) return Phase::henyey_greenstein(desc.g.at(time));
+  return Phase::two_lobes(desc.g.at(time), desc.g2.at(time), blend);
+}
+
+}  // namespace
+
 Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float units) {
   Coefficients found;
   if (desc.albedo) {
@@ -26,15 +34,6 @@ Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float 
   found.emission = desc.emission.at(time) * desc.emission_strength.at(time) / units;
   return found;
 }
-
-Phase phase_of(const MediumDesc& desc, const JobTime& time) {
-  if (desc.phase == "rayleigh") return Phase::rayleigh();
-  const float blend = desc.blend.at(time);
-  if (blend == 0.0F) return Phase::henyey_greenstein(desc.g.at(time));
-  return Phase::two_lobes(desc.g.at(time), desc.g2.at(time), blend);
-}
-
-}  // namespace
 
 MediumPtr make_medium(const MediumDesc& desc, const JobTime& time, float units) {
   const Coefficients made = coefficients_of(desc, time, units);

@@ -8,6 +8,9 @@
 
 namespace hyades::core {
 
+/// The coefficients that `desc` gives at `time`, per metre; where it varies, those of density 1.
+Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float units);
+
 /// The medium that `desc` describes at `time`, in metres; `units` is the length of one unit of the
 /// job.
 MediumPtr make_medium(const MediumDesc& desc, const JobTime& time, float units);

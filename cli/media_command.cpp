@@ -1,0 +1,177 @@
+#include <array>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command_line.h"
+#include "cli/load_job.h"
+#include "cli/media_facts.h"
+#include "cli/media_maker.h"
+#include "cli/media_swatch.h"
+#include "cli/media_text.h"
+#include "core/base/atomic_file.h"
+#include "core/base/parallel.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr size_t kMostInARow = 16;
+
+int wrong(const core::Error& error) {
+  std::fprintf(stderr, "hyades media: %s\n", error.message.c_str());
+  return kBadInput;
+}
+
+LengthUnit unit_called(const std::string& name) {
+  return {name, name == "mm" ? 0.001F : name == "cm" ? 0.01F : 1.0F};
+}
+
+/// The media of all `names`, presets and files; all presets for none.
+core::Result<std::vector<KnownMedium>> media_called(const std::vector<std::string>& names,
+                                                    const LengthUnit& unit) {
+  if (names.empty()) return known_presets();
+  std::vector<KnownMedium> all;
+  for (const std::string& name : names) {
+    auto found = find_media(name, unit.metres);
+    if (!found) return found.error();
+    all.insert(all.end(), found->begin(), found->end());
+  }
+  return all;
+}
+
+int list(bool json, const LengthUnit& unit) {
+  std::fputs((json ? media_json(known_presets(), unit) : media_table(known_presets())).c_str(),
+             stdout);
+  return 0;
+}
+
+int show(const std::vector<std::string>& names, bool json, const LengthUnit& unit) {
+  const auto media = media_called(names, unit);
+  if (!media) return wrong(media.error());
+  if (json) {
+    std::fputs(media_json(*media, unit).c_str(), stdout);
+    return 0;
+  }
+  for (size_t i = 0; i < media->size(); ++i) {
+    std::printf("%s%s", i > 0 ? "\n" : "", medium_sheet((*media)[i], unit).c_str());
+  }
+  return 0;
+}
+
+int make(const MediumDescription& wanted, const std::string& file, bool json,
+         const LengthUnit& unit) {
+  const auto medium = make_described(wanted, unit.metres);
+  if (!medium) return wrong(medium.error());
+  const bool as_json = json || file.ends_with(".json");
+  const std::string text =
+      as_json ? media_file_json(*medium, unit) : media_file_yaml(*medium, unit);
+  if (file.empty()) {
+    std::fputs(text.c_str(), stdout);
+    return 0;
+  }
+  if (auto written = core::write_file(file, std::as_bytes(std::span(text))); !written) {
+    std::fprintf(stderr, "hyades media: %s\n", written.error().message.c_str());
+    return 1;
+  }
+  std::fprintf(stderr, "wrote %s, for jobs whose unit is %s\n", file.c_str(), unit.name.c_str());
+  return 0;
+}
+
+int swatch(const std::vector<std::string>& names, SwatchOptions options, const LengthUnit& unit) {
+  const auto media = media_called(names, unit);
+  if (!media) return wrong(media.error());
+  if (media->size() > kMostInARow) {
+    return wrong({std::to_string(media->size()) + " media, expected at most " +
+                  std::to_string(kMostInARow) + " in a row"});
+  }
+  options.size *= unit.metres;
+  if (const auto done = render_swatch(*media, options); !done) return wrong(done.error());
+  std::fprintf(stderr, "wrote %s\n", options.file.c_str());
+  return 0;
+}
+
+}  // namespace
+
+/// `hyades media list|show|make|swatch`.
+int media_command(int argc, char** argv) {
+  CLI::App app("Measured media: their numbers and colours; media files from other descriptions.",
+               "hyades media");
+  app.require_subcommand(1);
+  std::string unit = "m";
+  bool json = false;
+  std::vector<std::string> names;
+  std::string file;
+  MediumDescription wanted;
+  SwatchOptions options;
+  options.threads = core::hardware_threads();
+  float size = 0.0F;
+  const auto add_unit = [&](CLI::App* command) {
+    command->add_option("--units", unit, "unit of length of all numbers, files' too: mm, cm or m")
+        ->check(CLI::IsMember({"mm", "cm", "m"}))
+        ->capture_default_str();
+  };
+
+  CLI::App* lists = app.add_subcommand("list", "lists the presets");
+  lists->add_flag("--json", json, "as JSON, with all numbers");
+  add_unit(lists);
+
+  CLI::App* shows =
+      app.add_subcommand("show", "tells the numbers of presets and of files of media");
+  shows->add_option("media", names, "presets, or files (.json, .yaml); without: all presets");
+  shows->add_flag("--json", json, "as JSON");
+  add_unit(shows);
+
+  CLI::App* makes = app.add_subcommand("make", "makes a file of media from another description");
+  makes->add_option("--name", wanted.name, "what it is called")->capture_default_str();
+  makes->add_option("--preset", wanted.preset, "a measured medium, or a file of one; with --scale");
+  makes->add_option("--albedo", wanted.albedo, "single-scattering albedo, with --mean-free-path");
+  makes->add_option("--mean-free-path", wanted.mean_free_path, "how far light goes");
+  makes->add_option("--color", wanted.color, "a colour such as 0.9,0.6,0.4 or '#d8c8a8'");
+  makes->add_option("--depth", wanted.depth, "white light has the colour after this way");
+  makes->add_option("--radius", wanted.radius,
+                    "a thick body has the colour, and light loses its direction over this way");
+  makes->add_option("--g", wanted.g, "mean cosine (default: 0, or the preset's)")
+      ->check(CLI::Range(-0.999F, 0.999F));
+  makes->add_option("--index", wanted.index, "index of refraction (default: 1.33, or the preset's)")
+      ->check(CLI::Range(0.01F, 100.0F));
+  makes->add_option("--scale", wanted.scale, "multiplies absorption and scattering: concentration")
+      ->check(CLI::Range(0.0F, 1e9F));
+  makes->add_option("--output", file, "file (.json or .yaml; default: YAML on standard output)");
+  makes->add_flag("--json", json, "JSON, whatever the file is called");
+  add_unit(makes);
+
+  CLI::App* paints = app.add_subcommand("swatch", "renders a row of balls of media");
+  paints->add_option("media", names, "presets, or files (.json, .yaml)")->required();
+  paints->add_option("--output", options.file, "the picture (.png, .jpg or .exr)")->required();
+  paints->add_option("--size", size, "diameter of a ball (default: 20 mm)")
+      ->check(CLI::Range(1e-6F, 1e6F));
+  paints->add_option("--samples", options.samples, "samples per pixel")
+      ->check(CLI::Range(1U, 1U << 20U))
+      ->capture_default_str();
+  paints->add_option("--threads", options.threads, "rendering threads")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  add_unit(paints);
+
+  app.footer(
+      "examples:\n"
+      "  hyades media list\n"
+      "  hyades media show skim-milk --units mm\n"
+      "  hyades media make --name wax --color 0.9,0.7,0.4 --radius 4,2,1 --units mm --output "
+      "wax.json\n"
+      "  hyades media make --name squash --color '#e08030' --depth 0.05\n"
+      "  hyades media swatch espresso cream wax.json --output row.png\n"
+      "exit status: 0 done, 1 a file could not be written, 2 the arguments or files are wrong");
+  if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
+  const LengthUnit in = unit_called(unit);
+  if (lists->parsed()) return list(json, in);
+  if (shows->parsed()) return show(names, json, in);
+  if (makes->parsed()) return make(wanted, file, json, in);
+  options.size = size > 0.0F ? size : 0.02F / in.metres;
+  return swatch(names, options, in);
+}
+
+}  // namespace hyades::cli
