@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <string>
 
+#include "core/base/color.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/vdb_writer.h"
 #include "tests/truth/render_yaml.h"
 
 namespace hyades::test {
@@ -86,6 +90,48 @@ media:
 objects:
   ball: {shape: sphere, radius: 0.8, at: ["= -0.3 + 4 * t", 0, 0], material: air, interior: cloud}
   can: {shape: cylinder, radius: 0.3, height: 0.8, at: [0.8, -0.4, 0.5], material: air, interior: cloud}
+environment: {color: [1, 2, 0.5]}
+)"));
+  expect_picture_mean(scene, {1.0, 2.0, 0.5}, kPromise);
+}
+
+// A .vdb where the file says it is: along an axis the integral of interpolated values is their sum.
+// One grid absorbs, one glows as a black body, by their own places in the file.
+TEST(VaryingMedia, VdbGridsAbsorbAndGlowWhereTheyLie) {
+  TempFolder folder;
+  const auto smoke = vdb_box<openvdb::FloatGrid>(
+      "density", 12, 0.25, {-1.5, -1.5, -1.0}, [](int, int, int k) { return k < 6 ? 0.5F : 1.0F; });
+  const auto heat = vdb_box<openvdb::FloatGrid>("heat", 30, 0.1, {-1.5, -1.5, -1.5},
+                                                [](int, int, int) { return 1.0F; });
+  std::ofstream(folder.file("smoke.vdb"), std::ios::binary) << vdb_file({smoke, heat});
+  const auto job_of = [&](const std::string& medium) {
+    return job(1200, 4, "look_from: [0, 0, 4], look_at: [0, 0, 0], fov: 0.01", R"(
+media: {smoke: {)" + medium + R"(}}
+objects: {body: {shape: box, size: [4, 4, 6], material: air, interior: smoke}}
+environment: {color: [1, 2, 3]}
+)");
+  };
+  const std::string density = "density: {vdb: smoke.vdb, place: native}";
+  const double passed = 0.25 * (6 * 0.5 + 6 * 1.0);
+  expect_picture_mean(
+      YamlScene(job_of("absorption: [0.2, 0.5, 1], " + density), 1, {}, folder.path().string()),
+      {std::exp(-0.2 * passed), 2.0 * std::exp(-0.5 * passed), 3.0 * std::exp(-1.0 * passed)},
+      kPromise);
+  const core::Rgb warm = core::blackbody_color(3000.0F);
+  expect_picture_mean(
+      YamlScene(job_of("emission: {temperature: heat, kelvin: 3000, strength: 0.01}, " + density),
+                1, {}, folder.path().string()),
+      {1.0 + 0.16 * 2.25 * warm.x, 2.0 + 0.16 * 2.25 * warm.y, 3.0 + 0.16 * 2.25 * warm.z},
+      kPromise);
+}
+
+// A sky wrapped around nothing: glowing and scattering white, it does not darken a uniform sky.
+TEST(VaryingMedia, WhiteShellsVanishUnderAUniformSky) {
+  const YamlScene scene(job(1000, 20000, "look_from: [0, 0, 4], look_at: [0, 0, 0], fov: 30", R"(
+media:
+  sky: {scattering: 20, density: {shell: {image: jobs/quickstart/dusk.exr, inner: 0.6, swirl: 0.1, tint: false}}}
+objects:
+  ball: {shape: sphere, radius: 1, material: air, interior: sky}
 environment: {color: [1, 2, 0.5]}
 )"));
   expect_picture_mean(scene, {1.0, 2.0, 0.5}, kPromise);
