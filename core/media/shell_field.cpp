@@ -33,6 +33,13 @@ class ShellPlace {
     return from == Vec3(0.0F) ? Rgb(0.0F) : image_.at(from);
   }
 
+  /// The colour, no brighter than `high`.
+  Rgb shine(const Vec3& p) const {
+    const Rgb seen = color(p);
+    const float bright = luminance(seen);
+    return bright > shell_.high ? seen * (shell_.high / bright) : seen;
+  }
+
   /// At a distance from the origin.
   float profile(float radius) const {
     if (!(radius > shell_.inner && radius < shell_.outer)) return 0.0F;
@@ -102,7 +109,7 @@ class ShellGlow final : public ColorField {
   explicit ShellGlow(std::shared_ptr<const ShellPlace> place) : place_(std::move(place)) {}
   Rgb at(const Vec3& p) const override {
     const float height = place_->profile(length(p));
-    return height > 0.0F ? place_->color(p) * height : Rgb(0.0F);
+    return height > 0.0F ? place_->shine(p) * height : Rgb(0.0F);
   }
 
  private:

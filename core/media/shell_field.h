@@ -29,7 +29,8 @@ struct ShellFields {
   std::shared_ptr<const DensityField> density;
   /// The image's colour in a direction, relative to its brightest channel there.
   std::shared_ptr<const ColorField> tint;
-  /// The image's colour in a direction times the density's profile over the height.
+  /// The image's colour in a direction, but of a luminance of `high` at most (a sun is not dense
+  /// enough to be found), times the density's profile over the height.
   std::shared_ptr<const ColorField> glow;
 };
 

@@ -101,11 +101,11 @@ TEST(VaryingMedia, VdbGridsAbsorbAndGlowWhereTheyLie) {
   TempFolder folder;
   const auto smoke = vdb_box<openvdb::FloatGrid>(
       "density", 12, 0.25, {-1.5, -1.5, -1.0}, [](int, int, int k) { return k < 6 ? 0.5F : 1.0F; });
-  const auto heat = vdb_box<openvdb::FloatGrid>("heat", 30, 0.1, {-1.5, -1.5, -1.5},
+  const auto heat = vdb_box<openvdb::FloatGrid>("heat", 20, 0.1, {-1.5, -1.5, -1.0},
                                                 [](int, int, int) { return 1.0F; });
   std::ofstream(folder.file("smoke.vdb"), std::ios::binary) << vdb_file({smoke, heat});
   const auto job_of = [&](const std::string& medium) {
-    return job(1200, 4, "look_from: [0, 0, 4], look_at: [0, 0, 0], fov: 0.01", R"(
+    return job(14000, 4, "look_from: [0, 0, 4], look_at: [0, 0, 0], fov: 0.01", R"(
 media: {smoke: {)" + medium + R"(}}
 objects: {body: {shape: box, size: [4, 4, 6], material: air, interior: smoke}}
 environment: {color: [1, 2, 3]}
@@ -117,12 +117,18 @@ environment: {color: [1, 2, 3]}
       YamlScene(job_of("absorption: [0.2, 0.5, 1], " + density), 1, {}, folder.path().string()),
       {std::exp(-0.2 * passed), 2.0 * std::exp(-0.5 * passed), 3.0 * std::exp(-1.0 * passed)},
       kPromise);
-  const core::Rgb warm = core::blackbody_color(3000.0F);
+  // 19 cells of 3000 K, and one at each end over which the temperature falls to 0.
+  Vec3d glow = 1.9 * 16.0 * Vec3d(core::blackbody_color(3000.0F));
+  for (int i = 0; i < 1000; ++i) {
+    const double t = (i + 0.5) / 1000.0;
+    if (t * 3000.0 < 500.0) continue;
+    glow += 2.0 * 0.1 / 1000.0 * std::pow(2.0 * t, 4.0) *
+            Vec3d(core::blackbody_color(static_cast<float>(3000.0 * t)));
+  }
   expect_picture_mean(
-      YamlScene(job_of("emission: {temperature: heat, kelvin: 3000, strength: 0.01}, " + density),
+      YamlScene(job_of("emission: {temperature: heat, kelvin: 3000, strength: 0.05}, " + density),
                 1, {}, folder.path().string()),
-      {1.0 + 0.16 * 2.25 * warm.x, 2.0 + 0.16 * 2.25 * warm.y, 3.0 + 0.16 * 2.25 * warm.z},
-      kPromise);
+      Vec3d(1.0, 2.0, 3.0) + 0.05 * glow, kPromise);
 }
 
 // A sky wrapped around nothing: glowing and scattering white, it does not darken a uniform sky.
