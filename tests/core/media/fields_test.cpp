@@ -103,7 +103,7 @@ TEST(Fields, ShellsWrapTheImageAsAnEnvironmentDoes) {
   Shell shell;
   shell.image = image;
   shell.high = 0.5F;
-  EXPECT_NEAR(luminance(make_shell(shell).glow->at(Vec3(0.9F, 0.0F, 0.0F))), 0.6F, 1e-5F);
+  EXPECT_NEAR(luminance(make_shell(shell).glow->at(Vec3(0.9F, 0.0F, 0.0F))), 0.5F, 1e-5F);
   shell.high = 1.0F;
   const ShellFields fields = make_shell(shell);
   const auto glow = [&](const Vec3& direction) { return fields.glow->at(0.9F * direction); };
