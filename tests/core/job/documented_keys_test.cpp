@@ -234,8 +234,8 @@ Outcome read(const std::string& text) {
   MemoryAssets inner;
   inner.add("base.yaml", kBase);
   inner.add("sky.yaml", "environment: {color: 0.3}\n");
-  for (const char* file : {"knot.ply", "chair.obj", "wood.png", "bricks.png", "sky.hdr", "smoke.vdb",
-                           "cloud.vdb"}) {
+  for (const char* file :
+       {"knot.ply", "chair.obj", "wood.png", "bricks.png", "sky.hdr", "smoke.vdb", "cloud.vdb"}) {
     inner.add(file, std::string("content of ") + file);
   }
   RecordingResolver assets(inner);
