@@ -414,5 +414,16 @@ TEST(Complaints, StopAfterAHundred) {
             "again");
 }
 
+TEST(Complaints, AFilterThatHasNoRoomForSplats) {
+  for (const std::string type : {"bdpt", "mlt"}) {
+    EXPECT_EQ(complaints("film: {filter: center}\nintegrator: {type: " + type + "}\n"),
+              "job.yaml:3:13: the integrator is " + type +
+                  ", whose light paths may end anywhere on the film, but film.filter is center; "
+                  "expected a filter with a radius\n");
+  }
+  EXPECT_EQ(complaints("film: {filter: center}\nintegrator: path\n"), "");
+  EXPECT_EQ(complaints("film: {filter: box}\nintegrator: bdpt\n"), "");
+}
+
 }  // namespace
 }  // namespace hyades::core
