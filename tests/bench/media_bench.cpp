@@ -110,11 +110,12 @@ BENCHMARK(look_up);
 enum Kind { kTransmittance, kFlight };
 
 /// `kind` of walks through the dense (0) or sparse (1) cloud, with bounds of cells^3 cells. The
-/// optical thickness across it is about 40 where it is densest.
+/// optical thickness of its densest parts is `thick`, were they as wide as the box.
 void walk(benchmark::State& state) {
   const FpMode mode;
   const auto density = std::make_shared<Counting>(field(state.range(1) != 0));
-  const Coefficients smoke{Rgb(0.0003F), Rgb(0.3F), Rgb(0.0F)};
+  const float sigma = static_cast<float>(state.range(3)) / kSide;
+  const Coefficients smoke{Rgb(0.001F * sigma), Rgb(sigma), Rgb(0.0F)};
   const MediumPtr medium =
       make_varying(volume(density, static_cast<int>(state.range(2))), FieldPlace({Mat4(1.0F)}),
                    smoke, Phase::henyey_greenstein(Rgb(0.0F)));
@@ -136,8 +137,8 @@ void walk(benchmark::State& state) {
   state.counters["look_ups"] = static_cast<double>(density->count) / done;
 }
 BENCHMARK(walk)
-    ->ArgNames({"flight", "sparse", "cells"})
-    ->ArgsProduct({{kTransmittance, kFlight}, {0, 1}, {1, 8, 16, 32}});
+    ->ArgNames({"flight", "sparse", "cells", "thick"})
+    ->ArgsProduct({{kTransmittance, kFlight}, {0, 1}, {1, 16}, {40, 200, 1000}});
 
 /// Samples of a picture of a 128^3 cloud that absorbs a thousandth of what it scatters, hundreds of
 /// bounces allowed, one thread.
@@ -153,12 +154,12 @@ void cloud_picture(benchmark::State& state) {
   const Job job = parse_job(R"(
 hyades: 1
 name: cloud
-film: {size: [640, 360], crop: [200, 60, 240, 240]}
+film: {size: [640, 360], crop: [200, 60, 440, 300]}
 sampling: {samples: 1, seed: 1}
 integrator: {type: path, max_depth: 1000, roulette_depth: 1000}
 camera: {look_from: [0, 0, 3.2], look_at: [0, 0, 0], fov: 40}
 materials: {air: {type: "null"}}
-media: {cloud: {albedo: 0.999, scale: 40, g: 0.6, density: {vdb: cloud.vdb}}}
+media: {cloud: {albedo: 0.999, scale: 300, g: 0.6, density: {vdb: cloud.vdb}}}
 objects: {box: {shape: box, size: [2, 2, 2], material: air, interior: cloud}}
 lights: {sun: {type: sun, direction: [1, -1, -0.5], irradiance: 3}}
 environment: {color: [0.3, 0.5, 1]}
