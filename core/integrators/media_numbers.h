@@ -17,7 +17,7 @@ class MediaNumbers {
  public:
   enum class Purpose : uint32_t { flight, shadow, light_flight, connection };
 
-  /// Of the way after `depth` scattering events; of connections: their number, modulo 2^17.
+  /// Of the way after `depth` scattering events; of connections: their number, modulo 2^16.
   MediaNumbers(Sampler& sampler, int depth, Purpose purpose)
       : sampler_(&sampler),
         dimension_(first(purpose) + (static_cast<uint32_t>(depth) % kWays) * 2 * kPerWay) {}
@@ -32,8 +32,8 @@ class MediaNumbers {
  private:
   static constexpr uint32_t kFirst = 1U << 20U;   ///< above all that 65,536 bounces draw
   static constexpr uint32_t kSecond = 1U << 31U;  ///< of light paths and connections
-  static constexpr uint32_t kPerWay = 1U << 12U;  ///< kMaxNullCrossings + 1 parts of four
-  static constexpr uint32_t kWays = 1U << 17U;
+  static constexpr uint32_t kPerWay = 1U << 13U;  ///< kMaxNullCrossings + 1 parts of twice four
+  static constexpr uint32_t kWays = 1U << 16U;
 
   static constexpr uint32_t first(Purpose purpose) {
     const auto p = static_cast<uint32_t>(purpose);
@@ -43,6 +43,6 @@ class MediaNumbers {
   Sampler* sampler_;
   uint32_t dimension_;
 };
-static_assert(4 * (kMaxNullCrossings + 2) <= 1 << 12);
+static_assert(8 * (kMaxNullCrossings + 1) <= 1 << 13);
 
 }  // namespace hyades::core

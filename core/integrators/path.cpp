@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/integrators/medium_way.h"
 #include "core/integrators/mis.h"
 #include "core/integrators/visibility.h"
 #include "core/materials/shaded_surface.h"
@@ -76,7 +77,7 @@ class Path {
       const Vec3 wo = -ray_.direction;
       if (!albedo_noted_) note_albedo(surface, wo);
       if (last) break;
-      const uint32_t dimension = kCameraDimensions + static_cast<uint32_t>(depth_) * kPerBounce;
+      const uint32_t dimension = event_dimension();
       if (surface.has_smooth()) add_direct_light(surface, object, wo, dimension);
       if (!scatter(surface, object, wo, dimension)) break;
     }
@@ -84,6 +85,11 @@ class Path {
   }
 
  private:
+  /// The first of the sampler's dimensions of the next scattering event.
+  uint32_t event_dimension() const {
+    return kCameraDimensions + static_cast<uint32_t>(depth_) * kPerBounce;
+  }
+
   /// Adds `light` times the path's throughput; what came by more than one bounce may be clamped on
   /// request.
   void add(const Rgb& light, int events) {
@@ -97,15 +103,14 @@ class Path {
     }
   }
 
-  /// The probability of choosing light `index` at the previous scattering event.
-  float selection_probability(uint32_t index) const {
-    return scene_.selector->probability(previous_.position, previous_.normal, index);
-  }
-
-  /// Weight of light that the BSDF sample found, against choosing that light.
+  /// Weight of light that a sampled direction found, against choosing that light: from where the
+  /// path scattered or, in a medium, from another place on the way there.
   float bsdf_weight(uint32_t index, float light_pdf) const {
     if (previous_.specular) return 1.0F;
-    return power_heuristic(previous_.pdf, selection_probability(index) * light_pdf);
+    const float chosen =
+        scene_.selector->probability(previous_.selected_from, previous_.normal, index) * light_pdf;
+    const float rival = previous_.way.rival(*scene_.lights[index], previous_.t, previous_.t_pdf);
+    return power_heuristic(previous_.pdf, chosen * std::sqrt(1.0F + rival * rival));
   }
 
   void add_sky() {
@@ -135,7 +140,7 @@ class Path {
   void add_direct_light(const ShadedSurface& surface, const SceneObject& object, const Vec3& wo,
                         uint32_t dimension) {
     const SurfacePoint& point = surface.point();
-    const auto chosen = choose_light(point.position, point.ng, point.time, dimension);
+    const auto chosen = choose_light(point.position, point.position, point.ng, dimension);
     if (!chosen) return;
     const LightSample& sample = chosen->sample;
     const Rgb f = surface.evaluate(wo, sample.direction, TransportMode::radiance);
@@ -144,25 +149,63 @@ class Path {
                                               : spawn_ray_to(point, sample.position, 0.0F);
     shadow.time = point.time;
     const float pdf = surface.pdf(wo, sample.direction, TransportMode::radiance);
+    const float weight = sample.delta ? 1.0F : power_heuristic(chosen->pdf(), pdf);
     if (!passes_through(point, wo, sample.direction)) {
-      return add_light(*chosen, f, pdf, shadow, around_);
+      return add_light(*chosen, f * weight, shadow, around_, MediaNumbers::Purpose::shadow);
     }
     MediumStack beyond = around_;
     cross(object, point, sample.direction, beyond);
-    add_light(*chosen, f, pdf, shadow, beyond);
+    add_light(*chosen, f * weight, shadow, beyond, MediaNumbers::Purpose::shadow);
   }
 
-  /// The same for a place in a medium.
-  void add_direct_light(const Phase& phase, const Vec3& position, const Rgb& shares,
+  /// The same for the place at `t` of a way through a medium, where free flight has ended. `pdf`:
+  /// its density there; 0: unknown.
+  void add_direct_light(const MediumWay& way, float t, float pdf, const Vec3& position,
                         uint32_t dimension) {
-    const auto chosen = choose_light(position, Vec3(0.0F), ray_.time, dimension);
+    const auto chosen = choose_light(way.ray.origin, position, Vec3(0.0F), dimension);
     if (!chosen) return;
     const LightSample& sample = chosen->sample;
+    const Phase& phase = way.medium->phase();
     const float cosine = glm::dot(ray_.direction, sample.direction);
-    const Ray shadow = sample.distance == kInfinity
-                           ? Ray{position, sample.direction, kInfinity, ray_.time}
-                           : ray_between(position, sample.position, ray_.time);
-    add_light(*chosen, phase.evaluate(cosine), phase.pdf(cosine, shares), shadow, around_);
+    const float scattered = sample.delta ? 0.0F : phase.pdf(cosine, channel_shares(throughput_));
+    const float rival = way.rival(*scene_.lights[chosen->index], t, pdf) * chosen->pdf();
+    const float weight =
+        power_heuristic(chosen->pdf(), std::sqrt(scattered * scattered + rival * rival));
+    add_light(*chosen, phase.evaluate(cosine) * weight, shadow_ray(position, sample), around_,
+              MediaNumbers::Purpose::shadow);
+  }
+
+  /// Light scattered once more at a place near a light, besides the one where free flight ends:
+  /// together, by the power heuristic over places and directions, they find lamps in fog at once.
+  void add_light_from_near(const MediumWay& way, const SurfacePoint* surface, const Vec4& u) {
+    if (depth_ >= settings_.max_depth || scene_.lights.empty()) return;
+    sampler_.set_dimension(event_dimension() + kLight);
+    const auto selected = scene_.selector->select(way.ray.origin, Vec3(0.0F), sampler_.next_4d().z);
+    if (!selected) return;
+    const Light& light = *scene_.lights[selected->index];
+    const std::optional<Equiangular> places = way.places_near(light);
+    if (!places) return;
+    const float t = places->sample(u.x);
+    const Vec3 position = place_in_medium(t, surface);
+    const auto sample = light.sample_direct(position, way.ray.time, u.w, Vec2(u.y, u.z));
+    if (!sample || is_black(sample->radiance)) return;
+    const ChosenLight chosen{selected->index, selected->probability, *sample};
+    const FlightDensity flight = *way.medium->flight_density(t, way.shares);
+    const Phase& phase = way.medium->phase();
+    const float cosine = glm::dot(way.ray.direction, sample->direction);
+    // The shares after scattering there, which the direction would be chosen with.
+    const Rgb shares = channel_shares(throughput_ * flight.scattered);
+    const float scattered = sample->delta ? 0.0F : phase.pdf(cosine, shares) / chosen.pdf();
+    const float pdf = places->pdf(t);
+    const float other = flight.pdf / pdf;
+    const float weight = 1.0F / (1.0F + other * other * (1.0F + scattered * scattered));
+    add_light(chosen, phase.evaluate(cosine) * flight.scattered * (weight / pdf),
+              shadow_ray(position, *sample), around_, MediaNumbers::Purpose::connection);
+  }
+
+  Ray shadow_ray(const Vec3& position, const LightSample& sample) const {
+    return sample.distance == kInfinity ? Ray{position, sample.direction, kInfinity, ray_.time}
+                                        : ray_between(position, sample.position, ray_.time);
   }
 
   /// A place on a light that may be seen from where the path is.
@@ -170,35 +213,35 @@ class Path {
     uint32_t index = 0;
     float probability = 0.0F;
     LightSample sample;
+
+    float pdf() const { return probability * sample.pdf; }
   };
 
-  std::optional<ChosenLight> choose_light(const Vec3& from, const Vec3& normal, float time,
-                                          uint32_t dimension) {
+  /// Selected for `select_from`, a place of it chosen from `from`.
+  std::optional<ChosenLight> choose_light(const Vec3& select_from, const Vec3& from,
+                                          const Vec3& normal, uint32_t dimension) {
     if (scene_.lights.empty()) return std::nullopt;
     sampler_.set_dimension(dimension + kLight);
     const Vec4 u = sampler_.next_4d();
-    const auto selected = scene_.selector->select(from, normal, u.z);
+    const auto selected = scene_.selector->select(select_from, normal, u.z);
     if (!selected) return std::nullopt;
-    const auto sample = scene_.lights[selected->index]->sample_direct(from, time, u.w, Vec2(u));
+    const auto sample =
+        scene_.lights[selected->index]->sample_direct(from, ray_.time, u.w, Vec2(u));
     if (!sample || is_black(sample->radiance)) return std::nullopt;
     return ChosenLight{selected->index, selected->probability, *sample};
   }
 
-  /// Adds what `chosen` sends along `shadow`, scattered by `f`; scattering by chance would go there
-  /// with density `pdf`.
-  void add_light(const ChosenLight& chosen, const Rgb& f, float pdf, const Ray& shadow,
-                 const MediumStack& around) {
+  /// Adds what `chosen` sends along `shadow`, scattered and weighted by `f`.
+  void add_light(const ChosenLight& chosen, const Rgb& f, const Ray& shadow,
+                 const MediumStack& around, MediaNumbers::Purpose purpose) {
     const Rgb share =
-        visible_share(scene_, shadow, around,
-                      MediaNumbers(sampler_, depth_, MediaNumbers::Purpose::shadow), work_);
+        visible_share(scene_, shadow, around, MediaNumbers(sampler_, depth_, purpose), work_);
     if (is_black(share)) return;
-    const float light_pdf = chosen.probability * chosen.sample.pdf;
-    const float weight = chosen.sample.delta ? 1.0F : power_heuristic(light_pdf, pdf);
     if (work_.log != nullptr) {
-      work_.log->lines.push_back(fmt::format("    chooses light '{}', weight {:.4g}",
-                                             scene_.light_names[chosen.index], weight));
+      work_.log->lines.push_back(
+          fmt::format("    chooses light '{}'", scene_.light_names[chosen.index]));
     }
-    add(f * chosen.sample.radiance * share * (weight / light_pdf), depth_ + 1);
+    add(f * chosen.sample.radiance * share / chosen.pdf(), depth_ + 1);
   }
 
   static bool passes_through(const SurfacePoint& point, const Vec3& wo, const Vec3& wi) {
@@ -214,11 +257,14 @@ class Path {
     const Vec4 u = numbers_.next();
     if (const Rgb emitted = medium.emitted(ray_, t_max, u); !is_black(emitted))
       add(emitted, depth_);
-    const MediumSample sample = medium.sample(ray_, t_max, channel_shares(throughput_), u);
+    const MediumWay way{ray_, t_max, &medium, channel_shares(throughput_), around_.open()};
+    add_light_from_near(way, surface, numbers_.next());
+    const MediumSample sample = medium.sample(ray_, t_max, way.shares, u);
     throughput_ *= sample.weight;
     if (is_black(throughput_)) return Flight::ended;
     if (!sample.scattered) return Flight::passed;
-    return scatter(medium, place_in_medium(sample.t, surface)) ? Flight::scattered : Flight::ended;
+    return scatter(way, sample.t, place_in_medium(sample.t, surface)) ? Flight::scattered
+                                                                      : Flight::ended;
   }
 
   /// The point at `t`, but clear of the surface behind it: rounding must not put it on the other
@@ -231,7 +277,7 @@ class Path {
     return ray_.at(t);
   }
 
-  bool scatter(const Medium& medium, const Vec3& position) {
+  bool scatter(const MediumWay& way, float t, const Vec3& position) {
     if (depth_ == 0) out_.alpha = 1.0F;
     if (!albedo_noted_) {
       out_.albedo = throughput_;
@@ -240,12 +286,13 @@ class Path {
     if (work_.log != nullptr)
       work_.log->lines.push_back("  scatters in the medium at " + show(position));
     if (depth_ >= settings_.max_depth) return false;
-    const uint32_t dimension = kCameraDimensions + static_cast<uint32_t>(depth_) * kPerBounce;
-    const Phase& phase = medium.phase();
+    const Phase& phase = way.medium->phase();
     const Rgb shares = channel_shares(throughput_);
-    add_direct_light(phase, position, shares, dimension);
+    const auto flight = way.medium->flight_density(t, way.shares);
+    const float t_pdf = flight ? flight->pdf : 0.0F;
+    add_direct_light(way, t, t_pdf, position, event_dimension());
 
-    sampler_.set_dimension(dimension + kBsdf);
+    sampler_.set_dimension(event_dimension() + kBsdf);
     const Vec4 u = sampler_.next_4d();
     const Vec3 direction = phase.sample(ray_.direction, shares, u.z, Vec2(u));
     const float cosine = glm::dot(ray_.direction, direction);
@@ -253,7 +300,7 @@ class Path {
     if (!(pdf > 0.0F)) return false;
     throughput_ *= phase.evaluate(cosine) / pdf;
     if (!count_event(u.w)) return false;
-    previous_ = {.position = position, .normal = Vec3(0.0F), .pdf = pdf, .specular = false};
+    previous_ = {position, way.ray.origin, Vec3(0.0F), pdf, false, way, t, t_pdf};
     ray_ = {position, direction, kInfinity, ray_.time};
     return true;
   }
@@ -269,7 +316,7 @@ class Path {
     eta_scale_ *= sample->eta * sample->eta;
     if (!count_event(u.w)) return false;
     const SurfacePoint& point = surface.point();
-    previous_ = {point.position, point.ng, sample->pdf, sample->delta};
+    previous_ = {point.position, point.position, point.ng, sample->pdf, sample->delta, {}};
     if (passes_through(point, wo, sample->wi)) cross(object, point, sample->wi, around_);
     ray_ = spawn_ray(point, sample->wi);
     ray_.time = point.time;
@@ -322,9 +369,13 @@ class Path {
   /// Where the path scattered last: what light selection and MIS refer to.
   struct Previous {
     Vec3 position{0.0F};
+    Vec3 selected_from{0.0F};  ///< what choosing a light referred to
     Vec3 normal{0.0F};
     float pdf = 0.0F;
     bool specular = true;  ///< a delta lobe, or the camera: lights could not have been chosen
+    MediumWay way;         ///< in a medium: on which the path came there
+    float t = 0.0F;        ///< how far along it
+    float t_pdf = 0.0F;    ///< density with which free flight ended there; 0: unknown
   };
 
   const IntegratorDesc& settings_;

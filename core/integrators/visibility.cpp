@@ -6,7 +6,7 @@ void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& dir
            MediumStack& around) {
   if (object.body == SceneObject::kNoBody) return;
   if (glm::dot(direction, point.ng) < 0.0F) {
-    around.enter(object.body, object.interior.get());
+    around.enter(object.body, object.interior.get(), object.material->is_null());
   } else {
     around.leave(object.body);
   }

@@ -13,6 +13,10 @@ class AreaLight : public Light {
   /// `area` when the shutter opens [length^2], only for power().
   AreaLight(const Rgb& radiance, bool two_sided, double area);
 
+  /// Tells where the light's middle is when the shutter opens.
+  void set_middle(const Vec3& middle) { middle_ = middle; }
+  std::optional<Vec3> middle() const override { return middle_; }
+
   Rgb radiance(const SurfacePoint& on, const Vec3& outward) const override;
   float power() const override { return power_; }
 
@@ -46,6 +50,7 @@ class AreaLight : public Light {
   Rgb radiance_;
   bool two_sided_;
   float power_;
+  std::optional<Vec3> middle_;
 };
 
 /// Density per solid angle at `from` of a place that is chosen with `pdf_area` per area: multiplied

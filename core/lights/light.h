@@ -57,6 +57,9 @@ class Light {
 
   virtual bool is_infinite() const { return false; }
 
+  /// About where the light is, for choosing places near it. Nothing for infinite lights.
+  virtual std::optional<Vec3> middle() const { return std::nullopt; }
+
   /// Whether no ray can find it: a single place or direction.
   virtual bool is_delta() const { return false; }
 

@@ -98,7 +98,10 @@ double surface_area(const World& world, uint32_t object) {
   return mesh_areas(*shape.mesh, linear).total;
 }
 
-LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided) {
+namespace {
+
+std::shared_ptr<AreaLight> light_of_its_kind(const World& world, uint32_t object,
+                                             const Rgb& radiance, bool two_sided) {
   const Shape& shape = world.placement(object).shape;
   if (shape.kind == Shape::Kind::mesh) {
     if (const auto rectangle = find_rectangle(world, object)) {
@@ -114,6 +117,16 @@ LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radianc
     return std::make_shared<SphereLight>(world, object, radiance, two_sided, area);
   }
   return std::make_shared<QuadricLight>(world, object, radiance, two_sided, area);
+}
+
+}  // namespace
+
+LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided) {
+  const std::shared_ptr<AreaLight> light = light_of_its_kind(world, object, radiance, two_sided);
+  const Bounds bounds = bounds_of(world.placement(object).shape);
+  if (!bounds.empty())
+    light->set_middle(transform_point(world.transform_at(object, 0.0F), bounds.center()));
+  return light;
 }
 
 }  // namespace hyades::core

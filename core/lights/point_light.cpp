@@ -53,6 +53,7 @@ class SpotLight : public Light {
   }
 
   bool is_delta() const override { return true; }
+  std::optional<Vec3> middle() const override { return position_; }
 
   /// Uniformly within the outer cone.
   std::optional<EmissionSample> sample_emission(float time, float /*pick*/, const Vec2& /*place*/,

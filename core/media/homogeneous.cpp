@@ -56,6 +56,12 @@ class Homogeneous final : public Medium {
     return result;
   }
 
+  std::optional<FlightDensity> flight_density(float t, const Rgb& shares) const override {
+    if (!scatters_) return std::nullopt;
+    const Rgb passed = attenuation(extinction_, t);
+    return FlightDensity{passed * scattering_, glm::dot(shares, extinction_ * passed)};
+  }
+
   Rgb transmittance(const Ray&, float t_max, const Vec4&) const override {
     return attenuation(extinction_, t_max);
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/base/ray.h"
 #include "core/base/vec.h"
 #include "core/media/phase.h"
@@ -15,6 +17,12 @@ struct MediumSample {
   bool scattered = false;  ///< else it reaches the end
 };
 
+/// How a place on the way compares as one to scatter at.
+struct FlightDensity {
+  Rgb scattered{0.0F};  ///< transmittance times the scattering coefficient [1/m]
+  float pdf = 0.0F;     ///< density with which Medium::sample scatters there [1/m]
+};
+
 /// What fills space between surfaces. Coefficients are per metre, and channels of linear Rec.709.
 /// Immutable and thread-safe; belongs to one frame.
 class Medium {
@@ -26,6 +34,12 @@ class Medium {
   /// to what the path carries. `u` in [0, 1)^4.
   virtual MediumSample sample(const Ray& ray, float t_max, const Rgb& shares,
                               const Vec4& u) const = 0;
+
+  /// The density of free flight at `t` below the end of the way, where it is known: in media that
+  /// are the same everywhere.
+  virtual std::optional<FlightDensity> flight_density(float /*t*/, const Rgb& /*shares*/) const {
+    return std::nullopt;
+  }
 
   /// An unbiased estimate of the share of light that reaches `t_max` unscattered.
   virtual Rgb transmittance(const Ray& ray, float t_max, const Vec4& u) const = 0;

@@ -35,7 +35,7 @@ MediumStack media_around(const Scene& scene, const Vec3& point, float time) {
   MediumStack stack(scene.atmosphere.get());
   for (auto m = met.rbegin(); m != met.rend(); ++m) {
     const SceneObject& object = scene.objects[m->object];
-    if (m->from_within) stack.enter(object.body, object.interior.get());
+    if (m->from_within) stack.enter(object.body, object.interior.get(), object.material->is_null());
   }
   return stack;
 }

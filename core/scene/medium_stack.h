@@ -19,10 +19,14 @@ class MediumStack {
   /// What is around; null: nothing.
   const Medium* medium() const { return size_ > 0 ? inside_[size_ - 1].medium : atmosphere_; }
 
-  /// Comes into `body`, which is filled with `medium` (may be null).
-  void enter(uint32_t body, const Medium* medium) {
+  /// Whether light from outside comes in straight: not through glass.
+  bool open() const { return size_ == 0 || inside_[size_ - 1].open; }
+
+  /// Comes into `body`, which is filled with `medium` (may be null); `open`: through a surface that
+  /// scatters nothing.
+  void enter(uint32_t body, const Medium* medium, bool open) {
     leave(body);
-    if (size_ < kDeepest) inside_[size_++] = {body, medium};
+    if (size_ < kDeepest) inside_[size_++] = {body, medium, open};
   }
 
   void leave(uint32_t body) {
@@ -40,6 +44,7 @@ class MediumStack {
   struct Entry {
     uint32_t body;
     const Medium* medium;
+    bool open;
   };
 
   const Medium* atmosphere_;
