@@ -129,7 +129,6 @@ INSTANTIATE_TEST_SUITE_P(Scenes, References,
                                          Reference{"rough-glass", 256, 0.08, 0.13},
                                          Reference{"lens", 64}, Reference{"env-bunny-gold", 64},
                                          Reference{"fog-room", 128},
-                                         Reference{"fog-room-colour", 128},
                                          Reference{"subsurface-grey", 96}),
                          [](const auto& scene) {
                            std::string name = scene.param.name;
