@@ -172,6 +172,14 @@ objects:
   lamp: {shape: sphere, radius: 0.25, at: [0.7, 1.7, 0.2], emit: {radiance: 15}}
 )",
      96, 0.03, 4},
+    {"large_lamp_in_forward_fog", R"(
+camera: {look_from: [0, 0.5, 3], look_at: [0, 0.5, 0], fov: 60}
+media: {fog: {scattering: 0.4, g: 0.85}}
+atmosphere: fog
+objects:
+  lamp: {shape: sphere, radius: 0.5, at: [0, 0.5, 0], emit: {radiance: 2}, visible_to_camera: false}
+)",
+     96, 0.03, 3},
     {"coloured_glass_over_milk", R"(
 camera: {look_from: [0, 1.4, 3], look_at: [0, 0.5, 0], fov: 40}
 media:
