@@ -180,6 +180,19 @@ objects:
   lamp: {shape: sphere, radius: 0.5, at: [0, 0.5, 0], emit: {radiance: 2}, visible_to_camera: false}
 )",
      96, 0.03, 3},
+    {"lamp_in_a_cloud_of_noise", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
+media:
+  cloud: {scattering: [8, 9, 10], absorption: [0.5, 0.2, 0.1], g: 0.4, emission: [0, 0.02, 0.05], density: {noise: {scale: 3, octaves: 3}}}
+materials:
+  white: {type: lambert, color: 0.6}
+  air: {type: "null"}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  smoke: {shape: box, size: [1.4, 1, 1], at: [0, 0.6, 0], material: air, interior: cloud}
+  lamp: {shape: sphere, radius: 0.3, at: [0.9, 1.7, 0.6], emit: {radiance: 25}}
+)",
+     96, 0.03},
     {"coloured_glass_over_milk", R"(
 camera: {look_from: [0, 1.4, 3], look_at: [0, 0.5, 0], fov: 40}
 media:
