@@ -26,6 +26,8 @@ constexpr Command kCommands[] = {
     {"render", "hyades-render", "render a job (or a mesh file) on this machine"},
     {"check", "hyades-render", "read a job, report every mistake in it, and what it would cost"},
     {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
+    {"strategies", "hyades-render",
+     "what each strategy of bidirectional path tracing brings to a picture"},
     {"media", "hyades-render",
      "measured media: their numbers and colours; media files from other descriptions"},
     {"bench", "hyades-render",

@@ -7,6 +7,7 @@ int check_command(int argc, char** argv);
 int media_command(int argc, char** argv);
 int render_command(int argc, char** argv);
 int replay_command(int argc, char** argv);
+int strategies_command(int argc, char** argv);
 }  // namespace hyades::cli
 
 int main(int argc, char** argv) {
@@ -14,7 +15,7 @@ int main(int argc, char** argv) {
   hyades::core::ignore_file_size_signal();
   constexpr ProgramCommand kCommands[] = {
       {"render", render_command}, {"check", check_command}, {"replay", replay_command},
-      {"media", media_command},   {"bench", bench_command},
+      {"media", media_command},   {"bench", bench_command}, {"strategies", strategies_command},
   };
   return run_program(kCommands, argc, argv);
 }

@@ -1,0 +1,118 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/command_line.h"
+#include "cli/load_job.h"
+#include "core/base/parallel.h"
+#include "core/finish/frame_outputs.h"
+#include "core/render/render_frame.h"
+#include "core/scene/build_scene.h"
+
+namespace hyades::cli {
+namespace {
+
+struct Wish {
+  int32_t frame = 0;
+  int events = 4;
+  int threads = core::hardware_threads();
+  std::string output = ".";
+};
+
+/// Renders what strategy (s, t) brings to the picture, and writes it. False (and a message) where
+/// that fails.
+bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job job,
+                    const Wish& wish, int s, int t, bool weighted) {
+  job.integrator.light_vertices = s;
+  job.integrator.camera_vertices = t;
+  job.integrator.min_events = job.integrator.max_depth = s + t - 2;
+  job.integrator.mis = weighted;
+  core::LayerSet layers;
+  layers.splats = true;
+  const core::FrameRenderer renderer(scene, job, wish.frame, layers);
+  const core::RenderedFrame rendered =
+      core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, wish.frame,
+                         {.threads = wish.threads});
+  const std::string name =
+      fmt::format("{}.s{}-t{}{}", job.name, s, t, weighted ? "" : ".unweighted");
+  core::OutputDesc exr;
+  exr.file = name + ".exr";
+  exr.layers = {"beauty", "variance"};
+  core::OutputDesc png;
+  png.file = name + ".png";
+  core::FilmInfo info;
+  info.job_name = job.name;
+  info.frame = wish.frame;
+  info.width = job.film.width;
+  info.height = job.film.height;
+  info.crop = core::render_window(job.film);
+  info.samples = job.sampling.samples;
+  const core::OutputDesc outputs[] = {exr, png};
+  const auto written = core::write_outputs(outputs, wish.output, info, rendered.film);
+  if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
+  for (size_t i = 0; written && i < written->size(); ++i)
+    std::printf("wrote %s\n", (*written)[i].c_str());
+  return static_cast<bool>(written);
+}
+
+}  // namespace
+
+/// `hyades strategies job.yaml`: what each strategy of bidirectional path tracing brings to a
+/// picture, weighted and not.
+int strategies_command(int argc, char** argv) {
+  CLI::App app(
+      "Renders what each strategy of bidirectional path tracing alone finds of a job's picture: "
+      "paths of s vertices from the light and t from the camera, as weighted in the picture (their "
+      "sum is the picture but for what shines into the camera itself) and unweighted.",
+      "hyades strategies");
+  Wish wish;
+  std::string path;
+  uint32_t samples = 0;
+  app.add_option("job", path, "the job (.yaml)")->required();
+  auto* frame = app.add_option("--frame", wish.frame, "frame number (default: the job's first)");
+  app.add_option("--events", wish.events, "most scattering events")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  app.add_option("--samples", samples, "per pixel (default: the job's)")
+      ->check(CLI::Range(1U, 16'777'216U));
+  app.add_option("--threads", wish.threads, "rendering threads")->check(CLI::Range(1, 1024));
+  app.add_option("--output", wish.output, "folder for the pictures")->capture_default_str();
+  app.footer(
+      "example:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output parts");
+  if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
+  auto loaded = load_job(path);
+  if (!loaded) return kBadInput;
+  core::Job& job = loaded->job;
+  if (frame->empty()) wish.frame = job.frames.first;
+  if (wish.frame < job.frames.first || wish.frame > job.frames.last) {
+    std::fprintf(stderr, "--frame %d: expected a frame within the job's range %d-%d\n", wish.frame,
+                 job.frames.first, job.frames.last);
+    return kBadInput;
+  }
+  if (job.film.filter == core::FilterKind::center) {
+    std::fprintf(stderr, "%s: film.filter is center, expected a filter with a radius\n",
+                 path.c_str());
+    return kBadInput;
+  }
+  if (samples > 0) job.sampling.samples = samples;
+  job.integrator.type = "bdpt";
+  core::SceneCache cache(*loaded->assets);
+  auto scene = core::build_scene(job, wish.frame, cache);
+  if (!scene) {
+    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
+    return 1;
+  }
+  for (int events = 1; events <= wish.events; ++events) {
+    for (int s = 0; s <= events + 1; ++s) {
+      for (const bool weighted : {true, false}) {
+        if (!write_strategy(*scene, job, wish, s, events + 2 - s, weighted)) return 1;
+      }
+    }
+  }
+  return 0;
+}
+
+}  // namespace hyades::cli
