@@ -88,8 +88,7 @@ class BidirectionalSample final : public WalkWatcher {
   // What the camera path meets.
 
   void medium_emits(const Way& way, const Rgb& radiance) override {
-    if (wanted(0) && camera_.size() - 1 >= settings_.min_events)
-      out_.radiance += way.throughput * radiance;
+    if (wanted(0, camera_.size() + 1)) out_.radiance += way.throughput * radiance;
   }
 
   void arrives(const PathVertex& v) override {
@@ -274,7 +273,7 @@ class BidirectionalSample final : public WalkWatcher {
 
   /// Whether pixels that are rendered may see film position `film`, whatever the filter.
   bool near_film(const Vec2& film) const {
-    constexpr float kWidestFilter = 64.0F;
+    constexpr float kWidestFilter = 17.0F;  // 16 pixels, and the half pixel around a centre
     const PixelRect& w = scene_.window;
     return film.x > static_cast<float>(w.x0) - kWidestFilter &&
            film.x < static_cast<float>(w.x1) + kWidestFilter &&

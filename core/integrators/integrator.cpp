@@ -8,7 +8,7 @@ namespace {
 
 std::unique_ptr<Integrator> make_direct_view_integrator(const IntegratorDesc& desc) {
   IntegratorDesc direct = desc;
-  direct.max_depth = 0;
+  direct.max_events = 0;
   return make_path_integrator(direct);
 }
 

@@ -17,7 +17,8 @@ class MediaNumbers {
  public:
   enum class Purpose : uint32_t { flight, shadow, light_flight, connection };
 
-  /// Of the way after `depth` scattering events; of connections: their number, modulo 2^16.
+  /// Of the way after `depth` scattering events; of connections: their number, modulo 2^16 (two
+  /// that share numbers are different terms of a sum).
   MediaNumbers(Sampler& sampler, int depth, Purpose purpose)
       : sampler_(&sampler),
         dimension_(first(purpose) + (static_cast<uint32_t>(depth) % kWays) * 2 * kPerWay) {}

@@ -25,6 +25,9 @@ struct MediumWay {
     const std::optional<Vec3> middle = light.middle();
     if (!middle) return std::nullopt;
     const Equiangular places(ray, t_max, *middle);
+    // Seen under less the places are all but even, and the angle's rounding would show.
+    constexpr float kLeastAngle = 1e-3F;
+    if (!(places.angle() > kLeastAngle)) return std::nullopt;
     constexpr float kLeastShare = 0.02F;
     const Rgb passed = medium->transmittance(ray, places.nearest(), Vec4(0.5F));
     return max_component(passed) > kLeastShare ? std::optional(places) : std::nullopt;

@@ -69,14 +69,15 @@ class Path {
       if (work_.log != nullptr) log_hit(point, object);
       add_emission(point, object);
       const bool last = depth_ >= settings_.max_depth;
-      if (last && albedo_noted_) break;
+      const bool all_lit = depth_ >= settings_.max_events;
+      if ((last || all_lit) && albedo_noted_) break;
 
       work_.arena.reset();
       const ShadedSurface surface(point, *object.material, work_.arena);
       if (surface.bsdf() == nullptr) break;
       const Vec3 wo = -ray_.direction;
       if (!albedo_noted_) note_albedo(surface, wo);
-      if (last) break;
+      if (last || (all_lit && albedo_noted_)) break;
       const uint32_t dimension = event_dimension();
       if (surface.has_smooth()) add_direct_light(surface, object, wo, dimension);
       if (!scatter(surface, object, wo, dimension)) break;
@@ -93,7 +94,7 @@ class Path {
   /// Adds `light` times the path's throughput; what came by more than one bounce may be clamped on
   /// request.
   void add(const Rgb& light, int events) {
-    if (events < settings_.min_events) return;
+    if (events < settings_.min_events || events > settings_.max_events) return;
     Rgb contribution = throughput_ * light;
     if (settings_.clamp > 0.0F && events > 1)
       contribution = glm::min(contribution, Rgb(settings_.clamp));
@@ -151,11 +152,11 @@ class Path {
     const float pdf = surface.pdf(wo, sample.direction, TransportMode::radiance);
     const float weight = sample.delta ? 1.0F : power_heuristic(chosen->pdf(), pdf);
     if (!passes_through(point, wo, sample.direction)) {
-      return add_light(*chosen, f * weight, shadow, around_, MediaNumbers::Purpose::shadow);
+      return add_light(*chosen, f, weight, shadow, around_, MediaNumbers::Purpose::shadow);
     }
     MediumStack beyond = around_;
     cross(object, point, sample.direction, beyond);
-    add_light(*chosen, f * weight, shadow, beyond, MediaNumbers::Purpose::shadow);
+    add_light(*chosen, f, weight, shadow, beyond, MediaNumbers::Purpose::shadow);
   }
 
   /// The same for the place at `t` of a way through a medium, where free flight has ended. `pdf`:
@@ -171,14 +172,15 @@ class Path {
     const float rival = way.rival(*scene_.lights[chosen->index], t, pdf) * chosen->pdf();
     const float weight =
         power_heuristic(chosen->pdf(), std::sqrt(scattered * scattered + rival * rival));
-    add_light(*chosen, phase.evaluate(cosine) * weight, shadow_ray(position, sample), around_,
+    add_light(*chosen, phase.evaluate(cosine), weight, shadow_ray(position, sample), around_,
               MediaNumbers::Purpose::shadow);
   }
 
   /// Light scattered once more at a place near a light, besides the one where free flight ends:
   /// together, by the power heuristic over places and directions, they find lamps in fog at once.
   void add_light_from_near(const MediumWay& way, const SurfacePoint* surface, const Vec4& u) {
-    if (depth_ >= settings_.max_depth || scene_.lights.empty()) return;
+    if (depth_ >= std::min(settings_.max_depth, settings_.max_events)) return;
+    if (scene_.lights.empty()) return;
     sampler_.set_dimension(event_dimension() + kLight);
     const auto selected = scene_.selector->select(way.ray.origin, Vec3(0.0F), sampler_.next_4d().z);
     if (!selected) return;
@@ -199,7 +201,7 @@ class Path {
     const float pdf = places->pdf(t);
     const float other = flight.pdf / pdf;
     const float weight = 1.0F / (1.0F + other * other * (1.0F + scattered * scattered));
-    add_light(chosen, phase.evaluate(cosine) * flight.scattered * (weight / pdf),
+    add_light(chosen, phase.evaluate(cosine) * flight.scattered / pdf, weight,
               shadow_ray(position, *sample), around_, MediaNumbers::Purpose::connection);
   }
 
@@ -231,17 +233,17 @@ class Path {
     return ChosenLight{selected->index, selected->probability, *sample};
   }
 
-  /// Adds what `chosen` sends along `shadow`, scattered and weighted by `f`.
-  void add_light(const ChosenLight& chosen, const Rgb& f, const Ray& shadow,
+  /// Adds what `chosen` sends along `shadow`, scattered by `f`, with `weight`.
+  void add_light(const ChosenLight& chosen, const Rgb& f, float weight, const Ray& shadow,
                  const MediumStack& around, MediaNumbers::Purpose purpose) {
     const Rgb share =
         visible_share(scene_, shadow, around, MediaNumbers(sampler_, depth_, purpose), work_);
     if (is_black(share)) return;
     if (work_.log != nullptr) {
-      work_.log->lines.push_back(
-          fmt::format("    chooses light '{}'", scene_.light_names[chosen.index]));
+      work_.log->lines.push_back(fmt::format("    chooses light '{}', weight {:.4g}",
+                                             scene_.light_names[chosen.index], weight));
     }
-    add(f * chosen.sample.radiance * share / chosen.pdf(), depth_ + 1);
+    add(f * chosen.sample.radiance * share * (weight / chosen.pdf()), depth_ + 1);
   }
 
   static bool passes_through(const SurfacePoint& point, const Vec3& wo, const Vec3& wi) {
@@ -285,7 +287,7 @@ class Path {
     }
     if (work_.log != nullptr)
       work_.log->lines.push_back("  scatters in the medium at " + show(position));
-    if (depth_ >= settings_.max_depth) return false;
+    if (depth_ >= std::min(settings_.max_depth, settings_.max_events)) return false;
     const Phase& phase = way.medium->phase();
     const Rgb shares = channel_shares(throughput_);
     const auto flight = way.medium->flight_density(t, way.shares);

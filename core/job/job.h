@@ -76,7 +76,9 @@ struct IntegratorDesc {
   std::string over = "bdpt";  ///< path | bdpt: whose samples the chains mutate
   float large_step = 0.3F;    ///< probability of an independent sample, (0, 1]
 
-  int min_events = 0;  ///< not a job's key: fewer scattering events bring no light
+  // Not keys of jobs: fewer, or more, scattering events bring no light.
+  int min_events = 0;
+  int max_events = 1 << 30;
 };
 
 struct CameraDesc {

@@ -140,6 +140,11 @@ void read_bdpt(MapReader& reader, IntegratorDesc& integrator) {
     integrator.camera_vertices = t;
   }
   reader.flag("mis", integrator.mis);
+  if (!integrator.mis && integrator.light_vertices < 0) {
+    reader.complain(reader.find("mis")->where,
+                    "mis is false without a strategy, expected [s, t] in strategy too: all of them "
+                    "unweighted would add up to several times the picture");
+  }
 }
 
 void read_mlt(MapReader& reader, IntegratorDesc& integrator) {

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "core/materials/local.h"
 #include "core/materials/params.h"
 
@@ -14,7 +17,8 @@ class TurnedBsdf final : public Bsdf {
   Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
     const Vec3 o = turn_.to_local(wo);
     const Vec3 i = turn_.to_local(wi);
-    return same_side(o, wo) && same_side(i, wi) ? inner_.evaluate(o, i, mode) : Rgb(0.0F);
+    if (!same_side(o, wo) || !same_side(i, wi)) return Rgb(0.0F);
+    return inner_.evaluate(o, i, mode) * adjoint_factor(wo, o, wi, i, mode);
   }
 
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
@@ -31,6 +35,7 @@ class TurnedBsdf final : public Bsdf {
     if (!s) return std::nullopt;
     const Vec3 i = turn_.to_world(s->wi);
     if (!same_side(i, s->wi)) return std::nullopt;
+    s->weight *= adjoint_factor(wo, o, i, s->wi, mode);
     s->wi = i;
     return s;
   }
@@ -39,6 +44,14 @@ class TurnedBsdf final : public Bsdf {
   bool has_smooth() const override { return inner_.has_smooth(); }
 
  private:
+  /// Importance is corrected for the outer normal (ShadedSurface), but scattered about this one
+  /// (Veach 1997, section 5.3). `o` and `i` are wo and wi in the inner frame.
+  static float adjoint_factor(const Vec3& wo, const Vec3& o, const Vec3& wi, const Vec3& i,
+                              TransportMode mode) {
+    if (mode == TransportMode::radiance) return 1.0F;
+    return std::abs(o.z * wi.z) / std::max(std::abs(wo.z * i.z), 1e-12F);
+  }
+
   const Bsdf& inner_;
   Frame turn_;
 };

@@ -12,6 +12,9 @@ class Equiangular {
   /// On the way of `ray` to `t_max` (may be infinite), as seen from `point`.
   Equiangular(const Ray& ray, float t_max, const Vec3& point);
 
+  /// The angle under which the way is seen.
+  float angle() const { return angle_; }
+
   /// The place on the way that is nearest to the point.
   float nearest() const;
 

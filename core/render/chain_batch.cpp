@@ -1,7 +1,6 @@
 #include "core/render/chain_batch.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/hash.h"
 
@@ -36,14 +35,7 @@ class Collector final : public ChainSink {
 
   void deposit(const Splat& splat) override {
     const auto placed = placer_.place(splat, hash_combine(key_, index_++));
-    if (!placed) return;
-    const auto [r, g, b] = placed->value;
-    // Every comparison is false for NaN.
-    if (std::abs(r) <= kMaxSample && std::abs(g) <= kMaxSample && std::abs(b) <= kMaxSample) {
-      if (r != 0.0F || g != 0.0F || b != 0.0F) splats_.push_back(*placed);
-    } else {
-      ++counters_.bad_samples;
-    }
+    if (placed && !add_splat(*placed, splats_)) ++counters_.bad_samples;
   }
 
   bool goes_on(double done) override {

@@ -123,13 +123,9 @@ void FrameRenderer::take_splats(const Vec2i& pixel, uint32_t sample, Workspace& 
     const bool somewhere = std::isfinite(splat.film.x) && std::isfinite(splat.film.y);
     const auto placed = placer_->place(splat, splat_random(pixel, sample, i));
     if (somewhere && !placed) continue;
-    const auto [r, g, b] = placed.value_or(PixelSplat{}).value;
-    if (!somewhere || !is_usable(Vec3(r, g, b))) {
-      ++counters.bad_samples;
-      if (counters.examples.size() < kBadExamples) counters.examples.push_back({pixel, sample});
-    } else if (r != 0.0F || g != 0.0F || b != 0.0F) {
-      into.push_back(*placed);
-    }
+    if (somewhere && add_splat(*placed, into)) continue;
+    ++counters.bad_samples;
+    if (counters.examples.size() < kBadExamples) counters.examples.push_back({pixel, sample});
   }
   work.splats.clear();
 }
@@ -227,6 +223,7 @@ PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& 
   Workspace work;
   work.log = &log;
   const PixelSample result = sample_pixel(pixel, sample, *sampler, work);
+  std::vector<PixelSplat> parts;
   for (size_t i = 0; placer_ && i < work.splats.size(); ++i) {
     const Splat& splat = work.splats[i];
     const auto placed = placer_->place(splat, splat_random(pixel, sample, i));
@@ -242,7 +239,7 @@ PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& 
       line += fmt::format("{:.4g} {:.4g} {:.4g} for pixel {}, {}{}", r, g, b,
                           region.x0 + static_cast<int>(placed->pixel % width),
                           region.y0 + static_cast<int>(placed->pixel / width),
-                          is_usable(Vec3(r, g, b)) ? "" : ", which is not counted");
+                          add_splat(*placed, parts) ? "" : ", which is not counted");
     }
     log.lines.push_back(std::move(line));
   }

@@ -11,6 +11,20 @@ constexpr int kMostPixels = 40;  ///< in the reach of the widest filter (16 pixe
 
 }  // namespace
 
+bool add_splat(const PixelSplat& splat, std::vector<PixelSplat>& into) {
+  float largest = 0.0F;
+  for (const float v : splat.value) {
+    if (!(std::fabs(v) <= kMaxSplat)) return false;
+    largest = std::max(largest, std::fabs(v));
+  }
+  if (largest == 0.0F) return true;
+  const float parts = std::max(std::ceil(largest / kMaxDeposit), 1.0F);
+  PixelSplat part = splat;
+  for (float& v : part.value) v /= parts;
+  into.insert(into.end(), static_cast<size_t>(parts), part);
+  return true;
+}
+
 SplatPlacer::Choice SplatPlacer::choose(float at, float u) const {
   // All pixels whose centres are within the radius; the filter is 0 for one too many at either end.
   const int first = static_cast<int>(std::floor(at - 0.5F - radius_));

@@ -2,13 +2,23 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "core/base/rect.h"
+#include "core/film/fixed128.h"
 #include "core/film/splats.h"
 #include "core/integrators/integrator.h"
 #include "core/samplers/filter.h"
 
 namespace hyades::core {
+
+/// The largest magnitude of a splat that counts. It may be far larger than a pixel's value: it
+/// stands for as many pixels as the film has.
+inline constexpr float kMaxSplat = 1024.0F * kMaxDeposit;
+
+/// Adds `splat`, in parts that a film can hold where it is large; nothing where it is black. False
+/// where it does not count, for it is not finite or beyond kMaxSplat.
+bool add_splat(const PixelSplat& splat, std::vector<PixelSplat>& into);
 
 /// Which pixel a splat counts for. A splat at x is an estimate of filter(x - centre) times its
 /// value for every pixel; instead of all those within the filter's reach one gets it, chosen with

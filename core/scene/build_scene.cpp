@@ -9,6 +9,7 @@
 #include "core/geometry/placement_check.h"
 #include "core/job/check_frame.h"
 #include "core/job/kinds.h"
+#include "core/job/layers.h"
 #include "core/scene/appearance.h"
 #include "core/scene/flatten.h"
 #include "core/scene/light_makers.h"
@@ -101,6 +102,12 @@ class SceneBuilder {
     auto interior = interior_of(object);
     if (!interior) return at(object, interior.error());
     added.interior = *interior;
+    if (added.interior != nullptr && !object.placement.visible_to_camera &&
+        makes_splats(job_.integrator)) {
+      return at(object, Error{"it is not visible to the camera but has an interior, which light "
+                              "paths would show; expected visible_to_camera: true, or integrator: "
+                              "path"});
+    }
     const bool closed = has_inside(*object.desc);
     if (*interior == nullptr && !(closed && added.material->leads_inside())) return {};
     added.body = static_cast<uint32_t>(object.body);

@@ -91,7 +91,7 @@ objects:
   wall: {shape: rectangle, size: [1, 1], transform: [{rotate_x: 90}], at: [0.6, 0.6, -0.5], material: white}
   lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.6, 0.6], emit: {radiance: 8}}
 )",
-     128, 0.03},
+     128, 0.04},
     {"bumped_gloss", R"(
 camera: {look_from: [0, 1.2, 3], look_at: [0, 0.5, 0], fov: 40}
 textures:
@@ -102,6 +102,19 @@ materials:
 objects:
   floor: {shape: rectangle, size: [3, 3], material: white}
   ball: {shape: sphere, radius: 0.5, at: [0, 0.55, 0], material: shiny}
+  lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.6, 0.8], emit: {radiance: 15}}
+)"},
+    {"mix_of_bumps", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.5, 0], fov: 40}
+textures:
+  waves: {type: perlin3d, scale: 4, octaves: 2}
+materials:
+  rough: {type: lambert, color: [0.8, 0.6, 0.3], bump: {texture: waves, height: 0.3}}
+  smooth: {type: lambert, color: [0.2, 0.3, 0.8]}
+  both: {type: mix, first: rough, second: smooth, amount: 0.3}
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: both}
+  ball: {shape: sphere, radius: 0.5, at: [0, 0.55, 0], material: both}
   lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.6, 0.8], emit: {radiance: 15}}
 )"},
     {"smooth_normals_of_a_coarse_mesh", R"(

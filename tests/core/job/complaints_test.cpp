@@ -177,6 +177,13 @@ TEST(Complaints, StrategiesThatCannotBe) {
   }
 }
 
+TEST(Complaints, StrategiesAllUnweighted) {
+  EXPECT_EQ(
+      complaints("integrator: {type: bdpt, mis: false}\n"),
+      "job.yaml:2:31: mis is false without a strategy, expected [s, t] in strategy too: all of "
+      "them unweighted would add up to several times the picture\n");
+}
+
 TEST(Complaints, WhatLaterVersionsKnowIsNotCalledAMistake) {
   EXPECT_EQ(complaints("outputs: [{file: a.mp4}]\n"),
             "job.yaml:2:18: file is 'a.mp4', expected the ending .exr, .png, .jpg or .jpeg (.mp4 "

@@ -178,6 +178,7 @@ const std::map<std::string, Place>& places() {
 Pairs company(const JobKey& id) {
   if (id == JobKey{"materials.conductor", "eta"}) return {{"k", "3"}};
   if (id == JobKey{"materials.conductor", "k"}) return {{"eta", "1.2"}};
+  if (id == JobKey{"integrator.bdpt", "mis"}) return {{"strategy", "[1, 2]"}};
   if (id == JobKey{"media.emission", "kelvin"}) return {{"temperature", "heat"}};
   if (id == JobKey{"media", "albedo"}) return {{"density", "2"}};
   if (id == JobKey{"media", "density"}) return {{"albedo", "0.5"}};

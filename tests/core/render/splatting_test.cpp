@@ -132,7 +132,7 @@ TEST(Splatting, SplatsThatDoNotCountAreCountedAndLeftOut) {
       const Vec2 at(8.0F, 8.0F);
       for (const Splat& splat :
            {Splat{at, Rgb(1.0F, kInfinity, 1.0F)}, Splat{at, Rgb(std::nanf(""))},
-            Splat{at, Rgb(1e11F)}, Splat{{std::nanf(""), 1.0F}, Rgb(1.0F)},  // four bad ones
+            Splat{at, Rgb(1e17F)}, Splat{{std::nanf(""), 1.0F}, Rgb(1.0F)},  // four bad ones
             Splat{at, Rgb(0.0F)}, Splat{{-100.0F, 8.0F}, Rgb(1.0F)},
             Splat{{100.0F, 8.0F}, Rgb(1.0F)}, Splat{at, Rgb(1.0F)}}) {
         work.splats.push_back(splat);
@@ -158,7 +158,7 @@ objects: {ball: {shape: sphere}}
               testing::ElementsAre(
                   "splat 0 at 8.000, 8.000: 1 inf 1 for pixel 8, 8, which is not counted",
                   "splat 1 at 8.000, 8.000: nan nan nan for pixel 8, 8, which is not counted",
-                  "splat 2 at 8.000, 8.000: 1e+11 1e+11 1e+11 for pixel 8, 8, which is not counted",
+                  "splat 2 at 8.000, 8.000: 1e+17 1e+17 1e+17 for pixel 8, 8, which is not counted",
                   "splat 3 at nan, 1.000: it is not counted",
                   "splat 4 at 8.000, 8.000: 0 0 0 for pixel 8, 8",
                   "splat 5 at -100.000, 8.000: outside of what is rendered",
