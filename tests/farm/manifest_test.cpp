@@ -64,17 +64,18 @@ struct Rendered {
 /// The render key and bits of `frame`, of `samples` samples, of the job in `document` of `files`.
 Rendered render(const std::string& document, core::AssetResolver& files, int32_t frame,
                 uint32_t samples) {
-  const auto read = read_job(document, document, files);
+  auto read = read_job(document, document, files);
   EXPECT_TRUE(read) << error_of(read);
   if (!read) return {};
+  core::PixelRect window = core::render_window(read->job.film);
+  window.x1 = std::min(window.x1, window.x0 + 32);
+  window.y1 = std::min(window.y1, window.y0 + 32);
+  read->job.film.crop = window;
   core::SceneCache cache(files);
   const auto scene = core::build_scene(read->job, frame, cache);
   EXPECT_TRUE(scene) << error_of(scene);
   if (!scene) return {};
   const core::FrameRenderer renderer(*scene, read->job, frame, core::needed_layers(read->job));
-  core::PixelRect window = core::render_window(read->job.film);
-  window.x1 = std::min(window.x1, window.x0 + 32);
-  window.y1 = std::min(window.y1, window.y0 + 32);
   return {core::render_key(read->job, frame, read->assets),
           core::render_frame(renderer, window, samples, frame).film.digest()};
 }
