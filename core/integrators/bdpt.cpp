@@ -165,8 +165,11 @@ class BidirectionalSample final : public WalkWatcher {
     const Vec3& direction = sample->direction;
     const Rgb f = v.evaluate(v.wo, direction, TransportMode::radiance);
     if (is_black(f)) return;
+    const Ray shadow = v.kind == PathVertex::Kind::surface
+                           ? shadow_ray(v.point, *sample)
+                           : shadow_ray(v.position, *sample, ray_.time);
     const Rgb share =
-        visible_share(scene_, shadow_ray(v, *sample), v.around_towards(direction),
+        visible_share(scene_, shadow, v.around_towards(direction),
                       MediaNumbers(sampler_, t - 2, MediaNumbers::Purpose::shadow), work_);
     if (is_black(share)) return;
 
@@ -189,19 +192,6 @@ class BidirectionalSample final : public WalkWatcher {
                                sum_before(camera_, t - 1, direction, TransportMode::importance);
     out_.radiance += v.throughput * f * sample->radiance * share *
                      (weight(square(met / chosen), camera_side) / static_cast<float>(chosen));
-  }
-
-  Ray shadow_ray(const PathVertex& v, const LightSample& sample) const {
-    const bool on_surface = v.kind == PathVertex::Kind::surface;
-    Ray ray;
-    if (sample.distance == kInfinity) {
-      ray = on_surface ? spawn_ray(v.point, sample.direction) : Ray{v.position, sample.direction};
-    } else {
-      ray = on_surface ? spawn_ray_to(v.point, sample.position, 0.0F)
-                       : ray_between(v.position, sample.position, ray_.time);
-    }
-    ray.time = ray_.time;
-    return ray;
   }
 
   /// edge + beyond reverse^2 of vertex `i` of `path` where light comes to it along `from`, and

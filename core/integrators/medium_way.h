@@ -9,6 +9,16 @@
 
 namespace hyades::core {
 
+/// The point of `ray` at `t`, but clear of the surface behind it (null: none): rounding must not
+/// put it on the other side, where a path would never meet that surface again.
+inline Vec3 place_in_medium(const Ray& ray, float t, const SurfacePoint* surface) {
+  if (surface != nullptr) {
+    const float height = (surface->t - t) * std::abs(glm::dot(ray.direction, surface->ng));
+    if (height < surface->clearance) return offset_position(*surface, -ray.direction);
+  }
+  return ray.at(t);
+}
+
 /// A way through a medium on which a path looks for a place to scatter.
 struct MediumWay {
   Ray ray;

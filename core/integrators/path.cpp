@@ -7,6 +7,7 @@
 
 #include "core/integrators/medium_way.h"
 #include "core/integrators/mis.h"
+#include "core/integrators/roulette.h"
 #include "core/integrators/visibility.h"
 #include "core/materials/shaded_surface.h"
 #include "core/media/shares.h"
@@ -20,9 +21,6 @@ enum BounceDimension : uint32_t {
   kBsdf = 4,   // direction (2), lobe, roulette
   kPerBounce = 8,
 };
-
-/// A path that survives roulette less often than this would be all noise.
-constexpr float kMinSurvival = 0.05F;
 
 std::string show(const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
@@ -146,9 +144,7 @@ class Path {
     const LightSample& sample = chosen->sample;
     const Rgb f = surface.evaluate(wo, sample.direction, TransportMode::radiance);
     if (is_black(f)) return;
-    Ray shadow = sample.distance == kInfinity ? spawn_ray(point, sample.direction)
-                                              : spawn_ray_to(point, sample.position, 0.0F);
-    shadow.time = point.time;
+    const Ray shadow = shadow_ray(point, sample);
     const float pdf = surface.pdf(wo, sample.direction, TransportMode::radiance);
     const float weight = sample.delta ? 1.0F : power_heuristic(chosen->pdf(), pdf);
     if (!passes_through(point, wo, sample.direction)) {
@@ -172,8 +168,8 @@ class Path {
     const float rival = way.rival(*scene_.lights[chosen->index], t, pdf) * chosen->pdf();
     const float weight =
         power_heuristic(chosen->pdf(), std::sqrt(scattered * scattered + rival * rival));
-    add_light(*chosen, phase.evaluate(cosine), weight, shadow_ray(position, sample), around_,
-              MediaNumbers::Purpose::shadow);
+    add_light(*chosen, phase.evaluate(cosine), weight, shadow_ray(position, sample, ray_.time),
+              around_, MediaNumbers::Purpose::shadow);
   }
 
   /// Light scattered once more at a place near a light, besides the one where free flight ends:
@@ -188,7 +184,7 @@ class Path {
     const std::optional<Equiangular> places = way.places_near(light);
     if (!places) return;
     const float t = places->sample(u.x);
-    const Vec3 position = place_in_medium(t, surface);
+    const Vec3 position = place_in_medium(ray_, t, surface);
     const auto sample = light.sample_direct(position, way.ray.time, u.w, Vec2(u.y, u.z));
     if (!sample || is_black(sample->radiance)) return;
     const ChosenLight chosen{selected->index, selected->probability, *sample};
@@ -202,12 +198,7 @@ class Path {
     const float other = flight.pdf / pdf;
     const float weight = 1.0F / (1.0F + other * other * (1.0F + scattered * scattered));
     add_light(chosen, phase.evaluate(cosine) * flight.scattered / pdf, weight,
-              shadow_ray(position, *sample), around_, MediaNumbers::Purpose::connection);
-  }
-
-  Ray shadow_ray(const Vec3& position, const LightSample& sample) const {
-    return sample.distance == kInfinity ? Ray{position, sample.direction, kInfinity, ray_.time}
-                                        : ray_between(position, sample.position, ray_.time);
+              shadow_ray(position, *sample, ray_.time), around_, MediaNumbers::Purpose::connection);
   }
 
   /// A place on a light that may be seen from where the path is.
@@ -265,18 +256,8 @@ class Path {
     throughput_ *= sample.weight;
     if (is_black(throughput_)) return Flight::ended;
     if (!sample.scattered) return Flight::passed;
-    return scatter(way, sample.t, place_in_medium(sample.t, surface)) ? Flight::scattered
-                                                                      : Flight::ended;
-  }
-
-  /// The point at `t`, but clear of the surface behind it: rounding must not put it on the other
-  /// side, where the path would never meet that surface again.
-  Vec3 place_in_medium(float t, const SurfacePoint* surface) const {
-    if (surface != nullptr) {
-      const float height = (surface->t - t) * std::abs(glm::dot(ray_.direction, surface->ng));
-      if (height < surface->clearance) return offset_position(*surface, -ray_.direction);
-    }
-    return ray_.at(t);
+    return scatter(way, sample.t, place_in_medium(ray_, sample.t, surface)) ? Flight::scattered
+                                                                            : Flight::ended;
   }
 
   bool scatter(const MediumWay& way, float t, const Vec3& position) {
@@ -337,15 +318,9 @@ class Path {
     ++depth_;
     numbers_ = MediaNumbers(sampler_, depth_, MediaNumbers::Purpose::flight);
     if (depth_ < settings_.roulette_depth) return true;
-    // Without the factor of refraction, which is undone when the path leaves the glass again.
-    const float keep = std::max(max_component(throughput_) * eta_scale_, kMinSurvival);
-    if (keep >= 1.0F) return true;
-    if (u >= keep) {
-      if (work_.log != nullptr) work_.log->lines.emplace_back("  ended by roulette");
-      return false;
-    }
-    throughput_ /= keep;
-    return true;
+    if (survives_roulette(max_component(throughput_) * eta_scale_, u, throughput_)) return true;
+    if (work_.log != nullptr) work_.log->lines.emplace_back("  ended by roulette");
+    return false;
   }
 
   void note_first_surface(const SurfacePoint& point) {

@@ -3,26 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/integrators/medium_way.h"
+#include "core/integrators/roulette.h"
 #include "core/integrators/visibility.h"
 #include "core/media/shares.h"
 
 namespace hyades::core {
 namespace {
 
-/// A path that survives roulette less often than this would be all noise.
-constexpr float kMinSurvival = 0.05F;
-
 TransportMode other(TransportMode mode) {
   return mode == TransportMode::radiance ? TransportMode::importance : TransportMode::radiance;
-}
-
-/// The point at `t`, clear of the surface behind it: rounding must not put it on the other side.
-Vec3 place_in_medium(const Ray& ray, float t, const SurfacePoint* surface) {
-  if (surface != nullptr) {
-    const float height = (surface->t - t) * std::abs(glm::dot(ray.direction, surface->ng));
-    if (height < surface->clearance) return offset_position(*surface, -ray.direction);
-  }
-  return ray.at(t);
 }
 
 /// Solid angle on the side of wi over that on the side of wo, which refraction presses together or
@@ -168,12 +158,7 @@ bool RandomWalk::survives(Way& way, float u) {
   ++work_.bounces;
   ++events_;
   if (events_ < settings_.roulette_depth) return true;
-  // Without the factor of refraction, which is undone when the path leaves the glass again.
-  const float keep = std::max(max_component(way.throughput) / start_ * eta_scale_, kMinSurvival);
-  if (keep >= 1.0F) return true;
-  if (u >= keep) return false;
-  way.throughput /= keep;
-  return true;
+  return survives_roulette(max_component(way.throughput) / start_ * eta_scale_, u, way.throughput);
 }
 
 }  // namespace hyades::core

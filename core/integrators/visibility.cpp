@@ -46,6 +46,18 @@ Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
 
 }  // namespace
 
+Ray shadow_ray(const SurfacePoint& from, const LightSample& to) {
+  Ray ray = to.distance == kInfinity ? spawn_ray(from, to.direction)
+                                     : spawn_ray_to(from, to.position, 0.0F);
+  ray.time = from.time;
+  return ray;
+}
+
+Ray shadow_ray(const Vec3& from, const LightSample& to, float time) {
+  return to.distance == kInfinity ? Ray{from, to.direction, kInfinity, time}
+                                  : ray_between(from, to.position, time);
+}
+
 Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
                   MediaNumbers numbers, Workspace& work) {
   ++work.rays;

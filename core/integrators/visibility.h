@@ -11,7 +11,12 @@ namespace hyades::core {
 Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
                   MediaNumbers numbers, Workspace& work);
 
-/// The same for a ray from the camera, which sees other objects than shadow rays do.
+/// From a surface, or from a place in space, to the place of a light that was chosen.
+Ray shadow_ray(const SurfacePoint& from, const LightSample& to);
+Ray shadow_ray(const Vec3& from, const LightSample& to, float time);
+
+/// The same as visible_share for a ray from the camera, which sees other objects than shadow rays
+/// do.
 Rgb visible_share_from_camera(const Scene& scene, const Ray& ray, MediaNumbers numbers,
                               Workspace& work);
 

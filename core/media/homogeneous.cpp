@@ -2,18 +2,12 @@
 #include <cmath>
 
 #include "core/base/elementary.h"
+#include "core/media/attenuation.h"
 #include "core/media/make_medium.h"
 #include "core/media/shares.h"
 
 namespace hyades::core {
 namespace {
-
-/// exp(-sigma t); 1 where sigma is 0, also over an infinite way.
-float attenuation(float sigma, float t) { return sigma > 0.0F ? exp(-sigma * t) : 1.0F; }
-
-Rgb attenuation(const Rgb& sigma, float t) {
-  return {attenuation(sigma.x, t), attenuation(sigma.y, t), attenuation(sigma.z, t)};
-}
 
 /// Distances are chosen for one channel, which itself is chosen by what the path carries; the
 /// weight divides by the mean density over all channels (balance heuristic; Wilkie et al. 2014,
@@ -38,15 +32,7 @@ class Homogeneous final : public Medium {
     const float t = chosen > 0.0F ? -log1p(-u.y) / chosen : kInfinity;
     result.scattered = t < t_max;
     result.t = std::min(t, t_max);
-    // Relative to the clearest channel that can be chosen: the quotients stay, nothing underflows.
-    float clearest = kInfinity;
-    for (int c = 0; c < 3; ++c) {
-      if (shares[c] > 0.0F) clearest = std::min(clearest, extinction_[c]);
-    }
-    Rgb passed(0.0F);
-    for (int c = 0; c < 3; ++c) {
-      if (shares[c] > 0.0F) passed[c] = attenuation(extinction_[c] - clearest, result.t);
-    }
+    const Rgb passed = relative_attenuation(extinction_, result.t, shares);
     if (result.scattered) {
       const float density = glm::dot(shares, extinction_ * passed);
       result.weight = density > 0.0F ? passed * scattering_ / density : Rgb(0.0F);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/elementary.h"
+#include "core/media/attenuation.h"
 #include "core/media/make_medium.h"
 #include "core/media/shares.h"
 
@@ -12,10 +13,6 @@ namespace {
 
 /// However short the steps asked for are.
 constexpr float kMostSteps = 1 << 20;
-
-Rgb decay(const Rgb& sigma, float depth) {
-  return {exp(-sigma.x * depth), exp(-sigma.y * depth), exp(-sigma.z * depth)};
-}
 
 /// Goes in equal steps, taking the density all along a step for that of one place of it, at the
 /// same random part of each. Biased, for the mean of exp(-x) is more than exp of the mean.
@@ -52,17 +49,10 @@ class Marching final : public Medium {
       return false;
     });
     if (is_black(per_density_.scattering)) {
-      result.weight = decay(extinction_, depth);
+      result.weight = attenuation(extinction_, depth);
       return result;
     }
-    float clearest = kInfinity;
-    for (int c = 0; c < 3; ++c) {
-      if (shares[c] > 0.0F) clearest = std::min(clearest, extinction_[c]);
-    }
-    Rgb passed = decay(extinction_ - clearest, depth);
-    for (int c = 0; c < 3; ++c) {
-      if (!(shares[c] > 0.0F)) passed[c] = 0.0F;
-    }
+    const Rgb passed = relative_attenuation(extinction_, depth, shares);
     if (!result.scattered) {
       result.weight = passed / glm::dot(shares, passed);
       return result;
@@ -82,7 +72,7 @@ class Marching final : public Medium {
       depth += density * length;
       return true;
     });
-    return decay(extinction_, depth);
+    return attenuation(extinction_, depth);
   }
 
   Rgb emitted(const Ray& ray, float t_max, const Vec4& u) const override {
@@ -91,8 +81,8 @@ class Marching final : public Medium {
     Rgb sum(0.0F);
     march(ray, t_max, u.z, [&](float, float length, const Vec3& place, float density) {
       const float more = density * length;
-      sum += decay(extinction_, depth + 0.5F * more) * per_density_.glow(*volume_, place, density) *
-             length;
+      sum += attenuation(extinction_, depth + 0.5F * more) *
+             per_density_.glow(*volume_, place, density) * length;
       depth += more;
       return true;
     });

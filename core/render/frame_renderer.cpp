@@ -223,7 +223,6 @@ PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& 
   Workspace work;
   work.log = &log;
   const PixelSample result = sample_pixel(pixel, sample, *sampler, work);
-  std::vector<PixelSplat> parts;
   for (size_t i = 0; placer_ && i < work.splats.size(); ++i) {
     const Splat& splat = work.splats[i];
     const auto placed = placer_->place(splat, splat_random(pixel, sample, i));
@@ -239,7 +238,7 @@ PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& 
       line += fmt::format("{:.4g} {:.4g} {:.4g} for pixel {}, {}{}", r, g, b,
                           region.x0 + static_cast<int>(placed->pixel % width),
                           region.y0 + static_cast<int>(placed->pixel / width),
-                          add_splat(*placed, parts) ? "" : ", which is not counted");
+                          counts(*placed) ? "" : ", which is not counted");
     }
     log.lines.push_back(std::move(line));
   }

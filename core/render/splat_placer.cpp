@@ -11,12 +11,15 @@ constexpr int kMostPixels = 40;  ///< in the reach of the widest filter (16 pixe
 
 }  // namespace
 
+bool counts(const PixelSplat& splat) {
+  return std::all_of(splat.value.begin(), splat.value.end(),
+                     [](float v) { return std::fabs(v) <= kMaxSplat; });
+}
+
 bool add_splat(const PixelSplat& splat, std::vector<PixelSplat>& into) {
+  if (!counts(splat)) return false;
   float largest = 0.0F;
-  for (const float v : splat.value) {
-    if (!(std::fabs(v) <= kMaxSplat)) return false;
-    largest = std::max(largest, std::fabs(v));
-  }
+  for (const float v : splat.value) largest = std::max(largest, std::fabs(v));
   if (largest == 0.0F) return true;
   const float parts = std::max(std::ceil(largest / kMaxDeposit), 1.0F);
   PixelSplat part = splat;

@@ -16,8 +16,11 @@ namespace hyades::core {
 /// stands for as many pixels as the film has.
 inline constexpr float kMaxSplat = 1024.0F * kMaxDeposit;
 
+/// Whether `splat` counts: it is finite and not beyond kMaxSplat.
+bool counts(const PixelSplat& splat);
+
 /// Adds `splat`, in parts that a film can hold where it is large; nothing where it is black. False
-/// where it does not count, for it is not finite or beyond kMaxSplat.
+/// where it does not count.
 bool add_splat(const PixelSplat& splat, std::vector<PixelSplat>& into);
 
 /// Which pixel a splat counts for. A splat at x is an estimate of filter(x - centre) times its
