@@ -37,8 +37,11 @@ void Scheduler::on(const ResultArrived& e) {
     // After a restart what was merged has no digest any more.
     if (held->digest != Digest{} && held->digest != e.digest) {
       if (slot->worker_class != worker->worker_class) return reject(RejectReason::unknown);
+      // What is held may not become durable after all, and the dispute is over then: that the two
+      // differ would be forgotten with the film of this one.
+      const bool durable = held->pending == RecordId{};
       const bool right = weigh(*job, *slot, *extent, e);
-      const bool known = job->mark == DisputeMark::open;
+      const bool known = durable && job->mark == DisputeMark::open;
       reject(right || !known ? RejectReason::not_now : RejectReason::conflict);
     } else {
       if (held->pending == RecordId{}) {

@@ -229,6 +229,30 @@ TEST_F(Conflicts, NobodyIsAnsweredBeforeTheLogKnowsOfTheDispute) {
   EXPECT_EQ(b.only<Quarantine>().worker, kCora);
 }
 
+TEST(ConflictsWithAFilm, ThatIsNeverStoredAreNotForgotten) {
+  Bench b;
+  b.begin(small_plan({1}, 1));
+  const Lease annas = b.ask(kAnna);
+  Lease berts = annas;
+  berts.worker = kBert;
+  b.deliver(annas, 0, 1);
+  const Persist film = b.only<Persist>();
+  b.deliver(berts, 0, 2);
+  b.tell(Persisted{b.only<Persist>().id});  // that there is a dispute
+  b.deliver(berts, 0, 2);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now) << "Bert's may be the only one left";
+  b.tell(PersistFailed{film.id, "disk full"});
+  EXPECT_EQ(b.scheduler.disputed_units(kJob), 0U);
+  b.now += std::chrono::minutes(1);
+  b.join(kBert);
+  b.deliver(berts, 0, 2);
+  b.tell(Persisted{b.only<Persist>().id});
+  b.join(kAnna);
+  b.deliver(annas, 0, 1);
+  EXPECT_EQ(b.all<Conflict>().size(), 1U);
+  EXPECT_EQ(b.scheduler.disputed_units(kJob), 1U);
+}
+
 TEST_F(Conflicts, TheDisputeIsOverWhenAllThatFollowsIsDurable) {
   const Lease other = b.ask(kAnna);
   deliver_durably(other, 1);
