@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -84,15 +86,25 @@ inline std::vector<SurfacePoint> all_along(const World& world, const Vec3& from,
   return points;
 }
 
-/// T1 for the places that are chosen, seen from `from`: in each cell of a chart of the surface, the
-/// density per solid angle times the solid angle that the surface covers there, cos / distance^2
-/// per area. The light is two-sided, or else sees `from` from everywhere. `tests`: how many of
-/// these the calling test makes.
-inline void expect_places_follow(const Lamp& lamp, const test::SurfaceChart& chart,
-                                 const Vec3& from, int tests, float time = 0.0F) {
+/// Cells of a side of a chart's patch.
+inline constexpr int kChartGrid = 6;
+
+inline size_t chart_cell(const Lamp& lamp, const test::SurfaceChart& chart, const Vec3& position,
+                         float time) {
+  const glm::dmat4 inverse = glm::inverse(glm::dmat4(lamp.world->transform_at(0, time)));
+  const test::ChartPlace p = chart.find(Vec3d(inverse * glm::dvec4(Vec3d(position), 1.0)));
+  const auto column = std::clamp(static_cast<int>(p.u * kChartGrid), 0, kChartGrid - 1);
+  const auto row = std::clamp(static_cast<int>(p.v * kChartGrid), 0, kChartGrid - 1);
+  return static_cast<size_t>((p.patch * kChartGrid + row) * kChartGrid + column);
+}
+
+/// The integral over each cell of a chart of a density per area, which is asked for with the point
+/// as rays find it, and its place and normal in double.
+inline std::vector<double> chart_shares(
+    const Lamp& lamp, const test::SurfaceChart& chart, float time,
+    const std::function<double(const SurfacePoint&, const Vec3d&, const Vec3d&)>& per_area) {
   const glm::dmat4 matrix(lamp.world->transform_at(0, time));
   const glm::dmat3 linear(matrix);
-  const glm::dmat4 inverse = glm::inverse(matrix);
   const auto in_world = [&](const test::ChartPlace& p) {
     return Vec3d(matrix * glm::dvec4(chart.position(p), 1.0));
   };
@@ -109,43 +121,48 @@ inline void expect_places_follow(const Lamp& lamp, const test::SurfaceChart& cha
     const Vec3d normal = glm::normalize(glm::inverseTranspose(linear) * chart.normal(p));
     const Ray ray{Vec3(position + 1e-3 * normal), Vec3(-normal), kInfinity, time};
     const auto hit = lamp.world->intersect(ray, RayKind::other);
-    if (!hit) return 0.0;
-    const Vec3d to_light = position - Vec3d(from);
-    const double distance = glm::length(to_light);
-    const double pdf = static_cast<double>(
-        lamp.light->pdf_direct(from, Vec3(to_light / distance), lamp.world->surface(ray, *hit)));
-    return pdf * std::abs(glm::dot(normal, to_light)) / (distance * distance * distance) * area;
+    return hit ? per_area(lamp.world->surface(ray, *hit), position, normal) * area : 0.0;
   };
-
-  constexpr int kGrid = 6;
-  const int cells = kGrid * kGrid * chart.patches();
-  const double alpha = test::sidak(0.01, tests);
-  const int64_t count = test::required_chi_squared_samples(cells - 1, 0.01, alpha, 0.99);
-  std::vector<double> expected;
-  double sum = 0.0;
-  for (int cell = 0; cell < cells; ++cell) {
-    const int patch = cell / (kGrid * kGrid);
-    const double u = cell % kGrid;
-    const double v = cell / kGrid % kGrid;
-    const double part = test::integrate2(
+  std::vector<double> shares;
+  for (int cell = 0; cell < kChartGrid * kChartGrid * chart.patches(); ++cell) {
+    const int patch = cell / (kChartGrid * kChartGrid);
+    const double u = cell % kChartGrid;
+    const double v = cell / kChartGrid % kChartGrid;
+    shares.push_back(test::integrate2(
         [&](double x, double y) {
           return density({patch, x, y});
         },
-        u / kGrid, (u + 1.0) / kGrid, v / kGrid, (v + 1.0) / kGrid, 1e-5, 1, 5);
-    sum += part;
-    expected.push_back(part * static_cast<double>(count));
+        u / kChartGrid, (u + 1.0) / kChartGrid, v / kChartGrid, (v + 1.0) / kChartGrid, 1e-5, 1,
+        5));
   }
-  EXPECT_NEAR(sum, 1.0, 2e-3);
+  return shares;
+}
+
+/// T1 for the places that are chosen, seen from `from`: in each cell of a chart of the surface, the
+/// density per solid angle times the solid angle that the surface covers there, cos / distance^2
+/// per area. The light is two-sided, or else sees `from` from everywhere. `tests`: how many of
+/// these the calling test makes.
+inline void expect_places_follow(const Lamp& lamp, const test::SurfaceChart& chart,
+                                 const Vec3& from, int tests, float time = 0.0F) {
+  std::vector<double> expected = chart_shares(
+      lamp, chart, time, [&](const SurfacePoint& on, const Vec3d& position, const Vec3d& normal) {
+        const Vec3d to_light = position - Vec3d(from);
+        const double distance = glm::length(to_light);
+        const double pdf =
+            static_cast<double>(lamp.light->pdf_direct(from, Vec3(to_light / distance), on));
+        return pdf * std::abs(glm::dot(normal, to_light)) / (distance * distance * distance);
+      });
+  EXPECT_NEAR(std::accumulate(expected.begin(), expected.end(), 0.0), 1.0, 2e-3);
+  const double alpha = test::sidak(0.01, tests);
+  const int64_t count =
+      test::required_chi_squared_samples(static_cast<int>(expected.size()) - 1, 0.01, alpha, 0.99);
+  for (double& e : expected) e *= static_cast<double>(count);
 
   std::vector<double> observed(expected.size(), 0.0);
   test::Random random(5);
   for (int64_t i = 0; i < count; ++i) {
     const auto s = lamp.light->sample_direct(from, time, random.uniform(), random.uniform2());
-    if (!s) continue;
-    const test::ChartPlace p = chart.find(Vec3d(inverse * glm::dvec4(Vec3d(s->position), 1.0)));
-    const auto column = std::clamp(static_cast<int>(p.u * kGrid), 0, kGrid - 1);
-    const auto row = std::clamp(static_cast<int>(p.v * kGrid), 0, kGrid - 1);
-    observed[static_cast<size_t>((p.patch * kGrid + row) * kGrid + column)] += 1.0;
+    if (s) observed[chart_cell(lamp, chart, s->position, time)] += 1.0;
   }
   const auto result = test::chi_squared(observed, expected);
   EXPECT_GT(result.p, alpha) << "from " << from.x << ' ' << from.y << ' ' << from.z
