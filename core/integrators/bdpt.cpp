@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/integrators/found_path.h"
 #include "core/integrators/light_path.h"
 #include "core/integrators/random_walk.h"
 #include "core/integrators/visibility.h"
@@ -60,9 +61,16 @@ class BidirectionalSample final : public WalkWatcher {
   }
 
   /// The weight of a strategy from the sums on either side.
-  float weight(double light_side, double camera_side) const {
-    return settings_.mis ? static_cast<float>(1.0 / (1.0 + light_side + camera_side)) : 1.0F;
+  float weight(FoundPath path, double light_side, double camera_side) const {
+    const double weight = 1.0 / (1.0 + light_side + camera_side);
+    if (work_.watcher != nullptr) {
+      path.weight = weight;
+      work_.watcher->found(path);
+    }
+    return settings_.mis ? static_cast<float>(weight) : 1.0F;
   }
+
+  FoundPath path_of(int s, int t, uint32_t light) const { return {light_, camera_, s, t, light}; }
 
   void walk_from_camera() {
     camera_.clear();
@@ -138,16 +146,20 @@ class BidirectionalSample final : public WalkWatcher {
   /// s = 0: the way from the last vertex of the camera path has come to a light.
   void add_met_light(const Way& way, const PathVertex& on, const Rgb& radiance) {
     double others = 0.0;
+    const Vec3& direction = way.ray.direction;
     if (camera_.size() > 1) {
       const PathVertex& before = camera_.back();
-      const Vec3& direction = way.ray.direction;
       const double met = way.density_at(on, before.position);
       const LightDensities densities = light_densities(scene_, on, before, direction);
       const double back = densities.towards / before.density;
       others = (way.specular ? 0.0 : square(densities.chosen / met)) +
                square(densities.emitted / met * back) * before.chain;
     }
-    out_.radiance += way.throughput * radiance * weight(0.0, others);
+    FoundPath path = path_of(0, camera_.size() + 1, on.light);
+    path.direction = direction;
+    path.end = on.position;
+    path.specular = way.specular;
+    out_.radiance += way.throughput * radiance * weight(path, 0.0, others);
   }
 
   /// s = 1: a place on a light is chosen from the camera path's vertex t - 1.
@@ -190,8 +202,11 @@ class BidirectionalSample final : public WalkWatcher {
     const double towards = emission_density(scene_, light, on, v, direction);
     const double camera_side = square(emitted / chosen_place * towards / v.density) *
                                sum_before(camera_, t - 1, direction, TransportMode::importance);
+    FoundPath path = path_of(1, t, selected->index);
+    path.direction = direction;
+    path.end = on.position;
     out_.radiance += v.throughput * f * sample->radiance * share *
-                     (weight(square(met / chosen), camera_side) / static_cast<float>(chosen));
+                     (weight(path, square(met / chosen), camera_side) / static_cast<float>(chosen));
   }
 
   /// edge + beyond reverse^2 of vertex `i` of `path` where light comes to it along `from`, and
@@ -228,8 +243,9 @@ class BidirectionalSample final : public WalkWatcher {
         square(to_y / y.density) * sum_before(light_, s - 1, -to_light, TransportMode::radiance);
     const double camera_side =
         square(to_z / z.density) * sum_before(camera_, t - 1, to_light, TransportMode::importance);
+    const float share_of_all = weight(path_of(s, t, light_[0].light), light_side, camera_side);
     out_.radiance += z.throughput * f_camera * f_light * y.throughput * share *
-                     (weight(light_side, camera_side) / static_cast<float>(distance2));
+                     (share_of_all / static_cast<float>(distance2));
   }
 
   /// t = 1: vertex s - 1 of the light path is seen through a place of the lens.
@@ -255,8 +271,11 @@ class BidirectionalSample final : public WalkWatcher {
     const double to_y = density / film_pixels_ * y.per_direction(seen->position, seen->direction);
     const double light_side = square(to_y / y.density) *
                               sum_before(light_, s - 1, -seen->direction, TransportMode::radiance);
+    FoundPath path = path_of(s, 1, light_[0].light);
+    path.direction = -seen->direction;
+    path.end = seen->position;
     const Rgb value = y.throughput * f * share *
-                      (weight(light_side, 0.0) *
+                      (weight(path, light_side, 0.0) *
                        static_cast<float>(density / square(static_cast<double>(seen->distance))));
     work_.splats.push_back({seen->film, value});
   }

@@ -40,6 +40,8 @@ struct IntegratorScratch {
   virtual ~IntegratorScratch() = default;
 };
 
+class PathWatcher;
+
 /// Scratch memory and counters of one rendering thread, for one integrator.
 struct Workspace {
   BsdfArena arena;
@@ -49,6 +51,7 @@ struct Workspace {
   uint64_t rays = 0;                           ///< closest-hit and occlusion queries
   uint64_t bounces = 0;                        ///< scattering events
   PathLog* log = nullptr;                      ///< where to tell the path; null while rendering
+  PathWatcher* watcher = nullptr;  ///< told of what bdpt finds (found_path.h); null while rendering
 };
 
 /// How paths are found and weighed. Immutable and thread-safe. Integrators that work sample by
