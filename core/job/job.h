@@ -146,8 +146,9 @@ struct MaterialDesc {
   Animated<Rgb> reflection{Rgb(1.0F)};                    ///< dielectric, conductor, mirror: tint
   ScalarInput reflectiveness{Animated<float>(0.5F), {}};  ///< glossy: 0 = Lambert, 1 = lobe only
   ScalarInput glossiness{Animated<float>(0.8F), {}};      ///< glossy: sharpness of the lobe, 0..1
-  bool multiple_scattering = false;  ///< conductor, glossy: give back what facets shadow
-  std::string first, second;         ///< mix: material names
+  bool multiple_scattering =
+      false;                  ///< dielectric, conductor, glossy: give back what facets shadow
+  std::string first, second;  ///< mix: material names
   ScalarInput amount{Animated<float>(0.5F), {}};  ///< mix: share of `second`
   std::optional<BumpDesc> bump;
   std::optional<SubsurfaceDesc> subsurface;  ///< dielectric, null: of bodies without an interior

@@ -59,6 +59,8 @@ void read_thin_dielectric(MapReader& reader, MaterialDesc& material) {
 
 void read_dielectric(MapReader& reader, MaterialDesc& material) {
   reader.scalar_input("roughness", material.roughness, kUnitInterval);
+  material.multiple_scattering = true;
+  reader.flag("multiple_scattering", material.multiple_scattering);
   read_thin_dielectric(reader, material);
   read_subsurface(reader, material);
 }

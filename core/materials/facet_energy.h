@@ -6,26 +6,42 @@
 
 namespace hyades::core {
 
-/// What white GGX facets reflect by single scattering, E(cos theta_o, alpha), and the rest, which
-/// really bounces between facets and comes out nearly diffuse (Kulla and Conty 2017, "Revisiting
-/// Physically Based Shading at Imageworks"). Tabulated once, at first use, by quadrature (tens of
-/// milliseconds); E is within 0.002.
+/// What GGX facets of one relative index give off again by single scattering, reflected and
+/// transmitted together: E(cos theta_o, alpha). The rest really bounces between facets and comes
+/// out nearly diffuse (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks").
+/// Tabulated by quadrature (about 10 ms, where light may be totally reflected 20); E is within
+/// 0.001 (one standard deviation; 0.008 near the critical angle of sharp lobes).
 class FacetEnergy {
  public:
+  /// Of facets that reflect everything; made at first use.
   static const FacetEnergy& table();
 
-  /// E for a direction at `cosine` in [0, 1]; alpha in [0, 1].
-  float reflectance(float cosine, float alpha) const;
+  /// `eta` >= 0: index of the other side over that of the side where light arrives; infinite where
+  /// everything is reflected.
+  explicit FacetEnergy(float eta);
+
+  /// A place between two of a table's even nodes.
+  struct Between {
+    int node;
+    float part;
+  };
+
+  /// Where in any table the values for a direction at `cosine` in [0, 1] and alpha in [0, 1] are.
+  struct Place {
+    Place(float cosine, float alpha);
+    Between row, column;
+  };
+
+  float reflectance(const Place& place) const;
+  float reflectance(float cosine, float alpha) const { return reflectance(Place(cosine, alpha)); }
 
   /// The mean over the hemisphere of 1 - E, weighed with the cosine: 2 integral of (1 - E) mu dmu.
   float mean_loss(float alpha) const;
 
  private:
-  static constexpr int kCosines = 32;
-  static constexpr int kAlphas = 32;  ///< rows, even in alpha
+  static constexpr int kCosines = 48;
+  static constexpr int kAlphas = 24;  ///< rows, even in roughness
   static constexpr int kMeans = 128;  ///< even in roughness, since what is lost grows with alpha^2
-
-  FacetEnergy();
 
   std::array<std::array<float, kCosines>, kAlphas> reflectance_;
   std::array<float, kMeans> mean_loss_;

@@ -31,19 +31,20 @@ MaterialPtr make_lambert(const ColorParam& color);
 /// each event. ior = 1 passes light unchanged.
 MaterialPtr make_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
 
+/// What becomes of light that a microfacet reflects onto another one.
+enum class FacetScattering {
+  single,    ///< it is lost, as in most renderers: rough metals and glass darken
+  multiple,  ///< it is given back (Kulla and Conty 2017): white metal, clear glass keep everything
+};
+
 /// The same with facets of GGX, alpha = roughness^2 (roughness 0: make_dielectric).
 MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
-                                  const ScalarParam& roughness);
+                                  const ScalarParam& roughness,
+                                  FacetScattering scattering = FacetScattering::single);
 
 /// A sheet of that glass so thin that light leaves where it entered, all inner bounces summed
 /// (R' = 2R / (1 + R) without absorption).
 MaterialPtr make_thin_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
-
-/// What becomes of light that a microfacet reflects onto another one.
-enum class FacetScattering {
-  single,    ///< it is lost, as in most renderers: rough metals darken
-  multiple,  ///< it is given back (Kulla and Conty 2017): a white metal reflects all it gets
-};
 
 /// Metal of complex index eta + i k per channel, relative to vacuum; roughness 0 is a mirror, else
 /// GGX with visible-normal sampling (Heitz 2018), alpha = roughness^2.

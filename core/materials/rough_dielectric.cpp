@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include "core/base/warp.h"
+#include "core/materials/dielectric_energy.h"
 #include "core/materials/fresnel.h"
 #include "core/materials/ggx.h"
 #include "core/materials/local.h"
@@ -130,19 +132,108 @@ class RoughDielectricBsdf final : public Bsdf {
   Rgb reflection_;
 };
 
+/// The same with the light given back that it loses to second facets. How much of that goes where
+/// depends on (1 - E) cos: nearly on the cosine where much is lost, and nearly on nothing where
+/// little is. Half of the samples of its lobes do each.
+class FullDielectricBsdf final : public Bsdf {
+ public:
+  FullDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection)
+      : single_(ior, alpha, transmission, reflection),
+        lost_(ior, alpha, transmission, reflection),
+        ior_(ior),
+        brightest_(std::fmax(max_component(transmission), max_component(reflection))) {}
+
+  Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
+    if (wo.z == 0.0F || wi.z == 0.0F) return Rgb(0.0F);
+    Rgb lost = lost_.evaluate(wo, wi);
+    if (mode == TransportMode::radiance && !same_side(wo, wi)) {
+      const float eta = eta_from(wo);
+      lost *= 1.0F / (eta * eta);
+    }
+    return single_.evaluate(wo, wi, mode) + lost;
+  }
+
+  float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
+    return pdf(lobes_of(wo), wo, wi, mode);
+  }
+
+  std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2& u,
+                                   TransportMode mode) const override {
+    const Lobes p = lobes_of(wo);
+    BsdfSample s;
+    if (lobe < p.reflected + p.transmitted) {
+      s.transmitted = lobe >= p.reflected;
+      const float begin = s.transmitted ? p.reflected : 0.0F;
+      const float width = s.transmitted ? p.transmitted : p.reflected;
+      const Vec3 i = lobe < begin + 0.5F * width ? square_to_cosine_hemisphere(u)
+                                                 : square_to_uniform_hemisphere(u);
+      s.wi = {i.x, i.y, s.transmitted ? -i.z * side(wo) : i.z * side(wo)};
+    } else {
+      const float single = 1.0F - p.reflected - p.transmitted;
+      const auto drawn =
+          single_.sample(wo, rest_of(lobe, p.reflected + p.transmitted, single), u, mode);
+      if (!drawn) return std::nullopt;
+      s.wi = drawn->wi;
+      s.transmitted = drawn->transmitted;
+    }
+    if (s.transmitted) s.eta = eta_from(wo);
+    s.pdf = pdf(p, wo, s.wi, mode);
+    if (!(s.pdf > 0.0F)) return std::nullopt;
+    s.weight = evaluate(wo, s.wi, mode) / s.pdf;
+    return s;
+  }
+
+  Rgb albedo(const Vec3& wo) const override { return single_.albedo(wo); }
+
+ private:
+  /// Probabilities of the lobes of lost light; the rest is for single scattering.
+  struct Lobes {
+    float reflected = 0.0F;
+    float transmitted = 0.0F;
+  };
+
+  float eta_from(const Vec3& wo) const { return wo.z >= 0.0F ? ior_ : 1.0F / ior_; }
+
+  Lobes lobes_of(const Vec3& wo) const {
+    const float part = lost_.part(wo);
+    const float share = lost_.reflected_share(wo);
+    const float reflected = part * share * max_component(lost_.reflected_tint(wo));
+    const float transmitted = part * (1.0F - share) * max_component(lost_.transmitted_tint());
+    const float all = reflected + transmitted + (1.0F - part) * brightest_;
+    return all > 0.0F ? Lobes{reflected / all, transmitted / all} : Lobes{};
+  }
+
+  float pdf(const Lobes& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const {
+    if (wo.z == 0.0F || wi.z == 0.0F) return 0.0F;
+    const float lost = same_side(wo, wi) ? p.reflected : p.transmitted;
+    return (1.0F - p.reflected - p.transmitted) * single_.pdf(wo, wi, mode) +
+           lost * 0.5F * (cosine_hemisphere_pdf(std::fabs(wi.z)) + uniform_hemisphere_pdf());
+  }
+
+  RoughDielectricBsdf single_;
+  LostGlassLight lost_;
+  float ior_;
+  float brightest_;  ///< the most that single scattering keeps of any colour
+};
+
 class RoughDielectric final : public Material {
  public:
-  RoughDielectric(float ior, const Rgb& transmission, const Rgb& reflection, ScalarParam roughness)
+  RoughDielectric(float ior, const Rgb& transmission, const Rgb& reflection, ScalarParam roughness,
+                  FacetScattering scattering)
       : ior_(ior),
         transmission_(unit_clamp(transmission)),
         reflection_(unit_clamp(reflection)),
         roughness_(std::move(roughness)),
+        scattering_(scattering),
         smooth_(make_dielectric(ior, transmission, reflection)) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame& frame, BsdfArena& arena) const override {
     const float roughness = fraction_at(roughness_, point);
     const float alpha = roughness * roughness;
     if (alpha < Ggx::kLeastAlpha || ior_ == 1.0F) return smooth_->bsdf_at(point, frame, arena);
+    if (scattering_ == FacetScattering::multiple) {
+      return arena.make<FullDielectricBsdf>(ior_, alpha, transmission_, reflection_);
+    }
     return arena.make<RoughDielectricBsdf>(ior_, alpha, transmission_, reflection_);
   }
   bool leads_inside() const override { return true; }
@@ -152,14 +243,15 @@ class RoughDielectric final : public Material {
   Rgb transmission_;
   Rgb reflection_;
   ScalarParam roughness_;
+  FacetScattering scattering_;
   MaterialPtr smooth_;
 };
 
 }  // namespace
 
 MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
-                                  const ScalarParam& roughness) {
-  return std::make_shared<RoughDielectric>(ior, transmission, reflection, roughness);
+                                  const ScalarParam& roughness, FacetScattering scattering) {
+  return std::make_shared<RoughDielectric>(ior, transmission, reflection, roughness, scattering);
 }
 
 }  // namespace hyades::core

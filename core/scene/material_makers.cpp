@@ -36,7 +36,7 @@ Result<MaterialPtr> dielectric(const MaterialDesc& desc, Appearance& looks) {
   if (!roughness) return roughness.error();
   const JobTime& time = looks.time();
   return make_rough_dielectric(desc.ior.at(time), desc.transmission.at(time),
-                               desc.reflection.at(time), *roughness);
+                               desc.reflection.at(time), *roughness, facets_of(desc));
 }
 
 Result<MaterialPtr> thin_dielectric(const MaterialDesc& desc, Appearance& looks) {

@@ -52,24 +52,28 @@ MaterialPtr material(int64_t which) {
       return make_conductor(gold.eta, gold.k, number(0.3F), Rgb(1.0F));
     case 5:
       return make_glossy(color, number(0.4F), number(0.7F));
+    case 6:
+      return make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(0.3F),
+                                   FacetScattering::multiple);
     default:
       return make_mix(make_lambert(color), make_mirror(color), number(0.4F));
   }
 }
 
 const char* const kNames[] = {
-    "lambert", "dielectric", "rough dielectric", "smooth conductor", "rough conductor",
-    "glossy",  "mix"};
+    "lambert",         "dielectric", "rough dielectric",      "smooth conductor",
+    "rough conductor", "glossy",     "full rough dielectric", "mix"};
 
 template <class Call>
 void per_call(benchmark::State& state, const Call& call) {
   const MaterialPtr tested = material(state.range(0));
   const std::vector<Input> all = inputs();
+  const SurfacePoint point;
   BsdfArena arena;
   for (auto _ : state) {
     for (const Input& input : all) {
       arena.reset();
-      const ShadedSurface surface(SurfacePoint(), *tested, arena);
+      const ShadedSurface surface(point, *tested, arena);
       benchmark::DoNotOptimize(call(surface, input));
     }
   }
@@ -80,14 +84,14 @@ void per_call(benchmark::State& state, const Call& call) {
 void make_surface(benchmark::State& state) {
   per_call(state, [](const ShadedSurface& surface, const Input&) { return surface.bsdf(); });
 }
-BENCHMARK(make_surface)->DenseRange(0, 6);
+BENCHMARK(make_surface)->DenseRange(0, 7);
 
 void make_and_sample(benchmark::State& state) {
   per_call(state, [](const ShadedSurface& surface, const Input& in) {
     return surface.sample(in.wo, in.lobe, in.u, TransportMode::radiance);
   });
 }
-BENCHMARK(make_and_sample)->DenseRange(0, 6);
+BENCHMARK(make_and_sample)->DenseRange(0, 7);
 
 void make_and_evaluate_with_pdf(benchmark::State& state) {
   per_call(state, [](const ShadedSurface& surface, const Input& in) {
@@ -95,7 +99,7 @@ void make_and_evaluate_with_pdf(benchmark::State& state) {
            surface.pdf(in.wo, in.wi, TransportMode::radiance);
   });
 }
-BENCHMARK(make_and_evaluate_with_pdf)->DenseRange(0, 6);
+BENCHMARK(make_and_evaluate_with_pdf)->DenseRange(0, 7);
 
 }  // namespace
 }  // namespace hyades::core

@@ -52,6 +52,10 @@ inline std::vector<BsdfCase> smooth_cases() {
   const auto glossy = [](float reflectiveness, float glossiness) {
     return make_glossy(color_of({0.9F, 0.6F, 0.5F}), number(reflectiveness), number(glossiness));
   };
+  const auto full_glass = [](float ior, float roughness) {
+    return make_rough_dielectric(ior, Rgb(1.0F), Rgb(1.0F), number(roughness),
+                                 FacetScattering::multiple);
+  };
   return {
       {"lambert", red},
       {"conductor_rough_01", metal(0.1F)},
@@ -70,6 +74,14 @@ inline std::vector<BsdfCase> smooth_cases() {
       {"rough_glass_tinted",
        make_rough_dielectric(1.33F, {0.9F, 0.5F, 0.2F}, {0.3F, 0.6F, 0.4F}, number(0.9F)), 1.33F},
       {"rough_bubble", make_rough_dielectric(0.7F, Rgb(1.0F), Rgb(1.0F), number(0.5F)), 0.7F},
+      {"rough_glass_full_03", full_glass(1.5F, 0.3F), 1.5F},
+      {"rough_glass_full_10", full_glass(1.5F, 1.0F), 1.5F},
+      {"rough_glass_full_nearly_matched", full_glass(1.02F, 0.7F), 1.02F},
+      {"rough_bubble_full", full_glass(0.5F, 0.8F), 0.5F},
+      {"rough_glass_full_tinted",
+       make_rough_dielectric(1.33F, {0.9F, 0.5F, 0.2F}, {0.3F, 0.6F, 0.4F}, number(0.9F),
+                             FacetScattering::multiple),
+       1.33F},
       {"mix_lambert_metal", make_mix(red, metal(0.4F), number(0.3F))},
       {"mix_lambert_glass", make_mix(red, glass, number(0.4F)), 1.5F},
       {"mix_lambert_null", make_mix(make_null(), red, number(0.7F))},

