@@ -167,6 +167,8 @@ int check_command(int argc, char** argv) {
       "  memory     about %s (geometry %s, textures %s, film %s)\n",
       core::format_bytes(memory).c_str(), core::format_bytes((*scene)->world->memory()).c_str(),
       core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(room.film).c_str());
+  for (const std::string& warning : (*scene)->warnings)
+    std::printf("  warning    %s\n", warning.c_str());
   if (const core::Status fits = room.check(); !fits) {
     std::printf("  warning    'hyades render' refuses it here: %s\n", fits.error().message.c_str());
   } else if (room.here > 0 && memory > room.here) {

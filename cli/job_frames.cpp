@@ -81,12 +81,12 @@ core::Status JobFrames::check_film_names() const {
 
 core::Status JobFrames::load_files() { return core::load_files(loaded_.job, cache_); }
 
-core::Status JobFrames::load_first(int32_t frame) {
+core::Result<std::vector<std::string>> JobFrames::load_first(int32_t frame) {
   auto scene = core::build_scene(loaded_.job, frame, cache_);
   if (!scene) return scene.error();
   first_frame_ = frame;
   first_scene_ = std::move(*scene);
-  return {};
+  return first_scene_->warnings;
 }
 
 core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(int32_t frame) {

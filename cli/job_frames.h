@@ -46,8 +46,8 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   core::Status load_files();
 
   /// Loads the scene of the frame that will be asked for first, so that what is wrong with it is
-  /// known before anything is written. prepare() gives it out.
-  core::Status load_first(int32_t frame);
+  /// known before anything is written. prepare() gives it out. Returns its warnings.
+  core::Result<std::vector<std::string>> load_first(int32_t frame);
 
   core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(int32_t frame) override;
   core::Status finish(int32_t frame, const core::Film& film) override;

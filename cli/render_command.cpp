@@ -252,10 +252,13 @@ int render_command(int argc, char** argv) {
   }
   // Nor, mostly, where the first one cannot. A resumed run may have it behind it.
   if (!options.resume || !frames.outputs_exist(numbers->front())) {
-    if (const auto first = frames.load_first(numbers->front()); !first) {
-      std::fprintf(stderr, "%s\n", first.error().message.c_str());
+    const auto warnings = frames.load_first(numbers->front());
+    if (!warnings) {
+      std::fprintf(stderr, "%s\n", warnings.error().message.c_str());
       return kBadInput;
     }
+    for (const std::string& warning : *warnings)
+      std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
   std::error_code failed;
   for (const std::string& own : {options.folder + "/.hyades", kept}) {

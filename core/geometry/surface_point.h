@@ -19,8 +19,10 @@ struct SurfacePoint {
   float time = 0.0F;  ///< shutter time 0..1
   float clearance =
       0.0F;  ///< distance along +-ng beyond which rays no longer meet this surface [length]
-  uint32_t object = 0;         ///< index of the placement
-  uint32_t primitive = 0;      ///< triangle index; 0 for quadrics
+  uint32_t object = 0;     ///< index of the placement
+  uint32_t primitive = 0;  ///< triangle index; 0 for quadrics
+  float outside_index =
+      1.0F;  ///< of refraction, of what is on the side of ng; who goes there knows
   Mat4 world_to_object{1.0F};  ///< at `time`
 };
 

@@ -67,7 +67,7 @@ std::optional<Way> begin_at_place(const Scene& scene, const Light& light, float 
   way.ray = spawn_ray(sample->on, sample->direction);
   way.throughput = sample->weight / probability;
   way.pdf = static_cast<double>(sample->pdf_direction);
-  way.around = scene.has_media ? media_around(scene, way.ray.origin, time) : MediumStack();
+  way.around = media_around(scene, way.ray.origin, time);
   return way;
 }
 

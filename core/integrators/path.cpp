@@ -55,7 +55,7 @@ class Path {
         break;
       }
       const SceneObject& object = scene_.objects[point.object];
-      if (object.material->is_null()) {
+      if (lets_straight_through(object, around_)) {
         add_emission(point, object);
         if (++null_crossings > kMaxNullCrossings) break;
         cross(object, point, ray_.direction, around_);
@@ -71,6 +71,7 @@ class Path {
       if ((last || all_lit) && albedo_noted_) break;
 
       work_.arena.reset();
+      point.outside_index = around_.index_outside(object.body);
       const ShadedSurface surface(point, *object.material, work_.arena);
       if (surface.bsdf() == nullptr) break;
       const Vec3 wo = -ray_.direction;

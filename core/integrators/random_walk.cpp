@@ -81,9 +81,10 @@ PathVertex* RandomWalk::next_vertex(Subpath& path, Way& way, WalkWatcher& watche
     }
     const SceneObject& object = scene_.objects[point.object];
     watcher.meets(way, point, object);
-    if (!object.material->is_null()) {
+    if (!lets_straight_through(object, way.around)) {
       PathVertex& v = path.add(PathVertex::Kind::surface);
       v.point = point;
+      v.point.outside_index = way.around.index_outside(object.body);
       v.position = point.position;
       v.object = &object;
       v.surface.emplace(v.point, *object.material, v.arena);

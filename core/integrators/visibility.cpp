@@ -4,11 +4,11 @@ namespace hyades::core {
 
 void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,
            MediumStack& around) {
-  if (object.body == SceneObject::kNoBody) return;
+  if (object.body == nullptr) return;
   if (glm::dot(direction, point.ng) < 0.0F) {
-    around.enter(object.body, object.interior.get(), object.material->is_null());
+    around.enter(*object.body);
   } else {
-    around.leave(object.body);
+    around.leave(*object.body);
   }
 }
 
@@ -31,7 +31,7 @@ Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
       return share;
     }
     const SceneObject& object = scene.objects[point.object];
-    if (!object.material->is_null()) return Rgb(0.0F);
+    if (!lets_straight_through(object, inside)) return Rgb(0.0F);
     pass(inside.medium(), way, point.t);
     if (is_black(share)) return share;
     cross(object, point, way.direction, inside);
@@ -62,8 +62,7 @@ Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& arou
                   MediaNumbers numbers, Workspace& work) {
   ++work.rays;
   if (scene.world->occluded(shadow)) return Rgb(0.0F);
-  if (!scene.has_media) return Rgb(1.0F);
-  // Nothing on the way blocks light, so every surface there is a shell.
+  // What blocks light for certain was asked for; other surfaces on the way are shells, or hidden.
   if (scene.has_shells)
     return share_through_shells(scene, shadow, RayKind::other, around, numbers, work);
   const Medium* medium = around.medium();

@@ -20,6 +20,12 @@ Ray shadow_ray(const Vec3& from, const LightSample& to, float time);
 Rgb visible_share_from_camera(const Scene& scene, const Ray& ray, MediaNumbers numbers,
                               Workspace& work);
 
+/// Whether light goes on straight where it meets `object`, without an event: its surface is null,
+/// or hidden in another of the bodies `around`.
+inline bool lets_straight_through(const SceneObject& object, const MediumStack& around) {
+  return object.material->is_null() || around.hides(object.body);
+}
+
 /// Tells `around` that a path crossed the surface of `object` at `point` towards `direction`.
 void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,
            MediumStack& around);

@@ -200,6 +200,8 @@ struct ObjectDesc {
   std::string material;         ///< empty: inherited from the group, else of the medium's index
                                 ///< of refraction, else grey lambert
   std::string interior;         ///< name in Job::media of what fills it; empty: nothing
+  std::string exterior;         ///< name in Job::media of what is around it; empty: not said
+  int32_t priority = 0;  ///< where bodies overlap, the highest says what is there
   TransformList transform;
   Animated<Vec3> at{Vec3(0.0F)};  ///< translation after `transform`
   std::optional<EmitDesc> emit;

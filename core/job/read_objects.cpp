@@ -31,20 +31,26 @@ void read_emit(MapReader& reader, ObjectDesc& object) {
   object.emit = emit;
 }
 
-void read_interior(MapReader& reader, ObjectDesc& object) {
+void read_body(MapReader& reader, ObjectDesc& object) {
   reader.enter_section("objects.bodies");
   reader.name_of("interior", object.interior, NameKind::medium);
+  reader.name_of("exterior", object.exterior, NameKind::medium);
+  reader.integer("priority", object.priority, -1000, 1000);
 }
 
 /// Shapes that nothing can be inside of.
-void refuse_interior(MapReader& reader, const ObjectDesc& object) {
-  const YamlNode* node = reader.find("interior");
-  if (node == nullptr || has_inside(object)) return;
-  reader.complain(node->where,
-                  fmt::format("{} is a {}, which has no inside: interior needs a mesh, a sphere, a "
-                              "box or a cylinder with caps",
-                              reader.what(),
-                              object.shape == "cylinder" ? "cylinder without caps" : object.shape));
+void refuse_body(MapReader& reader, const ObjectDesc& object) {
+  if (has_inside(object)) return;
+  for (const char* key : {"interior", "exterior", "priority"}) {
+    const YamlNode* node = reader.find(key);
+    if (node == nullptr) continue;
+    reader.complain(
+        node->where,
+        fmt::format("{} is a {}, which has no inside: {} needs a mesh, a sphere, a box or a "
+                    "cylinder with caps",
+                    reader.what(),
+                    object.shape == "cylinder" ? "cylinder without caps" : object.shape, key));
+  }
 }
 
 void read_sphere(MapReader& reader, ObjectDesc& object) {
@@ -97,8 +103,8 @@ void read_shape(MapReader& reader, ObjectDesc& object) {
     row.read(reader, object);
   }
   if (object.shape.empty()) return;
-  read_interior(reader, object);
-  if (!reader.listing()) refuse_interior(reader, object);
+  read_body(reader, object);
+  if (!reader.listing()) refuse_body(reader, object);
 }
 
 void read_mesh(MapReader& reader, ObjectDesc& object) {
@@ -108,7 +114,7 @@ void read_mesh(MapReader& reader, ObjectDesc& object) {
   reader.enter_section("objects.mesh");
   reader.choice("normals", object.smooth, kMeshNormals);
   reader.text("part", object.part, "the name of a material in the mesh's file (usemtl)");
-  read_interior(reader, object);
+  read_body(reader, object);
 }
 
 void read_instance(MapReader& reader, ObjectDesc& object) {

@@ -168,6 +168,8 @@ void write(FieldWriter& out, const ObjectDesc& object) {
   out.put("smooth", object.smooth);
   out.put("material", object.material);
   if (!object.interior.empty()) out.put("interior", object.interior);
+  if (!object.exterior.empty()) out.put("exterior", object.exterior);
+  if (object.priority != 0) out.put("priority", object.priority);
   write_transform(out, object.transform);
   out.put("at", object.at);
   if (object.emit) write(out, *object.emit);

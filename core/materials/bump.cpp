@@ -36,6 +36,7 @@ class Bump final : public Material {
 
   bool is_null() const override { return base_->is_null(); }
   bool leads_inside() const override { return base_->leads_inside(); }
+  float index() const override { return base_->index(); }
 
  private:
   /// Change of height per unit of the parameter whose tangent is `tangent`, through space.

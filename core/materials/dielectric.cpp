@@ -8,7 +8,8 @@
 namespace hyades::core {
 namespace {
 
-/// Smooth interface; the side z > 0 has index 1, the other `ior`. One lobe is picked by its energy.
+/// Smooth interface; `ior` is the index of the side z < 0 over that of the other. One lobe is
+/// picked by its energy.
 ///
 /// Refraction squeezes a beam's solid angle: radiance over the squared index is what stays constant
 /// along a ray (Veach 1997, section 5.2). Radiance that arrives along wi in index eta_i leaves
@@ -78,11 +79,13 @@ class Dielectric final : public Material {
   Dielectric(float ior, const Rgb& transmission, const Rgb& reflection)
       : ior_(ior), transmission_(unit_clamp(transmission)), reflection_(unit_clamp(reflection)) {}
 
-  const Bsdf* bsdf_at(const SurfacePoint&, Frame&, BsdfArena& arena) const override {
-    if (ior_ == 1.0F) return arena.make<MatchedBsdf>(transmission_);
-    return arena.make<DielectricBsdf>(ior_, transmission_, reflection_);
+  const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
+    const float ior = ior_ / point.outside_index;
+    if (ior == 1.0F) return arena.make<MatchedBsdf>(transmission_);
+    return arena.make<DielectricBsdf>(ior, transmission_, reflection_);
   }
   bool leads_inside() const override { return true; }
+  float index() const override { return ior_; }
 
  private:
   float ior_;

@@ -27,8 +27,8 @@ struct ScalarParam {
 /// Two-sided Lambert of reflectance `color` (0..1).
 MaterialPtr make_lambert(const ColorParam& color);
 
-/// Smooth dielectric of index `ior` inside against 1 outside; `transmission` and `reflection` tint
-/// each event. ior = 1 passes light unchanged.
+/// Smooth dielectric of index `ior` inside, against SurfacePoint::outside_index outside;
+/// `transmission` and `reflection` tint each event. Equal indices pass light unchanged.
 MaterialPtr make_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
 
 /// What becomes of light that a microfacet reflects onto another one.

@@ -22,6 +22,9 @@ class Material {
   /// Whether what it transmits comes into the body whose surface it is, as through glass (and not
   /// through a thin pane), so that another medium begins there.
   virtual bool leads_inside() const { return false; }
+
+  /// Index of refraction of what is behind the surface; 0 where light is not refracted.
+  virtual float index() const { return 0.0F; }
 };
 
 }  // namespace hyades::core

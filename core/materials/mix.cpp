@@ -138,6 +138,9 @@ class Mix final : public Material {
 
   bool is_null() const override { return first_->is_null() && second_->is_null(); }
   bool leads_inside() const override { return first_->leads_inside() || second_->leads_inside(); }
+  float index() const override {
+    return first_->index() > 0.0F ? first_->index() : second_->index();
+  }
 
  private:
   static const Bsdf* in_frame(const Material& material, const SurfacePoint& point,

@@ -10,10 +10,11 @@
 namespace hyades::core {
 namespace {
 
-/// Rough interface between index 1 (z > 0) and `ior` (Walter et al. 2007, "Microfacet Models for
-/// Refraction through Rough Surfaces", equations 16, 20 and 21): smooth facets, GGX distributed, of
-/// which one that is visible from wo is drawn; it then reflects or refracts by its energy. Radiance
-/// gains (eta_o / eta_i)^2 in refraction as at a smooth interface (see dielectric.cpp).
+/// Rough interface; `ior` is the index of the side z < 0 over that of the other (Walter et al.
+/// 2007, "Microfacet Models for Refraction through Rough Surfaces", equations 16, 20 and 21):
+/// smooth facets, GGX distributed, of which one that is visible from wo is drawn; it then reflects
+/// or refracts by its energy. Radiance gains (eta_o / eta_i)^2 in refraction as at a smooth
+/// interface (see dielectric.cpp).
 class RoughDielectricBsdf final : public Bsdf {
  public:
   RoughDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection)
@@ -230,13 +231,15 @@ class RoughDielectric final : public Material {
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame& frame, BsdfArena& arena) const override {
     const float roughness = fraction_at(roughness_, point);
     const float alpha = roughness * roughness;
-    if (alpha < Ggx::kLeastAlpha || ior_ == 1.0F) return smooth_->bsdf_at(point, frame, arena);
+    const float ior = ior_ / point.outside_index;
+    if (alpha < Ggx::kLeastAlpha || ior == 1.0F) return smooth_->bsdf_at(point, frame, arena);
     if (scattering_ == FacetScattering::multiple) {
-      return arena.make<FullDielectricBsdf>(ior_, alpha, transmission_, reflection_);
+      return arena.make<FullDielectricBsdf>(ior, alpha, transmission_, reflection_);
     }
-    return arena.make<RoughDielectricBsdf>(ior_, alpha, transmission_, reflection_);
+    return arena.make<RoughDielectricBsdf>(ior, alpha, transmission_, reflection_);
   }
   bool leads_inside() const override { return true; }
+  float index() const override { return ior_; }
 
  private:
   float ior_;

@@ -59,9 +59,10 @@ class ThinDielectric final : public Material {
   ThinDielectric(float ior, const Rgb& transmission, const Rgb& reflection)
       : ior_(ior), transmission_(unit_clamp(transmission)), reflection_(unit_clamp(reflection)) {}
 
-  const Bsdf* bsdf_at(const SurfacePoint&, Frame&, BsdfArena& arena) const override {
-    return arena.make<ThinDielectricBsdf>(ior_, transmission_, reflection_);
+  const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
+    return arena.make<ThinDielectricBsdf>(ior_ / point.outside_index, transmission_, reflection_);
   }
+  float index() const override { return ior_; }
 
  private:
   float ior_;

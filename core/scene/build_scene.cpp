@@ -9,12 +9,14 @@
 #include "core/geometry/placement_check.h"
 #include "core/job/check_frame.h"
 #include "core/job/kinds.h"
-#include "core/job/layers.h"
+#include "core/scene/add_bodies.h"
 #include "core/scene/appearance.h"
+#include "core/scene/exteriors.h"
 #include "core/scene/flatten.h"
 #include "core/scene/light_makers.h"
 #include "core/scene/media_around.h"
 #include "core/scene/scene_files.h"
+#include "core/scene/transforms.h"
 
 namespace hyades::core {
 namespace {
@@ -63,20 +65,19 @@ class SceneBuilder {
     placements.reserve(flat->size());
     for (const FlatObject& object : *flat) {
       auto material = looks_.surface(object.material, object.desc->interior);
-      if (!material) return at(object, material.error());
-      SceneObject added;
-      added.material = *material;
-      added.name = object.name;
-      if (auto done = add_interior(object, added); !done) return done;
-      scene_->objects.push_back(std::move(added));
+      if (!material) return at_object(object, material.error());
+      scene_->objects.push_back({.material = *material, .name = object.name});
       placements.push_back(object.placement);
       placements.back().blocks_light = !(*material)->is_null();
       if (object.placement.shape.mesh)
         scene_->triangles += object.placement.shape.mesh->triangles.size();
     }
+    if (auto done = add_bodies(job_, *flat, looks_, *scene_, placements); !done) return done;
+    warn_of_open_bodies(*flat, cache_, *scene_);
     auto world = cache_.world(std::move(placements));
     if (!world) return blame(*flat, world.error());
     scene_->world = *world;
+    if (auto done = settle_exteriors(job_, *flat, looks_, *scene_); !done) return done;
     for (uint32_t i = 0; i < flat->size(); ++i) {
       if ((*flat)[i].emit) scene_->objects[i].light = add_emitter(i, *(*flat)[i].emit);
     }
@@ -87,59 +88,19 @@ class SceneBuilder {
     auto atmosphere = looks_.medium(job_.atmosphere);
     if (!atmosphere) return atmosphere.error().in("atmosphere");
     scene_->atmosphere = *atmosphere;
-    scene_->has_media =
-        *atmosphere != nullptr ||
-        std::any_of(objects.begin(), objects.end(), [&](const FlatObject& object) {
-          return !object.desc->interior.empty() || looks_.has_subsurface(object.material);
-        });
+    scene_->has_media = *atmosphere != nullptr ||
+                        std::any_of(objects.begin(), objects.end(), [&](const FlatObject& object) {
+                          return !object.desc->interior.empty() || !object.desc->exterior.empty() ||
+                                 looks_.has_subsurface(object.material);
+                        });
     return {};
-  }
-
-  /// What is inside of `object`, in scenes with media: there even an empty glass matters, for it
-  /// keeps the atmosphere out.
-  Status add_interior(const FlatObject& object, SceneObject& added) {
-    if (!scene_->has_media) return {};
-    auto interior = interior_of(object);
-    if (!interior) return at(object, interior.error());
-    added.interior = *interior;
-    if (added.interior != nullptr && !object.placement.visible_to_camera &&
-        makes_splats(job_.integrator)) {
-      return at(object, Error{"it is not visible to the camera but has an interior, which light "
-                              "paths would show; expected visible_to_camera: true, or integrator: "
-                              "path"});
-    }
-    const bool closed = has_inside(*object.desc);
-    if (*interior == nullptr && !(closed && added.material->leads_inside())) return {};
-    added.body = static_cast<uint32_t>(object.body);
-    scene_->has_shells |= added.material->is_null();
-    return {};
-  }
-
-  /// All parts of a body's surface share what is inside.
-  Result<MediumPtr> interior_of(const FlatObject& object) {
-    if (object.body < scene_->objects.size()) return scene_->objects[object.body].interior;
-    if (!object.desc->interior.empty() || !looks_.has_subsurface(object.material)) {
-      return looks_.medium_in(object.desc->interior, object.placement);
-    }
-    if (!has_inside(*object.desc)) {
-      return Error{"material '" + object.material +
-                   "' has a subsurface, for which it needs an "
-                   "inside: a mesh, a sphere, a box or a cylinder with caps"};
-    }
-    return looks_.subsurface(object.material);
   }
 
   /// At the middle of the lens when the shutter opens: a camera that goes through a surface in
   /// mid-frame is taken to be on the side where it began.
   void add_media_around_camera() {
-    if (!scene_->has_media) return;
     const Vec3 eye = job_.camera.look_from.at(time_) * job_.units;
     scene_->around_camera = media_around(*scene_, eye, 0.0F);
-  }
-
-  static Error at(const FlatObject& object, const Error& error) {
-    const Error named = error.in("object '" + object.name + "'");
-    return {Diagnostic{object.desc->where, named.message}.to_string()};
   }
 
   /// The error of a world, which knows objects only by number, in the job's words; all objects that
@@ -263,14 +224,8 @@ class SceneBuilder {
     for (uint32_t i = 0; i < scene_->objects.size(); ++i) {
       const std::string& path = scene_->objects[i].name;
       if (path != name && !path.starts_with(name + "/")) continue;
-      const Bounds local = bounds_of(scene_->world->placement(i).shape);
-      const Mat4 to_world = scene_->world->transform_at(i, shutter_time);
-      for (int corner = 0; corner < 8; ++corner) {
-        bounds.include(
-            transform_point(to_world, {(corner & 1) != 0 ? local.upper.x : local.lower.x,
-                                       (corner & 2) != 0 ? local.upper.y : local.lower.y,
-                                       (corner & 4) != 0 ? local.upper.z : local.lower.z}));
-      }
+      bounds.include(transformed(scene_->world->transform_at(i, shutter_time),
+                                 bounds_of(scene_->world->placement(i).shape)));
     }
     return bounds.empty() ? Vec3(0.0F) : bounds.center();
   }

@@ -130,6 +130,11 @@ class Flattener {
 
 }  // namespace
 
+Error at_object(const FlatObject& object, const Error& error) {
+  const Error named = error.in("object '" + object.name + "'");
+  return {Diagnostic{object.desc->where, named.message}.to_string()};
+}
+
 Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache) {
   Flattener flattener(job, frame, cache);
   if (auto done = flattener.add_all(job.objects, "", "", true); !done) return done.error();

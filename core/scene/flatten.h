@@ -21,6 +21,9 @@ struct FlatObject {
   Placement placement;  ///< in metres
 };
 
+/// `error` with the name of `object`, and where in the job it stands.
+Error at_object(const FlatObject& object, const Error& error);
+
 /// Most objects that groups and instances may make; more is refused with a clear error.
 inline constexpr size_t kMaxPlacements = 50'000'000;
 

@@ -1,55 +1,75 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
-#include "core/media/medium.h"
+#include "core/scene/body.h"
 
 namespace hyades::core {
 
-/// The bodies that a path is inside of, innermost last, and so the medium around it. A path keeps
-/// one and tells it of every surface that it crosses. Robust against surfaces that are missed or
-/// met twice (open meshes): a body that is entered again is inside once, leaving one that was never
-/// entered changes nothing.
+/// The bodies that a path is inside of, and so what is around it. A path keeps one and tells it of
+/// every surface that it crosses. Where bodies overlap, the one of highest rank fills the place,
+/// and surfaces of lower ones there are not met at all (Schmidt and Budge 2002, "Simple Nested
+/// Dielectrics in Ray Traced Images"); ranks, not the order of crossings, decide, so that light
+/// finds the same on its way back. Robust against surfaces that are missed or met twice (open
+/// meshes): a body that is entered again is inside once, leaving one that was never entered changes
+/// nothing.
 class MediumStack {
  public:
   /// Outside of all bodies; `atmosphere` (may be null) is what is there.
   explicit MediumStack(const Medium* atmosphere = nullptr) : atmosphere_(atmosphere) {}
 
+  /// Outside of all bodies.
+  bool empty() const { return size_ == 0; }
+
   /// What is around; null: nothing.
-  const Medium* medium() const { return size_ > 0 ? inside_[size_ - 1].medium : atmosphere_; }
+  const Medium* medium() const { return size_ > 0 ? inside_[0]->medium.get() : atmosphere_; }
 
   /// Whether light from outside comes in straight: not through glass.
-  bool open() const { return size_ == 0 || inside_[size_ - 1].open; }
+  bool open() const { return size_ == 0 || inside_[0]->open; }
 
-  /// Comes into `body`, which is filled with `medium` (may be null); `open`: through a surface that
-  /// scatters nothing.
-  void enter(uint32_t body, const Medium* medium, bool open) {
-    leave(body);
-    if (size_ < kDeepest) inside_[size_++] = {body, medium, open};
+  /// Index of refraction on the outer side of the surface of `body` (null: of a surface that
+  /// bounds none), which the path is at: of what else is there.
+  float index_outside(const Body* body) const {
+    for (uint32_t i = 0; i < size_; ++i) {
+      if (inside_[i] != body && inside_[i]->refracts()) return inside_[i]->index;
+    }
+    return 1.0F;
   }
 
-  void leave(uint32_t body) {
-    uint32_t kept = 0;
-    for (uint32_t i = 0; i < size_; ++i) {
-      if (inside_[i].body != body) inside_[kept++] = inside_[i];
+  /// Whether the surface of `body` (may be null) is not there, for another body that refracts and
+  /// has a higher rank fills the place.
+  bool hides(const Body* body) const {
+    if (body == nullptr || !body->refracts()) return false;
+    for (uint32_t i = 0; i < size_ && inside_[i]->rank > body->rank; ++i) {
+      if (inside_[i]->refracts()) return true;
     }
-    size_ = kept;
+    return false;
+  }
+
+  void enter(const Body& body) {
+    leave(body);
+    uint32_t at = size_;
+    while (at > 0 && inside_[at - 1]->rank < body.rank) --at;
+    if (at == kDeepest) return;
+    size_ = std::min(size_ + 1, kDeepest);
+    for (uint32_t i = size_ - 1; i > at; --i) inside_[i] = inside_[i - 1];
+    inside_[at] = &body;
+  }
+
+  void leave(const Body& body) {
+    const auto end = inside_.begin() + size_;
+    size_ = static_cast<uint32_t>(std::remove(inside_.begin(), end, &body) - inside_.begin());
   }
 
  private:
-  /// Bodies within bodies; deeper ones are as if they were not there.
+  /// Bodies in one place; of more, those of lowest rank are as if they were not there.
   static constexpr uint32_t kDeepest = 15;
-
-  struct Entry {
-    uint32_t body;
-    const Medium* medium;
-    bool open;
-  };
 
   const Medium* atmosphere_;
   uint32_t size_ = 0;
-  std::array<Entry, kDeepest> inside_;
+  std::array<const Body*, kDeepest> inside_;  ///< by rank, highest first
 };
 
 }  // namespace hyades::core

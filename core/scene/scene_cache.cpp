@@ -123,6 +123,12 @@ std::shared_ptr<const TriangleMesh> SceneCache::made_mesh(
   return *made;
 }
 
+MeshClosure SceneCache::closure(const std::shared_ptr<const TriangleMesh>& mesh) {
+  return **closures_.get(mesh, [&]() -> Result<std::shared_ptr<const MeshClosure>> {
+    return std::make_shared<const MeshClosure>(examine_closure(*mesh));
+  });
+}
+
 Result<std::shared_ptr<const World>> SceneCache::world(std::vector<Placement> placements) {
   const std::lock_guard lock(world_mutex_);
   if (world_ && same_placements(placements, world_placements_)) return world_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/geometry/closed_mesh.h"
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/world.h"
 #include "core/image/read_image.h"
@@ -67,6 +68,9 @@ class SceneCache {
                                                 std::shared_ptr<TriangleMesh> (*make)(const Vec3&),
                                                 const Vec3& size);
 
+  /// Whether a mesh of this cache has an inside.
+  MeshClosure closure(const std::shared_ptr<const TriangleMesh>& mesh);
+
   /// The world of `placements`; the previous one where they are the same.
   Result<std::shared_ptr<const World>> world(std::vector<Placement> placements);
 
@@ -81,6 +85,7 @@ class SceneCache {
   OnceMap<std::pair<std::string, MeshUse>, TriangleMesh> meshes_;
   OnceMap<std::string, MeshParts> mesh_parts_;
   OnceMap<std::string, TriangleMesh> made_meshes_;
+  OnceMap<std::shared_ptr<const TriangleMesh>, MeshClosure> closures_;
   OnceMap<std::pair<std::string, ColorSpace>, Image> images_;
   OnceMap<std::string, EnvironmentMap> environment_maps_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<float>> vdb_numbers_;

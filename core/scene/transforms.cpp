@@ -58,6 +58,17 @@ Mat4 step_matrix(const TransformStep& step, const JobTime& time) {
 
 }  // namespace
 
+Bounds transformed(const Mat4& m, const Bounds& box) {
+  Bounds bounds;
+  if (box.empty()) return bounds;
+  for (int corner = 0; corner < 8; ++corner) {
+    bounds.include(transform_point(m, {(corner & 1) != 0 ? box.upper.x : box.lower.x,
+                                       (corner & 2) != 0 ? box.upper.y : box.lower.y,
+                                       (corner & 4) != 0 ? box.upper.z : box.lower.z}));
+  }
+  return bounds;
+}
+
 Mat4 transform_at(const TransformList& steps, const Animated<Vec3>& at, const JobTime& time) {
   Mat4 m(1.0F);
   for (const TransformStep& step : steps) m = step_matrix(step, time) * m;

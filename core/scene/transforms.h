@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/base/bounds.h"
 #include "core/job/job.h"
 
 namespace hyades::core {
@@ -9,6 +10,9 @@ namespace hyades::core {
 /// The matrix of a transform list followed by the translation `at`, at one moment. Steps apply top
 /// to bottom.
 Mat4 transform_at(const TransformList& steps, const Animated<Vec3>& at, const JobTime& time);
+
+/// The bounds of `box`, none of it infinite, under `m`; empty ones stay empty.
+Bounds transformed(const Mat4& m, const Bounds& box);
 
 /// Samples of `matrix_of(JobTime)` over the shutter interval of `frame` at equal steps, as few as
 /// keep linear interpolation between them within 1e-4 of the truth (relative to the matrix's size),

@@ -61,16 +61,6 @@ Result<PlacedVolume> make_image_shell(const MediumDesc& medium, const JobTime& t
   return in_body({fields.density, nullptr, desc.tint ? fields.tint : nullptr, fields.glow});
 }
 
-Bounds transformed(const Mat4& m, const Bounds& box) {
-  Bounds bounds;
-  for (int corner = 0; corner < 8; ++corner) {
-    bounds.include(transform_point(m, {(corner & 1) != 0 ? box.lower.x : box.upper.x,
-                                       (corner & 2) != 0 ? box.lower.y : box.upper.y,
-                                       (corner & 4) != 0 ? box.lower.z : box.upper.z}));
-  }
-  return bounds;
-}
-
 /// Moves `box` to the middle of `body`, as large as fits.
 Mat4 fitted(const Bounds& box, const Bounds& body) {
   float scale = kInfinity;

@@ -254,6 +254,27 @@ lights:
   rim: {type: sun, direction: [1, -1, 1], irradiance: 1, angle: 4}
 )",
      128, 0.02, 8, "path"},
+    {"milk_that_overlaps_glass", R"(
+camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
+media:
+  milk: {scattering: [2, 1.5, 1], absorption: [0.1, 0.2, 0.4], g: 0.5}
+  mist: {scattering: 0.3, absorption: 0.02}
+materials:
+  white: {type: lambert, color: 0.6}
+  glass: {type: dielectric, ior: 1.5}
+  milk: {type: dielectric, ior: 1.33}
+  bubble: {type: dielectric, ior: 1}
+  air: {type: "null"}
+atmosphere: mist
+objects:
+  floor: {shape: rectangle, size: [3, 3], material: white}
+  glass: {shape: cylinder, radius: 0.5, height: 0.5, at: [0, 0.05, 0], material: glass, priority: 1}
+  milk: {shape: sphere, radius: 0.45, at: [0.1, 0.7, 0], material: milk, interior: milk}
+  bubble: {shape: sphere, radius: 0.15, at: [0.1, 0.85, 0.2], material: bubble, priority: 2}
+  haze: {shape: sphere, radius: 0.4, at: [-0.5, 0.5, 0.2], material: air, interior: mist}
+  lamp: {shape: sphere, radius: 0.9, at: [0.5, 2.5, 0.8], emit: {radiance: 5}}
+)",
+     24, 0.08, 6},
     {"glowing_gas", R"(
 camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
 media:

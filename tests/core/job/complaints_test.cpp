@@ -204,6 +204,9 @@ TEST(Complaints, Media) {
   EXPECT_EQ(complaints("media: {fog: {}}\nobjects: {a: {shape: disk, interior: fog}}\n"),
             "job.yaml:3:38: object 'a' is a disk, which has no inside: interior needs a mesh, a "
             "sphere, a box or a cylinder with caps\n");
+  EXPECT_EQ(complaints("objects: {a: {shape: cylinder, caps: false, priority: 2}}\n"),
+            "job.yaml:2:55: object 'a' is a cylinder without caps, which has no inside: priority "
+            "needs a mesh, a sphere, a box or a cylinder with caps\n");
   EXPECT_EQ(complaints("media: {fog: {}}\natmosphere: smog\n"),
             "job.yaml:3:13: atmosphere names the medium 'smog', which does not exist; there are "
             "fog\n");

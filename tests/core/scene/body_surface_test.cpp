@@ -46,7 +46,10 @@ objects:
   for (const size_t opaque : {2, 3, 4}) {
     EXPECT_FALSE(objects[opaque].material->leads_inside()) << opaque;
   }
-  for (const SceneObject& object : objects) EXPECT_NE(object.interior, nullptr) << object.name;
+  for (const SceneObject& object : objects) {
+    ASSERT_NE(object.body, nullptr) << object.name;
+    EXPECT_NE(object.body->medium, nullptr) << object.name;
+  }
 }
 
 TEST(BodySurface, WithASubsurfaceFillsBodies) {
@@ -63,7 +66,7 @@ objects:
 )");
   ASSERT_TRUE(scene->has_media);
   std::map<std::string, const Medium*> inside;
-  for (const SceneObject& object : scene->objects) inside[object.name] = object.interior.get();
+  for (const SceneObject& object : scene->objects) inside[object.name] = object.body->medium.get();
   EXPECT_NE(inside["wax"], nullptr);
   EXPECT_EQ(inside["wax"], inside["wax/top"]);
   EXPECT_EQ(inside["wax"], inside["other"]);

@@ -1,0 +1,57 @@
+#include "core/scene/rank_bodies.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace hyades::core {
+namespace {
+
+/// Most bodies whose bounds are compared one by one.
+constexpr size_t kMostCompared = 4096;
+
+double volume(const Bounds& bounds) {
+  if (bounds.empty()) return 0.0;
+  const Vec3d size(bounds.size());
+  return size.x * size.y * size.z;
+}
+
+bool touch(const Bounds& a, const Bounds& b) {
+  for (int i = 0; i < 3; ++i) {
+    if (a.lower[i] > b.upper[i] || b.lower[i] > a.upper[i]) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<uint32_t> rank_bodies(const std::vector<BodyExtent>& bodies) {
+  std::vector<uint32_t> order(bodies.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const BodyExtent& left = bodies[a];
+    const BodyExtent& right = bodies[b];
+    if (left.priority != right.priority) return left.priority < right.priority;
+    return volume(left.bounds) > volume(right.bounds);
+  });
+  std::vector<uint32_t> ranks(bodies.size());
+  for (uint32_t place = 0; place < order.size(); ++place) ranks[order[place]] = place;
+  return ranks;
+}
+
+std::vector<bool> may_be_hidden(const std::vector<BodyExtent>& bodies,
+                                const std::vector<uint32_t>& ranks) {
+  std::vector<bool> hidden(bodies.size(), false);
+  std::vector<uint32_t> refracting;
+  for (uint32_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].refracts) refracting.push_back(i);
+  }
+  for (const uint32_t i : refracting) {
+    hidden[i] = refracting.size() > kMostCompared ||
+                std::any_of(refracting.begin(), refracting.end(), [&](uint32_t other) {
+                  return ranks[other] > ranks[i] && touch(bodies[i].bounds, bodies[other].bounds);
+                });
+  }
+  return hidden;
+}
+
+}  // namespace hyades::core
