@@ -27,8 +27,12 @@ class DielectricEnergy {
 /// that is reflected,
 ///   f_reflected = r_a (1 - E_a(o)) (1 - E_a(i)) / (pi l_a),
 ///   f_transmitted = (1 - r_a) (1 - E_a(o)) (1 - E_b(i)) / (pi l_b),
-/// reciprocal where (1 - r_a) eta_a^2 l_a = (1 - r_b) eta_b^2 l_b. Smooth facets transmit 1 - F_a
-/// of diffuse light, and eta_a^2 (1 - F_a) is the same on both sides.
+/// reciprocal where (1 - r_a) eta_a^2 l_a = (1 - r_b) eta_b^2 l_b. Of diffuse light smooth facets
+/// transmit 1 - F_a, with eta_a^2 (1 - F_a) the same on both sides; here lost light does so from
+/// the side that loses less, and less from the other as reciprocity demands:
+/// 1 - r_a = (1 - F_a) l_b / max(l_a, l_b). Kulla and Conty divide by l_a + l_b, which would
+/// reflect half of it where indices hardly differ; random walks on the facets (Heitz et al. 2016,
+/// "Multiple-Scattering Microfacet BSDFs with the Smith Model") agree with this one.
 class LostGlassLight {
  public:
   /// `ior`: index of the side z < 0 over that of z > 0. The tints are those of each event.

@@ -59,10 +59,11 @@ std::string body(const char* surface, const char* color, const char* g) {
 }
 
 /// Each channel within `tolerance` of `expected`, four standard errors of ours aside; an error of
-/// 0.02 more is noticed with 84 %.
-void expect_near(const Reflectance& found, const Vec3d& expected, double tolerance) {
+/// five times `most_sigma` more is noticed with 84 %.
+void expect_near(const Reflectance& found, const Vec3d& expected, double tolerance,
+                 double most_sigma = 0.004) {
   for (int c = 0; c < 3; ++c) {
-    EXPECT_LT(found.sigma[c], 0.004) << "underpowered";
+    EXPECT_LT(found.sigma[c], most_sigma) << "underpowered";
     EXPECT_NEAR(found.mean[c], expected[c], tolerance + 4.0 * found.sigma[c]) << "channel " << c;
   }
 }
@@ -91,6 +92,16 @@ TEST(SubsurfaceTruth, SlabsBehindGlassHaveTheirColorOfTheLightThatIsLetIn) {
   const auto seen = [&](double color) { return outer + (1.0 - outer) * color; };
   const auto found = slab_reflectance(body("dielectric, ior: 1.4", "[0.1, 0.3, 0.7]", "0"), 160);
   expect_near(found, {seen(0.08), seen(0.27), seen(0.69)}, 0.004);
+}
+
+// Rough glass that loses nothing (0.97 became 0.63 when it did) looks the same but for grazing
+// angles (measured with 400 samples: 0.717 and 0.971 for the first and the last).
+TEST(SubsurfaceTruth, SlabsBehindRoughGlassHaveTheirColorToo) {
+  const double outer = core::diffuse_fresnel(1.4F).outer;
+  const auto seen = [&](double color) { return outer + (1.0 - outer) * color; };
+  const auto found =
+      slab_reflectance(body("dielectric, ior: 1.4, roughness: 0.6", "[0.7, 0.9, 0.97]", "0"), 56);
+  expect_near(found, {seen(0.69), seen(0.9), seen(0.97)}, 0.006, 0.009);
 }
 
 }  // namespace
