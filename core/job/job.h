@@ -146,9 +146,10 @@ struct MaterialDesc {
   Animated<Rgb> reflection{Rgb(1.0F)};                    ///< dielectric, conductor, mirror: tint
   ScalarInput reflectiveness{Animated<float>(0.5F), {}};  ///< glossy: 0 = Lambert, 1 = lobe only
   ScalarInput glossiness{Animated<float>(0.8F), {}};      ///< glossy: sharpness of the lobe, 0..1
-  bool multiple_scattering =
-      false;                  ///< dielectric, conductor, glossy: give back what facets shadow
-  std::string first, second;  ///< mix: material names
+  /// Give back what facets shadow. Dielectrics and conductors do unless told not to, glossy
+  /// surfaces only if told to.
+  bool multiple_scattering = false;
+  std::string first, second;                      ///< mix: material names
   ScalarInput amount{Animated<float>(0.5F), {}};  ///< mix: share of `second`
   std::optional<BumpDesc> bump;
   std::optional<SubsurfaceDesc> subsurface;  ///< dielectric, null: of bodies without an interior
@@ -201,7 +202,7 @@ struct ObjectDesc {
                                 ///< of refraction, else grey lambert
   std::string interior;         ///< name in Job::media of what fills it; empty: nothing
   std::string exterior;         ///< name in Job::media of what is around it; empty: not said
-  int32_t priority = 0;  ///< where bodies overlap, the highest says what is there
+  int32_t priority = 0;         ///< where bodies overlap, the highest says what is there
   TransformList transform;
   Animated<Vec3> at{Vec3(0.0F)};  ///< translation after `transform`
   std::optional<EmitDesc> emit;

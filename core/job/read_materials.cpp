@@ -78,6 +78,7 @@ void read_conductor(MapReader& reader, MaterialDesc& material) {
   }
   if (material.eta.has_value()) material.metal = "custom";
   reader.scalar_input("roughness", material.roughness, kUnitInterval);
+  material.multiple_scattering = true;
   reader.flag("multiple_scattering", material.multiple_scattering);
   reader.color("reflection", material.reflection, kUnitInterval);
   read_bump(reader, material);
