@@ -6,6 +6,8 @@
 #include <ostream>
 #include <string>
 
+#include "core/image/write_image.h"
+#include "tests/support/temp_folder.h"
 #include "tests/truth/replicates.h"
 
 namespace hyades::test {
@@ -76,6 +78,18 @@ objects:
   lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.6, 0], emit: {radiance: 8}}
 )",
      256, 0.03},
+    {"hdr_sun_through_a_dielectric", R"(
+camera: {look_from: [0, 1.4, 4], look_at: [0, 0.5, 0], fov: 35}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  glass: {type: dielectric, ior: 1.5}
+objects:
+  floor: {shape: disk, radius: 2, material: white}
+  ball: {shape: sphere, radius: 0.6, at: [-0.4, 0.7, 0], material: glass}
+  block: {shape: box, size: [0.5, 0.9, 0.5], transform: [{rotate_y: 30}], at: [0.8, 0.5, 0], material: glass}
+environment: {image: sun.exr}
+)",
+     192, 0.05},
     {"rough_glass_and_a_mix", R"(
 camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35}
 materials:
@@ -91,7 +105,7 @@ objects:
   wall: {shape: rectangle, size: [1, 1], transform: [{rotate_x: 90}], at: [0.6, 0.6, -0.5], material: white}
   lamp: {shape: sphere, radius: 0.5, at: [0.5, 2.6, 0.6], emit: {radiance: 8}}
 )",
-     128, 0.04},
+     192, 0.05},
     {"bumped_gloss", R"(
 camera: {look_from: [0, 1.2, 3], look_at: [0, 0.5, 0], fov: 40}
 textures:
@@ -291,12 +305,35 @@ lights:
      128},
 };
 
+/// A picture of a sky with a sun: 2 x 2 pixels of 64 x 32, a thousand times as bright as the rest.
+const std::string& folder_with_sun() {
+  static const TempFolder folder;
+  static const std::string path = [] {
+    core::Image sky;
+    sky.width = 64;
+    sky.height = 32;
+    sky.channels = {"R", "G", "B"};
+    for (int y = 0; y < sky.height; ++y) {
+      for (int x = 0; x < sky.width; ++x) {
+        const bool sun = (x == 22 || x == 23) && (y == 8 || y == 9);
+        const core::Rgb c = sun ? core::Rgb(300, 270, 200) : core::Rgb(0.15F, 0.25F, 0.4F);
+        sky.data.insert(sky.data.end(), {c.x, c.y, c.z});
+      }
+    }
+    EXPECT_TRUE(core::write_exr(folder.file("sun.exr"), sky).ok());
+    return folder.path().string();
+  }();
+  return path;
+}
+
 YamlScene scene_with(const ParityScene& scene, const std::string& integrator, int samples) {
+  const bool sun = std::string(scene.text).find("sun.exr") != std::string::npos;
   return YamlScene(
       "hyades: 1\nname: parity\nfilm: {size: [24, 18], filter: {type: box, radius: 0.5}}\n"
       "sampling: {samples: " +
-      std::to_string(samples) + ", seed: 11}\nintegrator: {type: " + integrator +
-      ", max_depth: " + std::to_string(scene.max_depth) + "}\n" + scene.text);
+          std::to_string(samples) + ", seed: 11}\nintegrator: {type: " + integrator +
+          ", max_depth: " + std::to_string(scene.max_depth) + "}\n" + scene.text,
+      1, {}, sun ? folder_with_sun() : ".");
 }
 
 class Parity : public testing::TestWithParam<ParityScene> {};
