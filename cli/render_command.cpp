@@ -26,6 +26,7 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
+#include "core/render/chain_batch.h"
 
 namespace hyades::cli {
 namespace {
@@ -106,6 +107,30 @@ std::optional<LoadedJob> load(const RenderOptions& options) {
   return loaded;
 }
 
+/// What is rendered of each frame. --crop is no part of the job: films of several crops belong to
+/// one picture, and 'hyades merge' joins them.
+core::PixelRect window_of(const RenderOptions& options, const core::Job& job) {
+  const core::PixelRect whole = core::render_window(job.film);
+  if (options.crop.empty()) return whole;
+  return intersection(whole, {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
+}
+
+/// Says so where what the job's chains bring to the crop is right only when the rest is merged.
+void note_cut_chains(const RenderOptions& options, const core::Job& job) {
+  if (options.crop.empty() || options.quiet || job.integrator.type != "mlt") return;
+  const core::PixelRect crop = window_of(options, job);
+  const auto pixels = static_cast<double>(crop.area());
+  const auto stood_for =
+      static_cast<double>(core::pixels_of_chains(crop, core::render_window(job.film)));
+  if (stood_for == pixels) return;
+  std::fprintf(
+      stderr,
+      "--crop: chains of mlt stand for %d x %d pixels each, and this crop cuts some: until it "
+      "is merged with the rest its light is %.3g times what it should be; edges at "
+      "multiples of %d cut none\n",
+      core::kChainShare, core::kChainShare, stood_for / pixels, core::kChainShare);
+}
+
 /// Writes the job that the mesh is rendered as; the exit status.
 int save_job(const RenderOptions& options) {
   if (!is_mesh(options.path)) {
@@ -154,14 +179,6 @@ class OutputNote {
   std::string path_;
   std::string digest_;
 };
-
-/// What is rendered of each frame. --crop is no part of the job: films of several crops belong to
-/// one picture, and 'hyades merge' joins them.
-core::PixelRect window_of(const RenderOptions& options, const core::Job& job) {
-  const core::PixelRect whole = core::render_window(job.film);
-  if (options.crop.empty()) return whole;
-  return intersection(whole, {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
-}
 
 void print_bad_samples(const RunTotals& totals, const std::string& path) {
   if (totals.counters.bad_samples == 0) return;
@@ -231,6 +248,7 @@ int render_command(int argc, char** argv) {
   const auto numbers = select_frames(job, options.frames);
   if (!numbers) return kBadInput;
 
+  note_cut_chains(options, job);
   const core::PixelRect window = window_of(options, job);
   const FilmRoom room = film_room(job, window, options.film_memory);
   if (const auto fits = room.check(); !fits) {

@@ -63,6 +63,13 @@ class Collector final : public ChainSink {
 
 }  // namespace
 
+uint64_t pixels_of_chains(const PixelRect& crop, const PixelRect& region) {
+  uint64_t pixels = 0;
+  for (const PixelRect& share : shares_of(crop, region))
+    pixels += static_cast<uint64_t>(share.area());
+  return pixels;
+}
+
 bool ChainBatch::run(ChainName name, const PixelRect& tile, Workspace& work,
                      std::vector<PixelSplat>& splats, RenderCounters& counters,
                      const Watch& watch) const {

@@ -14,6 +14,11 @@ namespace hyades::core {
 /// grid, however tiles are cut.
 inline constexpr int kChainShare = 64;
 
+/// How many pixels the chains of `crop`, a part of `region`, stand for: as many as it has where its
+/// edges are multiples of kChainShare or the region's. Elsewhere the crop alone is that many times
+/// as bright, over its pixels, until it is merged with what is beside it.
+uint64_t pixels_of_chains(const PixelRect& crop, const PixelRect& region);
+
 /// The Markov chains of one batch of a tile: those whose share of the region has its first pixel in
 /// the tile. A tile whose sides are multiples of kChainShare has all of its own chains.
 class ChainBatch {

@@ -42,6 +42,35 @@ TEST(Layers, DepthNormalAndAlphaAreThoseOfTheFirstSurface) {
   EXPECT_EQ(picture.at(3, 12, picture.find_channel("A")), 1.0F);
 }
 
+// Layers come from camera rays, which are the same ones whatever brings the light.
+TEST(Layers, AreThoseOfPathWhateverTheIntegrator) {
+  const auto picture = [](const std::string& integrator) {
+    const YamlScene scene(kMirrorOverFloor + R"(
+integrator: )" + integrator + R"(
+lights: {lamp: {type: point, at: [2, 3, 4], power: 100}}
+)",
+                          1, {.depth = true, .albedo = true, .normal = true});
+    return scene.render().film.normalised();
+  };
+  const core::Image expected = picture("path");
+  for (const char* integrator : {"bdpt", "mlt", "{type: mlt, over: path}"}) {
+    SCOPED_TRACE(integrator);
+    const core::Image found = picture(integrator);
+    for (const char* layer :
+         {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z", "A"}) {
+      const int here = found.find_channel(layer);
+      const int there = expected.find_channel(layer);
+      ASSERT_TRUE(here >= 0 && there >= 0) << layer;
+      for (int y = 0; y < 16; ++y) {
+        for (int x = 0; x < 16; ++x) {
+          ASSERT_EQ(found.at(x, y, here), expected.at(x, y, there))
+              << layer << ' ' << x << ',' << y;
+        }
+      }
+    }
+  }
+}
+
 // Mitchell's filter has negative lobes, so its samples carry weights: single pixels scatter around
 // the sky's 1 although every sample sees 1, and their mean is 1.
 TEST(Layers, SamplesCarryTheWeightsOfTheirFilter) {
