@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/integrators/chosen_joins.h"
 #include "core/integrators/found_path.h"
 #include "core/integrators/light_path.h"
 #include "core/integrators/random_walk.h"
@@ -43,9 +44,7 @@ class BidirectionalSample final : public WalkWatcher {
     if (wanted(1)) {
       for (int t = 2; t <= camera_.size(); ++t) choose_light(t);
     }
-    for (int t = 2; t <= camera_.size(); ++t) {
-      for (int s = 2; s <= light_.size() && s + t - 2 <= settings_.max_depth; ++s) join(s, t);
-    }
+    join_subpaths();
     for (int s = 2; s <= light_.size() && s - 1 <= settings_.max_depth; ++s) {
       join_lens(s, start.lens);
     }
@@ -218,8 +217,23 @@ class BidirectionalSample final : public WalkWatcher {
     return v.edge + v.beyond * square(reverse);
   }
 
-  /// Vertex s - 1 of the light path and t - 1 of the camera path.
-  void join(int s, int t) {
+  void join_subpaths() {
+    const int most = settings_.max_depth + 2;
+    if (settings_.light_vertices >= 0) {
+      const int s = settings_.light_vertices;
+      const int t = settings_.camera_vertices;
+      if (s >= 2 && t >= 2 && s <= light_.size() && t <= camera_.size() && s + t <= most)
+        join(s, t, 1.0F);
+      return;
+    }
+    const float u = MediaNumbers(sampler_, 1, MediaNumbers::Purpose::connection).next().x;
+    for_chosen_joins(light_.size(), camera_.size(), most, u,
+                     [&](int s, int t, float chosen) { join(s, t, chosen); });
+  }
+
+  /// Vertex s - 1 of the light path and t - 1 of the camera path, a pair that was chosen with
+  /// probability 1 / `chosen`.
+  void join(int s, int t, float chosen) {
     const PathVertex& y = light_[s - 1];
     const PathVertex& z = camera_[t - 1];
     if (!y.joins() || !z.joins() || !wanted(s, t)) return;
@@ -245,7 +259,7 @@ class BidirectionalSample final : public WalkWatcher {
         square(to_z / z.density) * sum_before(camera_, t - 1, to_light, TransportMode::importance);
     const float share_of_all = weight(path_of(s, t, light_[0].light), light_side, camera_side);
     out_.radiance += z.throughput * f_camera * f_light * y.throughput * share *
-                     (share_of_all / static_cast<float>(distance2));
+                     (chosen * share_of_all / static_cast<float>(distance2));
   }
 
   /// t = 1: vertex s - 1 of the light path is seen through a place of the lens.

@@ -44,7 +44,6 @@ PathVertex& Subpath::add(PathVertex::Kind kind) {
   v.infinitely_far = false;
   v.density = 1.0;
   v.edge = v.beyond = v.chain = 0.0;
-  v.arena.reset();
   return v;
 }
 

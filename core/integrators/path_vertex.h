@@ -43,7 +43,6 @@ struct PathVertex {
   double edge = 0.0;     ///< (p_i / p_s)^2 of the strategy that joins this vertex to the one before
   double beyond = 0.0;   ///< factor of the sum over the strategies before that one
   double chain = 0.0;    ///< edge + beyond reverse^2, when the subpath has gone on from here
-  BsdfArena arena;
 
   bool scatters() const { return kind == Kind::surface || kind == Kind::medium; }
 
@@ -73,7 +72,10 @@ struct PathVertex {
 class Subpath {
  public:
   int size() const { return size_; }
-  void clear() { size_ = 0; }
+  void clear() {
+    size_ = 0;
+    arena_.reset();
+  }
   PathVertex& operator[](int i) { return vertices_[static_cast<size_t>(i)]; }
   const PathVertex& operator[](int i) const { return vertices_[static_cast<size_t>(i)]; }
   PathVertex& back() { return (*this)[size_ - 1]; }
@@ -81,9 +83,13 @@ class Subpath {
   /// A fresh vertex at the end; others stay where they are.
   PathVertex& add(PathVertex::Kind kind);
 
+  /// For the BSDFs of its vertices.
+  BsdfArena& arena() { return arena_; }
+
  private:
   std::deque<PathVertex> vertices_;
   int size_ = 0;
+  BsdfArena arena_;
 };
 
 /// A ray from `a` to `b` that meets neither's surface, both at shutter time `time`.

@@ -87,7 +87,7 @@ PathVertex* RandomWalk::next_vertex(Subpath& path, Way& way, WalkWatcher& watche
       v.point.outside_index = way.around.index_outside(object.body);
       v.position = point.position;
       v.object = &object;
-      v.surface.emplace(v.point, *object.material, v.arena);
+      v.surface.emplace(v.point, *object.material, path.arena());
       connect_to_last(path, way, v);
       return &v;
     }

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <new>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/base/vec.h"
 
@@ -52,25 +54,38 @@ class Bsdf {
   virtual bool is_null() const { return false; }
 };
 
-/// Memory for the BSDFs of one surface point: no allocation, no destructors. A BSDF lives until
-/// reset().
+/// Memory for the BSDFs of one surface point, or of all of a path: no destructors, and no
+/// allocation once it has been as full as it gets. A BSDF lives until reset().
 class BsdfArena {
  public:
-  static constexpr size_t kSize = 4096;
-
-  void reset() { used_ = 0; }
+  void reset() {
+    block_ = 0;
+    used_ = 0;
+  }
 
   template <class T, class... Args>
   const T* make(Args&&... args) {
-    const size_t begin = (used_ + alignof(T) - 1) / alignof(T) * alignof(T);
-    if (begin + sizeof(T) > kSize) return nullptr;
+    static_assert(sizeof(T) <= kSize && alignof(T) <= kAlignment);
+    size_t begin = (used_ + alignof(T) - 1) / alignof(T) * alignof(T);
+    if (begin + sizeof(T) > kSize) {
+      ++block_;
+      begin = 0;
+    }
+    if (block_ == blocks_.size()) blocks_.push_back(std::make_unique<Block>());
     used_ = begin + sizeof(T);
-    return ::new (memory_ + begin) T(std::forward<Args>(args)...);
+    return ::new (blocks_[block_]->memory + begin) T(std::forward<Args>(args)...);
   }
 
  private:
-  alignas(16) std::byte memory_[kSize];
-  size_t used_ = 0;
+  static constexpr size_t kSize = 4096;
+  static constexpr size_t kAlignment = 16;
+  struct Block {
+    alignas(kAlignment) std::byte memory[kSize];
+  };
+
+  std::vector<std::unique_ptr<Block>> blocks_;
+  size_t block_ = 0;  ///< the one that is being filled
+  size_t used_ = 0;   ///< of it, bytes
 };
 
 }  // namespace hyades::core

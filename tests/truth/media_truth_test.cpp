@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/quadrature.h"
-#include "tests/truth/render_yaml.h"
+#include "tests/truth/replicates.h"
 
 namespace hyades::test {
 namespace {
@@ -159,6 +159,29 @@ environment: {color: [1, 2, 0.5]}
     SCOPED_TRACE(surface);
     expect_picture_mean(scene, {1.0, 2.0, 0.5}, kPromise);
   }
+}
+
+// Walks of hundreds of events by bidirectional paths, which join only some of their vertices: light
+// stays in a body of high index for long.
+TEST(MediaTruth, LongWalksOfBdptLoseNothing) {
+  const YamlScene scene(R"(
+hyades: 1
+name: vanish
+film: {size: [8, 8], filter: box}
+sampling: {samples: 16, seed: 2}
+integrator: {type: bdpt, max_depth: 5000}
+camera: {look_from: [0, 0, 4], look_at: [0, 0, 0], fov: 12}
+materials: {skin: {type: dielectric, ior: 2}}
+media: {white: {scattering: [12, 13, 14]}}
+objects:
+  ball: {shape: sphere, radius: 1, material: skin, interior: white}
+environment: {color: 1}
+)");
+  const Replicates found = render_replicates(scene, 48, 8);
+  EXPECT_EQ(found.bad_samples, 0U);
+  Promise promise = kPromise;
+  promise.relative_error = 0.08;
+  for (const Moments& channel : found.picture) EXPECT_TRUE(mean_is(channel, 1.0, promise));
 }
 
 /// Chandrasekhar's H for isotropic scattering of albedo `w`, by iterating his equation
