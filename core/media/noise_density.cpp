@@ -12,7 +12,10 @@ namespace {
 class NoiseField final : public DensityField {
  public:
   NoiseField(const NoiseDensity& noise, const Bounds& bounds)
-      : noise_(noise), bounds_(bounds), center_(bounds.center()) {
+      : noise_(noise),
+        fractal_(noise.octaves, noise.lacunarity, noise.gain),
+        bounds_(bounds),
+        center_(bounds.center()) {
     const Vec3 half = 0.5F * bounds.size();
     for (int a = 0; a < 3; ++a) per_half_[a] = half[a] > 0.0F ? 1.0F / half[a] : 0.0F;
   }
@@ -21,9 +24,9 @@ class NoiseField final : public DensityField {
     if (p != glm::clamp(p, bounds_.lower, bounds_.upper)) return 0.0F;
     const float thinning = thinning_at(length((p - center_) * per_half_));
     if (thinning <= -1.0F) return 0.0F;
-    const float n = fbm(Vec4(p * noise_.scale + noise_.offset, noise_.time), noise_.octaves,
-                        noise_.lacunarity, noise_.gain)
-                        .value;
+    const float n =
+        fractal_.value_between(Vec4(p * noise_.scale + noise_.offset, noise_.time),
+                               noise_of(noise_.low, thinning), noise_of(noise_.high, thinning));
     return density_of(0.5F + 0.5F * n + thinning);
   }
 
@@ -57,12 +60,16 @@ class NoiseField final : public DensityField {
     return std::clamp((1.0F - distance) / noise_.fade, 0.0F, 1.0F) - 1.0F;
   }
 
+  /// The noise that makes `value`, what density_of goes by.
+  static float noise_of(float value, float thinning) { return 2.0F * (value - 0.5F - thinning); }
+
   float density_of(float value) const {
     if (noise_.high <= noise_.low) return value > noise_.low ? 1.0F : 0.0F;
     return std::clamp((value - noise_.low) / (noise_.high - noise_.low), 0.0F, 1.0F);
   }
 
   NoiseDensity noise_;
+  FractalNoise fractal_;
   Bounds bounds_;
   Vec3 center_;
   Vec3 per_half_;

@@ -16,7 +16,8 @@ float length(const Vec3& v) { return std::sqrt(glm::dot(v, v)); }
 /// What the fields of a shell share.
 class ShellPlace {
  public:
-  explicit ShellPlace(const Shell& shell) : shell_(shell), image_(*shell.image, shell.turn) {}
+  explicit ShellPlace(const Shell& shell)
+      : shell_(shell), image_(*shell.image, shell.turn), swirl_(shell.octaves, 2.0F, 0.5F) {}
 
   /// Of the image, at a place of the shell.
   Rgb color(const Vec3& p) const {
@@ -25,7 +26,7 @@ class ShellPlace {
       Vec3 by;
       for (int a = 0; a < 3; ++a) {
         const Vec3 apart(31.7F * static_cast<float>(a), 0.0F, 0.0F);
-        by[a] = fbm(Vec4(p * shell_.scale + apart, shell_.time), shell_.octaves, 2.0F, 0.5F).value;
+        by[a] = swirl_.value(Vec4(p * shell_.scale + apart, shell_.time));
       }
       const float reach = length(by);
       from += by * (shell_.swirl / std::max(reach, std::sqrt(3.0F)));
@@ -78,6 +79,7 @@ class ShellPlace {
 
   Shell shell_;
   SphereImage image_;
+  FractalNoise swirl_;
 };
 
 class ShellDensity final : public DensityField {

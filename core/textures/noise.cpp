@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "core/textures/noise_octaves.h"
 
@@ -121,7 +122,7 @@ struct Corners4 {
 };
 
 /// One of the 32 vectors with one zero component and three of +-1.
-Corners4 corners(const Square& s, uint32_t cell_z, float z, uint32_t cell_w, float w) {
+inline Corners4 corners(const Square& s, uint32_t cell_z, float z, uint32_t cell_w, float w) {
   const U4 folded = fold(s.hash, U4{cell_z, cell_z, cell_z, cell_z});
   const U4 h = finish(fold(folded, U4{cell_w, cell_w, cell_w, cell_w}));
   const U4 quarter = h >> 30;
@@ -191,6 +192,66 @@ Noise4 perlin(const Vec4& p) {
   noise.gradient.z = kScale4 * sum(s.weight * gz);
   noise.gradient.w = kScale4 * sum(s.weight * (slope_w + gw));
   return noise;
+}
+
+float perlin_value(const Vec4& p) {
+  const Axis x = locate(p.x);
+  const Axis y = locate(p.y);
+  const Axis z = locate(p.z);
+  const Axis w = locate(p.w);
+  const Square s = square_of(x, y, 0x4D4D4D4DU);
+  F4 layer[2];
+  for (int k = 0; k < 2; ++k) {
+    const uint32_t cell_w = w.cell + static_cast<uint32_t>(k);
+    const float tw = w.t - static_cast<float>(k);
+    layer[k] = mix(corners(s, z.cell, z.t, cell_w, tw).value,
+                   corners(s, z.cell + 1, z.t - 1.0F, cell_w, tw).value, z.fade);
+  }
+  return kScale4 * sum(s.weight * mix(layer[0], layer[1], w.fade));
+}
+
+std::array<Vec4, 16> corner_gradients(const Vec4& cell) {
+  const Square s = square_of(locate(cell.x), locate(cell.y), 0x4D4D4D4DU);
+  const uint32_t z = locate(cell.z).cell;
+  const uint32_t w = locate(cell.w).cell;
+  std::array<Vec4, 16> gradients;
+  for (uint32_t high = 0; high < 4; ++high) {
+    const Corners4 c = corners(s, z + (high & 1U), 0.0F, w + (high >> 1U), 0.0F);
+    for (int low = 0; low < 4; ++low)
+      gradients[4 * high + static_cast<size_t>(low)] =
+          kScale4 * Vec4(c.gx[low], c.gy[low], c.gz[low], c.gw[low]);
+  }
+  return gradients;
+}
+
+FractalNoise::FractalNoise(int octaves, float lacunarity, float gain) {
+  norm_ = for_each_octave(octaves, lacunarity, gain, [&](const Octave& octave) {
+    terms_.push_back({octave, 0.0F});
+  });
+  float rest = 0.0F;
+  for (auto term = terms_.rbegin(); term != terms_.rend(); ++term) {
+    term->rest = rest;
+    rest += std::fabs(term->octave.amplitude);
+  }
+}
+
+float FractalNoise::value(const Vec4& p) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  return value_between(p, -kInfinity, kInfinity);
+}
+
+float FractalNoise::value_between(const Vec4& p, float low, float high) const {
+  constexpr float kMargin = 1e-5F;  // for the rounding of sums
+  const float below = (low - kMargin) * norm_;
+  const float above = (high + kMargin) * norm_;
+  float total = 0.0F;
+  for (const Term& term : terms_) {
+    const Octave& octave = term.octave;
+    total += octave.amplitude * perlin_value(p * octave.frequency + octave.shift);
+    if (total + term.rest < below) return -1.0F;
+    if (total - term.rest > above) return 1.0F;
+  }
+  return total / norm_;
 }
 
 Noise3 fbm(const Vec3& p, int octaves, float lacunarity, float gain) {

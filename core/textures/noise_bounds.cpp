@@ -20,10 +20,10 @@ float fade(float t) { return t * t * t * (t * (6.0F * t - 15.0F) + 10.0F); }
 /// greatest where both are, at one end of the weight's own interval.
 NoiseBounds in_cell(const Vec4& cell, const Vec4& from, const Vec4& to) {
   std::array<NoiseBounds, 16> values;
+  const std::array<Vec4, 16> gradients = corner_gradients(cell);
   for (int corner = 0; corner < 16; ++corner) {
     const Vec4 offset((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0, (corner & 8) != 0);
-    // At a lattice point the noise is 0 and climbs along the corner's own gradient.
-    const Vec4 gradient = perlin(cell + offset).gradient;
+    const Vec4& gradient = gradients[static_cast<size_t>(corner)];
     const Vec4 a = gradient * (from - offset);
     const Vec4 b = gradient * (to - offset);
     const Vec4 low = glm::min(a, b);

@@ -32,6 +32,34 @@ TEST(NoiseBounds, HoldOverBoxesOfEverySize) {
   }
 }
 
+TEST(FractalNoise, IsFbmWithoutItsGradient) {
+  test::Random random(9);
+  const FractalNoise noise(6, 2.1F, 0.6F);
+  for (int n = 0; n < 3000; ++n) {
+    const Vec4 p = 40.0F * random4(random) - 20.0F;
+    EXPECT_EQ(perlin_value(p), perlin(p).value);
+    EXPECT_EQ(noise.value(p), fbm(p, 6, 2.1F, 0.6F).value);
+  }
+}
+
+TEST(FractalNoise, BetweenBoundsIsWhatItIsElseOnTheSameSide) {
+  test::Random random(10);
+  const FractalNoise noise(6, 2.1F, 0.6F);
+  int outside = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Vec4 p = 40.0F * random4(random) - 20.0F;
+    const float low = 0.4F * random.uniform() - 0.3F;
+    const float high = low + 0.1F * random.uniform();
+    const float value = noise.value(p);
+    const float between = noise.value_between(p, low, high);
+    if (between == value) continue;
+    ++outside;
+    ASSERT_TRUE(between == -1.0F || between == 1.0F);
+    ASSERT_TRUE(between < 0.0F ? value < low : value > high);
+  }
+  EXPECT_GT(outside, 5000);
+}
+
 TEST(NoiseBounds, NarrowDownToTheValueAtAPoint) {
   test::Random random(8);
   for (int n = 0; n < 1000; ++n) {
