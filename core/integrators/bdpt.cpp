@@ -23,6 +23,9 @@ struct BdptScratch : IntegratorScratch {
 
 double square(double x) { return x * x; }
 
+/// Of densities; 0 where `a` is, also of a light that is seen edge-on, where `b` is 0 as well.
+double ratio(double a, double b) { return a > 0.0 ? a / b : 0.0; }
+
 /// One sample: a camera path, a light path, and all that joins them.
 class BidirectionalSample final : public WalkWatcher {
  public:
@@ -151,8 +154,8 @@ class BidirectionalSample final : public WalkWatcher {
       const double met = way.density_at(on, before.position);
       const LightDensities densities = light_densities(scene_, on, before, direction);
       const double back = densities.towards / before.density;
-      others = (way.specular ? 0.0 : square(densities.chosen / met)) +
-               square(densities.emitted / met * back) * before.chain;
+      others = (way.specular ? 0.0 : square(ratio(densities.chosen, met))) +
+               square(ratio(densities.emitted * back, met)) * before.chain;
     }
     FoundPath path = path_of(0, camera_.size() + 1, on.light);
     path.direction = direction;
@@ -199,7 +202,7 @@ class BidirectionalSample final : public WalkWatcher {
         static_cast<double>(scene_.selector->emitter_probability(selected->index)) *
         static_cast<double>(sample->pdf_place);
     const double towards = emission_density(scene_, light, on, v, direction);
-    const double camera_side = square(emitted / chosen_place * towards / v.density) *
+    const double camera_side = square(ratio(emitted * towards, chosen_place * v.density)) *
                                sum_before(camera_, t - 1, direction, TransportMode::importance);
     FoundPath path = path_of(1, t, selected->index);
     path.direction = direction;
