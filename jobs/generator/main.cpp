@@ -58,6 +58,39 @@ Mesh make_vase() {
                     6, 96);
 }
 
+/// A tumbler's inner wall, in centimetres: its radius at a height.
+float tumbler_bore(float height) { return 1.9F + (height - 0.9F) * 0.085F; }
+
+/// A tumbler in centimetres, 8 high: thick bottom, wall of 2.2 mm, round rim.
+Mesh make_tumbler() {
+  constexpr float kHeight = 8.0F, kWall = 0.22F, kRim = 0.109F;
+  return make_lathe(round_corners({{{0.0F, 0.0F}},
+                                   {{tumbler_bore(0.0F) + kWall, 0.0F}, 0.3F},
+                                   {{tumbler_bore(kHeight) + kWall, kHeight}, kRim},
+                                   {{tumbler_bore(kHeight), kHeight}, kRim},
+                                   {{tumbler_bore(0.9F), 0.9F}, 0.5F},
+                                   {{0.0F, 0.9F}}},
+                                  10),
+                    1, 96);
+}
+
+/// What is poured into the tumbler up to a height [cm]. It reaches half-way into wall and bottom,
+/// so that the glass, of higher priority, bounds it; its surface climbs the wall as water does, by
+/// a height that falls off over the capillary length of 2.7 mm.
+Mesh make_drink(float level) {
+  constexpr float kReach = 0.1F, kClimb = 0.2F, kCapillary = 0.27F;
+  std::vector<Vec2> profile = {{0.0F, 0.5F}, {tumbler_bore(0.5F) + kReach, 0.5F}};
+  const float bore = tumbler_bore(level);
+  constexpr int kSteps = 14;
+  for (int i = -2; i <= kSteps; ++i) {
+    // Close together where the surface is steep.
+    const float u = static_cast<float>(i) / static_cast<float>(kSteps);
+    const float inward = i < 0 ? static_cast<float>(i) * 0.5F * kReach : bore * u * u;
+    profile.emplace_back(bore - inward, level + kClimb * std::exp(-inward / kCapillary));
+  }
+  return make_lathe(profile, 1, 96);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -72,17 +105,21 @@ int main(int argc, char** argv) {
     std::printf("%s: %zu triangles\n", path.c_str(), made.triangles.size());
     return write_ply(path.string(), made, comment);
   };
+  // Of what is untextured the file need not carry uvs.
+  const auto without_uvs = [](Mesh made) {
+    made.uvs.clear();
+    return made;
+  };
   bool good = true;
-  Mesh ridged = make_knot({.p = 2,
-                           .q = 3,
-                           .radius = 0.42F,
-                           .lobes = 5,
-                           .ridge = 0.16F,
-                           .twist = 18,
-                           .along = 625,
-                           .around = 80});
-  ridged.uvs.clear();  // diffuse and untextured: the file need not carry them
-  good &= mesh("mesh-100k/knot.ply", ridged,
+  good &= mesh("mesh-100k/knot.ply",
+               without_uvs(make_knot({.p = 2,
+                                      .q = 3,
+                                      .radius = 0.42F,
+                                      .lobes = 5,
+                                      .ridge = 0.16F,
+                                      .twist = 18,
+                                      .along = 625,
+                                      .around = 80})),
                "torus knot (2,3) with spiral ridges, made by jobs/generator");
   good &= mesh("quickstart/knot.ply",
                make_knot({.p = 2, .q = 3, .radius = 0.4F, .along = 300, .around = 32}),
@@ -91,6 +128,12 @@ int main(int argc, char** argv) {
                "wine glass, surface of revolution, made by jobs/generator");
   good &= mesh("quickstart/vase.ply", make_vase(),
                "vase, surface of revolution, made by jobs/generator");
+  good &= mesh("media/tumbler.ply", without_uvs(make_tumbler()),
+               "tumbler in centimetres, surface of revolution, made by jobs/generator");
+  good &= mesh("media/juice.ply", without_uvs(make_drink(6.4F)),
+               "what is poured into tumbler.ply, made by jobs/generator");
+  good &= mesh("media/milk.ply", without_uvs(make_drink(5.2F)),
+               "what is poured into tumbler.ply, made by jobs/generator");
 
   const auto sky = make_sky({.width = 512, .sun_elevation = 0.22F, .sun_azimuth = 2.2F});
   const auto written = hyades::core::write_exr(

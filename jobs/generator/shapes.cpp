@@ -116,4 +116,29 @@ Mesh make_lathe(const std::vector<Vec2>& profile, int steps_per_span, int around
   return mesh;
 }
 
+std::vector<Vec2> round_corners(const std::vector<Corner>& corners, int steps) {
+  std::vector<Vec2> profile;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const Corner& corner = corners[i];
+    if (corner.radius <= 0.0F || i == 0 || i + 1 == corners.size()) {
+      profile.push_back(corner.at);
+      continue;
+    }
+    const Vec2 back = glm::normalize(corners[i - 1].at - corner.at);
+    const Vec2 on = glm::normalize(corners[i + 1].at - corner.at);
+    const float half = 0.5F * std::acos(glm::dot(back, on));
+    const Vec2 center = corner.at + glm::normalize(back + on) * (corner.radius / std::sin(half));
+    const float touch = corner.radius / std::tan(half);
+    const Vec2 from = corner.at + back * touch - center;
+    const Vec2 to = corner.at + on * touch - center;
+    const float turn = std::acos(glm::dot(from, to) / (corner.radius * corner.radius));
+    for (int k = 0; k <= steps; ++k) {
+      const float u = static_cast<float>(k) / static_cast<float>(steps);
+      profile.push_back(center + (from * std::sin((1.0F - u) * turn) + to * std::sin(u * turn)) /
+                                     std::sin(turn));
+    }
+  }
+  return profile;
+}
+
 }  // namespace hyades::gallery

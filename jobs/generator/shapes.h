@@ -26,4 +26,14 @@ Mesh make_knot(const KnotShape& shape);
 /// direction.
 Mesh make_lathe(const std::vector<Vec2>& profile, int steps_per_span, int around);
 
+/// A corner of a profile, rounded by an arc of `radius` (0: sharp) that touches both of its sides.
+struct Corner {
+  Vec2 at;
+  float radius = 0.0F;
+};
+
+/// The points of a profile of straight lines and arcs; `steps` spans to an arc. Every arc has to
+/// fit into its two sides. For make_lathe with one step per span.
+std::vector<Vec2> round_corners(const std::vector<Corner>& corners, int steps);
+
 }  // namespace hyades::gallery
