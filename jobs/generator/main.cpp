@@ -38,6 +38,32 @@ Mesh make_goblet() {
                     7, 80);
 }
 
+/// Wine in that goblet: it reaches half-way into the wall, so that the glass, of higher priority,
+/// bounds it; only its top stands free.
+Mesh make_wine() {
+  return make_lathe({{0.0F, 0.66F},
+                     {0.05F, 0.663F},
+                     {0.24F, 0.755F},
+                     {0.367F, 0.98F},
+                     {0.369F, 1.09F},
+                     {0.36F, 1.098F},
+                     {0.345F, 1.092F},
+                     {0.3F, 1.09F},
+                     {0.0F, 1.09F}},
+                    6, 80);
+}
+
+/// A ring around y whose middle line has a radius of 1.
+Mesh make_ring() {
+  std::vector<Vec2> circle;
+  constexpr int kSteps = 24;
+  for (int i = 0; i <= kSteps; ++i) {
+    const float a = 6.2831853F * static_cast<float>(i % kSteps) / static_cast<float>(kSteps);
+    circle.emplace_back(1.0F + 0.09F * std::cos(a), 0.09F * std::sin(a));
+  }
+  return make_lathe(circle, 1, 96);
+}
+
 /// A vase with a waist, hollow.
 Mesh make_vase() {
   return make_lathe({{0.0F, 0.0F},
@@ -126,6 +152,9 @@ int main(int argc, char** argv) {
                "torus knot (2,3), made by jobs/generator");
   good &= mesh("glass-caustics/goblet.ply", make_goblet(),
                "wine glass, surface of revolution, made by jobs/generator");
+  good &= mesh("glass-caustics/wine.ply", without_uvs(make_wine()),
+               "wine in goblet.ply, surface of revolution, made by jobs/generator");
+  good &= mesh("god-rays/ring.ply", without_uvs(make_ring()), "ring, made by jobs/generator");
   good &= mesh("quickstart/vase.ply", make_vase(),
                "vase, surface of revolution, made by jobs/generator");
   good &= mesh("media/tumbler.ply", without_uvs(make_tumbler()),
