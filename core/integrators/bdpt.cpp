@@ -2,9 +2,12 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "core/integrators/chosen_joins.h"
 #include "core/integrators/found_path.h"
 #include "core/integrators/light_path.h"
+#include "core/integrators/path_in_words.h"
 #include "core/integrators/random_walk.h"
 #include "core/integrators/visibility.h"
 
@@ -43,7 +46,9 @@ class BidirectionalSample final : public WalkWatcher {
   PixelSample trace() {
     const LightPathStart start = begin_light_path(scene_, ray_.time, sampler_, light_);
     if (start.way) walk_from_light(*start.way);
+    if (work_.log != nullptr) tell_subpath(scene_, light_, "light path", *work_.log);
     walk_from_camera();
+    if (work_.log != nullptr) tell_subpath(scene_, camera_, "camera path", *work_.log);
     if (wanted(1)) {
       for (int t = 2; t <= camera_.size(); ++t) choose_light(t);
     }
@@ -72,6 +77,17 @@ class BidirectionalSample final : public WalkWatcher {
     return settings_.mis ? static_cast<float>(weight) : 1.0F;
   }
 
+  /// Adds what the strategy with s vertices from the light and t from the camera brings.
+  void add(int s, int t, const Rgb& light) {
+    out_.radiance += light;
+    tell(s, t, light);
+  }
+
+  void tell(int s, int t, const Rgb& light) const {
+    if (work_.log == nullptr || is_black(light)) return;
+    work_.log->lines.push_back(fmt::format("strategy ({}, {}) brings {}", s, t, in_words(light)));
+  }
+
   FoundPath path_of(int s, int t, uint32_t light) const { return {light_, camera_, s, t, light}; }
 
   void walk_from_camera() {
@@ -98,7 +114,7 @@ class BidirectionalSample final : public WalkWatcher {
   // What the camera path meets.
 
   void medium_emits(const Way& way, const Rgb& radiance) override {
-    if (wanted(0, camera_.size() + 1)) out_.radiance += way.throughput * radiance;
+    if (wanted(0, camera_.size() + 1)) add(0, camera_.size() + 1, way.throughput * radiance);
   }
 
   void arrives(const PathVertex& v) override {
@@ -161,7 +177,7 @@ class BidirectionalSample final : public WalkWatcher {
     path.direction = direction;
     path.end = on.position;
     path.specular = way.specular;
-    out_.radiance += way.throughput * radiance * weight(path, 0.0, others);
+    add(0, camera_.size() + 1, way.throughput * radiance * weight(path, 0.0, others));
   }
 
   /// s = 1: a place on a light is chosen from the camera path's vertex t - 1.
@@ -207,8 +223,9 @@ class BidirectionalSample final : public WalkWatcher {
     FoundPath path = path_of(1, t, selected->index);
     path.direction = direction;
     path.end = on.position;
-    out_.radiance += v.throughput * f * sample->radiance * share *
-                     (weight(path, square(met / chosen), camera_side) / static_cast<float>(chosen));
+    add(1, t,
+        v.throughput * f * sample->radiance * share *
+            (weight(path, square(met / chosen), camera_side) / static_cast<float>(chosen)));
   }
 
   /// edge + beyond reverse^2 of vertex `i` of `path` where light comes to it along `from`, and
@@ -261,8 +278,9 @@ class BidirectionalSample final : public WalkWatcher {
     const double camera_side =
         square(to_z / z.density) * sum_before(camera_, t - 1, to_light, TransportMode::importance);
     const float share_of_all = weight(path_of(s, t, light_[0].light), light_side, camera_side);
-    out_.radiance += z.throughput * f_camera * f_light * y.throughput * share *
-                     (chosen * share_of_all / static_cast<float>(distance2));
+    add(s, t,
+        z.throughput * f_camera * f_light * y.throughput * share *
+            (chosen * share_of_all / static_cast<float>(distance2)));
   }
 
   /// t = 1: vertex s - 1 of the light path is seen through a place of the lens.
@@ -294,6 +312,7 @@ class BidirectionalSample final : public WalkWatcher {
     const Rgb value = y.throughput * f * share *
                       (weight(path, light_side, 0.0) *
                        static_cast<float>(density / square(static_cast<double>(seen->distance))));
+    tell(s, 1, value);
     work_.splats.push_back({seen->film, value});
   }
 

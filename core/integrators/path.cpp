@@ -7,6 +7,7 @@
 
 #include "core/integrators/medium_way.h"
 #include "core/integrators/mis.h"
+#include "core/integrators/path_in_words.h"
 #include "core/integrators/roulette.h"
 #include "core/integrators/visibility.h"
 #include "core/materials/shaded_surface.h"
@@ -21,8 +22,6 @@ enum BounceDimension : uint32_t {
   kBsdf = 4,   // direction (2), lobe, roulette
   kPerBounce = 8,
 };
-
-std::string show(const Vec3& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x, v.y, v.z); }
 
 /// The state of one path on its way from the camera.
 class Path {
@@ -99,7 +98,7 @@ class Path {
       contribution = glm::min(contribution, Rgb(settings_.clamp));
     out_.radiance += contribution;
     if (work_.log != nullptr && !is_black(contribution)) {
-      work_.log->lines.push_back("    light arrives: " + show(contribution));
+      work_.log->lines.push_back("    light arrives: " + in_words(contribution));
     }
   }
 
@@ -268,7 +267,7 @@ class Path {
       albedo_noted_ = true;
     }
     if (work_.log != nullptr)
-      work_.log->lines.push_back("  scatters in the medium at " + show(position));
+      work_.log->lines.push_back("  scatters in the medium at " + in_words(position));
     if (depth_ >= std::min(settings_.max_depth, settings_.max_events)) return false;
     const Phase& phase = way.medium->phase();
     const Rgb shares = channel_shares(throughput_);
@@ -308,7 +307,7 @@ class Path {
       work_.log->lines.push_back(fmt::format("  {} {} along {}, weight {}",
                                              sample->delta ? "specular" : "scattered",
                                              sample->transmitted ? "transmission" : "reflection",
-                                             show(sample->wi), show(sample->weight)));
+                                             in_words(sample->wi), in_words(sample->weight)));
     }
     return true;
   }
@@ -341,7 +340,7 @@ class Path {
     work_.log->lines.push_back(
         fmt::format("  meets '{}'{} at {} after {:.6g} m, normal {}", object.name,
                     mesh ? fmt::format(" (triangle {})", point.primitive) : std::string(),
-                    show(point.position), point.t, show(point.ns)));
+                    in_words(point.position), point.t, in_words(point.ns)));
   }
 
   /// Where the path scattered last: what light selection and MIS refer to.
