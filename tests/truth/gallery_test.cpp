@@ -33,9 +33,9 @@ const GalleryJob kJobs[] = {{"quickstart", 320, 144, 0.1},
                             {"perlin-sphere", 192, 112, 0.1},
                             {"mesh-100k", 64, 32, 0.05},
                             {"glass-caustics", 640, 64, 0.12},
-                            {"god-rays", 96, 48, 0.1},
+                            {"god-rays", 176, 88, 0.1},
                             {"cloud", 64, 32, 0.1},
-                            {"sky-shell", 64, 32, 0.1},
+                            {"sky-shell", 48, 20, 0.1},
                             {"media", 64, 32, 0.1}};
 
 YamlScene small(const GalleryJob& job, const std::string& integrator, int samples) {
