@@ -105,6 +105,8 @@ int strategies_command(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", scene.error().message.c_str());
     return 1;
   }
+  for (const std::string& warning : (*scene)->warnings)
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
   for (int events = 1; events <= wish.events; ++events) {
     for (int s = 0; s <= events + 1; ++s) {
       for (const bool weighted : {true, false}) {

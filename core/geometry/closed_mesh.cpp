@@ -73,7 +73,7 @@ MeshClosure examine_closure(const TriangleMesh& mesh) {
     for (; i < sides.size() && sides[i].along(first); ++i) balance += sides[i].upwards ? 1 : -1;
     if (balance != 0) ++closure.open_edges;
   }
-  closure.inside_out = closure.open_edges == 0 && signed_volume(mesh) < 0.0;
+  closure.volume = signed_volume(mesh);
   return closure;
 }
 

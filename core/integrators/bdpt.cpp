@@ -246,7 +246,8 @@ class BidirectionalSample final : public WalkWatcher {
         join(s, t, 1.0F);
       return;
     }
-    const float u = MediaNumbers(sampler_, 1, MediaNumbers::Purpose::connection).next().x;
+    // Numbers of the last flight that a light path could take.
+    const float u = MediaNumbers(sampler_, 0xFFFF, MediaNumbers::Purpose::light_flight).next().x;
     for_chosen_joins(light_.size(), camera_.size(), most, u,
                      [&](int s, int t, float chosen) { join(s, t, chosen); });
   }

@@ -33,6 +33,7 @@ std::vector<std::string> names_of(const std::vector<Desc>& list) {
 }
 
 void check_names(ReadContext& context) {
+  if (context.files_missing) return;
   static const char* const kNouns[] = {"texture", "material", "group", "object", "medium"};
   std::array<std::set<std::string>, 5> given;
   for (size_t i = 0; i < given.size(); ++i)

@@ -135,6 +135,11 @@ void read_bdpt(MapReader& reader, IntegratorDesc& integrator) {
                                   "from the light and from the camera, such as [0, 2], [1, 2] or "
                                   "[2, 1]",
                                   s, t));
+    } else if (s + t - 2 > integrator.max_depth) {
+      reader.complain(node->where,
+                      fmt::format("strategy is [{}, {}], which is {} events, expected no more than "
+                                  "max_depth, {}",
+                                  s, t, s + t - 2, integrator.max_depth));
     }
     integrator.light_vertices = s;
     integrator.camera_vertices = t;

@@ -24,9 +24,9 @@ class NoiseField final : public DensityField {
     if (p != glm::clamp(p, bounds_.lower, bounds_.upper)) return 0.0F;
     const float thinning = thinning_at(length((p - center_) * per_half_));
     if (thinning <= -1.0F) return 0.0F;
-    const float n =
-        fractal_.value_between(Vec4(p * noise_.scale + noise_.offset, noise_.time),
-                               noise_of(noise_.low, thinning), noise_of(noise_.high, thinning));
+    const float n = fractal_.value_between(Vec4(p * noise_.scale + noise_.offset, noise_.time),
+                                           noise_of(noise_.low, thinning),
+                                           noise_of(std::max(noise_.low, noise_.high), thinning));
     return density_of(0.5F + 0.5F * n + thinning);
   }
 

@@ -1,10 +1,12 @@
 #include "core/scene/add_bodies.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "core/geometry/affine.h"
 #include "core/job/kinds.h"
 #include "core/job/layers.h"
 #include "core/scene/rank_bodies.h"
@@ -21,12 +23,32 @@ Bounds bounds_in_world(const Placement& placement) {
   return bounds;
 }
 
+/// Of what the surface encloses when the shutter opens. The same however it is turned, and less
+/// than that of a body around it.
+double volume_of(const Placement& placement, SceneCache& cache) {
+  const Shape& shape = placement.shape;
+  const double scale = std::abs(Affine(placement.to_world[0]).determinant());
+  const double r = shape.radius;
+  switch (shape.kind) {
+    case Shape::Kind::sphere:
+      return scale * double{kPi} * r * r * r * 4.0 / 3.0;
+    case Shape::Kind::cylinder:
+      return scale * double{kPi} * r * r * double{shape.height};
+    case Shape::Kind::mesh:
+      return scale * std::abs(cache.closure(shape.mesh).volume);
+    case Shape::Kind::disk:
+      break;
+  }
+  return 0.0;
+}
+
 class BodyMaker {
  public:
   BodyMaker(const Job& job, const std::vector<FlatObject>& objects, Appearance& looks, Scene& scene)
       : job_(job), objects_(objects), looks_(looks), scene_(scene) {}
 
   Status add_all() {
+    if (auto done = check_priorities(); !done) return done;
     if (!light_asks_for_bodies()) return {};
     for (size_t i = 0; i < objects_.size(); ++i) {
       // Further parts of a surface share what is inside.
@@ -56,6 +78,19 @@ class BodyMaker {
   }
 
  private:
+  Status check_priorities() const {
+    for (size_t i = 0; i < objects_.size(); ++i) {
+      const FlatObject& object = objects_[i];
+      if (object.desc->priority == 0 || !object.desc->interior.empty() ||
+          scene_.objects[i].material->leads_inside()) {
+        continue;
+      }
+      return at_object(object, Error{"it has a priority, but light does not go into it; expected a "
+                                     "material such as dielectric, or an interior"});
+    }
+    return {};
+  }
+
   /// Without media it matters only what else a surface refracts against.
   bool light_asks_for_bodies() const {
     if (scene_.has_media) return true;
@@ -82,7 +117,10 @@ class BodyMaker {
     body.index = entered ? added.material->index() : 0.0F;
     body.open = added.material->is_null();
     added.body = &body;
-    extents_.push_back({object.desc->priority, body.refracts(), bounds_in_world(object.placement)});
+    if (!object.desc->interior.empty()) body.filled_with = object.desc->interior;
+    extents_.push_back({object.desc->priority, body.refracts(),
+                        volume_of(object.placement, looks_.cache()),
+                        bounds_in_world(object.placement)});
     return {};
   }
 
@@ -131,7 +169,7 @@ void warn_of_open_bodies(const std::vector<FlatObject>& objects, SceneCache& cac
           "is open: {} of its edges are not shared by triangles that face the same way; what light "
           "that goes through a hole meets is left to chance",
           closure.open_edges);
-    } else if (closure.inside_out) {
+    } else if (closure.inside_out()) {
       wrong =
           "is inside out: its normals point inwards, and so light takes what is around it for its "
           "inside";

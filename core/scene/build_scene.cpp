@@ -77,7 +77,7 @@ class SceneBuilder {
     auto world = cache_.world(std::move(placements));
     if (!world) return blame(*flat, world.error());
     scene_->world = *world;
-    if (auto done = settle_exteriors(job_, *flat, looks_, *scene_); !done) return done;
+    if (auto done = check_exteriors(job_, *flat, *scene_); !done) return done;
     for (uint32_t i = 0; i < flat->size(); ++i) {
       if ((*flat)[i].emit) scene_->objects[i].light = add_emitter(i, *(*flat)[i].emit);
     }

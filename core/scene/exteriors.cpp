@@ -1,74 +1,65 @@
 #include "core/scene/exteriors.h"
 
-#include <optional>
+#include <algorithm>
+#include <cmath>
 
+#include "core/base/elementary.h"
 #include "core/scene/media_around.h"
 
 namespace hyades::core {
 namespace {
 
-/// A place just outside of the surface of placement `object` when the shutter opens; nothing where
-/// it has no surface.
-std::optional<Vec3> place_outside(const World& world, uint32_t object) {
+/// How many places around an object are looked at.
+constexpr uint32_t kPlaces = 64;
+
+/// Places just outside of the surface of placement `object` when the shutter opens.
+std::vector<Vec3> places_outside(const World& world, uint32_t object) {
   constexpr float kJustOutside = 1.001F;
   const Shape& shape = world.placement(object).shape;
-  if (shape.kind != Shape::Kind::mesh) {
-    const Vec3 side(kJustOutside * shape.radius, 0.0F, 0.0F);
-    const Vec3 at =
-        shape.kind == Shape::Kind::cylinder ? Vec3(0.0F, 0.5F * shape.height, 0.0F) : Vec3(0.0F);
-    return transform_point(world.transform_at(object, 0.0F), at + side);
-  }
-  for (uint32_t i = 0; i < shape.mesh->triangles.size(); ++i) {
-    const SurfacePoint point = world.triangle_point(object, i, 1.0F / 3.0F, 1.0F / 3.0F, 0.0F);
-    const Vec3 normal = glm::cross(point.dpdu, point.dpdv);
-    if (glm::dot(normal, normal) > 0.0F) return offset_position(point, point.ng);
-  }
-  return std::nullopt;
-}
-
-class Exteriors {
- public:
-  Exteriors(const Job& job, Appearance& looks, Scene& scene)
-      : job_(job), looks_(looks), scene_(scene) {}
-
-  Status settle(const FlatObject& object, uint32_t number) {
-    const std::string& name = object.desc->exterior;
-    auto exterior = looks_.medium(name);
-    if (!exterior) return at_object(object, exterior.error().in("exterior"));
-    const auto place = place_outside(*scene_.world, number);
-    if (!place) return {};
-    const MediumStack around = media_around(scene_, *place, 0.0F);
-    if (around.empty() && job_.atmosphere.empty() && !scene_.atmosphere)
-      scene_.atmosphere = *exterior;
-    const Medium* there = around.empty() ? scene_.atmosphere.get() : around.medium();
-    if (there == exterior->get()) return {};
-    return at_object(object, Error{"its exterior is '" + name + "', but outside of it there is " +
-                                   name_of(there) + ", expected the same"});
-  }
-
- private:
-  std::string name_of(const Medium* medium) {
-    if (medium == nullptr) return "nothing";
-    for (const MediumDesc& desc : job_.media) {
-      const auto made = looks_.medium(desc.name);
-      if (made && made->get() == medium) return "'" + desc.name + "'";
+  std::vector<Vec3> places;
+  if (shape.kind == Shape::Kind::mesh) {
+    const auto count = static_cast<uint32_t>(shape.mesh->triangles.size());
+    for (uint32_t i = 0; i < std::min(kPlaces, count); ++i) {
+      const auto triangle = static_cast<uint32_t>(uint64_t{i} * count / std::min(kPlaces, count));
+      const SurfacePoint point =
+          world.triangle_point(object, triangle, 1.0F / 3.0F, 1.0F / 3.0F, 0.0F);
+      const Vec3 normal = glm::cross(point.dpdu, point.dpdv);
+      if (glm::dot(normal, normal) > 0.0F) places.push_back(offset_position(point, point.ng));
     }
-    return "a medium of another body";
+    return places;
   }
-
-  const Job& job_;
-  Appearance& looks_;
-  Scene& scene_;
-};
+  const Mat4 to_world = world.transform_at(object, 0.0F);
+  for (uint32_t i = 0; i < kPlaces; ++i) {
+    // A spiral from top to bottom.
+    const float height = 1.0F - 2.0F * (static_cast<float>(i) + 0.5F) / kPlaces;
+    const auto [s, c] = sin_cos(2.4F * static_cast<float>(i));
+    const bool tube = shape.kind == Shape::Kind::cylinder;
+    const float reach = tube ? 1.0F : std::sqrt(1.0F - height * height);
+    const Vec3 at(
+        shape.radius * kJustOutside * reach * c,
+        tube ? 0.5F * shape.height * (1.0F + height) : shape.radius * kJustOutside * height,
+        shape.radius * kJustOutside * reach * s);
+    places.push_back(transform_point(to_world, at));
+  }
+  return places;
+}
 
 }  // namespace
 
-Status settle_exteriors(const Job& job, const std::vector<FlatObject>& objects, Appearance& looks,
-                        Scene& scene) {
-  Exteriors exteriors(job, looks, scene);
+Status check_exteriors(const Job& job, const std::vector<FlatObject>& objects, const Scene& scene) {
   for (uint32_t i = 0; i < objects.size(); ++i) {
-    if (objects[i].desc->exterior.empty() || objects[i].body != i) continue;
-    if (auto done = exteriors.settle(objects[i], i); !done) return done;
+    const std::string& exterior = objects[i].desc->exterior;
+    if (exterior.empty() || objects[i].body != i) continue;
+    for (const Vec3& place : places_outside(*scene.world, i)) {
+      const Body* body = media_around(scene, place, 0.0F).body();
+      const std::string& there = body != nullptr ? body->filled_with : job.atmosphere;
+      if (there == exterior) continue;
+      const std::string seen = !there.empty()                    ? "'" + there + "'"
+                               : body != nullptr && body->medium ? "a material's subsurface"
+                                                                 : "nothing";
+      return at_object(objects[i], Error{"its exterior is '" + exterior + "', but there is " +
+                                         seen + " next to it, expected the same"});
+    }
   }
   return {};
 }

@@ -2,17 +2,14 @@
 
 #include <vector>
 
-#include "core/scene/appearance.h"
 #include "core/scene/flatten.h"
 #include "core/scene/scene.h"
 
 namespace hyades::core {
 
-/// Takes what objects say of their outside (`exterior`) at their word, and makes sure that it is
-/// so: outside of all bodies it is the atmosphere, and becomes that where the job names none;
-/// within another body it must be what fills that. `scene` has its world, its bodies and its
-/// atmosphere. Errors name the object and what is there instead.
-Status settle_exteriors(const Job& job, const std::vector<FlatObject>& objects, Appearance& looks,
-                        Scene& scene);
+/// Checks what objects say of their outside (`exterior`) at some points around each: outside of all
+/// bodies it is the atmosphere, within another body what fills that. `scene` has its world and its
+/// bodies. Errors name the object and what is there instead.
+Status check_exteriors(const Job& job, const std::vector<FlatObject>& objects, const Scene& scene);
 
 }  // namespace hyades::core

@@ -20,8 +20,22 @@ class MediumStack {
   /// Outside of all bodies; `atmosphere` (may be null) is what is there.
   explicit MediumStack(const Medium* atmosphere = nullptr) : atmosphere_(atmosphere) {}
 
+  // Copies take no more than is there: paths make many.
+  MediumStack(const MediumStack& other) : atmosphere_(other.atmosphere_), size_(other.size_) {
+    std::copy_n(other.inside_.begin(), size_, inside_.begin());
+  }
+  MediumStack& operator=(const MediumStack& other) {
+    atmosphere_ = other.atmosphere_;
+    size_ = other.size_;
+    std::copy_n(other.inside_.begin(), size_, inside_.begin());
+    return *this;
+  }
+
   /// Outside of all bodies.
   bool empty() const { return size_ == 0; }
+
+  /// The body that fills the place; null: outside of all.
+  const Body* body() const { return size_ > 0 ? inside_[0] : nullptr; }
 
   /// What is around; null: nothing.
   const Medium* medium() const { return size_ > 0 ? inside_[0]->medium.get() : atmosphere_; }
@@ -65,7 +79,7 @@ class MediumStack {
 
  private:
   /// Bodies in one place; of more, those of lowest rank are as if they were not there.
-  static constexpr uint32_t kDeepest = 15;
+  static constexpr uint32_t kDeepest = 64;
 
   const Medium* atmosphere_;
   uint32_t size_ = 0;

@@ -1,6 +1,8 @@
 #include "core/scene/rank_bodies.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace hyades::core {
@@ -9,10 +11,12 @@ namespace {
 /// Most bodies whose bounds are compared one by one.
 constexpr size_t kMostCompared = 4096;
 
-double volume(const Bounds& bounds) {
-  if (bounds.empty()) return 0.0;
-  const Vec3d size(bounds.size());
-  return size.x * size.y * size.z;
+/// A number that grows with the volume, the same for volumes that differ by rounding (but for those
+/// next to a step).
+int64_t step_of(double volume) {
+  constexpr double kStepsPerOctave = 1 << 13;
+  return volume > 0.0 ? std::llround(kStepsPerOctave * std::log2(volume))
+                      : std::numeric_limits<int64_t>::min();
 }
 
 bool touch(const Bounds& a, const Bounds& b) {
@@ -31,7 +35,7 @@ std::vector<uint32_t> rank_bodies(const std::vector<BodyExtent>& bodies) {
     const BodyExtent& left = bodies[a];
     const BodyExtent& right = bodies[b];
     if (left.priority != right.priority) return left.priority < right.priority;
-    return volume(left.bounds) > volume(right.bounds);
+    return step_of(left.volume) > step_of(right.volume);
   });
   std::vector<uint32_t> ranks(bodies.size());
   for (uint32_t place = 0; place < order.size(); ++place) ranks[order[place]] = place;

@@ -11,12 +11,13 @@ namespace hyades::core {
 struct BodyExtent {
   int32_t priority = 0;
   bool refracts = false;
-  Bounds bounds;  ///< in the world, over the shutter interval
+  double volume = 0.0;  ///< of what the surface encloses when the shutter opens
+  Bounds bounds;        ///< in the world, over the shutter interval
 };
 
 /// For each body, what it counts among all: 0 is the lowest. First comes priority; of equal ones
-/// the smaller bounds count more, so that what stands within another body replaces it there; of
-/// equal ones, those that come later.
+/// the smaller volume counts more, so that what stands within another body replaces it there; of
+/// equal ones (to about 1e-4, so that no rounding decides), those that come later.
 std::vector<uint32_t> rank_bodies(const std::vector<BodyExtent>& bodies);
 
 /// For each body, whether part of its surface may be hidden: it refracts, and its bounds touch

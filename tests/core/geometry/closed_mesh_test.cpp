@@ -14,7 +14,8 @@ TEST(ClosedMesh, BoxesAreClosed) {
   ASSERT_GT(box->positions.size(), 8U) << "its faces share no vertices, only positions";
   const MeshClosure closure = examine_closure(*box);
   EXPECT_EQ(closure.open_edges, 0U);
-  EXPECT_FALSE(closure.inside_out);
+  EXPECT_FALSE(closure.inside_out());
+  EXPECT_NEAR(closure.volume, 6.0, 1e-6);
 }
 
 TEST(ClosedMesh, ARectangleHasFourOpenEdges) {
@@ -44,13 +45,13 @@ TEST(ClosedMesh, WithNormalsThatPointInwardsIsInsideOut) {
   finish_mesh(*box);
   const MeshClosure closure = examine_closure(*box);
   EXPECT_EQ(closure.open_edges, 0U);
-  EXPECT_TRUE(closure.inside_out);
+  EXPECT_TRUE(closure.inside_out());
 }
 
 TEST(ClosedMesh, OfNoTrianglesIsNothing) {
   const MeshClosure closure = examine_closure(TriangleMesh());
   EXPECT_EQ(closure.open_edges, 0U);
-  EXPECT_FALSE(closure.inside_out);
+  EXPECT_FALSE(closure.inside_out());
 }
 
 }  // namespace

@@ -168,6 +168,10 @@ TEST(Complaints, TypesAndChoicesListWhatThereIs) {
 }
 
 TEST(Complaints, StrategiesThatCannotBe) {
+  EXPECT_EQ(
+      complaints("integrator: {type: bdpt, max_depth: 2, strategy: [3, 2]}\n"),
+      "job.yaml:2:50: strategy is [3, 2], which is 3 events, expected no more than max_depth, "
+      "2\n");
   for (const char* strategy : {"[1, 1]", "[0, 1]", "[3, 0]"}) {
     const std::string text = std::string("integrator: {type: bdpt, strategy: ") + strategy + "}\n";
     EXPECT_EQ(complaints(text),

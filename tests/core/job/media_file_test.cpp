@@ -99,6 +99,15 @@ TEST(MediaFile, MayBeTheNameOfAMedium) {
   EXPECT_EQ(found.job.media.at(0).name, "file");
 }
 
+TEST(MediaFile, ThatCannotBeReadIsTheOnlyComplaint) {
+  MemoryAssets assets;
+  assets.add("media.json", "[{\"name\": \"jade\"");
+  const Read found =
+      read("media: {file: media.json}\nobjects: {a: {shape: sphere, interior: jade}}\n", assets);
+  EXPECT_EQ(std::count(found.complaints.begin(), found.complaints.end(), '\n'), 1)
+      << found.complaints;
+}
+
 TEST(MediaFile, ComplaintsTellFileAndLine) {
   EXPECT_EQ(read_file("{\"name\": \"milk\",\n \"absorbtion\": 2}").complaints,
             "jobs/media.json:2:2: unknown key 'absorbtion' in medium 'milk', did you mean "

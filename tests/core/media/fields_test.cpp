@@ -6,6 +6,7 @@
 
 #include "core/media/noise_density.h"
 #include "core/media/shell_field.h"
+#include "core/textures/noise.h"
 #include "tests/core/media/volumes.h"
 
 namespace hyades::core {
@@ -62,7 +63,7 @@ TEST(Fields, LieBetweenTheirBounds) {
   expect_bounded(*make_grid_density(random_grid(30, 5)), 2);
   const Bounds body{Vec3(-1.0F, -2.0F, 0.5F), Vec3(2.0F, 1.0F, 2.5F)};
   for (const float fade : {0.0F, 0.6F}) {
-    for (const float high : {0.6F, 0.45F}) {
+    for (const float high : {0.6F, 0.45F, 0.2F}) {
       NoiseDensity noise;
       noise.scale = {1.3F, -0.8F, 1.0F};
       noise.offset = Vec3(3.0F, 0.2F, -7.0F);
@@ -73,6 +74,29 @@ TEST(Fields, LieBetweenTheirBounds) {
       expect_bounded(*make_noise_density(noise, body), 3);
     }
   }
+}
+
+// Where the edge is sharp, `high` does not matter.
+TEST(Fields, NoiseStepsAtLowWhereHighIsNotAboveIt) {
+  const Bounds body{Vec3(-1.0F), Vec3(1.0F)};
+  NoiseDensity noise;
+  noise.scale = Vec3(2.3F);
+  noise.low = noise.high = 0.55F;
+  const auto sharp = make_noise_density(noise, body);
+  noise.high = 0.3F;
+  const auto turned = make_noise_density(noise, body);
+  test::Random random(5);
+  int dense = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const Vec3 p = within(body, random);
+    const float fractal = fbm(Vec4(p * noise.scale, 0.0F), 5, 2.0F, 0.5F).value;
+    const float expected = 0.5F + 0.5F * fractal > 0.55F ? 1.0F : 0.0F;
+    EXPECT_EQ(sharp->at(p), expected);
+    EXPECT_EQ(turned->at(p), expected);
+    dense += expected > 0.0F ? 1 : 0;
+  }
+  EXPECT_GT(dense, 400);
+  EXPECT_LT(dense, 3600);
 }
 
 TEST(Fields, ShellsLieBetweenTheirBounds) {

@@ -72,14 +72,14 @@ TEST(MediumStack, ForgivesSurfacesThatAreMissedOrMetTwice) {
 
 TEST(MediumStack, OfTooManyBodiesForgetsTheLowest) {
   std::deque<Body> bodies;
-  for (uint32_t i = 0; i < 40; ++i) bodies.push_back(body_of(i, 1.0F + static_cast<float>(i)));
+  for (uint32_t i = 0; i < 100; ++i) bodies.push_back(body_of(i, 1.0F + static_cast<float>(i)));
   for (const bool upwards : {true, false}) {
     MediumStack stack;
     for (size_t i = 0; i < bodies.size(); ++i)
       stack.enter(bodies[upwards ? i : bodies.size() - 1 - i]);
-    EXPECT_EQ(stack.index_outside(nullptr), 40.0F);
-    for (size_t i = bodies.size(); i-- > 30;) stack.leave(bodies[i]);
-    EXPECT_EQ(stack.index_outside(nullptr), 30.0F);
+    EXPECT_EQ(stack.index_outside(nullptr), 100.0F);
+    for (size_t i = bodies.size(); i-- > 60;) stack.leave(bodies[i]);
+    EXPECT_EQ(stack.index_outside(nullptr), 60.0F);
     for (const Body& body : bodies) stack.leave(body);
     EXPECT_TRUE(stack.empty());
   }
@@ -93,21 +93,23 @@ Bounds cube(float half, float x = 0.0F) {
 }
 
 TEST(RankBodies, GoesByPriorityThenSizeThenOrder) {
-  const std::vector<BodyExtent> bodies = {{0, true, cube(1.0F)},
-                                          {1, true, cube(9.0F)},
-                                          {0, true, cube(1.0F)},
-                                          {0, true, cube(0.5F)},
-                                          {-1, true, cube(0.1F)}};
+  const Bounds any = cube(1.0F);  // bounds change when a body turns: they do not count
+  const std::vector<BodyExtent> bodies = {{0, true, 1.0, any},
+                                          {1, true, 99.0, any},
+                                          {0, true, 1.0 - 1e-6, cube(2.0F)},
+                                          {0, true, 0.5, cube(3.0F)},
+                                          {-1, true, 0.1, any}};
   EXPECT_EQ(rank_bodies(bodies), (std::vector<uint32_t>{1, 4, 2, 3, 0}));
 }
 
 TEST(RankBodies, OnlyBodiesThatTouchAHigherOneMayBeHidden) {
-  const std::vector<BodyExtent> bodies = {{0, true, cube(1.0F)},          // touched by 1
-                                          {1, true, cube(1.0F, 2.0F)},    // the higher of the two
-                                          {0, true, cube(1.0F, 9.0F)},    // alone
-                                          {0, false, cube(1.0F)},         // null
-                                          {0, true, cube(0.5F, -20.0F)},  // touched by a null one
-                                          {5, false, cube(1.0F, -20.0F)}};
+  const std::vector<BodyExtent> bodies = {
+      {0, true, 1.0, cube(1.0F)},          // touched by 1
+      {1, true, 1.0, cube(1.0F, 2.0F)},    // the higher of the two
+      {0, true, 1.0, cube(1.0F, 9.0F)},    // alone
+      {0, false, 1.0, cube(1.0F)},         // null
+      {0, true, 1.0, cube(0.5F, -20.0F)},  // touched by a null one
+      {5, false, 1.0, cube(1.0F, -20.0F)}};
   EXPECT_EQ(may_be_hidden(bodies, rank_bodies(bodies)),
             (std::vector<bool>{true, false, false, false, false, false}));
 }
