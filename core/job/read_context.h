@@ -47,7 +47,7 @@ struct ReadContext {
   bool in_shutter = false;  ///< what is read now counts all the while the shutter is open
   /// Display name of an included file -> its path relative to the job's folder.
   std::map<std::string, std::string> included;
-  bool files_missing = false;  ///< files that names may stand in could not be read
+  bool files_missing = false;           ///< files that names may stand in could not be read
   std::set<JobKey>* listing = nullptr;  ///< set: only collect which keys the readers know
 
   /// Adds a complaint, once (a node that `like:` or an alias shares is read several times).
