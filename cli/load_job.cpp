@@ -101,4 +101,11 @@ std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const st
   return frames;
 }
 
+bool is_in_range(const core::Job& job, int32_t frame) {
+  if (frame >= job.frames.first && frame <= job.frames.last) return true;
+  std::fprintf(stderr, "--frame %d: expected a frame within the job's range %d-%d\n", frame,
+               job.frames.first, job.frames.last);
+  return false;
+}
+
 }  // namespace hyades::cli

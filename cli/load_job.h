@@ -45,4 +45,7 @@ inline constexpr int64_t kMostFrames = 1'000'000;
 /// is not of that form, names a frame outside the job, or the frames are more than kMostFrames.
 std::optional<std::vector<int32_t>> select_frames(const core::Job& job, const std::string& text);
 
+/// Whether --frame `frame` is within the job's range; a message where it is not.
+bool is_in_range(const core::Job& job, int32_t frame);
+
 }  // namespace hyades::cli

@@ -41,11 +41,7 @@ int replay_command(int argc, char** argv) {
                  pixel[1], whole.x1 - 1, whole.y1 - 1);
     return kBadInput;
   }
-  if (frame < job.frames.first || frame > job.frames.last) {
-    std::fprintf(stderr, "--frame %d: expected a frame within the job's range %d-%d\n", frame,
-                 job.frames.first, job.frames.last);
-    return kBadInput;
-  }
+  if (!is_in_range(job, frame)) return kBadInput;
   core::SceneCache cache(*loaded->assets);
   auto scene = core::build_scene(job, frame, cache);
   if (!scene) {

@@ -87,11 +87,7 @@ int strategies_command(int argc, char** argv) {
   if (!loaded) return kBadInput;
   core::Job& job = loaded->job;
   if (frame->empty()) wish.frame = job.frames.first;
-  if (wish.frame < job.frames.first || wish.frame > job.frames.last) {
-    std::fprintf(stderr, "--frame %d: expected a frame within the job's range %d-%d\n", wish.frame,
-                 job.frames.first, job.frames.last);
-    return kBadInput;
-  }
+  if (!is_in_range(job, wish.frame)) return kBadInput;
   if (job.film.filter == core::FilterKind::center) {
     std::fprintf(stderr, "%s: film.filter is center, expected a filter with a radius\n",
                  path.c_str());

@@ -21,7 +21,7 @@ class DielectricBsdf final : public DeltaBsdf {
 
   std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2&,
                                    TransportMode mode) const override {
-    const float eta = wo.z >= 0.0F ? ior_ : 1.0F / ior_;
+    const float eta = index_beyond(wo, ior_);
     const auto [reflectance, cos_t] = fresnel_dielectric(std::abs(wo.z), eta);
     const float reflect = reflectance * max_component(reflection_);
     const float transmit = (1.0F - reflectance) * max_component(transmission_);
@@ -46,7 +46,7 @@ class DielectricBsdf final : public DeltaBsdf {
   }
 
   Rgb albedo(const Vec3& wo) const override {
-    const float eta = wo.z >= 0.0F ? ior_ : 1.0F / ior_;
+    const float eta = index_beyond(wo, ior_);
     const float reflectance = fresnel_dielectric(std::abs(wo.z), eta).reflectance;
     return reflection_ * reflectance + transmission_ * (1.0F - reflectance);
   }

@@ -13,6 +13,10 @@ inline Vec3 mirrored(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 /// The sign that turns a two-sided surface so that `w` lies above: multiply z with it.
 inline float side(const Vec3& w) { return w.z < 0.0F ? -1.0F : 1.0F; }
 
+/// Index of the side beyond the surface over that of the side of `wo`, where that of z < 0 over
+/// that of z > 0 is `ior`.
+inline float index_beyond(const Vec3& wo, float ior) { return wo.z >= 0.0F ? ior : 1.0F / ior; }
+
 /// `w` on the upper side.
 inline Vec3 above(const Vec3& w) { return {w.x, w.y, w.z < 0.0F ? -w.z : w.z}; }
 

@@ -42,7 +42,7 @@ class RoughDielectricBsdf final : public Bsdf {
                                    TransportMode mode) const override {
     const Vec3 o = above(wo);
     if (!(o.z > 0.0F)) return std::nullopt;
-    const float eta = eta_from(wo);
+    const float eta = index_beyond(wo, ior_);
     const Vec3 m = facets_.sample_normal(o, u);
     const float o_m = glm::dot(o, m);
     if (!(o_m > 0.0F)) return std::nullopt;
@@ -74,7 +74,7 @@ class RoughDielectricBsdf final : public Bsdf {
   }
 
   Rgb albedo(const Vec3& wo) const override {
-    const float r = fresnel_dielectric(std::abs(wo.z), eta_from(wo)).reflectance;
+    const float r = fresnel_dielectric(std::abs(wo.z), index_beyond(wo, ior_)).reflectance;
     return reflection_ * r + transmission_ * (1.0F - r);
   }
 
@@ -89,8 +89,6 @@ class RoughDielectricBsdf final : public Bsdf {
     float jacobian = 0.0F;  ///< of refraction: solid angle of m over that of wi
   };
 
-  float eta_from(const Vec3& wo) const { return wo.z >= 0.0F ? ior_ : 1.0F / ior_; }
-
   float reflect_probability(float reflectance) const {
     const float reflect = reflectance * max_component(reflection_);
     const float transmit = (1.0F - reflectance) * max_component(transmission_);
@@ -102,7 +100,7 @@ class RoughDielectricBsdf final : public Bsdf {
     Event e;
     e.o = above(wo);
     e.i = {wi.x, wi.y, wi.z * side(wo)};
-    e.eta = eta_from(wo);
+    e.eta = index_beyond(wo, ior_);
     e.refraction = e.i.z < 0.0F;
     const Vec3 h = e.refraction ? e.o + e.eta * e.i : e.o + e.i;
     const float length2 = glm::dot(h, h);
@@ -148,7 +146,7 @@ class FullDielectricBsdf final : public Bsdf {
     if (wo.z == 0.0F || wi.z == 0.0F) return Rgb(0.0F);
     Rgb lost = lost_.evaluate(wo, wi);
     if (mode == TransportMode::radiance && !same_side(wo, wi)) {
-      const float eta = eta_from(wo);
+      const float eta = index_beyond(wo, ior_);
       lost *= 1.0F / (eta * eta);
     }
     return single_.evaluate(wo, wi, mode) + lost;
@@ -177,7 +175,7 @@ class FullDielectricBsdf final : public Bsdf {
       s.wi = drawn->wi;
       s.transmitted = drawn->transmitted;
     }
-    if (s.transmitted) s.eta = eta_from(wo);
+    if (s.transmitted) s.eta = index_beyond(wo, ior_);
     s.pdf = pdf(p, wo, s.wi, mode);
     if (!(s.pdf > 0.0F)) return std::nullopt;
     s.weight = evaluate(wo, s.wi, mode) / s.pdf;
@@ -192,8 +190,6 @@ class FullDielectricBsdf final : public Bsdf {
     float reflected = 0.0F;
     float transmitted = 0.0F;
   };
-
-  float eta_from(const Vec3& wo) const { return wo.z >= 0.0F ? ior_ : 1.0F / ior_; }
 
   Lobes lobes_of(const Vec3& wo) const {
     const float part = lost_.part(wo);

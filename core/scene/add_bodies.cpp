@@ -114,10 +114,10 @@ class BodyMaker {
     }
     Body& body = scene_.bodies.emplace_back();
     body.medium = *interior;
+    body.filled_with = object.desc->interior;
     body.index = entered ? added.material->index() : 0.0F;
     body.open = added.material->is_null();
     added.body = &body;
-    if (!object.desc->interior.empty()) body.filled_with = object.desc->interior;
     extents_.push_back({object.desc->priority, body.refracts(),
                         volume_of(object.placement, looks_.cache()),
                         bounds_in_world(object.placement)});
