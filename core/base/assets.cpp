@@ -40,6 +40,12 @@ class FileResolver : public AssetResolver {
     return bytes;
   }
 
+  bool exists(const std::string& reference) override {
+    std::error_code ignored;
+    return !reference.empty() &&
+           std::filesystem::exists(std::filesystem::path(folder_) / reference, ignored);
+  }
+
  private:
   std::string folder_;
 };
@@ -120,6 +126,10 @@ Result<Bytes> RecordingResolver::open(const std::string& reference, const std::s
     if (record.reference == resolved) record.sha256 = digest;
   }
   return bytes;
+}
+
+bool RecordingResolver::exists(const std::string& reference) {
+  return state_->inner.exists(reference);
 }
 
 std::vector<AssetRecord> RecordingResolver::records() const {

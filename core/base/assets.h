@@ -19,6 +19,10 @@ class AssetResolver {
   /// where `from` is not empty, to the folder of asset `from` (an .mtl beside its .obj, say).
   /// Errors name the reference and what was wrong with it.
   virtual Result<Bytes> open(const std::string& reference, const std::string& from = {}) = 0;
+
+  /// Whether there is such an asset (which may fail to open all the same). Nobody counts that as
+  /// opening it.
+  virtual bool exists(const std::string& reference) { return open(reference).ok(); }
 };
 
 /// What `reference` means when asset `from` names it: a path relative to the job's folder (or an
@@ -48,6 +52,7 @@ class RecordingResolver : public AssetResolver {
   explicit RecordingResolver(AssetResolver& inner);
   ~RecordingResolver() override;
   Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
+  bool exists(const std::string& reference) override;
   std::vector<AssetRecord> records() const;
 
  private:

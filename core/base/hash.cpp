@@ -80,4 +80,23 @@ uint32_t crc32c(std::span<const std::byte> bytes, uint32_t previous) {
   return ~narrow;
 }
 
+uint32_t murmur3(std::string_view text, uint32_t seed) {
+  const auto turned = [](uint32_t x, unsigned by) { return (x << by) | (x >> (32U - by)); };
+  const auto mixed = [&](uint32_t k) { return turned(k * 0xCC9E2D51U, 15) * 0x1B873593U; };
+  const auto byte = [&](size_t i) { return uint32_t{static_cast<unsigned char>(text[i])}; };
+  uint32_t h = seed;
+  size_t i = 0;
+  for (; i + 4 <= text.size(); i += 4) {
+    h ^= mixed(byte(i) | byte(i + 1) << 8U | byte(i + 2) << 16U | byte(i + 3) << 24U);
+    h = turned(h, 13) * 5U + 0xE6546B64U;
+  }
+  uint32_t tail = 0;
+  for (size_t j = text.size(); j > i; --j) tail = tail << 8U | byte(j - 1);
+  if (i < text.size()) h ^= mixed(tail);
+  h ^= static_cast<uint32_t>(text.size());
+  h = (h ^ h >> 16U) * 0x85EBCA6BU;
+  h = (h ^ h >> 13U) * 0xC2B2AE35U;
+  return h ^ h >> 16U;
+}
+
 }  // namespace hyades::core

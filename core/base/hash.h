@@ -50,6 +50,9 @@ class Sha256Stream {
 /// Lower-case hexadecimal.
 std::string to_hex(std::span<const uint8_t> bytes);
 
+/// MurmurHash3_x86_32 (Appleby 2011), which Cryptomatte names things by.
+uint32_t murmur3(std::string_view text, uint32_t seed = 0);
+
 /// 32 bits that detect torn or flipped bytes (CRC-32C, Castagnoli polynomial).
 uint32_t crc32c(std::span<const std::byte> bytes, uint32_t previous = 0);
 

@@ -17,6 +17,12 @@ Result<Image> decode_jpeg(std::span<const std::byte> file, bool srgb, const Imag
 Result<Image> decode_hdr(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
 Result<Image> decode_exr(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
 
+/// 8 and 16 bits or 32 of floating point, in strips or tiles, however libtiff can unpack them.
+Result<Image> decode_tiff(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+
+/// Whether the numbers of a TIFF are floating point, and so light rather than codes of a display.
+bool tiff_holds_floats(std::span<const std::byte> file);
+
 /// Refuses sizes that are empty or above the limits. Several channels count as several pixels
 /// from the fifth on, so that memory stays within 16 bytes per allowed pixel.
 Status check_image_size(int64_t width, int64_t height, int64_t channels, const ImageLimits& limits);

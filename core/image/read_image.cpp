@@ -31,10 +31,12 @@ constexpr Format kFormats[] = {
     {"#?RADIANCE", decode_hdr, "Radiance HDR", false},
     {"#?RGBE", decode_hdr, "Radiance HDR", false},
     {"v/1\x01", decode_exr, "OpenEXR", false},
+    {std::string_view("II+\0", 4), decode_tiff, "TIFF", true},  // with 64-bit offsets
+    {std::string_view("MM\0+", 4), decode_tiff, "TIFF", true},
     {"GIF8", nullptr, "GIF", true},
     {"BM", nullptr, "BMP", true},
-    {"II*", nullptr, "TIFF", true},
-    {"MM", nullptr, "TIFF", true},
+    {std::string_view("II*\0", 4), decode_tiff, "TIFF", true},
+    {std::string_view("MM\0*", 4), decode_tiff, "TIFF", true},
     {"RIFF", nullptr, "WebP", true},
     {"DDS ", nullptr, "DDS", true},
     {"PF", nullptr, "PFM", false},
@@ -103,13 +105,14 @@ Result<Image> read_image(const Bytes& bytes, const std::string& name, ColorSpace
   const std::span<const std::byte> file = bytes.span();
   if (file.empty()) return Error{name + ": the file is empty"};
   const Format* format = format_of(file);
-  constexpr const char* kExpected = "expected PNG, JPEG, Radiance HDR or OpenEXR";
+  constexpr const char* kExpected = "expected PNG, JPEG, TIFF, Radiance HDR or OpenEXR";
   if (format == nullptr) return Error{fmt::format("{}: not a known picture; {}", name, kExpected)};
   if (format->decode == nullptr) {
     return Error{fmt::format("{}: {} files are not read; {}", name, format->name, kExpected)};
   }
-  const bool srgb =
-      space == ColorSpace::srgb || (space == ColorSpace::automatic && format->display_encoded);
+  const bool encoded =
+      format->display_encoded && !(format->decode == decode_tiff && tiff_holds_floats(file));
+  const bool srgb = space == ColorSpace::srgb || (space == ColorSpace::automatic && encoded);
   try {
     Result<Image> image = format->decode(file, srgb, limits);
     if (!image) return image.error().in(std::string(format->name)).in(name);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/bytes.h"
 #include "core/base/result.h"
@@ -10,7 +12,7 @@ namespace hyades::core {
 
 /// How the numbers of an 8- or 16-bit file become linear.
 enum class ColorSpace {
-  automatic,  ///< PNG and JPEG as sRGB; EXR and HDR are linear already
+  automatic,  ///< PNG, JPEG and codes of TIFF as sRGB; EXR, HDR and floats are linear already
   srgb,
   linear,
 };
@@ -21,8 +23,9 @@ struct ImageLimits {
   size_t max_pixels = 400'000'000;  ///< width * height
 };
 
-/// Decodes PNG (1-16 bits), JPEG, Radiance HDR (flat and RLE) or OpenEXR (any compression, half or
-/// float, scanline or tiled), told apart by their first bytes. Colour is linear Rec.709 on return;
+/// Decodes PNG (1-16 bits), JPEG, TIFF (grey or RGB of 8, 16 or 32 floating bits; the first
+/// picture), Radiance HDR (flat and RLE) or OpenEXR (any compression, half or float, scanline or
+/// tiled), told apart by their first bytes. Colour is linear Rec.709 on return;
 /// alpha stays straight and is never decoded. Grey files have channel "Y"[,"A"], colour ones
 /// "R","G","B"[,"A"]; an EXR keeps its own channel names, R G B A Y first (first part, all of its
 /// data window; subsampled channels and deep data are refused). EXPOSURE of a Radiance file is
@@ -33,5 +36,12 @@ Result<Image> read_image(const Bytes& bytes, const std::string& name,
 
 /// read_image of a file on disk.
 Result<Image> read_image_file(const std::string& path, ColorSpace space = ColorSpace::automatic);
+
+/// The texts in the header of the PNG file at `path` (tEXt, and iTXt that is not compressed), in
+/// their order.
+Result<std::vector<std::pair<std::string, std::string>>> read_png_texts(const std::string& path);
+
+/// The texts in the (first) header of the OpenEXR file at `path`, by name.
+Result<std::vector<std::pair<std::string, std::string>>> read_exr_texts(const std::string& path);
 
 }  // namespace hyades::core

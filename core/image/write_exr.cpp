@@ -2,6 +2,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <fmt/format.h>
 
@@ -38,6 +39,11 @@ Status check(const Image& image, const ImageMetadata& metadata) {
   return {};
 }
 
+/// Whether a channel's bits are ids of Cryptomatte, which mean nothing as 16-bit numbers.
+bool holds_ids(const std::string& channel) {
+  return channel.starts_with("Crypto") || channel.ends_with(".ID");
+}
+
 /// Infinity stays; what is finite stays finite.
 half to_half(float value) {
   if (std::isfinite(value)) value = std::clamp(value, -kLargestHalf, kLargestHalf);
@@ -61,23 +67,28 @@ void write(const std::string& path, const Image& image, const ImageMetadata& met
   const Imath::Box2i window = data_window(image);
   Imf::Header header(display_window(image), window);
   header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::addChromaticities(header, Imf::Chromaticities());  // Rec.709
   for (const auto& [name, value] : metadata) header.insert(name, Imf::StringAttribute(value));
-  const Imf::PixelType type = as_half ? Imf::HALF : Imf::FLOAT;
-  for (const auto& name : image.channels) header.channels().insert(name, Imf::Channel(type));
+  const auto type_of = [&](const std::string& name) {
+    return as_half && !holds_ids(name) ? Imf::HALF : Imf::FLOAT;
+  };
+  for (const auto& name : image.channels)
+    header.channels().insert(name, Imf::Channel(type_of(name)));
 
   std::vector<half> halves;
   if (as_half) {
     halves.resize(image.data.size());
     std::transform(image.data.begin(), image.data.end(), halves.begin(), to_half);
   }
-  const size_t value_bytes = as_half ? sizeof(half) : sizeof(float);
-  const size_t pixel_bytes = image.channels.size() * value_bytes;
-  const char* base = as_half ? reinterpret_cast<const char*>(halves.data())
-                             : reinterpret_cast<const char*>(image.data.data());
   Imf::FrameBuffer buffer;
   for (size_t c = 0; c < image.channels.size(); ++c) {
+    const Imf::PixelType type = type_of(image.channels[c]);
+    const bool is_half = type == Imf::HALF;
+    const void* const first = is_half ? static_cast<const void*>(halves.data() + c)
+                                      : static_cast<const void*>(image.data.data() + c);
+    const size_t pixel_bytes = image.channels.size() * (is_half ? sizeof(half) : sizeof(float));
     buffer.insert(image.channels[c],
-                  Imf::Slice::Make(type, base + c * value_bytes, window, pixel_bytes,
+                  Imf::Slice::Make(type, first, window, pixel_bytes,
                                    pixel_bytes * static_cast<size_t>(image.width)));
   }
   Imf::OutputFile file(path.c_str(), header, 0);

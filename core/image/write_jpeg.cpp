@@ -7,13 +7,17 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "core/base/atomic_file.h"
-#include "core/image/encode_8_bits.h"
+#include "core/image/encode_codes.h"
 #include "core/image/write_image.h"
 
 namespace hyades::core {
 namespace {
+
+constexpr size_t kLongestComment = 65533;  ///< bytes of a marker
 
 /// All state of one encoding; see decode_jpeg.cpp about longjmp.
 struct Writer {
@@ -37,7 +41,14 @@ struct Writer {
   std::longjmp(writer.jump, 1);
 }
 
-bool encode(Writer& writer, const Codes& codes, int width, int height, int quality) {
+/// What stands in the file beside the picture: one comment, and what the colours mean.
+struct Said {
+  std::string comment;
+  std::vector<uint8_t> profile;
+};
+
+bool encode(Writer& writer, const Codes& codes, int width, int height, int quality,
+            const Said& said) {
   if (setjmp(writer.jump) != 0) return false;
   jpeg_create_compress(&writer.jpeg);
   writer.created = true;
@@ -56,6 +67,14 @@ bool encode(Writer& writer, const Codes& codes, int width, int height, int quali
   }
   writer.jpeg.optimize_coding = TRUE;
   jpeg_start_compress(&writer.jpeg, TRUE);
+  if (!said.comment.empty()) {
+    jpeg_write_marker(&writer.jpeg, JPEG_COM, reinterpret_cast<const JOCTET*>(said.comment.data()),
+                      static_cast<unsigned>(said.comment.size()));
+  }
+  if (!said.profile.empty()) {
+    jpeg_write_icc_profile(&writer.jpeg, said.profile.data(),
+                           static_cast<unsigned>(said.profile.size()));
+  }
   const size_t row_bytes = static_cast<size_t>(width) * static_cast<size_t>(codes.channels);
   while (writer.jpeg.next_scanline < writer.jpeg.image_height) {
     JSAMPROW rows[] = {
@@ -68,15 +87,17 @@ bool encode(Writer& writer, const Codes& codes, int width, int height, int quali
 
 }  // namespace
 
-Status write_jpeg(const std::string& path, const Image& image, int quality) {
+Status write_jpeg(const std::string& path, const Image& image, int quality,
+                  const ImageMetadata& metadata, ColorTag color) {
   const std::string context = "cannot write " + path;
-  const Result<Codes> codes = encode_8_bits(image, false);
+  const Result<Codes> codes = encode_codes(image, false);
   if (!codes) return codes.error().in(context);
   Writer writer;
   writer.jpeg.err = jpeg_std_error(&writer.errors);
   writer.errors.error_exit = on_error;
   writer.jpeg.client_data = &writer;
-  if (!encode(writer, *codes, image.width, image.height, std::clamp(quality, 1, 100))) {
+  const Said said{metadata_lines(metadata).substr(0, kLongestComment), icc_profile(color)};
+  if (!encode(writer, *codes, image.width, image.height, std::clamp(quality, 1, 100), said)) {
     return Error{context + ": " + writer.message};
   }
   return write_file(path, std::as_bytes(std::span(writer.file, writer.size)));

@@ -2,12 +2,13 @@
 #include <png.h>
 
 #include <algorithm>
+#include <bit>
 #include <csetjmp>
 #include <cstring>
 #include <vector>
 
 #include "core/base/atomic_file.h"
-#include "core/image/encode_8_bits.h"
+#include "core/image/encode_codes.h"
 #include "core/image/write_image.h"
 
 namespace hyades::core {
@@ -49,21 +50,34 @@ void on_write(png_structp png, png_bytep bytes, size_t count) {
 
 void on_flush(png_structp) {}
 
-bool encode(Writer& writer, const Codes& codes, png_uint_32 width, png_uint_32 height) {
+void tell_color(Writer& writer, ColorTag color) {
+  if (color == ColorTag::srgb) png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  if (color == ColorTag::linear) {
+    png_set_gAMA_fixed(writer.png, writer.info, PNG_FP_1);
+    // Rec.709: white, red, green, blue, in 1/100000.
+    png_set_cHRM_fixed(writer.png, writer.info, 31270, 32900, 64000, 33000, 30000, 60000, 15000,
+                       6000);
+  }
+}
+
+bool encode(Writer& writer, const Codes& codes, png_uint_32 width, png_uint_32 height,
+            ColorTag tag) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
   png_set_write_fn(writer.png, &writer, on_write, on_flush);
   const int color = codes.channels == 1   ? PNG_COLOR_TYPE_GRAY
                     : codes.channels == 3 ? PNG_COLOR_TYPE_RGB
                                           : PNG_COLOR_TYPE_RGB_ALPHA;
-  png_set_IHDR(writer.png, writer.info, width, height, 8, color, PNG_INTERLACE_NONE,
+  png_set_IHDR(writer.png, writer.info, width, height, codes.bits, color, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
+  tell_color(writer, tag);
   if (!writer.texts.empty()) {
     png_set_text(writer.png, writer.info, writer.texts.data(),
                  static_cast<int>(writer.texts.size()));
   }
   png_write_info(writer.png, writer.info);
-  const size_t row_bytes = size_t{width} * static_cast<size_t>(codes.channels);
+  const size_t row_bytes = codes.row_bytes(static_cast<int>(width));
+  // A PNG has its numbers' high bytes first.
+  if (codes.bits == 16 && std::endian::native == std::endian::little) png_set_swap(writer.png);
   for (png_uint_32 y = 0; y < height; ++y) {
     png_write_row(writer.png, codes.data.data() + y * row_bytes);
   }
@@ -95,9 +109,10 @@ Status add_texts(Writer& writer, const ImageMetadata& metadata) {
 
 }  // namespace
 
-Status write_png(const std::string& path, const Image& image, const ImageMetadata& metadata) {
+Status write_png(const std::string& path, const Image& image, const ImageMetadata& metadata,
+                 const CodeOptions& options) {
   const std::string context = "cannot write " + path;
-  const Result<Codes> codes = encode_8_bits(image, true);
+  const Result<Codes> codes = encode_codes(image, true, options.bits);
   if (!codes) return codes.error().in(context);
   Writer writer;
   if (const Status status = add_texts(writer, metadata); !status) return status.error().in(context);
@@ -105,7 +120,7 @@ Status write_png(const std::string& path, const Image& image, const ImageMetadat
   if (writer.png != nullptr) writer.info = png_create_info_struct(writer.png);
   if (writer.info == nullptr) return Error{context + ": not enough memory"};
   if (!encode(writer, *codes, static_cast<png_uint_32>(image.width),
-              static_cast<png_uint_32>(image.height))) {
+              static_cast<png_uint_32>(image.height), options.color)) {
     return Error{context + ": " + writer.message};
   }
   return write_file(path, std::as_bytes(std::span(writer.file)));

@@ -42,6 +42,13 @@ TEST(Hash, Crc32cKnownAnswers) {  // RFC 3720, B.4
   EXPECT_EQ(crc32c({}), 0U);
 }
 
+TEST(Hash, Murmur3KnownAnswers) {  // as published with Appleby's SMHasher and by its users
+  EXPECT_EQ(murmur3(""), 0U);
+  EXPECT_EQ(murmur3("", 1), 0x514E28B7U);
+  EXPECT_EQ(murmur3("hello"), 0x248BFA47U);
+  EXPECT_EQ(murmur3("The quick brown fox jumps over the lazy dog"), 0x2E4FF723U);
+}
+
 TEST(Hash, Crc32cContinues) {
   std::vector<std::byte> bytes(101);
   for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(i * 37 + 5);

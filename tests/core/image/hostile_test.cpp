@@ -41,6 +41,8 @@ class SampleMaker {
     write("alpha.png", [&](const auto& path) { return write_png(path, alpha); });
     write("grey.jpg", [&](const auto& path) { return write_jpeg(path, grey, 50); });
     write("color.jpg", [&](const auto& path) { return write_jpeg(path, color, 50); });
+    write("color.tif", [&](const auto& path) { return write_tiff(path, color); });
+    write("alpha.tiff", [&](const auto& path) { return write_tiff(path, alpha, {}, {16}); });
     write("half.exr", [&](const auto& path) {
       return write_exr(path, alpha, {{"note", "x"}}, true);
     });
@@ -199,8 +201,9 @@ TEST(Hostile, EveryTruncationIsAnErrorThatNamesTheFile) {
       }
     }
     // What nobody needs may be missing: a JPEG's end marker, the coarse levels of a tiled EXR, its
-    // second part.
-    if (sample.name.find("tiled") == std::string::npos && sample.name != "parts.exr") {
+    // second part; what a TIFF says of its program behind its pixels.
+    if (sample.name.find("tiled") == std::string::npos && sample.name != "parts.exr" &&
+        sample.name.find(".tif") == std::string::npos) {
       EXPECT_GE(first_accepted + 2, sample.file.size()) << sample.name;
     }
     EXPECT_LT(seconds_since(start), 20.0) << sample.name;
@@ -243,9 +246,10 @@ TEST(Hostile, UnknownFilesAreNamed) {
     return image ? std::string("no error") : image.error().message;
   };
   EXPECT_EQ(error(""), "x: the file is empty");
-  EXPECT_EQ(error("hello"), "x: not a known picture; expected PNG, JPEG, Radiance HDR or OpenEXR");
+  EXPECT_EQ(error("hello"),
+            "x: not a known picture; expected PNG, JPEG, TIFF, Radiance HDR or OpenEXR");
   EXPECT_EQ(error("GIF89a..."),
-            "x: GIF files are not read; expected PNG, JPEG, Radiance HDR or OpenEXR");
+            "x: GIF files are not read; expected PNG, JPEG, TIFF, Radiance HDR or OpenEXR");
   const Result<Image> missing = read_image_file("no/such/file.png");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().message, "no/such/file.png: no such file");
