@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "core/textures/make_texture.h"
-#include "core/textures/mapping.h"
 
 namespace hyades::core {
 namespace {
@@ -20,15 +19,16 @@ class CheckerTexture final : public Texture {
       : a_(std::move(a)), b_(std::move(b)), mapping_(mapping) {}
 
   Rgb color(const TexturePoint& at) const override { return cell(at).color(at); }
-  float scalar(const TexturePoint& at) const override { return cell(at).scalar(at); }
-  ScalarGradient scalar_gradient(const TexturePoint& at) const override {
-    return cell(at).scalar_gradient(at);
+  ScalarGradient gradient(const TexturePoint& at, const Vec4& weights) const override {
+    ScalarGradient result = cell(at).gradient(at, Vec4(Vec3(weights), 0.0F));  // alpha is 1
+    result.value += weights.w;
+    return result;
   }
 
  private:
   const Texture& cell(const TexturePoint& at) const {
-    Vec3 p = map_point(mapping_, at);
-    if (mapping_.mapping == Mapping::uv) p.z = 0.0F;
+    Vec3 p = MappedPoint(mapping_, at).coordinate();
+    if (mapping_.flat()) p.z = 0.0F;
     return odd_cell(p.x) != (odd_cell(p.y) != odd_cell(p.z)) ? *b_ : *a_;
   }
 

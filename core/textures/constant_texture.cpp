@@ -5,19 +5,14 @@ namespace {
 
 class ConstantTexture final : public Texture {
  public:
-  explicit ConstantTexture(const Rgb& value) : value_(value), scalar_(luminance(value)) {
-    // A grey is a number: say exactly that one, not a sum of rounded products.
-    if (value.x == value.y && value.y == value.z) scalar_ = value.x;
-  }
+  explicit ConstantTexture(const Rgb& value) : value_(value) {}
   Rgb color(const TexturePoint& /*at*/) const override { return value_; }
-  float scalar(const TexturePoint& /*at*/) const override { return scalar_; }
-  ScalarGradient scalar_gradient(const TexturePoint& /*at*/) const override {
-    return {.value = scalar_};
+  ScalarGradient gradient(const TexturePoint& /*at*/, const Vec4& weights) const override {
+    return {.value = glm::dot(weights, Vec4(value_, 1.0F))};
   }
 
  private:
   Rgb value_;
-  float scalar_;
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
-#include <array>
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "core/textures/make_texture.h"
@@ -8,130 +10,179 @@
 namespace hyades::core {
 namespace {
 
-/// Where one coordinate falls among n texels: the two neighbours (-1: black) and the weight of the
-/// second.
-struct Taps {
-  int first;
-  int second;
-  float weight;
+constexpr int kMostTaps = 16;  ///< of an anisotropic look-up
+
+/// Exact where a = b: a white image stays white.
+Vec4 mix(const Vec4& a, const Vec4& b, float t) { return a + (b - a) * t; }
+
+/// Red, green, blue and alpha, and how they change along u and v.
+struct Texel {
+  Vec4 value{0.0F};
+  Vec4 d_u{0.0F};
+  Vec4 d_v{0.0F};
 };
 
-/// Texel `i` of an endless row of n, as the wrap mode has it; -1 for black.
-int wrap_index(int64_t i, int n, WrapMode wrap) {
-  if (i >= 0 && i < n) return static_cast<int>(i);
-  switch (wrap) {
-    case WrapMode::clamp:
-      return i < 0 ? 0 : n - 1;
-    case WrapMode::black:
-      return -1;
-    case WrapMode::mirror: {
-      const int64_t period = ((i % (2 * int64_t{n})) + 2 * int64_t{n}) % (2 * int64_t{n});
-      return static_cast<int>(period < n ? period : 2 * int64_t{n} - 1 - period);
-    }
-    case WrapMode::repeat:
-      break;
-  }
-  return static_cast<int>(((i % n) + n) % n);
+Texel mix(const Texel& a, const Texel& b, float t) {
+  return {mix(a.value, b.value, t), mix(a.d_u, b.d_u, t), mix(a.d_v, b.d_v, t)};
 }
 
-/// Coordinate x in texels (texel i covers [i, i + 1)).
-Taps locate(double x, int n, WrapMode wrap, TextureFilter filter) {
-  const double shifted = filter == TextureFilter::bilinear ? x - 0.5 : x;
-  const double floor = std::floor(shifted);
-  if (!(std::fabs(floor) < 0x1p62)) return {wrap_index(0, n, wrap), wrap_index(0, n, wrap), 0.0F};
-  const auto i = static_cast<int64_t>(floor);
-  const int first = wrap_index(i, n, wrap);
-  if (filter == TextureFilter::nearest) return {first, first, 0.0F};
-  return {first, wrap_index(i + 1, n, wrap), static_cast<float>(shifted - floor)};
+template <TexelFormat format>
+Vec4 read(const Texels& level, const Taps& x, const Taps& y) {
+  const Vec4 low =
+      mix(level.texel<format>(x.first, y.first), level.texel<format>(x.second, y.first), x.weight);
+  if (y.weight == 0.0F) return low;
+  return mix(low,
+             mix(level.texel<format>(x.first, y.second), level.texel<format>(x.second, y.second),
+                 x.weight),
+             y.weight);
 }
+
+template <TexelFormat format>
+Texel read_slopes(const Texels& level, const Taps& x, const Taps& y) {
+  const Vec4 a = level.texel<format>(x.first, y.first);
+  const Vec4 b = level.texel<format>(x.second, y.first);
+  const Vec4 c = level.texel<format>(x.first, y.second);
+  const Vec4 d = level.texel<format>(x.second, y.second);
+  return {read<format>(level, x, y),
+          mix(b - a, d - c, y.weight) * static_cast<float>(level.width()),
+          mix(c - a, d - b, x.weight) * static_cast<float>(level.height())};
+}
+
+/// log2(x) of a positive x, straight between powers of two: at most 0.09 too small.
+float rough_log2(float x) {
+  const auto bits = std::bit_cast<uint32_t>(x);
+  return static_cast<float>(static_cast<int32_t>(bits >> 23U) - 127) +
+         static_cast<float>(bits & 0x7FFFFFU) * 0x1p-23F;
+}
+
+/// What a pixel covers of an image, in its own coordinates.
+struct Footprint {
+  Vec2 along{0.0F};     ///< of several places that are read, from the first to the last
+  float width2 = 0.0F;  ///< squared width of each [texels of the image]
+  int taps = 1;
+};
 
 class ImageTexture final : public Texture {
  public:
-  ImageTexture(std::shared_ptr<const Image> image, WrapMode wrap, TextureFilter filter,
-               const Vec2& scale, const Vec2& offset)
-      : image_(std::move(image)), wrap_(wrap), filter_(filter), scale_(scale), offset_(offset) {
-    const int r = image_->find_channel("R");
-    const int g = image_->find_channel("G");
-    const int b = image_->find_channel("B");
-    const int y = image_->find_channel("Y");
-    if (r >= 0 && g >= 0 && b >= 0) {
-      channels_ = {r, g, b};
-    } else {
-      const int only = y >= 0 ? y : r >= 0 ? r : 0;
-      channels_ = {only, only, only};
-      grey_ = true;
-    }
-    empty_ = image_->width <= 0 || image_->height <= 0 || image_->channels.empty();
-  }
+  ImageTexture(PyramidPtr image, ImageTextureDesc desc)
+      : image_(std::move(image)), desc_(std::move(desc)) {}
 
-  Rgb color(const TexturePoint& at) const override {
-    if (empty_) return Rgb(0.0F);
-    const auto [x, y] = taps(at);
-    const Rgb low = mix(texel(x.first, y.first), texel(x.second, y.first), x.weight);
-    if (y.weight == 0.0F) return low;
-    return mix(low, mix(texel(x.first, y.second), texel(x.second, y.second), x.weight), y.weight);
-  }
+  Rgb color(const TexturePoint& at) const override { return Rgb(look_up(at)); }
 
-  float scalar(const TexturePoint& at) const override {
-    const Rgb c = color(at);
-    return grey_ ? c.x : luminance(c);
-  }
+  float alpha(const TexturePoint& at) const override { return look_up(at).w; }
 
-  ScalarGradient scalar_gradient(const TexturePoint& at) const override {
-    ScalarGradient result;
-    result.value = scalar(at);
-    if (empty_ || filter_ == TextureFilter::nearest) return result;
-    const auto [x, y] = taps(at);
-    const float a = number(x.first, y.first);
-    const float b = number(x.second, y.first);
-    const float c = number(x.first, y.second);
-    const float d = number(x.second, y.second);
-    const float along = (b - a) * (1.0F - y.weight) + (d - c) * y.weight;
-    const float up = (c - a) * (1.0F - x.weight) + (d - b) * x.weight;
-    result.d_uv = {along * scale_.x * static_cast<float>(image_->width),
-                   up * scale_.y * static_cast<float>(image_->height)};
+  ScalarGradient gradient(const TexturePoint& at, const Vec4& weights) const override {
+    if (image_->levels().empty()) return {};
+    if (desc_.filter == TextureFilter::nearest) return {.value = glm::dot(weights, look_up(at))};
+    const MappedPoint mapped(desc_.mapping, at);
+    const Texel texel = over_footprint<Texel>(mapped, at);
+    ScalarGradient result{.value = glm::dot(weights, texel.value)};
+    mapped.add_gradient({glm::dot(weights, texel.d_u), glm::dot(weights, texel.d_v), 0.0F}, result);
     return result;
   }
 
  private:
-  /// The neighbours of a point: columns from the left, rows from below.
-  std::pair<Taps, Taps> taps(const TexturePoint& at) const {
-    const double u = double{at.uv.x} * scale_.x + offset_.x;
-    const double v = double{at.uv.y} * scale_.y + offset_.y;
-    return {locate(u * image_->width, image_->width, wrap_, filter_),
-            locate(v * image_->height, image_->height, wrap_, filter_)};
+  Vec4 look_up(const TexturePoint& at) const {
+    if (image_->levels().empty()) return Vec4(0.0F);
+    return over_footprint<Vec4>(MappedPoint(desc_.mapping, at), at);
   }
 
-  /// Rows counted from below, unlike the image's own.
-  Rgb texel(int x, int y) const {
-    if (x < 0 || y < 0) return Rgb(0.0F);
-    const float* pixel = &image_->data[image_->index(x, image_->height - 1 - y, 0)];
-    return {pixel[channels_[0]], pixel[channels_[1]], pixel[channels_[2]]};
+  /// Value is Vec4, or Texel where slopes are wanted too.
+  template <class Value>
+  Value over_footprint(const MappedPoint& mapped, const TexturePoint& at) const {
+    const Vec2 uv(mapped.coordinate());
+    const bool sized =
+        desc_.filter == TextureFilter::trilinear || desc_.filter == TextureFilter::anisotropic;
+    if (!sized || !desc_.view || at.surface == nullptr || at.finest) return in_level<Value>(0, uv);
+    const Footprint footprint = footprint_of(mapped, *at.surface);
+    Value sum = in_sizes<Value>(footprint.width2, uv + footprint.along * offset_of(0, footprint));
+    for (int i = 1; i < footprint.taps; ++i) {
+      const Value next =
+          in_sizes<Value>(footprint.width2, uv + footprint.along * offset_of(i, footprint));
+      sum = mix(sum, next, 1.0F / static_cast<float>(i + 1));
+    }
+    return sum;
   }
 
-  float number(int x, int y) const {
-    const Rgb c = texel(x, y);
-    return grey_ ? c.x : luminance(c);
+  /// Of tap i from the middle, as a part of the way.
+  static float offset_of(int i, const Footprint& footprint) {
+    return (static_cast<float>(i) + 0.5F) / static_cast<float>(footprint.taps) - 0.5F;
   }
 
-  /// Exact where a = b: a white image stays white.
-  static Rgb mix(const Rgb& a, const Rgb& b, float t) { return a + (b - a) * t; }
+  Footprint footprint_of(const MappedPoint& mapped, const SurfacePoint& surface) const {
+    const PixelCone cone = desc_.view->pixel_at(surface.position, surface.time);
+    const PixelSpan span = span_on_surface(cone, surface.ng);
+    const Vec2 a(mapped.step(span.major, surface));
+    const Vec2 b(mapped.step(span.minor, surface));
+    const Vec2 size(image_->levels()[0].width(), image_->levels()[0].height());
+    float longest2 = length2(a * size);
+    float shortest2 = length2(b * size);
+    Footprint footprint{a, 0.0F, 1};
+    if (shortest2 > longest2) {
+      std::swap(longest2, shortest2);
+      footprint.along = b;
+    }
+    footprint.width2 = longest2;
+    if (desc_.filter == TextureFilter::trilinear || !(longest2 > 1.0F)) return footprint;
+    // As many as there are widths in the length; what more would be needed makes them wider.
+    const float ratio = std::sqrt(longest2 / std::max(shortest2, 1.0F));
+    footprint.taps = static_cast<int>(std::min(static_cast<float>(kMostTaps), ratio + 0.5F));
+    const auto parts = static_cast<float>(footprint.taps);
+    footprint.width2 = longest2 / (parts * parts);
+    return footprint;
+  }
 
-  std::shared_ptr<const Image> image_;
-  WrapMode wrap_;
-  TextureFilter filter_;
-  Vec2 scale_;
-  Vec2 offset_;
-  std::array<int, 3> channels_{};
-  bool grey_ = false;
-  bool empty_ = false;
+  static float length2(const Vec2& v) { return glm::dot(v, v); }
+
+  /// Between the two levels whose texels are about as wide as wanted.
+  template <class Value>
+  Value in_sizes(float width2, const Vec2& uv) const {
+    const auto last = static_cast<float>(image_->levels().size() - 1);
+    if (!(width2 > 1.0F)) return in_level<Value>(0, uv);
+    const float level = 0.5F * rough_log2(width2);
+    if (!(level < last)) return in_level<Value>(image_->levels().size() - 1, uv);
+    const float floor = std::floor(level);
+    const auto finer = static_cast<size_t>(floor);
+    return mix(in_level<Value>(finer, uv), in_level<Value>(finer + 1, uv), level - floor);
+  }
+
+  template <class Value>
+  Value in_level(size_t index, const Vec2& uv) const {
+    const Texels& level = image_->levels()[index];
+    switch (level.format()) {
+      case TexelFormat::bytes:
+        return in_level<Value, TexelFormat::bytes>(level, uv);
+      case TexelFormat::words:
+        return in_level<Value, TexelFormat::words>(level, uv);
+      case TexelFormat::halves:
+        return in_level<Value, TexelFormat::halves>(level, uv);
+      case TexelFormat::floats:
+        break;
+    }
+    return in_level<Value, TexelFormat::floats>(level, uv);
+  }
+
+  template <class Value, TexelFormat format>
+  Value in_level(const Texels& level, const Vec2& uv) const {
+    const bool between = desc_.filter != TextureFilter::nearest;
+    const WrapMode wrap = image_->wrap();
+    const Taps x = locate(double{uv.x} * level.width(), level.width(), wrap, between);
+    const Taps y = locate(double{uv.y} * level.height(), level.height(), wrap, between);
+    if constexpr (std::is_same_v<Value, Texel>) {
+      return read_slopes<format>(level, x, y);
+    } else {
+      return read<format>(level, x, y);
+    }
+  }
+
+  PyramidPtr image_;
+  ImageTextureDesc desc_;
 };
 
 }  // namespace
 
-TexturePtr make_image_texture(std::shared_ptr<const Image> image, WrapMode wrap,
-                              TextureFilter filter, const Vec2& scale, const Vec2& offset) {
-  return std::make_shared<ImageTexture>(std::move(image), wrap, filter, scale, offset);
+TexturePtr make_image_texture(PyramidPtr image, const ImageTextureDesc& desc) {
+  return std::make_shared<ImageTexture>(std::move(image), desc);
 }
 
 }  // namespace hyades::core

@@ -1,25 +1,56 @@
 #pragma once
 
-#include "core/textures/make_texture.h"
+#include "core/base/vec.h"
+#include "core/textures/pixel_view.h"
+#include "core/textures/texture.h"
 
 namespace hyades::core {
 
-/// The coordinate that a procedural texture reads at a point.
-inline Vec3 map_point(const MappingDesc& desc, const TexturePoint& at) {
-  const Vec3 source = desc.mapping == Mapping::uv       ? Vec3(at.uv.x, at.uv.y, 0.0F)
-                      : desc.mapping == Mapping::object ? at.object
-                                                        : at.world;
-  return source * desc.scale + desc.offset;
-}
+/// What a mapping starts from.
+enum class MappingSpace { uv, object, world };
 
-/// Adds a derivative by the mapped coordinate to the derivatives of `result`.
-inline void add_mapped_gradient(const MappingDesc& desc, const Vec3& derivative,
-                                ScalarGradient& result) {
-  const Vec3 d = derivative * desc.scale;
-  if (desc.mapping == Mapping::uv) result.d_uv += Vec2(d.x, d.y);
-  if (desc.mapping == Mapping::object) result.d_object += d;
-  if (desc.mapping == Mapping::world) result.d_world += d;
-}
+/// How a place becomes texture coordinates. All but `none` give u and v alone, z = 0:
+/// `planar` is x and y seen along z; `spherical` and `cylindrical` wrap u around the y axis as
+/// spheres and cylinders do (core/geometry/shape.h), the sphere's v from pole to pole, the
+/// cylinder's is y.
+enum class Projection { none, planar, spherical, cylindrical };
+
+/// coordinate = project(transform * place) * scale + offset. With `uv` the place is (u, v, 0).
+struct MappingDesc {
+  MappingSpace space = MappingSpace::object;
+  Projection projection = Projection::none;
+  Vec3 scale{1.0F};
+  Vec3 offset{0.0F};
+  Mat4 transform{1.0F};
+
+  /// Whether the coordinate lies in a plane.
+  bool flat() const { return space == MappingSpace::uv || projection != Projection::none; }
+};
+
+/// The coordinate that a texture reads at a place, and its derivative by the place.
+class MappedPoint {
+ public:
+  MappedPoint(const MappingDesc& desc, const TexturePoint& at);
+
+  const Vec3& coordinate() const { return coordinate_; }
+
+  /// Adds a derivative by the coordinate to the derivatives of `result`.
+  void add_gradient(const Vec3& derivative, ScalarGradient& result) const;
+
+  /// What a step along the surface [length, world space] changes of the coordinate; `surface` is
+  /// that of the place.
+  Vec3 step(const Vec3& along, const SurfacePoint& surface) const;
+
+ private:
+  /// Derivative of the projection, at its argument `place_`, along `direction`.
+  Vec3 project_step(const Vec3& direction) const;
+  /// The transposed derivative.
+  Vec3 project_back(const Vec3& derivative) const;
+
+  const MappingDesc& desc_;
+  Vec3 place_{0.0F};  ///< transformed, not yet projected
+  Vec3 coordinate_{0.0F};
+};
 
 /// a * x + b * y, value and derivatives.
 inline ScalarGradient weighted_sum(float a, const ScalarGradient& x, float b,

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/bytes.h"
+#include "core/base/result.h"
+
+namespace hyades::core {
+
+/// Where texels are kept: in memory within a budget, and beyond it in files without a name, mapped
+/// into memory, whose pages the system reads when they are looked at and drops when there is no
+/// room for them. Looking up a texel is the same either way, and so are its bits. Thread-safe; what
+/// it gave out may outlive it.
+class TexelStore {
+ public:
+  /// `budget` bytes of memory; the files' folder (where it is empty, that of temporary files,
+  /// TMPDIR or /tmp), which should not be one in memory.
+  explicit TexelStore(uint64_t budget = default_budget(), std::string folder = {});
+
+  /// A quarter of the memory that this process may take; without bound where that is not known.
+  static uint64_t default_budget();
+
+  /// Keeps `bytes`. Those of a few pages stay in memory in any case. Errors: the budget is used up,
+  /// and the file cannot be written.
+  Result<Bytes> keep(std::vector<std::byte> bytes);
+
+  uint64_t in_memory() const { return used_->load(); }
+
+ private:
+  Result<Bytes> keep_in_file(const std::vector<std::byte>& bytes) const;
+
+  const uint64_t budget_;
+  const std::string folder_;
+  const std::shared_ptr<std::atomic<uint64_t>> used_;  ///< bytes, also of what outlives the store
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,91 @@
+#include "core/textures/texel_store.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/textures/make_texture.h"
+#include "tests/support/random.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::core {
+namespace {
+
+std::vector<std::byte> some_bytes(size_t count) {
+  test::Random random(41);
+  std::vector<std::byte> bytes(count);
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random.bits());
+  return bytes;
+}
+
+bool same(const Bytes& kept, const std::vector<std::byte>& bytes) {
+  return std::equal(kept.span().begin(), kept.span().end(), bytes.begin(), bytes.end());
+}
+
+TEST(TexelStore, KeepsInMemoryUpToItsBudgetAndInFilesBeyond) {
+  const test::TempFolder folder;
+  TexelStore store(300'000, folder.path().string());
+  const auto bytes = some_bytes(100'000);
+  std::vector<Bytes> kept;
+  for (int i = 0; i < 5; ++i) {
+    auto one = store.keep(bytes);
+    ASSERT_TRUE(one) << one.error().message;
+    kept.push_back(*one);
+  }
+  for (const Bytes& each : kept) EXPECT_TRUE(same(each, bytes));
+  EXPECT_EQ(store.in_memory(), 300'000U);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "the files have no names";
+  kept.erase(kept.begin());
+  EXPECT_EQ(store.in_memory(), 200'000U);
+  const auto again = store.keep(bytes);
+  EXPECT_TRUE(same(*again, bytes));
+  EXPECT_EQ(store.in_memory(), 300'000U) << "the room of what is gone is used again";
+}
+
+TEST(TexelStore, LittleIsKeptInMemoryInAnyCase) {
+  TexelStore store(0, "/nowhere/at/all");
+  const auto bytes = some_bytes(1000);
+  EXPECT_TRUE(same(*store.keep(bytes), bytes));
+}
+
+TEST(TexelStore, SaysWhereThereIsNoRoom) {
+  TexelStore store(10, "/nowhere/at/all");
+  const auto kept = store.keep(some_bytes(100'000));
+  ASSERT_FALSE(kept);
+  EXPECT_NE(kept.error().message.find("/nowhere/at/all"), std::string::npos);
+  EXPECT_EQ(store.in_memory(), 0U);
+}
+
+TEST(TexelStore, WhatItGaveOutOutlivesIt) {
+  const test::TempFolder folder;
+  const auto bytes = some_bytes(100'000);
+  std::vector<Bytes> kept;
+  for (const uint64_t budget : {0, 1'000'000}) {
+    TexelStore store(budget, folder.path().string());
+    kept.push_back(*store.keep(bytes));
+  }
+  EXPECT_TRUE(same(kept[0], bytes));
+  EXPECT_TRUE(same(kept[1], bytes));
+}
+
+// Pictures do not depend on where texels lie.
+TEST(TexelStore, ImagesAreReadTheSameFromFiles) {
+  const test::TempFolder folder;
+  test::Random random(42);
+  Image image = make_image(300, 200, {"R", "G", "B"});
+  for (float& value : image.data) value = random.uniform();
+  TexelStore memory;
+  TexelStore file(0, folder.path().string());
+  const auto a = make_image_texture(*ImagePyramid::make(image, WrapMode::repeat, memory), {});
+  const auto b = make_image_texture(*ImagePyramid::make(image, WrapMode::repeat, file), {});
+  EXPECT_GT(memory.in_memory(), size_t{300} * 200 * 12);
+  EXPECT_LT(file.in_memory(), size_t{300} * 200 * 2);
+  for (int i = 0; i < 1000; ++i) {
+    const TexturePoint at{.uv = 3.0F * random.uniform2()};
+    EXPECT_EQ(a->color(at), b->color(at));
+  }
+}
+
+}  // namespace
+}  // namespace hyades::core
