@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/vec.h"
+#include "core/materials/spread.h"
 
 namespace hyades::core {
 
@@ -36,6 +37,11 @@ class Bsdf {
   /// f(wo, wi) |cos theta_i|, delta lobes excluded.
   virtual Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
 
+  /// The part of evaluate() that is diffuse reflection, for the layers that tell diffuse from
+  /// glossy light: in every channel from 0 to evaluate(), 0 where wo and wi lie on different sides,
+  /// and the same share of it in both modes. What else is reflected counts as glossy.
+  virtual Rgb evaluate_diffuse(const Vec3& /*wo*/, const Vec3& /*wi*/) const { return Rgb(0.0F); }
+
   /// Density of sample() returning wi, per solid angle, delta lobes excluded.
   virtual float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
 
@@ -46,6 +52,9 @@ class Bsdf {
   /// Directional reflectance plus transmittance, approximate, for the albedo layer and for guiding
   /// choices.
   virtual Rgb albedo(const Vec3& wo) const = 0;
+
+  /// How widely it scatters light from the side z > 0 or z < 0 (`side` 1 or -1). None: as a mirror.
+  virtual Spread spread(float /*side*/) const { return {}; }
 
   /// Whether evaluate() can be anything but 0 (else next-event estimation is pointless).
   virtual bool has_smooth() const { return true; }

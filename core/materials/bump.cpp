@@ -1,42 +1,27 @@
 #include <cmath>
 
+#include "core/materials/above_horizon.h"
 #include "core/materials/params.h"
+#include "core/materials/wrapped_material.h"
 
 namespace hyades::core {
 namespace {
 
-/// `n` turned towards unit `ng` until the two are less than a right angle apart: a normal below the
-/// geometric horizon would reflect light into the surface.
-Vec3 above_horizon(const Vec3& n, const Vec3& ng) {
-  constexpr float kLeastCosine = 0.01F;
-  const float cosine = glm::dot(n, ng);
-  if (cosine >= kLeastCosine) return n;
-  const Vec3 along = n - cosine * ng;
-  const float length2 = glm::dot(along, along);
-  if (!(length2 > 0.0F)) return ng;
-  const float sine = std::sqrt(1.0F - kLeastCosine * kLeastCosine);
-  return kLeastCosine * ng + along * (sine / std::sqrt(length2));
-}
-
 /// Blinn 1978, "Simulation of Wrinkled Surfaces": the point moves to p + h ns, so its tangents
 /// become dpdu + h_u ns and dpdv + h_v ns (the terms in h are dropped: h is small against the
 /// radius of curvature), and their cross product is the new normal.
-class Bump final : public Material {
+class Bump final : public WrappedMaterial {
  public:
   Bump(MaterialPtr base, TexturePtr height, float scale)
-      : base_(std::move(base)), height_(std::move(height)), scale_(scale) {}
+      : WrappedMaterial(std::move(base)), height_(std::move(height)), scale_(scale) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame& frame, BsdfArena& arena) const override {
     const ScalarGradient h = height_->scalar_gradient(texture_point(point));
     const float h_u = scale_ * (h.d_uv.x + along(h, point, point.dpdu));
     const float h_v = scale_ * (h.d_uv.y + along(h, point, point.dpdv));
     turn(point, h_u, h_v, frame);
-    return base_->bsdf_at(point, frame, arena);
+    return base().bsdf_at(point, frame, arena);
   }
-
-  bool is_null() const override { return base_->is_null(); }
-  bool leads_inside() const override { return base_->leads_inside(); }
-  float index() const override { return base_->index(); }
 
  private:
   /// Change of height per unit of the parameter whose tangent is `tangent`, through space.
@@ -58,7 +43,6 @@ class Bump final : public Material {
     frame = Frame::around(above_horizon(n, point.ng), point.dpdu);
   }
 
-  MaterialPtr base_;
   TexturePtr height_;
   float scale_;
 };

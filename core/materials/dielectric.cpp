@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/materials/delta_bsdf.h"
+#include "core/materials/dielectric_bsdf.h"
 #include "core/materials/fresnel.h"
 #include "core/materials/local.h"
 #include "core/materials/params.h"
@@ -80,9 +81,7 @@ class Dielectric final : public Material {
       : ior_(ior), transmission_(unit_clamp(transmission)), reflection_(unit_clamp(reflection)) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
-    const float ior = ior_ / point.outside_index;
-    if (ior == 1.0F) return arena.make<MatchedBsdf>(transmission_);
-    return arena.make<DielectricBsdf>(ior, transmission_, reflection_);
+    return smooth_dielectric_bsdf(ior_ / point.outside_index, transmission_, reflection_, arena);
   }
   bool leads_inside() const override { return true; }
   float index() const override { return ior_; }
@@ -94,6 +93,12 @@ class Dielectric final : public Material {
 };
 
 }  // namespace
+
+const Bsdf* smooth_dielectric_bsdf(float ior, const Rgb& transmission, const Rgb& reflection,
+                                   BsdfArena& arena) {
+  if (ior == 1.0F) return arena.make<MatchedBsdf>(transmission);
+  return arena.make<DielectricBsdf>(ior, transmission, reflection);
+}
 
 MaterialPtr make_dielectric(float ior, const Rgb& transmission, const Rgb& reflection) {
   return std::make_shared<Dielectric>(ior, transmission, reflection);

@@ -1,32 +1,12 @@
 #include "core/materials/dielectric_energy.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <memory>
-#include <mutex>
+
+#include "core/materials/index_tables.h"
 
 namespace hyades::core {
 namespace {
-
-/// Tables lie even in x, where (eta - 1) / (eta + 1) = x |x|: all indices from 0 to infinity, close
-/// around 1, where the critical angle moves with the root of eta - 1.
-constexpr int kTables = 257;
-
-float eta_of(int node) {
-  const int from_middle = node - (kTables - 1) / 2;
-  const float x = static_cast<float>(from_middle) / static_cast<float>((kTables - 1) / 2);
-  const float ratio = x * std::fabs(x);
-  return (1.0F + ratio) / (1.0F - ratio);
-}
-
-const FacetEnergy* table_at(int node) {
-  static std::array<std::once_flag, kTables> made;
-  static std::array<std::unique_ptr<const FacetEnergy>, kTables> tables;
-  std::call_once(made[node],
-                 [node] { tables[node] = std::make_unique<FacetEnergy>(eta_of(node)); });
-  return tables[node].get();
-}
 
 /// The part of diffuse light that a smooth surface reflects into the rarer of its two sides, of
 /// light from there: a fit of Kulla and Conty's (2017), within 0.01.
@@ -41,13 +21,10 @@ Rgb escaping(const Rgb& f, float loss) { return f * (1.0F - loss) / (Rgb(1.0F) -
 }  // namespace
 
 DielectricEnergy::DielectricEnergy(float eta) {
-  const float ratio = (eta - 1.0F) / (eta + 1.0F);
-  const float x = std::copysign(std::sqrt(std::fabs(ratio)), ratio);
-  const float scaled = std::clamp(0.5F + 0.5F * x, 0.0F, 1.0F) * static_cast<float>(kTables - 1);
-  const int node = std::min(static_cast<int>(scaled), kTables - 2);
-  low_ = table_at(node);
-  high_ = table_at(node + 1);
-  part_ = scaled - static_cast<float>(node);
+  const auto [low, high, part] = IndexTables<FacetEnergy>::at(eta);
+  low_ = low;
+  high_ = high;
+  part_ = part;
 }
 
 float DielectricEnergy::reflectance(float cosine, float alpha) const {

@@ -11,25 +11,6 @@
 namespace hyades::core {
 namespace {
 
-/// Column 0..1 of a cosine. At grazing angles E depends on cosine / alpha, far from them hardly at
-/// all: even steps in this are bent least by interpolation.
-float column_of(float cosine, float alpha) {
-  return cosine > 0.0F ? std::sqrt(cosine * (1.0F + alpha) / (cosine + alpha)) : 0.0F;
-}
-
-float cosine_of(float column, float alpha) {
-  const float square = column * column;
-  return std::min(1.0F, square * alpha / (1.0F + alpha - square));
-}
-
-FacetEnergy::Between between(float x, int count) {
-  const float scaled = std::clamp(x, 0.0F, 1.0F) * static_cast<float>(count - 1);
-  const int node = std::min(static_cast<int>(scaled), count - 2);
-  return {node, scaled - static_cast<float>(node)};
-}
-
-float lerp(float a, float b, float part) { return a + part * (b - a); }
-
 /// Points for 0.001 (mirrors, which cost less: 0.0005). What is refracted into a denser medium
 /// hardly depends on the facet.
 int points_for(float eta) {
@@ -78,7 +59,7 @@ FacetEnergy::FacetEnergy(float eta) {
     const float alpha = std::max(roughness * roughness, 1e-3F);
     for (int column = 0; column < kCosines; ++column) {
       const float x = static_cast<float>(column) / static_cast<float>(kCosines - 1);
-      reflectance_[row][column] = integrate_reflectance(cosine_of(x, alpha), alpha, eta);
+      reflectance_[row][column] = integrate_reflectance(energy_cosine(x, alpha), alpha, eta);
     }
   }
   // Of the interpolated table, so that the two lobes add up to one; even steps in the column.
@@ -90,7 +71,7 @@ FacetEnergy::FacetEnergy(float eta) {
     double lost = 0.0;
     float last = 0.0F;
     for (int step = 1; step <= kSteps; ++step) {
-      const float next = cosine_of(static_cast<float>(step) / kSteps, alpha);
+      const float next = energy_cosine(static_cast<float>(step) / kSteps, alpha);
       const float middle = 0.5F * (last + next);
       lost += double{1.0F - reflectance(middle, alpha)} * (2.0 * middle * (next - last));
       last = next;
@@ -105,20 +86,16 @@ const FacetEnergy& FacetEnergy::table() {
 }
 
 FacetEnergy::Place::Place(float cosine, float alpha)
-    : row(between(std::sqrt(alpha), kAlphas)),
-      column(between(column_of(cosine, alpha), kCosines)) {}
+    : row(GridPlace::at(std::sqrt(alpha), kAlphas)),
+      column(GridPlace::at(energy_column(cosine, alpha), kCosines)) {}
 
 float FacetEnergy::reflectance(const Place& place) const {
   const auto& [row, column] = place;
-  const auto& low = reflectance_[row.node];
-  const auto& high = reflectance_[row.node + 1];
-  return lerp(lerp(low[column.node], low[column.node + 1], column.part),
-              lerp(high[column.node], high[column.node + 1], column.part), row.part);
+  return lerp(column.in(reflectance_[row.node]), column.in(reflectance_[row.node + 1]), row.part);
 }
 
 float FacetEnergy::mean_loss(float alpha) const {
-  const Between at = between(std::sqrt(alpha), kMeans);
-  return lerp(mean_loss_[at.node], mean_loss_[at.node + 1], at.part);
+  return GridPlace::at(std::sqrt(alpha), kMeans).in(mean_loss_);
 }
 
 }  // namespace hyades::core

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/materials/energy_grid.h"
 #include "core/materials/ggx.h"
 
 namespace hyades::core {
@@ -20,16 +21,10 @@ class FacetEnergy {
   /// everything is reflected.
   explicit FacetEnergy(float eta);
 
-  /// A place between two of a table's even nodes.
-  struct Between {
-    int node;
-    float part;
-  };
-
   /// Where in any table the values for a direction at `cosine` in [0, 1] and alpha in [0, 1] are.
   struct Place {
     Place(float cosine, float alpha);
-    Between row, column;
+    GridPlace row, column;
   };
 
   float reflectance(const Place& place) const;

@@ -7,15 +7,9 @@
 
 namespace hyades::core {
 
-/// Isotropic GGX microfacets (Walter et al. 2007, "Microfacet Models for Refraction through Rough
-/// Surfaces") with height-correlated Smith masking (Heitz 2014, "Understanding the
-/// Masking-Shadowing Function", equation 99). Directions are local, above the surface (z > 0)
-/// unless said otherwise. Single scattering only: light that would hit a second facet is lost.
-struct Ggx {
-  /// Below this the lobe is narrower than what float directions resolve: use a delta lobe.
-  static constexpr float kLeastAlpha = 1e-4F;
-
-  float alpha = 1.0F;  ///< width, kLeastAlpha .. 1
+/// How wide GGX facets lean, alike in all directions.
+struct EvenWidth {
+  float alpha = 1.0F;  ///< kLeastAlpha .. 1
 
   /// Density of facets with normal along `h`, which need not be of unit length.
   float density(const Vec3& h) const {
@@ -32,6 +26,55 @@ struct Ggx {
   float spread(const Vec3& w) const {
     return std::sqrt(w.z * w.z + alpha * alpha * (w.x * w.x + w.y * w.y));
   }
+
+  /// `w` where facets are stretched to a hemisphere.
+  Vec3 stretched(const Vec3& w) const { return {alpha * w.x, alpha * w.y, w.z}; }
+};
+
+/// The same with widths along x and y (Heitz 2014, equations 85 and 87).
+struct TwoWidths {
+  float along_x = 1.0F;  ///< kLeastAlpha .. 1
+  float along_y = 1.0F;
+
+  float density(const Vec3& h) const {
+    const float x = h.x * along_y;
+    const float y = h.y * along_x;
+    const float both = along_x * along_y;
+    const float stretched = x * x + y * y + both * both * h.z * h.z;
+    if (!(stretched > 0.0F)) return 0.0F;
+    const float ratio = both * glm::dot(h, h) / stretched;
+    return both * kInvPi * (ratio * ratio);
+  }
+
+  float spread(const Vec3& w) const {
+    const float x = along_x * w.x;
+    const float y = along_y * w.y;
+    return std::sqrt(w.z * w.z + x * x + y * y);
+  }
+
+  Vec3 stretched(const Vec3& w) const { return {along_x * w.x, along_y * w.y, w.z}; }
+
+  /// The even width that facets have as seen from `w`.
+  float seen_from(const Vec3& w) const {
+    const float across = w.x * w.x + w.y * w.y;
+    if (!(across > 0.0F)) return std::sqrt(along_x * along_y);
+    const float x = along_x * w.x;
+    const float y = along_y * w.y;
+    return std::sqrt((x * x + y * y) / across);
+  }
+};
+
+/// GGX microfacets (Walter et al. 2007, "Microfacet Models for Refraction through Rough Surfaces")
+/// with height-correlated Smith masking (Heitz 2014, "Understanding the Masking-Shadowing
+/// Function", equation 99). Directions are local, above the surface (z > 0) unless said otherwise.
+/// Single scattering only: light that would hit a second facet is lost.
+template <class Width>
+struct GgxFacets : Width {
+  /// Below this the lobe is narrower than what float directions resolve: use a delta lobe.
+  static constexpr float kLeastAlpha = 1e-4F;
+
+  using Width::density;
+  using Width::spread;
 
   /// G1: the part of the facets' projected area that `w` sees.
   float visible(const Vec3& w) const { return 2.0F * w.z / (w.z + spread(w)); }
@@ -63,13 +106,15 @@ struct Ggx {
   /// spherical cap (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps",
   /// listing 3).
   Vec3 sample_normal(const Vec3& wo, const Vec2& u) const {
-    const Vec3 w = glm::normalize(Vec3(alpha * wo.x, alpha * wo.y, wo.z));
-    const Vec3 h = square_to_cone(u, 1.0F + w.z) + w;
-    const Vec3 m(alpha * h.x, alpha * h.y, h.z);
+    const Vec3 w = glm::normalize(this->stretched(wo));
+    const Vec3 m = this->stretched(square_to_cone(u, 1.0F + w.z) + w);
     const float length2 = glm::dot(m, m);
     return length2 > 0.0F ? m / std::sqrt(length2) : Vec3(0.0F, 0.0F, 1.0F);
   }
 };
+
+using Ggx = GgxFacets<EvenWidth>;
+using AnisotropicGgx = GgxFacets<TwoWidths>;
 
 /// `w` reflected by a facet of unit normal `m`.
 inline Vec3 reflected(const Vec3& w, const Vec3& m) { return 2.0F * glm::dot(w, m) * m - w; }

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "core/base/warp.h"
 #include "core/materials/ggx.h"
 #include "core/materials/local.h"
@@ -18,6 +20,10 @@ class GlossyBsdf final : public Bsdf {
 
   Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode) const override {
     return same_side(wo, wi) ? color_ * value(above(wo), above(wi)) : Rgb(0.0F);
+  }
+
+  Rgb evaluate_diffuse(const Vec3& wo, const Vec3& wi) const override {
+    return same_side(wo, wi) ? color_ * diffuse(std::abs(wi.z)) : Rgb(0.0F);
   }
 
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode) const override {
@@ -44,19 +50,27 @@ class GlossyBsdf final : public Bsdf {
         .weight = color_ * (value(o, i) / d), .pdf = d, .wi = {i.x, i.y, i.z * side(wo)}};
   }
 
+  Spread spread(float) const override {
+    return {.wide = (1.0F - r_) * color_,
+            .lobe = mirror_ ? Rgb(0.0F) : r_ * color_,
+            .alpha = facets_.alpha};
+  }
   Rgb albedo(const Vec3&) const override { return color_; }
   bool has_smooth() const override { return !mirror_ || r_ < 1.0F; }
 
  private:
+  /// The first term, times the cosine `z` of wi, for color 1.
+  float diffuse(float z) const { return (1.0F - r_) * kInvPi * z; }
+
   /// f cos(theta_i) for color 1, both directions above.
   float value(const Vec3& o, const Vec3& i) const {
-    const float diffuse = (1.0F - r_) * kInvPi * i.z;
-    return mirror_ || r_ == 0.0F ? diffuse : diffuse + r_ * facets_.reflect(o, i);
+    const float dull = diffuse(i.z);
+    return mirror_ || r_ == 0.0F ? dull : dull + r_ * facets_.reflect(o, i);
   }
 
   float density(const Vec3& o, const Vec3& i) const {
-    const float diffuse = (1.0F - r_) * kInvPi * i.z;
-    return mirror_ || r_ == 0.0F ? diffuse : diffuse + r_ * facets_.reflect_pdf(o, i);
+    const float dull = diffuse(i.z);
+    return mirror_ || r_ == 0.0F ? dull : dull + r_ * facets_.reflect_pdf(o, i);
   }
 
   Rgb color_;
@@ -86,6 +100,8 @@ class Glossy final : public Material {
     }
     return arena.make<GlossyBsdf>(color, reflectiveness, alpha);
   }
+
+  bool diffuses_evenly() const override { return true; }
 
  private:
   ColorParam color_;

@@ -15,6 +15,10 @@ class LambertBsdf final : public Bsdf {
     return same_side(wo, wi) ? color_ * (kInvPi * std::abs(wi.z)) : Rgb(0.0F);
   }
 
+  Rgb evaluate_diffuse(const Vec3& wo, const Vec3& wi) const override {
+    return evaluate(wo, wi, TransportMode::radiance);
+  }
+
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode) const override {
     return same_side(wo, wi) ? kInvPi * std::abs(wi.z) : 0.0F;
   }
@@ -26,6 +30,7 @@ class LambertBsdf final : public Bsdf {
         .weight = color_, .pdf = cosine_hemisphere_pdf(i.z), .wi = {i.x, i.y, i.z * side(wo)}};
   }
 
+  Spread spread(float) const override { return {.wide = color_}; }
   Rgb albedo(const Vec3&) const override { return color_; }
 
  private:
@@ -40,6 +45,8 @@ class Lambert final : public Material {
     const Rgb color = reflectance_at(color_, point);
     return is_black(color) ? nullptr : arena.make<LambertBsdf>(color);
   }
+
+  bool diffuses_evenly() const override { return true; }
 
  private:
   ColorParam color_;

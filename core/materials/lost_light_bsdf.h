@@ -22,6 +22,10 @@ class LostLightBsdf final : public Bsdf {
     return single_.evaluate(wo, wi, mode) + tint_ * lost_.reflect(above(wo), above(wi));
   }
 
+  Rgb evaluate_diffuse(const Vec3& wo, const Vec3& wi) const override {
+    return single_.evaluate_diffuse(wo, wi);
+  }
+
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
     if (!same_side(wo, wi)) return 0.0F;
     const float p_lost = share_ * lost_.part(above(wo));
@@ -47,6 +51,7 @@ class LostLightBsdf final : public Bsdf {
     return s;
   }
 
+  Spread spread(float outer) const override { return single_.spread(outer); }
   Rgb albedo(const Vec3& wo) const override { return single_.albedo(wo); }
 
  private:

@@ -43,13 +43,21 @@ MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb&
                                   FacetScattering scattering = FacetScattering::single);
 
 /// A sheet of that glass so thin that light leaves where it entered, all inner bounces summed
-/// (R' = 2R / (1 + R) without absorption).
-MaterialPtr make_thin_dielectric(float ior, const Rgb& transmission, const Rgb& reflection);
+/// (R' = 2R / (1 + R) without absorption). Rough, it blurs alike on both sides, without loss.
+MaterialPtr make_thin_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
+                                 const ScalarParam& roughness = {});
 
 /// Metal of complex index eta + i k per channel, relative to vacuum; roughness 0 is a mirror, else
 /// GGX with visible-normal sampling (Heitz 2018), alpha = roughness^2.
 MaterialPtr make_conductor(const Rgb& eta, const Rgb& k, const ScalarParam& roughness,
                            const Rgb& tint, FacetScattering scattering = FacetScattering::single);
+
+/// Metal by what it looks like: `color` straight on, `edge` towards the horizon (0: darkest, 1: as
+/// bright as metal gets there), which an index is found from (Gulbrandsen 2014, "Artist Friendly
+/// Metallic Fresnel").
+MaterialPtr make_colored_conductor(const ColorParam& color, const ColorParam& edge,
+                                   const ScalarParam& roughness, const Rgb& tint,
+                                   FacetScattering scattering);
 
 /// Ideal mirror of reflectance `color`, no Fresnel.
 MaterialPtr make_mirror(const ColorParam& color);
@@ -69,8 +77,16 @@ MaterialPtr make_null();
 /// Absorbs everything (surfaces that only emit).
 MaterialPtr make_black();
 
+/// `base`, of which only the share `opacity` (0..1) is there.
+MaterialPtr make_cutout(MaterialPtr base, const ScalarParam& opacity);
+
 /// `base` with its shading normal turned by the gradient of `height` [length] times `scale`.
 MaterialPtr make_bump(MaterialPtr base, TexturePtr height, float scale);
+
+/// `base` with its shading normal turned by a map in tangent space: `normals` holds x, y and z of
+/// the normal as (1 + n) / 2, x along the tangent (of growing u), y up (of growing v) as OpenGL has
+/// it; `strength` multiplies x and y.
+MaterialPtr make_normal_map(MaterialPtr base, TexturePtr normals, const ScalarParam& strength);
 
 /// Complex index of a metal at red, green, blue.
 struct MetalIndex {

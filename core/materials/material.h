@@ -23,6 +23,18 @@ class Material {
   /// through a thin pane), so that another medium begins there.
   virtual bool leads_inside() const { return false; }
 
+  /// The share of the light that meets the surface at `point`; the rest passes straight through, as
+  /// through a null surface: no scattering event. 0..1, the same from both sides. bsdf_at() is what
+  /// becomes of the light that meets it.
+  virtual float opacity(const SurfacePoint& /*point*/) const { return 1.0F; }
+
+  /// Whether opacity() can be below 1 anywhere.
+  virtual bool is_cutout() const { return false; }
+
+  /// Whether what its BSDFs reflect diffusely, if anything, they reflect as Lambert's does, evenly
+  /// and none of it to or from some directions less: then layers on top can keep all of it.
+  virtual bool diffuses_evenly() const { return false; }
+
   /// Index of refraction of what is behind the surface; 0 where light is not refracted.
   virtual float index() const { return 0.0F; }
 };

@@ -1,60 +1,9 @@
-#include <algorithm>
-#include <cmath>
-
 #include "core/materials/local.h"
 #include "core/materials/params.h"
+#include "core/materials/turned_bsdf.h"
 
 namespace hyades::core {
 namespace {
-
-/// A BSDF whose normal was turned (by a bump map) away from the one its directions are given in.
-/// Directions on different sides of the two normals carry nothing.
-class TurnedBsdf final : public Bsdf {
- public:
-  /// `turn`: the inner frame's axes in outer local coordinates.
-  TurnedBsdf(const Bsdf& inner, const Frame& turn) : inner_(inner), turn_(turn) {}
-
-  Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
-    const Vec3 o = turn_.to_local(wo);
-    const Vec3 i = turn_.to_local(wi);
-    if (!same_side(o, wo) || !same_side(i, wi)) return Rgb(0.0F);
-    return inner_.evaluate(o, i, mode) * adjoint_factor(wo, o, wi, i, mode);
-  }
-
-  float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
-    const Vec3 o = turn_.to_local(wo);
-    const Vec3 i = turn_.to_local(wi);
-    return same_side(o, wo) && same_side(i, wi) ? inner_.pdf(o, i, mode) : 0.0F;
-  }
-
-  std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2& u,
-                                   TransportMode mode) const override {
-    const Vec3 o = turn_.to_local(wo);
-    if (!same_side(o, wo)) return std::nullopt;
-    auto s = inner_.sample(o, lobe, u, mode);
-    if (!s) return std::nullopt;
-    const Vec3 i = turn_.to_world(s->wi);
-    if (!same_side(i, s->wi)) return std::nullopt;
-    s->weight *= adjoint_factor(wo, o, i, s->wi, mode);
-    s->wi = i;
-    return s;
-  }
-
-  Rgb albedo(const Vec3& wo) const override { return inner_.albedo(turn_.to_local(wo)); }
-  bool has_smooth() const override { return inner_.has_smooth(); }
-
- private:
-  /// Importance is corrected for the outer normal (ShadedSurface), but scattered about this one
-  /// (Veach 1997, section 5.3). `o` and `i` are wo and wi in the inner frame.
-  static float adjoint_factor(const Vec3& wo, const Vec3& o, const Vec3& wi, const Vec3& i,
-                              TransportMode mode) {
-    if (mode == TransportMode::radiance) return 1.0F;
-    return std::abs(o.z * wi.z) / std::max(std::abs(wo.z * i.z), 1e-12F);
-  }
-
-  const Bsdf& inner_;
-  Frame turn_;
-};
 
 /// One of two BSDFs, picked by its share; a smooth direction is weighed by both, so that mixing
 /// costs no variance. A missing one is black.
@@ -71,6 +20,13 @@ class MixBsdf final : public Bsdf {
     Rgb value(0.0F);
     if (first_ != nullptr) value += (1.0F - amount_) * first_->evaluate(wo, wi, mode);
     if (second_ != nullptr) value += amount_ * second_->evaluate(wo, wi, mode);
+    return value;
+  }
+
+  Rgb evaluate_diffuse(const Vec3& wo, const Vec3& wi) const override {
+    Rgb value(0.0F);
+    if (first_ != nullptr) value += (1.0F - amount_) * first_->evaluate_diffuse(wo, wi);
+    if (second_ != nullptr) value += amount_ * second_->evaluate_diffuse(wo, wi);
     return value;
   }
 
@@ -108,6 +64,13 @@ class MixBsdf final : public Bsdf {
     return value;
   }
 
+  Spread spread(float outer) const override {
+    Spread both;
+    if (first_ != nullptr) both.add(first_->spread(outer), Rgb(1.0F - amount_));
+    if (second_ != nullptr) both.add(second_->spread(outer), Rgb(amount_));
+    return both;
+  }
+
   bool has_smooth() const override {
     return (first_ != nullptr && first_->has_smooth()) ||
            (second_ != nullptr && second_->has_smooth());
@@ -126,30 +89,39 @@ class Mix final : public Material {
       : first_(std::move(first)), second_(std::move(second)), amount_(std::move(amount)) {}
 
   const Bsdf* bsdf_at(const SurfacePoint& point, Frame& frame, BsdfArena& arena) const override {
-    const float amount = fraction_at(amount_, point);
+    const float amount = amount_of_surface(point);
     if (amount == 0.0F) return first_->bsdf_at(point, frame, arena);
     if (amount == 1.0F) return second_->bsdf_at(point, frame, arena);
     // Each part may turn its own normal; the mix keeps the one it was given.
-    const Bsdf* first = in_frame(*first_, point, frame, arena);
-    const Bsdf* second = in_frame(*second_, point, frame, arena);
+    const Bsdf* first = bsdf_in_frame(*first_, point, frame, arena);
+    const Bsdf* second = bsdf_in_frame(*second_, point, frame, arena);
     if (first == nullptr && second == nullptr) return nullptr;
     return arena.make<MixBsdf>(first, second, amount);
   }
 
+  float opacity(const SurfacePoint& point) const override {
+    if (!is_cutout()) return 1.0F;
+    const float amount = fraction_at(amount_, point);
+    return (1.0F - amount) * first_->opacity(point) + amount * second_->opacity(point);
+  }
+  bool is_cutout() const override { return first_->is_cutout() || second_->is_cutout(); }
   bool is_null() const override { return first_->is_null() && second_->is_null(); }
+  bool diffuses_evenly() const override {
+    return first_->diffuses_evenly() && second_->diffuses_evenly();
+  }
   bool leads_inside() const override { return first_->leads_inside() || second_->leads_inside(); }
   float index() const override {
     return first_->index() > 0.0F ? first_->index() : second_->index();
   }
 
  private:
-  static const Bsdf* in_frame(const Material& material, const SurfacePoint& point,
-                              const Frame& outer, BsdfArena& arena) {
-    Frame inner = outer;
-    const Bsdf* bsdf = material.bsdf_at(point, inner, arena);
-    if (bsdf == nullptr || inner.n == outer.n) return bsdf;
-    return arena.make<TurnedBsdf>(
-        *bsdf, Frame{outer.to_local(inner.s), outer.to_local(inner.t), outer.to_local(inner.n)});
+  /// The share of `second` in what is there: a part that is half transparent counts half.
+  float amount_of_surface(const SurfacePoint& point) const {
+    const float amount = fraction_at(amount_, point);
+    if (!is_cutout()) return amount;
+    const float first = (1.0F - amount) * first_->opacity(point);
+    const float second = amount * second_->opacity(point);
+    return first + second > 0.0F ? second / (first + second) : amount;
   }
 
   MaterialPtr first_;

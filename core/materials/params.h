@@ -7,7 +7,7 @@
 namespace hyades::core {
 
 inline TexturePoint texture_point(const SurfacePoint& p) {
-  return {p.uv, transform_point(p.world_to_object, p.position), p.position};
+  return {p.uv, transform_point(p.world_to_object, p.position), p.position, &p};
 }
 
 /// A number held within [0, 1]; NaN becomes 0.
@@ -18,6 +18,11 @@ inline Rgb unit_clamp(const Rgb& c) { return {unit_clamp(c.x), unit_clamp(c.y), 
 /// A reflectance: clamped, since a texture may hold anything and a surface must not create energy.
 inline Rgb reflectance_at(const ColorParam& param, const SurfacePoint& p) {
   return unit_clamp(param.texture ? param.texture->color(texture_point(p)) : param.value);
+}
+
+/// A number as it is.
+inline float number_at(const ScalarParam& param, const SurfacePoint& p) {
+  return param.texture ? param.texture->scalar(texture_point(p)) : param.value;
 }
 
 /// A parameter whose range is [0, 1].

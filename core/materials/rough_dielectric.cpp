@@ -1,9 +1,11 @@
 #include <cmath>
 
 #include "core/base/warp.h"
+#include "core/materials/dielectric_bsdf.h"
 #include "core/materials/dielectric_energy.h"
 #include "core/materials/fresnel.h"
 #include "core/materials/ggx.h"
+#include "core/materials/hemisphere_mean.h"
 #include "core/materials/local.h"
 #include "core/materials/params.h"
 
@@ -71,6 +73,14 @@ class RoughDielectricBsdf final : public Bsdf {
     s.weight = transmission_ * ((1.0F - reflectance) / (1.0F - p_reflect) * seen);
     if (mode == TransportMode::radiance) s.weight *= 1.0F / (eta * eta);
     return s;
+  }
+
+  /// Of what it reflects; what it lets through is beneath the layers on one side only.
+  Spread spread(float outer) const override {
+    const float eta = outer < 0.0F ? 1.0F / ior_ : ior_;
+    const float mean =
+        hemisphere_mean([&](float cosine) { return fresnel_dielectric(cosine, eta).reflectance; });
+    return {.lobe = mean * reflection_, .alpha = facets_.alpha};
   }
 
   Rgb albedo(const Vec3& wo) const override {
@@ -184,6 +194,8 @@ class FullDielectricBsdf final : public Bsdf {
 
   Rgb albedo(const Vec3& wo) const override { return single_.albedo(wo); }
 
+  Spread spread(float outer) const override { return single_.spread(outer); }
+
  private:
   /// Probabilities of the lobes of lost light; the rest is for single scattering.
   struct Lobes {
@@ -221,18 +233,12 @@ class RoughDielectric final : public Material {
         transmission_(unit_clamp(transmission)),
         reflection_(unit_clamp(reflection)),
         roughness_(std::move(roughness)),
-        scattering_(scattering),
-        smooth_(make_dielectric(ior, transmission, reflection)) {}
+        scattering_(scattering) {}
 
-  const Bsdf* bsdf_at(const SurfacePoint& point, Frame& frame, BsdfArena& arena) const override {
+  const Bsdf* bsdf_at(const SurfacePoint& point, Frame&, BsdfArena& arena) const override {
     const float roughness = fraction_at(roughness_, point);
-    const float alpha = roughness * roughness;
-    const float ior = ior_ / point.outside_index;
-    if (alpha < Ggx::kLeastAlpha || ior == 1.0F) return smooth_->bsdf_at(point, frame, arena);
-    if (scattering_ == FacetScattering::multiple) {
-      return arena.make<FullDielectricBsdf>(ior, alpha, transmission_, reflection_);
-    }
-    return arena.make<RoughDielectricBsdf>(ior, alpha, transmission_, reflection_);
+    return dielectric_bsdf(ior_ / point.outside_index, roughness * roughness, transmission_,
+                           reflection_, scattering_, arena);
   }
   bool leads_inside() const override { return true; }
   float index() const override { return ior_; }
@@ -243,10 +249,18 @@ class RoughDielectric final : public Material {
   Rgb reflection_;
   ScalarParam roughness_;
   FacetScattering scattering_;
-  MaterialPtr smooth_;
 };
 
 }  // namespace
+
+const Bsdf* dielectric_bsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection,
+                            FacetScattering scattering, BsdfArena& arena) {
+  if (alpha < Ggx::kLeastAlpha || ior == 1.0F)
+    return smooth_dielectric_bsdf(ior, transmission, reflection, arena);
+  if (scattering == FacetScattering::multiple)
+    return arena.make<FullDielectricBsdf>(ior, alpha, transmission, reflection);
+  return arena.make<RoughDielectricBsdf>(ior, alpha, transmission, reflection);
+}
 
 MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
                                   const ScalarParam& roughness, FacetScattering scattering) {

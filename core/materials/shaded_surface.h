@@ -1,67 +1,68 @@
 #pragma once
 
-#include <cmath>
 #include <optional>
 
+#include "core/materials/leaning.h"
 #include "core/materials/material.h"
 
 namespace hyades::core {
 
-/// A BSDF in world space with the geometric normal's say: directions on different sides of the
-/// geometric and the shading normal carry nothing (light must not leak through), and importance
-/// gets the adjoint correction of shading normals (Veach 1997, section 5.3).
+/// A BSDF in world space, with the geometric normal's say (Leaning): light does not leak through
+/// the surface, none is lost where the shading normal leans, and importance is the adjoint of
+/// radiance.
 class ShadedSurface {
  public:
   /// `point` outlives the surface.
   ShadedSurface(const SurfacePoint& point, const Material& material, BsdfArena& arena)
-      : point_(point), frame_(Frame::around(point.ns, point.dpdu)) {
-    bsdf_ = material.bsdf_at(point, frame_, arena);
-  }
+      : point_(point), bsdf_(nullptr), leaning_(point.ng, framed(point, material, arena, bsdf_)) {}
 
   ShadedSurface(const SurfacePoint&& point, const Material& material, BsdfArena& arena) = delete;
 
   const SurfacePoint& point() const { return point_; }
-  const Frame& frame() const { return frame_; }
+  const Frame& frame() const { return leaning_.frame(); }
   const Bsdf* bsdf() const { return bsdf_; }  ///< null: black, and not to be asked anything
   bool has_smooth() const { return bsdf_ != nullptr && bsdf_->has_smooth(); }
 
   /// f |cos theta_i|, with wo and wi in world space.
   Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const {
-    if (!consistent(wo) || !consistent(wi)) return Rgb(0.0F);
-    const Rgb value = bsdf_->evaluate(frame_.to_local(wo), frame_.to_local(wi), mode);
-    return mode == TransportMode::importance ? value * adjoint_factor(wo, wi) : value;
+    return leaning_.evaluate(*bsdf_, wo, wi, mode);
+  }
+
+  /// Which share of evaluate(wo, wi) is diffuse reflection, by channel: 0 to 1.
+  Rgb diffuse_share(const Vec3& wo, const Vec3& wi) const {
+    const Rgb all = evaluate(wo, wi, TransportMode::radiance);
+    if (is_black(all)) return Rgb(0.0F);
+    const Rgb diffuse = leaning_.evaluate_diffuse(*bsdf_, wo, wi);
+    Rgb share(0.0F);
+    for (int c = 0; c < 3; ++c)
+      share[c] = all[c] > 0.0F ? glm::clamp(diffuse[c] / all[c], 0.0F, 1.0F) : 0.0F;
+    return share;
   }
 
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const {
-    return bsdf_->pdf(frame_.to_local(wo), frame_.to_local(wi), mode);
+    return leaning_.pdf(*bsdf_, wo, wi, mode);
   }
 
   /// sample with wi in world space.
   std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2& u,
                                    TransportMode mode) const {
-    if (!consistent(wo)) return std::nullopt;
-    auto s = bsdf_->sample(frame_.to_local(wo), lobe, u, mode);
-    if (!s) return std::nullopt;
-    s->wi = glm::normalize(frame_.to_world(s->wi));
-    if (!consistent(s->wi)) return std::nullopt;
-    if (mode == TransportMode::importance) s->weight *= adjoint_factor(wo, s->wi);
-    return s;
+    return leaning_.sample(*bsdf_, wo, lobe, u, mode);
   }
+
+  Rgb albedo(const Vec3& wo) const { return leaning_.albedo(*bsdf_, wo); }
 
  private:
-  bool consistent(const Vec3& w) const {
-    return glm::dot(w, point_.ng) * glm::dot(w, frame_.n) > 0.0F;
-  }
-
-  float adjoint_factor(const Vec3& wo, const Vec3& wi) const {
-    const float below = std::abs(glm::dot(wo, point_.ng) * glm::dot(wi, frame_.n));
-    const float above = std::abs(glm::dot(wo, frame_.n) * glm::dot(wi, point_.ng));
-    return below > 0.0F ? above / below : 0.0F;
+  /// The frame that the material gives its BSDF.
+  static Frame framed(const SurfacePoint& point, const Material& material, BsdfArena& arena,
+                      const Bsdf*& bsdf) {
+    Frame frame = Frame::around(point.ns, point.dpdu);
+    bsdf = material.bsdf_at(point, frame, arena);
+    return frame;
   }
 
   const SurfacePoint& point_;  ///< of the caller, which outlives this
-  Frame frame_;
-  const Bsdf* bsdf_ = nullptr;
+  const Bsdf* bsdf_;
+  Leaning leaning_;
 };
 
 }  // namespace hyades::core

@@ -4,7 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "core/materials/make_layers.h"
 #include "core/materials/make_material.h"
+#include "core/materials/make_matt.h"
+#include "core/materials/make_principled.h"
 #include "tests/core/materials/test_textures.h"
 
 namespace hyades::core {
@@ -41,6 +44,94 @@ struct BsdfCase {
 
 inline void PrintTo(const BsdfCase& c, std::ostream* out) { *out << c.name; }
 
+/// A principled material after `change`.
+template <class Change>
+MaterialPtr principled_with(const Change& change) {
+  PrincipledParams params;
+  params.base_color.value = {0.8F, 0.5F, 0.2F};
+  change(params);
+  return make_principled(params);
+}
+
+inline std::vector<BsdfCase> principled_cases() {
+  using P = PrincipledParams;
+  return {
+      {"principled", principled_with([](P&) {})},
+      {"principled_shiny", principled_with([](P& p) {
+         p.roughness.value = 0.2F;
+         p.specular.value = 0.9F;
+         p.specular_tint.value = {0.3F, 0.9F, 0.6F};
+       })},
+      {"principled_brushed_metal", principled_with([](P& p) {
+         p.metallic.value = 1.0F;
+         p.roughness.value = 0.5F;
+         p.anisotropic.value = 0.8F;
+         p.anisotropic_rotation.value = 0.15F;
+         p.specular_tint.value = {0.9F, 0.5F, 0.7F};
+       })},
+      {"principled_coat_and_fuzz", principled_with([](P& p) {
+         p.metallic.value = 0.3F;
+         p.coat.value = 0.8F;
+         p.coat_roughness.value = 0.3F;
+         p.sheen.value = 0.7F;
+         p.sheen_tint.value = {0.6F, 0.8F, 1.0F};
+         p.anisotropic.value = 0.5F;
+       })},
+      {"principled_polished", principled_with([](P& p) {
+         p.roughness.value = 0.0F;
+         p.coat.value = 1.0F;
+         p.coat_roughness.value = 0.0F;
+         p.metallic.value = 0.4F;
+       })},
+      {"principled_half_glass", principled_with([](P& p) {
+         p.transmission.value = 0.6F;
+         p.roughness.value = 0.6F;
+         p.coat.value = 0.5F;
+         p.coat_roughness.value = 0.4F;
+       }),
+       1.5F},
+      {"principled_leaf", principled_with([](P& p) {
+         p.thin_walled = true;
+         p.transmission.value = 0.3F;
+         p.diffuse_transmission.value = 0.4F;
+         p.sheen.value = 0.4F;
+       })},
+  };
+}
+
+inline std::vector<BsdfCase> layered_cases() {
+  const MaterialPtr red = make_lambert(color_of({0.8F, 0.3F, 0.1F}));
+  const auto coated = [](MaterialPtr base, float roughness, const Rgb& color) {
+    CoatParams params;
+    params.roughness.value = roughness;
+    params.color.value = color;
+    params.amount.value = 0.9F;
+    return make_coat(std::move(base), params);
+  };
+  const MaterialPtr copper =
+      make_colored_conductor(color_of({0.95F, 0.6F, 0.5F}), color_of({0.3F, 0.6F, 0.9F}),
+                             number(0.5F), Rgb(1.0F), FacetScattering::multiple);
+  const MaterialPtr leaf =
+      make_diffuse_transmission(color_of({0.2F, 0.5F, 0.3F}), color_of({0.4F, 0.3F, 0.6F}));
+  return {
+      {"rough_matt", make_rough_matt(color_of({0.8F, 0.5F, 0.2F}), number(0.8F))},
+      {"diffuse_transmission", leaf},
+      {"rough_pane", make_thin_dielectric(1.5F, {0.9F, 0.7F, 0.5F}, Rgb(1.0F), number(0.5F))},
+      {"colored_metal", copper},
+      {"coat_over_paint", coated(red, 0.3F, {0.9F, 0.8F, 0.4F})},
+      {"smooth_coat_over_metal", coated(copper, 0.0F, Rgb(1.0F))},
+      {"coat_over_glass",
+       coated(make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(0.5F)), 0.4F,
+              {0.5F, 0.8F, 1.0F}),
+       1.5F},
+      {"sheen_over_black", make_sheen(make_black(), color_of({1.0F, 0.8F, 0.6F}), number(0.4F))},
+      {"velvet", make_sheen(red, color_of({0.9F, 0.9F, 1.0F}), number(0.6F))},
+      {"two_sided", make_two_sided(copper, red)},
+      {"coat_over_sides_that_differ_and_a_leaf",
+       coated(make_mix(make_two_sided(copper, red), leaf, number(0.5F)), 0.4F, Rgb(1.0F))},
+  };
+}
+
 /// Materials that scatter smoothly, some with delta lobes beside.
 inline std::vector<BsdfCase> smooth_cases() {
   const MetalIndex gold = *find_metal("gold");
@@ -56,7 +147,7 @@ inline std::vector<BsdfCase> smooth_cases() {
     return make_rough_dielectric(ior, Rgb(1.0F), Rgb(1.0F), number(roughness),
                                  FacetScattering::multiple);
   };
-  return {
+  std::vector<BsdfCase> cases = {
       {"lambert", red},
       {"conductor_rough_01", metal(0.1F)},
       {"conductor_rough_03", metal(0.3F)},
@@ -95,6 +186,9 @@ inline std::vector<BsdfCase> smooth_cases() {
       {"mix_nested",
        make_mix(make_mix(red, metal(0.5F), number(0.5F)), glossy(0.5F, 0.5F), number(0.25F))},
   };
+  for (const auto& more : {principled_cases(), layered_cases()})
+    cases.insert(cases.end(), more.begin(), more.end());
+  return cases;
 }
 
 struct NamedDirection {

@@ -106,33 +106,6 @@ TEST(BsdfFurnace, SmoothFacetsLoseNothing) {
   }
 }
 
-// T4: with what single scattering loses given back, white facets give off 1 +- 0.005: three
-// standard errors of 250,000 samples or more.
-TEST(BsdfFurnace, WhiteFacetsKeepEverythingThatTheyGet) {
-  const Rgb mirror_k(1e4F);  // a metal of reflectance above 0.9999
-  uint64_t seed = 61;
-  for (const float roughness : {0.1F, 0.4F, 0.7F, 1.0F}) {
-    const MaterialPtr materials[] = {
-        make_conductor(Rgb(0.1F), mirror_k, number(roughness), Rgb(1.0F),
-                       FacetScattering::multiple),
-        make_glossy(color_of(Rgb(1.0F)), number(0.8F), number(1.0F - roughness),
-                    FacetScattering::multiple),
-        make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(roughness),
-                              FacetScattering::multiple),
-        make_rough_dielectric(0.98F, Rgb(1.0F), Rgb(1.0F), number(roughness),
-                              FacetScattering::multiple)};
-    for (const MaterialPtr& material : materials) {
-      const BsdfUnderTest bsdf(material);
-      for (const NamedDirection& d : five_directions()) {
-        const test::Moments moments = furnace(*bsdf.get(), d.wo, 300000, ++seed);
-        EXPECT_LT(std::sqrt(moments.variance_of_mean()), 0.006 / 3.0)
-            << roughness << ", " << d.name;
-        EXPECT_NEAR(moments.mean(), 1.0, 0.006) << roughness << ", " << d.name;
-      }
-    }
-  }
-}
-
 // The density of normals is normalised as projected area (Walter et al. 2007, equation 4), and
 // visible normals carry the area seen: integral of D G1 max(0, wo.m) / wo.z = 1.
 TEST(Ggx, NormalsAreNormalised) {

@@ -13,8 +13,12 @@ class FunctionTexture final : public Texture {
   explicit FunctionTexture(Function function) : function_(std::move(function)) {}
 
   Rgb color(const TexturePoint& at) const override { return Rgb(function_(at).value); }
-  float scalar(const TexturePoint& at) const override { return function_(at).value; }
-  ScalarGradient scalar_gradient(const TexturePoint& at) const override { return function_(at); }
+  ScalarGradient gradient(const TexturePoint& at, const Vec4& weights) const override {
+    const float of_grey = weights.x + weights.y + weights.z;
+    const ScalarGradient f = function_(at);
+    return {of_grey * f.value + weights.w, of_grey * f.d_uv, of_grey * f.d_object,
+            of_grey * f.d_world};
+  }
 
  private:
   Function function_;
