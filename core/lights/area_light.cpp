@@ -7,15 +7,29 @@
 
 namespace hyades::core {
 
-AreaLight::AreaLight(const Rgb& radiance, bool two_sided, double area)
-    : radiance_(radiance), two_sided_(two_sided) {
-  power_ = static_cast<float>(static_cast<double>(luminance(radiance)) * static_cast<double>(kPi) *
-                              area * (two_sided ? 2.0 : 1.0));
+AreaLight::AreaLight(const SurfaceEmission& emission, double brightness) : emission_(emission) {
+  power_ =
+      static_cast<float>(brightness * static_cast<double>(kPi) * (emission.two_sided ? 2.0 : 1.0));
   if (!(power_ > 0.0F)) power_ = 0.0F;
 }
 
+void AreaLight::scale(float factor) {
+  emission_.radiance *= factor;
+  power_ *= factor;
+}
+
+void AreaLight::set_surface(const Bounds& box, const DirectionCone& normals) {
+  LightBounds bounds;
+  bounds.box = box;
+  bounds.normals = normals;
+  bounds.two_sided = emission_.two_sided;
+  bounds.set_power(power_);
+  bounds_ = bounds.power > 0.0F && !box.empty() ? std::optional(bounds) : std::nullopt;
+}
+
 Rgb AreaLight::radiance(const SurfacePoint& on, const Vec3& outward) const {
-  return emitted(on.ng, outward);
+  const Rgb radiance = emitted(on.ng, outward);
+  return emission_.varies() && !is_black(radiance) ? radiance * emission_.share(on) : radiance;
 }
 
 std::optional<EmissionSample> AreaLight::sample_emission(float time, float pick, const Vec2& place,
@@ -28,7 +42,7 @@ std::optional<EmissionSample> AreaLight::sample_emission(float time, float pick,
   sample.pdf_place = chosen->pdf;
   Vec2 u = direction;
   Vec3 normal = sample.on.ng;
-  if (two_sided_) {
+  if (emission_.two_sided) {
     const bool inner = u.x >= 0.5F;
     if (inner) normal = -normal;
     u.x = inner ? 2.0F * u.x - 1.0F : 2.0F * u.x;
@@ -38,18 +52,27 @@ std::optional<EmissionSample> AreaLight::sample_emission(float time, float pick,
   const float cosine = std::abs(glm::dot(sample.direction, sample.on.ng));
   sample.pdf_direction = pdf_outward(sample.on.ng, sample.direction);
   if (!(sample.pdf_direction > 0.0F)) return std::nullopt;
-  sample.weight = radiance_ * (cosine / (sample.pdf_place * sample.pdf_direction));
+  sample.weight = emission_.radiance * (cosine / (sample.pdf_place * sample.pdf_direction));
+  if (emission_.varies()) sample.weight *= emission_.share(sample.on);
   return sample;
 }
 
 float AreaLight::pdf_outward(const Vec3& normal, const Vec3& outward) const {
   const float cosine = glm::dot(normal, outward);
-  return two_sided_ ? 0.5F * cosine_hemisphere_pdf(std::abs(cosine))
-                    : cosine_hemisphere_pdf(cosine);
+  return emission_.two_sided ? 0.5F * cosine_hemisphere_pdf(std::abs(cosine))
+                             : cosine_hemisphere_pdf(cosine);
 }
 
 Rgb AreaLight::emitted(const Vec3& ng, const Vec3& outward) const {
-  return two_sided_ || glm::dot(ng, outward) > 0.0F ? radiance_ : Rgb(0.0F);
+  return emission_.two_sided || glm::dot(ng, outward) > 0.0F ? emission_.radiance : Rgb(0.0F);
+}
+
+std::optional<LightSample> AreaLight::seen_from(const Vec3& from, const Place& place) const {
+  const SurfacePoint& on = place.on;
+  auto sample = seen_from(from, on.position, on.ng, on.clearance, place.pdf);
+  if (sample && emission_.varies()) sample->radiance *= emission_.share(on);
+  if (sample && is_black(sample->radiance)) return std::nullopt;
+  return sample;
 }
 
 std::optional<LightSample> AreaLight::seen_from(const Vec3& from, const Vec3& position,

@@ -3,19 +3,28 @@
 #include <optional>
 
 #include "core/lights/light.h"
+#include "core/lights/surface_emission.h"
 
 namespace hyades::core {
 
-/// What all lights on surfaces have in common: constant radiance on the outer side of a surface, or
-/// on both, and densities per area turned into densities per solid angle.
+/// What all lights on surfaces have in common: light from the outer side of a surface, or from
+/// both, the same in all directions, and densities per area turned into densities per solid angle.
 class AreaLight : public Light {
  public:
-  /// `area` when the shutter opens [length^2], only for power().
-  AreaLight(const Rgb& radiance, bool two_sided, double area);
+  /// `brightness`: the integral of the emission's luminance over the surface when the shutter opens
+  /// [W/sr], only for power().
+  AreaLight(const SurfaceEmission& emission, double brightness);
+
+  /// Makes all of it `factor` times as bright; before set_surface.
+  void scale(float factor);
 
   /// Tells where the light's middle is when the shutter opens.
   void set_middle(const Vec3& middle) { middle_ = middle; }
   std::optional<Vec3> middle() const override { return middle_; }
+
+  /// Tells where the surface is while the shutter is open, and what its outer normals are.
+  void set_surface(const Bounds& box, const DirectionCone& normals);
+  std::optional<LightBounds> bounds() const override { return bounds_; }
 
   Rgb radiance(const SurfacePoint& on, const Vec3& outward) const override;
   float power() const override { return power_; }
@@ -35,22 +44,27 @@ class AreaLight : public Light {
   };
   virtual std::optional<Place> choose_place(float time, float pick, const Vec2& u) const = 0;
 
-  /// The radiance that leaves a place with unit outer normal `ng` towards `outward`.
-  Rgb emitted(const Vec3& ng, const Vec3& outward) const;
-
   /// What `from` gets from the place `position`, chosen with `pdf_area` per area, that rays leave
   /// freely at distance `clearance` from the surface. Nothing where it sends no light to `from`.
+  /// The radiance is that of an emission that does not vary.
   std::optional<LightSample> seen_from(const Vec3& from, const Vec3& position, const Vec3& ng,
                                        float clearance, float pdf_area) const;
 
-  const Rgb& outer_radiance() const { return radiance_; }
+  /// The same of `place`, with the radiance that it has there.
+  std::optional<LightSample> seen_from(const Vec3& from, const Place& place) const;
+
+  const SurfaceEmission& emission() const { return emission_; }
   bool is_dark() const { return power_ == 0.0F; }
 
  private:
-  Rgb radiance_;
-  bool two_sided_;
+  /// The radiance that leaves a place with unit outer normal `ng` towards `outward`, where the
+  /// emission does not vary.
+  Rgb emitted(const Vec3& ng, const Vec3& outward) const;
+
+  SurfaceEmission emission_;
   float power_;
   std::optional<Vec3> middle_;
+  std::optional<LightBounds> bounds_;
 };
 
 /// Density per solid angle at `from` of a place that is chosen with `pdf_area` per area: multiplied

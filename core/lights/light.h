@@ -5,6 +5,7 @@
 
 #include "core/base/vec.h"
 #include "core/geometry/surface_point.h"
+#include "core/lights/light_bounds.h"
 
 namespace hyades::core {
 
@@ -56,6 +57,10 @@ class Light {
   virtual float power() const = 0;
 
   virtual bool is_infinite() const { return false; }
+
+  /// Where the light is and shines, whatever the shutter time: outside of that it sends no light.
+  /// Nothing for infinite lights and those without power.
+  virtual std::optional<LightBounds> bounds() const { return std::nullopt; }
 
   /// About where the light is, for choosing places near it. Nothing for infinite lights.
   virtual std::optional<Vec3> middle() const { return std::nullopt; }

@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 
+#include <glm/gtc/matrix_inverse.hpp>
+
 #include "core/base/elementary.h"
 #include "core/lights/elliptic.h"
 #include "core/lights/make_light.h"
@@ -60,11 +62,6 @@ double tube_area(const glm::dmat3& m, double radius, double height) {
   return perimeter * axis * height;
 }
 
-struct MeshAreas {
-  std::vector<float> triangles;
-  double total = 0.0;
-};
-
 MeshAreas mesh_areas(const TriangleMesh& mesh, const Mat3& linear) {
   MeshAreas areas;
   areas.triangles.reserve(mesh.triangles.size());
@@ -101,32 +98,88 @@ double surface_area(const World& world, uint32_t object) {
 namespace {
 
 std::shared_ptr<AreaLight> light_of_its_kind(const World& world, uint32_t object,
-                                             const Rgb& radiance, bool two_sided) {
+                                             const SurfaceEmission& emission) {
   const Shape& shape = world.placement(object).shape;
   if (shape.kind == Shape::Kind::mesh) {
     if (const auto rectangle = find_rectangle(world, object)) {
-      return std::make_shared<RectangleLight>(*rectangle, radiance, two_sided,
+      return std::make_shared<RectangleLight>(world, object, *rectangle, emission,
                                               surface_area(world, object));
     }
     const MeshAreas areas = mesh_areas(*shape.mesh, Mat3(world.transform_at(object, 0.0F)));
-    return std::make_shared<MeshLight>(world, object, radiance, two_sided, areas.triangles,
-                                       areas.total);
+    return std::make_shared<MeshLight>(world, object, emission, areas);
   }
   const double area = surface_area(world, object);
   if (shape.kind == Shape::Kind::sphere) {
-    return std::make_shared<SphereLight>(world, object, radiance, two_sided, area);
+    return std::make_shared<SphereLight>(world, object, emission, area);
   }
-  return std::make_shared<QuadricLight>(world, object, radiance, two_sided, area);
+  return std::make_shared<QuadricLight>(world, object, emission, area);
+}
+
+/// The outer normals of a placement while the shutter is open. Motion that turns or stretches may
+/// have any.
+DirectionCone outer_normals(const World& world, uint32_t object) {
+  const Placement& placement = world.placement(object);
+  for (const Mat4& matrix : placement.to_world) {
+    if (Mat3(matrix) != Mat3(placement.to_world[0])) return {};
+  }
+  const Shape& shape = placement.shape;
+  if (shape.kind == Shape::Kind::disk) {
+    const Mat3 linear(placement.to_world[0]);
+    return {glm::normalize(glm::inverseTranspose(linear) * Vec3(0.0F, 1.0F, 0.0F)), 1.0F};
+  }
+  if (shape.kind != Shape::Kind::mesh) return {};
+  const auto count = static_cast<uint32_t>(shape.mesh->triangles.size());
+  const auto normal_of = [&](uint32_t triangle) {
+    return world.triangle_point(object, triangle, 0.3F, 0.3F, 0.0F).ng;
+  };
+  Vec3d sum(0.0);
+  for (uint32_t i = 0; i < count; ++i) sum += Vec3d(normal_of(i));
+  const double length = std::sqrt(glm::dot(sum, sum));
+  if (!(length > 1e-3 * count)) return {};
+  DirectionCone normals{Vec3(sum / length), 1.0F};
+  for (uint32_t i = 0; i < count; ++i)
+    normals.cosine = std::min(normals.cosine, glm::dot(normals.axis, normal_of(i)));
+  constexpr float kRounding = 1e-5F;
+  normals.cosine -= normals.cosine < 1.0F - kRounding ? kRounding : 0.0F;
+  return normals;
+}
+
+void place(const World& world, uint32_t object, AreaLight& light) {
+  const Placement& placement = world.placement(object);
+  const Bounds bounds = bounds_of(placement.shape);
+  if (bounds.empty()) return;
+  light.set_middle(transform_point(world.transform_at(object, 0.0F), bounds.center()));
+  Bounds box;  // places move straight from one moment to the next
+  for (const Mat4& matrix : placement.to_world) {
+    for (int corner = 0; corner < 8; ++corner) {
+      box.include(transform_point(matrix, {(corner & 1) != 0 ? bounds.upper.x : bounds.lower.x,
+                                           (corner & 2) != 0 ? bounds.upper.y : bounds.lower.y,
+                                           (corner & 4) != 0 ? bounds.upper.z : bounds.lower.z}));
+    }
+  }
+  light.set_surface(box, outer_normals(world, object));
 }
 
 }  // namespace
 
-LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided) {
-  const std::shared_ptr<AreaLight> light = light_of_its_kind(world, object, radiance, two_sided);
-  const Bounds bounds = bounds_of(world.placement(object).shape);
-  if (!bounds.empty())
-    light->set_middle(transform_point(world.transform_at(object, 0.0F), bounds.center()));
-  return light;
+LightPtr make_area_light(const World& world, uint32_t object, const SurfaceEmission& emission) {
+  return make_area_lights(world, std::array{object}, emission, std::nullopt)[0];
+}
+
+std::vector<LightPtr> make_area_lights(const World& world, std::span<const uint32_t> parts,
+                                       const SurfaceEmission& emission,
+                                       std::optional<float> power) {
+  std::vector<std::shared_ptr<AreaLight>> lights;
+  double found = 0.0;
+  for (const uint32_t part : parts) {
+    lights.push_back(light_of_its_kind(world, part, emission));
+    found += static_cast<double>(lights.back()->power());
+  }
+  for (size_t i = 0; i < parts.size(); ++i) {
+    if (power) lights[i]->scale(found > 0.0 ? static_cast<float>(double{*power} / found) : 0.0F);
+    place(world, parts[i], *lights[i]);
+  }
+  return {lights.begin(), lights.end()};
 }
 
 }  // namespace hyades::core

@@ -1,25 +1,33 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "core/geometry/world.h"
 #include "core/image/image.h"
 #include "core/lights/environment_map.h"
 #include "core/lights/light.h"
+#include "core/lights/surface_emission.h"
 
 /// One maker per kind of light.
 namespace hyades::core {
 
 using LightPtr = std::shared_ptr<const Light>;
 
-/// Light given off by placement `object` of `world` with constant radiance on its outer side (both
-/// sides where `two_sided`). Spheres (uniformly scaled) are sampled by solid angle from outside, by
-/// area from inside; still rectangles of two triangles by solid angle; everything else by area.
-/// Surfaces of zero area give no light. `world` must outlive the light.
-LightPtr make_area_light(const World& world, uint32_t object, const Rgb& radiance, bool two_sided);
+/// Light given off by placement `object` of `world`. Spheres (uniformly scaled) are sampled by
+/// solid angle from outside, by area from inside; still rectangles of two triangles by solid angle;
+/// everything else by area; and brighter places of an emission that varies more often. Surfaces of
+/// zero area give no light. `world` must outlive the light.
+LightPtr make_area_light(const World& world, uint32_t object, const SurfaceEmission& emission);
 
-/// Area of placement `object` when the shutter opens [length^2]. A surface of total flux P [W] per
-/// channel has the radiance P / (pi area), half of that where it is two-sided.
+/// The same for the parts of one shape. With `power` [W, luminance] the emission's radiance is
+/// scaled so that all that they give off together is that.
+std::vector<LightPtr> make_area_lights(const World& world, std::span<const uint32_t> parts,
+                                       const SurfaceEmission& emission, std::optional<float> power);
+
+/// Area of placement `object` when the shutter opens [length^2].
 double surface_area(const World& world, uint32_t object);
 
 /// Isotropic point of total flux `power` [W] per channel: intensity power / (4 pi) [W/sr].
@@ -35,6 +43,11 @@ LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb&
 /// disc of angular diameter `angle` [radians, at most pi] and uniform radiance; less than 1e-4
 /// makes it a delta light. `world_radius` only serves power().
 LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle,
+                        float world_radius);
+
+/// The same with a disc that is darker at its rim: radiance in proportion to the power `limb` of
+/// the cosine of the angle between the view and the normal of the sun's surface.
+LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle, const Rgb& limb,
                         float world_radius);
 
 /// Lat-long environment: direction (x, y, z) -> u = atan2(z, x) / 2pi + 0.5, v = acos(y) / pi from

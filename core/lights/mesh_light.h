@@ -8,14 +8,20 @@
 
 namespace hyades::core {
 
-/// A mesh that gives off light: a triangle in proportion to its area when the shutter opens, then a
+/// Areas of a mesh's triangles in world space when the shutter opens, and their sum.
+struct MeshAreas {
+  std::vector<float> triangles;
+  double total = 0.0;
+};
+
+/// A mesh that gives off light: a triangle in proportion to its area when the shutter opens (where
+/// the emission varies times its mean brightness, with an even part as in BrightnessGrid), then a
 /// place uniformly within it. Where the mesh moves, the density counts the triangle's area of the
 /// moment.
 class MeshLight : public AreaLight {
  public:
-  /// `areas` of the triangles in world space when the shutter opens, and their sum.
-  MeshLight(const World& world, uint32_t object, const Rgb& radiance, bool two_sided,
-            const std::vector<float>& areas, double total);
+  MeshLight(const World& world, uint32_t object, const SurfaceEmission& emission,
+            const MeshAreas& areas);
 
   std::optional<LightSample> sample_direct(const Vec3& from, float time, float pick,
                                            const Vec2& u) const override;
@@ -26,6 +32,16 @@ class MeshLight : public AreaLight {
   std::optional<Place> choose_place(float time, float pick, const Vec2& u) const override;
 
  private:
+  /// How triangles are chosen, and the integral of brightness.
+  struct Brightness {
+    std::vector<float> weights;
+    double total = 0.0;
+  };
+  static Brightness measure(const World& world, uint32_t object, const SurfaceEmission& emission,
+                            const MeshAreas& areas);
+  MeshLight(const World& world, uint32_t object, const SurfaceEmission& emission,
+            const Brightness& bright);
+
   float pdf_area(uint32_t triangle, float time) const;
 
   const World& world_;

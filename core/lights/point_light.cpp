@@ -53,6 +53,16 @@ class SpotLight : public Light {
   }
 
   bool is_delta() const override { return true; }
+
+  std::optional<LightBounds> bounds() const override {
+    LightBounds bounds;
+    bounds.box = {position_, position_};
+    bounds.normals = {axis_.n, cos_outer_};
+    bounds.cos_beyond = 1.0F;
+    bounds.set_power(power());
+    return bounds.power > 0.0F ? std::optional(bounds) : std::nullopt;
+  }
+
   std::optional<Vec3> middle() const override { return position_; }
 
   /// Uniformly within the outer cone.

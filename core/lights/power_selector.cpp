@@ -21,6 +21,15 @@ class PowerSelector : public LightSelector {
     return emitter_probability(light);
   }
 
+  std::optional<SelectedLight> select_along(const Ray& /*way*/, float /*length*/,
+                                            float u) const override {
+    return select_emitter(u);
+  }
+
+  float probability_along(const Ray& /*way*/, float /*length*/, uint32_t light) const override {
+    return emitter_probability(light);
+  }
+
   std::optional<SelectedLight> select_emitter(float u) const override {
     if (distribution_.empty()) return std::nullopt;
     const Distribution1D::Choice choice = distribution_.sample(u);

@@ -1,6 +1,7 @@
 #include "core/lights/quadric_light.h"
 
 #include <cmath>
+#include <utility>
 
 #include <glm/gtc/matrix_inverse.hpp>
 
@@ -35,6 +36,20 @@ ShapePlace place_on(const Shape& shape, const Vec2& u) {
   }
 }
 
+/// What place_on makes `position` of.
+Vec2 square_of(const Shape& shape, const Vec3& position) {
+  switch (shape.kind) {
+    case Shape::Kind::disk:
+      return disk_to_square(Vec2(position.x, position.z) / shape.radius);
+    case Shape::Kind::cylinder: {
+      const float turn = atan2(position.z, position.x) * (0.5F * kInvPi);
+      return {turn < 0.0F ? turn + 1.0F : turn, position.y / shape.height};
+    }
+    default:
+      return uniform_sphere_to_square(position / shape.radius);
+  }
+}
+
 float shape_area(const Shape& shape) {
   switch (shape.kind) {
     case Shape::Kind::disk:
@@ -60,32 +75,67 @@ float quadric_clearance(const Vec3& position, const Vec3& ng) {
   return 0x1p-24F * (2.0F * glm::dot(glm::abs(ng), size) + max_component(size));
 }
 
-QuadricLight::QuadricLight(const World& world, uint32_t object, const Rgb& radiance, bool two_sided,
+namespace {
+
+/// By area of the untransformed shape, as it stands when the shutter opens.
+BrightnessGrid brightness_of(const World& world, uint32_t object, const SurfaceEmission& emission) {
+  if (!emission.varies()) return {};
+  const Shape& shape = world.placement(object).shape;
+  const Mat3 linear(world.transform_at(object, 0.0F));
+  const auto at = [&](const Vec2& u) {
+    const SurfacePoint on = world.quadric_point(object, place_on(shape, u).position, 0.0F);
+    const double area = static_cast<double>(stretch(linear, on.ng));
+    return area > 0.0 ? emission.brightness(on) * area : 0.0;
+  };
+  return {at, emission.look_ups};
+}
+
+}  // namespace
+
+QuadricLight::QuadricLight(const World& world, uint32_t object, const SurfaceEmission& emission,
                            double area)
-    : AreaLight(radiance, two_sided, area),
+    : QuadricLight(world, object, emission, area, brightness_of(world, object, emission)) {}
+
+QuadricLight::QuadricLight(const World& world, uint32_t object, const SurfaceEmission& emission,
+                           double area, BrightnessGrid bright)
+    : AreaLight(emission,
+                emission.varies()
+                    ? bright.mean() * static_cast<double>(shape_area(world.placement(object).shape))
+                    : static_cast<double>(luminance(emission.radiance)) * area),
       world_(world),
       object_(object),
       shape_(world.placement(object).shape),
       moves_(world.placement(object).to_world.size() > 1),
-      first_(world.transform_at(object, 0.0F)) {}
+      first_(world.transform_at(object, 0.0F)),
+      bright_(std::move(bright)) {}
 
 std::optional<LightSample> QuadricLight::sample_direct(const Vec3& from, float time, float /*pick*/,
                                                        const Vec2& u) const {
   if (is_dark()) return std::nullopt;
   const Place place = place_at(time, u);
-  return seen_from(from, place.on.position, place.on.ng, place.on.clearance, place.pdf);
+  return seen_from(from, place);
 }
 
 AreaLight::Place QuadricLight::place_at(float time, const Vec2& u) const {
+  if (emission().varies()) {
+    return place_near(place_on(shape_, bright_.sample(u)).position, time);
+  }
+  Place place;
   const Mat4 matrix = to_world(time);
   const Mat3 linear(matrix);
   const ShapePlace on_shape = place_on(shape_, u);
-  Place place;
   place.on.position = transform_point(matrix, on_shape.position);
   place.on.ng = glm::normalize(glm::inverseTranspose(linear) * on_shape.normal);
   place.on.clearance = quadric_clearance(place.on.position, place.on.ng);
   place.on.time = time;
   place.pdf = 1.0F / (shape_area(shape_) * stretch(linear, place.on.ng));
+  return place;
+}
+
+AreaLight::Place QuadricLight::place_near(const Vec3& near, float time) const {
+  Place place;
+  place.on = world_.quadric_point(object_, near, time);
+  place.pdf = pdf_place(place.on, Vec3(0.0F));
   return place;
 }
 
@@ -95,7 +145,11 @@ std::optional<AreaLight::Place> QuadricLight::choose_place(float time, float /*p
 }
 
 float QuadricLight::pdf_place(const SurfacePoint& on, const Vec3& /*direction*/) const {
-  return is_dark() ? 0.0F : 1.0F / (shape_area(shape_) * stretch(Mat3(to_world(on.time)), on.ng));
+  if (is_dark()) return 0.0F;
+  const float even = 1.0F / (shape_area(shape_) * stretch(Mat3(to_world(on.time)), on.ng));
+  if (!emission().varies()) return even;
+  const Vec3 in_object = transform_point(on.world_to_object, on.position);
+  return even * bright_.pdf(square_of(shape_, in_object));
 }
 
 float QuadricLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,

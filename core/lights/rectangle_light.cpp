@@ -28,6 +28,8 @@ double inner_angle(const Vec3d& a, const Vec3d& b) {
       atan2(static_cast<float>(length(glm::cross(a, b))), static_cast<float>(-glm::dot(a, b))));
 }
 
+}  // namespace
+
 /// A rectangle as seen from a point, in the paper's notation: local coordinates along the edges,
 /// z pointing away from the rectangle.
 struct SphericalRectangle {
@@ -66,8 +68,6 @@ struct SphericalRectangle {
     return {x, std::clamp(y, y0, y1)};
   }
 };
-
-}  // namespace
 
 std::optional<Rectangle> find_rectangle(const World& world, uint32_t object) {
   const Placement& placement = world.placement(object);
@@ -110,6 +110,12 @@ std::optional<Rectangle> find_rectangle(const World& world, uint32_t object) {
       !(shortest > 1e-8 * size2)) {
     return std::nullopt;
   }
+  r.corners[0] = {a, (a + 1) % 3, (a + 2) % 3};
+  const auto slot_in_two = [&](int of_one) {
+    return static_cast<int>(std::find(two.begin(), two.end(), one[static_cast<size_t>(of_one)]) -
+                            two.begin());
+  };
+  r.corners[1] = {b, slot_in_two(r.corners[0][2]), slot_in_two(r.corners[0][1])};
   for (uint32_t triangle = 0; triangle < 2; ++triangle) {
     for (int i = 0; i < 3; ++i) {
       const SurfacePoint p =
@@ -122,12 +128,35 @@ std::optional<Rectangle> find_rectangle(const World& world, uint32_t object) {
   return r;
 }
 
-RectangleLight::RectangleLight(const Rectangle& rectangle, const Rgb& radiance, bool two_sided,
-                               double area)
-    : AreaLight(radiance, two_sided, area),
+namespace {
+
+BrightnessGrid brightness_of(const World& world, uint32_t object, const Rectangle& rectangle,
+                             const SurfaceEmission& emission) {
+  if (!emission.varies()) return {};
+  const auto at = [&](const Vec2& u) {
+    return emission.brightness(rectangle_point(world, object, rectangle, u, 0.0F));
+  };
+  return {at, emission.look_ups};
+}
+
+}  // namespace
+
+RectangleLight::RectangleLight(const World& world, uint32_t object, const Rectangle& rectangle,
+                               const SurfaceEmission& emission, double area)
+    : RectangleLight(world, object, rectangle, emission, area,
+                     brightness_of(world, object, rectangle, emission)) {}
+
+RectangleLight::RectangleLight(const World& world, uint32_t object, const Rectangle& rectangle,
+                               const SurfaceEmission& emission, double area, BrightnessGrid bright)
+    : AreaLight(emission,
+                area * (emission.varies() ? bright.mean()
+                                          : static_cast<double>(luminance(emission.radiance)))),
+      world_(world),
+      object_(object),
       rectangle_(rectangle),
       width_(length(rectangle.edge[0])),
-      height_(length(rectangle.edge[1])) {
+      height_(length(rectangle.edge[1])),
+      bright_(std::move(bright)) {
   x_ = rectangle.edge[0] / width_;
   y_ = rectangle.edge[1] / height_;
   z_ = glm::cross(x_, y_);
@@ -139,25 +168,49 @@ bool RectangleLight::is_near(double x0, double y0, double z0) const {
   return width_ * height_ > kLeastExtent * (dx * dx + dy * dy + z0 * z0);
 }
 
-std::optional<LightSample> RectangleLight::sample_direct(const Vec3& from, float /*time*/,
-                                                         float /*pick*/, const Vec2& u) const {
-  if (is_dark()) return std::nullopt;
+std::optional<SphericalRectangle> RectangleLight::seen_nearby(const Vec3& from) const {
   const Vec3d to_corner = rectangle_.corner - Vec3d(from);
   const double x0 = glm::dot(to_corner, x_);
   const double y0 = glm::dot(to_corner, y_);
   const double z0 = glm::dot(to_corner, z_);
-  if (is_near(x0, y0, z0)) {
-    const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, z0);
-    if (seen.solid_angle > kLeastSolidAngle) {
-      const glm::dvec2 place = seen.place(u);
-      const Vec3d position = rectangle_.corner + x_ * (place.x - x0) + y_ * (place.y - y0);
-      auto sample =
-          seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance, pdf_area());
-      if (sample) sample->pdf = static_cast<float>(1.0 / seen.solid_angle);
-      return sample;
-    }
+  // From within its plane the whole hemisphere would be places that are too near to tell apart.
+  const bool in_plane = std::abs(z0) <= 2.0 * static_cast<double>(rectangle_.clearance);
+  if (in_plane || !is_near(x0, y0, z0)) return std::nullopt;
+  const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, z0);
+  return seen.solid_angle > kLeastSolidAngle ? std::optional(seen) : std::nullopt;
+}
+
+std::optional<LightSample> RectangleLight::sample_direct(const Vec3& from, float time,
+                                                         float /*pick*/, const Vec2& u) const {
+  if (is_dark()) return std::nullopt;
+  const std::optional<SphericalRectangle> seen = seen_nearby(from);
+  if (emission().varies()) return sample_bright(from, time, seen, u);
+  if (!seen) return seen_from(from, place_at(u), rectangle_.ng, rectangle_.clearance, pdf_area());
+  const glm::dvec2 place = seen->place(u);
+  const Vec3d position = rectangle_.corner + x_ * (place.x - seen->x0) + y_ * (place.y - seen->y0);
+  auto sample = seen_from(from, Vec3(position), rectangle_.ng, rectangle_.clearance, pdf_area());
+  if (sample) sample->pdf = static_cast<float>(1.0 / seen->solid_angle);
+  return sample;
+}
+
+std::optional<LightSample> RectangleLight::sample_bright(
+    const Vec3& from, float time, const std::optional<SphericalRectangle>& seen,
+    const Vec2& u) const {
+  const bool by_angle = seen && u.x < 0.5F;
+  const Vec2 left = seen ? Vec2(by_angle ? 2.0F * u.x : 2.0F * u.x - 1.0F, u.y) : u;
+  Vec2 at(0.0F);
+  if (by_angle) {
+    const glm::dvec2 place = seen->place(left);
+    at = {static_cast<float>((place.x - seen->x0) / width_),
+          static_cast<float>((place.y - seen->y0) / height_)};
+  } else {
+    at = bright_.sample(left);
   }
-  return seen_from(from, place_at(u), rectangle_.ng, rectangle_.clearance, pdf_area());
+  const Place place = place_on(at, time);
+  auto sample = seen_from(from, place);
+  if (sample && seen)
+    sample->pdf = 0.5F * (sample->pdf + static_cast<float>(1.0 / seen->solid_angle));
+  return sample;
 }
 
 Vec3 RectangleLight::place_at(const Vec2& u) const {
@@ -165,8 +218,16 @@ Vec3 RectangleLight::place_at(const Vec2& u) const {
               rectangle_.edge[1] * static_cast<double>(u.y));
 }
 
+AreaLight::Place RectangleLight::place_on(const Vec2& at, float time) const {
+  Place place;
+  place.on = rectangle_point(world_, object_, rectangle_, at, time);
+  place.pdf = pdf_place(place.on, Vec3(0.0F));
+  return place;
+}
+
 std::optional<AreaLight::Place> RectangleLight::choose_place(float time, float /*pick*/,
                                                              const Vec2& u) const {
+  if (emission().varies()) return place_on(bright_.sample(u), time);
   Place place;
   place.on.position = place_at(u);
   place.on.ng = rectangle_.ng;
@@ -176,22 +237,35 @@ std::optional<AreaLight::Place> RectangleLight::choose_place(float time, float /
   return place;
 }
 
-float RectangleLight::pdf_place(const SurfacePoint& /*on*/, const Vec3& /*direction*/) const {
-  return is_dark() ? 0.0F : pdf_area();
+float RectangleLight::pdf_place(const SurfacePoint& on, const Vec3& /*direction*/) const {
+  if (is_dark()) return 0.0F;
+  if (!emission().varies()) return pdf_area();
+  const Vec3d from_corner = Vec3d(on.position) - rectangle_.corner;
+  return pdf_area() * bright_.pdf({static_cast<float>(glm::dot(from_corner, x_) / width_),
+                                   static_cast<float>(glm::dot(from_corner, y_) / height_)});
 }
 
-float RectangleLight::pdf_direct(const Vec3& from, const Vec3& /*direction*/,
+float RectangleLight::pdf_direct(const Vec3& from, const Vec3& direction,
                                  const SurfacePoint& on) const {
   if (is_dark()) return 0.0F;
-  const Vec3d to_corner = rectangle_.corner - Vec3d(from);
-  const double x0 = glm::dot(to_corner, x_);
-  const double y0 = glm::dot(to_corner, y_);
-  const double z0 = glm::dot(to_corner, z_);
-  if (is_near(x0, y0, z0)) {
-    const SphericalRectangle seen(x0, x0 + width_, y0, y0 + height_, z0);
-    if (seen.solid_angle > kLeastSolidAngle) return static_cast<float>(1.0 / seen.solid_angle);
-  }
-  return area_to_solid_angle(pdf_area(), from, on.position, on.ng);
+  const std::optional<SphericalRectangle> seen = seen_nearby(from);
+  const auto by_angle = seen ? static_cast<float>(1.0 / seen->solid_angle) : 0.0F;
+  if (seen && !emission().varies()) return by_angle;
+  const float by_place = area_to_solid_angle(pdf_place(on, direction), from, on.position, on.ng);
+  return seen ? 0.5F * (by_place + by_angle) : by_place;
+}
+
+SurfacePoint rectangle_point(const World& world, uint32_t object, const Rectangle& rectangle,
+                             const Vec2& at, float time) {
+  const bool far_half = at.x + at.y > 1.0F;
+  const std::array<int, 3>& corners = rectangle.corners[far_half ? 1 : 0];
+  const float a = far_half ? 1.0F - at.x : at.x;
+  const float b = far_half ? 1.0F - at.y : at.y;
+  float weights[3] = {};
+  weights[corners[0]] = 1.0F - a - b;
+  weights[corners[1]] = a;
+  weights[corners[2]] = b;
+  return world.triangle_point(object, far_half ? 1 : 0, weights[1], weights[2], time);
 }
 
 }  // namespace hyades::core

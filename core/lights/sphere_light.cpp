@@ -55,6 +55,27 @@ std::optional<Cap> cap_from(const Mat4& matrix, float radius, const Vec3& from) 
   return cap;
 }
 
+/// The normal of the place that is seen in a direction of the cap chosen by the equal-area map of a
+/// disc.
+Vec3d normal_of_place(const Cap& cap, const Vec2& u) {
+  // 1 - cos of the angle theta from the axis grows with the square of the disc's radius. On the
+  // sphere the direction meets the place at angle alpha from the axis, seen from the centre: with
+  // sin(beta) = sin(theta) / sin_max (law of sines), alpha = beta - theta.
+  const Vec2 disc = square_to_disk(u);
+  const double r2 = std::min(static_cast<double>(glm::dot(disc, disc)), 1.0);
+  const double drop = r2 * cap.one_minus_cos;
+  const double sin_beta_over_r = std::sqrt((2.0 - drop) / (2.0 - cap.one_minus_cos));
+  const double sin_beta2 = std::min(r2 * sin_beta_over_r * sin_beta_over_r, 1.0);
+  const double cos_beta = std::sqrt(1.0 - sin_beta2);
+  const double cos_theta = 1.0 - drop;
+  const double cos_alpha = cos_beta * cos_theta + sin_beta2 * cap.sin_max;
+  const double sin_alpha_over_r = sin_beta_over_r * (cos_theta - cos_beta * cap.sin_max);
+
+  const Frame frame = Frame::around(Vec3(cap.axis));
+  const Vec3d across(frame.s * disc.x + frame.t * disc.y);
+  return glm::normalize(sin_alpha_over_r * across - cos_alpha * cap.axis);
+}
+
 }  // namespace
 
 std::optional<LightSample> SphereLight::sample_direct(const Vec3& from, float time, float pick,
@@ -63,31 +84,29 @@ std::optional<LightSample> SphereLight::sample_direct(const Vec3& from, float ti
   const std::optional<Cap> cap = cap_from(matrix, shape().radius, from);
   if (!cap) return QuadricLight::sample_direct(from, time, pick, u);
   if (is_dark()) return std::nullopt;
+  if (emission().varies()) {
+    const bool by_angle = u.x < 0.5F;
+    const Vec2 left(by_angle ? 2.0F * u.x : 2.0F * u.x - 1.0F, u.y);
+    Place place;
+    if (by_angle) {
+      const Vec3d position = cap->center + cap->radius * normal_of_place(*cap, left);
+      place = place_near(transform_point(glm::inverse(matrix), Vec3(position)), time);
+    } else {
+      place = place_at(time, left);
+    }
+    auto sample = seen_from(from, place);
+    if (sample) sample->pdf = pdf_direct(from, sample->direction, place.on);
+    return sample;
+  }
 
-  // A direction in the cap by the equal-area map of a disc (1 - cos grows with the square of the
-  // disc's radius), at angle theta from the axis. On the sphere it meets the place at angle alpha
-  // from the axis, seen from the centre: with sin(beta) = sin(theta) / sin_max (law of sines),
-  // alpha = beta - theta.
-  const Vec2 disc = square_to_disk(u);
-  const double r2 = std::min(static_cast<double>(glm::dot(disc, disc)), 1.0);
-  const double drop = r2 * cap->one_minus_cos;
-  const double sin_beta_over_r = std::sqrt((2.0 - drop) / (2.0 - cap->one_minus_cos));
-  const double sin_beta2 = std::min(r2 * sin_beta_over_r * sin_beta_over_r, 1.0);
-  const double cos_beta = std::sqrt(1.0 - sin_beta2);
-  const double cos_theta = 1.0 - drop;
-  const double cos_alpha = cos_beta * cos_theta + sin_beta2 * cap->sin_max;
-  const double sin_alpha_over_r = sin_beta_over_r * (cos_theta - cos_beta * cap->sin_max);
-
-  const Frame frame = Frame::around(Vec3(cap->axis));
-  const Vec3d across(frame.s * disc.x + frame.t * disc.y);
-  const Vec3d normal = glm::normalize(sin_alpha_over_r * across - cos_alpha * cap->axis);
+  const Vec3d normal = normal_of_place(*cap, u);
   LightSample sample;
   const Vec3d position = cap->center + cap->radius * normal;
   const Vec3d to_light = position - Vec3d(from);
   const double distance = std::sqrt(glm::dot(to_light, to_light));
   if (!(distance > 0.0)) return std::nullopt;
   sample.direction = Vec3(to_light / distance);
-  sample.radiance = outer_radiance();
+  sample.radiance = emission().radiance;
   sample.pdf = cap->pdf();
   sample.distance = static_cast<float>(distance);
   const Vec3 ng(normal);
@@ -103,8 +122,11 @@ float SphereLight::pdf_direct(const Vec3& from, const Vec3& direction,
                               const SurfacePoint& on) const {
   const std::optional<Cap> cap = cap_from(to_world(on.time), shape().radius, from);
   if (!cap) return QuadricLight::pdf_direct(from, direction, on);
-  // From outside only the near side is chosen.
-  return is_dark() || glm::dot(direction, on.ng) > 0.0F ? 0.0F : cap->pdf();
+  if (is_dark()) return 0.0F;
+  // From outside only the near side is chosen by angle.
+  const float by_angle = glm::dot(direction, on.ng) > 0.0F ? 0.0F : cap->pdf();
+  return emission().varies() ? 0.5F * (by_angle + QuadricLight::pdf_direct(from, direction, on))
+                             : by_angle;
 }
 
 }  // namespace hyades::core

@@ -15,11 +15,13 @@ namespace {
 /// angle; the light is a delta light then.
 constexpr float kSmallestRadius = 5e-5F;
 
-/// A disc of uniform radiance infinitely far away, or (radius 0) a single direction.
+/// A disc infinitely far away, of uniform radiance or darker at its rim, or (radius 0) a single
+/// direction.
 class SunLight : public InfiniteLight {
  public:
-  SunLight(const Vec3& direction, const Rgb& irradiance, float angle, float world_radius)
-      : axis_(Frame::around(-direction)), irradiance_(irradiance) {
+  SunLight(const Vec3& direction, const Rgb& irradiance, float angle, const Rgb& limb,
+           float world_radius)
+      : axis_(Frame::around(-direction)), irradiance_(irradiance), limb_(limb) {
     power_ = luminance(irradiance) * kPi * world_radius * world_radius;
     const float radius = std::min(0.5F * angle, 0.5F * kPi);
     if (!(radius >= kSmallestRadius)) return;
@@ -28,7 +30,8 @@ class SunLight : public InfiniteLight {
     one_minus_cos_ = 2.0F * sin_half * sin_half;
     pdf_ = cone_pdf(one_minus_cos_);
     // A facing surface receives the integral of L cos over the disc: pi L sin^2(radius).
-    radiance_ = irradiance / (kPi * sin_radius_ * sin_radius_);
+    // mu^a has the mean 2 / (a + 2) over a disc (mu^2 = 1 - r^2).
+    radiance_ = irradiance * (0.5F * limb + 1.0F) / (kPi * sin_radius_ * sin_radius_);
   }
 
   std::optional<LightSample> sample_direct(const Vec3& /*from*/, float /*time*/, float /*pick*/,
@@ -43,10 +46,10 @@ class SunLight : public InfiniteLight {
       sample.delta = true;
       return sample;
     }
-    sample.radiance = radiance_;
     sample.pdf = pdf_;
     sample.pdf_place = pdf_;
     sample.direction = glm::normalize(axis_.to_world(square_to_cone(u, one_minus_cos_)));
+    sample.radiance = radiance_at(sample.direction);
     return sample;
   }
 
@@ -56,7 +59,7 @@ class SunLight : public InfiniteLight {
   }
 
   Rgb radiance(const SurfacePoint& /*on*/, const Vec3& outward) const override {
-    return covers(-outward) ? radiance_ : Rgb(0.0F);
+    return covers(-outward) ? radiance_at(-outward) : Rgb(0.0F);
   }
 
   float power() const override { return power_; }
@@ -73,9 +76,19 @@ class SunLight : public InfiniteLight {
     return glm::dot(across, across) <= sin_radius_ * sin_radius_;
   }
 
+  /// Within the disc.
+  Rgb radiance_at(const Vec3& direction) const {
+    if (is_black(limb_)) return radiance_;
+    const Vec3 across = glm::cross(direction, axis_.n);
+    const float mu2 = 1.0F - glm::dot(across, across) / (sin_radius_ * sin_radius_);
+    const float mu = std::sqrt(std::max(mu2, 0.0F));
+    return radiance_ * Rgb(pow(mu, limb_.x), pow(mu, limb_.y), pow(mu, limb_.z));
+  }
+
   Frame axis_;  ///< n points to the middle of the disc
   Rgb irradiance_;
-  Rgb radiance_{0.0F};
+  Rgb limb_;            ///< exponents; 0: uniform
+  Rgb radiance_{0.0F};  ///< of the middle
   float sin_radius_ = 0.0F;
   float one_minus_cos_ = 0.0F;
   float pdf_ = 0.0F;  ///< per solid angle; 0: delta light
@@ -86,7 +99,12 @@ class SunLight : public InfiniteLight {
 
 LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle,
                         float world_radius) {
-  return std::make_shared<SunLight>(direction, irradiance, angle, world_radius);
+  return make_sun_light(direction, irradiance, angle, Rgb(0.0F), world_radius);
+}
+
+LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle, const Rgb& limb,
+                        float world_radius) {
+  return std::make_shared<SunLight>(direction, irradiance, angle, limb, world_radius);
 }
 
 }  // namespace hyades::core

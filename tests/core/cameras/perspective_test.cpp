@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/cameras/camera.h"
+#include "core/cameras/make_camera.h"
 #include "tests/support/chi_squared.h"
 
 namespace hyades::core {
@@ -21,7 +21,7 @@ CameraPose pose_at(const Vec3& from, const Vec3& at) {
 }
 
 std::unique_ptr<Camera> still(const CameraPose& pose, Vec2i resolution, int blades = 0) {
-  return make_perspective_camera({pose}, resolution, blades, 0.0F);
+  return make_perspective_camera({pose}, resolution, {blades, 0.0F});
 }
 
 void expect_near(const Vec3& a, const Vec3& b, float tolerance) {
@@ -103,7 +103,7 @@ TEST(PerspectiveCamera, LensIsUsedUniformly) {
   for (const int blades : {0, 3, 6}) {
     CameraPose pose = pose_at({0, 0, 0}, {0, 0, -1});
     pose.lens_radius = 1.0F;
-    const auto camera = make_perspective_camera({pose}, {100, 100}, blades, 0.3F);
+    const auto camera = make_perspective_camera({pose}, {100, 100}, {blades, 0.3F});
     const auto inside = [&](double x, double y) {
       if (blades < 3) return x * x + y * y < 1.0;
       // Within cos(pi / n) of the centre along the normal of every side.
@@ -159,7 +159,7 @@ TEST(PerspectiveCamera, MovesThroughItsPosesWithinTheShutter) {
   CameraPose b = pose_at({2, 0, 0}, {2, 0, -1});
   CameraPose c = pose_at({2, 4, 0}, {2, 4, -1});
   c.fov = 80.0F * kDegree;
-  const auto camera = make_perspective_camera({a, b, c}, {100, 100}, 0, 0.0F);
+  const auto camera = make_perspective_camera({a, b, c}, {100, 100}, {});
   const auto origin = [&](float time) { return camera->generate({50, 50}, {0, 0}, time).origin; };
   expect_near(origin(0.0F), {0, 0, 0}, 0.0F);
   expect_near(origin(0.25F), {1, 0, 0}, 1e-6F);
@@ -195,7 +195,7 @@ TEST(PerspectiveCamera, FallsBackWhereAPoseSaysTooLittle) {
   expect_near(still(no_focus, {10, 10})->generate({5, 5}, {0.9F, 0.9F}, 0).direction, {0, 0, -1},
               0.0F);
 
-  const auto no_pose = make_perspective_camera({}, {0, 0}, 0, 0.0F);
+  const auto no_pose = make_perspective_camera({}, {0, 0}, {});
   EXPECT_TRUE(is_unit(no_pose->generate({0.5F, 0.5F}, {0.5F, 0.5F}, 0.5F).direction));
 }
 
@@ -205,6 +205,34 @@ TEST(PerspectiveCamera, WorksAtVeryLargeAndSmallScales) {
     expect_near(camera->generate({5, 5}, {0, 0}, 0).direction, {0, 0, -1}, 1e-6F);
     EXPECT_TRUE(is_unit(camera->generate({1, 2}, {0, 0}, 0).direction));
   }
+}
+
+// The area that a pixel covers of a wall seen from anywhere is that between the rays of its
+// corners.
+TEST(PerspectiveCamera, PixelsAreAsWideAsTheirRaysAreApart) {
+  CameraPose pose = pose_at({1, 2, 3}, {0, 0, 0});
+  pose.fov = 70.0F * kDegree;
+  const auto camera = still(pose, {640, 480});
+  for (const Vec2 film : {Vec2(320, 240), Vec2(1, 1), Vec2(600, 100), Vec2(320, 470)}) {
+    const auto at = [&](float dx, float dy) {
+      return camera->generate(film + Vec2(dx, dy), {0.5F, 0.5F}, 0.0F).direction;
+    };
+    const Vec3 point = Vec3(1, 2, 3) + 5.0F * at(0, 0);
+    const PixelCone cone = camera->pixel_at(point, 0.0F);
+    expect_near(cone.direction, at(0, 0), 1e-5F);
+    const Vec3 area = 25.0F * glm::cross(at(0.5F, 0) - at(-0.5F, 0), at(0, 0.5F) - at(0, -0.5F));
+    EXPECT_NEAR(cone.width, std::sqrt(glm::length(area)), 1e-3F * cone.width);
+  }
+}
+
+// Behind the camera and beside the picture the distance counts alone, without a jump at the edge.
+TEST(PerspectiveCamera, PixelsOutsideOfThePictureAreThoseOfItsCorners) {
+  const auto camera = still(pose_at({0, 0, 0}, {0, 0, -1}), {640, 480});
+  const float corner =
+      camera->pixel_at(camera->generate({0, 0}, {0, 0}, 0.0F).direction, 0.0F).width;
+  EXPECT_NEAR(camera->pixel_at({0, 0, 1}, 0.0F).width, corner, 1e-5F * corner);
+  EXPECT_NEAR(camera->pixel_at({7, 0, 0}, 0.0F).width, 7.0F * corner, 1e-5F * corner);
+  EXPECT_EQ(camera->pixel_at({0, 0, 0}, 0.0F).width, 0.0F);
 }
 
 }  // namespace

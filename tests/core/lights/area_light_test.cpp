@@ -103,7 +103,7 @@ TEST(AreaLight, WithoutAreaOrRadianceGivesNothing) {
   EXPECT_FALSE(flat.light->sample_direct({0, 0, 1}, 0.0F, 0.5F, {0.5F, 0.5F}));
 
   Lamp dark(quadric(Shape::Kind::sphere, 1.0F), {Mat4(1.0F)});
-  dark.light = make_area_light(*dark.world, 0, Rgb(0.0F), false);
+  dark.light = make_area_light(*dark.world, 0, {});
   EXPECT_EQ(dark.light->power(), 0.0F);
   EXPECT_FALSE(dark.light->sample_direct({0, 0, 3}, 0.0F, 0.5F, {0.5F, 0.5F}));
 }

@@ -123,6 +123,28 @@ TEST(SunLight, GivesAFacingSurfaceItsIrradiance) {
   }
 }
 
+TEST(SunLight, IsDarkerAtItsRimAndGivesItsIrradianceAllTheSame) {
+  const float radius = 0.3F;
+  const auto light = make_sun_light({0, -1, 0}, Rgb(2.0F), 2.0F * radius, {0.5F, 1.0F, 2.0F}, 1.0F);
+  test::Moments channels[3];
+  test::Random random(3);
+  for (int i = 0; i < 100'000; ++i) {
+    const auto s = light->sample_direct({}, 0.0F, 0.0F, random.uniform2());
+    ASSERT_TRUE(s);
+    EXPECT_EQ(s->radiance, light->radiance({}, -s->direction));
+    for (int c = 0; c < 3; ++c)
+      channels[c].add(static_cast<double>(s->radiance[c] * s->direction.y / s->pdf));
+  }
+  for (const test::Moments& channel : channels) EXPECT_TRUE(test::mean_is(channel, 2.0));
+  const auto seen = [&](float share) {  // at this share of the radius
+    const float sine = share * std::sin(radius);
+    return light->radiance({}, {sine, -std::sqrt(1.0F - sine * sine), 0.0F});
+  };
+  EXPECT_NEAR(seen(0.8F).z / seen(0.0F).z, 0.36F, 1e-3F);  // cosine 0.6, squared
+  EXPECT_NEAR(seen(0.8F).y / seen(0.0F).y, 0.6F, 1e-3F);
+  EXPECT_EQ(seen(1.01F), Rgb(0.0F));
+}
+
 TEST(SunLight, DiscIsSeenAndSampledAlike) {
   for (const float degrees : {0.1F, 0.53F, 20.0F, 180.0F}) {
     const float radius = 0.5F * degrees * kPi / 180.0F;

@@ -53,6 +53,20 @@ TEST(RectangleLight, VariesLittleNearby) {
   EXPECT_LT(std::sqrt(e.variance()) / e.mean(), 0.65);
 }
 
+TEST(RectangleLight, DoesNotLightItself) {
+  const Mat4 tilted = glm::rotate(moved({1.3F, -0.2F, 0.1F}), 0.8F, glm::normalize(Vec3(1, 2, 3)));
+  const Lamp lamp(mesh(make_rectangle({1.5F, 0.8F})), {tilted}, true);
+  test::Random random(11);
+  for (int i = 0; i < 300; ++i) {
+    const SurfacePoint on = lamp.world->triangle_point(0, i % 2, random.uniform(0.0F, 0.5F),
+                                                       random.uniform(0.0F, 0.5F), 0);
+    for (const Vec3& side : {on.ng, -on.ng}) {
+      const auto e = test::irradiance(*lamp.light, on.position, side, 20);
+      EXPECT_LT(e.mean(), 1e-4 * static_cast<double>(luminance(kRadiance)));
+    }
+  }
+}
+
 TEST(RectangleLight, HoldsInItsPlaneAndAtAnyScale) {
   for (const float scale : {1e-3F, 1.0F, 1e6F}) {
     const Lamp lamp(mesh(make_rectangle(Vec2(scale))), {moved(Vec3(scale))}, true);

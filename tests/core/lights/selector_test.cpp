@@ -3,8 +3,7 @@
 #include <vector>
 
 #include "core/lights/light_selector.h"
-#include "tests/support/chi_squared.h"
-#include "tests/support/random.h"
+#include "tests/core/lights/selector_checks.h"
 
 namespace hyades::core {
 namespace {
@@ -15,32 +14,8 @@ std::vector<LightPtr> lights_of(const std::vector<float>& powers) {
   return lights;
 }
 
-/// T14: probabilities sum to 1 and are those with which lights come.
 void expect_consistent(const LightSelector& selector, size_t count) {
-  double sum = 0.0;
-  std::vector<double> expected;
-  constexpr int kSamples = 2'200'000;
-  for (uint32_t i = 0; i < count; ++i) {
-    const float p = selector.probability({1, 2, 3}, {0, 1, 0}, i);
-    sum += static_cast<double>(p);
-    expected.push_back(static_cast<double>(p) * kSamples);
-  }
-  EXPECT_NEAR(sum, 1.0, 1e-5);
-  std::vector<double> observed(count, 0.0);
-  test::Random random(17);
-  for (int i = 0; i < kSamples; ++i) {
-    const auto chosen = selector.select({1, 2, 3}, {0, 1, 0}, random.uniform());
-    ASSERT_TRUE(chosen);
-    ASSERT_LT(chosen->index, count);
-    ASSERT_GT(chosen->probability, 0.0F);
-    ASSERT_EQ(chosen->probability, selector.probability({1, 2, 3}, {0, 1, 0}, chosen->index));
-    observed[chosen->index] += 1.0;
-  }
-  const auto result = test::chi_squared(observed, expected);
-  EXPECT_GT(result.p, 0.01);
-  // An error of 1 % between two halves of the lights would show in 99 of 100 cases.
-  EXPECT_GE(kSamples,
-            test::required_chi_squared_samples(std::max(result.degrees, 1), 0.01, 0.01, 0.99));
+  test::expect_consistent_at(selector, count, {1, 2, 3}, {0, 1, 0});
 }
 
 TEST(PowerSelector, ChoosesInProportionToPower) {
