@@ -1,29 +1,13 @@
 #include "core/geometry/closed_mesh.h"
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 #include <vector>
 
+#include "core/geometry/weld.h"
+
 namespace hyades::core {
 namespace {
-
-/// For each vertex, one number for all that are at its position.
-std::vector<uint32_t> weld(const std::vector<Vec3>& positions) {
-  std::vector<uint32_t> order(positions.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](uint32_t i) {
-    return std::tie(positions[i].x, positions[i].y, positions[i].z);
-  };
-  std::sort(order.begin(), order.end(),
-            [&](uint32_t a, uint32_t b) { return std::tuple(key(a), a) < std::tuple(key(b), b); });
-  std::vector<uint32_t> welded(positions.size());
-  for (size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && key(order[i]) == key(order[i - 1]);
-    welded[order[i]] = same ? welded[order[i - 1]] : order[i];
-  }
-  return welded;
-}
 
 /// A side of a triangle: its corners in order of their numbers, and whether it goes up that way.
 struct Side {

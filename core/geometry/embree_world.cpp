@@ -128,6 +128,12 @@ SurfacePoint EmbreeWorld::triangle_point(uint32_t object, uint32_t primitive, fl
   return p;
 }
 
+SurfacePoint EmbreeWorld::quadric_point(uint32_t object, const Vec3& near, float time) const {
+  SurfacePoint p = parts_.objects[object]->quadric_place(Vec3d(near), time);
+  p.object = object;
+  return p;
+}
+
 Mat4 EmbreeWorld::transform_at(uint32_t object, float time) const {
   const PlacedObject& placed = *parts_.objects[object];
   return placed.motion().still() ? placed.placement().to_world[0]

@@ -29,6 +29,7 @@ class EmbreeWorld final : public World {
   bool occluded(const Ray& ray) const override;
   SurfacePoint surface(const Ray& ray, const Hit& hit) const override;
   bool nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const override;
+  SurfacePoint quadric_point(uint32_t object, const Vec3& near, float time) const override;
   SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
                               float time) const override;
   Mat4 transform_at(uint32_t object, float time) const override;

@@ -38,7 +38,8 @@ Corners corners_of(const TriangleMesh& mesh, size_t triangle) {
 
 size_t TriangleMesh::memory() const {
   return positions.size() * sizeof(Vec3) + triangles.size() * sizeof(triangles[0]) +
-         normals.size() * sizeof(Vec3) + uvs.size() * sizeof(Vec2);
+         normals.size() * sizeof(Vec3) + uvs.size() * sizeof(Vec2) +
+         tangents.size() * sizeof(tangents[0]);
 }
 
 void finish_mesh(TriangleMesh& mesh) {
@@ -54,7 +55,7 @@ void finish_mesh(TriangleMesh& mesh) {
   for (const Bounds& b : parts) mesh.bounds.include(b);
 }
 
-void compute_smooth_normals(TriangleMesh& mesh) {
+std::vector<Vec3> smooth_normals(const TriangleMesh& mesh, const std::vector<uint32_t>& group) {
   const size_t n = mesh.triangles.size();
   std::vector<Vec3d> sums(mesh.positions.size(), Vec3d(0.0));
   std::vector<Corners> corners(std::min(n, 32 * kChunk));
@@ -67,16 +68,21 @@ void compute_smooth_normals(TriangleMesh& mesh) {
     });
     for (size_t i = 0; i < count; ++i) {
       for (int k = 0; k < 3; ++k) {
-        sums[mesh.triangles[begin + i][k]] +=
+        const uint32_t vertex = mesh.triangles[begin + i][k];
+        sums[group.empty() ? vertex : group[vertex]] +=
             corners[i].normal * static_cast<double>(corners[i].angles[k]);
       }
     }
   }
-  mesh.normals.resize(mesh.positions.size());
+  std::vector<Vec3> normals(sums.size());
   for (size_t i = 0; i < sums.size(); ++i) {
-    const double length = std::sqrt(glm::dot(sums[i], sums[i]));
-    mesh.normals[i] = length > 0.0 ? Vec3(sums[i] / length) : Vec3(0.0F, 0.0F, 0.0F);
+    const Vec3d& sum = sums[group.empty() ? i : group[i]];
+    const double length = std::sqrt(glm::dot(sum, sum));
+    normals[i] = length > 0.0 ? Vec3(sum / length) : Vec3(0.0F, 0.0F, 0.0F);
   }
+  return normals;
 }
+
+void compute_smooth_normals(TriangleMesh& mesh) { mesh.normals = smooth_normals(mesh, {}); }
 
 }  // namespace hyades::core

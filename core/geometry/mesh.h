@@ -19,6 +19,8 @@ struct TriangleMesh {
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<Vec3> normals;  ///< per vertex, unit, or 0: none there; or empty: flat
   std::vector<Vec2> uvs;      ///< per vertex; or empty
+  /// Per corner of each triangle, unit, for normal maps: see compute_tangents(). Mostly empty.
+  std::vector<std::array<Vec3, 3>> tangents;
   Bounds bounds;
 
   size_t memory() const;  ///< bytes of vertex and index data
@@ -27,7 +29,17 @@ struct TriangleMesh {
 /// Reads `bounds` off the positions and reserves Embree's padding. Call after filling in.
 void finish_mesh(TriangleMesh& mesh);
 
-/// Angle-weighted vertex normals (Thuermer & Wuethrich 1998), for meshes that have none.
+/// Tangents as normal maps are baked for (MikkTSpace: Mikkelsen 2008, "Simulation of Wrinkled
+/// Surfaces Revisited"): the directions of growing u of all triangles that share a vertex's
+/// position, normal and uv and wind alike around their uv, in the plane of the normal, weighed by
+/// their angles. None for meshes without normals or uvs, whose triangles have their own.
+void compute_tangents(TriangleMesh& mesh);
+
+/// Angle-weighted vertex normals (Thuermer & Wuethrich 1998), unit, or 0 where there is none. With
+/// `group`, the vertices that have the same number there, one of theirs, share theirs.
+std::vector<Vec3> smooth_normals(const TriangleMesh& mesh, const std::vector<uint32_t>& group);
+
+/// smooth_normals(), of each vertex by itself, for meshes that have none.
 void compute_smooth_normals(TriangleMesh& mesh);
 
 }  // namespace hyades::core

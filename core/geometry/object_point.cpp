@@ -161,6 +161,14 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
     p.ns = shading_normal(glm::transpose(pose.to_object.linear) * ns, p.ng);
   }
 
+  p.tangent = Vec3(0.0F);
+  if (!mesh.tangents.empty()) {
+    const auto& corners = mesh.tangents[hit.primitive];
+    const Vec3d along =
+        Vec3d(corners[0]) * (1.0 - du - dv) + Vec3d(corners[1]) * du + Vec3d(corners[2]) * dv;
+    p.tangent = Vec3(pose.to_world.vector(along));
+  }
+
   if (mesh.uvs.empty()) {
     p.uv = Vec2(0.0F);
     set_any_tangents(p);
@@ -185,8 +193,6 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
 }
 
 SurfacePoint PlacedObject::quadric_surface(const Ray& ray, const Hit& hit) const {
-  SurfacePoint p;
-  p.time = ray.time;
   const Affine to_world = to_world_at(ray.time);
   const Affine to_object = to_object_at(ray.time);
   const Vec3d origin = to_object.point(Vec3d(ray.origin));
@@ -194,7 +200,18 @@ SurfacePoint PlacedObject::quadric_surface(const Ray& ray, const Hit& hit) const
   // hit.t was rounded to float: the exact one is found again.
   const double t = meet_quadric(quadric_, origin, direction, 0.0, static_cast<double>(ray.t_max))
                        .value_or(static_cast<double>(hit.t));
-  const QuadricPoint q = quadric_point(quadric_, origin + direction * t);
+  return quadric_place(origin + direction * t, ray.time, to_world, to_object);
+}
+
+SurfacePoint PlacedObject::quadric_place(const Vec3d& near, float time) const {
+  return quadric_place(near, time, to_world_at(time), to_object_at(time));
+}
+
+SurfacePoint PlacedObject::quadric_place(const Vec3d& near, float time, const Affine& to_world,
+                                         const Affine& to_object) const {
+  SurfacePoint p;
+  p.time = time;
+  const QuadricPoint q = quadric_point(quadric_, near);
 
   const Vec3d position = to_world.point(q.position);
   const Vec3d ng = unit(glm::transpose(to_object.linear) * q.normal);

@@ -45,6 +45,9 @@ class PlacedObject {
   /// The point of a mesh at barycentrics (u, v) of triangle `primitive`.
   SurfacePoint mesh_point(uint32_t primitive, float u, float v, float time) const;
 
+  /// The point of a quadric next to `near` (object space).
+  SurfacePoint quadric_place(const Vec3d& near, float time) const;
+
   Bounds bounds() const { return bounds_; }
 
  private:
@@ -62,6 +65,8 @@ class PlacedObject {
   void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
                        const Pose& pose) const;
   SurfacePoint quadric_surface(const Ray& ray, const Hit& hit) const;
+  SurfacePoint quadric_place(const Vec3d& near, float time, const Affine& to_world,
+                             const Affine& to_object) const;
   /// Triangle `primitive` in the space of the buffers.
   Triangle triangle_at(uint32_t primitive, float time) const {
     const std::array<uint32_t, 3>& t = indices_[primitive];

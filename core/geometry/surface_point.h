@@ -14,6 +14,9 @@ struct SurfacePoint {
   Vec3 ns{0.0F, 0.0F, 1.0F};  ///< shading normal, unit, same side as ng
   Vec3 dpdu{1.0F, 0.0F, 0.0F};
   Vec3 dpdv{0.0F, 1.0F, 0.0F};
+  /// The way that normal maps take for that of growing u: smooth over meshes that have
+  /// TriangleMesh::tangents; zero: dpdu is it.
+  Vec3 tangent{0.0F};
   Vec2 uv{0.0F};
   float t = 0.0F;     ///< distance along the ray that found it
   float time = 0.0F;  ///< shutter time 0..1

@@ -22,7 +22,7 @@ struct Placement {
   /// interpolated linearly, element by element, between neighbours.
   std::vector<Mat4> to_world{Mat4(1.0F)};
   bool visible_to_camera = true;
-  bool blocks_light = true;  ///< false: occluded() looks through it (null materials)
+  bool blocks_light = true;  ///< false: occluded() looks through it (null materials, opacity)
   /// Whether neighbouring frames place it elsewhere or shape it otherwise: such placements are kept
   /// apart from the geometry that frames share. Decided by the job alone, never by which frames
   /// were built before, so that a frame's bits do not depend on them.
@@ -76,6 +76,10 @@ class World {
   /// time `time`: what light sampling on a mesh needs.
   virtual SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
                                       float time) const = 0;
+
+  /// The surface point of placement `object`, a sphere, disk or cylinder, next to `near` (object
+  /// space) at shutter time `time`: what light sampling on a quadric needs.
+  virtual SurfacePoint quadric_point(uint32_t object, const Vec3& near, float time) const = 0;
 
   /// Object-to-world matrix of placement `object` at shutter time `time`.
   virtual Mat4 transform_at(uint32_t object, float time) const = 0;
