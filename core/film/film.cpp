@@ -47,6 +47,10 @@ Film::Film(FilmLayout layout, PixelRect window, PixelRect region)
       splats_(layout_.layers.splats ? region : PixelRect{}) {
   const auto pixels = static_cast<size_t>(window_.area());
   planes_.reserve(layout_.channels.size());
+  if (layout_.layers.splats) part_splats_.assign(layout_.part_count(), PartSplatLayer(region));
+  for (size_t kind = 0; kind < kIdKinds; ++kind) {
+    if (layout_.layers.ids[kind]) ids_[kind] = IdLayer(window_);
+  }
   for (const FilmChannel& channel : layout_.channels) {
     planes_.emplace_back(pixels, channel.rule == MergeRule::min ? min_bits(kInfinity) : Fixed128{});
   }
@@ -97,6 +101,11 @@ void Film::deposit_splats(std::vector<PixelSplat> splats) {
   splats_.deposit(std::move(splats));
 }
 
+void Film::deposit_splats(size_t part, std::vector<PixelSplat> splats) {
+  assert(part < part_splats_.size());
+  part_splats_[part].deposit(std::move(splats));
+}
+
 Status Film::merge(const Film& other) {
   if (layout_ != other.layout_) return Error{"the films have different layers"};
   if (other.window_.empty()) return {};
@@ -124,6 +133,8 @@ Status Film::merge(const Film& other) {
     }
   }
   splats_.merge(other.splats_);
+  for (size_t i = 0; i < part_splats_.size(); ++i) part_splats_[i].merge(other.part_splats_[i]);
+  for (size_t i = 0; i < kIdKinds; ++i) ids_[i].merge(other.ids_[i]);
   for (const CoverageBox& box : other.coverage_.boxes()) coverage_.add(box);
   return {};
 }
@@ -134,7 +145,9 @@ void Film::erase(const PixelRect& tile) {
   if (layout_.layers.splats) {
     assert(gone == window_);
     splats_ = SplatLayer(splats_.region());
+    for (PartSplatLayer& part : part_splats_) part = PartSplatLayer(splats_.region());
   }
+  for (IdLayer& ids : ids_) ids.erase(gone);
   for (size_t c = 0; c < planes_.size(); ++c) {
     const bool sums = layout_.channels[c].rule == MergeRule::sum;
     for (int y = gone.y0; y < gone.y1; ++y) {
@@ -160,8 +173,11 @@ void Film::erase(const PixelRect& tile) {
 }
 
 uint64_t Film::memory() const {
+  uint64_t extra = 0;
+  for (const PartSplatLayer& part : part_splats_) extra += part.memory();
+  for (const IdLayer& ids : ids_) extra += ids.memory();
   return static_cast<uint64_t>(window_.area()) * planes_.size() * sizeof(Fixed128) +
-         splats_.memory();
+         splats_.memory() + extra;
 }
 
 Fixed128 Film::sum(int x, int y, int channel) const {
@@ -238,7 +254,26 @@ Status Film::check() const {
       }
     }
   }
+  if (const Status ids = check_ids(); !ids) return ids;
   return check_splats();
+}
+
+Status Film::check_ids() const {
+  const std::span<const Fixed128> samples = plane(layout_.samples);
+  for (const IdLayer& ids : ids_) {
+    if (const Status named = ids.check(); !named) return named;
+    uint32_t pixel = 0;
+    uint64_t met = 0;
+    for (int y = ids.window().y0; y < ids.window().y1; ++y) {
+      for (const IdCount& entry : ids.row(y)) {
+        met = entry.pixel == pixel ? met + entry.count : entry.count;
+        pixel = entry.pixel;
+        if (met > static_cast<uint64_t>(samples[pixel].high))
+          return Error{"a pixel holds more ids than samples"};
+      }
+    }
+  }
+  return {};
 }
 
 Status Film::check_splats() const {
@@ -246,7 +281,10 @@ Status Film::check_splats() const {
   if (!splats_.region().contains(window_)) {
     return Error{"the film reaches beyond the region of its splats"};
   }
-  if (coverage_.boxes().empty() && !splats_.empty()) {
+  const bool any =
+      !splats_.empty() || std::any_of(part_splats_.begin(), part_splats_.end(),
+                                      [](const PartSplatLayer& part) { return !part.empty(); });
+  if (coverage_.boxes().empty() && any) {
     return Error{"the film has splats, but holds no batch"};
   }
   return splats_.check();

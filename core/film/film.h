@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -10,6 +11,7 @@
 #include "core/base/result.h"
 #include "core/film/coverage.h"
 #include "core/film/fixed128.h"
+#include "core/film/id_counts.h"
 #include "core/film/layout.h"
 #include "core/film/splats.h"
 #include "core/film/unit.h"
@@ -32,6 +34,10 @@ class Film {
   const PixelRect& window() const { return window_; }
   const Coverage& coverage() const { return coverage_; }
   const SplatLayer& splats() const { return splats_; }
+  /// What splats brought to each part of light (FilmLayout::part_names); empty without splats.
+  std::span<const PartSplatLayer> part_splats() const { return part_splats_; }
+  /// Whose window is empty where the layout has no such ids.
+  const IdLayer& ids(IdKind kind) const { return ids_[static_cast<size_t>(kind)]; }
 
   /// Bytes that it takes.
   uint64_t memory() const;
@@ -47,6 +53,8 @@ class Film {
   /// Adds what the light paths of a batch brought that deposit() adds as well. Only for films with
   /// splats.
   void deposit_splats(std::vector<PixelSplat> splats);
+  /// The same of one part of light.
+  void deposit_splats(size_t part, std::vector<PixelSplat> splats);
 
   /// Adds all of `other`, whose window lies inside this one's. Refused, with nothing changed, where
   /// the layouts or the regions of splats differ or a batch of a pixel is in both (the message
@@ -83,10 +91,12 @@ class Film {
   std::span<Fixed128> mutable_plane(int channel);
   Coverage& mutable_coverage() { return coverage_; }
   SplatLayer& mutable_splats() { return splats_; }
+  std::span<PartSplatLayer> mutable_part_splats() { return part_splats_; }
+  IdLayer& mutable_ids(IdKind kind) { return ids_[static_cast<size_t>(kind)]; }
 
   /// Whether the parts agree, for films that were read: boxes lie inside the window, and every
   /// pixel holds a whole number of samples that its batches can hold, zeros where it has none.
-  /// Splats are there only where a batch is.
+  /// Splats are there only where a batch is; no pixel has more ids than samples.
   Status check() const;
 
   /// How many batches each pixel of the window holds, row by row.
@@ -98,10 +108,14 @@ class Film {
   Coverage coverage_;
   std::vector<std::vector<Fixed128>> planes_;
   SplatLayer splats_;
+  std::vector<PartSplatLayer> part_splats_;
+  std::array<IdLayer, kIdKinds> ids_;
 
   size_t offset(int x, int y) const;
   Status check_splats() const;
+  Status check_ids() const;
   void add_splats(Image& image) const;
+  void add_part_splats(Image& image) const;
 };
 
 }  // namespace hyades::core

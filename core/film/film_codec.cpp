@@ -9,6 +9,7 @@
 
 #include "core/base/hash.h"
 #include "core/film/byte_planes.h"
+#include "core/film/id_codec.h"
 #include "core/film/splat_codec.h"
 
 namespace hyades::core {
@@ -17,8 +18,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the format is little-endian");
 
 constexpr uint32_t kMagic = 0x4D465948;  // "HYFM"
-constexpr uint16_t kVersion = 2;
-constexpr uint16_t kPlainVersion = 1;  ///< of films without splats, as before there were any
+constexpr uint16_t kVersion = 3;         ///< of films with layers that older versions do not know
+constexpr uint16_t kSplatVersion = 2;    ///< of other films with splats
 constexpr uint64_t kFreeBytes = uint64_t{64} << 20U;
 constexpr uint64_t kMaxExpansion = 4096;
 constexpr int32_t kMaxCoordinate = 1 << 24;
@@ -35,6 +36,26 @@ enum class ChannelForm : uint8_t {
 uint16_t layer_bits(const LayerSet& layers) {
   return static_cast<uint16_t>((layers.depth ? 1 : 0) | (layers.albedo ? 2 : 0) |
                                (layers.normal ? 4 : 0) | (layers.splats ? 8 : 0));
+}
+
+LayerSet layers_of(uint16_t bits) {
+  return {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
+}
+
+Result<LayerSet> read_layers(ByteReader& in, uint16_t version) {
+  const auto bits = in.number<uint16_t>();
+  if (version == kVersion) {
+    const std::span<const std::byte> text = in.take(bits);
+    if (in.failed()) return Error{"it is truncated"};
+    Result<LayerSet> layers =
+        parse_layers({reinterpret_cast<const char*>(text.data()), text.size()});
+    if (layers && film_version(*layers) != kVersion) return Error{"it has unknown layers"};
+    return layers;
+  }
+  if (version == 0 || bits > 15 || film_version(layers_of(bits)) != version) {
+    return Error{"it has unknown layers"};
+  }
+  return layers_of(bits);
 }
 
 bool float_of(const Fixed128& value, float& result) {
@@ -98,7 +119,8 @@ Status read_channel(ByteReader& in, std::span<Fixed128> plane, const FilmChannel
   return damaged;
 }
 
-/// What a film takes while it is read, at most; `splats`: pixels that have some.
+/// What a film takes while it is read, at most; `splats`: pixels that have some. Ids and splats of
+/// parts are looked at when their numbers are known.
 uint64_t memory_to_read(const FilmLayout& layout, const PixelRect& window, uint64_t splats) {
   return film_memory(layout, window) + splat_memory(splats);
 }
@@ -139,12 +161,9 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
   if (crc32c(body) != ByteReader(bytes.subspan(body.size())).number<uint32_t>()) {
     return Error{"its checksum does not match: it is damaged or truncated"};
   }
-  const auto bits = in.number<uint16_t>();
-  if (version == 0 || bits > 15 || ((bits & 8) != 0) != (version == kVersion)) {
-    return Error{"it has unknown layers"};
-  }
-  FilmLayout layout =
-      make_film_layout({(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0});
+  const Result<LayerSet> layers = read_layers(in, version);
+  if (!layers) return layers.error();
+  FilmLayout layout = make_film_layout(*layers);
 
   const Result<PixelRect> window = read_window(in);
   if (!window) return window.error();
@@ -183,6 +202,17 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
     const Status read = read_splats(in, splats, film.mutable_splats());
     if (!read) return read.error();
   }
+  uint64_t left = std::min(limits.max_bytes, kFreeBytes + kMaxExpansion * bytes.size()) - memory;
+  for (PartSplatLayer& part : film.mutable_part_splats()) {
+    const auto count = in.number<uint32_t>();
+    if (count > region.area() || splat_memory(count) > left) return Error{"its splats are damaged"};
+    left -= splat_memory(count);
+    if (const Status read = read_splats(in, count, part); !read) return read.error();
+  }
+  for (const IdKind kind : {IdKind::object, IdKind::material}) {
+    if (!film.layout().layers.ids[static_cast<size_t>(kind)]) continue;
+    if (const Status read = read_ids(in, film.mutable_ids(kind), left); !read) return read.error();
+  }
   const Status agrees = film.check();
   if (!agrees) return agrees.error();
   return film;
@@ -193,9 +223,17 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
 std::vector<std::byte> encode_film(const Film& film) {
   std::vector<std::byte> out;
   append_number(out, kMagic);
-  const bool splats = film.layout().layers.splats;
-  append_number(out, splats ? kVersion : kPlainVersion);
-  append_number(out, layer_bits(film.layout().layers));
+  const LayerSet& layers = film.layout().layers;
+  const bool splats = layers.splats;
+  const auto version = static_cast<uint16_t>(film_version(layers));
+  append_number(out, version);
+  if (version == kVersion) {
+    const std::string text = layers_text(layers);
+    append_number(out, static_cast<uint16_t>(text.size()));
+    for (const char c : text) append_number(out, c);
+  } else {
+    append_number(out, layer_bits(layers));
+  }
   append_number(out, film.window());
   const auto touched = static_cast<uint32_t>(film.splats().count());
   if (splats) {
@@ -209,6 +247,13 @@ std::vector<std::byte> encode_film(const Film& film) {
     append_channel(out, film.plane(static_cast<int>(c)), film.layout().channels[c].rule);
   }
   if (splats) append_splats(out, film.splats());
+  for (const PartSplatLayer& part : film.part_splats()) {
+    append_number(out, static_cast<uint32_t>(part.count()));
+    append_splats(out, part);
+  }
+  for (const IdKind kind : {IdKind::object, IdKind::material}) {
+    if (layers.ids[static_cast<size_t>(kind)]) append_ids(out, film.ids(kind));
+  }
   // Large and nearly empty films are padded, so that a reader can tell them from bytes that claim
   // more than they hold.
   const uint64_t memory = memory_to_read(film.layout(), film.window(), touched);

@@ -23,6 +23,11 @@ std::string Film::digest() const {
     const PixelRect& region = splats_.region();
     text += fmt::format("splats {} {} {} {} {}\n", region.x0, region.y0, region.x1, region.y1,
                         splats_.digest());
+    for (size_t i = 0; i < part_splats_.size(); ++i)
+      text += fmt::format("splats {} {}\n", layout_.part_names[i], part_splats_[i].digest());
+  }
+  for (size_t kind = 0; kind < kIdKinds; ++kind) {
+    if (layout_.layers.ids[kind]) text += fmt::format("ids {} {}\n", kind, ids_[kind].digest());
   }
   return to_hex(sha256(text));
 }

@@ -16,8 +16,10 @@ inline constexpr const char* kDigestAttribute = "hyades.digest";
 
 /// One channel of part "sums": 32 bits of every pixel of a film's plane.
 struct WordChannel {
-  std::string name;       ///< "R.sum0" (the lowest bits) .. "R.sum3"; minima: "depth.Z.min"
-  int channel = 0;        ///< of the film; behind those the splats' values and squares, R G B each
+  std::string name;  ///< "R.sum0" (the lowest bits) .. "R.sum3"; minima: "depth.Z.min"
+  /// Of the film; behind those the splats' values and squares, R G B each, and the values of what
+  /// splats brought to each part of light.
+  int channel = 0;
   int word = 0;           ///< 0 lowest
   bool required = false;  ///< others are left out where they are zero everywhere
 };

@@ -10,7 +10,8 @@
 namespace hyades::core {
 namespace {
 
-constexpr int kPlainVersion = 1;  ///< of films without splats, as before there were any
+constexpr int kNamedLayers = 3;  ///< from this version on layers are called by their names
+constexpr const char* kIdWords[kIdKinds] = {"object", "material"};
 constexpr std::string_view kTitle = "hyades film ";
 constexpr int32_t kMaxSide = 1 << 20;
 
@@ -101,14 +102,23 @@ bool inside_range(const PixelRect& r) {
 std::string write_film_header(const FilmFile& file) {
   const FilmInfo& info = file.info;
   const LayerSet& layers = file.film.layout().layers;
-  std::string text =
-      fmt::format("{}{}\n", kTitle, layers.splats ? kFilmFileVersion : kPlainVersion);
+  const int version = film_version(layers);
+  std::string text = fmt::format("{}{}\n", kTitle, version);
   text += fmt::format("job {}\nkey {}\nframe {}\nsize {} {}\ncrop {}\nsamples {}\n",
                       escape(info.job_name), escape(info.render_key), info.frame, info.width,
                       info.height, rect_text(info.crop), info.samples);
   text += fmt::format("class {}\nbuild {}\n", escape(info.worker_class), escape(info.build));
-  text += fmt::format("layers {} {} {}{}\nwindow {}\n", int{layers.depth}, int{layers.albedo},
-                      int{layers.normal}, layers.splats ? " 1" : "", rect_text(file.film.window()));
+  if (version < kNamedLayers) {
+    text += fmt::format("layers {} {} {}{}\n", int{layers.depth}, int{layers.albedo},
+                        int{layers.normal}, layers.splats ? " 1" : "");
+  } else {
+    text += fmt::format("layers {}\n", layers_text(layers));
+  }
+  text += fmt::format("window {}\n", rect_text(file.film.window()));
+  for (const IdKind kind : {IdKind::object, IdKind::material}) {
+    for (const auto& [id, name] : file.film.ids(kind).names())
+      text += fmt::format("{} {} {}\n", kIdWords[static_cast<size_t>(kind)], id, escape(name));
+  }
   for (const CoverageBox& box : file.film.coverage().canonical()) {
     text +=
         fmt::format("holds {} {} {}\n", rect_text(box.tile), box.batches.first, box.batches.count);
@@ -138,17 +148,34 @@ Result<FilmHeader> parse_film_header(std::string_view text) {
   lines.numbers("samples", info.samples);
   info.worker_class = unescape(lines.value("class"));
   info.build = unescape(lines.value("build"));
-  int depth = 0;
-  int albedo = 0;
-  int normal = 0;
-  int splats = 0;
-  if (version > kPlainVersion) {
-    lines.numbers("layers", depth, albedo, normal, splats);
+  if (version < kNamedLayers) {
+    int depth = 0;
+    int albedo = 0;
+    int normal = 0;
+    int splats = 0;
+    if (version > 1) {
+      lines.numbers("layers", depth, albedo, normal, splats);
+    } else {
+      lines.numbers("layers", depth, albedo, normal);
+    }
+    header.layers = {depth != 0, albedo != 0, normal != 0, splats != 0};
   } else {
-    lines.numbers("layers", depth, albedo, normal);
+    Result<LayerSet> layers = parse_layers(lines.value("layers"));
+    if (!layers) return layers.error();
+    header.layers = std::move(*layers);
   }
-  header.layers = {depth != 0, albedo != 0, normal != 0, splats != 0};
   lines.rect("window", header.window);
+  for (size_t kind = 0; kind < kIdKinds; ++kind) {
+    while (lines.next_is(kIdWords[kind])) {
+      std::string_view named = lines.value(kIdWords[kind]);
+      uint32_t id = 0;
+      const auto [stop, error] = std::from_chars(named.data(), named.data() + named.size(), id);
+      named.remove_prefix(static_cast<size_t>(stop - named.data()));
+      if (error != std::errc() || !named.starts_with(' '))
+        return Error{"its film header is damaged"};
+      header.names[kind].emplace(id, unescape(named.substr(1)));
+    }
+  }
   std::vector<CoverageBox> boxes;
   while (lines.next_is("holds")) {
     CoverageBox box;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -12,7 +15,7 @@
 
 namespace hyades::core {
 
-inline constexpr int kFilmFileVersion = 2;
+inline constexpr int kFilmFileVersion = 3;
 
 /// Everything about a film but its sums.
 struct FilmHeader {
@@ -20,6 +23,7 @@ struct FilmHeader {
   LayerSet layers;
   PixelRect window;
   Coverage coverage;
+  std::array<std::map<uint32_t, std::string>, kIdKinds> names;  ///< of ids
 };
 
 /// A text of one fact per line, for the header of a file: readable with any EXR tool, and exact.

@@ -60,7 +60,10 @@ Image Film::normalised() const {
     }
     pixel[count] = to_float(n);
   }
-  if (layout_.layers.splats) add_splats(image);
+  if (layout_.layers.splats) {
+    add_splats(image);
+    add_part_splats(image);
+  }
   return image;
 }
 
@@ -91,6 +94,28 @@ void Film::add_splats(Image& image) const {
                    to_double(sums.square[c]) * kSplatSquareUnit / (paths * paths));
     }
   });
+}
+
+void Film::add_part_splats(Image& image) const {
+  const double paths = all_samples();
+  const std::vector<Fixed128>& samples = planes_[static_cast<size_t>(layout_.samples)];
+  for (size_t part = 0; part < part_splats_.size(); ++part) {
+    const size_t first = static_cast<size_t>(layout_.parts) + 3 * part;
+    const PixelRect& region = part_splats_[part].region();
+    part_splats_[part].for_each([&](uint32_t index, const PartSums& sums) {
+      const auto width = static_cast<uint32_t>(region.width());
+      const int x = region.x0 + static_cast<int>(index % width);
+      const int y = region.y0 + static_cast<int>(index / width);
+      if (!window_.contains(x, y)) return;
+      const size_t i = offset(x, y);
+      if (samples[i] == Fixed128{}) return;
+      float* const pixel = image.data.data() + i * image.channels.size() + first;
+      for (size_t c = 0; c < 3; ++c) {
+        const double mean = to_double(planes_[first + c][i]) / to_double(samples[i]);
+        pixel[c] = to_float(mean + to_double(sums.value[c]) / paths);
+      }
+    });
+  }
 }
 
 }  // namespace hyades::core

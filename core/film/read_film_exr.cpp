@@ -15,6 +15,7 @@
 #include "core/base/assets.h"
 #include "core/film/film_exr.h"
 #include "core/film/film_exr_channels.h"
+#include "core/film/film_exr_ids.h"
 #include "core/film/film_header.h"
 #include "core/image/exr_support.h"
 
@@ -34,13 +35,15 @@ std::optional<std::string> text_attribute(const Imf::Header& header, const char*
 
 /// Which of the words are there; an error for channels that do not belong to such a film.
 Result<std::vector<WordChannel>> present_words(const Imf::ChannelList& channels,
-                                               const FilmLayout& layout) {
+                                               const FilmLayout& layout, const IdRows& ids) {
   std::vector<WordChannel> words = word_channels(layout);
   size_t count = 0;
   for (auto i = channels.begin(); i != channels.end(); ++i, ++count) {
     const Imf::Channel& channel = i.channel();
-    const bool known = std::any_of(words.begin(), words.end(),
-                                   [&](const WordChannel& word) { return word.name == i.name(); });
+    const bool known =
+        std::any_of(words.begin(), words.end(),
+                    [&](const WordChannel& word) { return word.name == i.name(); }) ||
+        std::find(ids.names().begin(), ids.names().end(), i.name()) != ids.names().end();
     if (!known || channel.type != Imf::UINT || channel.xSampling != 1 || channel.ySampling != 1) {
       return Error{fmt::format("channel '{}' does not belong into this film", i.name())};
     }
@@ -85,7 +88,8 @@ Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
     return Error{"its data window is not the film's"};
   }
   FilmLayout layout = make_film_layout(header->layers);
-  Result<std::vector<WordChannel>> words = present_words(part_header.channels(), layout);
+  IdRows ids(layout, window, part_header.channels());
+  Result<std::vector<WordChannel>> words = present_words(part_header.channels(), layout, ids);
   if (!words) return words.error();
   if (film_memory(layout, window) / kMaxExpansion > bytes.size()) {
     return Error{fmt::format("it claims {} x {} pixels, which {} bytes cannot hold", window.width(),
@@ -94,11 +98,24 @@ Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
 
   FilmFile file{std::move(header->info), Film(std::move(layout), window)};
   if (file.film.layout().layers.splats) file.film.mutable_splats().spread();
+  for (PartSplatLayer& part : file.film.mutable_part_splats()) part.spread();
   Imf::FrameBuffer buffer;
   for (const WordChannel& word : *words) buffer.insert(word.name, word_slice(file.film, word));
   Imf::InputPart part(in, index);
+  ids.insert(buffer);
   part.setFrameBuffer(buffer);
-  part.readPixels(window.y0, window.y1 - 1);
+  if (ids.names().empty()) {
+    part.readPixels(window.y0, window.y1 - 1);
+  } else {
+    for (int y = window.y0; y < window.y1; ++y) {
+      part.readPixels(y);
+      if (!ids.take(y, file.film)) return Error{"its ids are damaged"};
+    }
+  }
+  for (const IdKind kind : {IdKind::object, IdKind::material}) {
+    for (const auto& [id, name] : header->names[static_cast<size_t>(kind)])
+      file.film.mutable_ids(kind).name(id, name);
+  }
 
   file.film.mutable_coverage() = std::move(header->coverage);
   if (const Status agrees = file.film.check(); !agrees) return agrees.error();

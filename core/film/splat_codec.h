@@ -15,9 +15,11 @@ namespace hyades::core {
 constexpr uint64_t splat_memory(uint64_t pixels) { return 320 * pixels; }
 
 /// Appends what layer.count() pixels hold.
-void append_splats(std::vector<std::byte>& out, const SplatLayer& layer);
+template <class Sums>
+void append_splats(std::vector<std::byte>& out, const BasicSplatLayer<Sums>& layer);
 
 /// The inverse, into an empty layer; `count` as it was.
-Status read_splats(ByteReader& in, uint32_t count, SplatLayer& layer);
+template <class Sums>
+Status read_splats(ByteReader& in, uint32_t count, BasicSplatLayer<Sums>& layer);
 
 }  // namespace hyades::core

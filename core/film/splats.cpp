@@ -19,7 +19,7 @@ constexpr size_t kEntriesPerPiece = 4096;
 
 }  // namespace
 
-SplatLayer::Sums& SplatLayer::Sums::operator+=(const Sums& other) {
+SplatSums& SplatSums::operator+=(const SplatSums& other) {
   for (size_t c = 0; c < 3; ++c) {
     value[c] += other.value[c];
     square[c] += other.square[c];
@@ -27,8 +27,8 @@ SplatLayer::Sums& SplatLayer::Sums::operator+=(const Sums& other) {
   return *this;
 }
 
-SplatLayer::Sums sums_of(const std::array<float, 3>& value) {
-  SplatLayer::Sums sums;
+SplatSums SplatSums::of(const std::array<float, 3>& value) {
+  SplatSums sums;
   for (size_t c = 0; c < 3; ++c) {
     const float v = std::clamp(value[c], -kMaxDeposit, kMaxDeposit);
     const double square = double{v} * double{v} / kSplatSquareUnit;  // exact
@@ -38,17 +38,38 @@ SplatLayer::Sums sums_of(const std::array<float, 3>& value) {
   return sums;
 }
 
-bool SplatLayer::empty() const { return count() == 0; }
+bool SplatSums::valid() const {
+  return std::all_of(square.begin(), square.end(), [](const Fixed128& s) { return s.high >= 0; });
+}
 
-uint64_t SplatLayer::count() const {
+PartSums& PartSums::operator+=(const PartSums& other) {
+  for (size_t c = 0; c < 3; ++c) value[c] += other.value[c];
+  return *this;
+}
+
+PartSums PartSums::of(const std::array<float, 3>& value) {
+  PartSums sums;
+  for (size_t c = 0; c < 3; ++c)
+    sums.value[c] = to_fixed(std::clamp(value[c], -kMaxDeposit, kMaxDeposit));
+  return sums;
+}
+
+template <class PixelSums>
+bool BasicSplatLayer<PixelSums>::empty() const {
+  return count() == 0;
+}
+
+template <class PixelSums>
+uint64_t BasicSplatLayer<PixelSums>::count() const {
   uint64_t touched = 0;
   for_each([&](uint32_t, const Sums&) { ++touched; });
   return touched;
 }
 
-void SplatLayer::deposit(std::vector<PixelSplat> splats) {
+template <class PixelSums>
+void BasicSplatLayer<PixelSums>::deposit(std::vector<PixelSplat> splats) {
   if (!all_.empty()) {
-    for (const PixelSplat& splat : splats) all_[splat.pixel] += sums_of(splat.value);
+    for (const PixelSplat& splat : splats) all_[splat.pixel] += Sums::of(splat.value);
     return;
   }
   std::sort(splats.begin(), splats.end(),
@@ -56,17 +77,21 @@ void SplatLayer::deposit(std::vector<PixelSplat> splats) {
   std::vector<Entry> entries;
   for (const PixelSplat& splat : splats) {
     if (entries.empty() || entries.back().pixel != splat.pixel) {
-      entries.push_back({splat.pixel, sums_of(splat.value)});
+      entries.push_back({splat.pixel, Sums::of(splat.value)});
     } else {
-      entries.back().sums += sums_of(splat.value);
+      entries.back().sums += Sums::of(splat.value);
     }
   }
   add(std::move(entries));
 }
 
-void SplatLayer::add(std::vector<Entry> entries) { add(std::move(entries), kSparse); }
+template <class PixelSums>
+void BasicSplatLayer<PixelSums>::add(std::vector<Entry> entries) {
+  add(std::move(entries), kSparse);
+}
 
-void SplatLayer::add(std::vector<Entry> entries, size_t sparse) {
+template <class PixelSums>
+void BasicSplatLayer<PixelSums>::add(std::vector<Entry> entries, size_t sparse) {
   if (all_.empty() && !entries.empty()) {
     if (entries_.empty()) {
       entries_ = std::move(entries);
@@ -92,14 +117,16 @@ void SplatLayer::add(std::vector<Entry> entries, size_t sparse) {
   for (const Entry& entry : entries) all_[entry.pixel] += entry.sums;
 }
 
-void SplatLayer::spread() {
+template <class PixelSums>
+void BasicSplatLayer<PixelSums>::spread() {
   if (!all_.empty()) return;
   all_.resize(static_cast<size_t>(region_.area()));
   for (const Entry& entry : entries_) all_[entry.pixel] = entry.sums;
   entries_ = {};
 }
 
-void SplatLayer::merge(const SplatLayer& other) {
+template <class PixelSums>
+void BasicSplatLayer<PixelSums>::merge(const BasicSplatLayer& other) {
   assert(region_ == other.region_);
   if (other.all_.empty()) {
     if (!other.entries_.empty()) add(other.entries_, kSparseSum);
@@ -109,7 +136,8 @@ void SplatLayer::merge(const SplatLayer& other) {
   for (size_t i = 0; i < all_.size(); ++i) all_[i] += other.all_[i];
 }
 
-SplatLayer::Sums SplatLayer::at(int x, int y) const {
+template <class PixelSums>
+typename BasicSplatLayer<PixelSums>::Sums BasicSplatLayer<PixelSums>::at(int x, int y) const {
   const auto pixel =
       static_cast<uint32_t>(int64_t{y - region_.y0} * region_.width() + (x - region_.x0));
   if (!all_.empty()) return all_[pixel];
@@ -119,17 +147,17 @@ SplatLayer::Sums SplatLayer::at(int x, int y) const {
   return found != entries_.end() && found->pixel == pixel ? found->sums : Sums{};
 }
 
-Status SplatLayer::check() const {
+template <class PixelSums>
+Status BasicSplatLayer<PixelSums>::check() const {
   bool good = true;
-  for_each([&](uint32_t, const Sums& sums) {
-    for (const Fixed128& square : sums.square) good = good && square.high >= 0;
-  });
+  for_each([&](uint32_t, const Sums& sums) { good = good && sums.valid(); });
   if (!good) return Error{"a pixel holds a negative sum of squares of splats"};
   return {};
 }
 
-std::string SplatLayer::digest() const {
-  static_assert(sizeof(Sums) == 96, "the bytes that are hashed are those of the sums");
+template <class PixelSums>
+std::string BasicSplatLayer<PixelSums>::digest() const {
+  static_assert(sizeof(Sums) % sizeof(Fixed128) == 0, "the bytes that are hashed are the sums'");
   Sha256Stream hash;
   std::vector<std::byte> piece;
   for_each([&](uint32_t pixel, const Sums& sums) {
@@ -144,5 +172,8 @@ std::string SplatLayer::digest() const {
   hash.add(piece);
   return to_hex(hash.digest());
 }
+
+template class BasicSplatLayer<SplatSums>;
+template class BasicSplatLayer<PartSums>;
 
 }  // namespace hyades::core

@@ -22,27 +22,45 @@ struct PixelSplat {
 /// stay within what a film can hold. Splats below 2^-17 have none.
 inline constexpr double kSplatSquareUnit = 0x1p30;
 
+/// A pixel's sums of splats, by channel.
+struct SplatSums {
+  std::array<Fixed128, 3> value{};
+  std::array<Fixed128, 3> square{};  ///< of single splats, in units of kSplatSquareUnit
+  friend bool operator==(const SplatSums&, const SplatSums&) = default;
+  SplatSums& operator+=(const SplatSums& other);
+
+  /// What a single splat of `value` leaves in a pixel.
+  static SplatSums of(const std::array<float, 3>& value);
+  /// Whether no sum of squares is negative.
+  bool valid() const;
+};
+
+/// The same of what light is told apart into (FilmLayout::part_names), whose variance nobody asks.
+struct PartSums {
+  std::array<Fixed128, 3> value{};
+  friend bool operator==(const PartSums&, const PartSums&) = default;
+  PartSums& operator+=(const PartSums& other);
+
+  static PartSums of(const std::array<float, 3>& value);
+  bool valid() const { return true; }
+};
+
 /// What light paths, which may end at any pixel, brought to the pixels of a region: exact sums, so
 /// that layers add up to the same bits in any order and grouping (invariant 2). Holds only the
 /// pixels that were touched while those are few, all of them otherwise. Not thread-safe.
-class SplatLayer {
+template <class PixelSums>
+class BasicSplatLayer {
  public:
-  /// A pixel's sums, by channel.
-  struct Sums {
-    std::array<Fixed128, 3> value{};
-    std::array<Fixed128, 3> square{};  ///< of single splats, in units of kSplatSquareUnit
-    friend bool operator==(const Sums&, const Sums&) = default;
-    Sums& operator+=(const Sums& other);
-  };
+  using Sums = PixelSums;
   struct Entry {
     uint32_t pixel = 0;
     Sums sums;
     friend bool operator==(const Entry&, const Entry&) = default;
   };
 
-  SplatLayer() = default;
+  BasicSplatLayer() = default;
   /// `region`: full-frame pixels, at most 2^32 - 1 of them.
-  explicit SplatLayer(PixelRect region) : region_(region) {}
+  explicit BasicSplatLayer(PixelRect region) : region_(region) {}
 
   const PixelRect& region() const { return region_; }
 
@@ -54,7 +72,7 @@ class SplatLayer {
 
   /// Adds all of `other`, which has the same region. A frame's layer, to which many small ones
   /// come, soon holds all pixels: adding one of those costs no more than its entries then.
-  void merge(const SplatLayer& other);
+  void merge(const BasicSplatLayer& other);
 
   /// Takes memory for every pixel.
   void spread();
@@ -99,7 +117,9 @@ class SplatLayer {
   std::vector<Sums> all_;       ///< of every pixel of the region, or empty
 };
 
-/// What a single splat of `value` leaves in a pixel.
-SplatLayer::Sums sums_of(const std::array<float, 3>& value);
+extern template class BasicSplatLayer<SplatSums>;
+extern template class BasicSplatLayer<PartSums>;
+using SplatLayer = BasicSplatLayer<SplatSums>;
+using PartSplatLayer = BasicSplatLayer<PartSums>;
 
 }  // namespace hyades::core

@@ -14,6 +14,7 @@
 #include "core/base/atomic_file.h"
 #include "core/film/film_exr.h"
 #include "core/film/film_exr_channels.h"
+#include "core/film/film_exr_ids.h"
 #include "core/film/film_header.h"
 #include "core/image/exr_support.h"
 
@@ -50,9 +51,15 @@ void write_sums(Imf::MultiPartOutputFile& out, const Film& film,
                 const std::vector<WordChannel>& words) {
   Imf::FrameBuffer buffer;
   for (const WordChannel& word : words) buffer.insert(word.name, word_slice(film, word));
+  IdRows ids(film);
+  ids.insert(buffer);
   Imf::OutputPart part(out, 1);
   part.setFrameBuffer(buffer);
-  part.writePixels(film.window().height());
+  if (ids.names().empty()) return part.writePixels(film.window().height());
+  for (int y = film.window().y0; y < film.window().y1; ++y) {
+    ids.fill(film, y);
+    part.writePixels(1);
+  }
 }
 
 void write_parts(const std::string& path, const FilmFile& file, const ImageMetadata& extra) {
@@ -74,6 +81,9 @@ void write_parts(const std::string& path, const FilmFile& file, const ImageMetad
     headers[1].channels().insert(word.name, Imf::Channel(Imf::UINT));
   }
 
+  const IdRows ids(file.film);
+  for (const std::string& name : ids.names())
+    headers[1].channels().insert(name, Imf::Channel(Imf::UINT));
   Imf::MultiPartOutputFile out(path.c_str(), headers, 2, false, 0);
   write_picture(out, picture, file.film.window());
   write_sums(out, file.film, words);
@@ -84,6 +94,7 @@ void write_parts(const std::string& path, const FilmFile& file, const ImageMetad
 Film over_region(const Film& film) {
   Film whole(film.layout(), film.splats().region());
   whole.mutable_splats().spread();
+  for (PartSplatLayer& part : whole.mutable_part_splats()) part.spread();
   if (!whole.merge(film)) std::abort();  // an empty film of the same region
   return whole;
 }
@@ -100,6 +111,14 @@ Status write_file(const std::string& path, const FilmFile& file, const ImageMeta
       return Error{context + ": " + e.what()};
     }
   });
+}
+
+/// Whether a film with splats is over_region already.
+bool lies_everywhere(const Film& film) {
+  const std::span<const PartSplatLayer> parts = film.part_splats();
+  return film.window() == film.splats().region() && !film.splats().all().empty() &&
+         std::none_of(parts.begin(), parts.end(),
+                      [](const PartSplatLayer& part) { return part.all().empty(); });
 }
 
 /// Names that would change what the file is.
@@ -120,9 +139,7 @@ Status write_film_exr(const std::string& path, const FilmFile& file, const Image
   for (const auto& [name, value] : extra) {
     if (is_reserved(name)) return Error{context + ": '" + name + "' is no name for metadata"};
   }
-  const SplatLayer& splats = file.film.splats();
-  if (file.film.layout().layers.splats &&
-      (file.film.window() != splats.region() || splats.all().empty())) {
+  if (file.film.layout().layers.splats && !lies_everywhere(file.film)) {
     const FilmFile whole{file.info, over_region(file.film)};
     if (const Status fits = check_film_frame(file.info, whole.film.window()); !fits) {
       return fits.error().in(context);

@@ -229,8 +229,8 @@ TEST(FilmCodec, ANewerVersionIsNamed) {
   bytes[4] = std::byte{2};
   mend_checksum(bytes);
   EXPECT_NE(decode_film(bytes).error().message.find("unknown layers"), std::string::npos);
-  bytes[4] = std::byte{3};
-  EXPECT_NE(decode_film(bytes).error().message.find("format version 3; this build knows 2"),
+  bytes[4] = std::byte{4};
+  EXPECT_NE(decode_film(bytes).error().message.find("format version 4; this build knows 3"),
             std::string::npos);
 }
 

@@ -36,7 +36,7 @@ TEST(SplatLayer, HoldsTheSumsOfItsSplats) {
   EXPECT_EQ(to_double(sums.value[0]), 11.0);
   EXPECT_EQ(to_double(sums.value[1]), -18.0);
   EXPECT_EQ(to_double(sums.square[1]) * kSplatSquareUnit, 404.0);
-  EXPECT_EQ(layer.at(3, 2), sums_of({0.5F, 0, 0}));
+  EXPECT_EQ(layer.at(3, 2), SplatSums::of({0.5F, 0, 0}));
   EXPECT_EQ(layer.at(42, 31), SplatLayer::Sums{});
 }
 
@@ -47,7 +47,7 @@ TEST(SplatLayer, TheSameBitsInAnyOrderAndGrouping) {
     SplatLayer once(kRegion);
     once.deposit(splats);
     std::map<uint32_t, SplatLayer::Sums> expected;
-    for (const PixelSplat& splat : splats) expected[splat.pixel] += sums_of(splat.value);
+    for (const PixelSplat& splat : splats) expected[splat.pixel] += SplatSums::of(splat.value);
     EXPECT_EQ(once.count(), expected.size());
     for (const auto& [pixel, sums] : expected) {
       const auto width = static_cast<uint32_t>(kRegion.width());
