@@ -10,8 +10,13 @@
 
 namespace hyades::core {
 
-/// How a value moves between two keys.
-enum class Ease { linear, smooth, step, in, out };
+/// How a value moves between two keys. `spline` passes through the keys without stopping, and goes
+/// nowhere beyond the two around it.
+enum class Ease { linear, smooth, step, in, out, spline };
+
+/// What comes before the first key and after the last: their values; or all again from the
+/// beginning; or all again, there and back.
+enum class Repeat { none, loop, mirror };
 
 /// A compiled expression of `t` [s] and `frame`. Immutable; evaluate is thread-safe. Functions: sin
 /// cos tan asin acos atan atan2 sqrt abs min max floor ceil round exp log pow mod clamp lerp
@@ -38,6 +43,7 @@ struct Animated {
   T constant{};
   std::vector<Key<T>> keys;  ///< sorted by frame; empty unless keyed
   Ease ease = Ease::linear;
+  Repeat repeat = Repeat::none;
   /// Component i follows expressions[i] where it is set, else `constant`.
   std::array<std::shared_ptr<const Expression>, kComponents> expressions{};
 
@@ -51,12 +57,27 @@ struct Animated {
     return keys.empty();
   }
 
-  /// The value at `time`. Before the first key and after the last, their values.
+  /// The value at `time`, component by component.
   T at(const JobTime& time) const;
+
+  /// Two neighbouring keys and how far it is from the first to the second, eased (but linear where
+  /// the ease is spline). Only where there are keys.
+  struct Between {
+    size_t first = 0;
+    size_t second = 0;
+    double u = 0.0;  ///< 0 to 1
+  };
+  Between between(const JobTime& time) const;
 };
 
 extern template struct Animated<float>;
 extern template struct Animated<Vec2>;
 extern template struct Animated<Vec3>;
+extern template struct Animated<Vec4>;
+
+/// A rotation by keyed quaternions (x, y, z, w), each of any length: from one to the next by the
+/// shortest way at even speed (Shoemake 1985, "Animating Rotation with Quaternion Curves"), eased.
+/// Unit length. Expressions are not rotations: there are none.
+Vec4 rotation_at(const Animated<Vec4>& quaternion, const JobTime& time);
 
 }  // namespace hyades::core

@@ -8,7 +8,10 @@
 #include <span>
 
 #include "core/base/text.h"
+#include "core/base/udim.h"
 #include "core/job/check_frame.h"
+#include "core/job/check_materials.h"
+#include "core/job/ocio_files.h"
 #include "core/job/reference_graph.h"
 
 namespace hyades::core {
@@ -71,8 +74,7 @@ void check_texture_cycles(ReadContext& context) {
   ReferenceGraph graph(names_of(job.textures));
   for (size_t i = 0; i < job.textures.size(); ++i) {
     graph.weigh(i, 1);
-    graph.add(i, job.textures[i].a.texture);
-    graph.add(i, job.textures[i].b.texture);
+    for (const std::string& name : textures_used(job.textures[i])) graph.add(i, name);
   }
   const std::vector<size_t> cycles = graph.in_cycles();
   for (const size_t i : cycles) {
@@ -100,12 +102,12 @@ void check_material_cycles(ReadContext& context) {
   const std::vector<size_t> cycles = graph.in_cycles();
   for (const size_t i : cycles) {
     context.complain(job.materials[i].where,
-                     fmt::format("material '{}' is mixed of itself", job.materials[i].name));
+                     fmt::format("material '{}' is made of itself", job.materials[i].name));
   }
   if (!cycles.empty()) return;
   if (const auto i = graph.first_longer_than(kLongestChain)) {
     context.complain(job.materials[*i].where,
-                     fmt::format("material '{}' is mixed of more than {} others in a row",
+                     fmt::format("material '{}' is made of more than {} others in a row",
                                  job.materials[*i].name, kLongestChain));
     return;
   }
@@ -158,15 +160,45 @@ void check_groups(ReadContext& context) {
   }
 }
 
+/// Opens a file, or all files of a UDIM pattern, so that whoever records what a job opens knows
+/// them.
+Status open_all(const std::string& reference, AssetResolver& assets) {
+  std::vector<std::string> files = {reference};
+  if (is_udim(reference)) {
+    const auto tiles = udim_tiles(assets, reference);
+    if (!tiles) return tiles.error();
+    files.clear();
+    for (const int tile : *tiles) files.push_back(udim_file(reference, tile));
+  }
+  for (const std::string& file : files) {
+    if (const auto bytes = assets.open(file); !bytes) return bytes.error();
+  }
+  return {};
+}
+
 void check_files(ReadContext& context, AssetResolver& assets) {
   std::set<std::string> good;
   for (const FileUse& use : context.files) {
     if (good.contains(use.reference)) continue;
-    const auto bytes = assets.open(use.reference);
-    if (bytes) {
+    const Status opened = open_all(use.reference, assets);
+    if (opened) {
       good.insert(use.reference);
     } else {
-      context.complain(use.where, fmt::format("{}: {}", use.label, bytes.error().message));
+      context.complain(use.where, fmt::format("{}: {}", use.label, opened.error().message));
+    }
+  }
+}
+
+/// Opens what the colour configuration names, so that it travels with the job. What is missing is
+/// missed only by those displays that need it.
+void find_color_files(ReadContext& context, AssetResolver& assets) {
+  if (!context.job.color) return;
+  ColorDesc& color = *context.job.color;
+  const auto config = assets.open(color.config);
+  if (!config) return;  // complained about already
+  for (const std::string& file : ocio_file_candidates({config->chars(), config->size()})) {
+    if (assets.open(file, color.config)) {
+      color.files.push_back(resolve_reference(file, color.config));
     }
   }
 }
@@ -226,9 +258,13 @@ void check_job(ReadContext& context, AssetResolver& assets) {
   check_names(context);
   check_texture_cycles(context);
   check_material_cycles(context);
+  check_two_sided(context);
+  check_emission(context);
+  read_normal_maps_as_numbers(context);
   check_groups(context);
   check_atmosphere(context);
   check_files(context, assets);
+  find_color_files(context, assets);
   check_frames(context);
 }
 

@@ -13,8 +13,8 @@ struct NoiseDensityDesc {
   Animated<Vec3> scale{Vec3(1.0F)};  ///< cells per length
   Animated<Vec3> offset{Vec3(0.0F)};
   int octaves = 5;
-  float lacunarity = 2.0F;
-  float gain = 0.5F;
+  Animated<float> lacunarity{2.0F};
+  Animated<float> gain{0.5F};
   Animated<float> time{0.0F};  ///< the fourth coordinate
   Animated<float> low{0.5F};   ///< noise, 0 to 1, at which the density is 0
   Animated<float> high{0.7F};  ///< and from which on it is 1
@@ -24,8 +24,8 @@ struct NoiseDensityDesc {
 /// An image of all directions, wrapped around the body's origin, whose bright parts are dense.
 struct ShellDensityDesc {
   std::string image;
-  float inner = 0.8F;              ///< radius, length
-  float outer = 1.0F;              ///< radius, length
+  Animated<float> inner{0.8F};     ///< radius, length
+  Animated<float> outer{1.0F};     ///< radius, length
   Animated<float> rotate_y{0.0F};  ///< degrees
   Animated<float> low{0.0F};       ///< luminance at which the density is 0
   Animated<float> high{1.0F};      ///< and from which on it is 1
@@ -51,9 +51,9 @@ struct DensityDesc {
 
 /// What a medium's emission is made of where it varies otherwise than its density.
 struct GlowDesc {
-  std::string grid;         ///< of the density's vdb; empty: none
-  std::string temperature;  ///< grid of the density's vdb; empty: none
-  float kelvin = 1.0F;      ///< what its value 1 stands for
+  std::string grid;              ///< of the density's vdb; empty: none
+  std::string temperature;       ///< grid of the density's vdb; empty: none
+  Animated<float> kelvin{1.0F};  ///< what its value 1 stands for
 };
 
 }  // namespace hyades::core

@@ -42,6 +42,7 @@ void write_transform(FieldWriter& out, const TransformList& steps) {
     out.put("kind", static_cast<int32_t>(step.kind));
     out.put("vector", step.vector);
     out.put("angle", step.angle);
+    out.put("quaternion", step.quaternion);
     out.put("matrix", step.matrix);
     out.leave();
   }

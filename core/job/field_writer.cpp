@@ -11,8 +11,18 @@ namespace {
 
 std::string bits(float value) { return fmt::format("{:08x}", std::bit_cast<uint32_t>(value)); }
 
+std::string bits(const Vec2& value) { return bits(value.x) + "," + bits(value.y); }
+
 std::string bits(const Vec3& value) {
   return bits(value.x) + "," + bits(value.y) + "," + bits(value.z);
+}
+
+std::string bits(const Vec4& value) { return bits(Vec3(value)) + "," + bits(value.w); }
+
+Vec4 value_at(const Animated<Vec4>& value, const JobTime& time) { return rotation_at(value, time); }
+template <class T>
+T value_at(const Animated<T>& value, const JobTime& time) {
+  return value.at(time);
 }
 
 /// One value where it does not change over the moments, else all of them.
@@ -23,7 +33,7 @@ std::string bits(const Animated<T>& value, const std::vector<JobTime>& moments) 
   std::string first;
   bool changes = false;
   for (const JobTime& moment : moments) {
-    const std::string now = bits(value.at(moment));
+    const std::string now = bits(value_at(value, moment));
     if (first.empty()) first = now;
     changes |= now != first;
     all += (all.empty() ? "" : ";") + now;
@@ -66,7 +76,14 @@ void FieldWriter::put(std::string_view key, const Mat4& value) {
 void FieldWriter::put(std::string_view key, const Animated<float>& value) {
   line(key, bits(value, moments_));
 }
+void FieldWriter::put(std::string_view key, const Animated<Vec2>& value) {
+  line(key, bits(value, moments_));
+}
 void FieldWriter::put(std::string_view key, const Animated<Vec3>& value) {
+  line(key, bits(value, moments_));
+}
+
+void FieldWriter::put(std::string_view key, const Animated<Vec4>& value) {
   line(key, bits(value, moments_));
 }
 

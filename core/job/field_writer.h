@@ -30,7 +30,10 @@ class FieldWriter {
   void put(std::string_view key, const Vec3& value);
   void put(std::string_view key, const Mat4& value);
   void put(std::string_view key, const Animated<float>& value);
+  void put(std::string_view key, const Animated<Vec2>& value);
   void put(std::string_view key, const Animated<Vec3>& value);
+  /// A rotation.
+  void put(std::string_view key, const Animated<Vec4>& value);
   void put(std::string_view key, const ColorInput& value);
   void put(std::string_view key, const ScalarInput& value);
 

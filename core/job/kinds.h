@@ -24,6 +24,15 @@ std::span<const std::string> color_space_names();
 std::span<const std::string> wrap_names();
 std::span<const std::string> texture_filter_names();
 std::span<const std::string> mapping_names();
+std::span<const std::string> mapping_space_names();
+std::span<const std::string> channel_names();
+
+// Of patterns and of what becomes of textures.
+std::span<const std::string> cell_metric_names();
+std::span<const std::string> cell_feature_names();
+std::span<const std::string> gradient_shape_names();
+std::span<const std::string> remap_end_names();
+std::span<const std::string> ramp_shape_names();
 
 /// The values of a medium's `phase`.
 std::span<const std::string> phase_names();

@@ -14,7 +14,7 @@ namespace {
 /// whole row.
 const std::array<std::vector<std::string>, 2> kEither = {{
     {"shape", "mesh", "instance", "group"},
-    {"metal", "eta", "k"},
+    {"metal", "eta", "k", "color"},
 }};
 
 bool replaced_by_own(const YamlNode& own, const std::string& key) {
@@ -31,6 +31,8 @@ bool replaced_by_own(const YamlNode& own, const std::string& key) {
   return false;
 }
 
+}  // namespace
+
 YamlPtr merged(const YamlNode& own, const YamlNode& other) {
   auto result = std::make_shared<YamlNode>();
   result->kind = YamlNode::Kind::map;
@@ -44,6 +46,8 @@ YamlPtr merged(const YamlNode& own, const YamlNode& other) {
   }
   return result;
 }
+
+namespace {
 
 class LikeResolver {
  public:

@@ -25,7 +25,9 @@ std::string belongs_elsewhere(const std::string& section, const std::string& key
       types.push_back(k.section.substr(family.size()));
     }
   }
-  // Not a type: the section of what all have but mix and null.
+  // Not types: the sections of what all have but null, and all but null and black.
+  std::replace(types.begin(), types.end(), std::string("solids"),
+               std::string("all materials but null"));
   std::replace(types.begin(), types.end(), std::string("surfaces"),
                std::string("materials that have a surface"));
   return types.empty() ? "" : "; it belongs to " + join_names(types);
@@ -202,12 +204,20 @@ bool MapReader::integers(std::string_view key, std::span<int32_t> target, int64_
 
 void MapReader::animated(std::string_view key, Animated<float>& target, const Range& range) {
   const YamlNode* node = find(key);
-  if (node != nullptr) read_animated_number({context_, std::string(key), range}, *node, target);
+  if (node == nullptr) return;
+  if (read_animated_number({context_, std::string(key), range}, *node, target)) note(key, target);
+}
+
+void MapReader::animated(std::string_view key, Animated<Vec2>& target, const Range& range) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  if (read_animated_pair({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::animated(std::string_view key, Animated<Vec3>& target, const Range& range) {
   const YamlNode* node = find(key);
-  if (node != nullptr) read_animated_vector({context_, std::string(key), range}, *node, target);
+  if (node == nullptr) return;
+  if (read_animated_vector({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::direction(std::string_view key, Animated<Vec3>& target) {
@@ -215,6 +225,7 @@ void MapReader::direction(std::string_view key, Animated<Vec3>& target) {
   if (node == nullptr) return;
   const std::string name(key);
   if (!read_animated_vector({context_, name, kAnyNumber}, *node, target)) return;
+  note(key, target);
   context_.job.checks.vectors.push_back({target, Animated<Vec3>(Vec3(0.0F)), node->where,
                                          name + " is", "a direction, not [0, 0, 0]",
                                          context_.in_shutter});
@@ -230,14 +241,23 @@ void MapReader::keep_apart(std::string_view a_key, const Animated<Vec3>& a, std:
                                          "two points", context_.in_shutter});
 }
 
+void MapReader::rotation(std::string_view key, Animated<Vec4>& target) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  if (read_animated_rotation({context_, std::string(key), kAnyNumber}, *node, target))
+    note(key, target);
+}
+
 void MapReader::animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range) {
   const YamlNode* node = find(key);
-  if (node != nullptr) read_animated_scale({context_, std::string(key), range}, *node, target);
+  if (node == nullptr) return;
+  if (read_animated_scale({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::color(std::string_view key, Animated<Rgb>& target, const Range& range) {
   const YamlNode* node = find_color(key);
-  if (node != nullptr) read_animated_color({context_, std::string(key), range}, *node, target);
+  if (node == nullptr) return;
+  if (read_animated_color({context_, std::string(key), range}, *node, target)) note(key, target);
 }
 
 void MapReader::color(std::string_view key, std::optional<Animated<Rgb>>& target,
@@ -254,6 +274,7 @@ void MapReader::color_input(std::string_view key, ColorInput& target, const Rang
   if (read_texture_input(*this, key, *node, target.texture)) return;
   if (read_animated_color({context_, std::string(key), range}, *node, target.value)) {
     target.texture.clear();
+    note(key, target.value);
   }
 }
 
@@ -263,6 +284,7 @@ void MapReader::scalar_input(std::string_view key, ScalarInput& target, const Ra
   if (read_texture_input(*this, key, *node, target.texture)) return;
   if (read_animated_number({context_, std::string(key), range}, *node, target.value)) {
     target.texture.clear();
+    note(key, target.value);
   }
 }
 
@@ -298,14 +320,8 @@ void MapReader::finish() {
 }
 
 bool check_type(MapReader& reader, const SourceLocation& where, std::string_view key,
-                const std::string& type, std::span<const std::string> valid,
-                std::span<const std::string> later) {
+                const std::string& type, std::span<const std::string> valid) {
   if (std::find(valid.begin(), valid.end(), type) != valid.end()) return true;
-  if (std::find(later.begin(), later.end(), type) != later.end()) {
-    reader.complain(where, fmt::format("{} '{}' is not available in this version; available: {}",
-                                       key, type, join_names(valid)));
-    return false;
-  }
   reader.complain(where, fmt::format("{} is '{}', expected {}{}", key, type.substr(0, 60),
                                      join_names(valid), did_you_mean(type, valid)));
   return false;

@@ -56,12 +56,15 @@ class MapReader {
   bool integers(std::string_view key, std::span<int32_t> target, int64_t low, int64_t high);
 
   void animated(std::string_view key, Animated<float>& target, const Range& range);
+  void animated(std::string_view key, Animated<Vec2>& target, const Range& range);
   void animated(std::string_view key, Animated<Vec3>& target, const Range& range);
   /// As above; complains where it is [0, 0, 0] at a frame.
   void direction(std::string_view key, Animated<Vec3>& target);
   /// Complains where two points that were read already are the same at a frame.
   void keep_apart(std::string_view a_key, const Animated<Vec3>& a, std::string_view b_key,
                   const Animated<Vec3>& b);
+  /// A rotation as a quaternion.
+  void rotation(std::string_view key, Animated<Vec4>& target);
   /// A vector; a single number stands for all three, and [x, y] leaves z as it is.
   void animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range);
   void color(std::string_view key, Animated<Rgb>& target, const Range& range);
@@ -88,6 +91,13 @@ class MapReader {
   /// The same; where it is empty, the complaint tells of the commonest reason.
   const YamlNode* find_color(std::string_view key);
 
+  /// Notes a value that was read as a curve of the job.
+  template <class T>
+  void note(std::string_view key, const Animated<T>& value) {
+    const std::string path = path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+    context_.job.curves.push_back({path, value});
+  }
+
   ReadContext& context_;
   const YamlNode& map_;
   std::string what_;
@@ -97,28 +107,24 @@ class MapReader {
   std::vector<std::string> asked_;
 };
 
-/// One row of a table "type name -> who reads its keys". No reader: the type is known but not in
-/// this version.
+/// One row of a table "type name -> who reads its keys".
 template <class Desc>
 struct TypeRow {
   const char* name;
   void (*read)(MapReader& reader, Desc& desc);
 };
 
-/// Names of a table's rows that can be read.
+/// Names of a table's rows.
 template <class Desc>
 std::vector<std::string> type_names(std::span<const TypeRow<Desc>> table) {
   std::vector<std::string> names;
-  for (const auto& row : table) {
-    if (row.read != nullptr) names.emplace_back(row.name);
-  }
+  for (const auto& row : table) names.emplace_back(row.name);
   return names;
 }
 
 /// Checks `type` (standing at `where`) against the names of a table; complains with the valid ones.
 bool check_type(MapReader& reader, const SourceLocation& where, std::string_view key,
-                const std::string& type, std::span<const std::string> valid,
-                std::span<const std::string> later);
+                const std::string& type, std::span<const std::string> valid);
 
 /// Reads `key` as a row's name into desc.type (which holds the default, "" = required) and lets
 /// that row read the rest, in section "section.row". False where the type is unknown.
@@ -126,23 +132,19 @@ template <class Desc>
 bool read_by_type(MapReader& reader, std::string_view key, const std::string& section, Desc& desc,
                   std::span<const TypeRow<Desc>> table) {
   const std::vector<std::string> valid = type_names(table);
-  std::vector<std::string> later;
-  for (const auto& row : table) {
-    if (row.read == nullptr) later.emplace_back(row.name);
-  }
   if (desc.type.empty()) reader.require(key, "one of " + join_names(valid));
   const YamlNode* node = reader.find(key);
   if (reader.listing()) {
     for (const auto& row : table) {
       reader.enter_section(section + "." + row.name);
-      if (row.read != nullptr) row.read(reader, desc);
+      row.read(reader, desc);
     }
     return true;
   }
   if (node != nullptr) reader.text(key, desc.type, "one of " + join_names(valid));
   if (desc.type.empty()) return false;
   const SourceLocation where = node != nullptr ? SourceLocation(node->where) : reader.where();
-  if (!check_type(reader, where, key, desc.type, valid, later)) return false;
+  if (!check_type(reader, where, key, desc.type, valid)) return false;
   for (const auto& row : table) {
     if (row.name != desc.type) continue;
     reader.enter_section(section + "." + row.name);

@@ -1,5 +1,7 @@
 #include "core/job/read_color.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/base/color.h"
@@ -58,8 +60,22 @@ bool looks_like_color(std::string_view text) {
          parse_kelvin(text, number);
 }
 
+bool refuse_texture(const ValueSite& site, const YamlNode& node) {
+  const std::vector<std::string>& textures =
+      site.context.given[static_cast<size_t>(NameKind::texture)];
+  const bool named = node.kind == YamlNode::Kind::scalar && !looks_like_color(node.scalar) &&
+                     std::find(textures.begin(), textures.end(), node.scalar) != textures.end();
+  const bool in_place = node.kind == YamlNode::Kind::map && node.find("keys") == nullptr &&
+                        node.find("type") != nullptr;
+  if (!named && !in_place) return false;
+  site.context.complain(node.where,
+                        fmt::format("{} is a texture; here only a colour is allowed", site.label));
+  return true;
+}
+
 bool read_color(const ValueSite& site, const YamlNode& node, Animated<Rgb>& target) {
   if (node.kind == YamlNode::Kind::list) return read_list(site, node, target);
+  if (refuse_texture(site, node)) return false;
   if (node.kind != YamlNode::Kind::scalar || !looks_like_color(node.scalar)) {
     complain_mismatch(site, node, expected_color(site.range));
     return false;

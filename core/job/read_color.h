@@ -8,6 +8,10 @@ namespace hyades::core {
 /// (sRGB), or 3200K (black body of luminance 1).
 bool read_color(const ValueSite& site, const YamlNode& node, Animated<Rgb>& target);
 
+/// Whether `node` is the name of a texture, or a texture written in place, about which it
+/// complains: for places where only a colour is allowed.
+bool refuse_texture(const ValueSite& site, const YamlNode& node);
+
 /// What read_color accepts, for complaints.
 std::string expected_color(const Range& range);
 

@@ -20,7 +20,10 @@ bool read_component(const ValueSite& site, const YamlNode& node, float& constant
 /// The `ease` of {keys: ..., ease: ...}.
 Ease read_ease(MapReader& reader);
 
-/// Reads {keys: {frame: value, ...}, ease: name}; `read` reads one value.
+/// The `repeat` of the same.
+Repeat read_repeat(MapReader& reader);
+
+/// Reads {keys: {frame: value, ...}, ease: name, repeat: name}; `read` reads one value.
 template <class T, class Read>
 bool read_keys(const ValueSite& site, const YamlNode& node, Animated<T>& target, Read read) {
   MapReader reader(site.context, node, site.label, site.label, "animation");
@@ -28,6 +31,7 @@ bool read_keys(const ValueSite& site, const YamlNode& node, Animated<T>& target,
   const YamlNode* keys = reader.find("keys");
   Animated<T> result;
   result.ease = read_ease(reader);
+  result.repeat = read_repeat(reader);
   reader.finish();
   if (keys == nullptr) return false;
   if (keys->kind != YamlNode::Kind::map || keys->map.empty()) {

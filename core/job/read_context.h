@@ -44,11 +44,13 @@ struct ReadContext {
   std::array<std::vector<std::string>, 5> given;
   std::vector<NameUse> names;
   std::vector<FileUse> files;
+  float exposure = 0.0F;    ///< stops that the camera's exposure adds to every output's
   bool in_shutter = false;  ///< what is read now counts all the while the shutter is open
   /// Display name of an included file -> its path relative to the job's folder.
   std::map<std::string, std::string> included;
-  bool files_missing = false;           ///< files that names may stand in could not be read
-  std::set<JobKey>* listing = nullptr;  ///< set: only collect which keys the readers know
+  std::map<std::string, YamlPtr> materials;  ///< as written, `like` followed; for overrides
+  bool files_missing = false;                ///< files that names may stand in could not be read
+  std::set<JobKey>* listing = nullptr;       ///< set: only collect which keys the readers know
 
   /// Adds a complaint, once (a node that `like:` or an alias shares is read several times).
   void complain(const SourceLocation& where, const std::string& message);

@@ -18,8 +18,8 @@ void read_noise(MapReader& reader, NoiseDensityDesc& noise) {
   reader.animated_scale("scale", noise.scale, kAnyNumber);
   reader.animated_scale("offset", noise.offset, kAnyNumber);
   reader.integer("octaves", noise.octaves, 1, 16);
-  reader.number("lacunarity", noise.lacunarity, {1.0, 16.0});
-  reader.number("gain", noise.gain, {0.0, 4.0});
+  reader.animated("lacunarity", noise.lacunarity, {1.0, 16.0});
+  reader.animated("gain", noise.gain, {0.0, 4.0});
   reader.animated("time", noise.time, kAnyNumber);
   reader.animated("low", noise.low, kUnitInterval);
   reader.animated("high", noise.high, kUnitInterval);
@@ -29,8 +29,8 @@ void read_noise(MapReader& reader, NoiseDensityDesc& noise) {
 void read_shell(MapReader& reader, ShellDensityDesc& shell) {
   reader.require("image", "an image file");
   reader.file("image", shell.image);
-  reader.number("inner", shell.inner, kNotNegative);
-  reader.number("outer", shell.outer, kPositive);
+  reader.animated("inner", shell.inner, kNotNegative);
+  reader.animated("outer", shell.outer, kPositive);
   reader.animated("rotate_y", shell.rotate_y, kAnyNumber);
   reader.animated("low", shell.low, kNotNegative);
   reader.animated("high", shell.high, kNotNegative);
@@ -39,7 +39,8 @@ void read_shell(MapReader& reader, ShellDensityDesc& shell) {
   reader.animated("scale", shell.scale, kNotNegative);
   reader.integer("octaves", shell.octaves, 1, 16);
   reader.animated("time", shell.time, kAnyNumber);
-  if (shell.inner >= shell.outer && !reader.listing()) {
+  const bool still = shell.inner.is_constant() && shell.outer.is_constant();
+  if (still && shell.inner.constant >= shell.outer.constant && !reader.listing()) {
     reader.complain(reader.where(), reader.what() +
                                         " has an inner radius that is not below the "
                                         "outer one");
@@ -107,7 +108,7 @@ void read_emission(MapReader& reader, MediumDesc& medium) {
     map.animated("strength", medium.emission_strength, kNotNegative);
     map.text("grid", glow.grid, "the name of a grid of numbers");
     map.text("temperature", glow.temperature, "the name of a grid of numbers");
-    map.number("kelvin", glow.kelvin, kPositive);
+    map.animated("kelvin", glow.kelvin, kPositive);
     if (map.listing()) return;
     const bool in_vdb = medium.varying && !medium.varying->vdb.empty();
     for (const char* key : {"grid", "temperature"}) {

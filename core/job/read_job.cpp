@@ -5,6 +5,7 @@
 #include "core/base/text.h"
 #include "core/job/job_keys.h"
 #include "core/job/layers.h"
+#include "core/job/output_names.h"
 #include "core/job/read_sections.h"
 #include "core/job/read_values.h"
 
@@ -96,6 +97,8 @@ void read_job(MapReader& top, Job& job) {
   read_environment(top, job);
   read_atmosphere(top, job);
   top.flag("keep_films", job.keep_films);
+  top.choice("denoise", job.denoise, denoise_names());
+  read_color_config(top, job);
   read_outputs(top, job);
   top.finish();
 }
@@ -110,6 +113,7 @@ std::set<JobKey> known_job_keys() {
   read_job(top, job);
   keys.insert({"animation", "keys"});
   keys.insert({"animation", "ease"});
+  keys.insert({"animation", "repeat"});
   return keys;
 }
 

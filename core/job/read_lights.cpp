@@ -1,6 +1,7 @@
 #include <array>
 
 #include "core/job/kinds.h"
+#include "core/job/light_groups.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
@@ -11,6 +12,7 @@ void read_point(MapReader& reader, LightDesc& light) {
   reader.animated("at", light.at, kAnyNumber);
   reader.color("color", light.color, kNotNegative);
   reader.animated("power", light.power, kNotNegative);
+  read_light_group(reader, light.light_group);
 }
 
 void read_spot(MapReader& reader, LightDesc& light) {
@@ -27,6 +29,7 @@ void read_sun(MapReader& reader, LightDesc& light) {
   reader.color("color", light.color, kNotNegative);
   reader.animated("irradiance", light.irradiance, kNotNegative);
   reader.animated("angle", light.angle, {0.0, 90.0});
+  read_light_group(reader, light.light_group);
 }
 
 const std::array<TypeRow<LightDesc>, 3> kTypes = {{
@@ -55,15 +58,50 @@ void read_lights(MapReader& top) {
              });
 }
 
+namespace {
+
+void read_sky(MapReader& reader, EnvironmentDesc& environment) {
+  const bool image = reader.has("image");
+  reader.map("sky", "environment.sky", [&](MapReader& map) {
+    SkyDesc sky;
+    map.animated("elevation", sky.elevation, {-90.0, 90.0});
+    map.animated("azimuth", sky.azimuth, kAnyNumber);
+    if (map.has("sun_direction") || map.listing()) {
+      Animated<Vec3> direction(Vec3(0.0F, 1.0F, 0.0F));
+      map.direction("sun_direction", direction);
+      sky.sun_direction = direction;
+      if (map.has("elevation") || map.has("azimuth")) {
+        map.complain(map.find("sun_direction")->where,
+                     "sky has both sun_direction and elevation or azimuth, expected one of them");
+      }
+    } else {
+      map.find("sun_direction");
+    }
+    map.animated("turbidity", sky.turbidity, {1.0, 10.0});
+    map.color("ground_albedo", sky.ground_albedo, kUnitInterval);
+    map.animated("irradiance", sky.irradiance, kNotNegative);
+    map.flag("sun", sky.sun);
+    map.animated("sun_size", sky.sun_size, {0.0, 90.0});
+    environment.sky = sky;
+    if (image) {
+      map.complain(map.where(), "environment has both sky and image, expected one of them");
+    }
+  });
+}
+
+}  // namespace
+
 void read_environment(MapReader& top, Job& job) {
   top.map("environment", "environment", [&](MapReader& reader) {
     EnvironmentDesc environment;
     environment.where = reader.where();
     reader.file("image", environment.image);
+    read_sky(reader, environment);
     reader.color("color", environment.color, kNotNegative);
     reader.animated("rotate_y", environment.rotate_y, kAnyNumber);
     reader.animated("strength", environment.strength, kNotNegative);
     reader.flag("visible_to_camera", environment.visible_to_camera);
+    read_light_group(reader, environment.light_group);
     job.environment = environment;
   });
 }

@@ -1,6 +1,7 @@
 #include <array>
 
 #include "core/job/kinds.h"
+#include "core/job/light_groups.h"
 #include "core/job/read_density.h"
 #include "core/job/read_preset.h"
 #include "core/job/read_sections.h"
@@ -86,6 +87,7 @@ void read_media(MapReader& top) {
                read_index(reader, medium);
                read_emission(reader, medium);
                reader.animated("scale", medium.scale, kNotNegative);
+               read_light_group(reader, medium.light_group);
                reader.finish();
                top.context().job.media.push_back(std::move(medium));
              });

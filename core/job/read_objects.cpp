@@ -4,6 +4,9 @@
 
 #include "core/base/text.h"
 #include "core/job/kinds.h"
+#include "core/job/light_groups.h"
+#include "core/job/read_displacement.h"
+#include "core/job/read_overrides.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
@@ -18,7 +21,7 @@ void read_emit(MapReader& reader, ObjectDesc& object) {
   }
   EmitDesc emit;
   reader.map("emit", "objects.emit", [&](MapReader& map) {
-    map.color("color", emit.color, kNotNegative);
+    map.color_input("color", emit.color, kNotNegative);
     map.animated("radiance", emit.amount, kNotNegative);
     map.animated("power", emit.amount, kNotNegative);
     if (map.has("power")) emit.unit = EmitDesc::Unit::power;
@@ -27,6 +30,7 @@ void read_emit(MapReader& reader, ObjectDesc& object) {
                    "emit has both radiance and power, expected one of them");
     }
     map.flag("two_sided", emit.two_sided);
+    read_light_group(map, emit.light_group);
   });
   object.emit = emit;
 }
@@ -54,24 +58,20 @@ void refuse_body(MapReader& reader, const ObjectDesc& object) {
 }
 
 void read_sphere(MapReader& reader, ObjectDesc& object) {
-  reader.number("radius", object.radius, kPositive);
+  reader.animated("radius", object.radius, kPositive);
 }
 
 void read_rectangle(MapReader& reader, ObjectDesc& object) {
-  std::array<float, 2> size = {object.size.x, object.size.y};
-  reader.numbers("size", size, kPositive);
-  object.size = Vec3(size[0], size[1], 1.0F);
+  reader.animated("size", object.extent, kPositive);
 }
 
 void read_box(MapReader& reader, ObjectDesc& object) {
-  std::array<float, 3> size = {object.size.x, object.size.y, object.size.z};
-  reader.numbers("size", size, kPositive);
-  object.size = Vec3(size[0], size[1], size[2]);
+  reader.animated("size", object.size, kPositive);
 }
 
 void read_cylinder(MapReader& reader, ObjectDesc& object) {
-  reader.number("radius", object.radius, kPositive);
-  reader.number("height", object.height, kPositive);
+  reader.animated("radius", object.radius, kPositive);
+  reader.animated("height", object.height, kPositive);
   reader.flag("caps", object.caps);
 }
 
@@ -114,6 +114,8 @@ void read_mesh(MapReader& reader, ObjectDesc& object) {
   reader.enter_section("objects.mesh");
   reader.choice("normals", object.smooth, kMeshNormals);
   reader.text("part", object.part, "the name of a material in the mesh's file (usemtl)");
+  read_displacement(reader, object);
+  reader.enter_section("objects.mesh");
   read_body(reader, object);
 }
 
@@ -169,6 +171,7 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
   object.where = reader.where();
   reader.find("like");
   reader.name_of("material", object.material, NameKind::material);
+  read_overrides(reader, object);
   read_transform(reader, object.transform, object.at);
   reader.flag("visible_to_camera", object.visible_to_camera);
   if (reader.listing()) {
@@ -184,6 +187,7 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
   const KindRow* kind = find_kind(reader);
   if (kind == nullptr) return;
   kind->read(reader, object);
+  if (object.shape != "mesh") refuse_displacement(reader, object);
   if (object.shape.empty()) return;  // an unknown shape, which has been complained about
   reader.enter_section("objects." + object.shape);
   reader.finish();

@@ -2,95 +2,102 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 
 #include "core/base/text.h"
-#include "core/job/film_file.h"
 #include "core/job/output_names.h"
 #include "core/job/output_path.h"
+#include "core/job/output_places.h"
+#include "core/job/read_layers.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
-
 namespace {
-
-void read_layers(MapReader& reader, OutputDesc& output) {
-  output.layers = {"beauty", "alpha"};
-  const auto names = layer_names();
-  const YamlNode* node = reader.find("layers");
-  if (node == nullptr) return;
-  if (node->kind != YamlNode::Kind::list || node->list.empty()) {
-    reader.mismatch("layers", *node, "a list of " + join_names(names));
-    return;
-  }
-  std::vector<std::string> layers;
-  for (const YamlPtr& item : node->list) {
-    if (std::find(names.begin(), names.end(), item->scalar) == names.end()) {
-      reader.complain(item->where,
-                      fmt::format("layer is {}, expected {}{}", describe(*item), join_names(names),
-                                  did_you_mean(item->scalar, names)));
-    } else if (std::find(layers.begin(), layers.end(), item->scalar) != layers.end()) {
-      reader.complain(item->where, fmt::format("layer '{}' is listed twice", item->scalar));
-    } else {
-      layers.push_back(item->scalar);
-    }
-  }
-  output.layers = layers;
-}
 
 void read_exr(MapReader& reader, OutputDesc& output) {
   read_layers(reader, output);
   reader.flag("half", output.half);
+  output.exposure = reader.context().exposure;  // of its previews: the numbers stay
 }
 
 void read_picture(MapReader& reader, OutputDesc& output) {
+  if (reader.context().job.color && reader.has("tone_map")) {
+    reader.complain(reader.find("tone_map")->where,
+                    "tone_map stands beside 'color', whose configuration makes the display values; "
+                    "expected one of them");
+  }
+  const YamlNode* layer = reader.find("layer");
+  if (layer != nullptr && check_layer(reader, *layer)) {
+    if (unfolded(layer->scalar).size() > 1 || layer->scalar == "light_groups") {
+      reader.mismatch("layer", *layer, "one layer; this one stands for several");
+    } else if (layer->scalar != "beauty") {
+      output.layers = {layer->scalar};
+    }
+  }
   reader.choice("tone_map", output.tone_map, tone_map_names());
   reader.number("exposure", output.exposure, {-64.0, 64.0});
+  output.exposure += reader.context().exposure;
 }
 
-void read_png(MapReader& reader, OutputDesc& output) {
+/// PNG and TIFF.
+void read_lossless(MapReader& reader, OutputDesc& output) {
+  static const std::array<std::string, 2> kBits = {"8", "16"};
   read_picture(reader, output);
   reader.flag("transparent", output.transparent);
+  std::string bits = kBits[0];
+  reader.choice("bits", bits, kBits);
+  output.bits = bits == kBits[1] ? 16 : 8;
+}
+
+void read_jpeg(MapReader& reader, OutputDesc& output) {
+  read_picture(reader, output);
+  reader.integer("quality", output.quality, 1, 100);
+}
+
+/// The range of x264's constant rate factor without 0, which needs a profile that few players have.
+void read_h264(MapReader& reader, OutputDesc& output) {
+  read_picture(reader, output);
+  output.quality = VideoDesc().quality;
+  reader.integer("quality", output.quality, 1, 51);
+}
+
+void read_vp9(MapReader& reader, OutputDesc& output) {
+  read_picture(reader, output);
+  output.quality = 24;
+  reader.integer("quality", output.quality, 0, 63);
 }
 
 struct FormatRow {
   const char* extension;
   const char* section;
   void (*read)(MapReader& reader, OutputDesc& output);
+  bool video = false;
 };
 
-const std::array<FormatRow, 5> kFormats = {{
+const std::array<FormatRow, 9> kFormats = {{
     {".exr", "outputs.exr", read_exr},
-    {".png", "outputs.png", read_png},
-    {".jpg", "outputs.jpg", read_picture},
-    {".jpeg", "outputs.jpg", read_picture},
-    {".mp4", "outputs.mp4", nullptr},
+    {".png", "outputs.png", read_lossless},
+    {".tif", "outputs.tiff", read_lossless},
+    {".tiff", "outputs.tiff", read_lossless},
+    {".jpg", "outputs.jpg", read_jpeg},
+    {".jpeg", "outputs.jpg", read_jpeg},
+    {".mp4", "outputs.mp4", read_h264, true},
+    {".mov", "outputs.mp4", read_h264, true},
+    {".webm", "outputs.webm", read_vp9, true},
 }};
 
-void check_frame_marks(MapReader& reader, const SourceLocation& where, const std::string& file,
-                       const FramesDesc& frames) {
-  if (frames.first == frames.last || file.find('#') != std::string::npos) return;
-  reader.complain(where, fmt::format("file is '{}', but the job has several frames: expected #### "
-                                     "where the frame number goes",
-                                     file));
-}
-
-/// A job says where below the output folder its pictures go; it has no say over the rest of the
-/// disk.
-void check_inside_folder(MapReader& reader, const SourceLocation& where, const std::string& file) {
-  const std::string padded = "/" + file + "/";
-  if (file.starts_with('/') || padded.find("/../") != std::string::npos) {
-    reader.complain(where, fmt::format("file is '{}', expected a path below the output folder "
-                                       "(no '..', not absolute); --output chooses the folder",
-                                       file));
-    return;
-  }
-  const std::filesystem::path path = std::filesystem::path(file).lexically_normal();
-  if (path.begin() != path.end() && *path.begin() == ".hyades") {
-    reader.complain(where, fmt::format("file is '{}', expected another folder: what is in .hyades "
-                                       "is removed with the run's log",
-                                       file));
-  }
+/// Puts `video` among the job's videos, and the picture that each frame leaves for it among the
+/// frame's outputs.
+void add_video(MapReader& reader, const SourceLocation& where, OutputDesc output, Job& job) {
+  VideoDesc video;
+  video.where = output.where;
+  video.file = output.file;
+  video.pictures = output.file + ".frames/####.png";
+  video.quality = output.quality;
+  output.file = video.pictures;
+  output.quality = OutputDesc().quality;
+  if (!has_own_place(reader, where, output.file, job)) return;
+  job.outputs.push_back(std::move(output));
+  job.videos.push_back(std::move(video));
 }
 
 void read_output(MapReader& reader, Job& job) {
@@ -98,6 +105,8 @@ void read_output(MapReader& reader, Job& job) {
   output.where = reader.where();
   reader.require("file", "a file name such as image.####.exr");
   reader.text("file", output.file, "a file name such as image.####.exr");
+  output.denoise = job.denoise;
+  reader.choice("denoise", output.denoise, denoise_names());
   if (reader.listing()) {
     for (const FormatRow& row : kFormats) {
       reader.enter_section(row.section);
@@ -110,49 +119,44 @@ void read_output(MapReader& reader, Job& job) {
   const std::string extension = file_extension(output.file);
   const auto row = std::find_if(kFormats.begin(), kFormats.end(),
                                 [&](const FormatRow& r) { return extension == r.extension; });
-  if (row == kFormats.end() || row->read == nullptr) {
-    const bool later = row != kFormats.end();
-    reader.complain(
-        where,
-        fmt::format(
-            "file is '{}', expected the ending .exr, .png, .jpg or .jpeg{}", output.file,
-            later ? " (" + extension + " is not available in this version)" : std::string()));
+  if (row == kFormats.end()) {
+    std::vector<std::string> endings;
+    for (const FormatRow& r : kFormats) endings.emplace_back(r.extension);
+    reader.complain(where, fmt::format("file is '{}', expected the ending {}", output.file,
+                                       join_names(endings)));
     return;
   }
-  check_frame_marks(reader, where, output.file, job.frames);
+  check_frame_marks(reader, where, output.file, job.frames, row->video);
   check_inside_folder(reader, where, output.file);
-  if (job.keep_films && (same_output_path(output.file, film_file(job)) ||
-                         nested_output_paths(output.file, film_file(job)))) {
-    reader.complain(where, fmt::format("file is '{}', where keep_films puts the film, expected "
-                                       "another name",
-                                       output.file));
-  }
   reader.enter_section(row->section);
   row->read(reader, output);
   reader.finish();
-  for (const OutputDesc& other : job.outputs) {
-    if (same_output_path(other.file, output.file)) {
-      reader.complain(where, fmt::format("file is '{}', which line {} writes already", output.file,
-                                         other.where.line));
-      return;
-    }
-    if (nested_output_paths(other.file, output.file)) {
-      reader.complain(where, fmt::format("file is '{}', which cannot stand beside '{}' of line {}: "
-                                         "one would be the other's folder",
-                                         output.file, other.file, other.where.line));
-      return;
-    }
+  if (extension != ".exr" && output.file.find(kLayerMark) != std::string::npos) {
+    return reader.complain(where,
+                           fmt::format("file is '{}', but {} is for .exr files; expected key "
+                                       "layer beside a name without it",
+                                       output.file, kLayerMark));
   }
-  job.outputs.push_back(std::move(output));
+  if (row->video) {
+    if (has_own_place(reader, where, output.file, job)) {
+      add_video(reader, where, std::move(output), job);
+    }
+    return;
+  }
+  for (OutputDesc& one : split_by_layer(job, output)) {
+    if (has_own_place(reader, where, one.file, job)) job.outputs.push_back(std::move(one));
+  }
 }
 
-void add_default_outputs(Job& job) {
+void add_default_outputs(Job& job, float exposure) {
   const std::string marks = job.frames.first == job.frames.last ? "" : ".####";
   OutputDesc exr;
   exr.file = job.name + marks + ".exr";
   exr.layers = {"beauty", "alpha"};
   OutputDesc png;
   png.file = job.name + marks + ".png";
+  png.exposure = exposure;
+  exr.denoise = png.denoise = job.denoise;
   job.outputs = {exr, png};
 }
 
@@ -166,7 +170,7 @@ void read_outputs(MapReader& top, Job& job) {
     return;
   }
   if (node == nullptr) {
-    add_default_outputs(job);
+    add_default_outputs(job, top.context().exposure);
     return;
   }
   if (node->kind != YamlNode::Kind::list) {

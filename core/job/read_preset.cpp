@@ -40,9 +40,10 @@ void read_preset(MapReader& reader, MediumDesc& medium) {
 }
 
 void read_index(MapReader& reader, MediumDesc& medium) {
-  float index = 0.0F;
-  reader.number("index", index, {0.01, 100.0});
-  if (index > 0.0F) medium.index = index;
+  const bool given = reader.has("index") || reader.listing();
+  Animated<float> index(1.0F);
+  reader.animated("index", index, {0.01, 100.0});
+  if (given) medium.index = index;
 }
 
 }  // namespace hyades::core

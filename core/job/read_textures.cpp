@@ -4,7 +4,9 @@
 
 #include <array>
 
+#include "core/base/udim.h"
 #include "core/job/kinds.h"
+#include "core/job/read_texture_kinds.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core {
@@ -13,22 +15,7 @@ namespace {
 
 const std::array<std::string, 3> kColorSpaces = {"auto", "srgb", "linear"};
 const std::array<std::string, 4> kWraps = {"repeat", "clamp", "mirror", "black"};
-const std::array<std::string, 2> kFilters = {"bilinear", "nearest"};
-const std::array<std::string, 4> kMappings = {"default", "uv", "object", "world"};
-
-void read_placement(MapReader& reader, TextureDesc& texture) {
-  reader.animated_scale("scale", texture.scale, kAnyNumber);
-  reader.animated_scale("offset", texture.offset, kAnyNumber);
-}
-
-void read_two_colors(MapReader& reader, TextureDesc& texture) {
-  texture.a = ColorInput{Animated<Rgb>(Rgb(0.0F)), {}};
-  texture.b = ColorInput{Animated<Rgb>(Rgb(1.0F)), {}};
-  reader.color_input("a", texture.a, kNotNegative);
-  reader.color_input("b", texture.b, kNotNegative);
-  reader.choice("mapping", texture.mapping, kMappings);
-  read_placement(reader, texture);
-}
+const std::array<std::string, 4> kFilters = {"trilinear", "anisotropic", "bilinear", "nearest"};
 
 void read_constant(MapReader& reader, TextureDesc& texture) {
   reader.require("value", "a colour");
@@ -36,51 +23,49 @@ void read_constant(MapReader& reader, TextureDesc& texture) {
 }
 
 void read_image(MapReader& reader, TextureDesc& texture) {
+  TextureImage& image = texture.image;
   reader.require("file", "an image file");
-  reader.file("file", texture.file);
-  reader.choice("color_space", texture.color_space, kColorSpaces);
-  reader.choice("wrap", texture.wrap, kWraps);
-  reader.choice("filter", texture.filter, kFilters);
-  read_placement(reader, texture);
+  reader.file("file", image.file);
+  reader.choice("color_space", image.color_space, kColorSpaces);
+  reader.choice("wrap", image.wrap, kWraps);
+  reader.choice("filter", image.filter, kFilters);
+  reader.choice("channel", texture.channel, channel_names());
+  read_mapping(reader, texture);
+  if (is_udim(image.file) && reader.has("wrap")) {
+    reader.complain(reader.find("wrap")->where,
+                    "wrap is given, but the tiles of <UDIM> lie side by side and do not wrap");
+  }
 }
 
-void read_product(MapReader& reader, TextureDesc& texture) {
-  reader.require("input", "a colour or texture");
-  reader.color_input("input", texture.a, kNotNegative);
-  reader.color_input("factor", texture.b, kNotNegative);
-}
-
-void read_noise(MapReader& reader, TextureDesc& texture) {
-  read_two_colors(reader, texture);
-  reader.integer("octaves", texture.octaves, 1, 16);
-  reader.number("lacunarity", texture.lacunarity, {1.0, 16.0});
-  reader.number("gain", texture.gain, {0.0, 4.0});
-}
-
-void read_noise_4d(MapReader& reader, TextureDesc& texture) {
-  read_noise(reader, texture);
-  reader.animated("time", texture.time, kAnyNumber);
-}
-
-void read_fbm(MapReader& reader, TextureDesc& texture) {
-  texture.octaves = 4;
-  read_noise(reader, texture);
-}
-
-void read_fbm_4d(MapReader& reader, TextureDesc& texture) {
-  texture.octaves = 4;
-  read_noise_4d(reader, texture);
-}
-
-const std::array<TypeRow<TextureDesc>, 8> kTypes = {{
+const std::array<TypeRow<TextureDesc>, 28> kTypes = {{
     {"constant", read_constant},
     {"image", read_image},
-    {"checker", read_two_colors},
-    {"scale", read_product},
-    {"perlin3d", read_noise},
-    {"perlin4d", read_noise_4d},
+    {"checker", read_checker},
+    {"brick", read_brick},
+    {"stripes", read_lines},
+    {"grid", read_lines},
+    {"gradient", read_gradient},
+    {"perlin3d", read_perlin},
+    {"perlin4d", read_perlin_4d},
     {"fbm3d", read_fbm},
     {"fbm4d", read_fbm_4d},
+    {"turbulence", read_fractal},
+    {"ridged", read_fractal},
+    {"marble", read_layers},
+    {"wood", read_layers},
+    {"cellular", read_cellular},
+    {"scale", read_product},
+    {"add", read_pair},
+    {"min", read_pair},
+    {"max", read_pair},
+    {"mix", read_mix},
+    {"invert", read_invert},
+    {"remap", read_remap},
+    {"power", read_power},
+    {"threshold", read_threshold},
+    {"ramp", read_ramp},
+    {"hue-saturation", read_hue_saturation},
+    {"channel", read_channel},
 }};
 
 }  // namespace
@@ -89,7 +74,6 @@ std::vector<std::string> texture_types() { return type_names<TextureDesc>(kTypes
 std::span<const std::string> color_space_names() { return kColorSpaces; }
 std::span<const std::string> wrap_names() { return kWraps; }
 std::span<const std::string> texture_filter_names() { return kFilters; }
-std::span<const std::string> mapping_names() { return kMappings; }
 
 void read_texture(ReadContext& context, const YamlNode& node, const std::string& name,
                   const std::string& what, const std::string& path) {

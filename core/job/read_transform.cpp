@@ -26,13 +26,26 @@ void read_matrix(MapReader& reader, std::string_view key, Mat4& matrix) {
   }
 }
 
-/// rotate: {axis: [x, y, z], angle: degrees}
+/// rotate: {axis: [x, y, z], angle: degrees} or {quaternion: [x, y, z, w]}
 void read_rotation(MapReader& reader, TransformStep& step) {
   reader.map("rotate", "transform.rotate", [&](MapReader& map) {
-    map.require("axis", "[x, y, z]");
-    map.require("angle", "degrees");
+    if (map.has("quaternion")) {
+      step.kind = TransformStep::Kind::quaternion;
+      for (const char* key : {"axis", "angle"}) {
+        if (!map.has(key)) continue;
+        map.complain(map.find(key)->where,
+                     fmt::format("rotate has both quaternion and {}, expected quaternion, or axis "
+                                 "and angle",
+                                 key));
+      }
+    } else {
+      map.require("axis", "[x, y, z]");
+      map.require("angle", "degrees");
+    }
     map.direction("axis", step.vector);
     map.animated("angle", step.angle, kAnyNumber);
+    map.enter_section("transform.rotate.quaternion");
+    map.rotation("quaternion", step.quaternion);
   });
 }
 
@@ -64,6 +77,7 @@ void read_step(MapReader& reader, const std::string& name, TransformStep& step) 
 
 void read_list(MapReader& reader, const YamlNode& list, TransformList& steps) {
   if (!reader.context().spend(list.list.size(), list.where)) return;
+  size_t place = 0;
   for (const YamlPtr& item : list.list) {
     const bool one_key = item->kind == YamlNode::Kind::map && item->map.size() == 1;
     if (!one_key) {
@@ -75,7 +89,7 @@ void read_list(MapReader& reader, const YamlNode& list, TransformList& steps) {
       continue;
     }
     MapReader step_reader(reader.context(), *item, "a transform step",
-                          fmt::format("{}.transform", reader.path()), "transform");
+                          fmt::format("{}.transform[{}]", reader.path(), place++), "transform");
     const std::string& name = item->map.front().key;
     for (const std::string& known : kSteps) {
       if (known != name) step_reader.find(known);
@@ -89,8 +103,16 @@ void read_list(MapReader& reader, const YamlNode& list, TransformList& steps) {
   }
 }
 
-void read_placing(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
+}  // namespace
+
+void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
+  reader.context().in_shutter = true;
   reader.animated("at", at, kAnyNumber);
+  read_transform_steps(reader, steps);
+  reader.context().in_shutter = false;
+}
+
+void read_transform_steps(MapReader& reader, TransformList& steps) {
   const YamlNode* node = reader.find("transform");
   if (reader.listing()) {
     MapReader step_reader(reader.context(), empty_map(), "", "", "transform");
@@ -104,14 +126,6 @@ void read_placing(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
   } else {
     reader.mismatch("transform", *node, "a list of steps, such as [{scale: 2}, {rotate_y: 45}]");
   }
-}
-
-}  // namespace
-
-void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
-  reader.context().in_shutter = true;
-  read_placing(reader, steps, at);
-  reader.context().in_shutter = false;
 }
 
 }  // namespace hyades::core

@@ -20,14 +20,16 @@ std::string expected_list(const ValueSite& site, const char* shape) {
   return std::string(shape) + " (each " + site.range.describe() + " or an expression)";
 }
 
-/// Reads [x, y, z], or as many of its components as the list has when that is allowed.
-bool read_list(const ValueSite& site, const YamlNode& node, size_t least, Animated<Vec3>& target) {
-  Animated<Vec3> result = target;
+/// Reads a list of all components, or of as many as it has when that is allowed.
+template <class T>
+bool read_list(const ValueSite& site, const YamlNode& node, size_t least, Animated<T>& target) {
+  constexpr size_t kMost = Animated<T>::kComponents;
+  Animated<T> result = target;
   result.keys.clear();
   if (!site.context.spend(node.list.size(), node.where)) return false;
-  if (node.list.size() < least || node.list.size() > 3) {
-    complain_mismatch(site, node,
-                      expected_list(site, least == 2 ? "[x, y] or [x, y, z]" : "[x, y, z]"));
+  if (node.list.size() < least || node.list.size() > kMost) {
+    const char* const all = kMost == 2 ? "[x, y]" : "[x, y, z]";
+    complain_mismatch(site, node, expected_list(site, least < kMost ? "[x, y] or [x, y, z]" : all));
     return false;
   }
   bool good = true;
@@ -43,6 +45,12 @@ bool read_list(const ValueSite& site, const YamlNode& node, size_t least, Animat
 bool read_vector(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target) {
   if (node.kind == YamlNode::Kind::list) return read_list(site, node, 3, target);
   complain_mismatch(site, node, expected_list(site, "[x, y, z]"));
+  return false;
+}
+
+bool read_pair(const ValueSite& site, const YamlNode& node, Animated<Vec2>& target) {
+  if (node.kind == YamlNode::Kind::list) return read_list(site, node, 2, target);
+  complain_mismatch(site, node, expected_list(site, "[x, y]"));
   return false;
 }
 
@@ -63,6 +71,26 @@ bool read_single(const ValueSite& site, const YamlNode& node, Animated<float>& t
   Animated<float> result;
   if (!read_component(site, node, result.constant, result.expressions[0])) return false;
   target = result;
+  return true;
+}
+
+/// [x, y, z, w], not all 0.
+bool read_quaternion(const ValueSite& site, const YamlNode& node, Animated<Vec4>& target) {
+  Vec4 value(0.0F);
+  bool good = node.kind == YamlNode::Kind::list && node.list.size() == 4;
+  for (int i = 0; good && i < 4; ++i) {
+    double number = 0.0;
+    const YamlNode& item = *node.list[static_cast<size_t>(i)];
+    good = item.kind == YamlNode::Kind::scalar && !item.quoted &&
+           parse_number(item.scalar, number) && site.range.contains(number);
+    value[i] = static_cast<float>(number);
+  }
+  const float size2 = glm::dot(value, value);
+  if (!good || !(size2 > 1e-20F) || !std::isfinite(size2)) {
+    complain_mismatch(site, node, "a quaternion [x, y, z, w], not all 0, or keys of them");
+    return false;
+  }
+  target = Animated<Vec4>(value);
   return true;
 }
 
@@ -151,11 +179,20 @@ bool read_animated_vector(const ValueSite& site, const YamlNode& node, Animated<
   return read_animated<Vec3>(site, node, target, read_vector);
 }
 
+bool read_animated_pair(const ValueSite& site, const YamlNode& node, Animated<Vec2>& target) {
+  return read_animated<Vec2>(site, node, target, read_pair);
+}
+
 bool read_animated_scale(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target) {
   return read_animated<Vec3>(site, node, target, read_scale);
 }
 
+bool read_animated_rotation(const ValueSite& site, const YamlNode& node, Animated<Vec4>& target) {
+  return read_animated<Vec4>(site, node, target, read_quaternion);
+}
+
 bool read_animated_color(const ValueSite& site, const YamlNode& node, Animated<Rgb>& target) {
+  if (refuse_texture(site, node)) return false;
   return read_animated<Rgb>(site, node, target, read_color);
 }
 

@@ -33,7 +33,9 @@ bool read_number(const ValueSite& site, const YamlNode& node, float& target);
 bool read_integer(const ValueSite& site, const YamlNode& node, int64_t low, int64_t high,
                   int64_t& target);
 
+bool read_animated_rotation(const ValueSite& site, const YamlNode& node, Animated<Vec4>& target);
 bool read_animated_number(const ValueSite& site, const YamlNode& node, Animated<float>& target);
+bool read_animated_pair(const ValueSite& site, const YamlNode& node, Animated<Vec2>& target);
 bool read_animated_vector(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target);
 /// One number stands for all three components; [x, y] leaves z as it is.
 bool read_animated_scale(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target);

@@ -28,7 +28,7 @@ class FileList {
 
 std::vector<std::string> referenced_files(const Job& job) {
   FileList list;
-  for (const TextureDesc& texture : job.textures) list.add(texture.file);
+  for (const TextureDesc& texture : job.textures) list.add(texture.image.file);
   for (const MediumDesc& medium : job.media) {
     if (!medium.varying) continue;
     list.add(medium.varying->vdb);

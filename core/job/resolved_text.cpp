@@ -4,6 +4,7 @@
 #include "core/job/density_text.h"
 #include "core/job/field_writer.h"
 #include "core/job/layers.h"
+#include "core/job/texture_text.h"
 
 namespace hyades::core {
 
@@ -62,6 +63,8 @@ void write(FieldWriter& out, const CameraDesc& camera) {
   out.put("look_at", camera.look_at);
   out.put("up", camera.up);
   out.put("fov", camera.fov);
+  out.put("shift", camera.shift);
+  out.put("height", camera.height);
   out.put("aperture_radius", camera.aperture_radius);
   if (camera.f_stop) out.put("f_stop", *camera.f_stop);
   out.put("aperture_blades", camera.aperture_blades);
@@ -71,23 +74,25 @@ void write(FieldWriter& out, const CameraDesc& camera) {
   out.leave();
 }
 
-void write(FieldWriter& out, const TextureDesc& texture) {
-  out.enter("texture");
-  out.put("name", texture.name);
-  out.put("type", texture.type);
-  out.put("a", texture.a);
-  out.put("b", texture.b);
-  out.put_file("file", texture.file);
-  out.put("color_space", texture.color_space);
-  out.put("wrap", texture.wrap);
-  out.put("filter", texture.filter);
-  out.put("scale", texture.scale);
-  out.put("offset", texture.offset);
-  out.put("mapping", texture.mapping);
-  out.put("octaves", texture.octaves);
-  out.put("lacunarity", texture.lacunarity);
-  out.put("gain", texture.gain);
-  out.put("time", texture.time);
+void write(FieldWriter& out, const PrincipledDesc& p) {
+  out.enter("principled");
+  out.put("base_color", p.base_color);
+  out.put("metallic", p.metallic);
+  out.put("specular", p.specular);
+  out.put("specular_tint", p.specular_tint);
+  out.put("anisotropic", p.anisotropic);
+  out.put("anisotropic_rotation", p.anisotropic_rotation);
+  out.put("transmission", p.transmission);
+  out.put("diffuse_transmission", p.diffuse_transmission);
+  out.put("coat", p.coat);
+  out.put("coat_roughness", p.coat_roughness);
+  out.put("coat_ior", p.coat_ior);
+  out.put("sheen", p.sheen);
+  out.put("sheen_tint", p.sheen_tint);
+  out.put("sheen_roughness", p.sheen_roughness);
+  out.put("thin_walled", p.thin_walled);
+  out.put("emission_color", p.emission_color);
+  out.put("emission_strength", p.emission_strength);
   out.leave();
 }
 
@@ -109,10 +114,21 @@ void write(FieldWriter& out, const MaterialDesc& material) {
   out.put("first", material.first);
   out.put("second", material.second);
   out.put("amount", material.amount);
+  out.put("opacity", material.opacity);
   if (material.bump) {
     out.put("bump.texture", material.bump->texture);
     out.put("bump.height", material.bump->height);
   }
+  if (material.colored) {
+    out.put("colored", material.colored);
+    out.put("edge", material.edge);
+  }
+  if (material.type == "diffuse-transmission") out.put("transmitted", material.transmitted);
+  if (material.normal_map) {
+    out.put("normal_map.texture", material.normal_map->texture);
+    out.put("normal_map.strength", material.normal_map->strength);
+  }
+  if (material.principled) write(out, *material.principled);
   if (material.subsurface) {
     out.enter("subsurface");
     out.put("color", material.subsurface->color);
@@ -141,6 +157,7 @@ void write(FieldWriter& out, const MediumDesc& medium) {
   out.put("scale", medium.scale);
   if (medium.varying) write_density(out, *medium.varying);
   if (medium.glow) write_glow(out, *medium.glow);
+  if (!medium.light_group.empty()) out.put("light_group", medium.light_group);
   if (medium.index) out.put("index", *medium.index);
   out.leave();
 }
@@ -151,6 +168,7 @@ void write(FieldWriter& out, const EmitDesc& emit) {
   out.put("unit", static_cast<int32_t>(emit.unit));
   out.put("amount", emit.amount);
   out.put("two_sided", emit.two_sided);
+  if (!emit.light_group.empty()) out.put("light_group", emit.light_group);
   out.leave();
 }
 
@@ -162,14 +180,20 @@ void write(FieldWriter& out, const ObjectDesc& object) {
   if (!object.part.empty()) out.put("part", object.part);
   out.put("instance_of", object.instance_of);
   out.put("radius", object.radius);
+  out.put("extent", object.extent);
   out.put("size", object.size);
   out.put("height", object.height);
   out.put("caps", object.caps);
   out.put("smooth", object.smooth);
+  if (object.displacement) write_displacement(out, *object.displacement);
   out.put("material", object.material);
   if (!object.interior.empty()) out.put("interior", object.interior);
   if (!object.exterior.empty()) out.put("exterior", object.exterior);
   if (object.priority != 0) out.put("priority", object.priority);
+  for (const auto& [from, to] : object.overrides) {
+    out.put("override", from);
+    out.put("with", to);
+  }
   write_transform(out, object.transform);
   out.put("at", object.at);
   if (object.emit) write(out, *object.emit);
@@ -197,25 +221,39 @@ void write(FieldWriter& out, const LightDesc& light) {
   out.put("irradiance", light.irradiance);
   out.put("angle", light.angle);
   out.put("blend", light.blend);
+  if (!light.light_group.empty()) out.put("light_group", light.light_group);
   out.leave();
 }
 
 void write(FieldWriter& out, const EnvironmentDesc& environment) {
   out.enter("environment");
   out.put_file("image", environment.image);
+  if (const auto& sky = environment.sky) {
+    out.enter("sky");
+    out.put("elevation", sky->elevation);
+    out.put("azimuth", sky->azimuth);
+    if (sky->sun_direction) out.put("sun_direction", *sky->sun_direction);
+    out.put("turbidity", sky->turbidity);
+    out.put("ground_albedo", sky->ground_albedo);
+    out.put("irradiance", sky->irradiance);
+    out.put("sun", sky->sun);
+    out.put("sun_size", sky->sun_size);
+    out.leave();
+  }
   out.put("color", environment.color);
   out.put("rotate_y", environment.rotate_y);
   out.put("strength", environment.strength);
   out.put("visible_to_camera", environment.visible_to_camera);
+  if (!environment.light_group.empty()) out.put("light_group", environment.light_group);
   out.leave();
 }
 
 std::vector<JobTime> shutter_moments(const Job& job, int32_t frame) {
   std::vector<JobTime> moments = {job.time_of(frame)};
-  if (job.frames.shutter <= 0.0F) return moments;
-  for (int i = 1; i < kShutterMoments; ++i) {
-    moments.push_back(job.time_of(frame, static_cast<float>(i) / (kShutterMoments - 1)));
+  for (int i = 1; i < kMostShutterMoments && job.frames.shutter > 0.0F; ++i) {
+    moments.push_back(job.time_of(frame, static_cast<float>(i) / (kMostShutterMoments - 1)));
   }
+  if (needed_layers(job).motion) moments.push_back(job.time_of(frame + 1));
   return moments;
 }
 
@@ -233,7 +271,7 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   write(out, job.sampling);
   write(out, job.integrator);
   write(out, job.camera);
-  for (const TextureDesc& texture : job.textures) write(out, texture);
+  for (const TextureDesc& texture : job.textures) write_texture(out, texture);
   for (const MaterialDesc& material : job.materials) write(out, material);
   for (const MediumDesc& medium : job.media) write(out, medium);
   for (const GroupDesc& group : job.groups) write(out, group);

@@ -10,8 +10,12 @@ struct JobTime {
   double frame = 1.0;    ///< `frame` of expressions and keys
 };
 
-/// How many moments of an open shutter decide a frame, first and last included: the render key
-/// looks at them, and motion is sampled at moments among them only.
+/// At how many moments of an open shutter, first and last included, values are tried for their
+/// ranges and the camera is placed.
 inline constexpr int kShutterMoments = 17;
+
+/// How many moments of an open shutter decide a frame: the render key looks at them, and motion is
+/// sampled at moments among them only. Those above are among them.
+inline constexpr int kMostShutterMoments = 129;
 
 }  // namespace hyades::core

@@ -8,11 +8,12 @@ namespace hyades::core {
 
 /// One step of a transform list; steps apply top to bottom.
 struct TransformStep {
-  enum class Kind { translate, scale, rotate_x, rotate_y, rotate_z, rotate, matrix };
+  enum class Kind { translate, scale, rotate_x, rotate_y, rotate_z, rotate, quaternion, matrix };
   Kind kind = Kind::translate;
   Animated<Vec3> vector{Vec3(0.0F)};  ///< translate [length]; scale [factor per axis]; rotate: axis
   Animated<float> angle{0.0F};        ///< degrees
-  Mat4 matrix{1.0F};                  ///< matrix only
+  Animated<Vec4> quaternion{Vec4(0.0F, 0.0F, 0.0F, 1.0F)};  ///< x, y, z, w; see rotation_at
+  Mat4 matrix{1.0F};                                        ///< matrix only
 };
 using TransformList = std::vector<TransformStep>;
 

@@ -27,9 +27,9 @@ TEST(Complaints, UnknownKeysSuggestTheNearestOne) {
 }
 
 TEST(Complaints, KeysOfAnotherTypeSayWhereTheyBelong) {
-  EXPECT_EQ(complaints("materials:\n  red: {type: lambert, roughness: 0.5}\n"),
-            "job.yaml:3:24: unknown key 'roughness' in material 'red'; it belongs to conductor or "
-            "dielectric\n");
+  EXPECT_EQ(complaints("materials:\n  red: {type: lambert, reflection: 0.5}\n"),
+            "job.yaml:3:24: unknown key 'reflection' in material 'red'; it belongs to conductor, "
+            "dielectric or thin-dielectric\n");
   EXPECT_EQ(complaints("objects:\n  a: {shape: box, radius: 2}\n"),
             "job.yaml:3:19: unknown key 'radius' in object 'a'; it belongs to cylinder, disk or "
             "sphere\n");
@@ -106,6 +106,24 @@ TEST(Complaints, Colors) {
             "job.yaml:2:22: color is '20K', expected a black body from 500K to 100000K\n");
 }
 
+TEST(Complaints, TexturesWhereOnlyAColourIsAllowed) {
+  EXPECT_EQ(
+      complaints("textures: {dots: {type: checker}}\nlights: {a: {type: point, color: dots}}\n"),
+      "job.yaml:3:34: color is a texture; here only a colour is allowed\n");
+  EXPECT_EQ(complaints("environment: {color: {type: checker, scale: 3}}\n"),
+            "job.yaml:2:22: color is a texture; here only a colour is allowed\n");
+  EXPECT_EQ(complaints("textures: {dots: {type: checker}}\n"
+                       "lights: {a: {type: sun, color: {keys: {1: dots, 5: 1}}}}\n"),
+            "job.yaml:3:43: color is a texture; here only a colour is allowed\n");
+  EXPECT_EQ(complaints("media: {fog: {scattering: {type: checker}}}\n"),
+            "job.yaml:2:27: scattering is a texture; here only a colour is allowed\n");
+  EXPECT_EQ(complaints("objects: {a: {shape: sphere, emit: {color: dots}}}\n"),
+            "job.yaml:2:44: color of emit of object 'a' names the texture 'dots', which does not "
+            "exist; the job defines none\n");
+  EXPECT_EQ(complaints("objects: {a: {shape: sphere, emit: {color: [1, -1, 0]}}}\n"),
+            "job.yaml:2:48: color[1] is '-1', expected a number >= 0\n");
+}
+
 TEST(Complaints, KeysThatAreNoTextHideNoOtherComplaint) {
   EXPECT_EQ(
       complaints("film: {size: 640}\nobjects:\n  ~: {shape: sphere}\n  [1, 2]: {shape: sphere}\n"
@@ -153,12 +171,16 @@ TEST(Complaints, AnUnquotedColorIsAYamlComment) {
 }
 
 TEST(Complaints, TypesAndChoicesListWhatThereIs) {
-  EXPECT_EQ(complaints("materials: {a: {type: lambart}}\n"),
-            "job.yaml:2:23: type is 'lambart', expected lambert, dielectric, thin-dielectric, "
-            "conductor, glossy, mirror, mix, null or black, did you mean 'lambert'?\n");
-  EXPECT_EQ(complaints("materials: {a: {color: 0.5}}\n"),
-            "job.yaml:2:16: material 'a' has no 'type', expected one of lambert, dielectric, "
-            "thin-dielectric, conductor, glossy, mirror, mix, null or black\n");
+  EXPECT_EQ(
+      complaints("materials: {a: {type: lambart}}\n"),
+      "job.yaml:2:23: type is 'lambart', expected lambert, principled, "
+      "dielectric, thin-dielectric, conductor, glossy, mirror, diffuse-transmission, mix, coat, "
+      "sheen, two-sided, null or black, did you mean 'lambert'?\n");
+  EXPECT_EQ(
+      complaints("materials: {a: {color: 0.5}}\n"),
+      "job.yaml:2:16: material 'a' has no 'type', expected one of lambert, principled, dielectric, "
+      "thin-dielectric, conductor, glossy, mirror, diffuse-transmission, mix, coat, sheen, "
+      "two-sided, null or black\n");
   EXPECT_EQ(complaints("materials: {a: {type: conductor, metal: sliver}}\n"),
             "job.yaml:2:41: metal is 'sliver', expected aluminium, brass, chromium, cobalt, "
             "copper, gold, iron, nickel, palladium, platinum, silver, titanium or tungsten, did "
@@ -188,10 +210,22 @@ TEST(Complaints, StrategiesAllUnweighted) {
       "them unweighted would add up to several times the picture\n");
 }
 
-TEST(Complaints, WhatLaterVersionsKnowIsNotCalledAMistake) {
-  EXPECT_EQ(complaints("outputs: [{file: a.mp4}]\n"),
-            "job.yaml:2:18: file is 'a.mp4', expected the ending .exr, .png, .jpg or .jpeg (.mp4 "
-            "is not available in this version)\n");
+TEST(Complaints, Videos) {
+  EXPECT_EQ(complaints("outputs: [{file: a.avi}]\n"),
+            "job.yaml:2:18: file is 'a.avi', expected the ending .exr, .png, .tif, .tiff, .jpg, "
+            ".jpeg, .mp4, .mov or .webm\n");
+  EXPECT_EQ(complaints("frames: {range: 1-5}\noutputs: [{file: a.####.mp4}]\n"),
+            "job.yaml:3:18: file is 'a.####.mp4', expected no #: a video holds all frames\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4, quality: 0}]\n"),
+            "job.yaml:2:34: quality is '0', expected a whole number from 1 to 51\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4, layers: [beauty]}]\n"),
+            "job.yaml:2:25: unknown key 'layers' in output 1; it belongs to exr\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4}, {file: ./a.mp4}]\n"),
+            "job.yaml:2:33: file is './a.mp4', which line 2 writes already\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4}, {file: a.mp4.frames/####.png}]\n"),
+            "job.yaml:2:33: file is 'a.mp4.frames/####.png', which line 2 writes already\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4.frames}, {file: a.mp4}]\n").substr(0, 14),
+            "job.yaml:2:18:");
 }
 
 TEST(Complaints, Media) {
@@ -238,8 +272,9 @@ TEST(Complaints, AMistakeInAnEntryDoesNotMakeItsNameUnknown) {
                  "objects: {a: {shape: box, material: red}, b: {shape: box, material: blue}}\n"
                  "groups: {g: {objects: 3}}\n"),
       "job.yaml:2:40: color is '7', expected a number from 0 to 1\n"
-      "job.yaml:2:57: type is 'lambart', expected lambert, dielectric, thin-dielectric, "
-      "conductor, glossy, mirror, mix, null or black, did you mean 'lambert'?\n"
+      "job.yaml:2:57: type is 'lambart', expected lambert, principled, dielectric, "
+      "thin-dielectric, conductor, glossy, mirror, diffuse-transmission, mix, coat, sheen, "
+      "two-sided, null or black, did you mean 'lambert'?\n"
       "job.yaml:4:23: objects is '3', expected a map of names, such as {name: {...}}\n");
 }
 
@@ -248,7 +283,7 @@ TEST(Complaints, ThingsThatContainThemselves) {
             "job.yaml:2:15: texture 'a' is made of itself\n"
             "job.yaml:2:41: texture 'b' is made of itself\n");
   EXPECT_EQ(complaints("materials: {m: {type: mix, first: m, second: n}, n: {type: mirror}}\n"),
-            "job.yaml:2:16: material 'm' is mixed of itself\n");
+            "job.yaml:2:16: material 'm' is made of itself\n");
   EXPECT_EQ(complaints("groups: {g: {objects: {x: {group: {objects: {y: {instance: g}}}}}}}\n"),
             "job.yaml:2:13: group 'g' contains itself\n");
   EXPECT_EQ(complaints("objects: {a: {like: b}, b: {like: a}}\n"),
@@ -356,11 +391,16 @@ TEST(Complaints, Outputs) {
             "not absolute); --output chooses the folder\n");
   EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: .//./a.exr}\n"),
             "job.yaml:4:12: file is './/./a.exr', which line 3 writes already\n");
-  EXPECT_EQ(complaints("outputs: [{file: a.gif}]\n"),
-            "job.yaml:2:18: file is 'a.gif', expected the ending .exr, .png, .jpg or .jpeg\n");
+  EXPECT_EQ(
+      complaints("outputs: [{file: a.gif}]\n"),
+      "job.yaml:2:18: file is 'a.gif', expected the ending .exr, .png, .tif, .tiff, .jpg, .jpeg, "
+      ".mp4, .mov or .webm\n");
   EXPECT_EQ(complaints("outputs: [{file: a.exr, layers: [beauty, normals, beauty]}]\n"),
-            "job.yaml:2:42: layer is 'normals', expected beauty, alpha, depth, albedo, normal, "
-            "variance or samples, did you mean 'normal'?\n"
+            "job.yaml:2:42: layer is 'normals', expected beauty, alpha, depth, position, normal, "
+            "albedo, motion, variance, samples, components, diffuse_direct, diffuse_indirect, "
+            "glossy_direct, glossy_indirect, transmission_direct, transmission_indirect, "
+            "volume_direct, volume_indirect, emission, environment, light_groups, object_id, "
+            "material_id, crypto_object or crypto_material, did you mean 'normal'?\n"
             "job.yaml:2:51: layer 'beauty' is listed twice\n");
   EXPECT_EQ(complaints("name: b\nkeep_films: true\noutputs: [{file: ./b.film.exr}]\n"),
             "job.yaml:4:18: file is './b.film.exr', where keep_films puts the film, expected "
@@ -398,6 +438,30 @@ TEST(Complaints, VersionAndNames) {
             "spaces, at most 100\n");
 }
 
+TEST(Complaints, AboutCamerasThatDoNotHaveThat) {
+  EXPECT_EQ(complaints("camera: {type: panoramic}\n"),
+            "job.yaml:2:16: type is 'panoramic', expected perspective, orthographic or "
+            "equirectangular\n");
+  EXPECT_EQ(complaints("camera: {type: orthographic, aperture: {f_stop: 2}}\n"),
+            "job.yaml:2:49: aperture has f_stop, but orthographic cameras have no focal length "
+            "that it could divide, expected radius\n");
+  EXPECT_EQ(complaints("camera: {type: orthographic, fov: 30}\n"),
+            "job.yaml:2:30: unknown key 'fov' in camera; it belongs to perspective\n");
+  EXPECT_EQ(complaints("camera: {type: orthographic, height: 0}\n"),
+            "job.yaml:2:38: height is '0', expected a number above 0\n");
+  EXPECT_EQ(complaints("camera: {type: equirectangular, focus: 3}\n"),
+            "job.yaml:2:33: unknown key 'focus' in camera; it belongs to orthographic or "
+            "perspective\n");
+  EXPECT_EQ(complaints("camera: {shift: 0.2}\n"),
+            "job.yaml:2:17: shift is '0.2', expected [x, y] (each a number from -100 to 100 or an "
+            "expression)\n");
+  EXPECT_EQ(complaints("camera: {shift: [0, 0.2, 0]}\n"),
+            "job.yaml:2:17: shift is a list of 3, expected [x, y] (each a number from -100 to 100 "
+            "or an expression)\n");
+  EXPECT_EQ(complaints("frames: 1-9\ncamera: {shift: [0, \"= 20 * frame\"]}\n"),
+            "job.yaml:3:21: shift[1] is 120 at frame 6, expected a number from -100 to 100\n");
+}
+
 TEST(Complaints, ComeAllAtOnceInOrderOfLines) {
   EXPECT_EQ(complaints("outputs: [{file: a.gif}]\n"
                        "film: {size: [0, 10]}\n"
@@ -405,11 +469,13 @@ TEST(Complaints, ComeAllAtOnceInOrderOfLines) {
                        "objects:\n"
                        "  a: {shape: sphere, radius: -1, material: gold}\n"
                        "  b: {mesh: missing.ply}\n"),
-            "job.yaml:2:18: file is 'a.gif', expected the ending .exr, .png, .jpg or .jpeg\n"
+            "job.yaml:2:18: file is 'a.gif', expected the ending .exr, .png, .tif, .tiff, .jpg, "
+            ".jpeg, .mp4, .mov or .webm\n"
             "job.yaml:3:15: size[0] is '0', expected a whole number from 1 to 65536\n"
             "job.yaml:4:15: fov is '500', expected a number above 0 and below 180\n"
-            "job.yaml:4:20: unknown key 'lens' in camera; expected aperture, focus, fov, look_at, "
-            "look_from, type or up\n"
+            "job.yaml:4:20: unknown key 'lens' in camera; expected aperture, exposure, focus, fov, "
+            "look_at, "
+            "look_from, shift, type or up\n"
             "job.yaml:6:30: radius is '-1', expected a number above 0\n"
             "job.yaml:6:44: material of object 'a' names the material 'gold', which does not "
             "exist; the job defines none\n"
@@ -437,6 +503,40 @@ TEST(Complaints, AFilterThatHasNoRoomForSplats) {
   }
   EXPECT_EQ(complaints("film: {filter: center}\nintegrator: path\n"), "");
   EXPECT_EQ(complaints("film: {filter: box}\nintegrator: bdpt\n"), "");
+}
+
+TEST(Complaints, MaterialsThatContradictThemselves) {
+  const auto complains = [](const std::string& materials, const std::string& expected) {
+    const std::string found = complaints("materials:\n  a: {type: lambert}\n" + materials);
+    EXPECT_NE(found.find(expected), std::string::npos) << found;
+  };
+  complains(
+      "  g: {type: dielectric}\n  b: {type: two-sided, front: a, back: c}\n"
+      "  c: {type: mix, first: a, second: g}\n",
+      "job.yaml:5:6: material 'b' is two-sided, but 'g' lets light through");
+  complains("  c: {type: lambert, opacity: 0.5}\n  b: {type: two-sided, front: a, back: c}\n",
+            "'c' lets light through");
+  complains("  b: {type: conductor, edge: 0.5}\n", "edge belongs to color, which is not there");
+  complains("  b: {type: conductor, metal: gold, color: 0.5}\n",
+            "color and a measured index are both there");
+  complains("  b: {type: principled, diffuse_transmission: 0.5}\n",
+            "that of thin walls, expected thin_walled: true");
+  complains("  b: {type: principled, transmission: 1, subsurface: {radius: 1}}\n",
+            "transmission and a subsurface are both there");
+  complains("  b: {type: principled, emission_strength: 1}\n  c: {type: coat, base: b}\n",
+            "'b' is a part of material 'c' and has an emission_strength");
+  complains("  b: {type: coat, base: c}\n  c: {type: sheen, base: b}\n", "is made of itself");
+}
+
+// Images of normals hold numbers.
+TEST(Complaints, NormalMapsThatAreColours) {
+  const auto with_space = [](const std::string& space) {
+    return "textures: {n: {type: image, file: n.png" + space +
+           "}}\nmaterials: {a: {type: lambert, normal_map: {texture: n}}}\n";
+  };
+  EXPECT_NE(complaints(with_space(", color_space: srgb")).find("is a normal map with color_space"),
+            std::string::npos);
+  EXPECT_EQ(complaints(with_space("")).find("color_space"), std::string::npos);
 }
 
 }  // namespace

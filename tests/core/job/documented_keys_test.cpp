@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/job/job_keys.h"
@@ -21,6 +22,7 @@ namespace {
 
 struct DocumentedKey {
   JobKey id;
+  std::string type;
   std::string default_value;  ///< YAML; empty where the page names none
   bool required = false;
   std::string example;  ///< YAML
@@ -76,6 +78,7 @@ std::vector<DocumentedKey> read_page() {
     for (const std::string& section : sections) {
       DocumentedKey key;
       key.id = {section, cells[0]};
+      key.type = cells[1];
       key.required = cells[3] == "required";
       const auto defaults = quoted_parts(cells[3]);
       if (!defaults.empty()) key.default_value = defaults[0];
@@ -111,26 +114,48 @@ const std::map<std::string, Place>& places() {
     p["integrator.mlt"] = {"integrator: {", {{"type", "mlt"}}, "}"};
     p["camera"] = {"camera: {", {}, "}"};
     p["camera.perspective"] = p["camera"];
+    p["camera.orthographic"] = {"camera: {", {{"type", "orthographic"}}, "}"};
+    p["camera.equirectangular"] = {"camera: {", {{"type", "equirectangular"}}, "}"};
+    p["camera.exposure"] = {"camera: {exposure: {", {}, "}}"};
     p["camera.aperture"] = {"camera: {aperture: {", {}, "}}"};
     p["environment"] = {"environment: {", {}, "}"};
+    p["environment.sky"] = {"environment: {sky: {", {}, "}}"};
     const auto named = [&](const std::string& key, const std::string& type, const Pairs& more) {
       Place place{key + ": {x: {", {{"type", type}}, "}}"};
       place.pairs.insert(place.pairs.end(), more.begin(), more.end());
       return place;
     };
     p["textures"] = named("textures", "perlin3d", {});
-    for (const char* type : {"checker", "perlin3d", "perlin4d", "fbm3d", "fbm4d"}) {
+    for (const char* type :
+         {"checker", "brick", "stripes", "grid", "gradient", "perlin3d", "perlin4d", "fbm3d",
+          "fbm4d", "turbulence", "ridged", "marble", "wood", "cellular"}) {
       p[std::string("textures.") + type] = named("textures", type, {});
     }
     p["textures.constant"] = named("textures", "constant", {{"value", "0.5"}});
     p["textures.image"] = named("textures", "image", {{"file", "bricks.png"}});
-    p["textures.scale"] = named("textures", "scale", {{"input", "marble"}});
+    p["textures.mapping"] = {"textures: {x: {type: marble, mapping: {", {}, "}}}"};
+    for (const char* type : {"scale", "invert", "remap", "threshold", "hue-saturation"}) {
+      p[std::string("textures.") + type] = named("textures", type, {{"input", "marble"}});
+    }
+    p["textures.power"] = named("textures", "power", {{"input", "marble"}, {"exponent", "3"}});
+    p["textures.channel"] = named("textures", "channel", {{"input", "marble"}, {"channel", "red"}});
+    p["textures.ramp"] =
+        named("textures", "ramp", {{"input", "tiles"}, {"stops", "{0: 0.2, 1: 0.7}"}});
+    for (const char* type : {"add", "min", "max", "mix"}) {
+      p[std::string("textures.") + type] = named("textures", type, {{"a", "marble"}, {"b", "0.3"}});
+    }
     p["materials"] = named("materials", "lambert", {});
-    for (const char* type :
-         {"lambert", "dielectric", "thin-dielectric", "conductor", "glossy", "mirror"}) {
+    for (const char* type : {"lambert", "dielectric", "thin-dielectric", "conductor", "glossy",
+                             "mirror", "principled", "diffuse-transmission", "sheen"}) {
       p[std::string("materials.") + type] = named("materials", type, {});
     }
     p["materials.mix"] = named("materials", "mix", {{"first", "steel"}, {"second", "clay"}});
+    p["materials.coat"] = named("materials", "coat", {{"base", "steel"}});
+    p["materials.two-sided"] =
+        named("materials", "two-sided", {{"front", "steel"}, {"back", "clay"}});
+    p["materials.normal_map"] = {
+        "materials: {x: {type: lambert, normal_map: {", {{"texture", "marble"}}, "}}}"};
+    p["materials.solids"] = p["materials"];
     p["materials.surfaces"] = p["materials"];
     p["materials.subsurface"] = named("materials", "dielectric", {});
     p["materials.subsurface.body"] = {
@@ -154,6 +179,8 @@ const std::map<std::string, Place>& places() {
         "media: {x: {scattering: 2, density: {vdb: smoke.vdb}, emission: {", {}, "}}}"};
     p["media.density.noise"] = {"media: {x: {scattering: 2, density: {noise: {", {}, "}}}}"};
     p["objects.mesh"] = object("mesh", "chair.obj");
+    p["objects.mesh.displacement"] = {
+        "objects: {x: {mesh: chair.obj, displacement: {", {{"texture", "marble"}}, "}}}"};
     p["objects.emit"] = {"objects: {x: {shape: sphere, emit: {", {}, "}}}"};
     p["objects.group"] = {"objects: {x: {group: {", {}, "}}}"};
     p["groups"] = {"groups: {x: {", {{"objects", "{a: {shape: disk}}"}}, "}}"};
@@ -161,14 +188,21 @@ const std::map<std::string, Place>& places() {
     p["transform.rotate"] = {"objects: {x: {shape: box, transform: [{rotate: {",
                              {{"axis", "[1, 0, 0]"}, {"angle", "20"}},
                              "}}]}}"};
+    p["transform.rotate.quaternion"] = {"objects: {x: {shape: box, transform: [{rotate: {",
+                                        {{"quaternion", "[0, 0, 0, 1]"}},
+                                        "}}]}}"};
     p["lights"] = named("lights", "point", {});
     for (const char* type : {"point", "spot", "sun"}) {
       p[std::string("lights.") + type] = named("lights", type, {});
     }
+    p["color"] = {"color: {", {{"config", "view.ocio"}}, "}"};
     p["outputs"] = {"outputs: [{", {{"file", "image.####.exr"}}, "}]"};
     p["outputs.exr"] = p["outputs"];
     p["outputs.png"] = {"outputs: [{", {{"file", "image.####.png"}}, "}]"};
     p["outputs.jpg"] = {"outputs: [{", {{"file", "image.####.jpg"}}, "}]"};
+    p["outputs.tiff"] = {"outputs: [{", {{"file", "image.####.tif"}}, "}]"};
+    p["outputs.mp4"] = {"outputs: [{", {{"file", "film.mp4"}}, "}]"};
+    p["outputs.webm"] = {"outputs: [{", {{"file", "film.webm"}}, "}]"};
     return p;
   }();
   return all;
@@ -178,7 +212,13 @@ const std::map<std::string, Place>& places() {
 Pairs company(const JobKey& id) {
   if (id == JobKey{"materials.conductor", "eta"}) return {{"k", "3"}};
   if (id == JobKey{"materials.conductor", "k"}) return {{"eta", "1.2"}};
+  if (id == JobKey{"materials.conductor", "edge"}) return {{"color", "0.7"}};
+  if (id == JobKey{"materials.principled", "emission_color"}) return {{"emission_strength", "2"}};
+  if (id == JobKey{"materials.principled", "diffuse_transmission"})
+    return {{"thin_walled", "true"}};
   if (id == JobKey{"integrator.bdpt", "mis"}) return {{"strategy", "[1, 2]"}};
+  if (id == JobKey{"textures.mapping", "space"}) return {{"type", "spherical"}};
+  if (id == JobKey{"textures.mapping", "blend"}) return {{"type", "triplanar"}};
   if (id == JobKey{"media.emission", "kelvin"}) return {{"temperature", "heat"}};
   if (id == JobKey{"media", "albedo"}) return {{"density", "2"}};
   if (id == JobKey{"media", "density"}) return {{"albedo", "0.5"}};
@@ -228,6 +268,7 @@ std::string job_text(const JobKey& id, const Pairs& pairs) {
 struct Outcome {
   std::string complaints;
   std::string fingerprint;
+  int moving = 0;  ///< values that are no constants
 };
 
 /// Everything that decides pixels, and everything else that a job says about what is written.
@@ -235,8 +276,8 @@ Outcome read(const std::string& text) {
   MemoryAssets inner;
   inner.add("base.yaml", kBase);
   inner.add("sky.yaml", "environment: {color: 0.3}\n");
-  for (const char* file :
-       {"knot.ply", "chair.obj", "wood.png", "bricks.png", "sky.hdr", "smoke.vdb", "cloud.vdb"}) {
+  for (const char* file : {"knot.ply", "chair.obj", "wood.png", "bricks.png", "sky.hdr",
+                           "smoke.vdb", "cloud.vdb", "aces/config.ocio", "view.ocio"}) {
     inner.add(file, std::string("content of ") + file);
   }
   RecordingResolver assets(inner);
@@ -255,10 +296,21 @@ Outcome read(const std::string& text) {
   for (const OutputDesc& output : job.outputs) {
     all << "\n"
         << output.file << " " << output.tone_map << " " << output.exposure << " " << output.half
-        << " " << output.transparent;
+        << " " << output.transparent << " " << output.denoise << " " << output.quality << " "
+        << output.bits;
     for (const std::string& layer : output.layers) all << " " << layer;
   }
+  if (const auto& color = job.color) {
+    all << "\n"
+        << color->config << " " << color->display << " " << color->view << " " << color->look << " "
+        << color->working_space;
+  }
+  for (const VideoDesc& video : job.videos) all << "\n" << video.file << " " << video.quality;
   outcome.fingerprint = all.str();
+  for (const Curve& curve : job.curves) {
+    const auto constant = [](const auto& value) { return value.is_constant(); };
+    if (!std::visit(constant, curve.value)) ++outcome.moving;
+  }
   return outcome;
 }
 
@@ -270,8 +322,13 @@ Pairs base_pairs(const JobKey& id) {
 /// The sample job as it is before the key is tried.
 std::string sample_text(const JobKey& id) {
   Pairs pairs = base_pairs(id);
-  if (id.section == "materials.conductor" && !company(id).empty())
+  const auto needed = company(id);
+  if (!needed.empty() &&
+      (id.key == "edge" || id.key == "emission_color" || id.key == "diffuse_transmission")) {
+    pairs.insert(pairs.end(), needed.begin(), needed.end());
+  } else if (id.section == "materials.conductor" && !needed.empty()) {
     pairs.emplace_back("metal", "gold");
+  }
   return job_text(id, pairs);
 }
 
@@ -287,9 +344,7 @@ std::string text_with(const JobKey& id, const std::optional<std::string>& value)
 }
 
 /// Keys whose range has one value in this version: any other one must be refused.
-bool has_one_value(const JobKey& id) {
-  return id == JobKey{"job", "hyades"} || id == JobKey{"camera", "type"};
-}
+bool has_one_value(const JobKey& id) { return id == JobKey{"job", "hyades"}; }
 
 TEST(DocumentedKeys, AreThoseThatTheReaderKnows) {
   std::set<JobKey> documented;
@@ -343,6 +398,36 @@ TEST(DocumentedKeys, DefaultsAreWhatHappensWithoutTheKey) {
     ++checked;
   }
   EXPECT_GT(checked, 80);
+}
+
+/// A plain value of the key, to be given at two frames; empty where the page has names and
+/// expressions only.
+std::string value_to_keep(const DocumentedKey& key) {
+  for (const std::string& value : {key.example, key.default_value}) {
+    if (value.empty() || value.find("keys") != std::string::npos ||
+        value.find("\"=") != std::string::npos)
+      continue;
+    if (std::string("[-.0123456789").find(value[0]) != std::string::npos) return value;
+  }
+  return "";
+}
+
+TEST(DocumentedKeys, WhatIsSaidToBeAnimatedFollowsKeys) {
+  int checked = 0;
+  for (const DocumentedKey& key : read_page()) {
+    const bool animated = key.type.find("animated") != std::string::npos ||
+                          key.type.find("or texture") != std::string::npos;
+    const std::string value = value_to_keep(key);
+    if (!animated || value.empty()) continue;
+    const std::string keyed =
+        text_with(key.id, "{keys: {1: " + value + ", 10: " + value + "}, ease: smooth}");
+    const Outcome still = read(text_with(key.id, value));
+    const Outcome moving = read(keyed);
+    EXPECT_EQ(moving.complaints, "") << "docs/job.md:" << key.line << "\n" << keyed;
+    EXPECT_EQ(moving.moving, still.moving + 1) << "docs/job.md:" << key.line << "\n" << keyed;
+    ++checked;
+  }
+  EXPECT_GT(checked, 150);
 }
 
 TEST(DocumentedKeys, RequiredKeysAreRequired) {

@@ -105,7 +105,7 @@ TEST(HostileJob, LongChains) {
   const std::string materials =
       chain("hyades: 1\nmaterials:\n", "  xI: {type: mix, first: xN, second: xN}\n", 40);
   expect_refused(materials + "  x40: {type: mirror}\n",
-                 "job.yaml:10:7: material 'x7' is mixed of more than 32 others in a row");
+                 "job.yaml:10:7: material 'x7' is made of more than 32 others in a row");
   // Short chains that fan out: 2^k lookups.
   const std::string scales =
       chain("hyades: 1\ntextures:\n", "  xI: {type: scale, input: xN, factor: xN}\n", 14);

@@ -58,7 +58,7 @@ TEST(Include, FilesAreRelativeToWhereTheyAreWritten) {
   const Reading r = read("hyades: 1\ninclude: parts/room.yaml\n", assets, "jobs/shot/job.yaml");
   ASSERT_EQ(r.complaints, "");
   EXPECT_EQ(r.job.objects[0].mesh, "parts/chairs/chair.obj");
-  EXPECT_EQ(r.job.textures[0].file, "images/wall.png");
+  EXPECT_EQ(r.job.textures[0].image.file, "images/wall.png");
   EXPECT_EQ(r.job.environment->image, "parts/sky.hdr");
   EXPECT_EQ(
       referenced_files(r.job),
@@ -156,7 +156,7 @@ TEST(Like, CopiesKeysThatAreNotOverridden) {
   EXPECT_EQ(r.job.materials[2].metal, "custom");
   EXPECT_FLOAT_EQ(r.job.materials[2].roughness.value.constant, 0.1F);
   EXPECT_FLOAT_EQ(r.job.objects[1].at.constant.x, 2.0F);
-  EXPECT_FLOAT_EQ(r.job.objects[1].radius, 2.0F);
+  EXPECT_FLOAT_EQ(r.job.objects[1].radius.constant, 2.0F);
   EXPECT_EQ(r.job.objects[1].material, "fine");
   EXPECT_EQ(r.job.objects[2].shape, "disk");
 }

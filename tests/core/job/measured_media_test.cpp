@@ -177,12 +177,12 @@ TEST(Presets, MeanTheSameInEveryUnit) {
     EXPECT_NEAR(milk.scattering.constant.x / metres, 2550.0F, 0.01F);
     EXPECT_NEAR(milk.absorption.constant.z / metres, 14.0F, 1e-4F);
     EXPECT_EQ(milk.scale.constant, 2.0F);
-    EXPECT_EQ(milk.index, 1.3F);
+    EXPECT_EQ(milk.index->constant, 1.3F);
   }
   const Read beer = read("media: {beer: {preset: budweiser beer, index: 1.35}}");
   ASSERT_EQ(beer.complaints, "");
   EXPECT_EQ(beer.job.media[0].g.constant, Rgb(0.917F, 0.956F, 0.982F));
-  EXPECT_EQ(beer.job.media[0].index, 1.35F);
+  EXPECT_EQ(beer.job.media[0].index->constant, 1.35F);
 }
 
 TEST(Presets, ComplainOnceWithASuggestion) {

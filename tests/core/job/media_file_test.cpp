@@ -40,7 +40,7 @@ void expect_milk(const MediumDesc& milk) {
   EXPECT_EQ(milk.absorption.constant, Rgb(0.1F, 0.2F, 0.3F));
   EXPECT_EQ(milk.scattering.constant, Rgb(7.0F, 8.0F, 9.0F));
   EXPECT_EQ(milk.g.constant, Rgb(0.9F));
-  EXPECT_EQ(milk.index, 1.33F);
+  EXPECT_EQ(milk.index->constant, 1.33F);
 }
 
 TEST(MediaFile, HoldsOneMediumOrSeveralInAnyOfTheFormsOfTheSimpleKind) {

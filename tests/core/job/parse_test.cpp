@@ -57,8 +57,8 @@ outputs:
   EXPECT_FLOAT_EQ(job.camera.look_at.at(job.time_of(120)).x, 0.5F);
   EXPECT_FLOAT_EQ(job.camera.look_at.at(job.time_of(1)).x, 0.0F);
   ASSERT_EQ(job.textures.size(), 2U);
-  EXPECT_FLOAT_EQ(job.textures[0].time.at(job.time_of(49)), 1.0F);
-  EXPECT_EQ(job.textures[0].octaves, 4);
+  EXPECT_FLOAT_EQ(job.textures[0].noise.time->at(job.time_of(49)), 1.0F);
+  EXPECT_EQ(job.textures[0].noise.octaves, 4);
   EXPECT_NEAR(job.textures[1].b.value.constant.x, 0.6867F, 1e-3F);
   ASSERT_EQ(job.materials.size(), 3U);
   EXPECT_EQ(job.materials[0].metal, "silver");

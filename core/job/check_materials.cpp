@@ -1,0 +1,101 @@
+#include "core/job/check_materials.h"
+
+#include <map>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace hyades::core {
+namespace {
+
+using MaterialsByName = std::map<std::string, const MaterialDesc*>;
+
+MaterialsByName materials_by_name(const Job& job) {
+  MaterialsByName all;
+  for (const MaterialDesc& material : job.materials) all.emplace(material.name, &material);
+  return all;
+}
+
+/// Whether light may go through surfaces of that material itself.
+bool lets_through(const MaterialDesc& m) {
+  const auto may_be_positive = [](const ScalarInput& input) {
+    return !input.texture.empty() || !input.value.is_constant() || input.value.constant > 0.0F;
+  };
+  const bool whole = m.opacity.texture.empty() && m.opacity.value.is_constant() &&
+                     m.opacity.value.constant >= 1.0F;
+  if (!whole || m.subsurface || m.type == "dielectric" || m.type == "thin-dielectric" ||
+      m.type == "diffuse-transmission" || m.type == "null") {
+    return true;
+  }
+  return m.principled && (may_be_positive(m.principled->transmission) ||
+                          may_be_positive(m.principled->diffuse_transmission));
+}
+
+/// What `material` or what it is made of lets light through; null: nothing.
+const MaterialDesc* transparent_part(const MaterialsByName& all, const MaterialDesc& material) {
+  std::vector<const MaterialDesc*> left = {&material};
+  std::set<const MaterialDesc*> seen;
+  while (!left.empty()) {
+    const MaterialDesc* m = left.back();
+    left.pop_back();
+    if (!seen.insert(m).second) continue;
+    if (lets_through(*m)) return m;
+    for (const std::string* name : {&m->first, &m->second}) {
+      const auto part = all.find(*name);
+      if (part != all.end()) left.push_back(part->second);
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void check_two_sided(ReadContext& context) {
+  const MaterialsByName all = materials_by_name(context.job);
+  for (const MaterialDesc& material : context.job.materials) {
+    if (material.type != "two-sided") continue;
+    for (const std::string* name : {&material.first, &material.second}) {
+      const auto part = all.find(*name);
+      if (part == all.end()) continue;
+      const MaterialDesc* clear = transparent_part(all, *part->second);
+      if (clear == nullptr) continue;
+      context.complain(material.where,
+                       fmt::format("material '{}' is two-sided, but '{}' lets light through, "
+                                   "expected parts that do not (and an opacity of the whole)",
+                                   material.name, clear->name));
+    }
+  }
+}
+
+void check_emission(ReadContext& context) {
+  const MaterialsByName all = materials_by_name(context.job);
+  for (const MaterialDesc& material : context.job.materials) {
+    for (const std::string* name : {&material.first, &material.second}) {
+      const auto part = all.find(*name);
+      if (part == all.end() || !part->second->principled || !part->second->principled->emits())
+        continue;
+      context.complain(material.where,
+                       fmt::format("'{}' is a part of material '{}' and has an emission_strength, "
+                                   "expected one of 0: parts do not shine",
+                                   *name, material.name));
+    }
+  }
+}
+
+void read_normal_maps_as_numbers(ReadContext& context) {
+  std::set<std::string> maps;
+  for (const MaterialDesc& material : context.job.materials) {
+    if (material.normal_map) maps.insert(material.normal_map->texture);
+  }
+  for (TextureDesc& texture : context.job.textures) {
+    if (texture.type != "image" || !maps.contains(texture.name)) continue;
+    if (texture.image.color_space == "auto") texture.image.color_space = "linear";
+    if (texture.image.color_space == "linear") continue;
+    context.complain(texture.where, fmt::format("texture '{}' is a normal map with color_space "
+                                                "'{}', expected linear",
+                                                texture.name, texture.image.color_space));
+  }
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,95 @@
+#include "core/job/read_layers.h"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "core/base/text.h"
+#include "core/film/layout.h"
+#include "core/job/light_groups.h"
+#include "core/job/output_names.h"
+
+namespace hyades::core {
+namespace {
+
+constexpr size_t kMostGroups = 32;  ///< that one film tells apart
+
+/// What a layer may be called in this job.
+std::vector<std::string> names_of_layers(const std::vector<std::string>& groups) {
+  const auto plain = layer_names();
+  std::vector<std::string> names(plain.begin(), plain.end());
+  for (const std::string& group : groups) names.push_back(std::string(kGroupPrefix) + group);
+  if (!groups.empty()) names.push_back(std::string(kGroupPrefix) + kRestGroup);
+  return names;
+}
+
+}  // namespace
+
+bool check_layer(MapReader& reader, const YamlNode& item) {
+  const std::vector<std::string> groups = light_groups_of(reader.context().job);
+  const std::vector<std::string> names = names_of_layers(groups);
+  if (std::find(names.begin(), names.end(), item.scalar) == names.end()) {
+    reader.complain(item.where, fmt::format("layer is {}, expected {}{}", describe(item),
+                                            join_names(names), did_you_mean(item.scalar, names)));
+    return false;
+  }
+  if (groups.size() > kMostGroups && item.scalar.starts_with("light_group")) {
+    reader.complain(item.where, fmt::format("the job has {} light groups, expected at most {}",
+                                            groups.size(), kMostGroups));
+    return false;
+  }
+  return true;
+}
+
+void read_layers(MapReader& reader, OutputDesc& output) {
+  output.layers = {"beauty", "alpha"};
+  const YamlNode* node = reader.find("layers");
+  if (node == nullptr) return;
+  if (node->kind != YamlNode::Kind::list || node->list.empty()) {
+    const auto names = layer_names();
+    reader.mismatch("layers", *node, "a list of " + join_names(names));
+    return;
+  }
+  std::vector<std::string> layers;
+  for (const YamlPtr& item : node->list) {
+    if (!check_layer(reader, *item)) continue;
+    for (const std::string& name : unfolded(item->scalar)) {
+      if (std::find(layers.begin(), layers.end(), name) != layers.end()) {
+        reader.complain(item->where, fmt::format("layer '{}' is listed twice", name));
+      } else {
+        layers.push_back(name);
+      }
+    }
+  }
+  output.layers = layers;
+}
+
+std::vector<OutputDesc> split_by_layer(const Job& job, const OutputDesc& output) {
+  if (output.file.find(kLayerMark) == std::string::npos) return {output};
+  std::vector<std::string> layers;
+  for (const std::string& layer : output.layers) {
+    if (layer != "light_groups") {
+      layers.push_back(layer);
+      continue;
+    }
+    for (const std::string& group : light_groups_of(job))
+      layers.push_back(std::string(kGroupPrefix) + group);
+    layers.push_back(std::string(kGroupPrefix) + kRestGroup);
+  }
+  std::vector<OutputDesc> all;
+  for (const std::string& layer : layers) {
+    OutputDesc one = output;
+    one.layers = {layer};
+    if (layer != "beauty") one.denoise = "false";
+    std::string name = layer;
+    std::replace(name.begin(), name.end(), ':', '_');
+    for (size_t at = one.file.find(kLayerMark); at != std::string::npos;
+         at = one.file.find(kLayerMark))
+      one.file.replace(at, kLayerMark.size(), name);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace hyades::core
