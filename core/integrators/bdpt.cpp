@@ -6,10 +6,12 @@
 
 #include "core/integrators/chosen_joins.h"
 #include "core/integrators/found_path.h"
+#include "core/integrators/light_parts.h"
 #include "core/integrators/light_path.h"
 #include "core/integrators/path_in_words.h"
 #include "core/integrators/random_walk.h"
 #include "core/integrators/visibility.h"
+#include "core/scene/media_around.h"
 
 namespace hyades::core {
 namespace {
@@ -22,6 +24,7 @@ constexpr uint32_t kPerEvent = 8;
 struct BdptScratch : IntegratorScratch {
   Subpath camera;
   Subpath light;
+  std::vector<Vec2> places;
 };
 
 double square(double x) { return x * x; }
@@ -41,6 +44,7 @@ class BidirectionalSample final : public WalkWatcher {
         work_(work),
         camera_(scratch.camera),
         light_(scratch.light),
+        places_(scratch.places),
         film_pixels_(static_cast<double>(scene.window.area())) {}
 
   PixelSample trace() {
@@ -77,9 +81,11 @@ class BidirectionalSample final : public WalkWatcher {
     return settings_.mis ? static_cast<float>(weight) : 1.0F;
   }
 
-  /// Adds what the strategy with s vertices from the light and t from the camera brings.
-  void add(int s, int t, const Rgb& light) {
+  /// Adds what the strategy with s vertices from the light and t from the camera brings; `first`:
+  /// where the light is scattered towards the camera.
+  void add(int s, int t, const LightSource& source, const FirstEvent& first, const Rgb& light) {
     out_.radiance += light;
+    if (work_.parts != nullptr) work_.parts->add(first, s + t - 2, source, light);
     tell(s, t, light);
   }
 
@@ -88,17 +94,32 @@ class BidirectionalSample final : public WalkWatcher {
     work_.log->lines.push_back(fmt::format("strategy ({}, {}) brings {}", s, t, in_words(light)));
   }
 
+  /// The event at `v` between the way to the camera and the way to the light.
+  static FirstEvent event_at(const PathVertex& v, const Vec3& to_camera, const Vec3& to_light,
+                             bool specular) {
+    return v.kind == PathVertex::Kind::surface
+               ? FirstEvent::at(*v.surface, to_camera, to_light, specular)
+               : FirstEvent{};
+  }
+
+  /// The first event of a path whose camera vertex t - 1 is seen from the light along -`to_light`.
+  FirstEvent first_event(int t, const Vec3& to_light) const {
+    if (work_.parts == nullptr || t > 2) return first_;
+    return event_at(camera_[1], camera_[1].wo, to_light, false);
+  }
+
   FoundPath path_of(int s, int t, uint32_t light) const { return {light_, camera_, s, t, light}; }
 
   void walk_from_camera() {
     camera_.clear();
     PathVertex& lens = camera_.add(PathVertex::Kind::lens);
     lens.position = ray_.origin;
-    Way way{.ray = ray_, .around = scene_.around_camera};
-    way.pdf =
+    Way way{.ray = ray_, .around = bodies_around_lens(scene_, ray_)};
+    const double density =
         static_cast<double>(scene_.camera->film_density(ray_.direction, ray_.time)) / film_pixels_;
+    (scene_.camera->rays_are_parallel() ? way.pdf_across : way.pdf) = density;
     const WalkNumbers numbers{kCameraDimensions + kScattering, kPerEvent,
-                              MediaNumbers::Purpose::flight};
+                              MediaNumbers::Purpose::flight, MediaNumbers::Purpose::passing};
     RandomWalk(settings_, scene_, sampler_, work_, TransportMode::radiance, numbers)
         .go(camera_, way, settings_.max_depth + 2, *this);
   }
@@ -106,7 +127,8 @@ class BidirectionalSample final : public WalkWatcher {
   void walk_from_light(const Way& way) {
     FirstLightVertex watcher(scene_, light_);
     const WalkNumbers numbers{kLightPathDimensions + kLightPathStart, 4,
-                              MediaNumbers::Purpose::light_flight};
+                              MediaNumbers::Purpose::light_flight,
+                              MediaNumbers::Purpose::light_passing};
     RandomWalk(settings_, scene_, sampler_, work_, TransportMode::importance, numbers)
         .go(light_, way, settings_.max_depth + 1, watcher);
   }
@@ -114,22 +136,30 @@ class BidirectionalSample final : public WalkWatcher {
   // What the camera path meets.
 
   void medium_emits(const Way& way, const Rgb& radiance) override {
-    if (wanted(0, camera_.size() + 1)) add(0, camera_.size() + 1, way.throughput * radiance);
+    if (wanted(0, camera_.size() + 1))
+      add(0, camera_.size() + 1, LightSource::of(*way.around.medium()), first_,
+          way.throughput * radiance);
   }
 
   void arrives(const PathVertex& v) override {
     if (camera_.size() == 2) {
       out_.alpha = 1.0F;
       if (v.kind == PathVertex::Kind::surface) {
+        out_.object = v.point.object;
+        out_.position = v.position;
         out_.depth = scene_.camera->depth_of(v.position, ray_.time);
         out_.normal = v.point.ns;
       }
     }
     if (albedo_noted_ || !v.joins()) return;
     out_.albedo = v.throughput;
-    if (v.kind == PathVertex::Kind::surface)
-      out_.albedo *= v.surface->bsdf()->albedo(v.surface->frame().to_local(v.wo));
+    if (v.kind == PathVertex::Kind::surface) out_.albedo *= v.surface->albedo(v.wo);
     albedo_noted_ = true;
+  }
+
+  void goes_on(const PathVertex& from, const Way& way) override {
+    if (work_.parts != nullptr && camera_.size() == 2)
+      first_ = event_at(from, from.wo, way.ray.direction, way.specular);
   }
 
   void meets(const Way& way, const SurfacePoint& point, const SceneObject& object) override {
@@ -177,7 +207,8 @@ class BidirectionalSample final : public WalkWatcher {
     path.direction = direction;
     path.end = on.position;
     path.specular = way.specular;
-    add(0, camera_.size() + 1, way.throughput * radiance * weight(path, 0.0, others));
+    add(0, camera_.size() + 1, {on.light, on.infinitely_far}, first_,
+        way.throughput * radiance * weight(path, 0.0, others));
   }
 
   /// s = 1: a place on a light is chosen from the camera path's vertex t - 1.
@@ -223,7 +254,7 @@ class BidirectionalSample final : public WalkWatcher {
     FoundPath path = path_of(1, t, selected->index);
     path.direction = direction;
     path.end = on.position;
-    add(1, t,
+    add(1, t, {selected->index}, first_event(t, direction),
         v.throughput * f * sample->radiance * share *
             (weight(path, square(met / chosen), camera_side) / static_cast<float>(chosen)));
   }
@@ -279,7 +310,7 @@ class BidirectionalSample final : public WalkWatcher {
     const double camera_side =
         square(to_z / z.density) * sum_before(camera_, t - 1, to_light, TransportMode::importance);
     const float share_of_all = weight(path_of(s, t, light_[0].light), light_side, camera_side);
-    add(s, t,
+    add(s, t, {light_[0].light}, first_event(t, to_light),
         z.throughput * f_camera * f_light * y.throughput * share *
             (chosen * share_of_all / static_cast<float>(distance2)));
   }
@@ -293,7 +324,9 @@ class BidirectionalSample final : public WalkWatcher {
       return;
     }
     const auto seen = scene_.camera->connect(y.position, lens, ray_.time);
-    if (!seen || !near_film(seen->film)) return;
+    if (!seen) return;
+    find_places(seen->film);
+    if (places_.empty()) return;
     const Rgb f = y.evaluate(y.wo, -seen->direction, TransportMode::importance);
     if (is_black(f)) return;
     const Vec3 end = y.kind == PathVertex::Kind::surface
@@ -303,28 +336,37 @@ class BidirectionalSample final : public WalkWatcher {
     const Rgb share = visible_share_from_camera(scene_, ray_between(seen->position, end, ray_.time),
                                                 numbers, work_);
     if (is_black(share)) return;
-    const double density = static_cast<double>(seen->density);
-    const double to_y = density / film_pixels_ * y.per_direction(seen->position, seen->direction);
+    const double to_y = seen->across / film_pixels_ * y.across(seen->direction);
     const double light_side = square(to_y / y.density) *
                               sum_before(light_, s - 1, -seen->direction, TransportMode::radiance);
     FoundPath path = path_of(s, 1, light_[0].light);
     path.direction = -seen->direction;
     path.end = seen->position;
     const Rgb value = y.throughput * f * share *
-                      (weight(path, light_side, 0.0) *
-                       static_cast<float>(density / square(static_cast<double>(seen->distance))));
+                      (weight(path, light_side, 0.0) * static_cast<float>(seen->across));
     tell(s, 1, value);
-    work_.splats.push_back({seen->film, value});
+    Splat splat{{}, value};
+    if (work_.parts != nullptr) {
+      const std::vector<SplatPart>& parts = work_.parts->splat_parts();
+      splat.first_part = static_cast<uint32_t>(parts.size());
+      work_.parts->add_splat(event_at(y, -seen->direction, y.wo, false), s - 1, {light_[0].light},
+                             value);
+      splat.parts = static_cast<uint32_t>(parts.size()) - splat.first_part;
+    }
+    for (const Vec2& place : places_) {
+      splat.film = place;
+      work_.splats.push_back(splat);
+    }
   }
 
-  /// Whether pixels that are rendered may see film position `film`, whatever the filter.
-  bool near_film(const Vec2& film) const {
-    constexpr float kWidestFilter = 17.0F;  // 16 pixels, and the half pixel around a centre
+  /// The places that see what `film` sees and that pixels that are rendered may see, whatever the
+  /// filter.
+  void find_places(const Vec2& film) {
+    const Vec2 widest_filter(17.0F);  // 16 pixels, and the half pixel around a centre
     const PixelRect& w = scene_.window;
-    return film.x > static_cast<float>(w.x0) - kWidestFilter &&
-           film.x < static_cast<float>(w.x1) + kWidestFilter &&
-           film.y > static_cast<float>(w.y0) - kWidestFilter &&
-           film.y < static_cast<float>(w.y1) + kWidestFilter;
+    places_.clear();
+    scene_.camera->add_places(film, Vec2(w.x0, w.y0) - widest_filter,
+                              Vec2(w.x1, w.y1) + widest_filter, places_);
   }
 
   const IntegratorDesc& settings_;
@@ -334,9 +376,11 @@ class BidirectionalSample final : public WalkWatcher {
   Workspace& work_;
   Subpath& camera_;
   Subpath& light_;
-  double film_pixels_;  ///< how many samples, so light paths, a pass over the film has
+  std::vector<Vec2>& places_;  ///< of the film where a light path is seen
+  double film_pixels_;         ///< how many samples, so light paths, a pass over the film has
   PathVertex met_light_;
   PixelSample out_;
+  FirstEvent first_;  ///< that the camera path goes on from, where light is told apart
   bool albedo_noted_ = false;
 };
 

@@ -20,6 +20,9 @@ struct PixelSample {
   float depth = kInfinity;  ///< along the view axis, of the first surface
   Rgb albedo{0.0F};   ///< of the first surface that is not a mirror, through the mirrors before it
   Vec3 normal{0.0F};  ///< shading normal of the first surface
+  static constexpr uint32_t kNoObject = ~0U;
+  uint32_t object = kNoObject;  ///< which placement the first surface belongs to
+  Vec3 position{0.0F};          ///< of the first surface, world space
 };
 
 /// What a light path brings to the film, wherever it ends.
@@ -28,6 +31,8 @@ struct Splat {
   /// An estimate of a pixel's value is the filter around its centre, at `film`, times this: as
   /// radiance is, but for all pixels.
   Rgb value{0.0F};
+  uint32_t first_part = 0;  ///< its parts, where light is told apart: in LightParts::splat_parts()
+  uint32_t parts = 0;
 };
 
 /// A path in words, for `hyades replay`.
@@ -40,6 +45,7 @@ struct IntegratorScratch {
   virtual ~IntegratorScratch() = default;
 };
 
+class LightParts;
 class PathWatcher;
 
 /// Scratch memory and counters of one rendering thread, for one integrator.
@@ -50,6 +56,7 @@ struct Workspace {
   std::unique_ptr<IntegratorScratch> scratch;  ///< made by the integrator when it is first needed
   uint64_t rays = 0;                           ///< closest-hit and occlusion queries
   uint64_t bounces = 0;                        ///< scattering events
+  LightParts* parts = nullptr;                 ///< tells light apart; null: nobody asks
   PathLog* log = nullptr;                      ///< where to tell the path; null while rendering
   PathWatcher* watcher = nullptr;  ///< told of what bdpt finds (found_path.h); null while rendering
 };

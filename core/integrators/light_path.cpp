@@ -99,11 +99,7 @@ LightPathStart begin_light_path(const Scene& scene, float time, Sampler& sampler
 
 double emission_density(const Scene& scene, const Light& light, const PathVertex& on,
                         const PathVertex& v, const Vec3& direction) {
-  if (on.infinitely_far) {
-    const double across = pdf_across(scene);
-    if (v.kind != PathVertex::Kind::surface) return across;
-    return across * static_cast<double>(std::abs(glm::dot(v.point.ng, direction)));
-  }
+  if (on.infinitely_far) return pdf_across(scene) * v.across(direction);
   return static_cast<double>(light.pdf_outward(on.point.ng, -direction)) *
          v.per_direction(on.position, -direction);
 }

@@ -25,8 +25,9 @@ constexpr float kAcceptance = 0.35F;  ///< of small steps, what the trial aims a
 /// A sample of the inner integrator and the light it brings.
 struct State {
   std::vector<Splat> light;
-  double brightness = 0.0;  ///< of all of it
-  double weight = 0.0;      ///< expected number of steps that it has counted for so far
+  std::vector<SplatPart> parts;  ///< of it, where it is told apart
+  double brightness = 0.0;       ///< of all of it
+  double weight = 0.0;           ///< expected number of steps that it has counted for so far
 };
 
 class Chain {
@@ -157,14 +158,17 @@ class Chain {
     const Vec2 lens = sampler.next_2d();
     const float time = film_.needs_time ? sampler.next_1d() : 0.0F;
     work_.splats.clear();
+    if (work_.parts != nullptr) work_.parts->clear();
     const PixelSample sample =
         inner_.sample(scene_, scene_.camera->generate(place, lens, time), sampler, work_);
     state.light.clear();
+    state.parts.clear();
     state.weight = 0.0;
     // Film positions are uniform over the film, pixels are means over their filters.
     if (!is_black(sample.radiance))
       state.light.push_back({place, sample.radiance * (size_.x * size_.y)});
     state.light.insert(state.light.end(), work_.splats.begin(), work_.splats.end());
+    if (work_.parts != nullptr) take_parts(state);
     work_.splats.clear();
     state.brightness = 0.0;
     for (const Splat& splat : state.light)
@@ -176,10 +180,32 @@ class Chain {
     }
   }
 
-  void count(const State& state, double mean) const {
+  /// The parts of what `state` has found: those of the camera path's own light, where there is
+  /// some, come first.
+  void take_parts(State& state) const {
+    const size_t own = state.light.size() - work_.splats.size();
+    if (own > 0) {
+      const std::vector<Rgb>& sums = work_.parts->sums();
+      for (uint32_t part = 0; part < sums.size(); ++part) {
+        if (!is_black(sums[part])) state.parts.push_back({part, sums[part] * (size_.x * size_.y)});
+      }
+      state.light[0].parts = static_cast<uint32_t>(state.parts.size());
+    }
+    const auto before = static_cast<uint32_t>(state.parts.size());
+    const std::vector<SplatPart>& parts = work_.parts->splat_parts();
+    state.parts.insert(state.parts.end(), parts.begin(), parts.end());
+    for (size_t i = own; i < state.light.size(); ++i) state.light[i].first_part += before;
+  }
+
+  void count(const State& state, double mean) {
     if (!(state.weight > 0.0) || !(state.brightness > 0.0)) return;
     const auto scale = static_cast<float>(mean * state.weight / state.brightness);
-    for (const Splat& splat : state.light) sink_.deposit({splat.film, splat.value * scale});
+    for (const Splat& splat : state.light) {
+      scaled_.assign(state.parts.begin() + splat.first_part,
+                     state.parts.begin() + splat.first_part + splat.parts);
+      for (SplatPart& part : scaled_) part.value *= scale;
+      sink_.deposit({splat.film, splat.value * scale}, scaled_);
+    }
   }
 
   const Integrator& inner_;
@@ -188,6 +214,7 @@ class Chain {
   const ChainFilm& film_;
   Workspace& work_;
   ChainSink& sink_;
+  std::vector<SplatPart> scaled_;
   Vec2 corner_;  ///< of the film with its margin
   Vec2 size_;
   uint64_t steps_;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "core/base/rect.h"
 #include "core/integrators/integrator.h"
+#include "core/integrators/light_parts.h"
 
 namespace hyades::core {
 
@@ -26,7 +28,8 @@ struct ChainFilm {
 class ChainSink {
  public:
   virtual ~ChainSink() = default;
-  virtual void deposit(const Splat& splat) = 0;
+  /// `parts`: those of its light, where it is told apart.
+  virtual void deposit(const Splat& splat, std::span<const SplatPart> parts) = 0;
   /// Called now and then; `done`: the share of the chain's work so far, 0 to 1. False: it should
   /// end.
   virtual bool goes_on(double done) = 0;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/integrators/light_parts.h"
 #include "core/integrators/medium_way.h"
 #include "core/integrators/mis.h"
 #include "core/integrators/path_in_words.h"
@@ -12,6 +13,7 @@
 #include "core/integrators/visibility.h"
 #include "core/materials/shaded_surface.h"
 #include "core/media/shares.h"
+#include "core/scene/media_around.h"
 
 namespace hyades::core {
 namespace {
@@ -33,8 +35,9 @@ class Path {
         ray_(ray),
         sampler_(sampler),
         work_(work),
-        around_(scene.around_camera),
-        numbers_(sampler, 0, MediaNumbers::Purpose::flight) {}
+        around_(bodies_around_lens(scene, ray)),
+        numbers_(sampler, 0, MediaNumbers::Purpose::flight),
+        passing_(sampler, 0, MediaNumbers::Purpose::passing) {}
 
   PixelSample trace() {
     previous_.position = ray_.origin;
@@ -54,7 +57,7 @@ class Path {
         break;
       }
       const SceneObject& object = scene_.objects[point.object];
-      if (lets_straight_through(object, around_)) {
+      if (goes_straight(object, point, around_, passing_)) {
         add_emission(point, object);
         if (++null_crossings > kMaxNullCrossings) break;
         cross(object, point, ray_.direction, around_);
@@ -89,14 +92,15 @@ class Path {
     return kCameraDimensions + static_cast<uint32_t>(depth_) * kPerBounce;
   }
 
-  /// Adds `light` times the path's throughput; what came by more than one bounce may be clamped on
-  /// request.
-  void add(const Rgb& light, int events) {
+  /// Adds `light` of `source` times the path's throughput; what came by more than one bounce may be
+  /// clamped on request.
+  void add(const Rgb& light, int events, const LightSource& source) {
     if (events < settings_.min_events || events > settings_.max_events) return;
     Rgb contribution = throughput_ * light;
     if (settings_.clamp > 0.0F && events > 1)
       contribution = glm::min(contribution, Rgb(settings_.clamp));
     out_.radiance += contribution;
+    if (work_.parts != nullptr) work_.parts->add(first_, events, source, contribution);
     if (work_.log != nullptr && !is_black(contribution)) {
       work_.log->lines.push_back("    light arrives: " + in_words(contribution));
     }
@@ -107,9 +111,17 @@ class Path {
   float bsdf_weight(uint32_t index, float light_pdf) const {
     if (previous_.specular) return 1.0F;
     const float chosen =
-        scene_.selector->probability(previous_.selected_from, previous_.normal, index) * light_pdf;
-    const float rival = previous_.way.rival(*scene_.lights[index], previous_.t, previous_.t_pdf);
-    return power_heuristic(previous_.pdf, chosen * std::sqrt(1.0F + rival * rival));
+        scene_.selector->probability(previous_.position, previous_.normal, index) * light_pdf;
+    const float near = near_density(previous_.way, index, previous_.t, previous_.t_pdf) * light_pdf;
+    return power_heuristic(previous_.pdf, std::sqrt(chosen * chosen + near * near));
+  }
+
+  /// The density with which add_light_from_near chooses light `index` and the place at `t` of
+  /// `way`, over that of free flight there, `t_pdf`.
+  float near_density(const MediumWay& way, uint32_t index, float t, float t_pdf) const {
+    const float rival = way.rival(*scene_.lights[index], t, t_pdf);
+    if (!(rival > 0.0F)) return 0.0F;
+    return rival * scene_.selector->probability_along(way.ray, way.t_max, index);
   }
 
   void add_sky() {
@@ -122,7 +134,7 @@ class Path {
       if (is_black(radiance)) continue;
       const float pdf =
           previous_.specular ? 0.0F : light.pdf_direct(previous_.position, ray_.direction, nowhere);
-      add(radiance * bsdf_weight(index, pdf), depth_);
+      add(radiance * bsdf_weight(index, pdf), depth_, {index, true});
     }
   }
 
@@ -133,13 +145,13 @@ class Path {
     if (is_black(radiance)) return;
     const float pdf =
         previous_.specular ? 0.0F : light.pdf_direct(previous_.position, ray_.direction, point);
-    add(radiance * bsdf_weight(object.light, pdf), depth_);
+    add(radiance * bsdf_weight(object.light, pdf), depth_, {object.light});
   }
 
   void add_direct_light(const ShadedSurface& surface, const SceneObject& object, const Vec3& wo,
                         uint32_t dimension) {
     const SurfacePoint& point = surface.point();
-    const auto chosen = choose_light(point.position, point.position, point.ng, dimension);
+    const auto chosen = choose_light(point.position, point.ng, dimension);
     if (!chosen) return;
     const LightSample& sample = chosen->sample;
     const Rgb f = surface.evaluate(wo, sample.direction, TransportMode::radiance);
@@ -147,6 +159,7 @@ class Path {
     const Ray shadow = shadow_ray(point, sample);
     const float pdf = surface.pdf(wo, sample.direction, TransportMode::radiance);
     const float weight = sample.delta ? 1.0F : power_heuristic(chosen->pdf(), pdf);
+    if (is_first_told()) first_ = FirstEvent::at(surface, wo, sample.direction, false);
     if (!passes_through(point, wo, sample.direction)) {
       return add_light(*chosen, f, weight, shadow, around_, MediaNumbers::Purpose::shadow);
     }
@@ -159,15 +172,15 @@ class Path {
   /// its density there; 0: unknown.
   void add_direct_light(const MediumWay& way, float t, float pdf, const Vec3& position,
                         uint32_t dimension) {
-    const auto chosen = choose_light(way.ray.origin, position, Vec3(0.0F), dimension);
+    const auto chosen = choose_light(position, Vec3(0.0F), dimension);
     if (!chosen) return;
     const LightSample& sample = chosen->sample;
     const Phase& phase = way.medium->phase();
     const float cosine = glm::dot(ray_.direction, sample.direction);
     const float scattered = sample.delta ? 0.0F : phase.pdf(cosine, channel_shares(throughput_));
-    const float rival = way.rival(*scene_.lights[chosen->index], t, pdf) * chosen->pdf();
+    const float near = near_density(way, chosen->index, t, pdf) * sample.pdf;
     const float weight =
-        power_heuristic(chosen->pdf(), std::sqrt(scattered * scattered + rival * rival));
+        power_heuristic(chosen->pdf(), std::sqrt(scattered * scattered + near * near));
     add_light(*chosen, phase.evaluate(cosine), weight, shadow_ray(position, sample, ray_.time),
               around_, MediaNumbers::Purpose::shadow);
   }
@@ -178,7 +191,7 @@ class Path {
     if (depth_ >= std::min(settings_.max_depth, settings_.max_events)) return;
     if (scene_.lights.empty()) return;
     sampler_.set_dimension(event_dimension() + kLight);
-    const auto selected = scene_.selector->select(way.ray.origin, Vec3(0.0F), sampler_.next_4d().z);
+    const auto selected = scene_.selector->select_along(way.ray, way.t_max, sampler_.next_4d().z);
     if (!selected) return;
     const Light& light = *scene_.lights[selected->index];
     const std::optional<Equiangular> places = way.places_near(light);
@@ -194,9 +207,11 @@ class Path {
     // The shares after scattering there, which the direction would be chosen with.
     const Rgb shares = channel_shares(throughput_ * flight.scattered);
     const float scattered = sample->delta ? 0.0F : phase.pdf(cosine, shares) / chosen.pdf();
+    const float there =
+        scene_.selector->probability(position, Vec3(0.0F), selected->index) / selected->probability;
     const float pdf = places->pdf(t);
     const float other = flight.pdf / pdf;
-    const float weight = 1.0F / (1.0F + other * other * (1.0F + scattered * scattered));
+    const float weight = 1.0F / (1.0F + other * other * (there * there + scattered * scattered));
     add_light(chosen, phase.evaluate(cosine) * flight.scattered / pdf, weight,
               shadow_ray(position, *sample, ray_.time), around_, MediaNumbers::Purpose::connection);
   }
@@ -210,13 +225,13 @@ class Path {
     float pdf() const { return probability * sample.pdf; }
   };
 
-  /// Selected for `select_from`, a place of it chosen from `from`.
-  std::optional<ChosenLight> choose_light(const Vec3& select_from, const Vec3& from,
-                                          const Vec3& normal, uint32_t dimension) {
+  /// For the place `from` with normal `normal` (zero: none, in a medium).
+  std::optional<ChosenLight> choose_light(const Vec3& from, const Vec3& normal,
+                                          uint32_t dimension) {
     if (scene_.lights.empty()) return std::nullopt;
     sampler_.set_dimension(dimension + kLight);
     const Vec4 u = sampler_.next_4d();
-    const auto selected = scene_.selector->select(select_from, normal, u.z);
+    const auto selected = scene_.selector->select(from, normal, u.z);
     if (!selected) return std::nullopt;
     const auto sample =
         scene_.lights[selected->index]->sample_direct(from, ray_.time, u.w, Vec2(u));
@@ -234,7 +249,7 @@ class Path {
       work_.log->lines.push_back(fmt::format("    chooses light '{}', weight {:.4g}",
                                              scene_.light_names[chosen.index], weight));
     }
-    add(f * chosen.sample.radiance * share * (weight / chosen.pdf()), depth_ + 1);
+    add(f * chosen.sample.radiance * share * (weight / chosen.pdf()), depth_ + 1, {chosen.index});
   }
 
   static bool passes_through(const SurfacePoint& point, const Vec3& wo, const Vec3& wi) {
@@ -249,8 +264,9 @@ class Path {
     const float t_max = surface != nullptr ? surface->t : kInfinity;
     const Vec4 u = numbers_.next();
     if (const Rgb emitted = medium.emitted(ray_, t_max, u); !is_black(emitted))
-      add(emitted, depth_);
+      add(emitted, depth_, LightSource::of(medium));
     const MediumWay way{ray_, t_max, &medium, channel_shares(throughput_), around_.open()};
+    if (is_first_told()) first_ = {};  // in the volume, until the path meets a surface
     add_light_from_near(way, surface, numbers_.next());
     const MediumSample sample = medium.sample(ray_, t_max, way.shares, u);
     throughput_ *= sample.weight;
@@ -283,7 +299,7 @@ class Path {
     if (!(pdf > 0.0F)) return false;
     throughput_ *= phase.evaluate(cosine) / pdf;
     if (!count_event(u.w)) return false;
-    previous_ = {position, way.ray.origin, Vec3(0.0F), pdf, false, way, t, t_pdf};
+    previous_ = {position, Vec3(0.0F), pdf, false, way, t, t_pdf};
     ray_ = {position, direction, kInfinity, ray_.time};
     return true;
   }
@@ -296,10 +312,11 @@ class Path {
     const auto sample = surface.sample(wo, u.z, Vec2(u), TransportMode::radiance);
     if (!sample || is_black(sample->weight)) return false;
     throughput_ *= sample->weight;
+    if (is_first_told()) first_ = FirstEvent::at(surface, wo, sample->wi, sample->delta);
     eta_scale_ *= sample->eta * sample->eta;
     if (!count_event(u.w)) return false;
     const SurfacePoint& point = surface.point();
-    previous_ = {point.position, point.position, point.ng, sample->pdf, sample->delta, {}};
+    previous_ = {point.position, point.ng, sample->pdf, sample->delta, {}};
     if (passes_through(point, wo, sample->wi)) cross(object, point, sample->wi, around_);
     ray_ = spawn_ray(point, sample->wi);
     ray_.time = point.time;
@@ -312,11 +329,15 @@ class Path {
     return true;
   }
 
+  /// Whether light is told apart by the event at hand.
+  bool is_first_told() const { return work_.parts != nullptr && depth_ == 0; }
+
   /// One more scattering event; false where roulette, decided by `u`, ends the path.
   bool count_event(float u) {
     ++work_.bounces;
     ++depth_;
     numbers_ = MediaNumbers(sampler_, depth_, MediaNumbers::Purpose::flight);
+    passing_ = MediaNumbers(sampler_, depth_, MediaNumbers::Purpose::passing);
     if (depth_ < settings_.roulette_depth) return true;
     if (survives_roulette(max_component(throughput_) * eta_scale_, u, throughput_)) return true;
     if (work_.log != nullptr) work_.log->lines.emplace_back("  ended by roulette");
@@ -327,11 +348,13 @@ class Path {
     out_.alpha = 1.0F;
     out_.depth = scene_.camera->depth_of(point.position, point.time);
     out_.normal = point.ns;
+    out_.object = point.object;
+    out_.position = point.position;
   }
 
   void note_albedo(const ShadedSurface& surface, const Vec3& wo) {
     if (!surface.has_smooth()) return;
-    out_.albedo = throughput_ * surface.bsdf()->albedo(surface.frame().to_local(wo));
+    out_.albedo = throughput_ * surface.albedo(wo);
     albedo_noted_ = true;
   }
 
@@ -346,7 +369,6 @@ class Path {
   /// Where the path scattered last: what light selection and MIS refer to.
   struct Previous {
     Vec3 position{0.0F};
-    Vec3 selected_from{0.0F};  ///< what choosing a light referred to
     Vec3 normal{0.0F};
     float pdf = 0.0F;
     bool specular = true;  ///< a delta lobe, or the camera: lights could not have been chosen
@@ -365,8 +387,10 @@ class Path {
   Previous previous_;
   MediumStack around_;    ///< what the ray begins in
   MediaNumbers numbers_;  ///< for the way from the last event on
+  MediaNumbers passing_;  ///< through surfaces on it
   float eta_scale_ = 1.0F;
-  int depth_ = 0;  ///< scattering events so far
+  int depth_ = 0;     ///< scattering events so far
+  FirstEvent first_;  ///< of them, where light is told apart
   bool albedo_noted_ = false;
 };
 

@@ -26,6 +26,10 @@ double PathVertex::per_direction(const Vec3& from, const Vec3& towards) const {
          distance2;
 }
 
+double PathVertex::across(const Vec3& towards) const {
+  return kind == Kind::surface ? static_cast<double>(std::abs(glm::dot(point.ng, towards))) : 1.0;
+}
+
 MediumStack PathVertex::around_towards(const Vec3& direction) const {
   MediumStack bodies = around;
   if (kind == Kind::surface && glm::dot(wo, point.ng) * glm::dot(direction, point.ng) < 0.0F) {

@@ -22,8 +22,8 @@ namespace hyades::core {
 /// reverse_{n-2}^2), where `reverse` are densities from the other side, and only the last two
 /// depend on what it is joined to. Densities are per area or volume, those of infinitely far lights
 /// per solid angle. What a delta lobe chooses has density 1 per solid angle, and backwards what
-/// refraction makes of that; the lobes' own probabilities, roulette, and what media let through are
-/// left out: the weights of a path add up to 1 all the same.
+/// refraction makes of that; the lobes' own probabilities, roulette, and what media and surfaces
+/// with an opacity let through are left out: the weights of a path add up to 1 all the same.
 struct PathVertex {
   enum class Kind { lens, light, surface, medium };
 
@@ -63,6 +63,9 @@ struct PathVertex {
   /// What turns a density per solid angle of direction `towards` (unit) at `from` into this
   /// vertex's measure.
   double per_direction(const Vec3& from, const Vec3& towards) const;
+
+  /// What turns a density per area across `towards` (unit) into this vertex's measure.
+  double across(const Vec3& towards) const;
 
   /// The bodies around a ray that leaves along `direction`.
   MediumStack around_towards(const Vec3& direction) const;

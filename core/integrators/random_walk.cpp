@@ -29,10 +29,7 @@ double solid_angle_ratio(const ShadedSurface& surface, const Vec3& wo, const Bsd
 }  // namespace
 
 double Way::density_at(const PathVertex& v, const Vec3& from) const {
-  if (pdf_across > 0.0) {
-    if (v.kind != PathVertex::Kind::surface) return pdf_across;
-    return pdf_across * static_cast<double>(std::abs(glm::dot(v.point.ng, ray.direction)));
-  }
+  if (pdf_across > 0.0) return pdf_across * v.across(ray.direction);
   return pdf * v.per_direction(from, ray.direction);
 }
 
@@ -45,12 +42,14 @@ void RandomWalk::go(Subpath& path, Way way, int most, WalkWatcher& watcher) {
     if (vertex == nullptr) return;
     watcher.arrives(*vertex);
     if (path.size() >= most || !scatter(path, way)) return;
+    watcher.goes_on(*vertex, way);
   }
 }
 
 /// The next place where light scatters; null where there is none.
 PathVertex* RandomWalk::next_vertex(Subpath& path, Way& way, WalkWatcher& watcher) {
   MediaNumbers numbers(sampler_, events_, numbers_.flights);
+  MediaNumbers passing(sampler_, events_, numbers_.passing);
   const RayKind kind =
       events_ == 0 && mode_ == TransportMode::radiance ? RayKind::camera : RayKind::other;
   for (int crossings = 0; crossings <= kMaxNullCrossings; ++crossings) {
@@ -81,7 +80,7 @@ PathVertex* RandomWalk::next_vertex(Subpath& path, Way& way, WalkWatcher& watche
     }
     const SceneObject& object = scene_.objects[point.object];
     watcher.meets(way, point, object);
-    if (!lets_straight_through(object, way.around)) {
+    if (!goes_straight(object, point, way.around, passing)) {
       PathVertex& v = path.add(PathVertex::Kind::surface);
       v.point = point;
       v.point.outside_index = way.around.index_outside(object.body);

@@ -13,7 +13,8 @@ struct Way {
   double pdf = 1.0;       ///< density per solid angle of its direction; of delta lobes 1
   bool specular = false;  ///< a delta lobe chose it: nothing else could have
   MediumStack around;     ///< the bodies that it begins in
-  /// Light from infinitely far away: the density of its rays per area across them; else 0.
+  /// Parallel rays, of light from infinitely far away or of a camera: their density per area across
+  /// them; else 0.
   double pdf_across = 0.0;
 
   /// The density in `v`'s own measure with which this way, from a vertex at `from`, leads to it.
@@ -37,6 +38,9 @@ class WalkWatcher {
 
   /// A vertex was added; the walk has not gone on from it.
   virtual void arrives(const PathVertex& /*vertex*/) {}
+
+  /// The walk goes on from its last vertex along `way`.
+  virtual void goes_on(const PathVertex& /*from*/, const Way& /*way*/) {}
 };
 
 /// Where a walk takes its random numbers from.
@@ -44,6 +48,7 @@ struct WalkNumbers {
   uint32_t first = 0;      ///< dimension of the first scattering event
   uint32_t per_event = 4;  ///< distance to the next event's
   MediaNumbers::Purpose flights = MediaNumbers::Purpose::flight;
+  MediaNumbers::Purpose passing = MediaNumbers::Purpose::passing;
 };
 
 /// Lengthens subpaths by scattering: the random walk of path tracing, from the camera

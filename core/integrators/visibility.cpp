@@ -1,5 +1,7 @@
 #include "core/integrators/visibility.h"
 
+#include "core/scene/media_around.h"
+
 namespace hyades::core {
 
 void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,
@@ -14,7 +16,8 @@ void cross(const SceneObject& object, const SurfacePoint& point, const Vec3& dir
 
 namespace {
 
-/// Follows `ray` through null surfaces to its end. 0 where another surface stands in the way.
+/// Follows `ray` to its end, through null surfaces and what is there of others. 0 where one stands
+/// in the way.
 Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
                          const MediumStack& around, MediaNumbers numbers, Workspace& work) {
   Rgb share(1.0F);
@@ -31,7 +34,9 @@ Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
       return share;
     }
     const SceneObject& object = scene.objects[point.object];
-    if (!lets_straight_through(object, inside)) return Rgb(0.0F);
+    const float straight = straight_share(object, point, inside);
+    if (!(straight > 0.0F)) return Rgb(0.0F);
+    share *= straight;
     pass(inside.medium(), way, point.t);
     if (is_black(share)) return share;
     cross(object, point, way.direction, inside);
@@ -72,7 +77,8 @@ Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& arou
 
 Rgb visible_share_from_camera(const Scene& scene, const Ray& ray, MediaNumbers numbers,
                               Workspace& work) {
-  return share_through_shells(scene, ray, RayKind::camera, scene.around_camera, numbers, work);
+  return share_through_shells(scene, ray, RayKind::camera, bodies_around_lens(scene, ray), numbers,
+                              work);
 }
 
 }  // namespace hyades::core

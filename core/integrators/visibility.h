@@ -6,8 +6,9 @@
 namespace hyades::core {
 
 /// An unbiased estimate of the share of light that comes along `shadow` neither blocked nor
-/// scattered: 0 where a surface stands in the way; what media between, which begin and end at null
-/// surfaces, let through. `around`: the bodies that the ray begins in.
+/// scattered: 0 where a surface stands in the way; what surfaces that are not all there and
+/// media between, which begin and end at null surfaces, let through. `around`: the bodies that the
+/// ray begins in.
 Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& around,
                   MediaNumbers numbers, Workspace& work);
 
@@ -20,10 +21,21 @@ Ray shadow_ray(const Vec3& from, const LightSample& to, float time);
 Rgb visible_share_from_camera(const Scene& scene, const Ray& ray, MediaNumbers numbers,
                               Workspace& work);
 
-/// Whether light goes on straight where it meets `object`, without an event: its surface is null,
-/// or hidden in another of the bodies `around`.
-inline bool lets_straight_through(const SceneObject& object, const MediumStack& around) {
-  return object.material->is_null() || around.hides(object.body);
+/// The share of the light that goes on straight where it meets `object` at `point`, without an
+/// event: all where its surface is null, or hidden in another of the bodies `around`; else what its
+/// opacity leaves.
+inline float straight_share(const SceneObject& object, const SurfacePoint& point,
+                            const MediumStack& around) {
+  const Material& material = *object.material;
+  if (material.is_null() || around.hides(object.body)) return 1.0F;
+  return material.is_cutout() ? 1.0F - material.opacity(point) : 0.0F;
+}
+
+/// Whether a path goes on straight there, which it does with probability straight_share().
+inline bool goes_straight(const SceneObject& object, const SurfacePoint& point,
+                          const MediumStack& around, MediaNumbers& numbers) {
+  const float share = straight_share(object, point, around);
+  return share >= 1.0F || (share > 0.0F && numbers.next_number() < share);
 }
 
 /// Tells `around` that a path crossed the surface of `object` at `point` towards `direction`.

@@ -3,9 +3,9 @@
 #include <blosc.h>
 #include <zlib.h>
 
-#include <bit>
 #include <cstring>
-#include <limits>
+
+#include "core/base/half.h"
 
 namespace hyades::core {
 namespace {
@@ -54,18 +54,6 @@ std::vector<std::byte> unpack(VdbCursor& cursor, uint32_t compression, size_t si
     if (done != Z_OK || length != size) cursor.fail("has a node that cannot be decompressed");
   }
   return unpacked;
-}
-
-float from_half(uint16_t half) {
-  const uint32_t sign = uint32_t{half & 0x8000U} << 16U;
-  const uint32_t exponent = (half >> 10U) & 31U;
-  const uint32_t mantissa = half & 0x3FFU;
-  if (exponent == 31) return std::numeric_limits<float>::quiet_NaN();
-  if (exponent == 0) {
-    const float tiny = static_cast<float>(mantissa) * 0x1p-24F;
-    return sign != 0 ? -tiny : tiny;
-  }
-  return std::bit_cast<float>(sign | (exponent + 112U) << 23U | mantissa << 13U);
 }
 
 template <class T>

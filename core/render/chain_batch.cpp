@@ -24,7 +24,7 @@ std::vector<PixelRect> shares_of(const PixelRect& tile, const PixelRect& region)
 
 class Collector final : public ChainSink {
  public:
-  Collector(const SplatPlacer& placer, const ChainName& name, std::vector<PixelSplat>& splats,
+  Collector(const SplatPlacer& placer, const ChainName& name, BatchSplats& splats,
             RenderCounters& counters, const ChainBatch::Watch& watch, uint64_t samples)
       : placer_(placer), splats_(splats), counters_(counters), watch_(watch), samples_(samples) {
     key_ = hash_combine(hash_combine(name.seed, name.frame), kPlaces);
@@ -33,9 +33,8 @@ class Collector final : public ChainSink {
     key_ = hash_combine(key_, name.batch);
   }
 
-  void deposit(const Splat& splat) override {
-    const auto placed = placer_.place(splat, hash_combine(key_, index_++));
-    if (placed && !add_splat(*placed, splats_)) ++counters_.bad_samples;
+  void deposit(const Splat& splat, std::span<const SplatPart> parts) override {
+    if (!placer_.add(splat, parts, hash_combine(key_, index_++), splats_)) ++counters_.bad_samples;
   }
 
   bool goes_on(double done) override {
@@ -52,7 +51,7 @@ class Collector final : public ChainSink {
 
  private:
   const SplatPlacer& placer_;
-  std::vector<PixelSplat>& splats_;
+  BatchSplats& splats_;
   RenderCounters& counters_;
   const ChainBatch::Watch& watch_;
   uint64_t samples_;  ///< of the tile's batch, that this chain stands for
@@ -70,9 +69,8 @@ uint64_t pixels_of_chains(const PixelRect& crop, const PixelRect& region) {
   return pixels;
 }
 
-bool ChainBatch::run(ChainName name, const PixelRect& tile, Workspace& work,
-                     std::vector<PixelSplat>& splats, RenderCounters& counters,
-                     const Watch& watch) const {
+bool ChainBatch::run(ChainName name, const PixelRect& tile, Workspace& work, BatchSplats& splats,
+                     RenderCounters& counters, const Watch& watch) const {
   const std::vector<PixelRect> shares = shares_of(tile, scene_.window);
   const uint64_t samples = static_cast<uint64_t>(tile.area()) * name.samples;
   for (size_t i = 0; i < shares.size(); ++i) {

@@ -35,7 +35,7 @@ class ChainBatch {
 
   /// Runs them. `name`: seed, frame, batch and samples; the share is filled in. Splats go to
   /// `splats`. False where it was stopped.
-  bool run(ChainName name, const PixelRect& tile, Workspace& work, std::vector<PixelSplat>& splats,
+  bool run(ChainName name, const PixelRect& tile, Workspace& work, BatchSplats& splats,
            RenderCounters& counters, const Watch& watch) const;
 
  private:

@@ -1,7 +1,7 @@
 #include "core/render/frame_renderer.h"
 
-#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,7 +14,6 @@ namespace hyades::core {
 namespace {
 
 constexpr size_t kBadExamples = 8;
-constexpr int kMaxDeposited = 16;
 /// Keeps the numbers that place splats apart from those of samplers.
 constexpr uint64_t kSplatNumbers = uint64_t{0x53504C41} << 32U;
 
@@ -43,6 +42,19 @@ bool is_usable(const Vec3& v) {
 
 bool is_usable(const PixelSample& s) {
   return is_usable(s.radiance) && is_usable(s.albedo) && is_usable(s.normal);
+}
+
+/// Where light of the scene goes that a film tells apart.
+PartTable part_table(const FilmLayout& layout, const Scene& scene) {
+  PartTable table;
+  table.components = layout.component_parts;
+  table.count = layout.part_count();
+  table.rest = layout.group_part(kRestGroup);
+  for (const std::string& group : scene.light_groups)
+    table.lights.push_back(layout.group_part(group.empty() ? kRestGroup : group));
+  for (const auto& [medium, group] : scene.medium_groups)
+    table.media.emplace_back(medium, layout.group_part(group));
+  return table;
 }
 
 bool is_finite(const Vec3& v) {
@@ -87,6 +99,7 @@ FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job,
       integrator_(std::move(integrator)),
       filter_(make_pixel_filter(filter_shape(job.film.filter), job.film.filter_radius)),
       layout_(make_film_layout(layers)),
+      part_table_(part_table(layout_, *scene_)),
       sampling_(job.sampling),
       frame_(static_cast<uint32_t>(frame)),
       needs_time_(job.frames.shutter > 0.0F) {
@@ -94,20 +107,22 @@ FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job,
   if (layers.splats) placer_.emplace(*filter_, job.film.filter_radius, scene_->window);
 }
 
-PixelSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
+TakenSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
                                         Workspace& work) const {
   sampler.start({sampling_.seed, frame_, pixel, sample});
+  if (work.parts != nullptr) work.parts->clear();
   const FilterSample place = filter_->sample(sampler.next_2d());
   const Vec2 lens = sampler.next_2d();
   const float time = needs_time_ ? sampler.next_1d() : 0.0F;
   const Vec2 film = Vec2(pixel) + Vec2(0.5F) + place.offset;
-  PixelSample out =
-      integrator_->sample(*scene_, scene_->camera->generate(film, lens, time), sampler, work);
+  TakenSample taken{{}, place.weight, time, scene_->camera->generate(film, lens, time)};
+  PixelSample& out = taken.seen;
+  out = integrator_->sample(*scene_, taken.ray, sampler, work);
   out.radiance *= place.weight;
   out.alpha *= place.weight;
   out.albedo *= place.weight;
   out.normal *= place.weight;
-  return out;
+  return taken;
 }
 
 uint64_t FrameRenderer::splat_random(const Vec2i& pixel, uint32_t sample, size_t index) const {
@@ -117,13 +132,16 @@ uint64_t FrameRenderer::splat_random(const Vec2i& pixel, uint32_t sample, size_t
 }
 
 void FrameRenderer::take_splats(const Vec2i& pixel, uint32_t sample, Workspace& work,
-                                std::vector<PixelSplat>& into, RenderCounters& counters) const {
+                                BatchSplats& into, RenderCounters& counters) const {
+  std::span<const SplatPart> parts;
+  if (work.parts != nullptr) parts = work.parts->splat_parts();
   for (size_t i = 0; placer_ && i < work.splats.size(); ++i) {
     const Splat& splat = work.splats[i];
     const bool somewhere = std::isfinite(splat.film.x) && std::isfinite(splat.film.y);
-    const auto placed = placer_->place(splat, splat_random(pixel, sample, i));
-    if (somewhere && !placed) continue;
-    if (somewhere && add_splat(*placed, into)) continue;
+    if (somewhere && placer_->add(splat, parts.subspan(splat.first_part, splat.parts),
+                                  splat_random(pixel, sample, i), into)) {
+      continue;
+    }
     ++counters.bad_samples;
     if (counters.examples.size() < kBadExamples) counters.examples.push_back({pixel, sample});
   }
@@ -138,41 +156,66 @@ bool FrameRenderer::render_batch(const Unit& unit, uint32_t batch, Sampler& samp
   const uint32_t count = samples_in_batch(batch, sampling_.samples);
   float* out = sums.values.data();
   sums.splats.clear();
+  for (std::vector<IdCount>& ids : sums.ids) ids.clear();
+  sums.objects.clear();
+  PixelSums pixel(layout_, *scene_);
+  uint32_t index = 0;
   for (int y = unit.tile.y0; y < unit.tile.y1; ++y) {
     for (int x = unit.tile.x0; x < unit.tile.x1; ++x) {
-      std::array<double, kMaxDeposited> sum{};
-      float depth = kInfinity;
+      pixel.clear();
       for (uint32_t s = first; s < first + count; ++s) {
         // A path may take tens of milliseconds, so a pixel is too long to wait for.
         if (stop != nullptr && stop->load(std::memory_order_relaxed)) return false;
-        const PixelSample sample = sample_pixel({x, y}, s, sampler, work);
-        if (!is_usable(sample)) {
+        const TakenSample sample = sample_pixel({x, y}, s, sampler, work);
+        if (!is_usable(sample.seen)) {
           ++counters.bad_samples;
           if (counters.examples.size() < kBadExamples) counters.examples.push_back({{x, y}, s});
           work.splats.clear();
           continue;
         }
         if (!work.splats.empty()) take_splats({x, y}, s, work, sums.splats, counters);
-        for (int c = 0; c < 3; ++c) sum[static_cast<size_t>(c)] += double{sample.radiance[c]};
-        sum[3] += double{sample.alpha};
-        depth = sample.depth < depth ? sample.depth : depth;
-        if (layout_.albedo >= 0) {
-          for (int c = 0; c < 3; ++c)
-            sum[static_cast<size_t>(layout_.albedo + c)] += double{sample.albedo[c]};
-        }
-        if (layout_.normal >= 0) {
-          for (int c = 0; c < 3; ++c)
-            sum[static_cast<size_t>(layout_.normal + c)] += double{sample.normal[c]};
-        }
+        pixel.add(sample, work.parts != nullptr ? std::span<const Rgb>(work.parts->sums())
+                                                : std::span<const Rgb>());
+        if (layout_.layers.has_ids()) count_ids(sample, index, sums);
       }
       if (samples_done != nullptr) samples_done->fetch_add(count, std::memory_order_relaxed);
-      for (int c = 0; c < layout_.deposited; ++c) {
-        *out++ = c == layout_.depth ? depth : static_cast<float>(sum[static_cast<size_t>(c)]);
-      }
+      out = pixel.write(out);
+      ++index;
     }
   }
   counters.samples += uint64_t{count} * static_cast<uint64_t>(unit.tile.area());
   return true;
+}
+
+void FrameRenderer::count_ids(const TakenSample& sample, uint32_t pixel, BatchSums& sums) const {
+  // Where a filter is negative its samples take away: they say nothing of what covers the pixel.
+  if (!(sample.weight > 0.0F)) return;
+  const uint32_t object = sample.seen.object;
+  const bool met = object != PixelSample::kNoObject;
+  if (met) sums.objects.insert(object);
+  for (size_t kind = 0; kind < kIdKinds; ++kind) {
+    if (!layout_.layers.ids[kind]) continue;
+    const uint32_t id = met ? scene_->objects[object].ids[kind] : IdLayer::kNothing;
+    std::vector<IdCount>& ids = sums.ids[kind];
+    if (!ids.empty() && ids.back().pixel == pixel && ids.back().id == id) {
+      ++ids.back().count;
+    } else {
+      ids.push_back({pixel, id, 1});
+    }
+  }
+}
+
+void FrameRenderer::deposit_ids(BatchSums& sums, Film& film) const {
+  for (const IdKind kind : {IdKind::object, IdKind::material}) {
+    const auto k = static_cast<size_t>(kind);
+    if (!layout_.layers.ids[k]) continue;
+    IdLayer& ids = film.mutable_ids(kind);
+    ids.deposit(std::move(sums.ids[k]));
+    for (const uint32_t index : sums.objects) {
+      const SceneObject& object = scene_->objects[index];
+      ids.name(object.ids[k], kind == IdKind::object ? object.name : object.material_name);
+    }
+  }
 }
 
 bool FrameRenderer::run_chains(const Unit& unit, uint32_t batch, Workspace& work, BatchSums& sums,
@@ -197,7 +240,10 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
       sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol : SamplerKind::independent);
   Workspace work;
   Workspace chain_work;
+  LightParts parts(part_table_);
+  if (part_table_.count > 0) work.parts = chain_work.parts = &parts;
   BatchSums sums;
+  sums.splats.parts.resize(part_table_.count);
   sums.values.resize(static_cast<size_t>(unit.tile.area()) *
                      static_cast<size_t>(layout_.deposited));
   for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
@@ -208,7 +254,12 @@ RenderedUnit FrameRenderer::render(const Unit& unit, const std::atomic<bool>* st
       break;
     }
     result.film.deposit(unit.tile, b, samples_in_batch(b, sampling_.samples), sums.values);
-    if (layout_.layers.splats) result.film.deposit_splats(sums.splats);
+    if (layout_.layers.splats) {
+      result.film.deposit_splats(std::move(sums.splats.beauty));
+      for (size_t i = 0; i < part_table_.count; ++i)
+        result.film.deposit_splats(i, std::move(sums.splats.parts[i]));
+    }
+    if (layout_.layers.has_ids()) deposit_ids(sums, result.film);
     if (batches_done != nullptr) batches_done->fetch_add(1, std::memory_order_relaxed);
   }
   result.counters.rays = work.rays + chain_work.rays;
@@ -222,7 +273,7 @@ PixelSample FrameRenderer::replay(const Vec2i& pixel, uint32_t sample, PathLog& 
       sampling_.sampler == SamplerName::sobol ? SamplerKind::sobol : SamplerKind::independent);
   Workspace work;
   work.log = &log;
-  const PixelSample result = sample_pixel(pixel, sample, *sampler, work);
+  const PixelSample result = sample_pixel(pixel, sample, *sampler, work).seen;
   for (size_t i = 0; placer_ && i < work.splats.size(); ++i) {
     const Splat& splat = work.splats[i];
     const auto placed = placer_->place(splat, splat_random(pixel, sample, i));

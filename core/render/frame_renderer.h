@@ -1,16 +1,20 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "core/film/film.h"
 #include "core/integrators/integrator.h"
+#include "core/integrators/light_parts.h"
 #include "core/integrators/metropolis.h"
 #include "core/job/job.h"
+#include "core/render/pixel_sums.h"
 #include "core/render/render_counters.h"
 #include "core/render/splat_placer.h"
 #include "core/samplers/filter.h"
@@ -51,16 +55,20 @@ class FrameRenderer {
   /// What a batch brings.
   struct BatchSums {
     std::vector<float> values;  ///< as Film::deposit takes them
-    std::vector<PixelSplat> splats;
+    BatchSplats splats;
+    std::array<std::vector<IdCount>, kIdKinds> ids;  ///< pixels are those of the tile
+    std::unordered_set<uint32_t> objects;            ///< that ids are of
   };
 
-  PixelSample sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
+  TakenSample sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,
                            Workspace& work) const;
   bool render_batch(const Unit& unit, uint32_t batch, Sampler& sampler, Workspace& work,
                     BatchSums& sums, RenderCounters& counters, const std::atomic<bool>* stop,
                     std::atomic<uint64_t>* samples_done) const;
-  void take_splats(const Vec2i& pixel, uint32_t sample, Workspace& work,
-                   std::vector<PixelSplat>& into, RenderCounters& counters) const;
+  void take_splats(const Vec2i& pixel, uint32_t sample, Workspace& work, BatchSplats& into,
+                   RenderCounters& counters) const;
+  void count_ids(const TakenSample& sample, uint32_t pixel, BatchSums& sums) const;
+  void deposit_ids(BatchSums& sums, Film& film) const;
   bool run_chains(const Unit& unit, uint32_t batch, Workspace& work, BatchSums& sums,
                   RenderCounters& counters, const std::atomic<bool>* stop,
                   std::atomic<uint64_t>* samples_done) const;
@@ -73,6 +81,7 @@ class FrameRenderer {
   std::unique_ptr<PixelFilter> filter_;
   std::optional<SplatPlacer> placer_;  ///< of films with splats
   FilmLayout layout_;
+  PartTable part_table_;
   SamplingDesc sampling_;
   uint32_t frame_ = 0;
   bool needs_time_ = false;

@@ -28,6 +28,24 @@ bool add_splat(const PixelSplat& splat, std::vector<PixelSplat>& into) {
   return true;
 }
 
+void BatchSplats::clear() {
+  beauty.clear();
+  for (std::vector<PixelSplat>& part : parts) part.clear();
+}
+
+bool SplatPlacer::add(const Splat& splat, std::span<const SplatPart> parts, uint64_t random,
+                      BatchSplats& into) const {
+  const auto placed = place(splat, random);
+  if (!placed) return true;
+  if (!add_splat(*placed, into.beauty)) return false;
+  for (const SplatPart& part : parts) {
+    // Shares of what counts count as well, and fall into the same pixel.
+    const auto share = place({splat.film, part.value}, random);
+    if (share) add_splat(*share, into.parts[part.part]);
+  }
+  return true;
+}
+
 SplatPlacer::Choice SplatPlacer::choose(float at, float u) const {
   // All pixels whose centres are within the radius; the filter is 0 for one too many at either end.
   const int first = static_cast<int>(std::floor(at - 0.5F - radius_));

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/rect.h"
 #include "core/film/fixed128.h"
 #include "core/film/splats.h"
 #include "core/integrators/integrator.h"
+#include "core/integrators/light_parts.h"
 #include "core/samplers/filter.h"
 
 namespace hyades::core {
@@ -23,6 +25,14 @@ bool counts(const PixelSplat& splat);
 /// where it does not count.
 bool add_splat(const PixelSplat& splat, std::vector<PixelSplat>& into);
 
+/// The splats of a batch.
+struct BatchSplats {
+  std::vector<PixelSplat> beauty;
+  std::vector<std::vector<PixelSplat>> parts;  ///< of each part of light
+
+  void clear();
+};
+
 /// Which pixel a splat counts for. A splat at x is an estimate of filter(x - centre) times its
 /// value for every pixel; instead of all those within the filter's reach one gets it, chosen with
 /// probability |filter(x - centre)| / S, where S is the sum of |filter| over them: it gets S times
@@ -36,6 +46,11 @@ class SplatPlacer {
   /// What `splat` brings to which pixel; nothing where that is outside of the region. `random`: 64
   /// independent bits.
   std::optional<PixelSplat> place(const Splat& splat, uint64_t random) const;
+
+  /// Adds `splat` and its `parts`, which all count for the pixel that `random` says. False where it
+  /// would be somewhere, but does not count.
+  bool add(const Splat& splat, std::span<const SplatPart> parts, uint64_t random,
+           BatchSplats& into) const;
 
  private:
   struct Choice {

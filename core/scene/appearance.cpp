@@ -46,14 +46,29 @@ Result<MaterialPtr> Appearance::material(const std::string& name) {
     if (!height) return height.error().in("material '" + name + "'");
     result = make_bump(result, *height, desc->bump->height.at(time_) * job_.units);
   }
-  return materials_[name] = result;
+  if (desc->normal_map) {
+    auto normals = texture(desc->normal_map->texture);
+    if (!normals) return normals.error().in("material '" + name + "'");
+    auto strength = scalar(desc->normal_map->strength);
+    if (!strength) return strength.error().in("material '" + name + "'");
+    result = make_normal_map(result, *normals, *strength);
+  }
+  auto opacity = scalar(desc->opacity);
+  if (!opacity) return opacity.error().in("material '" + name + "'");
+  return materials_[name] = make_cutout(result, *opacity);
 }
 
 Result<MaterialPtr> Appearance::surface(const std::string& material, const std::string& interior) {
   const MediumDesc* inside = find_named(job_.media, interior);
   if (!material.empty() || inside == nullptr || !inside->index) return this->material(material);
-  if (*inside->index == 1.0F) return make_null();
-  return make_dielectric(*inside->index, Rgb(1.0F), Rgb(1.0F));
+  const float index = inside->index->at(time_);
+  if (index == 1.0F) return make_null();
+  return make_dielectric(index, Rgb(1.0F), Rgb(1.0F));
+}
+
+MediumPtr Appearance::grouped(MediumPtr medium, const MediumDesc& desc) {
+  if (!desc.light_group.empty()) medium_groups_.emplace_back(medium.get(), desc.light_group);
+  return medium;
 }
 
 Result<MediumPtr> Appearance::medium(const std::string& name) {
@@ -62,7 +77,7 @@ Result<MediumPtr> Appearance::medium(const std::string& name) {
   const MediumDesc* desc = find_named(job_.media, name);
   if (desc == nullptr) return Error{"there is no medium '" + name + "'"};
   if (desc->varying) return Error{"medium '" + name + "' varies from place to place of a body"};
-  return media_[name] = make_medium(*desc, time_, job_.units);
+  return media_[name] = grouped(make_medium(*desc, time_, job_.units), *desc);
 }
 
 Result<MediumPtr> Appearance::medium_in(const std::string& name, const Placement& body) {
@@ -78,7 +93,7 @@ Result<MediumPtr> Appearance::medium_in(const std::string& name, const Placement
     if (!volume) return volume.error().in("medium '" + name + "'");
     found = volumes_.emplace(key, std::move(*volume)).first;
   }
-  return make_medium_in(*desc, time_, job_.units, found->second, body.to_world);
+  return grouped(make_medium_in(*desc, time_, job_.units, found->second, body.to_world), *desc);
 }
 
 bool Appearance::has_subsurface(const std::string& name) const {

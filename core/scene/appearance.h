@@ -9,6 +9,7 @@
 #include "core/job/job.h"
 #include "core/materials/make_material.h"
 #include "core/media/make_medium.h"
+#include "core/scene/camera_view.h"
 #include "core/scene/scene_cache.h"
 #include "core/scene/volume_makers.h"
 
@@ -38,6 +39,11 @@ class Appearance {
   /// The medium called `name` as it fills `body`, in which it may vary; null for "".
   Result<MediumPtr> medium_in(const std::string& name, const Placement& body);
 
+  /// The groups of the light that media made so far give off, of those that have one.
+  const std::vector<std::pair<const Medium*, std::string>>& medium_groups() const {
+    return medium_groups_;
+  }
+
   /// Whether bodies of material `name` are filled with what its `subsurface` says, and with what.
   bool has_subsurface(const std::string& name) const;
   MediumPtr subsurface(const std::string& name);
@@ -48,21 +54,29 @@ class Appearance {
   /// A texture in any case: one of constant colour where the parameter is a value.
   Result<TexturePtr> color_texture(const ColorInput& input);
 
+  const Job& job() const { return job_; }
   const JobTime& time() const { return time_; }
   /// Metres per unit of length of the job.
   float units() const { return job_.units; }
   SceneCache& cache() { return cache_; }
+  /// How textures see the scene; whose camera it is is said later.
+  const std::shared_ptr<CameraView>& view() const { return view_; }
 
  private:
+  /// Keeps the group of `medium`, which is made of `desc`.
+  MediumPtr grouped(MediumPtr medium, const MediumDesc& desc);
+
   const Job& job_;
   JobTime time_;
   SceneCache& cache_;
+  std::shared_ptr<CameraView> view_ = std::make_shared<CameraView>();
   std::map<std::string, TexturePtr> textures_;
   std::map<std::string, MaterialPtr> materials_;
   std::map<std::string, MediumPtr> media_;
   std::map<std::string, MediumPtr> subsurfaces_;  ///< by material
   std::map<std::pair<std::string, std::array<float, 6>>, PlacedVolume>
       volumes_;  ///< by medium and bounds of the body
+  std::vector<std::pair<const Medium*, std::string>> medium_groups_;
   int depth_ =
       0;  ///< of references in progress: the parser refuses cycles, this stops what slips through
 };

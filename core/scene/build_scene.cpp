@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
-#include <fmt/format.h>
-
-#include "core/base/elementary.h"
+#include "core/film/id_counts.h"
 #include "core/geometry/placement_check.h"
 #include "core/job/check_frame.h"
 #include "core/job/kinds.h"
+#include "core/job/layers.h"
 #include "core/scene/add_bodies.h"
 #include "core/scene/appearance.h"
+#include "core/scene/camera_makers.h"
+#include "core/scene/environment_makers.h"
 #include "core/scene/exteriors.h"
 #include "core/scene/flatten.h"
 #include "core/scene/light_makers.h"
@@ -20,11 +23,6 @@
 
 namespace hyades::core {
 namespace {
-
-constexpr float kRadians = kPi / 180.0F;
-constexpr const char* kSky = "environment";
-constexpr float kSensorHeight =
-    0.024F;  // m, the short side of a 35 mm frame: what f-stops refer to
 
 /// How far the world reaches from the middle of its bounds: infinite lights weigh their power by
 /// it.
@@ -48,8 +46,9 @@ class SceneBuilder {
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
     if (auto done = add_camera(); !done) return done.error();
+    if (auto done = add_motion(); !done) return done.error();
     add_media_around_camera();
-    scene_->selector = make_power_selector(scene_->lights);
+    scene_->selector = make_tree_selector(scene_->lights);
     scene_->resolution = {job_.film.width, job_.film.height};
     scene_->window = render_window(job_.film);
     scene_->texture_memory = cache_.image_memory();
@@ -66,22 +65,26 @@ class SceneBuilder {
     for (const FlatObject& object : *flat) {
       auto material = looks_.surface(object.material, object.desc->interior);
       if (!material) return at_object(object, material.error());
-      scene_->objects.push_back({.material = *material, .name = object.name});
+      const std::string& look = object.material.empty() ? kDefaultMaterial : object.material;
+      scene_->objects.push_back({.material = *material,
+                                 .name = object.name,
+                                 .material_name = look,
+                                 .ids = {id_of(object.name), id_of(look)}});
       placements.push_back(object.placement);
-      placements.back().blocks_light = !(*material)->is_null();
+      const bool cutout = (*material)->is_cutout();
+      placements.back().blocks_light = !(*material)->is_null() && !cutout;
+      scene_->has_shells |= cutout;
       if (object.placement.shape.mesh)
         scene_->triangles += object.placement.shape.mesh->triangles.size();
     }
     if (auto done = add_bodies(job_, *flat, looks_, *scene_, placements); !done) return done;
+    scene_->medium_groups = looks_.medium_groups();
     warn_of_open_bodies(*flat, cache_, *scene_);
     auto world = cache_.world(std::move(placements));
     if (!world) return blame(*flat, world.error());
     scene_->world = *world;
     if (auto done = check_exteriors(job_, *flat, *scene_); !done) return done;
-    for (uint32_t i = 0; i < flat->size(); ++i) {
-      if ((*flat)[i].emit) scene_->objects[i].light = add_emitter(i, *(*flat)[i].emit);
-    }
-    return {};
+    return add_emitters(*flat);
   }
 
   Status add_atmosphere(const std::vector<FlatObject>& objects) {
@@ -117,106 +120,111 @@ class SceneBuilder {
     return job_.file.empty() ? error : error.in(job_.file);
   }
 
-  uint32_t add_emitter(uint32_t object, const EmitDesc& emit) {
-    Rgb radiance = emit.color.at(time_) * emit.amount.at(time_);
-    if (emit.unit == EmitDesc::Unit::power) {
-      const double area = surface_area(*scene_->world, object) * (emit.two_sided ? 2.0 : 1.0);
-      radiance = area > 0.0 ? radiance * static_cast<float>(1.0 / (double{kPi} * area)) : Rgb(0.0F);
-    }
-    return add_light(make_area_light(*scene_->world, object, radiance, emit.two_sided),
-                     scene_->objects[object].name);
-  }
-
-  uint32_t add_light(LightPtr light, const std::string& name) {
-    const auto index = static_cast<uint32_t>(scene_->lights.size());
-    if (light->is_infinite()) scene_->infinite_lights.push_back(index);
-    scene_->lights.push_back(std::move(light));
-    scene_->light_names.push_back(name);
-    return index;
-  }
-
-  Status add_lights() {
-    const LightSetting setting{time_, job_.units, world_radius(*scene_->world)};
-    for (const LightDesc& desc : job_.lights) {
-      auto light = make_light(desc, setting);
-      if (!light) return Error{Diagnostic{desc.where, light.error().message}.to_string()};
-      add_light(*light, desc.name);
+  /// The lights of all shapes that emit, in the order of the objects.
+  Status add_emitters(const std::vector<FlatObject>& flat) {
+    const auto varying = std::count_if(flat.begin(), flat.end(), [&](const FlatObject& object) {
+      const size_t i = static_cast<size_t>(&object - flat.data());
+      return object.emit &&
+             (!object.emit->color.texture.empty() || scene_->objects[i].material->is_cutout());
+    });
+    // So that a thousand textured lamps do not take a thousand times as long as one.
+    constexpr int64_t kLookUps = int64_t{1} << 21;
+    const auto look_ups =
+        static_cast<uint32_t>(std::min(kLookUps / std::max<int64_t>(varying, 1), int64_t{1} << 18));
+    for (uint32_t first = 0; first < flat.size();) {
+      uint32_t end = first + 1;  // of the parts of one shape
+      while (end < flat.size() && flat[end].body == flat[first].body) ++end;
+      std::vector<uint32_t> parts(end - first);
+      std::iota(parts.begin(), parts.end(), first);
+      if (flat[first].emit) {
+        if (auto done = add_emitter(flat[first], parts, look_ups); !done) return done;
+      }
+      first = end;
     }
     return {};
   }
 
+  Status add_emitter(const FlatObject& object, const std::vector<uint32_t>& parts,
+                     uint32_t look_ups) {
+    const EmitDesc& emit = *object.emit;
+    auto color = looks_.color(emit.color);
+    if (!color) return at_object(object, color.error());
+    const MaterialPtr& material = scene_->objects[parts[0]].material;
+    SurfaceEmission emission;
+    emission.radiance = color->texture ? Rgb(1.0F) : color->value;
+    emission.two_sided = emit.two_sided;
+    emission.texture = color->texture;
+    emission.cutout = material->is_cutout() ? material : nullptr;
+    emission.look_ups = look_ups;
+    const float amount = emit.amount.at(time_);
+    std::optional<float> power;
+    if (emit.unit == EmitDesc::Unit::power) {
+      power = amount * luminance(emission.radiance);
+    } else {
+      emission.radiance *= amount;
+    }
+    const std::vector<LightPtr> lights = make_area_lights(*scene_->world, parts, emission, power);
+    for (size_t i = 0; i < parts.size(); ++i) {
+      scene_->objects[parts[i]].light =
+          add_light(lights[i], scene_->objects[parts[i]].name, emit.light_group);
+    }
+    return {};
+  }
+
+  uint32_t add_light(LightPtr light, const std::string& name, const std::string& group) {
+    const auto index = static_cast<uint32_t>(scene_->lights.size());
+    if (light->is_infinite()) scene_->infinite_lights.push_back(index);
+    scene_->lights.push_back(std::move(light));
+    scene_->light_names.push_back(name);
+    scene_->light_groups.push_back(group);
+    return index;
+  }
+
+  Status add_lights() {
+    const LightSetting setting = this->setting();
+    for (const LightDesc& desc : job_.lights) {
+      auto light = make_light(desc, setting);
+      if (!light) return Error{Diagnostic{desc.where, light.error().message}.to_string()};
+      add_light(*light, desc.name, desc.light_group);
+    }
+    return {};
+  }
+
+  /// The environment, after all other lights; nothing where there is none.
   Status add_environment() {
     if (!job_.environment) return {};
     const EnvironmentDesc& sky = *job_.environment;
-    const Rgb scale = sky.color.at(time_) * sky.strength.at(time_);
-    const float radius = world_radius(*scene_->world);
-    if (sky.image.empty()) {
-      add_light(make_environment_light(nullptr, 0.0F, scale, radius), kSky);
-    } else {
-      auto map = cache_.environment_map(sky.image);
-      if (!map) {
-        const Error error = map.error().in("environment");
-        return Error{Diagnostic{sky.where, error.message}.to_string()};
-      }
-      const float turn = sky.rotate_y.at(time_) * kRadians;
-      add_light(make_environment_map_light(*map, turn, scale, radius), kSky);
-    }
+    auto lights = make_environment(sky, setting(), cache_);
+    if (!lights) return Error{Diagnostic{sky.where, lights.error().message}.to_string()};
+    for (auto& [name, light] : *lights) add_light(std::move(light), name, sky.light_group);
     scene_->environment_visible = sky.visible_to_camera;
     return {};
   }
 
   Status add_camera() {
-    const bool moves = job_.frames.shutter > 0.0F;
-    const int steps = moves ? kShutterMoments - 1 : 0;
-    std::vector<CameraPose> poses;
-    for (int i = 0; i <= steps; ++i) {
-      const float shutter_time = moves ? static_cast<float>(i) / static_cast<float>(steps) : 0.0F;
-      auto pose = pose_at(shutter_time);
-      if (!pose) return pose.error();
-      poses.push_back(*pose);
-    }
-    scene_->camera = make_perspective_camera(std::move(poses), {job_.film.width, job_.film.height},
-                                             job_.camera.aperture_blades,
-                                             job_.camera.aperture_rotation * kRadians);
+    auto camera = make_camera(job_, frame_, [&](const std::string& object, float shutter_time) {
+      return center_of(object, shutter_time);
+    });
+    if (!camera) return camera.error();
+    scene_->camera = std::move(*camera);
+    looks_.view()->set(scene_->camera);
     return {};
   }
 
-  Result<CameraPose> pose_at(float shutter_time) const {
-    const CameraDesc& camera = job_.camera;
-    const JobTime time = job_.time_of(frame_, shutter_time);
-    CameraPose pose;
-    pose.from = camera.look_from.at(time) * job_.units;
-    pose.at = camera.look_at.at(time) * job_.units;
-    pose.up = camera.up.at(time);
-    pose.fov = camera.fov.at(time) * kRadians;
-    const Vec3 axis = unit(pose.at - pose.from, {0.0F, 0.0F, -1.0F});
-    if (!camera.focus_object.empty()) {
-      pose.focus_distance =
-          glm::dot(center_of(camera.focus_object, shutter_time) - pose.from, axis);
-      if (!(pose.focus_distance > 0.0F)) return focus_behind(time, pose.focus_distance);
-    } else if (camera.focus_distance) {
-      pose.focus_distance = camera.focus_distance->at(time) * job_.units;
-    } else {
-      pose.focus_distance = glm::dot(pose.at - pose.from, axis);
-    }
-    pose.focus_distance = std::max(pose.focus_distance, 1e-6F * job_.units);
-    if (camera.f_stop) {
-      const float focal_length = 0.5F * kSensorHeight / tan(0.5F * pose.fov);
-      pose.lens_radius = focal_length / (2.0F * camera.f_stop->at(time));
-    } else {
-      pose.lens_radius = camera.aperture_radius.at(time) * job_.units;
-    }
-    return pose;
+  Status add_motion() {
+    if (!needed_layers(job_).motion) return {};
+    auto next = flatten_objects(job_, frame_ + 1, cache_, Displacements::left_out);
+    if (!next) return next.error();
+    auto motion = std::make_unique<FilmMotion>();
+    motion->camera = make_sharp_camera(job_, time_);
+    motion->next_camera = make_sharp_camera(job_, job_.time_of(frame_ + 1));
+    for (const FlatObject& object : *next)
+      motion->to_world.push_back(object.placement.to_world.front());
+    scene_->motion = std::move(motion);
+    return {};
   }
 
-  Error focus_behind(const JobTime& time, float distance) const {
-    const std::string message = fmt::format(
-        "focus is on the object '{}', whose centre lies {:.4g} m behind the camera at frame "
-        "{:.10g}, "
-        "expected one in front of it",
-        job_.camera.focus_object, -distance, time.frame);
-    return {Diagnostic{job_.camera.focus_where, message}.to_string()};
-  }
+  LightSetting setting() const { return {time_, job_.units, world_radius(*scene_->world)}; }
 
   /// The middle of the bounds of object `name` (groups: of all within).
   Vec3 center_of(const std::string& name, float shutter_time) const {
@@ -228,11 +236,6 @@ class SceneBuilder {
                                  bounds_of(scene_->world->placement(i).shape)));
     }
     return bounds.empty() ? Vec3(0.0F) : bounds.center();
-  }
-
-  static Vec3 unit(const Vec3& v, const Vec3& fallback) {
-    const float length = std::sqrt(glm::dot(v, v));
-    return length > 0.0F ? v / length : fallback;
   }
 
   const Job& job_;

@@ -1,9 +1,12 @@
 #include "core/scene/flatten.h"
 
 #include <algorithm>
+#include <set>
 #include <string_view>
 #include <unordered_map>
 
+#include "core/scene/appearance.h"
+#include "core/scene/displacement.h"
 #include "core/scene/shape_makers.h"
 #include "core/scene/transforms.h"
 
@@ -12,9 +15,18 @@ namespace {
 
 class Flattener {
  public:
-  Flattener(const Job& job, int32_t frame, SceneCache& cache)
-      : job_(job), frame_(frame), cache_(cache) {
+  Flattener(const Job& job, int32_t frame, SceneCache& cache, Displacements displacements)
+      : job_(job),
+        frame_(frame),
+        cache_(cache),
+        looks_(job, job.time_of(frame), cache),
+        displacements_(displacements),
+        tangents_(has_normal_maps(job)) {
     for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
+    for (const MaterialDesc& material : job.materials) {
+      if (material.principled && material.principled->emits())
+        shining_.emplace(material.name, &*material.principled);
+    }
   }
 
   Status add_all(const std::vector<ObjectDesc>& objects, const std::string& prefix,
@@ -22,9 +34,15 @@ class Flattener {
     if (chain_.size() > kMaxDepth) return Error{"group '" + prefix + "' contains itself"};
     for (const ObjectDesc& object : objects) {
       chain_.push_back(&object);
+      if (!object.overrides.empty()) overridden_[&object].clear();
       auto added = add(object, prefix + object.name, material, visible);
       chain_.pop_back();
       if (!added) return added;
+      for (const auto& [from, to] : object.overrides) {
+        if (overridden_[&object].contains(from)) continue;
+        return at(object, Error{"object '" + prefix + object.name + "' overrides the material '" +
+                                from + "', which nothing in it has"});
+      }
     }
     return {};
   }
@@ -50,22 +68,53 @@ class Flattener {
       return Error{"groups and instances make more than " + std::to_string(kMaxPlacements) +
                    " objects"};
     }
-    auto shape = make_shape(object, cache_);
+    std::vector<Mat4> to_world =
+        shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
+    const DisplacementSetting displacement{looks_, to_world.front(), tangents_};
+    const bool displaces = displacements_ == Displacements::made;
+    auto shape =
+        make_shape(object, {cache_, looks_.time(), tangents_, displaces ? &displacement : nullptr});
     if (!shape) return at(object, shape.error().in("object '" + name + "'"));
+    const std::string look = after_overrides(material);
     FlatObject flat;
     flat.desc = &object;
     flat.name = name;
-    flat.material = material;
+    flat.material = look;
     flat.body = flat_.size();
-    flat.emit = object.emit;
+    flat.emit = emission_of(object, look);
     flat.placement.shape = *shape;
     flat.placement.visible_to_camera = visible;
-    flat.placement.changes_between_frames = chain_is_animated();
-    flat.placement.to_world =
-        shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
+    flat.placement.changes_between_frames =
+        chain_is_animated() || size_changes(object) || displacement_changes(job_, object);
+    flat.placement.to_world = std::move(to_world);
     flat_.push_back(std::move(flat));
-    if (object.shape == "cylinder" && object.caps) add_caps(object, name, material, visible);
+    if (object.shape == "cylinder" && object.caps) add_caps(object, name, look, visible);
     return {};
+  }
+
+  /// The object's own, else that of its material.
+  std::optional<EmitDesc> emission_of(const ObjectDesc& object, const std::string& material) const {
+    if (object.emit) return object.emit;
+    const auto shining = shining_.find(material);
+    if (shining == shining_.end()) return std::nullopt;
+    EmitDesc emit;
+    emit.color = shining->second->emission_color;
+    emit.amount = shining->second->emission_strength;
+    emit.two_sided = shining->second->thin_walled;
+    return emit;
+  }
+
+  /// The material that an object gets where its own is `material`: the outermost override counts.
+  std::string after_overrides(const std::string& material) {
+    const std::string* look = nullptr;
+    for (const ObjectDesc* object : chain_) {
+      for (const auto& [from, to] : object->overrides) {
+        if (from != material) continue;
+        overridden_[object].insert(from);
+        if (look == nullptr) look = &to;
+      }
+    }
+    return look != nullptr ? *look : material;
   }
 
   static Error at(const ObjectDesc& object, const Error& error) {
@@ -82,14 +131,14 @@ class Flattener {
       cap.name = name + (top ? "/top" : "/bottom");
       cap.material = material;
       cap.body = body;
-      cap.emit = object.emit;
+      cap.emit = emission_of(object, material);
       cap.placement.shape.kind = Shape::Kind::disk;
-      cap.placement.shape.radius = object.radius;
+      cap.placement.shape.radius = object.radius.at(looks_.time());
       cap.placement.visible_to_camera = visible;
-      cap.placement.changes_between_frames = chain_is_animated();
+      cap.placement.changes_between_frames = chain_is_animated() || size_changes(object);
       Mat4 place(1.0F);
       if (top) {
-        place[3].y = object.height;
+        place[3].y = object.height.at(looks_.time());
       } else {  // turned over around x: the normal points down, away from the tube
         place[1].y = -1.0F;
         place[2].z = -1.0F;
@@ -123,7 +172,13 @@ class Flattener {
   const Job& job_;
   int32_t frame_;
   SceneCache& cache_;
+  Appearance looks_;  ///< when the shutter opens
+  Displacements displacements_;
+  bool tangents_;
   std::unordered_map<std::string_view, const GroupDesc*> groups_;
+  std::unordered_map<std::string_view, const PrincipledDesc*> shining_;  ///< materials that do
+  /// Of objects with overrides in the chain: the materials for which they were asked.
+  std::unordered_map<const ObjectDesc*, std::set<std::string>> overridden_;
   std::vector<const ObjectDesc*> chain_;  ///< from the outermost group to the object in hand
   std::vector<FlatObject> flat_;
 };
@@ -135,8 +190,9 @@ Error at_object(const FlatObject& object, const Error& error) {
   return {Diagnostic{object.desc->where, named.message}.to_string()};
 }
 
-Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache) {
-  Flattener flattener(job, frame, cache);
+Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache,
+                                                Displacements displacements) {
+  Flattener flattener(job, frame, cache, displacements);
   if (auto done = flattener.add_all(job.objects, "", "", true); !done) return done.error();
   return flattener.take();
 }

@@ -27,8 +27,15 @@ Error at_object(const FlatObject& object, const Error& error);
 /// Most objects that groups and instances may make; more is refused with a clear error.
 inline constexpr size_t kMaxPlacements = 50'000'000;
 
+/// What becomes of meshes with a displacement.
+enum class Displacements {
+  made,
+  left_out,  ///< the meshes stay as they are: for those who ask for places only
+};
+
 /// All objects of a job at `frame`, in document order (Debian 12's Embree has one level of
 /// instancing, so nesting is multiplied out here).
-Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache);
+Result<std::vector<FlatObject>> flatten_objects(const Job& job, int32_t frame, SceneCache& cache,
+                                                Displacements displacements = Displacements::made);
 
 }  // namespace hyades::core

@@ -32,4 +32,9 @@ MediumStack media_around(const Scene& scene, const Vec3& point, float time) {
   return stack;
 }
 
+MediumStack bodies_around_lens(const Scene& scene, const Ray& ray) {
+  return scene.camera->rays_are_parallel() ? media_around(scene, ray.origin, ray.time)
+                                           : scene.around_camera;
+}
+
 }  // namespace hyades::core

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/elementary_kernels.h"
+
 namespace hyades::core {
 namespace {
 
@@ -15,8 +17,10 @@ constexpr size_t kMostCompared = 4096;
 /// next to a step).
 int64_t step_of(double volume) {
   constexpr double kStepsPerOctave = 1 << 13;
-  return volume > 0.0 ? std::llround(kStepsPerOctave * std::log2(volume))
-                      : std::numeric_limits<int64_t>::min();
+  // Below the normal numbers there is nothing to see; FpMode makes zeros of them.
+  return volume >= std::numeric_limits<double>::min()
+             ? std::llround(kStepsPerOctave * elementary::log2_finite(volume))
+             : std::numeric_limits<int64_t>::min();
 }
 
 bool touch(const Bounds& a, const Bounds& b) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -8,13 +9,18 @@
 
 #include "core/base/rect.h"
 #include "core/cameras/camera.h"
+#include "core/film/layout.h"
 #include "core/geometry/world.h"
 #include "core/lights/light_selector.h"
 #include "core/materials/make_material.h"
 #include "core/media/make_medium.h"
+#include "core/scene/film_motion.h"
 #include "core/scene/medium_stack.h"
 
 namespace hyades::core {
+
+/// What surfaces that the job gives no material are called.
+inline constexpr const char* kDefaultMaterial = "default";
 
 /// What a placement of the world looks like and gives off.
 struct SceneObject {
@@ -25,7 +31,9 @@ struct SceneObject {
   /// The body that light which crosses the surface comes into; null: none, or none that matters to
   /// light.
   const Body* body = nullptr;
-  std::string name;  ///< "tree1/trunk": the path through groups, for messages
+  std::string name;                      ///< "tree1/trunk": the path through groups
+  std::string material_name;             ///< as in the job; kDefaultMaterial where it has none
+  std::array<uint32_t, kIdKinds> ids{};  ///< of name and material_name (id_of)
 };
 
 /// One frame, ready to be rendered: immutable, thread-safe, in metres.
@@ -34,16 +42,21 @@ struct Scene {
   std::vector<SceneObject> objects;  ///< by placement
   std::deque<Body> bodies;
   std::vector<LightPtr> lights;
-  std::vector<std::string> light_names;  ///< one each, as in the job, for messages
+  std::vector<std::string> light_names;   ///< one each, as in the job, for messages
+  std::vector<std::string> light_groups;  ///< one each; empty: none
+  /// Of media whose light has a group.
+  std::vector<std::pair<const Medium*, std::string>> medium_groups;
   std::vector<uint32_t>
       infinite_lights;  ///< indices in `lights` that rays find where they leave the world
   std::unique_ptr<LightSelector> selector;
-  std::unique_ptr<Camera> camera;
-  MediumPtr atmosphere;    ///< what is outside of all bodies; null: nothing
-  bool has_media = false;  ///< whether there is a medium anywhere
-  /// Whether light crosses the surface of some body unscattered: null, or hidden in another body.
+  std::shared_ptr<const Camera> camera;
+  std::unique_ptr<const FilmMotion> motion;  ///< null: the job asks for no layer of motion
+  MediumPtr atmosphere;                      ///< what is outside of all bodies; null: nothing
+  bool has_media = false;                    ///< whether there is a medium anywhere
+  /// Whether light crosses some surface unscattered and it matters which: that of a body, null or
+  /// hidden in another body, or one that is not all there.
   bool has_shells = false;
-  MediumStack around_camera;        ///< what the camera stands in
+  MediumStack around_camera;        ///< what the camera stands in (bodies_around_lens)
   bool environment_visible = true;  ///< whether camera rays see the infinite lights
   Vec2i resolution{0, 0};           ///< full frame, pixels
   PixelRect window;                 ///< what the job renders of it: splats elsewhere are lost

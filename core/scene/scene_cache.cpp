@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/text.h"
+#include "core/base/udim.h"
 
 namespace hyades::core {
 namespace {
@@ -56,6 +57,7 @@ Result<std::shared_ptr<const TriangleMesh>> SceneCache::mesh(const std::string& 
     const std::shared_ptr<TriangleMesh> mesh = *loaded;
     if (use.normals == MeshNormals::flat) mesh->normals.clear();
     if (use.normals == MeshNormals::smooth) compute_smooth_normals(*mesh);
+    if (use.tangents) compute_tangents(*mesh);
     return std::shared_ptr<const TriangleMesh>(mesh);
   });
 }
@@ -70,12 +72,41 @@ Result<std::shared_ptr<const Image>> SceneCache::image(const std::string& file, 
   });
 }
 
+Result<PyramidPtr> SceneCache::pyramid(const std::string& file, const ImageUse& use) {
+  return pyramids_.get({file, use}, [&]() -> Result<PyramidPtr> {
+    auto bytes = assets_.open(file);
+    if (!bytes) return bytes.error();
+    auto loaded = read_image(*bytes, file, use.space);
+    if (!loaded) return loaded.error();
+    auto made = ImagePyramid::make(*loaded, use.wrap, *texels_);
+    if (!made) return made.error().in(file);
+    return made;
+  });
+}
+
+Result<std::shared_ptr<const std::vector<int>>> SceneCache::udim(const std::string& pattern) {
+  return udims_.get(pattern, [&]() -> Result<std::shared_ptr<const std::vector<int>>> {
+    auto tiles = udim_tiles(assets_, pattern);
+    if (!tiles) return tiles.error();
+    return std::make_shared<const std::vector<int>>(std::move(*tiles));
+  });
+}
+
 Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const std::string& file) {
   return environment_maps_.get(file, [&]() -> Result<std::shared_ptr<const EnvironmentMap>> {
     auto picture = image(file, ColorSpace::automatic);
     if (!picture) return picture.error();
     return std::make_shared<const EnvironmentMap>(*picture);
   });
+}
+
+std::shared_ptr<const Sky> SceneCache::sky(const SkySettings& settings) {
+  const std::lock_guard lock(sky_mutex_);
+  if (!sky_ || !(settings == sky_settings_)) {
+    sky_settings_ = settings;
+    sky_ = std::make_shared<const Sky>(make_sky(settings));
+  }
+  return sky_;
 }
 
 Result<std::shared_ptr<const VdbGrid<float>>> SceneCache::vdb_numbers(const std::string& file,
@@ -145,6 +176,7 @@ Result<std::shared_ptr<const World>> SceneCache::world(std::vector<Placement> pl
 size_t SceneCache::image_memory() const {
   size_t bytes = 0;
   images_.for_each([&](const Image& image) { bytes += image.data.size() * sizeof(float); });
+  pyramids_.for_each([&](const ImagePyramid& pyramid) { bytes += pyramid.memory(); });
   return bytes;
 }
 

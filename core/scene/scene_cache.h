@@ -13,9 +13,11 @@
 #include "core/geometry/world.h"
 #include "core/image/read_image.h"
 #include "core/lights/environment_map.h"
+#include "core/lights/sky.h"
 #include "core/media/grid_fields.h"
 #include "core/media/majorant_grid.h"
 #include "core/scene/once_map.h"
+#include "core/textures/pyramid.h"
 
 namespace hyades::core {
 
@@ -28,8 +30,16 @@ struct MeshUse {
   MeshUse(MeshNormals which, std::string material = {})  // NOLINT: implicit, mostly it is just that
       : normals(which), part(std::move(material)) {}
   MeshNormals normals;
-  std::string part;  ///< the material (usemtl) whose triangles are meant; empty: all
+  std::string part;       ///< the material (usemtl) whose triangles are meant; empty: all
+  bool tangents = false;  ///< TriangleMesh::tangents, for normal maps
   auto operator<=>(const MeshUse&) const = default;
+};
+
+/// How a texture reads an image's file.
+struct ImageUse {
+  ColorSpace space = ColorSpace::automatic;
+  WrapMode wrap = WrapMode::repeat;
+  auto operator<=>(const ImageUse&) const = default;
 };
 
 /// A grid as a density, in the space of its voxels.
@@ -44,14 +54,26 @@ struct VdbDensity {
 /// several files load at once.
 class SceneCache {
  public:
-  explicit SceneCache(AssetResolver& assets) : assets_(assets) {}
+  /// Texels are kept in `texels`, which several caches may share.
+  explicit SceneCache(AssetResolver& assets,
+                      std::shared_ptr<TexelStore> texels = std::make_shared<TexelStore>())
+      : assets_(assets), texels_(std::move(texels)) {}
 
   Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file, const MeshUse& use);
 
   Result<std::shared_ptr<const Image>> image(const std::string& file, ColorSpace space);
 
+  /// An image at all its sizes, for textures.
+  Result<PyramidPtr> pyramid(const std::string& file, const ImageUse& use);
+
+  /// The tiles that a UDIM pattern has, by number.
+  Result<std::shared_ptr<const std::vector<int>>> udim(const std::string& pattern);
+
   /// An image as a sky, ready to be sampled.
   Result<std::shared_ptr<const EnvironmentMap>> environment_map(const std::string& file);
+
+  /// A clear sky; the previous one where the settings are the same.
+  std::shared_ptr<const Sky> sky(const SkySettings& settings);
 
   /// A grid of numbers of a .vdb, and what tracking needs to know of it as a density.
   Result<std::shared_ptr<const VdbGrid<float>>> vdb_numbers(const std::string& file,
@@ -68,6 +90,14 @@ class SceneCache {
                                                 std::shared_ptr<TriangleMesh> (*make)(const Vec3&),
                                                 const Vec3& size);
 
+  /// A displaced mesh, shared between equal requests under `key` while a scene uses it and until
+  /// the world after it is made, so that frames with other heights leave nothing behind; `make()`
+  /// returns a Result of it.
+  template <class Make>
+  Result<std::shared_ptr<const TriangleMesh>> displaced(const std::string& key, const Make& make) {
+    return displaced_.get(key, make);
+  }
+
   /// Whether a mesh of this cache has an inside.
   MeshClosure closure(const std::shared_ptr<const TriangleMesh>& mesh);
 
@@ -82,15 +112,24 @@ class SceneCache {
   Result<std::shared_ptr<TriangleMesh>> read(const std::string& file, const std::string& part);
 
   AssetResolver& assets_;
+  std::shared_ptr<TexelStore> texels_;
   OnceMap<std::pair<std::string, MeshUse>, TriangleMesh> meshes_;
   OnceMap<std::string, MeshParts> mesh_parts_;
-  OnceMap<std::string, TriangleMesh> made_meshes_;
-  OnceMap<std::shared_ptr<const TriangleMesh>, MeshClosure> closures_;
+  WeakMap<std::string, TriangleMesh> made_meshes_;
+  WeakMap<std::string, TriangleMesh> displaced_;
+  /// By meshes that it does not keep.
+  OnceMap<std::weak_ptr<const TriangleMesh>, MeshClosure, std::owner_less<>> closures_;
   OnceMap<std::pair<std::string, ColorSpace>, Image> images_;
+  OnceMap<std::pair<std::string, ImageUse>, ImagePyramid> pyramids_;
+  OnceMap<std::string, std::vector<int>> udims_;
   OnceMap<std::string, EnvironmentMap> environment_maps_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<float>> vdb_numbers_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<Rgb>> vdb_colors_;
   OnceMap<std::pair<std::string, std::string>, VdbDensity> vdb_densities_;
+  std::mutex sky_mutex_;
+  // Guarded by sky_mutex_.
+  SkySettings sky_settings_;
+  std::shared_ptr<const Sky> sky_;
   GeometryCache geometry_;
   std::mutex world_mutex_;
   // Guarded by world_mutex_.

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/base/parallel.h"
+#include "core/base/udim.h"
+#include "core/job/textures_of.h"
 #include "core/scene/shape_makers.h"
 #include "core/scene/texture_makers.h"
 
@@ -18,7 +20,7 @@ namespace {
 /// to who builds the scene.
 class Walk {
  public:
-  explicit Walk(const Job& job) {
+  explicit Walk(const Job& job) : tangents_(has_normal_maps(job)) {
     for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
     for (const MaterialDesc& material : job.materials) materials_.emplace(material.name, &material);
     for (const TextureDesc& texture : job.textures) textures_.emplace(texture.name, &texture);
@@ -29,6 +31,7 @@ class Walk {
   /// Of all that the job holds. Follows no names, which may lead astray in a job with mistakes.
   static SceneFiles all(const Job& job) {
     Walk walk;
+    walk.tangents_ = has_normal_maps(job);
     for (const GroupDesc& group : job.groups) walk.add_meshes(group.objects);
     walk.add_meshes(job.objects);
     for (const TextureDesc& texture : job.textures) walk.add_image(texture);
@@ -57,6 +60,7 @@ class Walk {
   void visit(const std::vector<ObjectDesc>& objects, const std::string& inherited) {
     for (const ObjectDesc& object : objects) {
       const std::string& material = object.material.empty() ? inherited : object.material;
+      for (const auto& [from, to] : object.overrides) visit_material(to);
       if (object.shape == "group") {
         visit(object.children, material);
       } else if (object.shape == "instance") {
@@ -67,17 +71,19 @@ class Walk {
       } else {
         add_mesh(object);
         visit_material(material);
+        if (object.emit) visit_texture(object.emit->color.texture);
       }
     }
   }
 
   void add_mesh(const ObjectDesc& object) {
     if (object.shape != "mesh") return;
-    const auto normals = mesh_normals_of(object);
-    if (!normals) return;
-    const MeshUse use(*normals, object.part);
-    if (seen_meshes_.insert({object.mesh, use}).second) {
-      files_.meshes.push_back({object.mesh, use, "object '" + object.name + "'", object.where});
+    const auto use = may_be_displaced(object) ? Result<MeshUse>(base_use_of(object))
+                                              : mesh_use_of(object, tangents_);
+    if (!use) return;
+    if (may_be_displaced(object)) visit_texture(object.displacement->texture);
+    if (seen_meshes_.insert({object.mesh, *use}).second) {
+      files_.meshes.push_back({object.mesh, *use, "object '" + object.name + "'", object.where});
     }
   }
 
@@ -85,14 +91,9 @@ class Walk {
     const auto found = materials_.find(name);
     if (found == materials_.end() || !seen_materials_.insert(name).second) return;
     const MaterialDesc& material = *found->second;
-    for (const std::string* texture :
-         {&material.color.texture, &material.roughness.texture, &material.reflectiveness.texture,
-          &material.glossiness.texture, &material.amount.texture}) {
-      visit_texture(*texture);
-    }
+    for (const std::string& texture : textures_of(material)) visit_texture(texture);
     visit_material(material.first);
     visit_material(material.second);
-    if (material.bump) visit_texture(material.bump->texture);
   }
 
   void visit_texture(const std::string& name) {
@@ -100,19 +101,19 @@ class Walk {
     if (found == textures_.end() || !seen_textures_.insert(name).second) return;
     const TextureDesc& texture = *found->second;
     add_image(texture);
-    visit_texture(texture.a.texture);
-    visit_texture(texture.b.texture);
+    for (const std::string& used : textures_used(texture)) visit_texture(used);
   }
 
   void add_image(const TextureDesc& texture) {
-    if (texture.file.empty()) return;
-    const auto space = color_space_of(texture);
-    if (space && seen_images_.insert({texture.file, *space}).second) {
+    if (texture.image.file.empty()) return;
+    const auto use = image_use_of(texture);
+    if (use && seen_images_.insert({texture.image.file, *use}).second) {
       files_.images.push_back(
-          {texture.file, *space, "texture '" + texture.name + "'", texture.where});
+          {texture.image.file, *use, "texture '" + texture.name + "'", texture.where});
     }
   }
 
+  bool tangents_ = false;
   std::map<std::string, const GroupDesc*> groups_;
   std::map<std::string, const MaterialDesc*> materials_;
   std::map<std::string, const TextureDesc*> textures_;
@@ -120,9 +121,30 @@ class Walk {
   std::set<std::string> seen_materials_;
   std::set<std::string> seen_textures_;
   std::set<std::pair<std::string, MeshUse>> seen_meshes_;
-  std::set<std::pair<std::string, ColorSpace>> seen_images_;
+  std::set<std::pair<std::string, ImageUse>> seen_images_;
   SceneFiles files_;
 };
+
+/// `files` with the files of UDIM patterns in the patterns' places.
+SceneFiles with_tiles(SceneFiles files, SceneCache& cache, Diagnostics& diagnostics) {
+  std::vector<SceneFile<ImageUse>> images;
+  for (const SceneFile<ImageUse>& image : files.images) {
+    if (!is_udim(image.file)) {
+      images.push_back(image);
+      continue;
+    }
+    const auto tiles = cache.udim(image.file);
+    if (!tiles) {
+      diagnostics.add(image.where, tiles.error().in(image.user).message);
+      continue;
+    }
+    for (const int tile : **tiles) {
+      images.push_back({udim_file(image.file, tile), image.how, image.user, image.where});
+    }
+  }
+  files.images = std::move(images);
+  return files;
+}
 
 }  // namespace
 
@@ -144,7 +166,8 @@ SceneFiles without(SceneFiles all, const SceneFiles& some) {
   return all;
 }
 
-Status load_files(const SceneFiles& files, SceneCache& cache, Diagnostics& diagnostics) {
+Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagnostics) {
+  const SceneFiles files = with_tiles(named, cache, diagnostics);
   const size_t meshes = files.meshes.size();
   const size_t images = files.images.size();
   const size_t count = meshes + images + (files.sky.empty() ? 0 : 1);
@@ -159,7 +182,7 @@ Status load_files(const SceneFiles& files, SceneCache& cache, Diagnostics& diagn
       note(i, cache.mesh(mesh.file, mesh.how), mesh.user, mesh.where);
     } else if (i < meshes + images) {
       const auto& image = files.images[i - meshes];
-      note(i, cache.image(image.file, image.how), image.user, image.where);
+      note(i, cache.pyramid(image.file, image.how), image.user, image.where);
     } else {
       note(i, cache.environment_map(files.sky), "environment", files.sky_where);
     }

@@ -12,7 +12,7 @@ namespace hyades::core {
 template <class How>
 struct SceneFile {
   std::string file;
-  How how;               ///< MeshUse or ColorSpace
+  How how;               ///< MeshUse or ImageUse
   std::string user;      ///< "object 'vase'", for messages
   SourceLocation where;  ///< of that user
 };
@@ -20,7 +20,7 @@ struct SceneFile {
 /// The files that a scene of a job is made of; each once, in the order in which building asks.
 struct SceneFiles {
   std::vector<SceneFile<MeshUse>> meshes;
-  std::vector<SceneFile<ColorSpace>> images;
+  std::vector<SceneFile<ImageUse>> images;
   std::string sky;           ///< empty: none
   SourceLocation sky_where;  ///< of the environment
 };

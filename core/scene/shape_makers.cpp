@@ -1,5 +1,7 @@
 #include "core/scene/shape_makers.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/scene/name_table.h"
@@ -14,11 +16,11 @@ constexpr std::array<NameRow<MeshNormals>, 3> kMeshNormals = {{
 }};
 
 template <Shape::Kind kind>
-Result<Shape> quadric(const ObjectDesc& object, SceneCache&) {
+Result<Shape> quadric(const ObjectDesc& object, const ShapeSetting& setting) {
   Shape shape;
   shape.kind = kind;
-  shape.radius = object.radius;
-  shape.height = object.height;
+  shape.radius = object.radius.at(setting.time);
+  shape.height = object.height.at(setting.time);
   return shape;
 }
 
@@ -32,29 +34,38 @@ std::string size_key(const char* kind, const Vec3& size) {
   return fmt::format("{} {} {} {}", kind, size.x, size.y, size.z);
 }
 
-Result<Shape> rectangle(const ObjectDesc& object, SceneCache& cache) {
-  return shape_of(cache.made_mesh(
-      size_key("rectangle", object.size),
-      [](const Vec3& size) {
-        return make_rectangle({size.x, size.y});
+Result<Shape> rectangle(const ObjectDesc& object, const ShapeSetting& setting) {
+  const Vec3 size(object.extent.at(setting.time), 0.0F);
+  return shape_of(setting.cache.made_mesh(
+      size_key("rectangle", size),
+      [](const Vec3& extent) {
+        return make_rectangle({extent.x, extent.y});
       },
-      object.size));
+      size));
 }
 
-Result<Shape> box(const ObjectDesc& object, SceneCache& cache) {
-  return shape_of(cache.made_mesh(
-      size_key("box", object.size), [](const Vec3& size) { return make_box(size); }, object.size));
+Result<Shape> box(const ObjectDesc& object, const ShapeSetting& setting) {
+  const Vec3 size = object.size.at(setting.time);
+  return shape_of(setting.cache.made_mesh(
+      size_key("box", size), [](const Vec3& extent) { return make_box(extent); }, size));
 }
 
-Result<Shape> mesh(const ObjectDesc& object, SceneCache& cache) {
-  const auto normals = mesh_normals_of(object);
-  if (!normals) return normals.error();
-  auto loaded = cache.mesh(object.mesh, MeshUse(*normals, object.part));
+Result<Shape> mesh(const ObjectDesc& object, const ShapeSetting& setting) {
+  if (setting.displacement != nullptr && is_displaced(object, setting.displacement->looks.time())) {
+    auto displaced = displaced_mesh(object, *setting.displacement);
+    if (!displaced) return displaced.error();
+    return shape_of(*displaced);
+  }
+  const auto use = setting.displacement == nullptr && may_be_displaced(object)
+                       ? Result<MeshUse>(base_use_of(object))
+                       : mesh_use_of(object, setting.tangents);
+  if (!use) return use.error();
+  auto loaded = setting.cache.mesh(object.mesh, *use);
   if (!loaded) return loaded.error();
   return shape_of(*loaded);
 }
 
-using Maker = Result<Shape> (*)(const ObjectDesc&, SceneCache&);
+using Maker = Result<Shape> (*)(const ObjectDesc&, const ShapeSetting&);
 constexpr std::array<NameRow<Maker>, 6> kMakers = {{
     {"sphere", quadric<Shape::Kind::sphere>},
     {"rectangle", rectangle},
@@ -66,16 +77,30 @@ constexpr std::array<NameRow<Maker>, 6> kMakers = {{
 
 }  // namespace
 
-Result<Shape> make_shape(const ObjectDesc& object, SceneCache& cache) {
+Result<Shape> make_shape(const ObjectDesc& object, const ShapeSetting& setting) {
   const auto make = look_up(kMakers, object.shape, "shape");
   if (!make) return make.error();
-  return (*make)->value(object, cache);
+  return (*make)->value(object, setting);
 }
 
-Result<MeshNormals> mesh_normals_of(const ObjectDesc& object) {
+Result<MeshUse> mesh_use_of(const ObjectDesc& object, bool tangents) {
   const auto normals = look_up(kMeshNormals, object.smooth, "kind of normals");
   if (!normals) return normals.error();
-  return (*normals)->value;
+  MeshUse use((*normals)->value, object.part);
+  use.tangents = tangents;
+  return use;
+}
+
+bool size_changes(const ObjectDesc& object) {
+  return !object.radius.is_constant() || !object.extent.is_constant() ||
+         !object.size.is_constant() || !object.height.is_constant();
+}
+
+MeshUse base_use_of(const ObjectDesc& object) { return {MeshNormals::file, object.part}; }
+
+bool has_normal_maps(const Job& job) {
+  return std::any_of(job.materials.begin(), job.materials.end(),
+                     [](const MaterialDesc& material) { return material.normal_map.has_value(); });
 }
 
 std::vector<std::string> made_shapes() { return names_of(kMakers); }

@@ -6,15 +6,35 @@
 #include "core/base/result.h"
 #include "core/geometry/world.h"
 #include "core/job/job.h"
+#include "core/scene/displacement.h"
 #include "core/scene/scene_cache.h"
 
 namespace hyades::core {
 
-/// The shape of an object (no group, no instance) in its own space, in the job's unit of length.
-Result<Shape> make_shape(const ObjectDesc& object, SceneCache& cache);
+/// What shapes need besides their description.
+struct ShapeSetting {
+  SceneCache& cache;
+  JobTime time;           ///< when the shutter opens: shapes keep their sizes while it is open
+  bool tangents = false;  ///< whether meshes need those of normal maps
+  /// How meshes are displaced that are; null: they stay as they are in
+  /// their files, and only their places are of interest.
+  const DisplacementSetting* displacement = nullptr;
+};
 
-/// The normals that a mesh's `normals` names.
-Result<MeshNormals> mesh_normals_of(const ObjectDesc& object);
+/// The shape of an object (no group, no instance) in its own space, in the job's unit of length.
+Result<Shape> make_shape(const ObjectDesc& object, const ShapeSetting& setting);
+
+/// Whether the shape of `object` has other sizes at other times.
+bool size_changes(const ObjectDesc& object);
+
+/// What of its file the mesh `object` asks for.
+Result<MeshUse> mesh_use_of(const ObjectDesc& object, bool tangents);
+
+/// What of its file the mesh `object` is made of where it is displaced.
+MeshUse base_use_of(const ObjectDesc& object);
+
+/// Whether any material of the job has a normal map.
+bool has_normal_maps(const Job& job);
 
 /// The names that can be made: those of core/job/kinds.h.
 std::vector<std::string> made_shapes();

@@ -1,119 +1,86 @@
 #include "core/scene/texture_makers.h"
 
-#include <optional>
-
-#include "core/scene/name_table.h"
+#include "core/base/udim.h"
+#include "core/scene/texture_kind_makers.h"
+#include "core/scene/texture_mapping.h"
+#include "core/scene/texture_names.h"
 
 namespace hyades::core {
 namespace {
-
-constexpr std::array<NameRow<ColorSpace>, 3> kColorSpaces = {{
-    {"auto", ColorSpace::automatic},
-    {"srgb", ColorSpace::srgb},
-    {"linear", ColorSpace::linear},
-}};
-
-constexpr std::array<NameRow<WrapMode>, 4> kWraps = {{
-    {"repeat", WrapMode::repeat},
-    {"clamp", WrapMode::clamp},
-    {"mirror", WrapMode::mirror},
-    {"black", WrapMode::black},
-}};
-
-constexpr std::array<NameRow<TextureFilter>, 2> kFilters = {{
-    {"bilinear", TextureFilter::bilinear},
-    {"nearest", TextureFilter::nearest},
-}};
-
-/// "default" is what the type of texture prefers.
-constexpr std::array<NameRow<std::optional<Mapping>>, 4> kMappings = {{
-    {"default", std::nullopt},
-    {"uv", Mapping::uv},
-    {"object", Mapping::object},
-    {"world", Mapping::world},
-}};
 
 Result<TexturePtr> make_constant(const TextureDesc& desc, Appearance& looks) {
   return looks.color_texture(desc.a);
 }
 
-Result<TexturePtr> make_image(const TextureDesc& desc, Appearance& looks) {
-  const auto space = color_space_of(desc);
-  if (!space) return space.error();
-  const auto wrap = look_up(kWraps, desc.wrap, "wrap");
-  if (!wrap) return wrap.error();
-  const auto filter = look_up(kFilters, desc.filter, "filter of textures");
-  if (!filter) return filter.error();
-  auto image = looks.cache().image(desc.file, *space);
+/// One file, on `mapping`.
+Result<TexturePtr> make_file(const std::string& file, const ImageUse& use, TextureFilter filter,
+                             const MappingDesc& mapping, Appearance& looks) {
+  auto image = looks.cache().pyramid(file, use);
   if (!image) return image.error();
-  return make_image_texture(*image, (*wrap)->value, (*filter)->value,
-                            Vec2(desc.scale.at(looks.time())), Vec2(desc.offset.at(looks.time())));
+  return make_image_texture(*image, {filter, mapping, looks.view()});
 }
 
-/// What `desc` maps to, in the job's unit of length; `preferred` where it does not say.
-Result<MappingDesc> mapping_of(const TextureDesc& desc, const Appearance& looks,
-                               Mapping preferred) {
-  const auto named = look_up(kMappings, desc.mapping, "mapping");
-  if (!named) return named.error();
-  MappingDesc mapping{(*named)->value.value_or(preferred), desc.scale.at(looks.time()),
-                      desc.offset.at(looks.time())};
-  // World positions are in metres, the job's scale counts cells per its own unit of length.
-  if (mapping.mapping == Mapping::world) mapping.scale /= looks.units();
-  return mapping;
+/// All files of a UDIM pattern, each in its place.
+Result<TexturePtr> make_tiles(const std::string& pattern, const ImageUse& use, TextureFilter filter,
+                              const MappingDesc& mapping, Appearance& looks) {
+  const auto numbers = looks.cache().udim(pattern);
+  if (!numbers) return numbers.error();
+  std::vector<UdimTile> tiles;
+  for (const int number : **numbers) {
+    MappingDesc in_place = mapping;
+    const int index = number - kFirstUdim;
+    in_place.offset -= Vec3(index % kUdimColumns, index / kUdimColumns, 0.0F);
+    auto tile = make_file(udim_file(pattern, number), use, filter, in_place, looks);
+    if (!tile) return tile;
+    tiles.push_back({number, *tile});
+  }
+  return make_udim_texture(std::move(tiles), mapping);
 }
 
-/// A texture that goes between two others.
-struct Pair {
-  TexturePtr a, b;
-};
-
-Result<Pair> pair_of(const TextureDesc& desc, Appearance& looks) {
-  auto a = looks.color_texture(desc.a);
-  if (!a) return a.error();
-  auto b = looks.color_texture(desc.b);
-  if (!b) return b.error();
-  return Pair{*a, *b};
+Result<TexturePtr> make_image(const TextureDesc& desc, Appearance& looks) {
+  const auto use = image_use_of(desc);
+  if (!use) return use.error();
+  const auto filter = look_up(kFilters, desc.image.filter, "filter of textures");
+  if (!filter) return filter.error();
+  const auto channel = look_up(kChannels, desc.channel, "channel");
+  if (!channel) return channel.error();
+  const auto make = is_udim(desc.image.file) ? make_tiles : make_file;
+  auto image = make_mapped(desc, looks, MappingSpace::uv, [&](const MappingDesc& mapping) {
+    return make(desc.image.file, *use, (*filter)->value, mapping, looks);
+  });
+  if (!image || !(*channel)->value) return image;
+  return make_channel_texture(*image, *(*channel)->value);
 }
 
-Result<TexturePtr> make_scale(const TextureDesc& desc, Appearance& looks) {
-  auto factors = pair_of(desc, looks);
-  if (!factors) return factors.error();
-  return make_scale_texture(factors->a, factors->b);
-}
-
-Result<TexturePtr> make_checker(const TextureDesc& desc, Appearance& looks) {
-  auto colors = pair_of(desc, looks);
-  if (!colors) return colors.error();
-  const auto mapping = mapping_of(desc, looks, Mapping::uv);
-  if (!mapping) return mapping.error();
-  return make_checker_texture(colors->a, colors->b, *mapping);
-}
-
-template <int dimensions>
-Result<TexturePtr> make_noise(const TextureDesc& desc, Appearance& looks) {
-  auto colors = pair_of(desc, looks);
-  if (!colors) return colors.error();
-  const auto mapping = mapping_of(desc, looks, Mapping::object);
-  if (!mapping) return mapping.error();
-  NoiseDesc noise;
-  noise.dimensions = dimensions;
-  noise.octaves = desc.octaves;
-  noise.lacunarity = desc.lacunarity;
-  noise.gain = desc.gain;
-  noise.time = desc.time.at(looks.time());
-  return make_noise_texture(colors->a, colors->b, noise, *mapping);
-}
-
-using Maker = Result<TexturePtr> (*)(const TextureDesc&, Appearance&);
-constexpr std::array<NameRow<Maker>, 8> kMakers = {{
+constexpr std::array<NameRow<TextureMaker>, 28> kMakers = {{
     {"constant", make_constant},
     {"image", make_image},
     {"checker", make_checker},
+    {"brick", make_brick},
+    {"stripes", make_stripes},
+    {"grid", make_grid},
+    {"gradient", make_gradient},
+    {"perlin3d", make_fbm},
+    {"perlin4d", make_fbm},
+    {"fbm3d", make_fbm},
+    {"fbm4d", make_fbm},
+    {"turbulence", make_turbulence},
+    {"ridged", make_ridged},
+    {"marble", make_marble},
+    {"wood", make_wood},
+    {"cellular", make_cellular},
     {"scale", make_scale},
-    {"perlin3d", make_noise<3>},
-    {"perlin4d", make_noise<4>},
-    {"fbm3d", make_noise<3>},
-    {"fbm4d", make_noise<4>},
+    {"add", make_add},
+    {"min", make_least},
+    {"max", make_greatest},
+    {"mix", make_mixed},
+    {"invert", make_inverted},
+    {"remap", make_remapped},
+    {"power", make_power},
+    {"threshold", make_threshold},
+    {"ramp", make_ramp},
+    {"hue-saturation", make_hue_saturation},
+    {"channel", make_channel},
 }};
 
 }  // namespace
@@ -124,10 +91,13 @@ Result<TexturePtr> make_texture(const TextureDesc& desc, Appearance& looks) {
   return (*make)->value(desc, looks);
 }
 
-Result<ColorSpace> color_space_of(const TextureDesc& desc) {
-  const auto space = look_up(kColorSpaces, desc.color_space, "color_space");
+Result<ImageUse> image_use_of(const TextureDesc& desc) {
+  const auto space = look_up(kColorSpaces, desc.image.color_space, "color_space");
   if (!space) return space.error();
-  return (*space)->value;
+  const auto wrap = look_up(kWraps, desc.image.wrap, "wrap");
+  if (!wrap) return wrap.error();
+  // Tiles lie side by side: none repeats.
+  return ImageUse{(*space)->value, is_udim(desc.image.file) ? WrapMode::clamp : (*wrap)->value};
 }
 
 std::vector<std::string> made_texture_types() { return names_of(kMakers); }
@@ -135,5 +105,12 @@ std::vector<std::string> made_color_spaces() { return names_of(kColorSpaces); }
 std::vector<std::string> made_wraps() { return names_of(kWraps); }
 std::vector<std::string> made_texture_filters() { return names_of(kFilters); }
 std::vector<std::string> made_mappings() { return names_of(kMappings); }
+std::vector<std::string> made_mapping_spaces() { return names_of(kMappingSpaces); }
+std::vector<std::string> made_channels() { return names_of(kChannels); }
+std::vector<std::string> made_cell_metrics() { return names_of(kCellMetrics); }
+std::vector<std::string> made_cell_features() { return names_of(kCellFeatures); }
+std::vector<std::string> made_gradient_shapes() { return names_of(kGradientShapes); }
+std::vector<std::string> made_remap_ends() { return names_of(kRemapEnds); }
+std::vector<std::string> made_ramp_shapes() { return names_of(kRampShapes); }
 
 }  // namespace hyades::core

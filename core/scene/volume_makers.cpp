@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/media/noise_density.h"
 #include "core/media/shell_field.h"
 #include "core/scene/name_table.h"
@@ -32,8 +34,8 @@ PlacedVolume make_noise(const NoiseDensityDesc& desc, const JobTime& time, const
   noise.scale = desc.scale.at(time);
   noise.offset = desc.offset.at(time);
   noise.octaves = desc.octaves;
-  noise.lacunarity = desc.lacunarity;
-  noise.gain = desc.gain;
+  noise.lacunarity = desc.lacunarity.at(time);
+  noise.gain = desc.gain.at(time);
   noise.time = desc.time.at(time);
   noise.low = desc.low.at(time);
   noise.high = desc.high.at(time);
@@ -48,8 +50,14 @@ Result<PlacedVolume> make_image_shell(const MediumDesc& medium, const JobTime& t
   if (!image) return image.error();
   Shell shell;
   shell.image = *image;
-  shell.inner = desc.inner;
-  shell.outer = desc.outer;
+  shell.inner = desc.inner.at(time);
+  shell.outer = desc.outer.at(time);
+  if (shell.inner >= shell.outer) {
+    return Error{
+        fmt::format("its shell has an inner radius of {:.6g} at this frame, which is not "
+                    "below the outer one of {:.6g}",
+                    shell.inner, shell.outer)};
+  }
   shell.turn = desc.rotate_y.at(time) / 360.0F;
   shell.low = desc.low.at(time);
   shell.high = desc.high.at(time);
@@ -73,10 +81,10 @@ Mat4 fitted(const Bounds& box, const Bounds& body) {
   return m;
 }
 
-Result<std::shared_ptr<const ColorField>> make_glow(const MediumDesc& desc, const Mat4& to_file,
-                                                    SceneCache& cache) {
+Result<std::shared_ptr<const ColorField>> make_glow(const MediumDesc& desc, const JobTime& time,
+                                                    const Mat4& to_file, SceneCache& cache) {
   GridGlow glow;
-  glow.kelvin = desc.glow->kelvin;
+  glow.kelvin = desc.glow->kelvin.at(time);
   const auto add = [&](const std::string& name, std::shared_ptr<const BrickGrid<float>>& voxels,
                        Mat4& to_grid) -> Status {
     if (name.empty()) return {};
@@ -108,7 +116,7 @@ Result<PlacedVolume> make_vdb(const MediumDesc& medium, const JobTime& time, con
         make_grid_color({*tint, &(*tint)->voxels}, glm::inverse((*tint)->to_file) * to_file);
   }
   if (medium.glow) {
-    auto glow = make_glow(medium, to_file, cache);
+    auto glow = make_glow(medium, time, to_file, cache);
     if (!glow) return glow.error();
     volume.glow = *glow;
   }

@@ -116,5 +116,58 @@ objects:
   EXPECT_NEAR(first, middle, 0.03F);
 }
 
+// One pixel is one unit in the plane z = 0; between the frames the plate moves two to the right and
+// one up while the camera rises by three.
+const std::string kMovingPlate = R"yaml(
+hyades: 1
+name: motion
+frames: {range: 1-3, fps: 24}
+film: {size: [16, 8], filter: box}
+sampling: {samples: 4}
+camera:
+  look_from: [0, "= 3 * (frame - 2)", 10]
+  look_at: [0, "= 3 * (frame - 2)", 0]
+  fov: 43.602819
+objects:
+  plate: {shape: rectangle, size: [8, 90], transform: [{rotate_x: 90}], at: ["= -4 + 2 * (frame - 2)", "= frame", 0]}
+outputs: [{file: a.####.exr, layers: [motion]}]
+)yaml";
+
+TEST(Layers, MotionLeadsToTheNextFrame) {
+  const YamlScene scene(kMovingPlate, 2, {.motion = true});
+  const core::Image picture = scene.render().film.normalised();
+  const int u = picture.find_channel("forward.u");
+  const int v = picture.find_channel("forward.v");
+  ASSERT_TRUE(u >= 0 && v >= 0);
+  EXPECT_NEAR(picture.at(3, 5, u), 2.0F, 1e-3F);
+  EXPECT_NEAR(picture.at(3, 5, v), 1.0F - 3.0F, 1e-3F);
+  // Infinitely far away nothing is seen of how the camera moves.
+  EXPECT_NEAR(picture.at(12, 5, u), 0.0F, 1e-3F);
+  EXPECT_NEAR(picture.at(12, 5, v), 0.0F, 1e-3F);
+}
+
+TEST(Layers, MotionIsThatFromOpeningToOpeningWhateverTheShutter) {
+  std::string text = kMovingPlate;
+  text.replace(text.find("fps: 24"), 7, "fps: 24, shutter: 0.5");
+  const YamlScene scene(text, 2, {.motion = true});
+  const core::Image picture = scene.render().film.normalised();
+  EXPECT_NEAR(picture.at(3, 5, picture.find_channel("forward.u")), 2.0F, 1e-3F);
+  EXPECT_NEAR(picture.at(3, 5, picture.find_channel("forward.v")), -2.0F, 1e-3F);
+}
+
+TEST(Layers, PositionIsThatOfTheFirstSurface) {
+  for (const char* integrator : {"path", "bdpt", "mlt"}) {
+    std::string text = kMovingPlate;
+    text += std::string("integrator: {type: ") + integrator + "}\n";
+    const YamlScene scene(text, 2, {.position = true});
+    const core::Image picture = scene.render().film.normalised();
+    const int x = picture.find_channel("position.X");
+    EXPECT_NEAR(picture.at(3, 5, x), -4.5F, 0.2F) << integrator;
+    EXPECT_NEAR(picture.at(3, 5, x + 1), -1.5F, 0.2F) << integrator;
+    EXPECT_NEAR(picture.at(3, 5, x + 2), 0.0F, 1e-4F) << integrator;
+    EXPECT_EQ(picture.at(12, 5, x), 0.0F) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace hyades::test

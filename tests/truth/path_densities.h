@@ -144,8 +144,11 @@ class PathDensities {
     const int from = j + 1;
     if (from == size() - 1) {
       const auto pixels = static_cast<double>(scene_.window.area());
-      return static_cast<double>(scene_.camera->film_density(direction(from, j), 0.0F)) / pixels *
-             measure(from, j);
+      const double density =
+          static_cast<double>(scene_.camera->film_density(direction(from, j), 0.0F)) / pixels;
+      if (!scene_.camera->rays_are_parallel()) return density * measure(from, j);
+      const bool on_surface = at(j).normal != core::Vec3(0.0F);
+      return density * (on_surface ? std::abs(glm::dot(at(j).normal, direction(from, j))) : 1.0F);
     }
     const PathPlace& v = at(from);
     const double pdf = v.specular ? 1.0

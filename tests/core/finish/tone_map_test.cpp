@@ -10,14 +10,16 @@
 namespace hyades::core {
 namespace {
 
+/// Those that work channel by channel.
 constexpr ToneCurve kAll[] = {ToneCurve::srgb, ToneCurve::filmic, ToneCurve::aces,
                               ToneCurve::linear};
 
 TEST(ToneMap, NamesFindTheirCurves) {
-  ASSERT_EQ(tone_curve_names().size(), 4U);
+  ASSERT_EQ(tone_curve_names().size(), 5U);
   EXPECT_EQ(find_tone_curve("srgb"), ToneCurve::srgb);
   EXPECT_EQ(find_tone_curve("filmic"), ToneCurve::filmic);
   EXPECT_EQ(find_tone_curve("aces"), ToneCurve::aces);
+  EXPECT_EQ(find_tone_curve("agx"), ToneCurve::agx);
   EXPECT_EQ(find_tone_curve("linear"), ToneCurve::linear);
   EXPECT_EQ(find_tone_curve("reinhard"), std::nullopt);
 }
@@ -54,6 +56,27 @@ TEST(ToneMap, RisesFromBlackToWhite) {
   }
 }
 
+TEST(ToneMap, AgxKeepsGreysAndFadesBrightColours) {
+  float last = 0.0F;
+  for (float x = 1e-3F; x < 100.0F; x *= 1.05F) {
+    const Rgb grey = tone_map(Rgb(x), ToneCurve::agx, 0.0F);
+    EXPECT_NEAR(grey.x, grey.y, 2e-3F) << x;
+    EXPECT_NEAR(grey.z, grey.y, 2e-3F) << x;
+    EXPECT_GE(grey.y, last - 1e-3F) << x;
+    last = grey.y;
+  }
+  EXPECT_GT(last, 0.99F);
+  // By hand: (log2(0.18) + 12.47393) / 16.5 = 0.60608, of which the sigmoid is 0.4968.
+  EXPECT_NEAR(tone_map(Rgb(0.18F), ToneCurve::agx, 0.0F).y, 0.4968F, 1e-3F);
+  EXPECT_NEAR(tone_map(Rgb(0.0F), ToneCurve::agx, 0.0F).y, 0.0F, 1e-6F);
+  // A dim blue is blue, one of a thousand times the light nearly white.
+  const Rgb dim = tone_map(Rgb(0.01F, 0.01F, 0.3F), ToneCurve::agx, 0.0F);
+  const Rgb bright = tone_map(Rgb(0.01F, 0.01F, 0.3F), ToneCurve::agx, 12.0F);
+  EXPECT_GT(dim.z - dim.x, 0.25F);
+  EXPECT_LT(bright.z - bright.x, 0.1F);
+  EXPECT_GT(bright.x, 0.85F);
+}
+
 TEST(ToneMap, OddValuesStayInRange) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
@@ -64,6 +87,11 @@ TEST(ToneMap, OddValuesStayInRange) {
     EXPECT_NEAR(odd.z, 0.0F, 1e-6F);
     EXPECT_NEAR(tone_map(Rgb(-1.0F), curve, 0.0F).x, 0.0F, 1e-6F);
     EXPECT_EQ(tone_map(Rgb(1.0F), curve, 1000.0F).x, 1.0F);
+  }
+  const Rgb odd = tone_map(Rgb(nan, inf, -inf), ToneCurve::agx, 0.0F);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_GE(odd[c], 0.0F);
+    EXPECT_LE(odd[c], 1.0F);
   }
 }
 

@@ -63,6 +63,13 @@ TEST(Kinds, EveryNameOfAJobHasAMaker) {
   EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(wrap_names()));
   EXPECT_THAT(made_texture_filters(), UnorderedElementsAreArray(texture_filter_names()));
   EXPECT_THAT(made_mappings(), UnorderedElementsAreArray(mapping_names()));
+  EXPECT_THAT(made_mapping_spaces(), UnorderedElementsAreArray(mapping_space_names()));
+  EXPECT_THAT(made_channels(), UnorderedElementsAreArray(channel_names()));
+  EXPECT_THAT(made_cell_metrics(), UnorderedElementsAreArray(cell_metric_names()));
+  EXPECT_THAT(made_cell_features(), UnorderedElementsAreArray(cell_feature_names()));
+  EXPECT_THAT(made_gradient_shapes(), UnorderedElementsAreArray(gradient_shape_names()));
+  EXPECT_THAT(made_remap_ends(), UnorderedElementsAreArray(remap_end_names()));
+  EXPECT_THAT(made_ramp_shapes(), UnorderedElementsAreArray(ramp_shape_names()));
   EXPECT_THAT(made_mesh_normals(), UnorderedElementsAreArray(mesh_normals_names()));
 }
 
@@ -97,6 +104,21 @@ TEST(Kinds, TheReferenceListsTheSameNames) {
   EXPECT_THAT(made_color_spaces(),
               UnorderedElementsAreArray(documented("textures.image", "color_space")));
   EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(documented("textures.image", "wrap")));
+  EXPECT_THAT(made_texture_filters(),
+              UnorderedElementsAreArray(documented("textures.image", "filter")));
+  EXPECT_THAT(made_mappings(), UnorderedElementsAreArray(documented("textures.mapping", "type")));
+  EXPECT_THAT(made_mapping_spaces(),
+              UnorderedElementsAreArray(documented("textures.mapping", "space")));
+  EXPECT_THAT(made_channels(), UnorderedElementsAreArray(documented("textures.image", "channel")));
+  EXPECT_THAT(made_cell_metrics(),
+              UnorderedElementsAreArray(documented("textures.cellular", "metric")));
+  EXPECT_THAT(made_cell_features(),
+              UnorderedElementsAreArray(documented("textures.cellular", "feature")));
+  EXPECT_THAT(made_gradient_shapes(),
+              UnorderedElementsAreArray(documented("textures.gradient", "shape")));
+  EXPECT_THAT(made_remap_ends(), UnorderedElementsAreArray(documented("textures.remap", "ends")));
+  EXPECT_THAT(made_ramp_shapes(),
+              UnorderedElementsAreArray(documented("textures.ramp", "between")));
   EXPECT_THAT(made_mesh_normals(),
               UnorderedElementsAreArray(documented("objects.mesh", "normals")));
 }
@@ -106,13 +128,24 @@ TEST(Kinds, ASceneIsBuiltOfEach) {
     std::string more;
     if (type == "constant") more = ", value: 0.5";
     if (type == "image") more = ", file: pixel.hdr";
-    if (type == "scale") more = ", input: 0.5";
+    if (type == "ramp") more = ", input: 0.5, stops: {0: 0.1, 1: 0.9}";
+    if (type == "channel") more = ", input: 0.5, channel: red";
+    if (type == "power") more = ", input: 0.5, exponent: 2";
+    for (const char* of_one : {"scale", "invert", "remap", "threshold", "hue-saturation"}) {
+      if (type == of_one) more = ", input: 0.5";
+    }
+    for (const char* of_two : {"add", "min", "max", "mix"}) {
+      if (type == of_two) more = ", a: 0.5, b: 0.2";
+    }
     expect_builds("textures: {x: {type: '" + type + "'" + more +
                   "}}\nmaterials: {m: {type: lambert, color: x}}\n"
                   "objects: {o: {shape: sphere, material: m}}\n");
   }
   for (const std::string& type : material_types()) {
-    const std::string more = type == "mix" ? ", first: a, second: a" : "";
+    std::string more;
+    if (type == "mix") more = ", first: a, second: a";
+    if (type == "coat") more = ", base: a";
+    if (type == "two-sided") more = ", front: a, back: a";
     expect_builds("materials: {a: {type: lambert}, m: {type: '" + type + "'" + more +
                   "}}\nobjects: {o: {shape: sphere, material: m}}\n");
   }
@@ -138,9 +171,9 @@ float beyond_the_edge(const std::string& wrap) {
   TextureDesc texture;
   texture.name = "x";
   texture.type = "image";
-  texture.file = "two.hdr";
-  texture.filter = "nearest";
-  texture.wrap = wrap;
+  texture.image.file = "two.hdr";
+  texture.image.filter = "nearest";
+  texture.image.wrap = wrap;
   job.textures.push_back(texture);
   SceneCache cache(assets);
   Appearance looks(job, job.time_of(1), cache);
@@ -166,7 +199,7 @@ Job textured_job() {
   TextureDesc texture;
   texture.name = "x";
   texture.type = "image";
-  texture.file = "pixel.hdr";
+  texture.image.file = "pixel.hdr";
   job.textures.push_back(texture);
   MaterialDesc material;
   material.name = "m";
@@ -192,14 +225,14 @@ std::string refusal(const Job& job) {
 TEST(Kinds, AnUnknownNameIsAnErrorThatListsTheOthers) {
   EXPECT_EQ(refusal(textured_job()), "");
   Job job = textured_job();
-  job.textures[0].wrap = "wound";
+  job.textures[0].image.wrap = "wound";
   EXPECT_THAT(refusal(job), HasSubstr("there is no wrap 'wound', expected one of repeat, clamp"));
   job = textured_job();
-  job.textures[0].color_space = "lab";
+  job.textures[0].image.color_space = "lab";
   EXPECT_THAT(refusal(job), HasSubstr("there is no color_space 'lab', expected one of auto"));
   job = textured_job();
-  job.textures[0].type = "marble";
-  EXPECT_THAT(refusal(job), HasSubstr("there is no type of texture 'marble'"));
+  job.textures[0].type = "granite";
+  EXPECT_THAT(refusal(job), HasSubstr("there is no type of texture 'granite'"));
   job = textured_job();
   job.materials[0].type = "velvet";
   EXPECT_THAT(refusal(job), HasSubstr("there is no type of material 'velvet'"));

@@ -106,10 +106,30 @@ environment: {image: sky.hdr}
   const SceneFiles files = files_of_scene(job);
   EXPECT_THAT(files.meshes,
               ElementsAre(Asked("a.obj", MeshNormals::file), Asked("b.obj", MeshNormals::flat)));
-  EXPECT_THAT(files.images, ElementsAre(Asked("leaf.png", ColorSpace::automatic),
-                                        Asked("bark.png", ColorSpace::linear),
-                                        Asked("bump.png", ColorSpace::automatic)));
+  EXPECT_THAT(files.images, ElementsAre(Asked("leaf.png", ImageUse{}),
+                                        Asked("bark.png", ImageUse{ColorSpace::linear}),
+                                        Asked("bump.png", ImageUse{})));
   EXPECT_EQ(files.sky, "sky.hdr");
+}
+
+TEST(SceneFiles, AreWhatDisplacesMeshes) {
+  MemoryAssets assets;
+  for (const char* file : {"rock.obj", "flat.obj"}) assets.add(file, kTriangle);
+  for (const char* file : {"cracks.png", "none.png"}) assets.add(file, "never decoded here");
+  const Job job = parsed(R"yaml(
+textures:
+  cracks: {type: image, file: cracks.png, color_space: linear}
+  deep: {type: invert, input: cracks}
+  none: {type: image, file: none.png}
+objects:
+  rock: {mesh: rock.obj, normals: smooth, displacement: {texture: deep, height: "= t"}}
+  flat: {mesh: flat.obj, displacement: {texture: none, height: 0}}
+)yaml",
+                         assets);
+  const SceneFiles files = files_of_scene(job);
+  EXPECT_THAT(files.meshes, ElementsAre(Asked("rock.obj", MeshNormals::file),
+                                        Asked("flat.obj", MeshNormals::file)));
+  EXPECT_THAT(files.images, ElementsAre(Asked("cracks.png", ImageUse{ColorSpace::linear})));
 }
 
 TEST(SceneFiles, LoadSeveralAtOnce) {

@@ -1,0 +1,44 @@
+#include "core/scene/principled_maker.h"
+
+#include "core/materials/make_principled.h"
+
+namespace hyades::core {
+
+Result<MaterialPtr> principled_material(const MaterialDesc& desc, Appearance& looks) {
+  const PrincipledDesc& p = *desc.principled;
+  PrincipledParams params;
+  struct Color {
+    const ColorInput& from;
+    ColorParam& to;
+  };
+  for (const Color& each :
+       {Color{p.base_color, params.base_color}, Color{p.specular_tint, params.specular_tint},
+        Color{p.sheen_tint, params.sheen_tint}}) {
+    auto made = looks.color(each.from);
+    if (!made) return made.error();
+    each.to = *made;
+  }
+  struct Number {
+    const ScalarInput& from;
+    ScalarParam& to;
+  };
+  for (const Number& each :
+       {Number{p.metallic, params.metallic}, Number{desc.roughness, params.roughness},
+        Number{p.specular, params.specular}, Number{p.anisotropic, params.anisotropic},
+        Number{p.anisotropic_rotation, params.anisotropic_rotation},
+        Number{p.transmission, params.transmission},
+        Number{p.diffuse_transmission, params.diffuse_transmission}, Number{p.coat, params.coat},
+        Number{p.coat_roughness, params.coat_roughness}, Number{p.sheen, params.sheen},
+        Number{p.sheen_roughness, params.sheen_roughness}}) {
+    auto made = looks.scalar(each.from);
+    if (!made) return made.error();
+    each.to = *made;
+  }
+  params.ior = desc.ior.at(looks.time());
+  params.coat_ior = p.coat_ior.at(looks.time());
+  params.thin_walled = p.thin_walled;
+  params.subsurface = desc.subsurface.has_value();
+  return make_principled(params);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,70 @@
+#include <gtest/gtest.h>
+
+#include "core/job/parse.h"
+#include "core/scene/build_scene.h"
+#include "core/scene/volume_makers.h"
+#include "tests/core/job/test_assets.h"
+
+namespace hyades::core {
+namespace {
+
+/// An image of one pixel of radiance 1.
+const std::string kWhite =
+    "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n" + std::string("\x80\x80\x80\x81");
+
+class AnimatedMedia : public testing::Test {
+ protected:
+  AnimatedMedia() : cache_(assets_) { assets_.add("sky.hdr", kWhite); }
+
+  void read(const std::string& media) {
+    Diagnostics diagnostics;
+    job_ = parse_job("hyades: 1\nframes: 1-10\nmedia: {m: {" + media +
+                         "}}\nobjects: {ball: {shape: sphere, radius: 2, interior: m}}\n",
+                     "job.yaml", assets_, diagnostics);
+    EXPECT_EQ(diagnostics.to_string(), "");
+  }
+
+  MemoryAssets assets_;
+  SceneCache cache_;
+  Job job_;
+};
+
+TEST_F(AnimatedMedia, RefractMoreFromFrameToFrame) {
+  read("scattering: 0.1, index: \"= 0.9 + 0.1 * frame\"");
+  for (const int32_t frame : {1, 3, 6}) {
+    const auto scene = build_scene(job_, frame, cache_);
+    ASSERT_TRUE(scene) << scene.error().message;
+    const float index = 0.9F + 0.1F * static_cast<float>(frame);
+    EXPECT_FLOAT_EQ((*scene)->objects[0].material->index(), frame == 1 ? 0.0F : index);
+  }
+}
+
+TEST_F(AnimatedMedia, ShellsGrow) {
+  read(
+      "albedo: 0.9, density: {shell: {image: sky.hdr, inner: \"= 0.1 * frame\", outer: \"= 0.2 * "
+      "frame\"}}");
+  const Bounds body{Vec3(-2.0F), Vec3(2.0F)};
+  for (const int32_t frame : {1, 5, 10}) {
+    const auto made = make_volume(job_.media[0], job_.time_of(frame), body, cache_);
+    ASSERT_TRUE(made) << made.error().message;
+    for (int i = 1; i < 40; ++i) {
+      const float radius = 0.05F * static_cast<float>(i) + 0.02F;
+      const auto f = static_cast<float>(frame);
+      EXPECT_EQ(made->volume->density->at({radius, 0, 0}) > 0.0F,
+                radius > 0.1F * f && radius < 0.2F * f)
+          << frame << ' ' << radius;
+    }
+  }
+}
+
+TEST_F(AnimatedMedia, ShellsThatTurnInsideOutAreRefused) {
+  read("albedo: 0.9, density: {shell: {image: sky.hdr, inner: \"= 0.1 * frame\", outer: 0.5}}");
+  EXPECT_TRUE(build_scene(job_, 4, cache_));
+  const auto scene = build_scene(job_, 5, cache_);
+  ASSERT_FALSE(scene);
+  EXPECT_NE(scene.error().message.find("inner radius of 0.5 at this frame"), std::string::npos)
+      << scene.error().message;
+}
+
+}  // namespace
+}  // namespace hyades::core
