@@ -2,45 +2,85 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
+#include "core/base/elementary.h"
 #include "core/base/text.h"
+#include "core/finish/picture_layers.h"
 #include "core/job/output_path.h"
 
 namespace hyades::core {
 namespace {
 
-std::vector<std::string> channels_of(std::string_view layer) {
-  if (layer == "beauty") return {"R", "G", "B"};
-  if (layer == "alpha") return {"A"};
-  if (layer == "depth") return {"depth.Z"};
-  if (layer == "albedo") return {"albedo.R", "albedo.G", "albedo.B"};
-  if (layer == "normal") return {"normal.X", "normal.Y", "normal.Z"};
-  if (layer == "variance") return {"variance.R", "variance.G", "variance.B"};
-  if (layer == "samples") return {"samples.N"};
-  return {};
-}
+/// A picture for displays, and what its file says of it.
+struct ForDisplay {
+  Image image;
+  std::string how;       ///< light became its numbers
+  std::string transfer;  ///< "srgb", "linear", "bt709", or "" where it is not known
+};
 
-Status write_encoded(PictureFormat format, const OutputDesc& output, const Image& normalised,
-                     const std::string& path, const ImageMetadata& metadata) {
-  if (format == PictureFormat::exr) {
-    const Result<Image> layers = select_layers(normalised, output.layers);
-    if (!layers) return layers.error().in("cannot write " + path);
-    return write_exr(path, *layers, metadata, output.half);
+Result<ForDisplay> for_display(const OutputDesc& output, const Image& normalised,
+                               const DisplayTransform* display, bool transparent) {
+  const auto make = [&](Result<Image> image, const std::string& by,
+                        const std::string& transfer) -> Result<ForDisplay> {
+    if (!image) return image.error();
+    return ForDisplay{
+        std::move(*image),
+        fmt::format("{}, exposure {}, denoise {}", by, output.exposure, output.denoise), transfer};
+  };
+  const bool beauty = shows_beauty(output);
+  if (display != nullptr) {
+    return make(beauty
+                    ? display_picture(normalised, *display, output.exposure, transparent)
+                    : display_layer(normalised, output.layers.front(), *display, output.exposure),
+                display->name(), display->transfer());
   }
   const auto curve = find_tone_curve(output.tone_map);
   if (!curve) {
-    return Error{fmt::format("cannot write {}: there is no tone_map '{}'; expected {}{}", path,
-                             output.tone_map, join_names(tone_curve_names()),
+    return Error{fmt::format("there is no tone_map '{}'; expected {}{}", output.tone_map,
+                             join_names(tone_curve_names()),
                              did_you_mean(output.tone_map, tone_curve_names()))};
   }
-  const bool transparent = output.transparent && format == PictureFormat::png;
-  const Result<Image> picture = display_picture(normalised, *curve, output.exposure, transparent);
+  return make(beauty ? display_picture(normalised, *curve, output.exposure, transparent)
+                     : display_layer(normalised, output.layers.front(), *curve, output.exposure),
+              output.tone_map, *curve == ToneCurve::linear ? "linear" : "srgb");
+}
+
+ColorTag tag_of(const std::string& transfer) {
+  if (transfer == "srgb") return ColorTag::srgb;
+  return transfer == "linear" ? ColorTag::linear : ColorTag::none;
+}
+
+Status write_encoded(PictureFormat format, const OutputDesc& output, const Image& normalised,
+                     const std::string& path, const ImageMetadata& metadata,
+                     const DisplayTransform* display) {
+  if (format == PictureFormat::exr) {
+    const Result<Image> layers = select_layers(normalised, output.layers);
+    if (!layers) return layers.error().in("cannot write " + path);
+    ImageMetadata texts = metadata;
+    if (output.exposure != 0.0F)
+      texts.emplace_back(kExposureText, fmt::format("{}", output.exposure));
+    return write_exr(path, *layers, texts, output.half);
+  }
+  const bool transparent = output.transparent && format != PictureFormat::jpeg;
+  const auto picture = for_display(output, normalised, display, transparent);
   if (!picture) return picture.error().in("cannot write " + path);
-  return format == PictureFormat::png ? write_png(path, *picture, metadata)
-                                      : write_jpeg(path, *picture);
+  ImageMetadata texts = metadata;
+  texts.emplace_back("hyades.display", picture->how);
+  texts.emplace_back("hyades.transfer", picture->transfer.empty() ? "unknown" : picture->transfer);
+  const CodeOptions codes{output.bits, tag_of(picture->transfer)};
+  switch (format) {
+    case PictureFormat::jpeg:
+      return write_jpeg(path, picture->image, output.quality, texts, codes.color);
+    case PictureFormat::tiff:
+      return write_tiff(path, picture->image, texts, codes);
+    default:
+      return write_png(path, picture->image, texts, codes);
+  }
 }
 
 }  // namespace
@@ -50,7 +90,8 @@ Result<PictureFormat> picture_format(std::string_view file) {
   if (ending == ".exr") return PictureFormat::exr;
   if (ending == ".png") return PictureFormat::png;
   if (ending == ".jpg" || ending == ".jpeg") return PictureFormat::jpeg;
-  return Error{fmt::format("'{}' has no known ending; expected .exr, .png or .jpg", file)};
+  if (ending == ".tif" || ending == ".tiff") return PictureFormat::tiff;
+  return Error{fmt::format("'{}' has no known ending; expected .exr, .png, .jpg or .tif", file)};
 }
 
 std::string output_path(const OutputDesc& output, const std::string& folder, int32_t frame) {
@@ -74,7 +115,7 @@ Result<Image> select_layers(const Image& normalised, std::span<const std::string
     take("A");
   }
   for (const std::string& layer : layers) {
-    const std::vector<std::string> channels = channels_of(layer);
+    const std::vector<std::string> channels = channels_of(layer, normalised);
     if (channels.empty()) {
       return Error{fmt::format("there is no layer '{}'; expected {}{}", layer,
                                join_names(layer_names()), did_you_mean(layer, layer_names()))};
@@ -92,26 +133,85 @@ Result<Image> select_layers(const Image& normalised, std::span<const std::string
   return image;
 }
 
-Result<Image> display_picture(const Image& normalised, ToneCurve curve, float exposure,
-                              bool transparent) {
+namespace {
+
+/// Beauty, with straight alpha where `transparent`.
+Result<Image> straight_beauty(const Image& normalised, bool transparent) {
   const std::vector<std::string> wanted = transparent ? std::vector<std::string>{"beauty", "alpha"}
                                                       : std::vector<std::string>{"beauty"};
-  Result<Image> selected = select_layers(normalised, wanted);
-  if (!selected) return selected.error();
-  Image image = std::move(selected).value();
-  const size_t stride = image.channels.size();
-  for (size_t i = 0; i < image.data.size(); i += stride) {
-    float* pixel = &image.data[i];
-    Rgb color(pixel[0], pixel[1], pixel[2]);
-    if (transparent) color = pixel[3] > 0.0F ? color / pixel[3] : Rgb(0.0F);
-    const Rgb shown = tone_map(color, curve, exposure);
-    for (int c = 0; c < 3; ++c) pixel[c] = shown[c];
+  Result<Image> image = select_layers(normalised, wanted);
+  if (!image || !transparent) return image;
+  for (size_t i = 0; i < image->data.size(); i += 4) {
+    float* pixel = &image->data[i];
+    for (int c = 0; c < 3; ++c) pixel[c] = pixel[3] > 0.0F ? pixel[c] / pixel[3] : 0.0F;
   }
   return image;
 }
 
+/// Tone-maps colours of linear light, three of each `stride` numbers.
+void show(std::vector<float>& data, size_t stride, ToneCurve curve, float exposure) {
+  for (size_t i = 0; i < data.size(); i += stride) {
+    const Rgb shown = tone_map(Rgb(data[i], data[i + 1], data[i + 2]), curve, exposure);
+    for (int c = 0; c < 3; ++c) data[i + static_cast<size_t>(c)] = shown[c];
+  }
+}
+
+}  // namespace
+
+Result<Image> display_picture(const Image& normalised, ToneCurve curve, float exposure,
+                              bool transparent) {
+  Result<Image> image = straight_beauty(normalised, transparent);
+  if (!image) return image;
+  show(image->data, image->channels.size(), curve, exposure);
+  return image;
+}
+
+Result<Image> display_layer(const Image& normalised, const std::string& layer, ToneCurve curve,
+                            float exposure) {
+  Result<LayerView> view = view_layer(normalised, layer);
+  if (!view) return view.error();
+  if (view->is_light) show(view->image.data, view->image.channels.size(), curve, exposure);
+  return std::move(view->image);
+}
+
+namespace {
+
+/// Colours of linear light, three of each `stride` numbers.
+void show(std::vector<float>& data, size_t stride, float exposure) {
+  constexpr float kBrightest = 65504.0F;
+  const float gain = core::exp2(exposure);
+  for (size_t i = 0; i < data.size(); i += stride) {
+    for (size_t c = 0; c < 3; ++c) {
+      float& value = data[i + c];
+      value = value > 0.0F ? std::min(value * gain, kBrightest) : 0.0F;  // NaN too
+    }
+  }
+}
+
+}  // namespace
+
+Result<Image> display_layer(const Image& normalised, const std::string& layer,
+                            const DisplayTransform& display, float exposure) {
+  Result<LayerView> view = view_layer(normalised, layer);
+  if (!view) return view.error();
+  if (view->is_light) {
+    show(view->image.data, view->image.channels.size(), exposure);
+    display.apply(view->image);
+  }
+  return std::move(view->image);
+}
+
+Result<Image> display_picture(const Image& normalised, const DisplayTransform& display,
+                              float exposure, bool transparent) {
+  Result<Image> image = straight_beauty(normalised, transparent);
+  if (!image) return image;
+  show(image->data, image->channels.size(), exposure);
+  display.apply(*image);
+  return image;
+}
+
 Status write_output(const OutputDesc& output, const Image& normalised, const std::string& path,
-                    const ImageMetadata& metadata) {
+                    const ImageMetadata& metadata, const DisplayTransform* display) {
   const Result<PictureFormat> format = picture_format(path);
   if (!format) return format.error();
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -120,7 +220,7 @@ Status write_output(const OutputDesc& output, const Image& normalised, const std
   if (error) {
     return Error{fmt::format("cannot make the folder {}: {}", folder.string(), error.message())};
   }
-  return write_encoded(*format, output, normalised, path, metadata);
+  return write_encoded(*format, output, normalised, path, metadata, display);
 }
 
 }  // namespace hyades::core

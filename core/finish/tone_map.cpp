@@ -32,9 +32,37 @@ float filmic(float x) {
 
 float aces(float x) { return x * (2.51F * x + 0.03F) / (x * (2.43F * x + 0.59F) + 0.14F); }
 
+/// AgX's sigmoid over stops, 0..1 standing for all that it tells apart: the polynomial of
+/// B. Wrensch, "Minimal AgX Implementation" (2023), whose matrices are those below.
+float agx_contrast(float x) {
+  return -0.00232F +
+         x * (0.1191F + x * (0.4298F + x * (-6.868F + x * (31.96F + x * (-40.14F + x * 15.5F)))));
+}
+
+Rgb agx(const Rgb& color) {
+  constexpr float kDarkest = -12.47393F;  // stops
+  constexpr float kStops = 4.026069F - kDarkest;
+  const Mat3 inset(0.842479062253094F, 0.0423282422610123F, 0.0423756549057051F,  //
+                   0.0784335999999992F, 0.878468636469772F, 0.0784336F,           //
+                   0.0792237451477643F, 0.0791661274605434F, 0.879142973793104F);
+  const Mat3 outset(1.19687900512017F, -0.0528968517574562F, -0.0529716355144438F,
+                    -0.0980208811401368F, 1.15190312990417F, -0.0980434501171241F,
+                    -0.0990297440797205F, -0.0989611768448433F, 1.15107367264116F);
+  Rgb mixed = inset * color;
+  for (int c = 0; c < 3; ++c) {
+    const float stops = core::log2(std::max(mixed[c], 1e-10F));
+    mixed[c] = agx_contrast(std::clamp((stops - kDarkest) / kStops, 0.0F, 1.0F));
+  }
+  return glm::clamp(outset * mixed, Rgb(0.0F), Rgb(1.0F));
+}
+
+/// NaN becomes 0.
+float held(float x) { return x > 0.0F ? std::min(x, kBrightest) : 0.0F; }
+
 float map_channel(float x, ToneCurve curve) {
-  x = x > 0.0F ? std::min(x, kBrightest) : 0.0F;  // NaN too
+  x = held(x);
   switch (curve) {
+    case ToneCurve::agx:  // not by channels
     case ToneCurve::srgb:
       break;
     case ToneCurve::filmic:
@@ -55,6 +83,7 @@ std::optional<ToneCurve> find_tone_curve(std::string_view name) {
   if (name == "srgb") return ToneCurve::srgb;
   if (name == "filmic") return ToneCurve::filmic;
   if (name == "aces") return ToneCurve::aces;
+  if (name == "agx") return ToneCurve::agx;
   if (name == "linear") return ToneCurve::linear;
   return std::nullopt;
 }
@@ -63,6 +92,8 @@ std::span<const std::string> tone_curve_names() { return tone_map_names(); }
 
 Rgb tone_map(const Rgb& color, ToneCurve curve, float exposure) {
   const float gain = core::exp2(exposure);
+  if (curve == ToneCurve::agx)
+    return agx({held(color.x * gain), held(color.y * gain), held(color.z * gain)});
   return {map_channel(color.x * gain, curve), map_channel(color.y * gain, curve),
           map_channel(color.z * gain, curve)};
 }

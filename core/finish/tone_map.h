@@ -9,12 +9,13 @@
 
 namespace hyades::core {
 
-/// How light becomes the numbers of a display. Each curve works on linear Rec.709, channel by
-/// channel, after exposure.
+/// How light becomes the numbers of a display, after exposure, from linear Rec.709: channel by
+/// channel, but for AgX, which mixes them first, so that bright colours fade to white.
 enum class ToneCurve {
   srgb,    ///< the sRGB encoding alone: 1 is white, what is brighter is clipped
   filmic,  ///< Hable 2010, "Uncharted 2: HDR Lighting" (GDC), white at 11.2, then sRGB encoding
   aces,    ///< Narkowicz 2015, "ACES Filmic Tone Mapping Curve", then sRGB encoding
+  agx,  ///< Sobotka 2022, "AgX", as Wrensch 2023 fitted it; for 2.2, which displays take for sRGB
   linear,  ///< no encoding: the numbers themselves, clipped (data, not pictures)
 };
 
