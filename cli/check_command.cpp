@@ -100,8 +100,12 @@ int check_command(int argc, char** argv) {
       "units, and an estimate of memory and core-hours.",
       "hyades check");
   std::string path;
+  std::string curve;
   bool no_probe = false;
   app.add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->required();
+  app.add_option("--curve", curve,
+                 "print this value of the job over its frames instead: camera.fov, "
+                 "objects.NAME.at, objects.NAME.transform[0].rotate_y, materials.NAME.color, ...");
   app.add_flag("--no-probe", no_probe, "do not render a few pixels to estimate the time");
   app.footer(
       "example:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
@@ -118,6 +122,15 @@ int check_command(int argc, char** argv) {
   if (!diagnostics.empty()) {
     std::fputs(diagnostics.to_string().c_str(), stderr);
     return kBadInput;
+  }
+  if (!curve.empty()) {
+    const auto found = core::find_curve(job, curve);
+    if (!found) {
+      std::fprintf(stderr, "hyades check: %s\n", found.error().message.c_str());
+      return kBadInput;
+    }
+    std::fputs(core::curve_table(job, **found).c_str(), stdout);
+    return 0;
   }
   auto scene = core::build_scene(job, job.frames.first, cache);
   if (!scene) {

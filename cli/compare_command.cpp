@@ -10,6 +10,7 @@
 #include "cli/command_line.h"
 #include "core/finish/common_part.h"
 #include "core/finish/compare.h"
+#include "core/finish/perceptual.h"
 #include "core/finish/picture.h"
 #include "core/image/read_image.h"
 #include "core/image/write_image.h"
@@ -30,6 +31,7 @@ struct Options {
   std::optional<double> tolerance;
   std::optional<double> block_tolerance;
   std::optional<double> least_p;
+  std::optional<double> perceptual;
   core::CompareOptions compare;
 };
 
@@ -51,6 +53,12 @@ void declare(CLI::App& app, Options& options) {
                  "exit with 1 where the z-test of blocks gives a corrected p below this (both "
                  "pictures need the layer 'variance')")
       ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--perceptual", options.perceptual,
+                 "say only how different they look (distance in CIELAB, blurred so that noise does "
+                 "not count), and exit with 1 where the mean is above this, or that of one of 12 x "
+                 "12 fields above four times this; one picture may be a multiple of the other's "
+                 "size")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--block", options.compare.block, "side of a block in pixels")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();
@@ -112,6 +120,17 @@ int fail(const std::string& message) {
   return kUnusable;
 }
 
+/// Says how different the pictures look; the exit status.
+int compare_looks(const core::Image& a, const core::Image& b, double limit) {
+  const auto difference = core::perceptual_difference(a, b);
+  if (!difference) return fail(difference.error().message);
+  std::printf("they look %.2f apart (CIELAB), at most %.2f around %d,%d\n", difference->mean,
+              difference->largest, difference->x, difference->y);
+  if (difference->mean <= limit && difference->largest <= 4.0 * limit) return 0;
+  std::fputs("the pictures look different\n", stderr);
+  return kExceeded;
+}
+
 /// Why the pictures do not pass, one reason per line; empty where they do.
 std::string verdict(const core::Comparison& comparison, const Options& options) {
   std::string text;
@@ -135,6 +154,7 @@ int compare(const Options& options) {
   if (!a) return fail(a.error().message);
   auto b = core::read_image_file(options.b);
   if (!b) return fail(b.error().message);
+  if (options.perceptual) return compare_looks(*a, *b, *options.perceptual);
   if (const auto cut = core::cut_to_common_part(*a, *b); !cut) return fail(cut.error().message);
   const auto comparison = core::compare_images(*a, *b, options.compare);
   if (!comparison) return fail(comparison.error().message);

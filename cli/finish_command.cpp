@@ -1,25 +1,51 @@
 #include "cli/finish_command.h"
 
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <utility>
 
 #include "coordinator/finisher/finish_task.h"
+#include "coordinator/finisher/video_task.h"
 #include "core/base/assets.h"
 #include "core/base/fp_mode.h"
 #include "core/base/hash.h"
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
+#include "core/finish/video.h"
 #include "core/job/output_path.h"
 
 namespace hyades::cli {
 namespace {
+
+/// Tells the coordinator what was written.
+core::Status write_result(const std::string& folder, const std::string& outputs,
+                          const std::vector<std::string>& paths) {
+  std::vector<coordinator::FinishedFile> files;
+  for (const std::string& path : paths) {
+    const auto bytes = core::map_file(path);
+    if (!bytes) return bytes.error().in(path);
+    files.push_back({std::filesystem::path(path).lexically_relative(outputs).string(),
+                     bytes->size(), core::to_hex(core::sha256(bytes->span()))});
+  }
+  return coordinator::write_finish_result(folder, files);
+}
 
 core::Status finish(const std::string& folder) {
   auto task = coordinator::read_finish_task(folder);
   if (!task) return task.error();
   auto film = coordinator::read_finish_film(folder);
   if (!film) return film.error();
-  auto paths = core::write_outputs(task->outputs, task->folder, task->info, *film);
+  std::shared_ptr<const core::DisplayTransform> display;
+  if (task->color) {
+    auto opened = core::open_display_transform(task->color->config, *task->color);
+    if (!opened) return opened.error();
+    display = std::move(*opened);
+  }
+  auto paths = core::write_outputs(task->outputs, task->folder, task->info, *film, display.get());
   if (!paths) return paths.error();
   if (!task->film.empty()) {
     std::error_code failed;
@@ -30,14 +56,19 @@ core::Status finish(const std::string& folder) {
         core::write_film_exr(paths->back(), {task->info, std::move(*film)});
     if (!written) return written;
   }
-  std::vector<coordinator::FinishedFile> files;
-  for (const std::string& path : *paths) {
-    const auto bytes = core::map_file(path);
-    if (!bytes) return bytes.error().in(path);
-    files.push_back({std::filesystem::path(path).lexically_relative(task->folder).string(),
-                     bytes->size(), core::to_hex(core::sha256(bytes->span()))});
-  }
-  return coordinator::write_finish_result(folder, files);
+  return write_result(folder, task->folder, *paths);
+}
+
+volatile std::sig_atomic_t g_asked_to_end = 0;
+
+core::Status make_video(const std::string& folder) {
+  const auto task = coordinator::read_video_task(folder);
+  if (!task) return task.error();
+  core::VideoPatience patience;
+  patience.stop = [parent = ::getppid()] { return g_asked_to_end != 0 || ::getppid() != parent; };
+  auto made = core::make_video(task->video, task->frames, patience);
+  if (!made) return made;
+  return write_result(folder, task->frames.folder, {task->frames.folder + "/" + task->video.file});
 }
 
 }  // namespace
@@ -49,6 +80,19 @@ int finish_command(int argc, char** argv) {
   }
   const core::FpMode mode;
   if (const core::Status done = finish(argv[1]); !done) {
+    std::fprintf(stderr, "%s\n", done.error().message.c_str());
+    return 1;
+  }
+  return 0;
+}
+
+int finish_video_command(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: hyades-film video FOLDER (coordinators use it)\n");
+    return 2;
+  }
+  std::signal(SIGTERM, [](int) { g_asked_to_end = 1; });
+  if (const core::Status done = make_video(argv[1]); !done) {
     std::fprintf(stderr, "%s\n", done.error().message.c_str());
     return 1;
   }

@@ -7,4 +7,8 @@ namespace hyades::cli {
 /// error.
 int finish_command(int argc, char** argv);
 
+/// `hyades-film video FOLDER`: the same for a video (coordinator/finisher/video_task.h). Ends when
+/// the coordinator does.
+int finish_video_command(int argc, char** argv);
+
 }  // namespace hyades::cli

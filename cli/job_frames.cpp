@@ -62,7 +62,7 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
       options_(std::move(options)),
       layers_(core::needed_layers(loaded.job)),
       assets_(loaded.assets->records()),
-      cache_(*loaded.assets) {}
+      cache_(*loaded.assets, std::make_shared<core::TexelStore>(options_.texture_memory)) {}
 
 core::Status JobFrames::check_film_names() const {
   if (!options_.write_films) return {};
@@ -79,7 +79,16 @@ core::Status JobFrames::check_film_names() const {
   return {};
 }
 
-core::Status JobFrames::load_files() { return core::load_files(loaded_.job, cache_); }
+core::Status JobFrames::load_files() {
+  if (const auto& color = loaded_.job.color) {
+    const auto folder = std::filesystem::path(loaded_.job.file).parent_path();
+    auto display = core::open_display_transform((folder / color->config).string(), *color);
+    if (!display)
+      return core::Error{core::Diagnostic{color->where, display.error().message}.to_string()};
+    display_ = std::move(*display);
+  }
+  return core::load_files(loaded_.job, cache_);
+}
 
 core::Result<std::vector<std::string>> JobFrames::load_first(int32_t frame) {
   auto scene = core::build_scene(loaded_.job, frame, cache_);
@@ -101,7 +110,8 @@ core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(i
 
 core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
   const core::FilmInfo info = film_info(frame);
-  const auto written = core::write_outputs(loaded_.job.outputs, options_.folder, info, film);
+  const auto written =
+      core::write_outputs(loaded_.job.outputs, options_.folder, info, film, display_.get());
   if (!written) return written.error();
   if (!options_.write_films) return {};
   return core::write_film_exr(film_path(frame), {info, film});
@@ -114,12 +124,25 @@ bool JobFrames::outputs_exist(int32_t frame) {
                      [](const std::string& p) { return std::filesystem::exists(p); });
 }
 
-std::vector<std::string> JobFrames::output_paths(int32_t frame) const {
+std::vector<std::string> JobFrames::output_paths(int32_t frame, bool for_videos) const {
+  const auto& videos = loaded_.job.videos;
   std::vector<std::string> paths;
   for (const core::OutputDesc& output : loaded_.job.outputs) {
+    const bool for_video = std::any_of(videos.begin(), videos.end(), [&](const auto& video) {
+      return video.pictures == output.file;
+    });
+    if (for_video && !for_videos) continue;
     paths.push_back(core::output_path(output, options_.folder, frame));
   }
   if (options_.write_films) paths.push_back(film_path(frame));
+  return paths;
+}
+
+std::vector<std::filesystem::path> JobFrames::video_paths() const {
+  std::vector<std::filesystem::path> paths;
+  for (const core::VideoDesc& video : loaded_.job.videos) {
+    paths.push_back(std::filesystem::path(options_.folder) / video.file);
+  }
   return paths;
 }
 
@@ -144,17 +167,20 @@ void JobFrames::remove_leftovers(const std::vector<int32_t>& frames,
       look_into(std::filesystem::path(path).parent_path());
     }
   }
+  const auto videos = video_paths();
+  for (const std::filesystem::path& video : videos) look_into(video.parent_path());
   if (!any) return;
-  for (const int32_t frame : frames) {
-    for (const std::string& path : output_paths(frame)) {
-      const std::filesystem::path target(path);
-      const std::string name = target.filename().string().substr(0, core::kNameInTemporary);
-      for (const core::Leftover& leftover : leftovers[target.parent_path()]) {
-        std::error_code ignored;
-        if (leftover.target == name) std::filesystem::remove(leftover.path, ignored);
-      }
+  const auto remove_those_of = [&](const std::filesystem::path& target) {
+    const std::string name = target.filename().string().substr(0, core::kNameInTemporary);
+    for (const core::Leftover& leftover : leftovers[target.parent_path()]) {
+      std::error_code ignored;
+      if (leftover.target == name) std::filesystem::remove(leftover.path, ignored);
     }
+  };
+  for (const int32_t frame : frames) {
+    for (const std::string& path : output_paths(frame)) remove_those_of(path);
   }
+  for (const std::filesystem::path& video : videos) remove_those_of(video);
 }
 
 std::string JobFrames::film_path(int32_t frame) const {
@@ -183,9 +209,9 @@ coordinator::FrameKey JobFrames::frame_key(int32_t frame) {
   if (const auto known = keys_.find(frame); known != keys_.end()) return known->second;
   const coordinator::FrameKey key =
       // Another machine (or build) may give other bits: its films are not continued here.
-      core::sha256(fmt::format("{} {} {}{}{}", machine_class(),
-                               core::render_key(loaded_.job, frame, assets_), layers_.depth,
-                               layers_.albedo, layers_.normal));
+      core::sha256(fmt::format("{} {} {}", machine_class(),
+                               core::render_key(loaded_.job, frame, assets_),
+                               core::layers_text(layers_)));
   if (keys_.size() >= kKeysKept) keys_.erase(keys_.begin());
   keys_.emplace(frame, key);
   return key;

@@ -11,6 +11,7 @@
 #include "coordinator/local/frame_work.h"
 #include "coordinator/local/local_plan.h"
 #include "core/film/film_info.h"
+#include "core/finish/display_transform.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/scene_cache.h"
 
@@ -35,6 +36,7 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
     core::PixelRect window;    ///< what is rendered of each frame
     bool trust_outputs =
         false;  ///< whether output files that are there were made with the job's settings
+    uint64_t texture_memory = core::TexelStore::default_budget();  ///< bytes, for TexelStore
   };
 
   JobFrames(LoadedJob& loaded, Options options);
@@ -42,7 +44,8 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   /// An error where the frames' films and an output of the job would be the same file.
   core::Status check_film_names() const;
 
-  /// Loads the files that all frames share. The error names every one that is broken.
+  /// Loads the files that all frames share, and the colour configuration. The error names every one
+  /// that is broken.
   core::Status load_files();
 
   /// Loads the scene of the frame that will be asked for first, so that what is wrong with it is
@@ -53,13 +56,15 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   core::Status finish(int32_t frame, const core::Film& film) override;
   bool outputs_exist(int32_t frame) override;
 
-  /// Everything that `frame` writes, in the job's order.
-  std::vector<std::string> output_paths(int32_t frame) const;
+  /// Everything that `frame` writes, in the job's order; with or without what is there for videos
+  /// only.
+  std::vector<std::string> output_paths(int32_t frame, bool for_videos = true) const;
 
   /// Names the pixels and layers of a frame: films of another key are never mixed in. Thread-safe.
   coordinator::FrameKey frame_key(int32_t frame);
 
-  /// Removes what a killed process was writing before `before` of the outputs of `frames`.
+  /// Removes what a killed process was writing before `before` of the outputs of `frames` and the
+  /// videos.
   void remove_leftovers(const std::vector<int32_t>& frames,
                         std::filesystem::file_time_type before) const;
 
@@ -69,6 +74,7 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   class Work;
   core::FilmInfo film_info(int32_t frame) const;
   std::string film_path(int32_t frame) const;
+  std::vector<std::filesystem::path> video_paths() const;
   void note(int32_t frame, const core::RenderCounters& counters);
 
   LoadedJob& loaded_;
@@ -77,6 +83,7 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   const std::vector<core::AssetRecord>
       assets_;  ///< all files of the job, as they were when it was read
   core::SceneCache cache_;
+  std::shared_ptr<const core::DisplayTransform> display_;  ///< of job.color, once files are loaded
   int32_t first_frame_ = 0;
   /// Of first_frame_, until a frame is prepared: from then on only the thread that prepares has it.
   std::shared_ptr<const core::Scene> first_scene_;

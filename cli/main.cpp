@@ -37,7 +37,10 @@ constexpr Command kCommands[] = {
      "own jobs, lease their units to workers, merge the films"},
     {"worker", "hyades-worker", "render for a coordinator"},
 #endif
+    {"video", "hyades-render", "make a job's videos of the pictures that its frames have left"},
     {"merge", "hyades-film", "join films of the same frame"},
+    {"contact-sheet", "hyades-film", "put many pictures on one sheet"},
+    {"denoise", "hyades-film", "take the noise out of a picture"},
     {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
 #ifdef HYADES_FARM
     {"submit", "hyades-client", "give a job to the farm"},

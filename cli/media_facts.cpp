@@ -47,7 +47,7 @@ core::Result<std::vector<KnownMedium>> media_of_file(const std::string& path, fl
     const core::JobTime start = job.time_of(job.frames.first);
     const core::Coefficients found = core::coefficients_of(desc, start, units);
     media.push_back({desc.name, path, found.absorption, found.scattering, desc.g.at(start),
-                     desc.index.value_or(1.0F)});
+                     desc.index ? desc.index->at(start) : 1.0F});
   }
   return media;
 }

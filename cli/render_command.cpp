@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
 #include "cli/film_room.h"
@@ -18,102 +16,19 @@
 #include "cli/interrupt.h"
 #include "cli/job_frames.h"
 #include "cli/load_job.h"
+#include "cli/output_note.h"
 #include "cli/progress_display.h"
+#include "cli/render_options.h"
+#include "cli/videos.h"
 #include "coordinator/local/local_run.h"
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/atomic_file.h"
-#include "core/base/hash.h"
-#include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
 #include "core/render/chain_batch.h"
 
 namespace hyades::cli {
 namespace {
-
-struct RenderOptions {
-  std::string path;
-  std::string frames;
-  std::string folder = ".";
-  std::string media;
-  std::string save_job;
-  int threads = core::hardware_threads();
-  uint32_t samples = 0;
-  uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
-  std::vector<int> crop;
-  bool resume = false;
-  bool quiet = false;
-  bool film = false;
-};
-
-/// Exit status other than 0 where the arguments end the command.
-std::optional<int> parse_arguments(int argc, char** argv, RenderOptions& options) {
-  CLI::App app("Renders a job (or a mesh file) on this machine.", "hyades render");
-  app.add_option("job", options.path, "the job (.yaml) or mesh (.obj, .ply)")->required();
-  app.add_option("--media", options.media,
-                 "of a mesh: file of media (.json, .yaml) that fill its materials (usemtl) of the "
-                 "same names");
-  app.add_option("--save-job", options.save_job,
-                 "of a mesh: write the job that it is rendered as, and render nothing");
-  app.add_option("--frames", options.frames,
-                 "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
-      ->check(no_frames_error);
-  app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
-      ->check(CLI::Range(1U, 1U << 24U));
-  app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
-      ->delimiter(',')
-      ->expected(4);
-  app.add_option("--threads", options.threads, "rendering threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--film-memory", options.film_memory,
-                 "most memory that films may take, such as 8G; jobs of larger ones are refused "
-                 "(default: half of what is here)")
-      ->transform(CLI::AsSizeValue(false));
-  app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
-  app.add_flag("--film", options.film,
-               "also write each frame's film (NAME.film.exr), for 'hyades merge', as keep_films in "
-               "the job does");
-  app.add_flag("--resume", options.resume, "continue a run that was interrupted, to the same bits");
-  app.add_flag("--quiet", options.quiet, "show no progress");
-  app.footer(
-      "examples:\n"
-      "  hyades render jobs/quickstart/job.yaml\n"
-      "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
-      "  hyades render dragon.ply --samples 64\n"
-      "  hyades render bottles.obj --media media.json\n"
-      "Ctrl-C stops; --resume continues, also after a crash.\n"
-      "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
-      "interrupted");
-  return parse_command_line(app, argc, argv, kBadInput);
-}
-
-/// The job as the command line changes it; nothing (and a message) where that makes no sense.
-std::optional<LoadedJob> load(const RenderOptions& options) {
-  auto loaded = load_job(options.path, options.media);
-  if (!loaded) return std::nullopt;
-  core::Job& job = loaded->job;
-  if (options.samples > 0) job.sampling.samples = options.samples;
-  if (!options.crop.empty()) {
-    const core::PixelRect crop{options.crop[0], options.crop[1], options.crop[2], options.crop[3]};
-    const core::PixelRect whole = core::render_window(job.film);
-    if (crop.empty() || !whole.contains(crop)) {
-      std::fprintf(stderr,
-                   "--crop: expected X0,Y0,X1,Y1 within what the job renders, %d,%d,%d,%d\n",
-                   whole.x0, whole.y0, whole.x1, whole.y1);
-      return std::nullopt;
-    }
-  }
-  return loaded;
-}
-
-/// What is rendered of each frame. --crop is no part of the job: films of several crops belong to
-/// one picture, and 'hyades merge' joins them.
-core::PixelRect window_of(const RenderOptions& options, const core::Job& job) {
-  const core::PixelRect whole = core::render_window(job.film);
-  if (options.crop.empty()) return whole;
-  return intersection(whole, {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
-}
 
 /// Says so where what the job's chains bring to the crop is right only when the rest is merged.
 void note_cut_chains(const RenderOptions& options, const core::Job& job) {
@@ -151,34 +66,6 @@ int save_job(const RenderOptions& options) {
   if (!options.quiet) std::fprintf(stderr, "wrote %s\n", options.save_job.c_str());
   return 0;
 }
-
-/// Remembers how outputs were made, so that a resumed run does not take pictures for finished that
-/// were made with another exposure, say.
-class OutputNote {
- public:
-  OutputNote(std::string path, const core::Job& job) : path_(std::move(path)) {
-    std::string settings;
-    for (const core::OutputDesc& output : job.outputs) {
-      settings += fmt::format("{}|{}|{}|{}|{}|{}\n", output.file, fmt::join(output.layers, ","),
-                              output.tone_map, output.exposure, output.half, output.transparent);
-    }
-    digest_ = core::to_hex(core::sha256(settings));
-  }
-
-  /// Whether an earlier run noted the same settings.
-  bool still_true() const {
-    std::ifstream file(path_);
-    std::string noted;
-    return std::getline(file, noted) && noted == digest_;
-  }
-
-  /// Without the note a later run only makes the outputs again, so failing to write it is no error.
-  void write() const { (void)core::write_file(path_, std::as_bytes(std::span(digest_))); }
-
- private:
-  std::string path_;
-  std::string digest_;
-};
 
 void print_bad_samples(const RunTotals& totals, const std::string& path) {
   if (totals.counters.bad_samples == 0) return;
@@ -222,7 +109,7 @@ int report(const RenderOptions& options, const JobFrames& frames,
   if (!options.quiet && first) {
     const std::string others =
         outcome.frames_done > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done) : "";
-    for (const std::string& path : frames.output_paths(*first)) {
+    for (const std::string& path : frames.output_paths(*first, false)) {
       std::fprintf(stderr, "wrote %s%s\n", path.c_str(), others.c_str());
     }
     const auto samples = static_cast<double>(totals.counters.samples);
@@ -240,11 +127,13 @@ int report(const RenderOptions& options, const JobFrames& frames,
 int render_command(int argc, char** argv) {
   const auto begin = std::filesystem::file_time_type::clock::now();
   RenderOptions options;
-  if (const auto status = parse_arguments(argc, argv, options)) return *status;
+  if (const auto status = parse_render_options(argc, argv, options)) return *status;
   if (!options.save_job.empty()) return save_job(options);
-  auto loaded = load(options);
+  auto loaded = load_for_render(options);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;
+  if (options.preview > 0 && options.frames.empty())
+    options.frames = std::to_string(job.frames.first);
   const auto numbers = select_frames(job, options.frames);
   if (!numbers) return kBadInput;
 
@@ -256,9 +145,9 @@ int render_command(int argc, char** argv) {
     return kBadInput;
   }
   const std::string kept = options.folder + "/.hyades/" + job.name;
-  const OutputNote note(kept + ".outputs", job);
-  JobFrames frames(*loaded,
-                   {options.folder, options.film || job.keep_films, window, note.still_true()});
+  const OutputNote note(kept + ".outputs", *loaded);
+  JobFrames frames(*loaded, {options.folder, options.film || job.keep_films, window,
+                             note.still_true(), options.texture_memory});
   if (const auto names = frames.check_film_names(); !names) {
     std::fprintf(stderr, "%s\n", names.error().message.c_str());
     return kBadInput;
@@ -304,6 +193,10 @@ int render_command(int argc, char** argv) {
   log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
   log.resume = options.resume;
 
+  if (!job.videos.empty() && !core::have_ffmpeg()) {
+    std::fprintf(stderr, "warning: %s; until then frames' pictures are kept for its videos\n",
+                 core::kNoFfmpeg);
+  }
   // What is durable is safe however the process ends.
   watch_for_interrupts();
   coordinator::LocalRun run(plan, log, frames, frames);
@@ -332,16 +225,32 @@ int render_command(int argc, char** argv) {
   }
   display.clear();
   const coordinator::LocalOutcome outcome = run.outcome();
-  const int status = report(options, frames, *numbers, outcome, run.progress());
+  int status = report(options, frames, *numbers, outcome, run.progress());
+  const bool all_frames = core::are_all_frames(job, *numbers);
+  bool complete = outcome.complete && outcome.failures.empty();
+  if (complete && !job.videos.empty()) {
+    if (!all_frames) {
+      if (!options.quiet) note_no_videos(job, options.folder, options.path);
+    } else if (!make_videos(job, options.folder, *numbers, options.quiet)) {
+      complete = false;
+      status = interrupted() ? kInterrupted : 1;
+      std::fprintf(stderr,
+                   "all frames are rendered and their pictures are kept: 'hyades video %s --output "
+                   "%s' (or --resume) goes on\n",
+                   options.path.c_str(), options.folder.c_str());
+    }
+  }
   // Everything is written: the films are of no more use. After --frames the log may hold work on
   // other frames.
-  const bool all_frames = static_cast<int64_t>(numbers->size()) ==
-                          frame_count(job.frames.first, job.frames.last, job.frames.step);
-  if (outcome.complete && outcome.failures.empty() && all_frames) {
+  if (complete && all_frames) {
     std::filesystem::remove_all(log.folder, failed);
     std::filesystem::remove(kept + ".outputs", failed);
     std::filesystem::remove(options.folder + "/.hyades",
                             failed);  // only where no other job is in it
+    // Before that a resumed run would have missed them.
+    for (const core::VideoDesc& video : job.videos) {
+      core::remove_video_pictures(video, core::video_frames(job, options.folder, *numbers));
+    }
   }
   std::fflush(nullptr);
   // An orderly end waits for frames that are loading or finishing; after Ctrl-C nobody wants to.

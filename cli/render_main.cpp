@@ -8,6 +8,7 @@ int media_command(int argc, char** argv);
 int render_command(int argc, char** argv);
 int replay_command(int argc, char** argv);
 int strategies_command(int argc, char** argv);
+int video_command(int argc, char** argv);
 }  // namespace hyades::cli
 
 int main(int argc, char** argv) {
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   constexpr ProgramCommand kCommands[] = {
       {"render", render_command}, {"check", check_command}, {"replay", replay_command},
       {"media", media_command},   {"bench", bench_command}, {"strategies", strategies_command},
+      {"video", video_command},
   };
   return run_program(kCommands, argc, argv);
 }

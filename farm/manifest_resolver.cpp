@@ -38,4 +38,8 @@ Result<Bytes> ManifestResolver::open(const std::string& reference, const std::st
   return bytes;
 }
 
+bool ManifestResolver::exists(const std::string& reference) {
+  return files_.contains(core::resolve_reference(reference));
+}
+
 }  // namespace hyades::farm

@@ -20,6 +20,9 @@ class ManifestResolver : public core::AssetResolver {
   core::Result<core::Bytes> open(const std::string& reference,
                                  const std::string& from = {}) override;
 
+  /// Whether it is in the manifest.
+  bool exists(const std::string& reference) override;
+
  private:
   const std::map<std::string, core::AssetRecord> files_;  ///< by resolved reference
   ContentStore& store_;

@@ -20,9 +20,11 @@
 #include "coordinator/brain/clerks.h"
 #include "coordinator/brain/job_desk.h"
 #include "coordinator/brain/worker_link.h"
+#include "coordinator/finisher/finish_task.h"
 #include "coordinator/scheduler/scheduler.h"
 #include "coordinator/state/job_store.h"
 #include "coordinator/store/disk_room.h"
+#include "core/job/video.h"
 #include "farm/content_store.h"
 #include "hyades/v1/farm.pb.h"
 #include "hyades/v1/jobs.pb.h"
@@ -99,6 +101,8 @@ class Brain {
   /// A copy of the frame's film as it is now, or, where films are kept, was in the end; given to
   /// `then` (which is quick), perhaps by another thread. May wait for the disk.
   grpc::Status film(uint64_t job, int32_t frame, FilmTaker then);
+  /// Whether a file is there only until the open job's video is made of it.
+  bool is_for_video(uint64_t job, const std::string& path) const;
   /// How far somebody has been told of a job's changes; at first of nothing.
   struct ToldOf {
     uint64_t version = 0;          ///< of the job: of all changes up to this one
@@ -210,6 +214,7 @@ class Brain {
     TimePoint give_up;
     Told then;
   };
+  void end_job(JobDesk& desk, bool cancelled, const std::string& why);
   void when_stored(uint64_t job, Told then);
   void store_row(JobDesk& desk);
   bool store_row_now(uint64_t id);
@@ -222,7 +227,9 @@ class Brain {
   bool try_to_take_up(uint64_t id);
   core::Status give_up(uint64_t id, const core::Error& why);
   core::Status take_up(uint64_t id);
-  core::Result<std::set<int32_t>> frames_without_outputs(uint64_t id) const;
+  core::Result<std::vector<StoredOutput>> lost_outputs(uint64_t id) const;
+  core::Result<std::set<int32_t>> frames_to_repeat(const JobDesk& desk,
+                                                   const std::vector<StoredFrame>& frames);
   core::Status start(std::unique_ptr<JobDesk> desk, RestoredJob restored);
   std::unique_ptr<FilmKeeper> make_keeper(JobDesk& desk, bool resume);
   FilmKeeper& keeper_of(JobDesk& desk);
@@ -245,6 +252,19 @@ class Brain {
   void job_ended(const JobEnded& ended);
   void tile_voided(const TileVoided& voided);
   void frame_reopened(JobId job, int32_t frame);
+
+  core::Status find_color_files(FinishTask& task, const std::vector<core::AssetRecord>& files);
+
+  // Videos (brain_videos.cpp).
+  void begin_filming(JobDesk& desk);
+  void cancel_filming(JobDesk& desk);
+  core::Status make_videos(uint64_t id, const std::vector<core::VideoDesc>& videos,
+                           const core::VideoFrames& frames);
+  void film_loop();
+  core::Status make_video(uint64_t id, const core::VideoDesc& video,
+                          const core::VideoFrames& frames);
+  core::Status repeat_for_videos(const JobDesk& desk, const std::vector<int32_t>& done,
+                                 std::set<int32_t>& repeated);
 
   // Keepers' threads.
   void persisted(JobId job, RecordId record);
@@ -357,6 +377,10 @@ class Brain {
   std::condition_variable clock_wake_;
   std::deque<Completed> to_finish_;
   std::condition_variable finish_wake_;
+  std::deque<JobId> to_film_;
+  std::optional<JobId> filming_;  ///< whose videos are being made
+  std::condition_variable film_wake_;
+  std::atomic<bool> film_stop_{false};  ///< ends the video in work
   std::vector<Waiter> waiters_;
   uint64_t next_waiter_ = 1;
   std::timed_mutex submit_mutex_;  ///< one submission at a time

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "farm/wire.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -95,34 +96,48 @@ void Brain::mind_waiters(TimePoint now) {
   for (const auto& [waiter, why] : late) waiter.then(not_stored(why), {});
 }
 
-/// The job leaves memory once its end is stored.
 void Brain::job_ended(const JobEnded& ended) {
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(ended.job);
   if (desk == nullptr || desk->ending) return;
-  desk->ending = true;
-  StoredJob& stored = desk->stored;
-  stored.state = ended.cancelled    ? StoredState::cancelled
-                 : ended.failed > 0 ? StoredState::failed
-                                    : StoredState::done;
-  stored.frames_done = ended.done;
-  stored.frames_failed = ended.failed;
-  stored.ended_ms = wall_ms();
-  stored.reason.clear();
-  for (const auto& [number, frame] : desk->frames) {
-    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
-      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
-    }
-  }
-  note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
-       fmt::format("ended: {} frames done, {} failed{}", ended.done, ended.failed,
-                   ended.cancelled ? ", cancelled" : ""));
   for (auto& [id, seat] : seats_) {
     if (seat.briefed.erase(ended.job) == 0) continue;
     v1::CoordinatorMessage message;
     message.mutable_over()->set_job(static_cast<uint64_t>(ended.job));
     send(id, std::move(message));
   }
+  desk->stored.frames_done = ended.done;
+  desk->stored.frames_failed = ended.failed;
+  if (!desk->read.job.videos.empty() && desk->videos().empty()) {
+    note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
+         "no video is made of some of the job's frames: 'fetch' brings their pictures, 'hyades "
+         "video' makes one of them");
+  }
+  if (!ended.cancelled && ended.failed == 0 && !desk->videos().empty()) {
+    begin_filming(*desk);
+  } else {
+    end_job(*desk, ended.cancelled, {});
+  }
+}
+
+/// The job leaves memory once its end is stored. `why` says why it has failed although its frames
+/// have not. With the lock.
+void Brain::end_job(JobDesk& desk, bool cancelled, const std::string& why) {
+  desk.ending = true;
+  StoredJob& stored = desk.stored;
+  stored.state = cancelled                                  ? StoredState::cancelled
+                 : stored.frames_failed > 0 || !why.empty() ? StoredState::failed
+                                                            : StoredState::done;
+  stored.ended_ms = wall_ms();
+  stored.reason = farm::wire_text(why);
+  for (const auto& [number, frame] : desk.frames) {
+    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
+      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
+    }
+  }
+  note(desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
+       fmt::format("ended: {} frames done, {} failed{}", stored.frames_done, stored.frames_failed,
+                   cancelled ? ", cancelled" : ""));
   chores_.add(stored.id, [this, id = stored.id] { return store_end(id); });
 }
 

@@ -94,6 +94,11 @@ bool Brain::explain_open(uint64_t id, v1::ExplainResponse& response) {
   if (!desk->trouble.empty()) say(desk->trouble);
   if (!desk->row_trouble.empty()) say(desk->row_trouble);
   if (desk->stored.state == StoredState::paused) say("it is paused; 'resume' lets it go on");
+  if (desk->filming) {
+    say(filming_ == desk->id ? "all frames are done, and its videos are being made of them"
+                             : "all frames are done; its videos wait for those of another job");
+    return true;
+  }
   uint32_t active = 0;
   std::map<std::string, uint32_t> classes;
   for (const auto& [worker, seat] : seats_) {

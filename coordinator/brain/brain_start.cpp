@@ -62,6 +62,7 @@ core::Result<std::unique_ptr<Brain>> Brain::open(const BrainOptions& options,
   Brain& b = *brain;
   b.threads_.emplace_back([&b] { b.clock_loop(); });
   b.threads_.emplace_back([&b] { b.finish_loop(); });
+  b.threads_.emplace_back([&b] { b.film_loop(); });
   b.threads_.emplace_back([&b] { b.sweep_loop(); });
   b.threads_.emplace_back([&b] { b.disk_loop(); });
   return brain;
@@ -85,6 +86,8 @@ void Brain::stop() {
   clock_wake_.notify_all();
   away_wake_.notify_all();
   finish_wake_.notify_all();
+  film_stop_ = true;
+  film_wake_.notify_all();
   sweep_wake_.notify_all();
   disk_wake_.notify_all();
   for (auto& [id, seat] : seats_) {

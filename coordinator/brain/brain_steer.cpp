@@ -74,7 +74,11 @@ void Brain::cancel(uint64_t id, Told then) {
     if (open) {
       // The end is stored by the job's chores; to answer is to promise.
       when_stored(id, then);
-      later = tell(JobCancelled{desk->id});
+      if (desk->filming) {
+        cancel_filming(*desk);
+      } else {
+        later = tell(JobCancelled{desk->id});
+      }
     }
   }
   carry_out(later);

@@ -129,17 +129,19 @@ core::Status Brain::take_up(uint64_t id) {
   RestoredJob restored;
   const auto frames = store_->frames(id);
   if (!frames) return frames.error();
-  const auto damaged = frames_without_outputs(id);
-  if (!damaged) return damaged.error();
+  const auto repeated = frames_to_repeat(**desk, *frames);
+  if (!repeated) return repeated.error();
   for (const StoredFrame& frame : *frames) {
     FrameNote& note = (*desk)->frames[frame.frame];
-    if (frame.doubtful || damaged->contains(frame.frame)) {
+    if (repeated->contains(frame.frame)) {
       if (auto gone = store_->forget_frame(id, frame.frame); !gone) return gone;
       note.restarts = frame.restarts + 1;
-      this->note(**desk, v1::LOG_LEVEL_WARNING, frame.frame, {},
-                 frame.doubtful
-                     ? "a worker that had a part in it was found odd: it is rendered again"
-                     : "its outputs are gone or damaged: it is rendered again");
+      this->note(
+          **desk, v1::LOG_LEVEL_WARNING, frame.frame, {},
+          frame.doubtful
+              ? "a worker that had a part in it was found odd: it is rendered again"
+              : "its outputs are gone or damaged, or went into a video that is made anew: it is "
+                "rendered again");
       continue;
     }
     note.worker_class = frame.worker_class;
@@ -160,11 +162,11 @@ core::Status Brain::take_up(uint64_t id) {
   return start(std::move(*desk), std::move(restored));
 }
 
-/// Finished frames of which a file is missing or has another size than when it was written.
-core::Result<std::set<int32_t>> Brain::frames_without_outputs(uint64_t id) const {
+/// Outputs that are missing or have another size than when they were written.
+core::Result<std::vector<StoredOutput>> Brain::lost_outputs(uint64_t id) const {
   const auto outputs = store_->outputs(id, 0, UINT32_MAX);
   if (!outputs) return outputs.error();
-  std::set<int32_t> damaged;
+  std::vector<StoredOutput> lost;
   for (const StoredOutput& output : *outputs) {
     std::error_code failed;
     const std::string path = output_folder(id) + "/" + output.path;
@@ -174,9 +176,35 @@ core::Result<std::set<int32_t>> Brain::frames_without_outputs(uint64_t id) const
         failed != std::errc::not_a_directory) {
       return core::Error{path + ": " + failed.message()};
     }
-    if (failed || size != output.size) damaged.insert(output.frame);
+    if (failed || size != output.size) lost.push_back(output);
   }
-  return damaged;
+  return lost;
+}
+
+/// Of the frames that are over, those that are rendered again: they are in doubt, or of what they
+/// have written something is gone.
+core::Result<std::set<int32_t>> Brain::frames_to_repeat(const JobDesk& desk,
+                                                        const std::vector<StoredFrame>& frames) {
+  const uint64_t id = desk.stored.id;
+  const auto lost = lost_outputs(id);
+  if (!lost) return lost.error();
+  std::set<int32_t> repeated;
+  for (const StoredOutput& output : *lost) {
+    const bool video = std::any_of(desk.videos().begin(), desk.videos().end(),
+                                   [&](const core::VideoDesc& v) { return v.file == output.path; });
+    if (!video) {
+      repeated.insert(output.frame);
+    } else if (core::Status gone = store_->change_outputs(id, {output.path}, {}); !gone) {
+      return gone.error();
+    }
+  }
+  std::vector<int32_t> done;
+  for (const StoredFrame& frame : frames) {
+    if (frame.done) done.push_back(frame.frame);
+    if (frame.doubtful) repeated.insert(frame.frame);
+  }
+  if (core::Status told = repeat_for_videos(desk, done, repeated); !told) return told.error();
+  return repeated;
 }
 
 /// What of the films in a job's log counts.

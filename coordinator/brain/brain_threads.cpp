@@ -1,4 +1,5 @@
 // What goes on beside the calls of workers and clients.
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,6 +21,22 @@ constexpr Duration kLinesAgain = std::chrono::seconds(1);
 
 }  // namespace
 
+/// What the job's colour configuration consists of, where it has one; without the lock.
+core::Status Brain::find_color_files(FinishTask& task,
+                                     const std::vector<core::AssetRecord>& files) {
+  if (!task.color) return {};
+  const std::vector<std::string>& named = task.color->files;
+  for (const core::AssetRecord& file : files) {
+    const bool wanted = file.reference == task.color->config ||
+                        std::find(named.begin(), named.end(), file.reference) != named.end();
+    if (!wanted) continue;
+    auto bytes = assets_->read(file.sha256);
+    if (!bytes) return bytes.error().in(file.reference);
+    task.color_files.emplace_back(file.reference, std::move(*bytes));
+  }
+  return {};
+}
+
 void Brain::finish_loop() {
   const core::FpMode mode;
   std::unique_lock lock(mutex_);
@@ -38,13 +55,20 @@ void Brain::finish_loop() {
     task.outputs = desk->read.job.outputs;
     if (desk->read.job.keep_films) task.film = core::film_file(desk->read.job);
     task.folder = output_folder(id);
+    task.color = desk->read.job.color;
+    std::vector<core::AssetRecord> assets;
+    if (task.color) assets = desk->read.assets;
     const StoredFrame over{completed.frame, true,     {}, note.worker_class, note.restarts,
                            completed.parts, ++moment_};
     lock.unlock();
 
     const std::string scratch = fmt::format("{}/tmp/{}-{}", options_.folder, id, completed.frame);
-    auto files = run_finisher(options_.finisher, scratch, task, *completed.film, stop_);
-    core::Status done = files ? core::Status() : core::Status(files.error());
+    core::Status done = find_color_files(task, assets);
+    core::Result<std::vector<FinishedFile>> files = core::Error{};
+    if (done) {
+      files = run_finisher(options_.finisher, scratch, task, *completed.film, stop_);
+      if (!files) done = files.error();
+    }
     if (done) {
       std::vector<StoredOutput> outputs;
       for (const FinishedFile& file : *files) {

@@ -7,6 +7,7 @@
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/wire_ids.h"
 #include "core/film/film_codec.h"
+#include "core/film/id_codec.h"
 #include "core/film/splat_codec.h"
 #include "farm/wire.h"
 
@@ -162,7 +163,11 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
   const auto area = static_cast<uint64_t>(unit->tile.area());
   const std::span<const std::byte> bytes = std::as_bytes(std::span(result.film()));
   uint64_t memory = core::film_memory(layout, unit->tile) + kFilmOverhead;
-  if (layout.layers.splats) memory += core::splat_memory(static_cast<uint64_t>(region.area()));
+  if (layout.layers.splats) {
+    memory += core::splat_memory(static_cast<uint64_t>(region.area())) * (1 + layout.part_count());
+  }
+  for (const bool ids : layout.layers.ids)
+    memory += ids ? core::id_memory(area * unit->batches.count * core::kBatchSamples) : 0;
   auto film = core::decode_film(bytes, {memory});
   if (!film) {
     return reject(worker, link, result, Rejected::REASON_DAMAGED, film.error().message, 0);

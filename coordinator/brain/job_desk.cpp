@@ -14,6 +14,7 @@
 #include "core/base/version.h"
 #include "core/job/layers.h"
 #include "core/job/render_key.h"
+#include "core/job/video.h"
 #include "farm/manifest_resolver.h"
 #include "farm/wire.h"
 
@@ -66,8 +67,8 @@ core::Result<std::vector<int32_t>> frames_of(const v1::JobSpec& spec, const core
 
 /// What names the bits of all films of this spec.
 Digest key_of(const v1::JobSpec& spec, const core::LayerSet& layers) {
-  std::string text = fmt::format("{} {} {}{}{}\n", spec.document(), spec.samples(), layers.depth,
-                                 layers.albedo, layers.normal);
+  std::string text =
+      fmt::format("{} {} {}\n", spec.document(), spec.samples(), core::layers_text(layers));
   std::vector<std::string> files;
   for (const v1::JobFile& file : spec.files()) files.push_back(file.path() + '\0' + file.sha256());
   std::sort(files.begin(), files.end());
@@ -155,6 +156,11 @@ v1::Job describe(const StoredJob& job) {
   wire.set_ended_ms(job.ended_ms);
   wire.set_reason(farm::wire_text(job.reason));
   return wire;
+}
+
+const std::vector<core::VideoDesc>& JobDesk::videos() const {
+  static const std::vector<core::VideoDesc> none;
+  return core::are_all_frames(read.job, numbers) ? read.job.videos : none;
 }
 
 v1::Job JobDesk::describe(uint32_t leased) const {

@@ -77,7 +77,9 @@ struct JobDesk {
   std::string trouble;           ///< why its films cannot be stored
   std::string row_trouble;       ///< why `stored` cannot be stored
   std::set<WorkerId> gave_back;  ///< whose reason for giving units back is in the log
-  bool ending = false;           ///< the scheduler has let go of it
+  bool filming = false;  ///< all frames are done, and the scheduler has let go of it; its videos
+                         ///< are being made, or wait for their turn
+  bool ending = false;   ///< the scheduler has let go of it, and its end is being stored
 
   FrameNote& touch(int32_t frame);
   void touch() { ++version; }
@@ -88,6 +90,9 @@ struct JobDesk {
   /// Lines that could not be stored come again, before all others; the oldest of them go where too
   /// many wait.
   void put_back(std::vector<StoredLine> taken);
+  /// The videos that are made when all frames are done: none where the spec asks for some frames
+  /// only.
+  const std::vector<core::VideoDesc>& videos() const;
   v1::Job describe(uint32_t leased) const;
   v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
   core::FilmInfo film_info(int32_t frame) const;

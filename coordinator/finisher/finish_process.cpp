@@ -10,6 +10,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -20,6 +22,10 @@ namespace {
 
 /// Nobody tone-maps for longer.
 constexpr std::chrono::minutes kLongest{10};
+/// It ends a video without progress itself; others may take days.
+constexpr std::chrono::hours kLongestVideo{24 * 365};
+/// Who is asked to end is ended after that.
+constexpr std::chrono::seconds kGrace{3};
 constexpr size_t kLongestComplaint = 1000;
 
 /// The end of what the process has said.
@@ -32,34 +38,44 @@ std::string complaint(const std::string& file) {
   return said.size() > kLongestComplaint ? said.substr(said.size() - kLongestComplaint) : said;
 }
 
-core::Status run(const std::string& program, const std::string& folder,
-                 const std::atomic<bool>& stop) {
+core::Status run(const std::string& program, std::string word, const std::string& folder,
+                 std::chrono::steady_clock::duration longest, const std::atomic<bool>& stop) {
   const std::string said = folder + "/said.txt";
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT, 0600);
-  std::string word = "finish";
   std::string name = program;
   std::string where = folder;
   char* argv[] = {name.data(), word.data(), where.data(), nullptr};
   pid_t child = 0;
-  const int failed = posix_spawn(&child, program.c_str(), &files, nullptr, argv, environ);
+  // Signals that this process keeps for a thread of its own are to reach that one.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  const int failed = posix_spawn(&child, program.c_str(), &files, &attributes, argv, environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   if (failed != 0) {
     return core::Error{program + " could not be started: " + std::strerror(failed)};
   }
-  const auto deadline = std::chrono::steady_clock::now() + kLongest;
-  bool ended = false;
+  const auto deadline = std::chrono::steady_clock::now() + longest;
+  std::optional<std::chrono::steady_clock::time_point> asked;
   int status = 0;
   for (auto nap = std::chrono::microseconds(500); waitpid(child, &status, WNOHANG) == 0;) {
-    if (!ended && (stop || std::chrono::steady_clock::now() > deadline)) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!asked && (stop || now > deadline)) {
+      kill(child, SIGTERM);
+      asked = now;
+    } else if (asked && now > *asked + kGrace) {
       kill(child, SIGKILL);
-      ended = true;
     }
     std::this_thread::sleep_for(nap);
     nap = std::min(2 * nap, std::chrono::microseconds(20'000));
   }
-  if (ended) return core::Error{stop ? "the coordinator stops" : "finishing took too long"};
+  if (asked) return core::Error{stop ? "the coordinator stops" : "finishing took too long"};
   if (WIFSIGNALED(status)) {
     return core::Error{fmt::format("the finisher was ended by signal {}", WTERMSIG(status))};
   }
@@ -71,23 +87,41 @@ core::Status run(const std::string& program, const std::string& folder,
   return {};
 }
 
+/// What `make` has made, in a folder that is there meanwhile.
+core::Result<std::vector<FinishedFile>> in_folder(const std::string& folder,
+                                                  const std::function<core::Status()>& make) {
+  std::error_code failed;
+  std::filesystem::remove_all(folder, failed);
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return core::Error{folder + ": cannot be made: " + failed.message()};
+  const core::Status done = make();
+  core::Result<std::vector<FinishedFile>> files = core::Error{};
+  if (done) files = read_finish_result(folder);
+  std::filesystem::remove_all(folder, failed);
+  if (!done) return done.error();
+  return files;
+}
+
 }  // namespace
 
 core::Result<std::vector<FinishedFile>> run_finisher(const std::string& program,
                                                      const std::string& folder,
                                                      const FinishTask& task, const core::Film& film,
                                                      const std::atomic<bool>& stop) {
-  std::error_code failed;
-  std::filesystem::remove_all(folder, failed);
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return core::Error{folder + ": cannot be made: " + failed.message()};
-  core::Status done = write_finish_task(folder, task, film);
-  if (done) done = run(program, folder, stop);
-  core::Result<std::vector<FinishedFile>> files = core::Error{};
-  if (done) files = read_finish_result(folder);
-  std::filesystem::remove_all(folder, failed);
-  if (!done) return done.error();
-  return files;
+  return in_folder(folder, [&] {
+    core::Status done = write_finish_task(folder, task, film);
+    return done ? run(program, "finish", folder, kLongest, stop) : done;
+  });
+}
+
+core::Result<std::vector<FinishedFile>> run_video_maker(const std::string& program,
+                                                        const std::string& folder,
+                                                        const VideoTask& task,
+                                                        const std::atomic<bool>& stop) {
+  return in_folder(folder, [&] {
+    core::Status done = write_video_task(folder, task);
+    return done ? run(program, "video", folder, kLongestVideo, stop) : done;
+  });
 }
 
 }  // namespace hyades::coordinator

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coordinator/finisher/finish_task.h"
+#include "coordinator/finisher/video_task.h"
 
 namespace hyades::coordinator {
 
@@ -17,5 +18,11 @@ core::Result<std::vector<FinishedFile>> run_finisher(const std::string& program,
                                                      const std::string& folder,
                                                      const FinishTask& task, const core::Film& film,
                                                      const std::atomic<bool>& stop);
+
+/// The same for `program video FOLDER` (video_task.h).
+core::Result<std::vector<FinishedFile>> run_video_maker(const std::string& program,
+                                                        const std::string& folder,
+                                                        const VideoTask& task,
+                                                        const std::atomic<bool>& stop);
 
 }  // namespace hyades::coordinator

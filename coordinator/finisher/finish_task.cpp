@@ -1,29 +1,37 @@
 #include "coordinator/finisher/finish_task.h"
 
-#include <span>
+#include <filesystem>
 
-#include <nlohmann/json.hpp>
-
-#include "core/base/assets.h"
-#include "core/base/atomic_file.h"
+#include "coordinator/finisher/json_file.h"
 #include "core/film/film_codec.h"
 
 namespace hyades::coordinator {
-namespace {
-
 using Json = nlohmann::json;
 
-core::Status write_json(const std::string& path, const Json& json) {
-  const std::string text = json.dump(2);
-  return core::write_file(path, std::as_bytes(std::span(text)));
+namespace {
+
+/// Configurations name files above themselves (../luts/a.cube), up to so many folders.
+constexpr const char* kBelow = "/color/1/2/3/4/5/6/7/8/";
+
+std::string color_path(const std::string& folder, const std::string& config) {
+  return folder + kBelow + std::filesystem::path(config).filename().string();
 }
 
-core::Result<Json> read_json(const std::string& path) {
-  auto bytes = core::map_file(path);
-  if (!bytes) return bytes.error().in(path);
-  Json json = Json::parse(bytes->chars(), bytes->chars() + bytes->size(), nullptr, false);
-  if (json.is_discarded()) return core::Error{path + ": not JSON"};
-  return json;
+/// Puts a file of the colour configuration to where it lies to the configuration as in the job.
+core::Status put_color_file(const std::string& folder, const std::string& config,
+                            const std::string& reference, const core::Bytes& bytes) {
+  const std::filesystem::path from = std::filesystem::path(config).parent_path();
+  const auto relative = std::filesystem::path(reference).lexically_relative(
+      from.empty() ? std::filesystem::path(".") : from);
+  const auto path = (std::filesystem::path(folder + kBelow) / relative).lexically_normal();
+  if (relative.empty() || !path.string().starts_with(folder + "/color/")) {
+    return core::Error{"the colour configuration names " + reference +
+                       ", which lies nowhere near it"};
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(path.parent_path(), failed);
+  if (failed) return core::Error{path.string() + ": " + failed.message()};
+  return core::write_file(path.string(), bytes.span());
 }
 
 }  // namespace
@@ -36,21 +44,34 @@ core::Status write_finish_task(const std::string& folder, const FinishTask& task
                        {"layers", output.layers},
                        {"tone_map", output.tone_map},
                        {"exposure", output.exposure},
+                       {"denoise", output.denoise},
                        {"half", output.half},
+                       {"quality", output.quality},
+                       {"bits", output.bits},
                        {"transparent", output.transparent}});
   }
   const core::FilmInfo& info = task.info;
-  const Json json = {{"job", info.job_name},
-                     {"render_key", info.render_key},
-                     {"frame", info.frame},
-                     {"size", {info.width, info.height}},
-                     {"crop", {info.crop.x0, info.crop.y0, info.crop.x1, info.crop.y1}},
-                     {"samples", info.samples},
-                     {"class", info.worker_class},
-                     {"build", info.build},
-                     {"film", task.film},
-                     {"folder", task.folder},
-                     {"outputs", outputs}};
+  Json json = {{"job", info.job_name},
+               {"render_key", info.render_key},
+               {"frame", info.frame},
+               {"size", {info.width, info.height}},
+               {"crop", {info.crop.x0, info.crop.y0, info.crop.x1, info.crop.y1}},
+               {"samples", info.samples},
+               {"class", info.worker_class},
+               {"build", info.build},
+               {"film", task.film},
+               {"folder", task.folder},
+               {"outputs", outputs}};
+  if (const auto& color = task.color) {
+    json["color"] = {{"config", color_path(folder, color->config)},
+                     {"display", color->display},
+                     {"view", color->view},
+                     {"look", color->look},
+                     {"working_space", color->working_space}};
+    for (const auto& [reference, bytes] : task.color_files) {
+      if (auto put = put_color_file(folder, color->config, reference, bytes); !put) return put;
+    }
+  }
   if (auto written = write_json(folder + "/task.json", json); !written) return written;
   return core::write_file(folder + "/film.bin", core::encode_film(film));
 }
@@ -74,13 +95,25 @@ core::Result<FinishTask> read_finish_task(const std::string& folder) {
     info.build = json->at("build");
     task.film = json->at("film");
     task.folder = json->at("folder");
+    if (json->contains("color")) {
+      const Json& named = json->at("color");
+      core::ColorDesc& color = task.color.emplace();
+      color.config = named.at("config");
+      color.display = named.at("display");
+      color.view = named.at("view");
+      color.look = named.at("look");
+      color.working_space = named.at("working_space");
+    }
     for (const Json& entry : json->at("outputs")) {
       core::OutputDesc output;
       output.file = entry.at("file");
       output.layers = entry.at("layers").get<std::vector<std::string>>();
       output.tone_map = entry.at("tone_map");
       output.exposure = entry.at("exposure");
+      output.denoise = entry.at("denoise");
       output.half = entry.at("half");
+      output.quality = entry.at("quality");
+      output.bits = entry.at("bits");
       output.transparent = entry.at("transparent");
       task.outputs.push_back(std::move(output));
     }

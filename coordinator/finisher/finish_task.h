@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/base/result.h"
 #include "core/film/film.h"
 #include "core/film/film_info.h"
@@ -21,6 +24,9 @@ struct FinishTask {
   std::vector<core::OutputDesc> outputs;
   std::string film;    ///< where the film itself goes, #### for the frame; empty: nowhere
   std::string folder;  ///< where outputs go
+  std::optional<core::ColorDesc> color;  ///< once read, `config` lies in the task's folder
+  /// The configuration and what it names, by their references in the job.
+  std::vector<std::pair<std::string, core::Bytes>> color_files;
 };
 
 /// A file that was made.

@@ -124,9 +124,22 @@ class OutputList final : public Follower<v1::OutputFile> {
         status = farm::unavailable(outputs.error());
         return Step::end;
       }
-      if (!outputs->empty()) seen_ = outputs->back().number;
-      ready_.insert(ready_.end(), outputs->begin(), outputs->end());
-      if (!ready_.empty()) continue;
+      const bool all = outputs->empty();
+      if (!all) seen_ = outputs->back().number;
+      for (const StoredOutput& output : *outputs) {
+        // Those for a video go when it is made, and are of use only where it never will be.
+        if (!over && brain_.is_for_video(job_, output.path)) {
+          passed_over_.insert(output.path);
+        } else if (!again_ || passed_over_.contains(output.path)) {
+          ready_.push_back(output);
+        }
+      }
+      if (!all) continue;
+      if (over && !again_ && !passed_over_.empty()) {
+        again_ = true;
+        seen_ = 0;
+        continue;
+      }
       last_ = over || !request_.follow();
       if (!last_) return Step::wait;
     }
@@ -134,7 +147,9 @@ class OutputList final : public Follower<v1::OutputFile> {
 
   const v1::OutputsRequest request_;
   std::deque<StoredOutput> ready_;
-  uint64_t seen_ = 0;  ///< the number of the last one
+  uint64_t seen_ = 0;                  ///< the number of the last one
+  std::set<std::string> passed_over_;  ///< paths of a video's pictures, as long as the job was open
+  bool again_ = false;                 ///< the job has ended: those of them that are left
   bool last_ = false;
 };
 

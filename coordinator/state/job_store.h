@@ -141,6 +141,10 @@ class JobStore {
                                   const std::vector<StoredOutput>& outputs) = 0;
   /// The frame is to be rendered (again).
   virtual core::Status forget_frame(uint64_t job, int32_t frame) = 0;
+  /// Of the job's outputs forgets those whose path is one of `gone`, or lies in that folder, and
+  /// adds `made`. All of it at once, or nothing.
+  virtual core::Status change_outputs(uint64_t job, const std::vector<std::string>& gone,
+                                      const std::vector<StoredOutput>& made) = 0;
   /// In order of their numbers, those above `after`, at most `limit`.
   virtual core::Result<std::vector<StoredFrame>> frames(uint64_t job, std::optional<int32_t> after,
                                                         uint32_t limit) = 0;

@@ -210,21 +210,30 @@ class SqliteJobStore final : public JobStore {
                             .bind(int64_t{frame.restarts})
                             .run();
     if (done) done = store_parts(db_.get(), job, frame);
-    for (const StoredOutput& output : outputs) {
-      if (!done) return done;
-      done = query(
-                 "INSERT OR REPLACE INTO outputs (job, path, frame, size, sha256) "
-                 "VALUES (?, ?, ?, ?, ?)")
-                 .bind(number(job))
-                 .bind(output.path)
-                 .bind(int64_t{output.frame})
-                 .bind(number(output.size))
-                 .bind_blob(output.sha256)
-                 .run();
-    }
+    if (done) done = put_outputs(job, outputs);
     if (done) done = transaction.commit();
     if (done) reserve_.keep();
     return done;
+  }
+
+  core::Status change_outputs(uint64_t job, const std::vector<std::string>& gone,
+                              const std::vector<StoredOutput>& made) override {
+    const std::lock_guard lock(mutex_);
+    Transaction transaction(db_.get());
+    if (core::Status begun = transaction.status(); !begun) return begun;
+    for (const std::string& path : gone) {
+      const core::Status done = query(
+                                    "DELETE FROM outputs WHERE job = ? AND "
+                                    "(path = ? OR substr(path, 1, length(?)) = ?)")
+                                    .bind(number(job))
+                                    .bind(path)
+                                    .bind(path + "/")
+                                    .bind(path + "/")
+                                    .run();
+      if (!done) return done;
+    }
+    if (core::Status done = put_outputs(job, made); !done) return done;
+    return transaction.commit();
   }
 
   core::Status forget_frame(uint64_t job, int32_t frame) override {
@@ -444,6 +453,22 @@ class SqliteJobStore final : public JobStore {
         .bind("older lines were dropped: a job's log keeps the newest " +
               std::to_string(kMostLines))
         .run();
+  }
+
+  core::Status put_outputs(uint64_t job, const std::vector<StoredOutput>& outputs) {
+    for (const StoredOutput& output : outputs) {
+      const core::Status done = query(
+                                    "INSERT OR REPLACE INTO outputs (job, path, frame, size, "
+                                    "sha256) VALUES (?, ?, ?, ?, ?)")
+                                    .bind(number(job))
+                                    .bind(output.path)
+                                    .bind(int64_t{output.frame})
+                                    .bind(number(output.size))
+                                    .bind_blob(output.sha256)
+                                    .run();
+      if (!done) return done;
+    }
+    return {};
   }
 
   core::Status delete_frame(uint64_t job, int32_t frame) {

@@ -84,7 +84,7 @@ core::Result<std::shared_ptr<SceneShelf::LoadedJob>> SceneShelf::read(
   loaded->job = std::move(job->job);
   if (spec.samples() > 0) loaded->job.sampling.samples = spec.samples();
   loaded->layers = core::needed_layers(loaded->job);
-  loaded->cache = std::make_unique<core::SceneCache>(*loaded->files);
+  loaded->cache = std::make_unique<core::SceneCache>(*loaded->files, texels_);
   return loaded;
 }
 

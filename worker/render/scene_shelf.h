@@ -33,7 +33,11 @@ class SceneShelf {
  public:
   /// `memory` in bytes, of the whole process: what was not used for longest goes when more is in
   /// use than that; 0: no limit.
-  SceneShelf(farm::ContentStore& store, uint64_t memory) : store_(store), memory_(memory) {}
+  SceneShelf(farm::ContentStore& store, uint64_t memory)
+      : store_(store),
+        memory_(memory),
+        texels_(std::make_shared<core::TexelStore>(
+            memory > 0 ? memory / 4 : core::TexelStore::default_budget())) {}
 
   void add_job(uint64_t job, hyades::v1::JobSpec spec);
   void forget_job(uint64_t job);
@@ -69,6 +73,7 @@ class SceneShelf {
 
   farm::ContentStore& store_;
   const uint64_t memory_;
+  const std::shared_ptr<core::TexelStore> texels_;  ///< of all jobs together
   std::mutex mutex_;
   std::map<uint64_t, ShelvedJob> jobs_;  ///< guarded by mutex_
   uint64_t uses_ = 0;                    ///< guarded by mutex_

@@ -1,0 +1,70 @@
+#include "cli/contact_sheet_command.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "core/finish/contact_sheet.h"
+#include "core/image/read_image.h"
+#include "core/image/write_image.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr int kRefused = 2;
+
+struct Options {
+  std::vector<std::string> pictures;
+  std::string output;
+  int columns = 4;
+  int width = 320;
+};
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "hyades contact-sheet: %s\n", message.c_str());
+  return kRefused;
+}
+
+/// What a picture is called: its file's name up to the first dot.
+std::string name_of(const std::string& path) {
+  const std::string file = std::filesystem::path(path).filename().string();
+  return file.substr(0, file.find('.'));
+}
+
+int run(const Options& options) {
+  std::vector<core::ContactPrint> prints;
+  for (const std::string& path : options.pictures) {
+    auto picture = core::read_image_file(path);
+    if (!picture) return fail(picture.error().message);
+    prints.push_back({name_of(path), std::move(*picture)});
+  }
+  const auto sheet = core::contact_sheet(prints, options.columns, options.width);
+  if (!sheet) return fail(sheet.error().message);
+  if (const auto written = core::write_png(options.output, *sheet); !written)
+    return fail(written.error().message);
+  std::printf("%s: %zu pictures\n", options.output.c_str(), prints.size());
+  return 0;
+}
+
+}  // namespace
+
+int contact_sheet_command(int argc, char** argv) {
+  CLI::App app("puts many pictures on one sheet, with their names", "hyades contact-sheet");
+  Options options;
+  app.add_option("pictures", options.pictures, "PNG or JPEG files")->required();
+  app.add_option("-o,--output", options.output, "PNG to write")->required();
+  app.add_option("--columns", options.columns, "pictures in a row")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--width", options.width, "of a picture, in pixels")
+      ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  app.footer("Exit status: 0 fine, 2 wrong arguments, or pictures that cannot be read or written.");
+  if (const auto status = parse_command_line(app, argc, argv, kRefused)) return *status;
+  return run(options);
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,118 @@
+#include "cli/denoise_command.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "core/base/fp_mode.h"
+#include "core/base/text.h"
+#include "core/finish/denoise.h"
+#include "core/finish/picture.h"
+#include "core/image/read_image.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr int kRefused = 2;
+
+struct Options {
+  std::string input;
+  std::string denoiser = "auto";
+  int threads = 0;
+  std::optional<float> exposure;
+  core::OutputDesc output;
+};
+
+void declare(CLI::App& app, Options& options) {
+  app.add_option("picture", options.input,
+                 "EXR with the layers beauty and, best, variance, albedo, normal and alpha; or a "
+                 "film EXR")
+      ->required();
+  app.add_option("-o,--output", options.output.file, "EXR, PNG or JPEG to write")->required();
+  const auto curves = core::tone_curve_names();
+  app.add_option("--tone-map", options.output.tone_map, "for PNG and JPEG")
+      ->check(CLI::IsMember(std::vector<std::string>(curves.begin(), curves.end())))
+      ->capture_default_str();
+  app.add_option("--exposure", options.exposure,
+                 "stops, for PNG and JPEG (default: what the EXR says that its job shows it with)");
+  app.add_option(
+         "--with", options.denoiser,
+         "features (our own filter), oidn (Open Image Denoise, where its library is found), "
+         "or auto: the latter where it is there")
+      ->check(CLI::IsMember({"auto", "features", "oidn"}))
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "how many; 0: as many as the machine has")
+      ->capture_default_str();
+  app.footer(
+      "Example: hyades denoise shot.0007.exr -o shot.0007.png --tone-map filmic\n\n"
+      "A job does it by itself with 'denoise: true'.\n\n"
+      "Exit status: 0 fine, 2 wrong arguments, or a picture that cannot be read or written.");
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "hyades denoise: %s\n", message.c_str());
+  return kRefused;
+}
+
+core::Denoiser denoiser_of(const std::string& name) {
+  return core::find_denoiser(name).value_or(core::Denoiser::automatic);
+}
+
+/// Beauty becomes `clean`; alpha stays.
+core::Image with_alpha_of(const core::Image& picture, const core::Image& clean) {
+  const int alpha = picture.find_channel("A");
+  if (alpha < 0) return clean;
+  core::Image out = core::make_image(clean.width, clean.height, {"R", "G", "B", "A"});
+  out.placement = clean.placement;
+  const size_t pixels = clean.data.size() / 3;
+  for (size_t i = 0; i < pixels; ++i) {
+    std::copy_n(&clean.data[3 * i], 3, &out.data[4 * i]);
+    out.data[4 * i + 3] = picture.data[i * picture.channels.size() + static_cast<size_t>(alpha)];
+  }
+  return out;
+}
+
+/// What an EXR of ours says of itself; 0 where it says nothing.
+float own_exposure(const std::string& path) {
+  const auto texts = core::read_exr_texts(path);
+  if (!texts) return 0.0F;  // another kind of picture
+  for (const auto& [name, value] : *texts) {
+    float stops = 0.0F;
+    if (name != core::kExposureText) continue;
+    const auto read = std::from_chars(value.data(), value.data() + value.size(), stops);
+    if (read.ec == std::errc() && std::abs(stops) <= 64.0F) return stops;
+  }
+  return 0.0F;
+}
+
+int run(const Options& options) {
+  const core::FpMode mode;
+  const auto picture = core::read_image_file(options.input);
+  if (!picture) return fail(picture.error().message);
+  const auto clean = core::denoise(*picture, denoiser_of(options.denoiser), options.threads);
+  if (!clean) return fail(clean.error().in(options.input).message);
+  const core::Image out = with_alpha_of(*picture, *clean);
+  core::OutputDesc output = options.output;
+  output.exposure = options.exposure ? *options.exposure : own_exposure(options.input);
+  if (const auto written = core::write_output(output, out, options.output.file); !written)
+    return fail(written.error().message);
+  return 0;
+}
+
+}  // namespace
+
+int denoise_command(int argc, char** argv) {
+  CLI::App app("takes the noise out of a picture", "hyades denoise");
+  Options options;
+  declare(app, options);
+  if (const auto status = parse_command_line(app, argc, argv, kRefused)) return *status;
+  return run(options);
+}
+
+}  // namespace hyades::cli

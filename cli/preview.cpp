@@ -1,0 +1,35 @@
+#include "cli/preview.h"
+
+#include <algorithm>
+
+#include "core/job/output_path.h"
+
+namespace hyades::cli {
+
+void make_preview(core::Job& job, int width) {
+  core::FilmDesc& film = job.film;
+  const int64_t height = (int64_t{film.height} * width + film.width / 2) / film.width;
+  film.height = static_cast<int32_t>(std::clamp<int64_t>(height, 1, 65536));
+  film.width = width;
+  film.crop.reset();
+  job.sampling.samples = kPreviewSamples;
+  job.keep_films = false;
+
+  core::OutputDesc preview;
+  const auto shown = std::find_if(job.outputs.begin(), job.outputs.end(), [](const auto& output) {
+    return core::file_extension(output.file) != ".exr";
+  });
+  if (shown != job.outputs.end()) {
+    preview.tone_map = shown->tone_map;
+    preview.exposure = shown->exposure;
+  } else if (!job.outputs.empty()) {
+    preview.exposure = job.outputs.front().exposure;  // the camera's
+  }
+  const char* const marks = job.frames.first == job.frames.last ? "" : ".####";
+  preview.file = job.name + marks + ".preview.png";
+  preview.denoise = "true";
+  job.outputs = {preview};
+  job.videos.clear();
+}
+
+}  // namespace hyades::cli
