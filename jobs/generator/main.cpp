@@ -5,9 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 #include <string>
 
+#include "core/base/atomic_file.h"
 #include "core/image/write_image.h"
+#include "jobs/generator/figure.h"
+#include "jobs/generator/images.h"
+#include "jobs/generator/scatter.h"
 #include "jobs/generator/shapes.h"
 #include "jobs/generator/sky.h"
 
@@ -62,6 +67,26 @@ Mesh make_ring() {
     circle.emplace_back(1.0F + 0.09F * std::cos(a), 0.09F * std::sin(a));
   }
   return make_lathe(circle, 1, 96);
+}
+
+/// A ring around y as armillary spheres have them: a flat band of radius 1.
+Mesh make_band() {
+  constexpr float kWidth = 0.05F, kThickness = 0.012F;
+  const Vec2 corners[] = {{1.0F - kThickness, -kWidth},
+                          {1.0F + kThickness, -kWidth},
+                          {1.0F + kThickness, kWidth},
+                          {1.0F - kThickness, kWidth}};
+  std::vector<Vec2> profile;
+  for (int i = 0; i <= 4; ++i) {
+    const Vec2 from = corners[i % 4];
+    const Vec2 to = corners[(i + 1) % 4];
+    // Points close to the corners keep them sharp for a smooth curve.
+    for (const float u : {0.02F, 0.5F, 0.98F}) {
+      if (i < 4) profile.push_back(from + u * (to - from));
+    }
+  }
+  profile.push_back(profile.front());
+  return make_lathe(profile, 2, 128);
 }
 
 /// A vase with a waist, hollow.
@@ -163,6 +188,29 @@ int main(int argc, char** argv) {
                "what is poured into tumbler.ply, made by jobs/generator");
   good &= mesh("media/milk.ply", without_uvs(make_drink(5.2F)),
                "what is poured into tumbler.ply, made by jobs/generator");
+
+  good &= mesh("atlas/atlas.ply", make_atlas(0.013F),
+               "a kneeling man with arms raised, made by jobs/generator");
+
+  good &= mesh("atlas/band.ply", without_uvs(make_band()), "flat ring, made by jobs/generator");
+
+  const auto text = [&](const char* name, const std::string& made) {
+    const std::filesystem::path path = folder / name;
+    std::filesystem::create_directories(path.parent_path());
+    return hyades::core::write_file(path.string(), std::as_bytes(std::span(made))).ok();
+  };
+  good &= text("lanterns/flock.yaml", lanterns());
+  good &= text("leaves/spray.yaml", spray_of_leaves());
+
+  const auto png = [&](const char* name, const hyades::core::Image& made) {
+    const std::filesystem::path path = folder / name;
+    std::filesystem::create_directories(path.parent_path());
+    return hyades::core::write_png(path.string(), made, {{"Comment", "made by jobs/generator"}})
+        .ok();
+  };
+  good &= png("leaves/leaf.png", make_leaf(256));
+  good &= png("textured/tiles.png", make_tiles(512));
+  good &= png("textured/tile_normals.png", make_tile_normals(512));
 
   const auto sky = make_sky({.width = 512, .sun_elevation = 0.22F, .sun_azimuth = 2.2F});
   const auto written = hyades::core::write_exr(
