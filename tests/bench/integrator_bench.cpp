@@ -13,6 +13,7 @@
 
 #include "core/base/fp_mode.h"
 #include "core/base/machine.h"
+#include "core/cameras/make_camera.h"
 #include "core/geometry/embree.h"
 #include "core/job/parse.h"
 #include "core/render/render_frame.h"
@@ -57,6 +58,9 @@ class RecordingWorld : public World {
   bool nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const override {
     closest.push_back(ray);
     return inner_->nearest(ray, kind, point);
+  }
+  SurfacePoint quadric_point(uint32_t o, const Vec3& near, float t) const override {
+    return inner_->quadric_point(o, near, t);
   }
   SurfacePoint triangle_point(uint32_t o, uint32_t p, float u, float v, float t) const override {
     return inner_->triangle_point(o, p, u, v, t);
@@ -160,8 +164,7 @@ Setup& setup() {
       copy->infinite_lights = made.scene->infinite_lights;
       copy->selector = make_power_selector(copy->lights);
       copy->camera = make_perspective_camera(
-          {{{4.2F, 4.6F, 7.2F}, {0.0F, 0.1F, 0.0F}, {0.0F, 1.0F, 0.0F}, 0.628F}}, {256, 256}, 0,
-          0.0F);
+          {{{4.2F, 4.6F, 7.2F}, {0.0F, 0.1F, 0.0F}, {0.0F, 1.0F, 0.0F}, 0.628F}}, {256, 256}, {});
       copy->resolution = {256, 256};
       const FrameRenderer recorder(copy, made.job, 1, {});
       for (const Unit& unit : sampled_units()) static_cast<void>(recorder.render(unit));

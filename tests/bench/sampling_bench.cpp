@@ -12,7 +12,6 @@
 #include "core/samplers/filter.h"
 #include "core/samplers/independent_sampler.h"
 #include "core/samplers/sobol_sampler.h"
-#include "core/textures/make_texture.h"
 #include "core/textures/noise.h"
 
 /// What the innermost loops are made of, each over inputs prepared beforehand. Items are
@@ -134,17 +133,6 @@ void points(benchmark::State& state) {
   evaluate(state, 0.0F, 1.0F, [&](const Vec4& v) { return distribution.sample(Vec2(v)); });
 }
 BENCHMARK(points)->Name("distribution_2d")->Arg(64)->Arg(2048);
-
-void image_lookups(benchmark::State& state) {
-  const auto image =
-      std::make_shared<Image>(Image{.width = 512,
-                                    .height = 512,
-                                    .channels = {"R", "G", "B"},
-                                    .data = std::vector<float>(size_t{512} * 512 * 3, 0.5F)});
-  const auto texture = make_image_texture(image, WrapMode::repeat, TextureFilter::bilinear);
-  evaluate(state, 0.0F, 3.0F, [&](const Vec4& v) { return texture->color({.uv = Vec2(v)}); });
-}
-BENCHMARK(image_lookups)->Name("texture_image_bilinear");
 
 }  // namespace
 }  // namespace hyades::core

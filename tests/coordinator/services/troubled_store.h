@@ -90,6 +90,10 @@ class TroubledStore final : public JobStore {
                           const std::vector<StoredOutput>& outputs) override {
     return written([&] { return store_->frame_over(job, frame, outputs); });
   }
+  core::Status change_outputs(uint64_t job, const std::vector<std::string>& gone,
+                              const std::vector<StoredOutput>& made) override {
+    return written([&] { return store_->change_outputs(job, gone, made); });
+  }
   core::Status forget_frame(uint64_t job, int32_t frame) override {
     return written([&] { return store_->forget_frame(job, frame); });
   }

@@ -93,6 +93,39 @@ TEST(JobStore, KeepsWhatItWasGivenOverRestarts) {
   EXPECT_EQ(store->lines(1, lines->at(0).number, 10)->size(), 1U);
 }
 
+TEST(JobStore, OutputsGoByNameAndFolderAndOthersComeAtOnce) {
+  const test::TempFolder folder;
+  auto store = open(folder.file("state.db"));
+  for (const char* key : {"a", "b"}) ASSERT_TRUE(store->add_job(some_job(key, "ada")).ok());
+  for (const uint64_t job : {1U, 2U}) {
+    ASSERT_TRUE(store
+                    ->frame_over(job, {1, true, "", "class", 0},
+                                 {{"f.mp4.frames/0001.png", 1, 9, "sha"},
+                                  {"f.mp4.frames2/0001.png", 1, 9, "sha"},
+                                  {"a%.png", 1, 9, "sha"},
+                                  {"ab.png", 1, 9, "sha"}})
+                    .ok());
+  }
+  const auto paths = [&](uint64_t job) {
+    std::vector<std::string> found;
+    const auto outputs = store->outputs(job, 0, 100);
+    for (const StoredOutput& output : *outputs) found.push_back(output.path);
+    return found;
+  };
+  const uint64_t last = store->outputs(1, 0, 100)->back().number;
+  ASSERT_TRUE(
+      store->change_outputs(1, {"f.mp4.frames", "a%.png"}, {{"f.mp4", 3, 70, "film"}}).ok());
+  EXPECT_EQ(paths(1), (std::vector<std::string>{"f.mp4.frames2/0001.png", "ab.png", "f.mp4"}));
+  EXPECT_EQ(paths(2).size(), 4U);
+  const auto video = store->output(1, "f.mp4");
+  ASSERT_TRUE(video.ok() && video->has_value());
+  EXPECT_EQ((*video)->size, 70U);
+  EXPECT_GT((*video)->number, last);  // who follows hears of it
+  // Putting it in the place of another is one step too.
+  ASSERT_TRUE(store->change_outputs(1, {"f.mp4"}, {{"f.mp4", 3, 71, "film"}}).ok());
+  EXPECT_EQ((*store->output(1, "f.mp4"))->size, 71U);
+}
+
 TEST(JobStore, OldLinesGoAndAreMissed) {
   const test::TempFolder folder;
   auto store = open(folder.file("state.db"));
