@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "core/job/yaml_tree.h"
+
+namespace hyades::core {
+
+/// The text of a tree, as a person would write it: sections and long maps by lines, what fits into
+/// one line in braces. parse_yaml() reads the same tree from it (aliases written in full, places
+/// and comments gone). `root` is a map.
+std::string write_yaml(const YamlNode& root);
+
+}  // namespace hyades::core
