@@ -1,8 +1,12 @@
-# hyades_room(NAME [USES rooms or libraries...]): one static library per room, made of all .cpp
-# files of the current folder. A room sees only the rooms that it names.
+# hyades_room(NAME [USES rooms or libraries...] [FOLDERS folders...]): one static library per room, made of all
+# .cpp files of the current folder, and of those below it that are named. A room sees only the rooms that it names.
 function(hyades_room name)
-  cmake_parse_arguments(ROOM "" "" "USES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "USES;FOLDERS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  foreach(folder ${ROOM_FOLDERS})
+    file(GLOB more CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+    list(APPEND sources ${more})
+  endforeach()
   if(sources)
     add_library(hyades_${name} STATIC ${sources})
     set(scope PUBLIC)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/base/bounds.h"
 #include "core/base/result.h"
 #include "core/job/yaml_tree.h"
 
@@ -32,6 +33,9 @@ struct SceneSections {
   /// A map of a job's sections, docs/job.md: textures, materials, media, groups, objects, lights,
   /// environment, camera, frames, film, sampling, integrator, atmosphere; those that it has.
   YamlPtr sections;
+  /// Of all that is seen, at the first frame, in the space of the job; empty: not known. For who
+  /// looks for a camera's place.
+  Bounds bounds;
   /// What the scene says and has no counterpart here, one line each, the place in the file first.
   std::vector<std::string> notes;
 };
