@@ -1,0 +1,214 @@
+#include "core/import/gltf/material_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hyades::core {
+
+namespace {
+
+using Meaning = GltfTextures::Meaning;
+
+float number_of(const JsonValue& from, const char* key, float absent, float most = 1.0F) {
+  return std::clamp(from.number(key, absent), 0.0F, most);
+}
+
+}  // namespace
+
+Rgb color_of(const JsonValue& from, const char* key, const Rgb& absent, float most) {
+  Rgb color = absent;
+  from.numbers(key, std::span(&color.x, 3));
+  return glm::clamp(color, Rgb(0.0F), Rgb(most));
+}
+
+YamlPtr tinted(const Rgb& factor, const std::string& name) {
+  if (name.empty()) return yaml_vector(factor);
+  if (factor == Rgb(1.0F)) return yaml_text(name);
+  return YamlMap{
+      {"type", yaml_word("scale")}, {"input", yaml_text(name)}, {"factor", yaml_vector(factor)}}
+      .node();
+}
+
+YamlPtr scaled(float factor, const std::string& name) {
+  if (name.empty()) return yaml_number(factor);
+  if (factor == 1.0F) return yaml_text(name);
+  return YamlMap{
+      {"type", yaml_word("scale")}, {"input", yaml_text(name)}, {"factor", yaml_number(factor)}}
+      .node();
+}
+
+void write_base(MaterialSheet& sheet) {
+  const JsonValue pbr = sheet.value.member("pbrMetallicRoughness");
+  std::array<float, 4> base = {1.0F, 1.0F, 1.0F, 1.0F};
+  pbr.numbers("baseColorFactor", base);
+  for (float& each : base) each = std::clamp(each, 0.0F, 1.0F);
+  const JsonValue color = pbr.member("baseColorTexture");
+  const JsonValue packed = pbr.member("metallicRoughnessTexture");
+  sheet.out.put("base_color", tinted({base[0], base[1], base[2]},
+                                     sheet.textures.name(color, Meaning::color, "")));
+  sheet.out.put("metallic", scaled(number_of(pbr, "metallicFactor", 1.0F),
+                                   sheet.textures.name(packed, Meaning::data, "blue")));
+  sheet.out.put("roughness", scaled(number_of(pbr, "roughnessFactor", 1.0F),
+                                    sheet.textures.name(packed, Meaning::data, "green")));
+  write_opacity(sheet, base[3], color);
+}
+
+void write_opacity(MaterialSheet& sheet, float alpha, const JsonValue& texture) {
+  const std::string mode = sheet.value.text("alphaMode");
+  if (mode.empty() || mode == "OPAQUE") return;
+  if (mode != "MASK" && mode != "BLEND") {
+    sheet.value.member("alphaMode").complain("is '" + mode + "', expected OPAQUE, MASK or BLEND");
+    return;
+  }
+  const std::string name = sheet.textures.name(texture, Meaning::color, "alpha");
+  const float cutoff = sheet.value.number("alphaCutoff", 0.5F);
+  if (mode == "BLEND") {
+    if (alpha < 1.0F || !name.empty()) sheet.opacity = scaled(alpha, name);
+  } else if (name.empty()) {
+    if (alpha < cutoff) sheet.opacity = yaml_number(0.0F);
+  } else {
+    sheet.opacity = YamlMap{{"type", yaml_word("threshold")},
+                            {"input", scaled(alpha, name)},
+                            {"level", yaml_number(cutoff)}}
+                        .node();
+  }
+}
+
+void write_specular_glossiness(MaterialSheet& sheet) {
+  const JsonValue old = sheet.extension("KHR_materials_pbrSpecularGlossiness");
+  std::array<float, 4> base = {1.0F, 1.0F, 1.0F, 1.0F};
+  old.numbers("diffuseFactor", base);
+  for (float& each : base) each = std::clamp(each, 0.0F, 1.0F);
+  const JsonValue diffuse = old.member("diffuseTexture");
+  const JsonValue packed = old.member("specularGlossinessTexture");
+  sheet.out.put("base_color", tinted({base[0], base[1], base[2]},
+                                     sheet.textures.name(diffuse, Meaning::color, "")));
+  // Glossiness g is roughness 1 - g.
+  const float glossiness = number_of(old, "glossinessFactor", 1.0F);
+  const std::string gloss = sheet.textures.name(packed, Meaning::data, "alpha");
+  if (gloss.empty()) {
+    sheet.out.put("roughness", yaml_number(1.0F - glossiness));
+  } else {
+    sheet.out.put(
+        "roughness",
+        YamlMap{{"type", yaml_word("invert")}, {"input", scaled(glossiness, gloss)}}.node());
+  }
+  // The index whose facets reflect the brightest channel straight on, tinted to the colour.
+  const Rgb specular = color_of(old, "specularFactor", Rgb(1.0F), 1.0F);
+  const float brightest = std::clamp(max_component(specular), 0.0F, 0.96F);
+  const float root = std::sqrt(brightest);
+  sheet.out.put("ior", yaml_number((1.0F + root) / (1.0F - root)));
+  const Rgb tint = brightest > 0.0F ? specular / max_component(specular) : Rgb(0.0F);
+  sheet.out.put("specular_tint", tinted(tint, sheet.textures.name(packed, Meaning::color, "")));
+  write_opacity(sheet, base[3], diffuse);
+}
+
+void write_specular(MaterialSheet& sheet) {
+  const JsonValue ior = sheet.extension("KHR_materials_ior");
+  const float index = ior.number("ior", 1.5F);
+  // 0 stands for an index without end; 1 to 100 are possible here.
+  if (ior.exists()) {
+    sheet.out.put("ior", yaml_number(index == 0.0F ? 100.0F : std::clamp(index, 1.0F, 100.0F)));
+  }
+  const JsonValue specular = sheet.extension("KHR_materials_specular");
+  if (!specular.exists()) return;
+  const Rgb color = color_of(specular, "specularColorFactor", Rgb(1.0F), 1e6F);
+  const std::string tint =
+      sheet.textures.name(specular.member("specularColorTexture"), Meaning::color, "");
+  const std::string amount =
+      sheet.textures.name(specular.member("specularTexture"), Meaning::data, "alpha");
+  // Colours above 1 make the facets reflect more than the index says, which `specular` does up to
+  // twice as much.
+  const float more = std::clamp(max_component(color), 1.0F, 2.0F);
+  if (max_component(color) > 2.0F) {
+    sheet.note("has a specularColorFactor above 2, which is held there");
+  }
+  sheet.out.put("specular",
+                scaled(0.5F * more * number_of(specular, "specularFactor", 1.0F), amount));
+  sheet.out.put("specular_tint", tinted(glm::min(color / more, Rgb(1.0F)), tint));
+}
+
+void write_anisotropy(MaterialSheet& sheet) {
+  const JsonValue value = sheet.extension("KHR_materials_anisotropy");
+  if (!value.exists()) return;
+  const JsonValue map = value.member("anisotropyTexture");
+  const std::string strength = sheet.textures.name(map, Meaning::data, "blue");
+  sheet.out.put("anisotropic", scaled(number_of(value, "anisotropyStrength", 0.0F), strength));
+  if (!strength.empty()) {
+    sheet.note("has an anisotropyTexture; only its strength (blue) is taken, not its directions");
+  }
+  const float turns = value.number("anisotropyRotation", 0.0F) / (2.0F * kPi);
+  sheet.out.put("anisotropic_rotation", yaml_number(turns - std::floor(turns)));
+}
+
+void write_sheen(MaterialSheet& sheet) {
+  const JsonValue sheen = sheet.extension("KHR_materials_sheen");
+  const Rgb color = color_of(sheen, "sheenColorFactor", Rgb(0.0F), 1.0F);
+  if (is_black(color)) return;
+  sheet.out.put("sheen", yaml_number(1.0F));
+  sheet.out.put("sheen_tint", tinted(color, sheet.textures.name(sheen.member("sheenColorTexture"),
+                                                                Meaning::color, "")));
+  sheet.out.put("sheen_roughness", scaled(number_of(sheen, "sheenRoughnessFactor", 0.0F),
+                                          sheet.textures.name(sheen.member("sheenRoughnessTexture"),
+                                                              Meaning::data, "alpha")));
+}
+
+void write_transmission(MaterialSheet& sheet) {
+  const JsonValue clear = sheet.extension("KHR_materials_transmission");
+  const JsonValue milky = sheet.extension("KHR_materials_diffuse_transmission");
+  const float through = number_of(clear, "transmissionFactor", 0.0F);
+  float matt = number_of(milky, "diffuseTransmissionFactor", 0.0F);
+  if (through > 0.0F) {
+    sheet.out.put("transmission",
+                  scaled(through, sheet.textures.name(clear.member("transmissionTexture"),
+                                                      Meaning::data, "red")));
+  }
+  const JsonValue volume = sheet.extension("KHR_materials_volume");
+  const bool solid = volume.number("thicknessFactor", 0.0F) > 0.0F;
+  if (solid && volume.has("thicknessTexture")) {
+    sheet.note("has a thicknessTexture; a body is as thick as its mesh");
+  }
+  if (solid && matt > 0.0F) {
+    sheet.note("has diffuse transmission into a volume, which is left out");
+    matt = 0.0F;
+  }
+  if (matt > 0.0F) {
+    sheet.out.put("diffuse_transmission",
+                  scaled(matt, sheet.textures.name(milky.member("diffuseTransmissionTexture"),
+                                                   Meaning::data, "alpha")));
+    if (milky.has("diffuseTransmissionColorFactor") ||
+        milky.has("diffuseTransmissionColorTexture")) {
+      sheet.note("has a diffuseTransmissionColor; the base colour is taken");
+    }
+  }
+  if (!solid && (through > 0.0F || matt > 0.0F)) sheet.out.put("thin_walled", yaml_flag(true));
+}
+
+YamlMap volume_of(const MaterialSheet& sheet) {
+  const JsonValue volume = sheet.extension("KHR_materials_volume");
+  const JsonValue clear = sheet.extension("KHR_materials_transmission");
+  const float distance = volume.number("attenuationDistance", 0.0F);
+  const Rgb color = color_of(volume, "attenuationColor", Rgb(1.0F), 1.0F);
+  const bool solid = volume.number("thicknessFactor", 0.0F) > 0.0F;
+  if (!solid || !(distance > 0.0F) || color == Rgb(1.0F)) return {};
+  if (!(clear.number("transmissionFactor", 0.0F) > 0.0F)) return {};
+  // Of light that goes `distance` far, `color` is left.
+  Rgb absorption(0.0F);
+  for (int i = 0; i < 3; ++i) absorption[i] = -std::log(std::max(color[i], 1e-6F)) / distance;
+  return YamlMap{{"absorption", yaml_vector(absorption)}};
+}
+
+YamlPtr normal_map_of(MaterialSheet& sheet, const JsonValue& info) {
+  const std::string name = sheet.textures.name(info, Meaning::data, "");
+  if (name.empty()) return nullptr;
+  YamlMap map{{"texture", yaml_text(name)}};
+  const float scale = info.number("scale", 1.0F);
+  if (scale < 0.0F) sheet.note("has a normal map of negative scale, which is left out");
+  if (scale != 1.0F) map.put("strength", yaml_number(std::clamp(scale, 0.0F, 100.0F)));
+  return map.node();
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/bounds.h"
+#include "core/import/gltf/made_meshes.h"
+#include "core/import/gltf/materials.h"
+#include "core/import/gltf/motion.h"
+
+namespace hyades::core {
+
+/// The meshes of the scene's nodes as a job's objects: one per primitive, with the way from its
+/// node to the scene as its transform.
+struct GltfObjects {
+  YamlMap section;
+  Bounds bounds;  ///< of all that is seen at the first frame
+};
+
+/// What an object is made from.
+struct GltfStage {
+  const GltfModel& model;
+  const SceneRequest& request;
+  const GltfMeshFiles& files;
+  const GltfClip* clip = nullptr;  ///< null: everything stands still
+  size_t animation = 0;            ///< its number
+  GltfFrames frames;
+  std::vector<std::string>& notes;
+};
+
+/// Errors: numbers that cannot be read; more than a job can hold.
+Result<GltfObjects> write_objects(const GltfStage& stage, GltfMaterials& materials);
+
+}  // namespace hyades::core

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/import/scene_source.h"
+#include "core/render/render_frame.h"
+#include "core/scene/scene_cache.h"
+
+namespace hyades::test {
+
+/// How a scene of another tool is rendered in a test.
+struct SceneView {
+  std::string yaml;  ///< sections of a job that replace those of the scene: film, camera, ...
+  std::string animation = {};  ///< the one that is meant
+  int32_t frame = 1;
+  int samples = 16;
+};
+
+/// A picture of an imported scene.
+struct ScenePicture {
+  core::Image image;  ///< normalised film: R, G, B, alpha, ...
+  std::vector<std::string> notes;
+  std::string job;  ///< as text
+
+  core::Rgb at(int x, int y) const;
+  /// Mean over x0 <= x < x1, y0 <= y < y1; row 0 is the top.
+  core::Rgb mean(int x0, int y0, int x1, int y1) const;
+};
+
+/// Renders `source`; files beside it are relative to `folder`. Throws where it cannot be. Where the
+/// environment names a folder in HYADES_TEST_PICTURES, the picture is left there as `name`.png.
+ScenePicture render_scene(const core::SceneSource& source, const SceneView& view,
+                          const std::string& folder, const std::string& name);
+
+}  // namespace hyades::test
