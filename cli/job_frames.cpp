@@ -87,7 +87,10 @@ core::Status JobFrames::load_files() {
       return core::Error{core::Diagnostic{color->where, display.error().message}.to_string()};
     display_ = std::move(*display);
   }
-  return core::load_files(loaded_.job, cache_);
+  if (auto loaded = core::load_files(loaded_.job, std::nullopt, cache_); !loaded) {
+    return loaded.error();
+  }
+  return {};
 }
 
 core::Result<std::vector<std::string>> JobFrames::load_first(int32_t frame) {

@@ -41,6 +41,19 @@ struct Affine {
   }
 };
 
+/// A place between two of several equal steps over the shutter interval.
+struct StepPlace {
+  size_t step;      ///< the earlier one; there is a next
+  double fraction;  ///< of the way to the next, 0 to 1
+};
+
+/// Where `time` in [0, 1] falls among `count` steps, at least two.
+inline StepPlace step_place(float time, size_t count) {
+  const double place = static_cast<double>(time) * static_cast<double>(count - 1);
+  const size_t i = std::min(static_cast<size_t>(std::max(place, 0.0)), count - 2);
+  return {i, std::clamp(place - static_cast<double>(i), 0.0, 1.0)};
+}
+
 /// The matrices of a placement over the shutter interval.
 class Motion {
  public:
@@ -52,23 +65,10 @@ class Motion {
   bool still() const { return steps_.size() == 1; }
   const std::vector<Affine>& steps() const { return steps_; }
 
-  /// A place between two steps.
-  struct Place {
-    size_t step;      ///< the earlier one; there is a next
-    double fraction;  ///< of the way to the next, 0 to 1
-  };
-
-  /// Where `time` in [0, 1] falls; only where it is not still.
-  Place place_of(float time) const {
-    const double place = static_cast<double>(time) * static_cast<double>(steps_.size() - 1);
-    const size_t i = std::min(static_cast<size_t>(std::max(place, 0.0)), steps_.size() - 2);
-    return {i, std::clamp(place - static_cast<double>(i), 0.0, 1.0)};
-  }
-
   /// Object to world at `time` in [0, 1], interpolated element by element as Embree does.
   Affine at(float time) const {
     if (still()) return steps_[0];
-    const auto [i, f] = place_of(time);
+    const auto [i, f] = step_place(time, steps_.size());
     const Affine& a = steps_[i];
     const Affine& b = steps_[i + 1];
     return {a.linear * (1.0 - f) + b.linear * f, a.offset * (1.0 - f) + b.offset * f};

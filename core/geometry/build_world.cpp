@@ -36,24 +36,26 @@ enum class Way {
 /// Depends on the placements alone: never on what was built before.
 std::vector<Way> choose_ways(const std::vector<Placement>& placements,
                              const BuildThresholds& thresholds) {
-  std::map<const TriangleMesh*, size_t> uses;
+  std::map<MeshKey, size_t> uses;
   for (const Placement& p : placements) {
-    if (p.shape.kind == Shape::Kind::mesh) ++uses[p.shape.mesh.get()];
+    if (p.shape.kind == Shape::Kind::mesh) ++uses[mesh_key(p.shape)];
   }
   std::vector<Way> ways;
   size_t still_triangles = 0;
   bool any_changes = false;
   for (const Placement& p : placements) {
     const bool mesh = p.shape.kind == Shape::Kind::mesh;
-    const size_t copies = mesh ? uses[p.shape.mesh.get()] : 1;
+    const size_t copies = mesh ? uses[mesh_key(p.shape)] : 1;
     const bool repeated = copies > 1 && copies * triangle_count(p) > thresholds.copied_triangles;
     const bool moves = p.to_world.size() > 1;
+    const bool deforms = mesh && p.shape.deforms();
+    // What deforms is another mesh in the next frame: nothing of it can be shared.
     const bool rebuilt_often =
-        p.changes_between_frames && triangle_count(p) > thresholds.shared_triangles;
+        p.changes_between_frames && !deforms && triangle_count(p) > thresholds.shared_triangles;
     any_changes = any_changes || p.changes_between_frames;
     if (mesh && (repeated || moves || rebuilt_often) && can_be_instanced(p)) {
       ways.push_back(Way::instance);
-    } else if (moves || p.changes_between_frames) {
+    } else if (moves || deforms || p.changes_between_frames) {
       ways.push_back(Way::direct);
     } else {
       ways.push_back(Way::shared);
@@ -67,7 +69,7 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
 }
 
 bool same(const Placement& a, const Placement& b) {
-  return a.shape.kind == b.shape.kind && a.shape.mesh == b.shape.mesh &&
+  return a.shape.kind == b.shape.kind && mesh_key(a.shape) == mesh_key(b.shape) &&
          a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
          a.to_world == b.to_world && a.visible_to_camera == b.visible_to_camera &&
          a.blocks_light == b.blocks_light;
@@ -78,7 +80,7 @@ std::shared_ptr<const PlacedObject> make_direct(Placement p) {
   std::shared_ptr<const MeshBuffers> buffers;
   if (p.shape.kind == Shape::Kind::mesh) {
     const Motion motion(p.to_world);
-    buffers = make_mesh_buffers(p.shape.mesh, &motion);
+    buffers = make_mesh_buffers(p.shape, &motion);
   }
   return std::make_shared<const PlacedObject>(std::move(p), std::move(buffers));
 }
@@ -107,7 +109,7 @@ class WorldBuilder {
     for (size_t i = 0; i < placements.size(); ++i) {
       if (ways[i] == Way::direct) parts_.objects[i] = make_direct(std::move(placements[i]));
       if (ways[i] != Way::instance) continue;
-      auto mesh = mesh_scene(placements[i].shape.mesh);
+      auto mesh = mesh_scene(placements[i].shape);
       if (!mesh) return mesh.error();
       instanced[i] = *mesh;
       parts_.objects[i] =
@@ -148,9 +150,8 @@ class WorldBuilder {
                       });
   }
 
-  Result<std::shared_ptr<const MeshScene>> mesh_scene(
-      const std::shared_ptr<const TriangleMesh>& mesh) {
-    std::weak_ptr<const MeshScene>& known = cache_.meshes[mesh.get()];
+  Result<std::shared_ptr<const MeshScene>> mesh_scene(const Shape& mesh) {
+    std::weak_ptr<const MeshScene>& known = cache_.meshes[mesh_key(mesh)];
     if (auto found = known.lock()) {
       if (used_.insert(found.get()).second) parts_.mesh_scenes.push_back(found);
       return found;

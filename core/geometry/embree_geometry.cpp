@@ -49,17 +49,15 @@ void occlude_quadric(const RTCOccludedFunctionNArguments* args) {
 
 RTCGeometry new_mesh_geometry(RTCDevice device, const MeshBuffers& buffers, unsigned mask) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  const size_t steps = std::max<size_t>(buffers.own_positions.size(), 1);
-  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(steps));
-  for (size_t i = 0; i < steps; ++i) {
-    const Vec3* positions = i == 0 ? buffers.positions : buffers.own_positions[i].data();
+  rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(buffers.steps.size()));
+  for (size_t i = 0; i < buffers.steps.size(); ++i) {
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(i),
-                               RTC_FORMAT_FLOAT3, positions, 0, sizeof(Vec3),
-                               buffers.mesh->positions.size());
+                               RTC_FORMAT_FLOAT3, buffers.steps[i], 0, sizeof(Vec3),
+                               buffers.mesh().positions.size());
   }
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              buffers.triangles, 0, sizeof(buffers.triangles[0]),
-                             buffers.mesh->triangles.size());
+                             buffers.mesh().triangles.size());
   rtcSetGeometryMask(geometry, mask);
   return geometry;
 }

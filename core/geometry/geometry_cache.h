@@ -1,5 +1,6 @@
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -30,9 +31,21 @@ struct StillScene {
   std::shared_ptr<const EmbreeScene> scene;
 };
 
+/// What a MeshScene is of: the mesh, and what it deforms to.
+struct MeshKey {
+  const TriangleMesh* mesh = nullptr;
+  const TriangleMesh* next = nullptr;
+  float reach = 1.0F;
+  auto operator<=>(const MeshKey&) const = default;
+};
+
+inline MeshKey mesh_key(const Shape& shape) {
+  return {shape.mesh.get(), shape.next.get(), shape.deforms() ? shape.reach : 1.0F};
+}
+
 struct GeometryCache::State {
   std::mutex mutex;  // guards all that follows
-  std::map<const TriangleMesh*, std::weak_ptr<const MeshScene>> meshes;
+  std::map<MeshKey, std::weak_ptr<const MeshScene>> meshes;
   std::weak_ptr<const StillScene> still;
   /// What the last world used, so that it outlives that world.
   std::vector<std::shared_ptr<const void>> recent;

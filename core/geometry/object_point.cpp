@@ -121,7 +121,7 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
 
 void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
                                    const Pose& pose) const {
-  const TriangleMesh& mesh = *buffers_->mesh;
+  const TriangleMesh& mesh = buffers_->mesh();
   const auto& vertices = indices_[hit.primitive];
   const Vec3d& e1 = triangle.e1;
   const Vec3d& e2 = triangle.e2;
@@ -137,11 +137,11 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
   Vec3d ng = n;
   double embree_error = errors_ != nullptr ? static_cast<double>(errors_[hit.primitive])
                                            : triangle_error(-offset, e1 - offset, e2 - offset, n);
+  if (vertices_move_) {
+    embree_error += vertex_motion_error(triangle.a, triangle.a + e1, triangle.a + e2);
+  }
   if (in_world_) {
     if (pose.mirrors) ng = -n;
-    if (moves_) {
-      embree_error += vertex_motion_error(triangle.a, triangle.a + e1, triangle.a + e2);
-    }
   } else {
     position = pose.to_world.point(position);
     const Vec3d world_n = glm::transpose(pose.to_object.linear) * n;
@@ -156,17 +156,13 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
 
   p.ns = p.ng;
   if (!mesh.normals.empty()) {
-    const Vec3d ns = Vec3d(mesh.normals[vertices[0]]) * (1.0 - du - dv) +
-                     Vec3d(mesh.normals[vertices[1]]) * du + Vec3d(mesh.normals[vertices[2]]) * dv;
+    const Vec3d ns = mesh_normal(vertices, du, dv, p.time);
     p.ns = shading_normal(glm::transpose(pose.to_object.linear) * ns, p.ng);
   }
 
   p.tangent = Vec3(0.0F);
   if (!mesh.tangents.empty()) {
-    const auto& corners = mesh.tangents[hit.primitive];
-    const Vec3d along =
-        Vec3d(corners[0]) * (1.0 - du - dv) + Vec3d(corners[1]) * du + Vec3d(corners[2]) * dv;
-    p.tangent = Vec3(pose.to_world.vector(along));
+    p.tangent = Vec3(pose.to_world.vector(mesh_tangent(hit.primitive, du, dv, p.time)));
   }
 
   if (mesh.uvs.empty()) {
@@ -190,6 +186,33 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
     dpdv = pose.to_world.vector(dpdv);
   }
   set_tangents(p, dpdu, dpdv);
+}
+
+/// The interpolated normal, not of unit length, in object space.
+Vec3d PlacedObject::mesh_normal(const std::array<uint32_t, 3>& vertices, double u, double v,
+                                float time) const {
+  const Shape& shape = buffers_->shape;
+  const auto between = [&](const TriangleMesh& mesh) {
+    return Vec3d(mesh.normals[vertices[0]]) * (1.0 - u - v) + Vec3d(mesh.normals[vertices[1]]) * u +
+           Vec3d(mesh.normals[vertices[2]]) * v;
+  };
+  const Vec3d here = between(*shape.mesh);
+  if (!shape.deforms()) return here;
+  const double f = static_cast<double>(time) * static_cast<double>(shape.reach);
+  return here * (1.0 - f) + between(*shape.next) * f;
+}
+
+/// The same of tangents.
+Vec3d PlacedObject::mesh_tangent(uint32_t primitive, double u, double v, float time) const {
+  const Shape& shape = buffers_->shape;
+  const auto between = [&](const TriangleMesh& mesh) {
+    const auto& corners = mesh.tangents[primitive];
+    return Vec3d(corners[0]) * (1.0 - u - v) + Vec3d(corners[1]) * u + Vec3d(corners[2]) * v;
+  };
+  const Vec3d here = between(*shape.mesh);
+  if (!shape.deforms() || shape.next->tangents.empty()) return here;
+  const double f = static_cast<double>(time) * static_cast<double>(shape.reach);
+  return here * (1.0 - f) + between(*shape.next) * f;
 }
 
 SurfacePoint PlacedObject::quadric_surface(const Ray& ray, const Hit& hit) const {

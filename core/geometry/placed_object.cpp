@@ -73,7 +73,8 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
   moves_ = !motion_.still();
   if (buffers_ != nullptr) {
     indices_ = buffers_->indices;
-    positions_ = buffers_->positions;
+    positions_ = buffers_->steps[0];
+    vertices_move_ = buffers_->vertices_move();
     in_world_ = buffers_->in_world;
     if (!buffers_->errors.empty()) errors_ = buffers_->errors.data();
   }

@@ -64,13 +64,15 @@ class PlacedObject {
   void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle, float time) const;
   void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
                        const Pose& pose) const;
+  Vec3d mesh_normal(const std::array<uint32_t, 3>& vertices, double u, double v, float time) const;
+  Vec3d mesh_tangent(uint32_t primitive, double u, double v, float time) const;
   SurfacePoint quadric_surface(const Ray& ray, const Hit& hit) const;
   SurfacePoint quadric_place(const Vec3d& near, float time, const Affine& to_world,
                              const Affine& to_object) const;
   /// Triangle `primitive` in the space of the buffers.
   Triangle triangle_at(uint32_t primitive, float time) const {
     const std::array<uint32_t, 3>& t = indices_[primitive];
-    if (moves_ && in_world_) return Triangle(buffers_->moving_corners(t, motion_, time));
+    if (vertices_move_) return Triangle(buffers_->moving_corners(t, time));
     return Triangle({Vec3d(positions_[t[0]]), Vec3d(positions_[t[1]]), Vec3d(positions_[t[2]])});
   }
 
@@ -80,6 +82,7 @@ class PlacedObject {
   const float* errors_ = nullptr;  ///< MeshBuffers::errors; null where there are none
   std::shared_ptr<const MeshBuffers> buffers_;
   bool in_world_ = false;
+  bool vertices_move_ = false;
   bool moves_ = false;
   bool mirrors_ = false;  // where still
   Affine to_object_;      // where still

@@ -30,6 +30,13 @@ bool is_positive(float x) { return x > 0.0F && std::isfinite(x); }
 Status check_shape(const Shape& shape) {
   if (shape.kind == Shape::Kind::mesh) {
     if (shape.mesh == nullptr) return Error{"it has no mesh"};
+    if (shape.deforms() && (shape.mesh->positions.size() != shape.next->positions.size() ||
+                            shape.mesh->normals.empty() != shape.next->normals.empty())) {
+      return Error{"the mesh that it deforms to has other vertices"};
+    }
+    if (shape.deforms() && !(shape.reach > 0.0F && shape.reach <= 1.0F)) {
+      return Error{"its reach must be above 0 and at most 1"};
+    }
     return {};
   }
   if (!is_positive(shape.radius)) return Error{"its radius must be positive and finite"};

@@ -14,12 +14,30 @@ void add_quad(TriangleMesh& mesh, const Vec3& o, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
+std::array<Vec3d, 3> Shape::corners_at(uint32_t primitive, float time) const {
+  const std::array<uint32_t, 3>& t = mesh->triangles[primitive];
+  std::array<Vec3d, 3> out;
+  for (size_t k = 0; k < 3; ++k) out[k] = Vec3d(mesh->positions[t[k]]);
+  if (!deforms()) return out;
+  const double f = static_cast<double>(time) * static_cast<double>(reach);
+  for (size_t k = 0; k < 3; ++k) {
+    out[k] = out[k] * (1.0 - f) + Vec3d(next->positions[t[k]]) * f;
+  }
+  return out;
+}
+
+bool same_topology(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.positions.size() == b.positions.size() && a.normals.empty() == b.normals.empty() &&
+         a.triangles == b.triangles;
+}
+
 Bounds bounds_of(const Shape& shape) {
   const float r = shape.radius;
   Bounds b;
   switch (shape.kind) {
     case Shape::Kind::mesh:
       if (shape.mesh != nullptr) b = shape.mesh->bounds;
+      if (shape.deforms()) b.include(shape.next->bounds);
       break;
     case Shape::Kind::sphere:
       b = {Vec3(-r), Vec3(r)};

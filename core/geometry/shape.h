@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/geometry/mesh.h"
@@ -16,11 +17,26 @@ struct Shape {
     cylinder,  ///< open tube around the y axis, y in [0, height], normal outwards; v = y / height
   };
   Kind kind = Kind::mesh;
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const TriangleMesh> mesh;  ///< when the shutter opens
+  /// Where the mesh deforms while the shutter is open: one of the same topology (same_topology)
+  /// that it moves towards, every vertex on a straight line; when the shutter closes it has come
+  /// `reach` of the way. Null: it keeps its form.
+  std::shared_ptr<const TriangleMesh> next;
+  float reach = 1.0F;  ///< above 0, at most 1
   float radius = 1.0F;
   float height = 1.0F;
+
+  bool deforms() const { return next != nullptr; }
+
+  /// The corners of triangle `primitive` of the mesh at shutter time `time`, in object space.
+  std::array<Vec3d, 3> corners_at(uint32_t primitive, float time) const;
 };
 
+/// Whether both list the same triangles of as many vertices, and both or none have normals: then
+/// one can become the other.
+bool same_topology(const TriangleMesh& a, const TriangleMesh& b);
+
+/// Over the whole shutter interval.
 Bounds bounds_of(const Shape& shape);
 
 /// Rectangle in the plane y = 0, centred, `size` = extent along x and z, normal +y, uv 0..1. Two

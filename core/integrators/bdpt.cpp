@@ -146,6 +146,7 @@ class BidirectionalSample final : public WalkWatcher {
       out_.alpha = 1.0F;
       if (v.kind == PathVertex::Kind::surface) {
         out_.object = v.point.object;
+        out_.primitive = v.point.primitive;
         out_.position = v.position;
         out_.depth = scene_.camera->depth_of(v.position, ray_.time);
         out_.normal = v.point.ns;

@@ -22,6 +22,7 @@ struct PixelSample {
   Vec3 normal{0.0F};  ///< shading normal of the first surface
   static constexpr uint32_t kNoObject = ~0U;
   uint32_t object = kNoObject;  ///< which placement the first surface belongs to
+  uint32_t primitive = 0;       ///< its triangle
   Vec3 position{0.0F};          ///< of the first surface, world space
 };
 

@@ -349,6 +349,7 @@ class Path {
     out_.depth = scene_.camera->depth_of(point.position, point.time);
     out_.normal = point.ns;
     out_.object = point.object;
+    out_.primitive = point.primitive;
     out_.position = point.position;
   }
 

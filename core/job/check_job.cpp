@@ -11,6 +11,7 @@
 #include "core/base/udim.h"
 #include "core/job/check_frame.h"
 #include "core/job/check_materials.h"
+#include "core/job/mesh_files.h"
 #include "core/job/ocio_files.h"
 #include "core/job/reference_graph.h"
 
@@ -160,9 +161,13 @@ void check_groups(ReadContext& context) {
   }
 }
 
-/// Opens a file, or all files of a UDIM pattern, so that whoever records what a job opens knows
-/// them.
-Status open_all(const std::string& reference, AssetResolver& assets) {
+/// Opens a file, or all files of a UDIM pattern or a sequence of meshes, so that whoever records
+/// what a job opens knows them.
+Status open_all(const Job& job, const FileUse& use, AssetResolver& assets) {
+  const std::string& reference = use.reference;
+  if (use.per_frame && is_mesh_sequence(reference)) {
+    return open_mesh_sequence(job, reference, assets);
+  }
   std::vector<std::string> files = {reference};
   if (is_udim(reference)) {
     const auto tiles = udim_tiles(assets, reference);
@@ -180,7 +185,7 @@ void check_files(ReadContext& context, AssetResolver& assets) {
   std::set<std::string> good;
   for (const FileUse& use : context.files) {
     if (good.contains(use.reference)) continue;
-    const Status opened = open_all(use.reference, assets);
+    const Status opened = open_all(context.job, use, assets);
     if (opened) {
       good.insert(use.reference);
     } else {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/job/mesh_files.h"
+
 namespace hyades::core {
 
 namespace {
@@ -110,6 +112,20 @@ void FieldWriter::put_file(std::string_view key, const std::string& reference) {
   } else {
     named_.insert(reference);
     line(key, "sha256 " + found->second);
+  }
+}
+
+void FieldWriter::put_mesh_file(std::string_view key, const std::string& reference, bool ahead) {
+  if (!is_mesh_sequence(reference)) {
+    put_file(key, reference);
+    return;
+  }
+  const JobTime& now = moments_.front();
+  put_file(key, mesh_file_at(reference, now));
+  const std::string next = mesh_file_at(reference, {now.seconds, now.frame + 1.0});
+  if (ahead && hashes_.contains(next)) put_file("next", next);
+  for (const auto& [file, hash] : hashes_) {
+    if (is_of_sequence(reference, file)) named_.insert(file);
   }
 }
 

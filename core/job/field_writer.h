@@ -39,6 +39,9 @@ class FieldWriter {
 
   /// A file by the hash of its content, or by its name where the hash is not known.
   void put_file(std::string_view key, const std::string& reference);
+  /// The file of a mesh at a frame of the job, of a sequence that and, where `ahead`, the next one,
+  /// as far as they are known. All of a sequence count as named.
+  void put_mesh_file(std::string_view key, const std::string& reference, bool ahead);
   /// Assets that no put_file has named, but for those in `except`.
   void put_other_files(const std::vector<std::string>& except);
 

@@ -166,6 +166,12 @@ void MapReader::file(std::string_view key, std::string& target) {
   context_.files.push_back({target, where, fmt::format("{} of {}", key, what_)});
 }
 
+void MapReader::mesh_file(std::string_view key, std::string& target) {
+  const size_t before = context_.files.size();
+  file(key, target);
+  if (context_.files.size() > before) context_.files.back().per_frame = true;
+}
+
 bool MapReader::numbers(std::string_view key, std::span<float> target, const Range& range) {
   const YamlNode* node = find(key);
   if (node == nullptr) return false;

@@ -51,6 +51,8 @@ class MapReader {
   void name_of(std::string_view key, std::string& target, NameKind kind);
   /// A file, relative to where it is written; that it opens is checked at the end.
   void file(std::string_view key, std::string& target);
+  /// The same of a mesh, which may have a file for each frame.
+  void mesh_file(std::string_view key, std::string& target);
   /// A list of exactly as many numbers as `target` has.
   bool numbers(std::string_view key, std::span<float> target, const Range& range);
   bool integers(std::string_view key, std::span<int32_t> target, int64_t low, int64_t high);

@@ -40,7 +40,7 @@ struct ObjectDesc {
   std::string name;
   SourceLocation where;
   std::string shape;  ///< mesh | sphere | rectangle | disk | box | cylinder | instance | group
-  std::string mesh;   ///< file
+  std::string mesh;   ///< file, or one for each frame (mesh_files.h)
   std::string part;   ///< mesh: the material of the file whose triangles are meant; empty: all
   std::string instance_of;            ///< name in Job::groups
   std::vector<ObjectDesc> children;   ///< group written in place

@@ -31,6 +31,7 @@ struct FileUse {
   std::string reference;  ///< relative to the job's folder
   SourceLocation where;
   std::string label;
+  bool per_frame = false;  ///< a mesh, which may have a file for each frame (is_mesh_sequence)
 };
 
 /// What all readers of one job share.

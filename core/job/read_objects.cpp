@@ -109,7 +109,7 @@ void read_shape(MapReader& reader, ObjectDesc& object) {
 
 void read_mesh(MapReader& reader, ObjectDesc& object) {
   object.shape = "mesh";
-  reader.file("mesh", object.mesh);
+  reader.mesh_file("mesh", object.mesh);
   read_emit(reader, object);
   reader.enter_section("objects.mesh");
   reader.choice("normals", object.smooth, kMeshNormals);

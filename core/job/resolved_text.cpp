@@ -4,6 +4,7 @@
 #include "core/job/density_text.h"
 #include "core/job/field_writer.h"
 #include "core/job/layers.h"
+#include "core/job/mesh_files.h"
 #include "core/job/texture_text.h"
 
 namespace hyades::core {
@@ -172,11 +173,12 @@ void write(FieldWriter& out, const EmitDesc& emit) {
   out.leave();
 }
 
-void write(FieldWriter& out, const ObjectDesc& object) {
+/// `ahead`: frames look at the one after them.
+void write(FieldWriter& out, const ObjectDesc& object, bool ahead) {
   out.enter("object");
   out.put("name", object.name);
   out.put("shape", object.shape);
-  out.put_file("mesh", object.mesh);
+  out.put_mesh_file("mesh", object.mesh, ahead);
   if (!object.part.empty()) out.put("part", object.part);
   out.put("instance_of", object.instance_of);
   out.put("radius", object.radius);
@@ -198,14 +200,14 @@ void write(FieldWriter& out, const ObjectDesc& object) {
   out.put("at", object.at);
   if (object.emit) write(out, *object.emit);
   out.put("visible_to_camera", object.visible_to_camera);
-  for (const ObjectDesc& child : object.children) write(out, child);
+  for (const ObjectDesc& child : object.children) write(out, child, ahead);
   out.leave();
 }
 
-void write(FieldWriter& out, const GroupDesc& group) {
+void write(FieldWriter& out, const GroupDesc& group, bool ahead) {
   out.enter("group");
   out.put("name", group.name);
-  for (const ObjectDesc& object : group.objects) write(out, object);
+  for (const ObjectDesc& object : group.objects) write(out, object, ahead);
   out.leave();
 }
 
@@ -274,8 +276,9 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   for (const TextureDesc& texture : job.textures) write_texture(out, texture);
   for (const MaterialDesc& material : job.materials) write(out, material);
   for (const MediumDesc& medium : job.media) write(out, medium);
-  for (const GroupDesc& group : job.groups) write(out, group);
-  for (const ObjectDesc& object : job.objects) write(out, object);
+  const bool ahead = looks_at_next_frame(job);
+  for (const GroupDesc& group : job.groups) write(out, group, ahead);
+  for (const ObjectDesc& object : job.objects) write(out, object, ahead);
   for (const LightDesc& light : job.lights) write(out, light);
   if (job.environment) write(out, *job.environment);
   if (!job.atmosphere.empty()) out.put("atmosphere", job.atmosphere);

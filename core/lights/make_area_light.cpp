@@ -62,11 +62,11 @@ double tube_area(const glm::dmat3& m, double radius, double height) {
   return perimeter * axis * height;
 }
 
-MeshAreas mesh_areas(const TriangleMesh& mesh, const Mat3& linear) {
+MeshAreas mesh_areas(const Shape& shape, const Mat3& linear) {
   MeshAreas areas;
-  areas.triangles.reserve(mesh.triangles.size());
-  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const double area = triangle_area(mesh, i, linear);
+  areas.triangles.reserve(shape.mesh->triangles.size());
+  for (uint32_t i = 0; i < shape.mesh->triangles.size(); ++i) {
+    const double area = triangle_area(shape, i, 0.0F, linear);
     areas.triangles.push_back(static_cast<float>(area));
     areas.total += area;
   }
@@ -92,7 +92,7 @@ double surface_area(const World& world, uint32_t object) {
     case Shape::Kind::mesh:
       break;
   }
-  return mesh_areas(*shape.mesh, linear).total;
+  return mesh_areas(shape, linear).total;
 }
 
 namespace {
@@ -105,7 +105,7 @@ std::shared_ptr<AreaLight> light_of_its_kind(const World& world, uint32_t object
       return std::make_shared<RectangleLight>(world, object, *rectangle, emission,
                                               surface_area(world, object));
     }
-    const MeshAreas areas = mesh_areas(*shape.mesh, Mat3(world.transform_at(object, 0.0F)));
+    const MeshAreas areas = mesh_areas(shape, Mat3(world.transform_at(object, 0.0F)));
     return std::make_shared<MeshLight>(world, object, emission, areas);
   }
   const double area = surface_area(world, object);
@@ -115,10 +115,11 @@ std::shared_ptr<AreaLight> light_of_its_kind(const World& world, uint32_t object
   return std::make_shared<QuadricLight>(world, object, emission, area);
 }
 
-/// The outer normals of a placement while the shutter is open. Motion that turns or stretches may
-/// have any.
+/// The outer normals of a placement while the shutter is open. Motion that turns or stretches, and
+/// what deforms, may have any.
 DirectionCone outer_normals(const World& world, uint32_t object) {
   const Placement& placement = world.placement(object);
+  if (placement.shape.deforms()) return {};
   for (const Mat4& matrix : placement.to_world) {
     if (Mat3(matrix) != Mat3(placement.to_world[0])) return {};
   }

@@ -91,15 +91,12 @@ float MeshLight::pdf_place(const SurfacePoint& on, const Vec3& /*direction*/) co
 
 float MeshLight::pdf_area(uint32_t triangle, float time) const {
   const Mat3 linear(moves_ ? world_.transform_at(object_, time) : matrix_);
-  const double area = triangle_area(*world_.placement(object_).shape.mesh, triangle, linear);
+  const double area = triangle_area(world_.placement(object_).shape, triangle, time, linear);
   return area > 0.0 ? static_cast<float>(double{triangles_.probability(triangle)} / area) : 0.0F;
 }
 
-double triangle_area(const TriangleMesh& mesh, uint32_t triangle, const Mat3& linear) {
-  const std::array<uint32_t, 3>& corners = mesh.triangles[triangle];
-  const Vec3d a(mesh.positions[corners[0]]);
-  const Vec3d b(mesh.positions[corners[1]]);
-  const Vec3d c(mesh.positions[corners[2]]);
+double triangle_area(const Shape& shape, uint32_t triangle, float time, const Mat3& linear) {
+  const auto [a, b, c] = shape.corners_at(triangle, time);
   const glm::dmat3 m(linear);
   const Vec3d normal = glm::cross(m * (b - a), m * (c - a));
   return 0.5 * std::sqrt(glm::dot(normal, normal));

@@ -16,8 +16,8 @@ struct MeshAreas {
 
 /// A mesh that gives off light: a triangle in proportion to its area when the shutter opens (where
 /// the emission varies times its mean brightness, with an even part as in BrightnessGrid), then a
-/// place uniformly within it. Where the mesh moves, the density counts the triangle's area of the
-/// moment.
+/// place uniformly within it. Where the mesh moves or deforms, the density counts the triangle's
+/// area of the moment.
 class MeshLight : public AreaLight {
  public:
   MeshLight(const World& world, uint32_t object, const SurfaceEmission& emission,
@@ -51,7 +51,7 @@ class MeshLight : public AreaLight {
   bool moves_;
 };
 
-/// Area of a triangle under the linear map `linear`.
-double triangle_area(const TriangleMesh& mesh, uint32_t triangle, const Mat3& linear);
+/// Area of a triangle of a mesh at shutter time `time` under the linear map `linear`.
+double triangle_area(const Shape& shape, uint32_t triangle, float time, const Mat3& linear);
 
 }  // namespace hyades::core

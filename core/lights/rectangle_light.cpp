@@ -71,7 +71,8 @@ struct SphericalRectangle {
 
 std::optional<Rectangle> find_rectangle(const World& world, uint32_t object) {
   const Placement& placement = world.placement(object);
-  if (placement.shape.kind != Shape::Kind::mesh || placement.to_world.size() != 1) {
+  if (placement.shape.kind != Shape::Kind::mesh || placement.to_world.size() != 1 ||
+      placement.shape.deforms()) {
     return std::nullopt;
   }
   const TriangleMesh& mesh = *placement.shape.mesh;

@@ -18,9 +18,9 @@ void PixelSums::add(const TakenSample& sample, std::span<const Rgb> parts) {
   if (layout_.normal >= 0) add_vector(layout_.normal, seen.normal);
   if (layout_.position >= 0) add_vector(layout_.position, seen.position * sample.weight);
   if (layout_.motion >= 0) {
-    const Vec2 motion =
-        scene_.motion->of(scene_, seen.object, seen.position, sample.ray, sample.time) *
-        sample.weight;
+    const Vec2 motion = scene_.motion->of(scene_, seen.object, seen.primitive, seen.position,
+                                          sample.ray, sample.time) *
+                        sample.weight;
     sums_[static_cast<size_t>(layout_.motion)] += double{motion.x};
     sums_[static_cast<size_t>(layout_.motion) + 1] += double{motion.y};
   }

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "core/film/id_counts.h"
 #include "core/geometry/placement_check.h"
 #include "core/job/check_frame.h"
 #include "core/job/kinds.h"
 #include "core/job/layers.h"
+#include "core/job/mesh_files.h"
 #include "core/scene/add_bodies.h"
 #include "core/scene/appearance.h"
 #include "core/scene/camera_makers.h"
@@ -41,7 +44,8 @@ class SceneBuilder {
         looks_(job, time_, cache) {}
 
   Result<std::shared_ptr<const Scene>> build() {
-    if (auto done = load_files(job_, cache_); !done) return done.error();
+    const auto held = load_files(job_, frame_, cache_);
+    if (!held) return held.error();
     if (auto done = add_objects(); !done) return done.error();
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
@@ -62,6 +66,7 @@ class SceneBuilder {
     if (auto done = add_atmosphere(*flat); !done) return done;
     std::vector<Placement> placements;
     placements.reserve(flat->size());
+    add_notices(*flat);
     for (const FlatObject& object : *flat) {
       auto material = looks_.surface(object.material, object.desc->interior);
       if (!material) return at_object(object, material.error());
@@ -85,6 +90,15 @@ class SceneBuilder {
     scene_->world = *world;
     if (auto done = check_exteriors(job_, *flat, *scene_); !done) return done;
     return add_emitters(*flat);
+  }
+
+  /// What instances of one object have in common is told once.
+  void add_notices(const std::vector<FlatObject>& objects) {
+    std::set<std::pair<const ObjectDesc*, std::string>> told;
+    for (const FlatObject& object : objects) {
+      if (object.notice.empty() || !told.insert({object.desc, object.notice}).second) continue;
+      scene_->warnings.push_back("object '" + object.name + "': " + object.notice);
+    }
   }
 
   Status add_atmosphere(const std::vector<FlatObject>& objects) {
@@ -218,8 +232,15 @@ class SceneBuilder {
     auto motion = std::make_unique<FilmMotion>();
     motion->camera = make_sharp_camera(job_, time_);
     motion->next_camera = make_sharp_camera(job_, job_.time_of(frame_ + 1));
-    for (const FlatObject& object : *next)
-      motion->to_world.push_back(object.placement.to_world.front());
+    for (uint32_t i = 0; i < next->size(); ++i) {
+      const Placement& then = (*next)[i].placement;
+      motion->to_world.push_back(then.to_world.front());
+      const auto& mesh = scene_->world->placement(i).shape.mesh;
+      const bool deforms = then.shape.mesh != mesh && then.shape.mesh != nullptr &&
+                           is_mesh_sequence((*next)[i].desc->mesh) &&
+                           same_topology(*mesh, *then.shape.mesh);
+      motion->meshes.push_back(deforms ? then.shape.mesh : nullptr);
+    }
     scene_->motion = std::move(motion);
     return {};
   }

@@ -7,6 +7,7 @@
 
 #include "core/geometry/displace.h"
 #include "core/job/field_writer.h"
+#include "core/job/mesh_files.h"
 #include "core/job/texture_text.h"
 #include "core/scene/shape_makers.h"
 
@@ -49,7 +50,7 @@ bool looks_at_uv(const TextureDesc& texture) {
 std::string key_of(const ObjectDesc& object, const DisplacementSetting& setting,
                    const std::vector<const TextureDesc*>& textures) {
   FieldWriter out({setting.looks.time()}, {});
-  out.put("mesh", object.mesh);
+  out.put("mesh", mesh_file_at(object.mesh, setting.looks.time()));
   out.put("part", object.part);
   out.put("normals", object.smooth);
   out.put("tangents", setting.tangents);
@@ -81,7 +82,11 @@ Result<std::shared_ptr<const TriangleMesh>> make_displaced(const ObjectDesc& obj
   const DisplacementDesc& desc = *object.displacement;
   const auto asked = mesh_use_of(object, false);
   if (!asked) return asked.error();
-  const auto base = setting.looks.cache().mesh(object.mesh, base_use_of(object));
+  SceneCache& cache = setting.looks.cache();
+  const auto base =
+      is_mesh_sequence(object.mesh)
+          ? cache.frame_mesh(mesh_file_at(object.mesh, setting.looks.time()), base_use_of(object))
+          : cache.mesh(object.mesh, base_use_of(object));
   if (!base) return base.error();
   if (on_uv && (*base)->uvs.empty()) {
     return Error{"displacement: its texture is mapped by uv, of which the mesh '" + object.mesh +

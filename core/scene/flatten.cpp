@@ -5,6 +5,7 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "core/job/mesh_files.h"
 #include "core/scene/appearance.h"
 #include "core/scene/displacement.h"
 #include "core/scene/shape_makers.h"
@@ -72,11 +73,13 @@ class Flattener {
         shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
     const DisplacementSetting displacement{looks_, to_world.front(), tangents_};
     const bool displaces = displacements_ == Displacements::made;
-    auto shape =
-        make_shape(object, {cache_, looks_.time(), tangents_, displaces ? &displacement : nullptr});
+    FlatObject flat;
+    ShapeSetting setting{cache_, looks_.time(), tangents_, displaces ? &displacement : nullptr};
+    setting.shutter = displaces ? job_.frames.shutter : 0.0F;
+    setting.notice = &flat.notice;
+    auto shape = make_shape(object, setting);
     if (!shape) return at(object, shape.error().in("object '" + name + "'"));
     const std::string look = after_overrides(material);
-    FlatObject flat;
     flat.desc = &object;
     flat.name = name;
     flat.material = look;
@@ -84,8 +87,9 @@ class Flattener {
     flat.emit = emission_of(object, look);
     flat.placement.shape = *shape;
     flat.placement.visible_to_camera = visible;
-    flat.placement.changes_between_frames =
-        chain_is_animated() || size_changes(object) || displacement_changes(job_, object);
+    flat.placement.changes_between_frames = chain_is_animated() || size_changes(object) ||
+                                            displacement_changes(job_, object) ||
+                                            is_mesh_sequence(object.mesh);
     flat.placement.to_world = std::move(to_world);
     flat_.push_back(std::move(flat));
     if (object.shape == "cylinder" && object.caps) add_caps(object, name, look, visible);

@@ -18,6 +18,7 @@ struct FlatObject {
   std::string material;  ///< name; inherited from the enclosing group where the object has none
   size_t body = 0;       ///< index of the first of all parts of its closed surface
   std::optional<EmitDesc> emit;
+  std::string notice;   ///< what of its shape is probably not meant
   Placement placement;  ///< in metres
 };
 

@@ -13,8 +13,12 @@ namespace {
 constexpr int kVoxelsPerCell = 6;
 constexpr int kMostCells = 128;
 
+/// Files of frames, cut into their materials, that are kept: those of two frames, and some more.
+constexpr size_t kRecentParts = 4;
+
 bool same_placement(const Placement& a, const Placement& b) {
   return a.shape.kind == b.shape.kind && a.shape.mesh == b.shape.mesh &&
+         a.shape.next == b.shape.next && a.shape.reach == b.shape.reach &&
          a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
          a.visible_to_camera == b.visible_to_camera && a.blocks_light == b.blocks_light &&
          a.to_world == b.to_world;
@@ -26,40 +30,61 @@ bool same_placements(const std::vector<Placement>& a, const std::vector<Placemen
 
 }  // namespace
 
-Result<std::shared_ptr<TriangleMesh>> SceneCache::read(const std::string& file,
-                                                       const std::string& part) {
-  if (part.empty()) return read_mesh(assets_, file);
-  const auto all = mesh_parts_.get(file, [&]() -> Result<std::shared_ptr<const MeshParts>> {
+Result<std::shared_ptr<const MeshParts>> SceneCache::parts_of(const std::string& file,
+                                                              bool of_frames) {
+  const auto make = [&]() -> Result<std::shared_ptr<const MeshParts>> {
     auto loaded = read_mesh_parts(assets_, file);
     if (!loaded) return loaded.error();
     return std::make_shared<const MeshParts>(std::move(*loaded));
-  });
-  if (!all) return all.error();
-  std::vector<std::string> names;
-  for (const MeshPart& each : (*all)->parts) {
-    names.push_back(each.name);
-    if (each.name != part) continue;
-    auto mesh = std::make_shared<TriangleMesh>(*each.mesh);
+  };
+  if (!of_frames) return mesh_parts_.get(file, make);
+  auto parts = frame_parts_.get(file, make);
+  if (!parts) return parts;
+  const std::lock_guard lock(recent_parts_mutex_);
+  if (std::find(recent_parts_.begin(), recent_parts_.end(), *parts) == recent_parts_.end()) {
+    recent_parts_.push_back(*parts);
+    if (recent_parts_.size() > kRecentParts) recent_parts_.pop_front();
+  }
+  return parts;
+}
+
+Result<std::shared_ptr<const TriangleMesh>> SceneCache::read(const std::string& file,
+                                                             const MeshUse& use, bool of_frames) {
+  std::shared_ptr<TriangleMesh> mesh;
+  if (use.part.empty()) {
+    auto loaded = read_mesh(assets_, file);
+    if (!loaded) return loaded.error();
+    mesh = *loaded;
+  } else {
+    const auto all = parts_of(file, of_frames);
+    if (!all) return all.error();
+    std::vector<std::string> names;
+    for (const MeshPart& each : (*all)->parts) {
+      names.push_back(each.name);
+      if (each.name == use.part) mesh = std::make_shared<TriangleMesh>(*each.mesh);
+    }
+    if (mesh == nullptr) {
+      const std::string hint = did_you_mean(use.part, names);
+      return Error{file + ": it has no material '" + use.part + "'" +
+                   (hint.empty() ? "; there is " + join_names(names) : hint)};
+    }
     mesh->name = file;
     finish_mesh(*mesh);  // a copy has no padding
-    return mesh;
   }
-  const std::string hint = did_you_mean(part, names);
-  return Error{file + ": it has no material '" + part + "'" +
-               (hint.empty() ? "; there is " + join_names(names) : hint)};
+  if (use.normals == MeshNormals::flat) mesh->normals.clear();
+  if (use.normals == MeshNormals::smooth) compute_smooth_normals(*mesh);
+  if (use.tangents) compute_tangents(*mesh);
+  return std::shared_ptr<const TriangleMesh>(mesh);
 }
 
 Result<std::shared_ptr<const TriangleMesh>> SceneCache::mesh(const std::string& file,
                                                              const MeshUse& use) {
-  return meshes_.get({file, use}, [&]() -> Result<std::shared_ptr<const TriangleMesh>> {
-    auto loaded = read(file, use.part);
-    if (!loaded) return loaded.error();
-    const std::shared_ptr<TriangleMesh> mesh = *loaded;
-    if (use.normals == MeshNormals::flat) mesh->normals.clear();
-    if (use.normals == MeshNormals::smooth) compute_smooth_normals(*mesh);
-    if (use.tangents) compute_tangents(*mesh);
-    return std::shared_ptr<const TriangleMesh>(mesh);
-  });
+  return meshes_.get({file, use}, [&] { return read(file, use, false); });
+}
+
+Result<std::shared_ptr<const TriangleMesh>> SceneCache::frame_mesh(const std::string& file,
+                                                                   const MeshUse& use) {
+  return frame_meshes_.get({file, use}, [&] { return read(file, use, true); });
 }
 
 Result<std::shared_ptr<const Image>> SceneCache::image(const std::string& file, ColorSpace space) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -61,6 +62,14 @@ class SceneCache {
 
   Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file, const MeshUse& use);
 
+  /// The same of a file that some frames look at only: kept as long as somebody uses the mesh, so
+  /// that frames leave nothing behind.
+  Result<std::shared_ptr<const TriangleMesh>> frame_mesh(const std::string& file,
+                                                         const MeshUse& use);
+
+  /// Whether there is such a file.
+  bool exists(const std::string& file) { return assets_.exists(file); }
+
   Result<std::shared_ptr<const Image>> image(const std::string& file, ColorSpace space);
 
   /// An image at all its sizes, for textures.
@@ -108,13 +117,22 @@ class SceneCache {
   size_t image_memory() const;
 
  private:
-  /// One part of a mesh, or all of it; not shared with anybody.
-  Result<std::shared_ptr<TriangleMesh>> read(const std::string& file, const std::string& part);
+  /// A file cut into its materials; one of frames is kept for a while only.
+  Result<std::shared_ptr<const MeshParts>> parts_of(const std::string& file, bool of_frames);
+
+  /// One part of a mesh, or all of it, made ready for `use`.
+  Result<std::shared_ptr<const TriangleMesh>> read(const std::string& file, const MeshUse& use,
+                                                   bool of_frames);
 
   AssetResolver& assets_;
   std::shared_ptr<TexelStore> texels_;
   OnceMap<std::pair<std::string, MeshUse>, TriangleMesh> meshes_;
   OnceMap<std::string, MeshParts> mesh_parts_;
+  WeakMap<std::pair<std::string, MeshUse>, TriangleMesh> frame_meshes_;
+  WeakMap<std::string, MeshParts> frame_parts_;
+  std::mutex recent_parts_mutex_;
+  /// So that the parts of a frame's file come from one reading. Guarded by recent_parts_mutex_.
+  std::deque<std::shared_ptr<const MeshParts>> recent_parts_;
   WeakMap<std::string, TriangleMesh> made_meshes_;
   WeakMap<std::string, TriangleMesh> displaced_;
   /// By meshes that it does not keep.

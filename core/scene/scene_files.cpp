@@ -9,6 +9,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/udim.h"
+#include "core/job/mesh_files.h"
 #include "core/job/textures_of.h"
 #include "core/scene/shape_makers.h"
 #include "core/scene/texture_makers.h"
@@ -20,7 +21,8 @@ namespace {
 /// to who builds the scene.
 class Walk {
  public:
-  explicit Walk(const Job& job) : tangents_(has_normal_maps(job)) {
+  Walk(const Job& job, std::optional<int32_t> frame) : tangents_(has_normal_maps(job)) {
+    if (frame) add_frame(job, *frame);
     for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
     for (const MaterialDesc& material : job.materials) materials_.emplace(material.name, &material);
     for (const TextureDesc& texture : job.textures) textures_.emplace(texture.name, &texture);
@@ -32,6 +34,11 @@ class Walk {
   static SceneFiles all(const Job& job) {
     Walk walk;
     walk.tangents_ = has_normal_maps(job);
+    for (int64_t at = job.frames.first; at <= job.frames.last; at += job.frames.step) {
+      // Jobs may have billions of frames, but there are no files for so many.
+      if (walk.times_.size() >= kMostFrames) break;
+      walk.add_frame(job, static_cast<int32_t>(at));
+    }
     for (const GroupDesc& group : job.groups) walk.add_meshes(group.objects);
     walk.add_meshes(job.objects);
     for (const TextureDesc& texture : job.textures) walk.add_image(texture);
@@ -42,7 +49,15 @@ class Walk {
   SceneFiles take() { return std::move(files_); }
 
  private:
+  static constexpr size_t kMostFrames = 1'000'000;
+
   Walk() = default;
+
+  /// Sequences are looked at in `frame`, and in the one after it where that matters.
+  void add_frame(const Job& job, int32_t frame) {
+    times_.push_back(job.time_of(frame));
+    if (looks_at_next_frame(job)) times_.push_back(job.time_of(frame + 1));
+  }
 
   void add_sky(const Job& job) {
     if (!job.environment) return;
@@ -82,8 +97,16 @@ class Walk {
                                               : mesh_use_of(object, tangents_);
     if (!use) return;
     if (may_be_displaced(object)) visit_texture(object.displacement->texture);
-    if (seen_meshes_.insert({object.mesh, *use}).second) {
-      files_.meshes.push_back({object.mesh, *use, "object '" + object.name + "'", object.where});
+    if (!seen_meshes_.insert({object.mesh, *use}).second) return;
+    const std::string user = "object '" + object.name + "'";
+    if (!is_mesh_sequence(object.mesh)) {
+      files_.meshes.push_back({object.mesh, *use, user, object.where});
+      return;
+    }
+    std::set<std::string> seen;
+    for (const JobTime& time : times_) {
+      const std::string file = mesh_file_at(object.mesh, time);
+      if (seen.insert(file).second) files_.meshes.push_back({file, *use, user, object.where, true});
     }
   }
 
@@ -114,6 +137,7 @@ class Walk {
   }
 
   bool tangents_ = false;
+  std::vector<JobTime> times_;  ///< at which sequences are looked at
   std::map<std::string, const GroupDesc*> groups_;
   std::map<std::string, const MaterialDesc*> materials_;
   std::map<std::string, const TextureDesc*> textures_;
@@ -148,7 +172,9 @@ SceneFiles with_tiles(SceneFiles files, SceneCache& cache, Diagnostics& diagnost
 
 }  // namespace
 
-SceneFiles files_of_scene(const Job& job) { return Walk(job).take(); }
+SceneFiles files_of_scene(const Job& job, std::optional<int32_t> frame) {
+  return Walk(job, frame).take();
+}
 
 SceneFiles files_of_job(const Job& job) { return Walk::all(job); }
 
@@ -166,12 +192,14 @@ SceneFiles without(SceneFiles all, const SceneFiles& some) {
   return all;
 }
 
-Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagnostics) {
+Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagnostics,
+                  HeldMeshes* held) {
   const SceneFiles files = with_tiles(named, cache, diagnostics);
   const size_t meshes = files.meshes.size();
   const size_t images = files.images.size();
   const size_t count = meshes + images + (files.sky.empty() ? 0 : 1);
   std::vector<std::optional<Diagnostic>> failures(count);
+  HeldMeshes meshes_of_frame(meshes);
   const auto note = [&](size_t i, const auto& loaded, const std::string& user,
                         const SourceLocation& where) {
     if (!loaded) failures[i] = {where, loaded.error().in(user).message};
@@ -179,7 +207,11 @@ Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagn
   const Status all = parallel_for(count, 0, [&](size_t i) {
     if (i < meshes) {
       const auto& mesh = files.meshes[i];
-      note(i, cache.mesh(mesh.file, mesh.how), mesh.user, mesh.where);
+      if (mesh.of_frame && !cache.exists(mesh.file)) return;  // of the frame after the last
+      const auto loaded =
+          mesh.of_frame ? cache.frame_mesh(mesh.file, mesh.how) : cache.mesh(mesh.file, mesh.how);
+      note(i, loaded, mesh.user, mesh.where);
+      if (loaded && mesh.of_frame && held != nullptr) meshes_of_frame[i] = *loaded;
     } else if (i < meshes + images) {
       const auto& image = files.images[i - meshes];
       note(i, cache.pyramid(image.file, image.how), image.user, image.where);
@@ -191,13 +223,17 @@ Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagn
   for (auto& failure : failures) {
     if (failure) diagnostics.add(failure->where, std::move(failure->message));
   }
+  if (held != nullptr) *held = std::move(meshes_of_frame);
   return {};
 }
 
-Status load_files(const Job& job, SceneCache& cache) {
+Result<HeldMeshes> load_files(const Job& job, std::optional<int32_t> frame, SceneCache& cache) {
   Diagnostics diagnostics;
-  if (Status loaded = load_files(files_of_scene(job), cache, diagnostics); !loaded) return loaded;
-  if (diagnostics.empty()) return {};
+  HeldMeshes held;
+  if (Status loaded = load_files(files_of_scene(job, frame), cache, diagnostics, &held); !loaded) {
+    return loaded.error();
+  }
+  if (diagnostics.empty()) return held;
   return diagnostics.to_error();
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "core/job/mesh_files.h"
 #include "core/scene/name_table.h"
 
 namespace hyades::core {
@@ -50,16 +51,52 @@ Result<Shape> box(const ObjectDesc& object, const ShapeSetting& setting) {
       size_key("box", size), [](const Vec3& extent) { return make_box(extent); }, size));
 }
 
+void note(const ShapeSetting& setting, std::string text) {
+  if (setting.notice != nullptr) *setting.notice = std::move(text);
+}
+
+/// The mesh of its frame, deforming to that of the next one. Who asks for places only may ask for
+/// the frame after the last: the last mesh stays where it was.
+Result<Shape> mesh_of_sequence(const ObjectDesc& object, const ShapeSetting& setting,
+                               const MeshUse& use) {
+  const auto file_of = [&](double frame) {
+    return mesh_file_at(object.mesh, {setting.time.seconds, frame});
+  };
+  std::string file = file_of(setting.time.frame);
+  const bool places_only = setting.displacement == nullptr;
+  if (places_only && !setting.cache.exists(file)) file = file_of(setting.time.frame - 1.0);
+  auto loaded = setting.cache.frame_mesh(file, use);
+  if (!loaded) return loaded.error();
+  Shape shape = shape_of(*loaded);
+  const std::string next_file = file_of(setting.time.frame + 1.0);
+  if (!(setting.shutter > 0.0F) || !setting.cache.exists(next_file)) return shape;
+  auto next = setting.cache.frame_mesh(next_file, use);
+  if (!next) return next.error();
+  if (same_topology(*shape.mesh, **next)) {
+    shape.next = *next;
+    shape.reach = setting.shutter;
+  } else {
+    note(setting, fmt::format("{} and {} have other triangles: while the shutter is open, the mesh "
+                              "stands still",
+                              file, next_file));
+  }
+  return shape;
+}
+
 Result<Shape> mesh(const ObjectDesc& object, const ShapeSetting& setting) {
   if (setting.displacement != nullptr && is_displaced(object, setting.displacement->looks.time())) {
     auto displaced = displaced_mesh(object, *setting.displacement);
     if (!displaced) return displaced.error();
+    if (setting.shutter > 0.0F && is_mesh_sequence(object.mesh)) {
+      note(setting, "its mesh is displaced: while the shutter is open, it does not deform");
+    }
     return shape_of(*displaced);
   }
   const auto use = setting.displacement == nullptr && may_be_displaced(object)
                        ? Result<MeshUse>(base_use_of(object))
                        : mesh_use_of(object, setting.tangents);
   if (!use) return use.error();
+  if (is_mesh_sequence(object.mesh)) return mesh_of_sequence(object, setting, *use);
   auto loaded = setting.cache.mesh(object.mesh, *use);
   if (!loaded) return loaded.error();
   return shape_of(*loaded);

@@ -19,6 +19,10 @@ struct ShapeSetting {
   /// How meshes are displaced that are; null: they stay as they are in
   /// their files, and only their places are of interest.
   const DisplacementSetting* displacement = nullptr;
+  /// How far into the time to the next frame the shutter stays open: what a mesh with a file for
+  /// each frame deforms by. 0: not at all.
+  float shutter = 0.0F;
+  std::string* notice = nullptr;  ///< gets what is probably not meant; null: nobody asks
 };
 
 /// The shape of an object (no group, no instance) in its own space, in the job's unit of length.

@@ -95,7 +95,7 @@ Setup* setup() {
     if (!mesh) return static_cast<Setup*>(nullptr);
     s->mesh = *mesh;
     s->world = *build_world({place(s->mesh)}, s->cache);
-    s->buffers = make_mesh_buffers(s->mesh, nullptr);
+    s->buffers = make_mesh_buffers(place(s->mesh).shape, nullptr);
     SceneBuilder builder;
     builder.attach(new_mesh_geometry(builder.device(), *s->buffers, 0xFFFFFFFFU), 0);
     s->bare = *builder.commit();

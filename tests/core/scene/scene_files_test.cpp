@@ -138,7 +138,7 @@ TEST(SceneFiles, LoadSeveralAtOnce) {
   for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
   const Job job = job_of_meshes(8);
   SceneCache cache(assets);
-  ASSERT_TRUE(load_files(job, cache));
+  ASSERT_TRUE(load_files(job, std::nullopt, cache));
   EXPECT_FALSE(assets.somebody_was_alone());
   const auto scene = build_scene(job, 1, cache);
   ASSERT_TRUE(scene);
