@@ -10,6 +10,8 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/base/atomic_file.h"
@@ -61,8 +63,9 @@ Imath::Box2i display_window(const Image& image) {
   return {{0, 0}, {place.frame_width - 1, place.frame_height - 1}};
 }
 
-void write(const std::string& path, const Image& image, const ImageMetadata& metadata,
-           bool as_half) {
+/// `place` is the path of a file, or a stream.
+template <class Place>
+void write(Place& place, const Image& image, const ImageMetadata& metadata, bool as_half) {
   prepare_openexr();
   const Imath::Box2i window = data_window(image);
   Imf::Header header(display_window(image), window);
@@ -91,12 +94,48 @@ void write(const std::string& path, const Image& image, const ImageMetadata& met
                   Imf::Slice::Make(type, first, window, pixel_bytes,
                                    pixel_bytes * static_cast<size_t>(image.width)));
   }
-  Imf::OutputFile file(path.c_str(), header, 0);
+  Imf::OutputFile file(place, header, 0);
   file.setFrameBuffer(buffer);
   file.writePixels(image.height);
 }
 
+/// OpenEXR's output into memory.
+class MemoryOStream : public Imf::OStream {
+ public:
+  explicit MemoryOStream(std::vector<std::byte>& bytes)
+      : Imf::OStream("a picture in memory"), bytes_(bytes) {}
+
+  void write(const char c[], int n) override {
+    const size_t end = at_ + static_cast<size_t>(n);
+    if (bytes_.size() < end) bytes_.resize(end);
+    std::copy_n(reinterpret_cast<const std::byte*>(c), n,
+                bytes_.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ = end;
+  }
+  uint64_t tellp() override { return at_; }
+  void seekp(uint64_t position) override { at_ = position; }
+
+ private:
+  std::vector<std::byte>& bytes_;
+  uint64_t at_ = 0;
+};
+
 }  // namespace
+
+Result<Bytes> encode_exr(const Image& image, const ImageMetadata& metadata, bool half) {
+  if (const Status status = check(image, metadata); !status) {
+    return status.error().in("cannot write a picture");
+  }
+  auto bytes = std::make_shared<std::vector<std::byte>>();
+  try {
+    MemoryOStream stream(*bytes);
+    write(stream, image, metadata, half);
+  } catch (const std::exception& e) {
+    return Error{std::string("cannot write a picture: ") + e.what()};
+  }
+  const std::span<const std::byte> view(*bytes);
+  return Bytes(std::move(bytes), view);
+}
 
 Status write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata,
                  bool half) {
@@ -105,7 +144,8 @@ Status write_exr(const std::string& path, const Image& image, const ImageMetadat
   }
   return replace_file(path, [&](const std::string& temporary) -> Status {
     try {
-      write(temporary, image, metadata, half);
+      const char* const name = temporary.c_str();
+      write(name, image, metadata, half);
       return {};
     } catch (const std::exception& e) {
       return Error{"cannot write " + path + ": " + e.what()};

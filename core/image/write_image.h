@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/base/result.h"
 #include "core/image/icc_profile.h"
 #include "core/image/image.h"
@@ -28,6 +29,9 @@ struct CodeOptions {
 /// The file is complete or absent: written to a temporary name, synced, renamed.
 Status write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata = {},
                  bool half = false);
+
+/// The same file in memory.
+Result<Bytes> encode_exr(const Image& image, const ImageMetadata& metadata = {}, bool half = false);
 
 /// Writes a PNG of channels R, G, B and, where there, A (straight), or else of Y; other channels
 /// are left out. Values are already display-encoded, 0..1, clamped and rounded to nearest (NaN to

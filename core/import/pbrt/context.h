@@ -1,0 +1,76 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "core/import/pbrt/scene.h"
+#include "core/import/pbrt/spectra.h"
+#include "core/import/scene_source.h"
+#include "core/job/yaml_build.h"
+
+namespace hyades::core::pbrt {
+
+/// A scene with the files that must be read to say it.
+struct LoadedScene {
+  Scene scene;
+  std::unordered_map<std::string, Spectrum> spectra;     ///< of .spd files, by their names
+  std::unordered_map<std::string, Bytes> files;          ///< what made files are made from
+  std::unordered_map<std::string, std::string> missing;  ///< why a file is not in `files`
+};
+
+/// Names that the job language takes, each given once.
+class Names {
+ public:
+  /// `prefix` and a '.' before all of them, where it is not empty.
+  explicit Names(std::string prefix);
+
+  /// A name as near to `wish` as can be.
+  std::string take(const std::string& wish);
+
+ private:
+  std::string prefix_;
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, size_t> counts_;
+};
+
+/// What is shared while a scene is put into the job language.
+struct Context {
+  Context(const LoadedScene& scene, const SceneRequest& request);
+
+  const LoadedScene& loaded;
+  const Scene& scene;
+  const SceneRequest& request;
+  Report report;
+
+  /// From the file's world to the job's: the identity, or what mirrors x. See docs/import.md.
+  Mat4d to_job{1.0};
+  /// What the film multiplies all light by (its sensor's exposure); lights take it over.
+  float exposure = 1.0F;
+
+  Names texture_names, material_names, medium_names, light_names;
+  YamlMap textures, materials, media, lights;
+
+  /// "beside" put before the reference of a file that the scene names; its path is checked. Empty,
+  /// and an error of the report, where it is none.
+  std::string beside(const std::string& reference, const Place& place);
+};
+
+/// The parameters of one thing of the scene.
+ParameterReader read(Context& context, const Entity& entity);
+
+/// What a colour is for: another white counts.
+enum class ColorUse { light, surface };
+
+/// The colour that a parameter of type rgb, spectrum or blackbody says; spectra of light have
+/// luminance 1. An error of the report, and nothing, where it says none.
+std::optional<Rgb> color_of(Context& context, const Parameter& parameter, ColorUse use);
+
+/// One number where all channels are the same.
+YamlPtr color_node(const Rgb& color);
+
+/// {matrix: ...} in a list, or simpler steps that do the same; null where nothing moves.
+YamlPtr transform_node(const Mat4d& m);
+
+}  // namespace hyades::core::pbrt

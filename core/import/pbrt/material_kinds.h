@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/import/pbrt/materials.h"
+
+namespace hyades::core::pbrt {
+
+struct MadeMaterial {
+  YamlPtr node;  ///< null: it cannot be made, and the report says why
+  std::string interior;
+  bool is_interface = false;
+};
+
+/// Makes one material of the scene in the job language.
+class MaterialKinds {
+ public:
+  MaterialKinds(Materials& materials, Context& context, Textures& textures, const Entity& entity,
+                std::string wish);
+
+  MadeMaterial make(const std::string& type);
+
+ private:
+  YamlPtr coated_conductor();
+  YamlPtr coated_diffuse();
+  YamlPtr conductor();
+  YamlPtr dielectric();
+  YamlPtr diffuse();
+  YamlPtr diffuse_transmission();
+  YamlPtr hair();
+  YamlPtr interface();
+  YamlPtr measured();
+  YamlPtr mix();
+  YamlPtr subsurface();
+  YamlPtr thin_dielectric();
+
+  /// Roughness as the job language has it, whose square is alpha; null where the surface is smooth.
+  YamlPtr roughness(const std::string& prefix);
+  float index(const char* name, float otherwise);
+  /// Adds eta and k, metal or color; those of metal are divided by `around`, the index outside.
+  void put_metal(YamlMap& out, const std::string& prefix, float around);
+  void put_layer_medium_note();
+  /// Another material that this one is made of.
+  std::string part(const char* name, const YamlPtr& node);
+  void put_bumps(YamlMap& out);
+  void note(const std::string& what);
+
+  Materials& materials_;
+  Context& context_;
+  Textures& textures_;
+  const Entity& entity_;
+  std::string wish_;
+  ParameterReader reader_;
+  std::string interior_;
+  bool remap_ = true;
+};
+
+}  // namespace hyades::core::pbrt

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/assets.h"
+
+namespace hyades::core::pbrt {
+
+/// Opens the files that a scene names. All are named relative to the folder of the scene's main
+/// file, and lie in it or below.
+class SceneFiles {
+ public:
+  SceneFiles(AssetResolver& files, std::string main);
+
+  /// The reference with "." and ".." folded away, relative to the scene's folder; an error where it
+  /// leaves it.
+  static Result<std::string> inside(const std::string& reference);
+
+  /// The bytes of a file beside the scene's; unpacked where they are gzip's, to kMostUnpacked at
+  /// most.
+  Result<Bytes> open(const std::string& reference) const;
+  bool exists(const std::string& reference) const;
+  const std::string& main() const { return main_; }
+
+  static constexpr size_t kMostUnpacked = size_t{4} << 30;
+
+ private:
+  AssetResolver& files_;
+  std::string main_;
+};
+
+/// The bytes themselves, or, where they begin as gzip's do, what they unpack to.
+Result<Bytes> without_gzip(const Bytes& bytes, size_t most);
+
+}  // namespace hyades::core::pbrt

@@ -1,0 +1,184 @@
+#include "core/import/pbrt/spectra.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/import/pbrt/color_space.h"
+#include "core/import/pbrt/read_parameters.h"
+
+namespace hyades::core::pbrt {
+namespace {
+
+constexpr double kFirst = 360.0;
+constexpr double kLast = 830.0;
+
+/// A bell with another width on either side.
+double lobe(double wavelength, double height, double mean, double left, double right) {
+  const double t = (wavelength - mean) * (wavelength < mean ? left : right);
+  return height * std::exp(-0.5 * t * t);
+}
+
+/// x, y and z of the observer (Wyman et al. 2013, listing 1).
+Vec3d observer(double w) {
+  return {lobe(w, 0.362, 442.0, 0.0624, 0.0374) + lobe(w, 1.056, 599.8, 0.0264, 0.0323) -
+              lobe(w, 0.065, 501.1, 0.0490, 0.0382),
+          lobe(w, 0.821, 568.8, 0.0213, 0.0247) + lobe(w, 0.286, 530.9, 0.0613, 0.0322),
+          lobe(w, 1.217, 437.0, 0.0845, 0.0278) + lobe(w, 0.681, 459.0, 0.0385, 0.0725)};
+}
+
+/// D65 from 380 to 780 nm by tens (CIE S 014-2).
+constexpr std::array<double, 41> kD65 = {
+    49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.86, 117.01, 117.81, 114.86, 115.92,
+    108.81, 109.35, 107.80, 104.79, 107.69, 104.41, 104.05, 100.00, 96.33,  95.79,  88.69,
+    90.01,  89.60,  87.70,  83.29,  83.70,  80.03,  80.21,  82.28,  78.28,  69.72,  71.61,
+    74.35,  61.60,  69.89,  75.09,  63.59,  46.42,  66.81,  63.38};
+
+double d65(double w) {
+  const double at = std::clamp((w - 380.0) / 10.0, 0.0, 40.0);
+  const auto i = std::min(static_cast<size_t>(at), kD65.size() - 2);
+  return std::lerp(kD65[i], kD65[i + 1], at - static_cast<double>(i));
+}
+
+Rgb without_negatives(const Vec3d& c) { return {glm::max(c, Vec3d(0.0))}; }
+
+struct Named {
+  std::string_view name;
+  double x, y;
+};
+
+constexpr std::array<Named, 16> kLights = {{{"stdillum-A", 0.44757, 0.40745},
+                                            {"stdillum-D50", 0.34567, 0.35850},
+                                            {"stdillum-D65", 0.31270, 0.32900},
+                                            {"stdillum-F1", 0.31310, 0.33727},
+                                            {"stdillum-F2", 0.37208, 0.37529},
+                                            {"stdillum-F3", 0.40910, 0.39430},
+                                            {"stdillum-F4", 0.44018, 0.40329},
+                                            {"stdillum-F5", 0.31379, 0.34531},
+                                            {"stdillum-F6", 0.37790, 0.38835},
+                                            {"stdillum-F7", 0.31292, 0.32933},
+                                            {"stdillum-F8", 0.34588, 0.35875},
+                                            {"stdillum-F9", 0.37417, 0.37281},
+                                            {"stdillum-F10", 0.34609, 0.35986},
+                                            {"stdillum-F11", 0.38052, 0.37713},
+                                            {"stdillum-F12", 0.43695, 0.40441},
+                                            {"illum-acesD60", 0.32168, 0.33767}}};
+
+struct Glass {
+  std::string_view name;
+  float index;
+};
+
+/// glass-F5, -F10 and -F11 are pbrt's names of SF5, SF10 and SF11.
+constexpr std::array<Glass, 7> kGlasses = {{{"glass-BK7", 1.5168F},
+                                            {"glass-BAF10", 1.6700F},
+                                            {"glass-FK51A", 1.4866F},
+                                            {"glass-LASF9", 1.8503F},
+                                            {"glass-F5", 1.6727F},
+                                            {"glass-F10", 1.7283F},
+                                            {"glass-F11", 1.7847F}}};
+
+/// Magnesium oxide: Stephens and Malitson 1952; titanium dioxide (rutile, ordinary ray): Devore
+/// 1951; both at 600, 550 and 450 nm.
+constexpr std::array<NamedMetal, 7> kMetals = {{{"Ag", "silver"},
+                                                {"Al", "aluminium"},
+                                                {"Au", "gold"},
+                                                {"Cu", "copper"},
+                                                {"CuZn", "brass"},
+                                                {"MgO", "", Rgb(1.7367F, 1.7405F, 1.7524F)},
+                                                {"TiO2", "", Rgb(2.6049F, 2.6479F, 2.8126F)}}};
+
+}  // namespace
+
+double Spectrum::at(double wavelength) const {
+  if (wavelengths.empty() || wavelength < wavelengths.front() || wavelength > wavelengths.back()) {
+    return 0.0;
+  }
+  const auto above = std::upper_bound(wavelengths.begin(), wavelengths.end(), wavelength);
+  if (above == wavelengths.end()) return values.back();
+  const auto i = static_cast<size_t>(above - wavelengths.begin());
+  const double u = (wavelength - wavelengths[i - 1]) / (wavelengths[i] - wavelengths[i - 1]);
+  return std::lerp(values[i - 1], values[i], u);
+}
+
+Result<Spectrum> spectrum_of_pairs(const std::vector<float>& numbers) {
+  if (numbers.size() % 2 != 0) return Error{"a spectrum needs pairs of wavelength and value"};
+  Spectrum out;
+  for (size_t i = 0; i < numbers.size(); i += 2) {
+    const auto wavelength = static_cast<double>(numbers[i]);
+    if (!out.wavelengths.empty() && !(wavelength > out.wavelengths.back())) {
+      return Error{"the wavelengths of a spectrum must grow"};
+    }
+    out.wavelengths.push_back(wavelength);
+    out.values.push_back(static_cast<double>(numbers[i + 1]));
+  }
+  if (out.values.empty()) return Error{"the spectrum is empty"};
+  return out;
+}
+
+Result<Spectrum> read_spd(std::string_view text) {
+  Tokenizer tokens(text, {});
+  std::vector<float> numbers;
+  for (Token token = tokens.next(); token.kind != Token::Kind::end; token = tokens.next()) {
+    const auto number = token.kind == Token::Kind::word ? number_of(token.text) : std::nullopt;
+    if (!number || !std::isfinite(static_cast<float>(*number))) {
+      return Error{std::to_string(token.line) + ":" + std::to_string(token.column) +
+                   ": expected a number"};
+    }
+    numbers.push_back(static_cast<float>(*number));
+  }
+  return spectrum_of_pairs(numbers);
+}
+
+Rgb light_color(const Spectrum& spectrum) {
+  Vec3d xyz(0.0);
+  for (double w = kFirst; w <= kLast; w += 1.0) xyz += spectrum.at(w) * observer(w);
+  if (!(xyz.y > 0.0)) return Rgb(0.0F);
+  return without_negatives(rec709_from_xyz(xyz / xyz.y));
+}
+
+Rgb surface_color(const Spectrum& spectrum) {
+  Vec3d seen(0.0);
+  Vec3d white(0.0);
+  for (double w = kFirst; w <= kLast; w += 1.0) {
+    const Vec3d weight = rec709_from_xyz(d65(w) * observer(w));
+    seen += spectrum.at(w) * weight;
+    white += weight;
+  }
+  return without_negatives(seen / white);
+}
+
+std::optional<Rgb> named_light(std::string_view name) {
+  for (const Named& light : kLights) {
+    if (light.name == name) {
+      return without_negatives(rec709_from_xyz(xyz_of_chromaticity(light.x, light.y)));
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<float> named_glass(std::string_view name) {
+  for (const Glass& glass : kGlasses) {
+    if (glass.name == name) return glass.index;
+  }
+  return std::nullopt;
+}
+
+std::optional<NamedMetal> named_metal(std::string_view name) {
+  if (!name.starts_with("metal-")) return std::nullopt;
+  const bool is_k = name.ends_with("-k");
+  if (!is_k && !name.ends_with("-eta")) return std::nullopt;
+  const std::string_view formula = name.substr(6, name.rfind('-') - 6);
+  for (NamedMetal metal : kMetals) {
+    if (metal.formula != formula) continue;
+    metal.is_k = is_k;
+    return metal;
+  }
+  return std::nullopt;
+}
+
+bool is_named_spectrum(std::string_view name) {
+  return named_light(name) || named_glass(name) || named_metal(name);
+}
+
+}  // namespace hyades::core::pbrt
