@@ -64,6 +64,32 @@ void add_spot(Context& context, const LightEntity& light, ParameterReader& reade
                          .node());
 }
 
+/// Stands in for lights whose pictures say how much goes where.
+void add_pictured(Context& context, const LightEntity& light, ParameterReader& reader) {
+  reader.text("filename");
+  if (light.type == "goniometric") {
+    context.report.note(light.place, "a goniometric light shines alike in all directions");
+    add_point(context, light, reader);
+    return;
+  }
+  context.report.note(light.place, "a projection becomes a spotlight without its picture");
+  const float angle = std::clamp(0.5F * reader.number("fov", 90.0F), 1.0F, 90.0F);
+  Rgb intensity = Rgb(reader.number("scale", 1.0F) * context.exposure);
+  if (const float power = reader.number("power", -1.0F); power > 0.0F) {
+    intensity *= power / (2.0F * kPi * (1.0F - std::cos(angle * kPi / 180.0F)));
+  }
+  context.lights.put(
+      context.light_names.take("projection"),
+      YamlMap{{"type", yaml_word("spot")},
+              {"at", yaml_vector(place_of(context, light, Vec3d(0.0)))},
+              {"look_at", yaml_vector(place_of(context, light, Vec3d(0.0, 0.0, 1.0)))},
+              {"color", color_node(intensity)},
+              {"power", yaml_number(kAllRound)},
+              {"angle", yaml_number(angle)},
+              {"blend", yaml_number(0.0F)}}
+          .node());
+}
+
 void add_distant(Context& context, const LightEntity& light, ParameterReader& reader) {
   Rgb irradiance = light_value(context, light, reader, "L");
   if (const float target = reader.number("illuminance", -1.0F); target > 0.0F) irradiance *= target;
@@ -101,6 +127,8 @@ void add_lights(Context& context, YamlMap& out) {
       add_point(context, light, reader);
     } else if (light.type == "spot") {
       add_spot(context, light, reader);
+    } else if (light.type == "goniometric" || light.type == "projection") {
+      add_pictured(context, light, reader);
     } else if (light.type == "distant") {
       add_distant(context, light, reader);
     } else {

@@ -2,23 +2,11 @@
 
 #include <algorithm>
 
-#include "core/base/text.h"
-#include "core/job/measured_media.h"
+#include "core/import/pbrt/coefficients.h"
+#include "core/import/pbrt/grid_media.h"
 
 namespace hyades::core::pbrt {
 namespace {
-
-constexpr float kPerMillimetre = 1e-3F;
-
-Rgb coefficient(Context& context, ParameterReader& reader, const char* name, const Rgb& otherwise) {
-  const Parameter* p = reader.find(name);
-  if (p == nullptr) return otherwise;
-  if (p->type == "texture") {
-    context.report.note(p->place, "textures of coefficients are left out");
-    return otherwise;
-  }
-  return color_of(context, *p, ColorUse::surface).value_or(otherwise);
-}
 
 /// Light that the medium gives off where it absorbs, before absorption counts.
 Rgb glow(Context& context, ParameterReader& reader) {
@@ -50,19 +38,6 @@ YamlPtr homogeneous(Context& context, ParameterReader& reader) {
 
 }  // namespace
 
-std::optional<Coefficients> measured_coefficients(Context& context, const std::string& name,
-                                                  const Place& place) {
-  const MeasuredMedium* medium = find_measured_medium(name);
-  if (medium == nullptr) {
-    context.report.error(place, "there is no measured medium '" + name + "'" +
-                                    did_you_mean(name, measured_medium_names()));
-    return std::nullopt;
-  }
-  // Where g was measured it is part of what scatters: what counts with g = 0 is the rest.
-  const Rgb reduced = medium->scattering * (Rgb(1.0F) - medium->g);
-  return Coefficients{medium->absorption * kPerMillimetre, reduced * kPerMillimetre};
-}
-
 std::string add_subsurface_medium(Context& context, ParameterReader& material, float scale, float g,
                                   const std::string& wish) {
   Coefficients c{Rgb(0.0011F, 0.0024F, 0.014F), Rgb(2.55F, 3.21F, 3.77F)};
@@ -88,26 +63,32 @@ Media::Media(Context& context) : context_(context) {
   }
 }
 
-std::string Media::named(const std::string& name, const Place& place) {
+std::string Media::named(const std::string& name, const Mat4d& body, const Place& place) {
   if (name.empty()) return {};
   const auto found = by_name_.find(name);
   if (found == by_name_.end()) {
     context_.report.error(place, "there is no medium '" + name + "'");
     return {};
   }
-  const auto [known, is_new] = written_.emplace(name, std::string());
-  if (!is_new) return known->second;
   const NamedEntity& entity = context_.scene.media[found->second];
-  ParameterReader reader(entity.parameters, entity.place, context_.report);
+  ParameterReader reader = read(context_, entity);
   const std::string type = reader.text("type");
+  std::string key = name;
+  if (is_grid_medium(type)) {
+    key.append(1, '\0').append(reinterpret_cast<const char*>(&body), sizeof(body));
+  }
+  const auto [known, is_new] = written_.emplace(key, std::string());
+  if (!is_new) return known->second;
   YamlPtr made;
   if (type == "homogeneous") {
     made = homogeneous(context_, reader);
+    reader.note_unused();
+  } else if (is_grid_medium(type)) {
+    made = grid_medium_node(context_, found->second, body);
   } else {
     context_.report.error(entity.place, "there is no medium of type '" + type + "'");
-    return {};
   }
-  reader.note_unused();
+  if (made == nullptr) return {};
   known->second = context_.medium_names.take(name);
   context_.media.put(known->second, made);
   return known->second;

@@ -1,6 +1,7 @@
 #include "core/import/pbrt/read_pbrt.h"
 
 #include "core/import/pbrt/camera.h"
+#include "core/import/pbrt/grid_media.h"
 #include "core/import/pbrt/lights.h"
 #include "core/import/pbrt/read_scene_text.h"
 #include "core/import/pbrt/render_sections.h"
@@ -113,6 +114,7 @@ class PbrtSource : public SceneSource {
 
   Result<Bytes> made_file(const std::string& name) const override {
     if (name == "sky.exr") return make_sky(loaded_);
+    if (name.starts_with("media/")) return make_medium_file(loaded_, name.substr(6));
     if (name.starts_with("meshes/")) return make_mesh_file(loaded_, name.substr(7));
     return Error{"the scene makes no file '" + name + "'"};
   }

@@ -149,7 +149,7 @@ YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::strin
     }
     object.put("material", yaml_text(used));
     if (shape.inside != shape.outside || !material.interior.empty()) {
-      std::string inside = media_.named(shape.inside, shape.place);
+      std::string inside = media_.named(shape.inside, shape.to_world.at[0] * before, shape.place);
       if (!material.interior.empty()) inside = material.interior;
       if (!inside.empty()) object.put("interior", yaml_text(inside));
     }
@@ -170,7 +170,8 @@ void add_objects(Context& context, Textures& textures, YamlMap& out) {
   Materials materials(context, textures);
   Media media(context);
   if (!context.scene.camera_medium.empty()) {
-    const std::string around = media.named(context.scene.camera_medium, context.scene.camera.place);
+    const std::string around =
+        media.named(context.scene.camera_medium, Mat4d(1.0), context.scene.camera.place);
     if (!around.empty()) out.put("atmosphere", yaml_text(around));
   }
   Shapes shapes(context, materials, textures, media);

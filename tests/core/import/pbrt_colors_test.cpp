@@ -1,0 +1,174 @@
+// Colours and spectra of pbrt's scenes, and its pictures of the sky.
+
+#include "core/base/color.h"
+#include "core/image/read_image.h"
+#include "core/image/write_image.h"
+#include "core/import/pbrt/color_space.h"
+#include "core/import/pbrt/sky.h"
+#include "core/import/pbrt/spectra.h"
+#include "tests/core/import/pbrt_files.h"
+
+namespace hyades::test {
+namespace {
+
+using namespace core::pbrt;  // NOLINT: what is tested
+using core::Rgb;
+using core::Vec3d;
+using ::testing::HasSubstr;
+
+void expect_near(const Rgb& found, const Rgb& expected, float tolerance) {
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], tolerance) << c;
+}
+
+Spectrum constant(float value) { return *spectrum_of_pairs({300.0F, value, 900.0F, value}); }
+
+TEST(PbrtColors, AConstantReflectanceIsGrey) {
+  expect_near(surface_color(constant(0.3F)), Rgb(0.3F), 1e-5F);
+}
+
+TEST(PbrtColors, LightHasLuminanceOneWhateverItsNumbers) {
+  const Rgb equal = light_color(constant(17.0F));
+  EXPECT_NEAR(core::luminance(equal), 1.0F, 1e-3F);
+  // Equal energy is x = y = 1/3: redder than D65.
+  expect_near(equal, Rgb(1.205F, 0.948F, 0.909F), 0.02F);
+}
+
+TEST(PbrtColors, ABlackBodyAsASpectrumIsTheSameColor) {
+  std::vector<float> pairs;
+  for (int nm = 360; nm <= 830; nm += 5) {
+    pairs.push_back(static_cast<float>(nm));
+    pairs.push_back(
+        static_cast<float>(1e15 / (std::pow(nm, 5.0) * std::expm1(1.4387769e7 / nm / 4000))));
+  }
+  expect_near(light_color(*spectrum_of_pairs(pairs)), core::blackbody_color(4000.0F), 2e-3F);
+}
+
+TEST(PbrtColors, SpacesAreConverted) {
+  // ITU-R BT.2087: pure Rec.2020 green lies outside of Rec.709.
+  const Rgb green = light_from_rgb(*find_rgb_space("REC2020"), Vec3d(0.0, 1.0, 0.0));
+  EXPECT_EQ(green.x, 0.0F);
+  EXPECT_NEAR(green.y, 1.1329F, 1e-3F);
+  expect_near(light_from_rgb(*find_rgb_space("rec2020"), Vec3d(1.0)), Rgb(1.0F), 1e-5F);
+  // Its white is that of D60, which is reddish; surfaces of (1, 1, 1) are white under any light.
+  EXPECT_GT(light_from_rgb(*find_rgb_space("aces2065-1"), Vec3d(1.0)).x, 1.02F);
+  expect_near(surface_from_rgb(*find_rgb_space("aces2065-1"), Vec3d(0.4)), Rgb(0.4F), 1e-5F);
+  EXPECT_EQ(find_rgb_space("xyz"), nullptr);
+}
+
+TEST(PbrtColors, NamedSpectra) {
+  expect_near(*named_light("stdillum-D65"), Rgb(1.0F), 2e-3F);
+  EXPECT_GT(named_light("stdillum-A")->x, 2.0F * named_light("stdillum-A")->z);
+  EXPECT_NEAR(*named_glass("glass-BK7"), 1.5168F, 1e-4F);
+  EXPECT_TRUE(named_metal("metal-Au-k")->is_k);
+  EXPECT_FALSE(named_metal("metal-Xx-k"));
+  EXPECT_FALSE(is_named_spectrum("light.spd"));
+}
+
+TEST(PbrtColors, SpectraFromFiles) {
+  PbrtFiles files(pbrt_world("LightSource \"infinite\" \"spectrum L\" \"a.spd\""));
+  files.add("a.spd", "# a lamp\n400 1\n500 2 # more\n700 1");
+  EXPECT_THAT(read_pbrt_job(files).text, HasSubstr("environment: {color: ["));
+  files.add("a.spd", "400 1 300 2");
+  EXPECT_THAT(read_pbrt_job(files).error, HasSubstr("must grow"));
+  files.add("a.spd", "400 one");
+  EXPECT_THAT(read_pbrt_job(files).error, HasSubstr("1:5: expected a number"));
+}
+
+TEST(PbrtColors, MetalsAndTheirReflectance) {
+  const auto material = [](const char* text) {
+    return pbrt_job(pbrt_world(std::string("Material \"conductor\" ") + text + " Shape \"sphere\""))
+        .text;
+  };
+  EXPECT_THAT(material(""), HasSubstr("metal: copper"));
+  EXPECT_THAT(material("\"spectrum eta\" \"metal-Ag-eta\" \"spectrum k\" \"metal-Ag-k\""),
+              HasSubstr("metal: silver"));
+  // k = 2 sqrt(r / (1 - r))
+  EXPECT_THAT(material("\"rgb reflectance\" [.5 .5 .5]"), HasSubstr("eta: 1, k: 2"));
+}
+
+TEST(PbrtSky, TheSquareIsTheSphere) {
+  for (const auto& [place, direction] : {std::pair(glm::dvec2(0.5, 0.5), Vec3d(0, 0, 1)),
+                                         {{0.0, 0.0}, Vec3d(0, 0, -1)},
+                                         {{1.0, 0.5}, Vec3d(1, 0, 0)},
+                                         {{0.5, 0.0}, Vec3d(0, -1, 0)}}) {
+    EXPECT_NEAR(glm::length(equal_area_direction(place) - direction), 0.0, 1e-9);
+  }
+  // Equal areas: the mean of z^2 is that of the sphere.
+  double mean = 0.0;
+  constexpr int kSide = 64;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const glm::dvec2 place((x + 0.5) / kSide, (y + 0.5) / kSide);
+      const Vec3d d = equal_area_direction(place);
+      EXPECT_NEAR(glm::length(d), 1.0, 1e-9);
+      EXPECT_NEAR(glm::length(equal_area_square(d) - place), 0.0, 1e-9);
+      mean += d.z * d.z / (kSide * kSide);
+    }
+  }
+  EXPECT_NEAR(mean, 1.0 / 3.0, 1e-3);
+}
+
+/// An equal-area picture, red where the light's x is above 0, green where y, blue where z.
+std::string octants() {
+  core::Image image = core::make_image(32, 32, {"R", "G", "B"});
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      const Vec3d d = equal_area_direction({(x + 0.5) / 32, (y + 0.5) / 32});
+      for (int c = 0; c < 3; ++c) image.at(x, y, c) = d[c] > 0.0 ? 1.0F : 0.0F;
+    }
+  }
+  const auto bytes = core::encode_exr(image);
+  return {bytes->chars(), bytes->size()};
+}
+
+TEST(PbrtSky, PicturesBecomePanoramas) {
+  PbrtFiles files(
+      pbrt_world("AttributeBegin Rotate 90 0 1 0 LightSource \"infinite\" "
+                 "\"string filename\" \"sky.exr\" \"float scale\" 2 AttributeEnd "
+                 "LightSource \"infinite\" \"rgb L\" [.5 .5 .5]"));
+  files.add("sky.exr", octants());
+  core::SceneRequest request;
+  request.made = "made/";
+  const PbrtJob job = read_pbrt_job(files, request);
+  ASSERT_EQ(job.error, "");
+  EXPECT_THAT(job.text, HasSubstr("environment: {image: made/sky.exr}"));
+  const auto bytes = job.source->made_file("sky.exr");
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message;
+  const auto image = core::read_image(*bytes, "sky.exr");
+  ASSERT_TRUE(image.ok());
+  EXPECT_EQ(image->width, 64);
+  EXPECT_EQ(image->height, 32);
+  // A quarter turn about y brings the light's x to -z and its z to x, and x is mirrored.
+  for (const Vec3d d : {Vec3d(0.5, 0.5, 0.7), Vec3d(-0.5, 0.5, 0.7), Vec3d(0.6, -0.5, -0.6)}) {
+    const Vec3d world(-d.x, d.y, d.z);
+    const Vec3d light(-world.z, world.y, world.x);
+    const double u = std::atan2(d.z, d.x) / (2.0 * 3.14159265358979) + 0.5;
+    const double v = std::acos(d.y / glm::length(d)) / 3.14159265358979;
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(image->at(static_cast<int>(u * 64), static_cast<int>(v * 32), c),
+                  0.5F + (light[c] > 0.0 ? 2.0F : 0.0F), 1e-3F)
+          << c;
+    }
+  }
+}
+
+TEST(PbrtSky, IlluminanceIsOfLevelGround) {
+  PbrtFiles files(pbrt_world("LightSource \"infinite\" \"rgb L\" [3 3 3] \"float illuminance\" 2"));
+  // L = 3 E / pi: as pbrt has it, colours scale what is asked for.
+  EXPECT_THAT(read_pbrt_job(files).text, HasSubstr("environment: {color: 1.909859"));
+}
+
+TEST(PbrtSky, MissingAndUnfitPictures) {
+  PbrtFiles files(pbrt_world("LightSource \"infinite\" \"string filename\" \"sky.exr\""));
+  const PbrtJob missing = read_pbrt_job(files);
+  EXPECT_THAT(missing.source->made_file("sky.exr").error().message,
+              HasSubstr("scene.pbrt:5:1: cannot open 'sky.exr'"));
+  core::Image wide = core::make_image(4, 2, {"R", "G", "B"});
+  const auto bytes = core::encode_exr(wide);
+  files.add("sky.exr", {bytes->chars(), bytes->size()});
+  EXPECT_THAT(read_pbrt_job(files).source->made_file("sky.exr").error().message,
+              HasSubstr("is not square"));
+}
+
+}  // namespace
+}  // namespace hyades::test
