@@ -83,7 +83,8 @@ int bench_command(int argc, char** argv) {
   uint32_t samples = 0;
   auto* command =
       app.add_subcommand("scaling", "renders the first frame of a job with 1..N threads");
-  command->add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->capture_default_str();
+  command->add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")
+      ->capture_default_str();
   command->add_option("--threads", threads, "most threads")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

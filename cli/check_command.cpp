@@ -102,16 +102,18 @@ int check_command(int argc, char** argv) {
   std::string path;
   std::string curve;
   bool no_probe = false;
-  app.add_option("job", path, "the job (.yaml) or mesh (.obj, .ply)")->required();
+  app.add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")->required();
   app.add_option("--curve", curve,
                  "print this value of the job over its frames instead: camera.fov, "
                  "objects.NAME.at, objects.NAME.transform[0].rotate_y, materials.NAME.color, ...");
   app.add_flag("--no-probe", no_probe, "do not render a few pixels to estimate the time");
   app.footer(
       "example:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
+  SceneOptions how;
+  declare_scene_options(app, how);
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   core::Diagnostics diagnostics;
-  auto loaded = read_job_file(path, diagnostics);
+  auto loaded = read_job_file(path, diagnostics, how);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;
   core::SceneCache cache(*loaded->assets);

@@ -1,79 +1,39 @@
 #include "cli/load_job.h"
 
 #include <cstdio>
-#include <filesystem>
+#include <utility>
 
 #include "cli/frame_range.h"
-#include "cli/mesh_job.h"
 #include "core/job/parse.h"
 
 namespace hyades::cli {
 
 using core::Diagnostics;
 
-namespace {
-
-/// What `path` is called from `folder` on.
-std::string reference_from(const std::string& path, const std::string& folder) {
-  if (path.empty()) return path;
-  const auto normal = [](const std::filesystem::path& p) {
-    return std::filesystem::absolute(p).lexically_normal();
-  };
-  const std::filesystem::path from = normal(folder.empty() ? "." : folder + "/");
-  return normal(path).lexically_relative(from).string();
-}
-
-std::string folder_of(const std::string& path) {
-  const std::filesystem::path file(path);
-  return file.has_parent_path() ? file.parent_path().string() : ".";
-}
-
-}  // namespace
-
-bool is_mesh(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".obj" || extension == ".ply" || extension == ".OBJ" || extension == ".PLY";
-}
-
-core::Result<std::string> text_of_mesh_job(const std::string& mesh, const std::string& media,
-                                           const std::string& folder) {
-  const auto assets = core::make_file_resolver(folder);
-  return mesh_job_text({reference_from(mesh, folder), reference_from(media, folder)}, *assets);
-}
-
 std::optional<LoadedJob> read_job_file(const std::string& path, Diagnostics& diagnostics,
-                                       const std::string& media) {
-  LoadedJob loaded;
-  const std::string folder = folder_of(path);
-  loaded.files = core::make_file_resolver(folder);
-  loaded.assets = std::make_unique<core::RecordingResolver>(*loaded.files);
-  std::string text;
-  if (is_mesh(path)) {
-    auto made = text_of_mesh_job(path, media, folder);
-    if (!made) {
-      std::fprintf(stderr, "%s\n", made.error().message.c_str());
-      return std::nullopt;
-    }
-    text = *made;
-  } else if (!media.empty()) {
-    std::fprintf(stderr, "%s: --media is for meshes (.obj, .ply); a job names its media itself\n",
-                 path.c_str());
+                                       const SceneOptions& scene) {
+  auto files = core::JobFiles::open(path, job_file_options(scene));
+  if (!files) {
+    std::fprintf(stderr, "%s\n", files.error().message.c_str());
     return std::nullopt;
-  } else {
-    const auto bytes = loaded.files->open(std::filesystem::path(path).filename().string());
-    if (!bytes) {
-      std::fprintf(stderr, "%s\n", bytes.error().message.c_str());
-      return std::nullopt;
-    }
-    text.assign(bytes->chars(), bytes->size());
   }
-  loaded.job = core::parse_job(text, path, *loaded.assets, diagnostics);
+  LoadedJob loaded;
+  loaded.files = std::move(*files);
+  core::AssetResolver& door = loaded.files->files();
+  const auto text = door.open(loaded.files->document());
+  if (!text) {
+    std::fprintf(stderr, "%s\n", text.error().message.c_str());
+    return std::nullopt;
+  }
+  loaded.assets = std::make_unique<core::RecordingResolver>(door);
+  loaded.job = core::parse_job({text->chars(), text->size()}, path, *loaded.assets, diagnostics);
+  print_notes(*loaded.files);
   return loaded;
 }
 
-std::optional<LoadedJob> load_job(const std::string& path, const std::string& media) {
+std::optional<LoadedJob> load_job(const std::string& path, const SceneOptions& scene) {
   Diagnostics diagnostics;
-  auto loaded = read_job_file(path, diagnostics, media);
+  auto loaded = read_job_file(path, diagnostics, scene);
   if (!diagnostics.empty()) {
     std::fprintf(stderr, "%s\n", diagnostics.to_string().c_str());
     return std::nullopt;

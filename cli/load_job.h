@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/scene_options.h"
 #include "core/base/assets.h"
 #include "core/base/result.h"
 #include "core/job/job.h"
@@ -14,26 +15,19 @@ namespace hyades::cli {
 /// A job that has been read and found good, and the door to its files.
 struct LoadedJob {
   core::Job job;
-  std::unique_ptr<core::AssetResolver> files;
+  std::unique_ptr<core::JobFiles> files;
   std::unique_ptr<core::RecordingResolver> assets;  ///< over `files`; knows what was opened
 };
 
-/// Reads `path`: a job, or a mesh (.obj, .ply), which gets a camera, ground and sky that suit it;
-/// `media` is then a file of media for its materials, or empty. Prints every complaint to standard
-/// error and returns nothing where there is one.
-std::optional<LoadedJob> load_job(const std::string& path, const std::string& media = {});
+/// Reads `path`: a job, or a scene or mesh of another tool, which gets a camera, ground and sky
+/// that suit it where it has none. Prints what importers left out, and every complaint, to standard
+/// error and returns nothing where there is a complaint.
+std::optional<LoadedJob> load_job(const std::string& path, const SceneOptions& scene = {});
 
 /// The same without printing complaints about the job: they go to `diagnostics`, and what could be
-/// read is returned. Nothing (and a message) where there is no such file or the mesh is broken.
+/// read is returned. Nothing (and a message) where there is no such file or the scene is broken.
 std::optional<LoadedJob> read_job_file(const std::string& path, core::Diagnostics& diagnostics,
-                                       const std::string& media = {});
-
-/// The text of the job that a mesh is rendered as, whose files are relative to `folder`.
-core::Result<std::string> text_of_mesh_job(const std::string& mesh, const std::string& media,
-                                           const std::string& folder);
-
-/// Whether a path is a mesh's by its name.
-bool is_mesh(const std::string& path);
+                                       const SceneOptions& scene = {});
 
 /// Exit status of a command whose arguments or job were wrong.
 inline constexpr int kBadInput = 2;

@@ -23,8 +23,11 @@ struct Command {
 };
 
 constexpr Command kCommands[] = {
-    {"render", "hyades-render", "render a job (or a mesh file) on this machine"},
+    {"render", "hyades-render",
+     "render a job, or a scene or mesh of another tool, on this machine"},
     {"check", "hyades-render", "read a job, report every mistake in it, and what it would cost"},
+    {"import", "hyades-render",
+     "write a scene of another tool (.glb, .gltf, .pbrt, .obj, .ply) as a job"},
     {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
     {"strategies", "hyades-render",
      "what each strategy of bidirectional path tracing brings to a picture"},
@@ -72,7 +75,7 @@ void print_help() {
   std::printf(
       "\nexamples:\n"
       "  hyades render jobs/quickstart/job.yaml\n"
-      "  hyades render dragon.ply --samples 64\n"
+      "  hyades render robot.glb --samples 64\n"
       "  hyades check jobs/cornell/job.yaml\n"
       "\n'hyades COMMAND --help' tells more about a command. docs/job.md describes jobs.\n");
 }

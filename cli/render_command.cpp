@@ -46,27 +46,6 @@ void note_cut_chains(const RenderOptions& options, const core::Job& job) {
       core::kChainShare, core::kChainShare, stood_for / pixels, core::kChainShare);
 }
 
-/// Writes the job that the mesh is rendered as; the exit status.
-int save_job(const RenderOptions& options) {
-  if (!is_mesh(options.path)) {
-    std::fprintf(stderr, "%s: --save-job is for meshes (.obj, .ply)\n", options.path.c_str());
-    return kBadInput;
-  }
-  const std::string folder = std::filesystem::path(options.save_job).parent_path().string();
-  const auto text = text_of_mesh_job(options.path, options.media, folder);
-  if (!text) {
-    std::fprintf(stderr, "%s\n", text.error().message.c_str());
-    return kBadInput;
-  }
-  if (auto written = core::write_file(options.save_job, std::as_bytes(std::span(*text)));
-      !written) {
-    std::fprintf(stderr, "%s\n", written.error().message.c_str());
-    return 1;
-  }
-  if (!options.quiet) std::fprintf(stderr, "wrote %s\n", options.save_job.c_str());
-  return 0;
-}
-
 void print_bad_samples(const RunTotals& totals, const std::string& path) {
   if (totals.counters.bad_samples == 0) return;
   std::fprintf(stderr, "%s samples were %s and count as black. To see why:\n",
@@ -128,7 +107,6 @@ int render_command(int argc, char** argv) {
   const auto begin = std::filesystem::file_time_type::clock::now();
   RenderOptions options;
   if (const auto status = parse_render_options(argc, argv, options)) return *status;
-  if (!options.save_job.empty()) return save_job(options);
   auto loaded = load_for_render(options);
   if (!loaded) return kBadInput;
   const core::Job& job = loaded->job;

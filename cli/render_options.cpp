@@ -11,13 +11,12 @@
 namespace hyades::cli {
 
 std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& options) {
-  CLI::App app("Renders a job (or a mesh file) on this machine.", "hyades render");
-  app.add_option("job", options.path, "the job (.yaml) or mesh (.obj, .ply)")->required();
-  app.add_option("--media", options.media,
-                 "of a mesh: file of media (.json, .yaml) that fill its materials (usemtl) of the "
-                 "same names");
-  app.add_option("--save-job", options.save_job,
-                 "of a mesh: write the job that it is rendered as, and render nothing");
+  CLI::App app("Renders a job, or a scene or mesh of another tool, on this machine.",
+               "hyades render");
+  app.add_option("job", options.path,
+                 "the job (.yaml), or a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
+      ->required();
+  declare_scene_options(app, options.scene);
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
       ->check(no_frames_error);
@@ -53,7 +52,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       "  hyades render jobs/quickstart/job.yaml\n"
       "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
       "  hyades render jobs/atlas/job.yaml --preview\n"
-      "  hyades render dragon.ply --samples 64\n"
+      "  hyades render robot.glb --samples 64\n"
       "  hyades render bottles.obj --media media.json\n"
       "Ctrl-C stops; --resume continues, also after a crash.\n"
       "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
@@ -62,7 +61,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
 }
 
 std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
-  auto loaded = load_job(options.path, options.media);
+  auto loaded = load_job(options.path, options.scene);
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
   if (options.preview > 0) make_preview(job, options.preview);

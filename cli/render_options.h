@@ -17,8 +17,7 @@ struct RenderOptions {
   std::string path;
   std::string frames;
   std::string folder = ".";
-  std::string media;
-  std::string save_job;
+  SceneOptions scene;
   int threads = core::hardware_threads();
   uint32_t samples = 0;
   uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for

@@ -1,7 +1,5 @@
 #include "farm/job_package.h"
 
-#include <filesystem>
-
 #include "core/job/parse.h"
 
 namespace hyades::farm {
@@ -22,14 +20,12 @@ Result<ReadJob> read_job(const std::string& document, const std::string& shown,
   return read;
 }
 
-Result<JobPackage> package_job(const std::string& path) {
-  const std::filesystem::path file(path);
+Result<JobPackage> package_job(const std::string& document, const std::string& shown,
+                               core::AssetResolver& files) {
   JobPackage package;
-  package.folder = file.has_parent_path() ? file.parent_path().string() : ".";
-  package.document = file.filename().string();
-  const auto files = core::make_file_resolver(package.folder);
-  core::RecordingResolver recorder(*files);
-  auto read = read_job(package.document, path, recorder);
+  package.document = document;
+  core::RecordingResolver recorder(files);
+  auto read = read_job(document, shown, recorder);
   if (!read) return read.error();
   package.job = std::move(read->job);
   package.files = recorder.records();

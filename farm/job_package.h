@@ -25,14 +25,15 @@ core::Result<ReadJob> read_job(const std::string& document, const std::string& s
 /// A job made ready to travel.
 struct JobPackage {
   core::Job job;
-  std::string folder;                    ///< where relative references of `files` begin
   std::string document;                  ///< which of `files` is the YAML
   std::vector<core::AssetRecord> files;  ///< the document, then what the loaders opened, in order
 };
 
-/// Reads the job at `path` and finds every file that any of its frames needs, by letting the job's
-/// reader open them through a recording resolver: included files, meshes, textures, skies. Each is
-/// hashed, none is decoded, as no format that Hyades reads names further files.
-core::Result<JobPackage> package_job(const std::string& path);
+/// Reads the job whose YAML is file `document` of `files` and finds every file that any of its
+/// frames needs, by letting the job's reader open them through a recording resolver: included
+/// files, meshes, textures, skies. Each is hashed, none is decoded, as no format that Hyades reads
+/// names further files. `shown` is what complaints call the document.
+core::Result<JobPackage> package_job(const std::string& document, const std::string& shown,
+                                     core::AssetResolver& files);
 
 }  // namespace hyades::farm

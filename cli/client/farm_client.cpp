@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -353,15 +352,13 @@ Outcome FarmClient::find_missing(const v1::FindMissingRequest& request,
   return state_->call(*state_->assets, &v1::Assets::Stub::FindMissing, request, response);
 }
 
-Outcome FarmClient::upload(const core::AssetRecord& file, const std::string& path, uint64_t offset,
+Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, uint64_t offset,
                            const std::function<void(uint64_t)>& on_progress) {
   const auto digest = farm::digest_from_hex(file.sha256);
   if (!digest) return Failure{kFailed, digest.error().message};
-  const Failure changed{kFailed, path + " changed while it was being sent: submit again"};
-  // Read, not mapped: a file that shrinks must not end the program.
-  std::ifstream input(path, std::ios::binary);
+  const Failure changed{kFailed, file.reference + " changed while it was being sent: submit again"};
   input.seekg(static_cast<std::streamoff>(offset));
-  if (!input) return Failure{kFailed, path + ": cannot be read"};
+  if (!input) return Failure{kFailed, file.reference + ": cannot be read"};
 
   grpc::ClientContext context;
   farm::prepare(context, state_->token, transfer_time(file.size));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <istream>
 #include <memory>
 #include <string>
 
@@ -61,9 +62,9 @@ class FarmClient {
 
   Outcome find_missing(const v1::FindMissingRequest& request, v1::FindMissingResponse& response);
 
-  /// One try to send the file at `path`, known as `file`, from `offset` on. `on_progress` hears how
-  /// many more bytes have gone.
-  Outcome upload(const core::AssetRecord& file, const std::string& path, uint64_t offset,
+  /// One try to send `input`, the bytes of `file`, from `offset` on. `on_progress` hears how many
+  /// more bytes have gone.
+  Outcome upload(const core::AssetRecord& file, std::istream& input, uint64_t offset,
                  const std::function<void(uint64_t)>& on_progress);
 
   Outcome workers(v1::WorkersResponse& response);

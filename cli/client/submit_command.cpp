@@ -13,6 +13,7 @@
 #include "cli/client/upload.h"
 #include "cli/client/watch.h"
 #include "cli/frame_range.h"
+#include "cli/scene_options.h"
 #include "core/base/random_id.h"
 #include "farm/job_package.h"
 #include "farm/tags.h"
@@ -30,6 +31,7 @@ struct Options {
   std::string path;
   std::string frames;
   std::string owner;
+  SceneOptions scene;
   uint32_t samples = 0;
   int32_t priority = 0;
   uint32_t max_workers = 0;
@@ -43,7 +45,9 @@ struct Options {
 };
 
 void declare(CLI::App& app, Options& options) {
-  app.add_option("job", options.path, "the job (.yaml)")->required();
+  app.add_option("job", options.path,
+                 "the job (.yaml), or a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
+      ->required();
   app.add_flag("--watch", options.watch, "stay and show progress until the job has ended");
   app.add_option("--priority", options.priority, "higher goes first")
       ->check(CLI::Range(-1'000'000, 1'000'000))
@@ -53,6 +57,7 @@ void declare(CLI::App& app, Options& options) {
       ->check(no_frames_error);
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
       ->check(CLI::Range(1U, 1U << 24U));
+  declare_scene_options(app, options.scene);
   app.add_option("--max-workers", options.max_workers, "render on no more than so many at once");
   app.add_option("--tags", options.tags, "render only on workers that have all of these: a,b")
       ->delimiter(',')
@@ -135,10 +140,10 @@ void print_complaints(std::string text, const std::string& path) {
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
-Outcome submit(FarmClient& client, const farm::JobPackage& package,
+Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFiles& files,
                const v1::SubmitRequest& request, bool quiet, v1::Job& job) {
   for (int round = 1;; ++round) {
-    if (auto failure = upload_missing(client, package, quiet)) return failure;
+    if (auto failure = upload_missing(client, package, files, quiet)) return failure;
     v1::SubmitResponse response;
     const auto failure = client.submit(request, response);
     if (!failure) {
@@ -157,7 +162,11 @@ int submit_command(int argc, char** argv) {
   Options options;
   declare(app.app(), options);
   if (const auto status = app.parse(argc, argv)) return *status;
-  const auto package = farm::package_job(options.path);
+  const auto files = core::JobFiles::open(options.path, job_file_options(options.scene));
+  if (!files) return app.report({kBadArguments, files.error().message});
+  core::JobFiles& door = **files;
+  const auto package = farm::package_job(door.document(), options.path, door.files());
+  print_notes(door);
   if (!package) {
     print_complaints(package.error().message, options.path);
     return kBadArguments;
@@ -167,7 +176,7 @@ int submit_command(int argc, char** argv) {
   const auto client = app.connect();
   if (!client) return kBadArguments;
   v1::Job job;
-  if (auto failure = submit(*client, *package, *request, options.quiet, job)) {
+  if (auto failure = submit(*client, *package, door, *request, options.quiet, job)) {
     return app.report(*failure);
   }
   if (!options.json) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <vector>
@@ -90,12 +89,12 @@ class UploadDisplay {
   uint64_t sent_ = 0;
 };
 
-Outcome upload_file(FarmClient& client, Missing one, const std::string& path,
-                    UploadDisplay& display) {
+Outcome upload_file(FarmClient& client, Missing one, core::JobFiles& from, UploadDisplay& display) {
   int restarts = 0;
   while (true) {
+    const auto input = from.stream(one.file.reference);
     const Outcome failure =
-        client.upload(one.file, path, one.offset, [&](uint64_t bytes) { display.sent(bytes); });
+        client.upload(one.file, *input, one.offset, [&](uint64_t bytes) { display.sent(bytes); });
     if (!failure) return std::nullopt;
     if (failure->from_start) {
       one.offset = 0;
@@ -112,7 +111,8 @@ Outcome upload_file(FarmClient& client, Missing one, const std::string& path,
 
 }  // namespace
 
-Outcome upload_missing(FarmClient& client, const farm::JobPackage& package, bool quiet) {
+Outcome upload_missing(FarmClient& client, const farm::JobPackage& package, core::JobFiles& from,
+                       bool quiet) {
   std::vector<AssetRecord> files;
   std::set<std::string> seen;
   for (const AssetRecord& file : package.files) {
@@ -123,8 +123,7 @@ Outcome upload_missing(FarmClient& client, const farm::JobPackage& package, bool
   UploadDisplay display(quiet, missing);
   for (const Missing& one : missing) {
     display.begin_file();
-    const auto path = std::filesystem::path(package.folder) / one.file.reference;
-    if (auto failure = upload_file(client, one, path.string(), display)) return failure;
+    if (auto failure = upload_file(client, one, from, display)) return failure;
   }
   display.end();
   return std::nullopt;

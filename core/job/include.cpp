@@ -1,13 +1,14 @@
 #include "core/job/include.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "core/job/join_trees.h"
 #include "core/job/media_file.h"
+#include "core/job/scene_objects.h"
 
 namespace hyades::core {
 
@@ -16,21 +17,6 @@ namespace {
 constexpr size_t kMaxDepth = 16;
 constexpr size_t kMaxFiles = 256;
 constexpr size_t kMaxBytes = size_t{64} << 20;
-
-const std::array<std::string_view, 6> kNamed = {"textures", "materials", "media",
-                                                "groups",   "objects",   "lights"};
-const std::array<std::string_view, 6> kSections = {"frames",     "film",   "sampling",
-                                                   "integrator", "camera", "environment"};
-
-template <class Names>
-bool contains(const Names& names, std::string_view key) {
-  return std::find(names.begin(), names.end(), key) != names.end();
-}
-
-std::string place_of(const YamlPlace& place) {
-  const SourceLocation where = place;
-  return where.file + ":" + std::to_string(where.line);
-}
 
 class Loader {
  public:
@@ -42,13 +28,30 @@ class Loader {
     bytes_ += text.size();
     YamlPtr own = parse_yaml(text, shown, diagnostics_);
     if (own == nullptr || own->kind != YamlNode::Kind::map) return own;
+    if (open_.empty()) fps_ = fps_of(*own);
     open_.push_back(reference);
     seen_.insert(reference);
     const YamlEntry* include = own->find("include");
-    if (include != nullptr) own = merge_below(*own, included_by(*include->value, reference), true);
+    if (include != nullptr)
+      own = join_files(*own, *included_by(*include->value, reference), true, diagnostics_);
     own = with_media_files(own, reference);
     open_.pop_back();
     return own;
+  }
+
+  /// The job with what its objects bring of scenes of other tools.
+  YamlPtr with_scenes(const YamlPtr& root) {
+    if (root == nullptr || root->kind != YamlNode::Kind::map) return root;
+    open_ = {main_reference()};
+    return with_scene_objects(
+        root,
+        [&](const SceneDocument& wanted, const YamlNode& name, const std::string& what) {
+          const SourceLocation where = name.where;
+          const auto included = tree.shown.find(where.file);
+          const bool own = included == tree.shown.end();
+          return load_scene(wanted, name, own ? main_reference() : included->second, what);
+        },
+        diagnostics_);
   }
 
   std::string main_reference() const { return main_.filename().lexically_normal().string(); }
@@ -62,7 +65,8 @@ class Loader {
     all->kind = YamlNode::Kind::map;
     YamlPtr merged = all;
     const auto add = [&](const YamlNode& name) {
-      if (YamlPtr file = load_named(name, from)) merged = merge_below(*merged, file, false);
+      if (YamlPtr file = load_named(name, from))
+        merged = join_files(*merged, *file, false, diagnostics_);
     };
     if (value.kind == YamlNode::Kind::list) {
       for (const YamlPtr& name : value.list) add(*name);
@@ -87,7 +91,13 @@ class Loader {
                        what + " is " + describe(name) + ", expected a file name or a list of them");
       return std::nullopt;
     }
-    const std::string reference = resolve_reference(name.scalar, from);
+    return open_file(name.scalar, name, from, what);
+  }
+
+  /// The same for file `wanted`, relative to `from`, that `name` means.
+  std::optional<Opened> open_file(const std::string& wanted, const YamlNode& name,
+                                  const std::string& from, const std::string& what) {
+    const std::string reference = resolve_reference(wanted, from);
     if (std::find(open_.begin(), open_.end(), reference) != open_.end()) {
       diagnostics_.add(name.where, "'" + name.scalar + "' includes itself in the end");
       return std::nullopt;
@@ -98,7 +108,7 @@ class Loader {
                                        " deep and " + std::to_string(kMaxFiles) + " in all");
       return std::nullopt;
     }
-    auto bytes = assets_.open(name.scalar, from);
+    auto bytes = assets_.open(wanted, from);
     if (!bytes) {
       diagnostics_.add(name.where, what + ": " + bytes.error().message);
       return std::nullopt;
@@ -108,15 +118,32 @@ class Loader {
                                        std::to_string(kMaxBytes >> 20) + " MiB in all");
       return std::nullopt;
     }
-    const std::string shown = (main_.parent_path() / reference).lexically_normal().string();
+    // Complaints about what importers make are complaints about the scene.
+    const auto scene = document_of(reference);
+    const std::string named = scene ? scene->scene : reference;
+    const std::string shown = (main_.parent_path() / named).lexically_normal().string();
     tree.includes.push_back(reference);
     tree.shown[shown] = reference;
     return Opened{reference, shown, std::move(*bytes)};
   }
 
   YamlPtr load_named(const YamlNode& name, const std::string& from) {
+    if (name.kind == YamlNode::Kind::scalar && is_scene_file(name.scalar)) {
+      return load_scene({name.scalar, {}, fps_, {}}, name, from, "include");
+    }
     const auto file = open_named(name, from, "include");
-    if (!file) return nullptr;
+    return file ? load_opened(*file) : nullptr;
+  }
+
+  /// The document of a scene of another tool, which lies beside the scene.
+  YamlPtr load_scene(const SceneDocument& scene, const YamlNode& name, const std::string& from,
+                     const std::string& what) {
+    const auto file = open_file(reference_of(scene), name, from, what);
+    return file ? load_opened(*file) : nullptr;
+  }
+
+  YamlPtr load_opened(const Opened& opened) {
+    const Opened* file = &opened;
     YamlPtr root = load({file->bytes.chars(), file->bytes.size()}, file->reference, file->shown);
     if (root == nullptr) return nullptr;
     if (root->kind != YamlNode::Kind::map) {
@@ -144,7 +171,7 @@ class Loader {
       bytes_ += file->bytes.size();
       const YamlPtr section =
           read_media_file({file->bytes.chars(), file->bytes.size()}, file->shown, diagnostics_);
-      if (section != nullptr) all = join(*all, *section, false);
+      if (section != nullptr) all = join_section(*all, *section, false, diagnostics_);
     };
     if (files->value->kind == YamlNode::Kind::list) {
       for (const YamlPtr& name : files->value->list) add(*name);
@@ -158,59 +185,13 @@ class Loader {
     return result;
   }
 
-  /// `upper` with the keys of `lower` added. `overrides`: a key in both is upper's; otherwise they
-  /// stand side by side and it is a complaint.
-  YamlPtr merge_below(const YamlNode& upper, const YamlPtr& lower, bool overrides) {
-    auto result = std::make_shared<YamlNode>(upper);
-    for (const YamlEntry& entry : lower->map) {
-      if (entry.key == "include") continue;
-      const auto own = std::find_if(result->map.begin(), result->map.end(),
-                                    [&](const YamlEntry& e) { return e.key == entry.key; });
-      if (own == result->map.end()) {
-        result->map.push_back(entry);
-        continue;
-      }
-      const bool maps =
-          own->value->kind == YamlNode::Kind::map && entry.value->kind == YamlNode::Kind::map;
-      if (maps && contains(kNamed, entry.key)) {
-        own->value = join(*own->value, *entry.value, false);
-      } else if (maps && contains(kSections, entry.key)) {
-        own->value = join(*own->value, *entry.value, overrides);
-      } else if (!overrides && entry.key != "hyades") {
-        complain_twice(*own, entry);
-      }
-    }
-    return result;
-  }
-
-  /// One section of two files.
-  YamlPtr join(const YamlNode& upper, const YamlNode& lower, bool overrides) {
-    auto result = std::make_shared<YamlNode>(upper);
-    std::map<std::string_view, size_t> index;
-    for (size_t i = 0; i < upper.map.size(); ++i) index[upper.map[i].key] = i;
-    for (const YamlEntry& entry : lower.map) {
-      const auto own = index.find(entry.key);
-      if (own == index.end()) {
-        result->map.push_back(entry);
-      } else if (!overrides) {
-        complain_twice(upper.map[own->second], entry);
-      }
-    }
-    return result;
-  }
-
-  void complain_twice(const YamlEntry& first, const YamlEntry& second) {
-    diagnostics_.add(second.key_where, "'" + second.key.substr(0, 60) + "' is also at " +
-                                           place_of(first.key_where) +
-                                           "; expected it in one file only");
-  }
-
   std::filesystem::path main_;
   AssetResolver& assets_;
   Diagnostics& diagnostics_;
   std::vector<std::string> open_;  ///< files being read, from the job inwards
   std::set<std::string> seen_;
   size_t bytes_ = 0;
+  float fps_ = SceneDocument().fps;  ///< of the job itself
 };
 
 }  // namespace
@@ -218,7 +199,7 @@ class Loader {
 JobTree load_job_tree(const std::string& text, const std::string& file_name, AssetResolver& assets,
                       Diagnostics& diagnostics) {
   Loader loader(file_name, assets, diagnostics);
-  loader.tree.root = loader.load(text, loader.main_reference(), file_name);
+  loader.tree.root = loader.with_scenes(loader.load(text, loader.main_reference(), file_name));
   return std::move(loader.tree);
 }
 

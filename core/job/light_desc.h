@@ -5,6 +5,7 @@
 
 #include "core/job/animated.h"
 #include "core/job/source.h"
+#include "core/job/transform_desc.h"
 
 namespace hyades::core {
 
@@ -20,6 +21,7 @@ struct LightDesc {
   Animated<float> irradiance{1.0F};  ///< sun: W/m^2 on a surface facing it
   Animated<float> angle{0.53F};      ///< sun: diameter, degrees; spot: half angle of the cone
   Animated<float> blend{0.2F};       ///< spot: share of the cone that fades, 0..1
+  TransformList transform;           ///< of at, look_at and direction; after them
   std::string light_group;           ///< empty: none
 };
 

@@ -52,6 +52,7 @@ void read_lights(MapReader& top) {
                light.name = name;
                light.where = node.where;
                reader.find("like");
+               read_transform_steps(reader, light.transform);
                if (!read_by_type<LightDesc>(reader, "type", "lights", light, kTypes)) return;
                reader.finish();
                top.context().job.lights.push_back(std::move(light));

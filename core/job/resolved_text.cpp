@@ -223,6 +223,7 @@ void write(FieldWriter& out, const LightDesc& light) {
   out.put("irradiance", light.irradiance);
   out.put("angle", light.angle);
   out.put("blend", light.blend);
+  if (!light.transform.empty()) write_transform(out, light.transform);
   if (!light.light_group.empty()) out.put("light_group", light.light_group);
   out.leave();
 }

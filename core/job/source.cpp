@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/job/scene_document.h"
+
 namespace hyades::core {
 
 namespace {
@@ -20,8 +22,11 @@ std::string Diagnostic::to_string() const {
   return text.empty() ? message : text + ": " + message;
 }
 
-void Diagnostics::add(const SourceLocation& where, std::string message) {
+void Diagnostics::add(const SourceLocation& place, std::string message) {
   if (full()) return;
+  SourceLocation where = place;
+  // What importers make of a scene has lines, but nobody sees them.
+  if (is_scene_file(where.file)) where = {where.file, 0, 0};
   if (list_.size() == kMaxDiagnostics) {
     message = "too many complaints: only the first " + std::to_string(kMaxDiagnostics) +
               " are listed, mend those and look again";

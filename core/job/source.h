@@ -25,7 +25,8 @@ struct Diagnostic {
 /// (and says so) after 100.
 class Diagnostics {
  public:
-  void add(const SourceLocation& where, std::string message);
+  /// Of scenes of other tools, which a job reads as documents made of them, only the file is told.
+  void add(const SourceLocation& place, std::string message);
   bool empty() const { return list_.empty(); }
   bool full() const;  ///< further complaints would be dropped
   const std::vector<Diagnostic>& list() const { return list_; }

@@ -12,6 +12,7 @@
 #include "core/job/job_keys.h"
 #include "core/job/parse.h"
 #include "core/job/render_key.h"
+#include "core/job/scene_document.h"
 #include "tests/core/job/test_assets.h"
 
 /// Holds docs/job.md against the reader: every key that the reader knows is documented and the
@@ -220,6 +221,7 @@ Pairs company(const JobKey& id) {
   if (id == JobKey{"textures.mapping", "space"}) return {{"type", "spherical"}};
   if (id == JobKey{"textures.mapping", "blend"}) return {{"type", "triplanar"}};
   if (id == JobKey{"media.emission", "kelvin"}) return {{"temperature", "heat"}};
+  if (id == JobKey{"objects", "animation"}) return {{"gltf", "robot.glb"}};
   if (id == JobKey{"media", "albedo"}) return {{"density", "2"}};
   if (id == JobKey{"media", "density"}) return {{"albedo", "0.5"}};
   if (id == JobKey{"media", "mean_free_path"}) return {{"albedo", "0.5"}};
@@ -231,7 +233,8 @@ bool excludes(const JobKey& id, const std::string& other) {
   const bool of_density = id.section == "media.density";
   const std::vector<std::string> kinds =
       of_density ? std::vector<std::string>{"vdb", "noise", "shell"}
-                 : std::vector<std::string>{"shape", "mesh", "instance", "group"};
+                 : std::vector<std::string>{"shape", "mesh", "instance", "group",
+                                            "gltf",  "pbrt", "obj",      "animation"};
   const auto is_kind = [&](const std::string& k) {
     return std::find(kinds.begin(), kinds.end(), k) != kinds.end();
   };
@@ -271,6 +274,17 @@ struct Outcome {
   int moving = 0;  ///< values that are no constants
 };
 
+/// What importers would make of scenes of other tools.
+void add_scenes(MemoryAssets& assets) {
+  for (const char* scene : {"robot.glb", "room.pbrt", "chair.obj"}) {
+    for (const char* animation : {"", "Walk"}) {
+      const std::string shape = *animation != '\0' ? "box" : "sphere";
+      assets.add(reference_of({scene, "x", 24.0F, animation}),
+                 "objects: {x." + std::string(1, *scene) + ": {shape: " + shape + "}}\n");
+    }
+  }
+}
+
 /// Everything that decides pixels, and everything else that a job says about what is written.
 Outcome read(const std::string& text) {
   MemoryAssets inner;
@@ -280,6 +294,7 @@ Outcome read(const std::string& text) {
                            "smoke.vdb", "cloud.vdb", "aces/config.ocio", "view.ocio"}) {
     inner.add(file, std::string("content of ") + file);
   }
+  add_scenes(inner);
   RecordingResolver assets(inner);
   Diagnostics diagnostics;
   const Job job = parse_job(text, "sample.yaml", assets, diagnostics);

@@ -1,0 +1,64 @@
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command_line.h"
+#include "cli/load_job.h"
+#include "cli/printable.h"
+#include "core/import/write_scene_job.h"
+#include "core/job/scene_document.h"
+
+namespace hyades::cli {
+
+/// `hyades import robot.glb -o robot.yaml`: a scene of another tool as a job to be read and edited.
+int import_command(int argc, char** argv) {
+  CLI::App app(
+      "Writes a scene of another tool as a job, with its meshes (binary PLY) and pictures in the "
+      "folder JOB.files beside it. 'hyades render' takes scenes without this too.",
+      "hyades import");
+  core::WriteSceneJob request;
+  app.add_option("scene", request.scene, "the scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
+      ->required();
+  app.add_option("-o,--output", request.job, "the job to be written (default: SCENE.yaml, here)");
+  app.add_option("--media", request.media,
+                 "fill the materials that have the names of this file's media");
+  app.add_option("--animation", request.animation,
+                 "of several animations in the file, the one that is meant (default: the first; "
+                 "none: the scene stands still)");
+  app.add_option("--fps", request.fps, "frames per second of the job")
+      ->check(CLI::Range(0.001F, 1e6F))
+      ->capture_default_str();
+  app.add_flag("--overwrite", request.overwrite, "replace files that are there already");
+  app.footer(
+      "example:\n  hyades import robot.glb -o robot.yaml && hyades render robot.yaml\n"
+      "exit status: 0 written, 1 files could not be written, 2 the scene or the arguments are "
+      "wrong");
+  if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
+  if (!core::is_scene_file(request.scene)) {
+    std::fprintf(stderr, "%s: expected a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)\n",
+                 printable(request.scene).c_str());
+    return kBadInput;
+  }
+  if (request.job.empty()) {
+    request.job = std::filesystem::path(request.scene).stem().string() + ".yaml";
+  }
+  const auto written = core::write_scene_job(request);
+  if (!written) {
+    std::fprintf(stderr, "%s\n", written.error().message.c_str());
+    return kBadInput;
+  }
+  for (const std::string& note : written->notes) {
+    std::fprintf(stderr, "%s\n", printable(note).c_str());
+  }
+  std::fprintf(stderr, "wrote %s", request.job.c_str());
+  if (written->files.size() > 1) {
+    std::fprintf(stderr, " and %zu file%s beside it", written->files.size() - 1,
+                 written->files.size() == 2 ? "" : "s");
+  }
+  std::fprintf(stderr, "\n");
+  return 0;
+}
+
+}  // namespace hyades::cli

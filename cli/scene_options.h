@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "core/import/job_files.h"
+
+namespace hyades::cli {
+
+/// What commands that read jobs are told of scenes of other tools.
+struct SceneOptions {
+  std::string media;              ///< file of media for a scene's materials; empty: none
+  bool missing_textures = false;  ///< pictures that are not there are magenta, not errors
+};
+
+/// Options --media and --missing-textures.
+void declare_scene_options(CLI::App& app, SceneOptions& options);
+
+core::JobFileOptions job_file_options(const SceneOptions& options);
+
+/// What was left out of scenes and which pictures are missing, on standard error.
+void print_notes(const core::JobFiles& files);
+
+}  // namespace hyades::cli

@@ -1,0 +1,155 @@
+#include "core/import/importing_resolver.h"
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "core/import/scene_source.h"
+#include "core/import/stand_in.h"
+#include "core/job/scene_document.h"
+#include "core/job/yaml_writer.h"
+
+namespace hyades::core {
+
+namespace {
+
+using SourcePtr = std::shared_ptr<const SceneSource>;
+
+Bytes owned(std::string text) {
+  const auto held = std::make_shared<const std::string>(std::move(text));
+  return {held, std::as_bytes(std::span(held->data(), held->size()))};
+}
+
+/// A reference into the folder of a scene.
+struct Inside {
+  std::string scene;  ///< the scene file
+  std::string name;   ///< of the file in its folder
+};
+
+/// Splits "robot.glb.files/meshes/body.ply"; nothing where no folder on the way is a scene's.
+std::optional<Inside> inside_of(const std::string& reference) {
+  const std::string mark = std::string(kMadeFolder) + "/";
+  for (size_t at = reference.find(mark); at != std::string::npos;
+       at = reference.find(mark, at + 1)) {
+    const std::string scene = reference.substr(0, at);
+    if (is_scene_file(scene)) return Inside{scene, reference.substr(at + mark.size())};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+struct ImportingResolver::State {
+  AssetResolver& files;
+  MissingTextures missing;
+  mutable std::mutex mutex;
+  // Guarded by mutex.
+  std::map<std::string, Bytes> added;
+  std::map<std::string, SourcePtr> sources;
+  std::vector<std::string> notes;
+  std::set<std::string> noted;
+
+  void note(const std::string& line) {
+    const std::lock_guard lock(mutex);
+    if (noted.insert(line).second) notes.push_back(line);
+  }
+
+  /// Reads a scene once. Two who ask for the same one at the same time may both read it; one result
+  /// stays.
+  Result<SourcePtr> source(const std::string& scene) {
+    {
+      const std::lock_guard lock(mutex);
+      if (const auto found = sources.find(scene); found != sources.end()) return found->second;
+    }
+    auto read = read_scene(files, scene);
+    if (!read) return read;
+    const std::lock_guard lock(mutex);
+    return sources.emplace(scene, *read).first->second;
+  }
+
+  Result<Bytes> document(const SceneDocument& wanted) {
+    const auto scene = source(wanted.scene);
+    if (!scene) return scene.error();
+    SceneRequest request;
+    request.prefix = wanted.prefix;
+    request.fps = wanted.fps;
+    request.animation = wanted.animation;
+    request.beside = "../";
+    const auto told = (*scene)->sections(request);
+    if (!told) return told.error();
+    for (const std::string& line : told->notes) note(line);
+    return owned(write_yaml(*told->sections));
+  }
+
+  Result<Bytes> made(const Inside& inside, const std::string& reference) {
+    if (const auto wanted = document_of(reference)) return document(*wanted);
+    const auto scene = source(inside.scene);
+    if (!scene) return scene.error();
+    auto bytes = (*scene)->made_file(inside.name);
+    if (!bytes) return bytes.error().in(inside.scene);
+    return bytes;
+  }
+};
+
+ImportingResolver::ImportingResolver(AssetResolver& files, MissingTextures missing)
+    : state_(new State{.files = files,
+                       .missing = missing,
+                       .mutex = {},
+                       .added = {},
+                       .sources = {},
+                       .notes = {},
+                       .noted = {}}) {}
+
+ImportingResolver::~ImportingResolver() = default;
+
+Result<Bytes> ImportingResolver::open(const std::string& reference, const std::string& from) {
+  const std::string resolved = resolve_reference(reference, from);
+  {
+    const std::lock_guard lock(state_->mutex);
+    const auto found = state_->added.find(resolved);
+    if (found != state_->added.end()) return found->second;
+  }
+  const auto inside = inside_of(resolved);
+  // A folder of that name on the disk, as left by a person, comes first.
+  if (inside && !state_->files.exists(resolved)) return state_->made(*inside, resolved);
+  auto bytes = state_->files.open(reference, from);
+  if (bytes || state_->missing == MissingTextures::refused || !names_picture(resolved)) {
+    return bytes;
+  }
+  if (state_->files.exists(resolved)) return bytes;
+  state_->note(resolved + ": no such picture; magenta stands in for it");
+  return magenta_picture();
+}
+
+bool ImportingResolver::exists(const std::string& reference) {
+  const std::string resolved = resolve_reference(reference);
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->added.contains(resolved)) return true;
+  }
+  if (state_->files.exists(reference)) return true;
+  const auto inside = inside_of(resolved);
+  return inside && state_->made(*inside, resolved).ok();
+}
+
+bool ImportingResolver::is_on_disk(const std::string& reference) const {
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->added.contains(resolve_reference(reference))) return false;
+  }
+  return state_->files.exists(reference);
+}
+
+void ImportingResolver::add(const std::string& reference, std::string text) {
+  const std::lock_guard lock(state_->mutex);
+  state_->added[resolve_reference(reference)] = owned(std::move(text));
+}
+
+std::vector<std::string> ImportingResolver::notes() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->notes;
+}
+
+}  // namespace hyades::core

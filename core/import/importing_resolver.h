@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/assets.h"
+
+namespace hyades::core {
+
+/// What becomes of pictures that a job or scene names and that are not there.
+enum class MissingTextures {
+  refused,  ///< opening them fails, as with any file
+  magenta,  ///< one pixel of magenta stands in for each, and a note says so
+};
+
+/// A resolver that also has, beside every scene file F of `files` (is_scene_file()), the folder
+/// F.files: the scene as a document of the job language (core/job/scene_document.h) and the meshes
+/// and pictures that the document names. They are made when they are opened; each scene is read
+/// once. Thread-safe.
+class ImportingResolver : public AssetResolver {
+ public:
+  explicit ImportingResolver(AssetResolver& files,
+                             MissingTextures missing = MissingTextures::refused);
+  ~ImportingResolver() override;
+
+  Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
+  bool exists(const std::string& reference) override;
+
+  /// Whether open() reads a file of the resolver below, and makes nothing.
+  bool is_on_disk(const std::string& reference) const;
+
+  /// Another file that only this resolver has.
+  void add(const std::string& reference, std::string text);
+
+  /// What scenes that were imported said and jobs cannot, and what stands in for missing pictures:
+  /// a line each, in order of first opening, each once.
+  std::vector<std::string> notes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace hyades::core

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/import/obj/mtl_file.h"
+#include "core/job/yaml_build.h"
+
+namespace hyades::core {
+
+/// What a material of an MTL file is in a job.
+struct MtlLook {
+  YamlMap material;                ///< an entry of `materials`
+  YamlMap emit;                    ///< of objects that have it; empty: they do not shine
+  std::vector<std::string> notes;  ///< what is left out
+};
+
+/// A picture's reference in the job, of a map's file.
+using PictureOf = std::function<std::string(const std::string& file)>;
+
+/// Classic materials: matt (`lambert`) without highlights or with those of Phong's exponent, whose
+/// roughness is that of Walter et al. 2007 (alpha^2 = 2 / (Ns + 2)), Ks as the strength of the
+/// reflection as Blender writes it (0.5 is glass or varnish); glass where `illum` is 4, 6, 7 or 9,
+/// or where d is below 1 and Ni above 1; a mirror or metal where nothing is diffuse. Physically
+/// based ones: `principled`. d and map_d are otherwise the opacity. `diagonal` [length]: the size
+/// of the mesh, for the height of bumps, which files do not say.
+MtlLook look_of(const MtlMaterial& material, float diagonal, const PictureOf& picture);
+
+}  // namespace hyades::core

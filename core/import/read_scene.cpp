@@ -1,0 +1,38 @@
+#include <array>
+#include <string_view>
+
+#include "core/import/obj/read_obj_scene.h"
+#include "core/import/scene_source.h"
+
+namespace hyades::core {
+
+namespace {
+
+using Reader = Result<std::shared_ptr<const SceneSource>> (*)(AssetResolver& files,
+                                                              const std::string& reference);
+
+struct Row {
+  std::string_view extension;
+  Reader read;
+};
+
+constexpr std::array<Row, 2> kReaders = {{
+    {".obj", read_obj_scene},
+    {".ply", read_obj_scene},
+}};
+
+}  // namespace
+
+Result<std::shared_ptr<const SceneSource>> read_scene(AssetResolver& files,
+                                                      const std::string& reference) {
+  std::string lower = reference;
+  for (char& c : lower) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  for (const Row& row : kReaders) {
+    if (lower.ends_with(row.extension)) return row.read(files, reference);
+  }
+  return Error{reference +
+               ": no scene or mesh that is known by its name; expected one that ends in "
+               ".gltf, .glb, .pbrt, .obj or .ply"};
+}
+
+}  // namespace hyades::core

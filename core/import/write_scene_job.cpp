@@ -1,0 +1,199 @@
+#include "core/import/write_scene_job.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <set>
+#include <system_error>
+
+#include "core/base/atomic_file.h"
+#include "core/geometry/read_mesh.h"
+#include "core/geometry/write_ply.h"
+#include "core/import/job_files.h"
+#include "core/import/names.h"
+#include "core/import/scene_job.h"
+#include "core/job/output_path.h"
+#include "core/job/yaml_build.h"
+#include "core/job/yaml_writer.h"
+
+namespace hyades::core {
+
+namespace {
+
+using Kind = YamlNode::Kind;
+
+/// A tree with some of its maps replaced: `change` gets each map after those within it, and answers
+/// what stands in its place.
+YamlPtr changed(const YamlPtr& node, const std::function<YamlPtr(const YamlPtr&)>& change) {
+  if (node->kind != Kind::map && node->kind != Kind::list) return node;
+  auto copy = std::make_shared<YamlNode>(*node);
+  for (YamlPtr& item : copy->list) item = changed(item, change);
+  for (YamlEntry& entry : copy->map) entry.value = changed(entry.value, change);
+  return copy->kind == Kind::map ? change(copy) : YamlPtr(copy);
+}
+
+class Writer {
+ public:
+  explicit Writer(const WriteSceneJob& request)
+      : request_(request),
+        folder_(folder_of(request.job)),
+        made_(std::filesystem::path(request.job).stem().string() + ".files/"),
+        disk_(make_file_resolver(folder_)) {}
+
+  Result<WrittenSceneJob> write() {
+    if (auto free = check_free(request_.job); !free) return free.error();
+    // Paths lead through it.
+    if (auto made = make_folder(folder_); !made) return made.error();
+    auto job = read();
+    if (!job) return job.error();
+    written_.notes = std::move(job->notes);
+    source_ = job->source;
+    find_frames(*job->tree);
+    const YamlPtr tree = changed(job->tree, [&](const YamlPtr& map) { return mesh_as_ply(map); });
+    if (status_) find_made(*tree);
+    if (!status_) return status_.error();
+    for (const auto& [name, in_scene] : wanted_) {
+      if (auto done = copy(name, in_scene); !done) return done.error();
+    }
+    if (auto done = save(request_.job, write_yaml(*tree)); !done) return done.error();
+    return std::move(written_);
+  }
+
+ private:
+  Result<SceneJob> read() {
+    SceneJobRequest how;
+    how.scene = reference_from(request_.scene, folder_);
+    how.media = reference_from(request_.media, folder_);
+    how.media_in_job = how.media;
+    how.how.fps = request_.fps;
+    how.how.animation = request_.animation;
+    how.how.made = made_;
+    how.how.beside = reference_from(folder_of(request_.scene), folder_) + "/";
+    if (how.how.beside == "./") how.how.beside.clear();
+    return scene_job(*disk_, how);
+  }
+
+  /// Frames of meshes that change: those of the job, and the one after, which the shutter needs.
+  void find_frames(const YamlNode& job) {
+    const YamlEntry* frames = job.find("frames");
+    const YamlEntry* range = frames != nullptr ? frames->value->find("range") : nullptr;
+    int first = 1;
+    int last = 1;
+    if (range != nullptr && std::sscanf(range->value->scalar.c_str(), "%d-%d", &first, &last) < 2) {
+      last = first;
+    }
+    for (int frame = first; frame <= last + 1; ++frame) frames_.push_back(frame);
+  }
+
+  /// An object whose mesh is a part of an OBJ file, its triangles written by themselves.
+  YamlPtr mesh_as_ply(const YamlPtr& map) {
+    const YamlEntry* mesh = map->find("mesh");
+    if (mesh == nullptr || mesh->value->kind != Kind::scalar || !status_) return map;
+    const std::string file = mesh->value->scalar;
+    if (!file.ends_with(".obj") && !file.ends_with(".OBJ")) return map;
+    const YamlEntry* part = map->find("part");
+    const auto name = ply_of(file, part != nullptr ? part->value->scalar : std::string());
+    if (!name) {
+      status_ = name.error();
+      return map;
+    }
+    YamlMap object;
+    for (const YamlEntry& entry : map->map) {
+      if (entry.key == "part") continue;
+      object.put(entry.key, entry.key == "mesh" ? yaml_text(*name) : entry.value);
+    }
+    return object.node();
+  }
+
+  /// Writes one part of an OBJ file (all of it where `part` is empty) once; the name of its PLY.
+  Result<std::string> ply_of(const std::string& file, const std::string& part) {
+    const auto known = plys_.find({file, part});
+    if (known != plys_.end()) return known->second;
+    if (!parts_.contains(file)) {
+      auto read = read_mesh_parts(*disk_, file);
+      if (!read) return read.error();
+      parts_.emplace(file, std::move(*read));
+    }
+    for (const MeshPart& one : parts_.at(file).parts) {
+      if (!part.empty() && one.name != part) continue;
+      const std::string stem = part.empty() ? std::filesystem::path(file).stem().string() : part;
+      const std::string name = made_ + names_.add(stem, "mesh") + ".ply";
+      const Bytes bytes = ply_bytes(*one.mesh);
+      if (auto done = save(in_folder(name), {bytes.chars(), bytes.size()}); !done) {
+        return done.error();
+      }
+      return plys_[{file, part}] = name;
+    }
+    return Error{file + ": there is no part '" + part + "' in it"};
+  }
+
+  /// Every file in the folder of what is made that the job names.
+  void find_made(const YamlNode& node) {
+    if (node.kind == Kind::scalar && node.scalar.starts_with(made_)) {
+      const std::string inside = node.scalar.substr(made_.size());
+      for (const int32_t frame : frames_) {
+        const std::string file = output_path(inside, frame);
+        wanted_[made_ + file] = file;
+      }
+    }
+    for (const YamlPtr& item : node.list) find_made(*item);
+    for (const YamlEntry& entry : node.map) find_made(*entry.value);
+  }
+
+  Status copy(const std::string& name, const std::string& in_scene) {
+    if (saved_.contains(in_folder(name))) return {};
+    auto bytes = source_->made_file(in_scene);
+    if (!bytes) return bytes.error().in(request_.scene);
+    return save(in_folder(name), {bytes->chars(), bytes->size()});
+  }
+
+  std::string in_folder(const std::string& name) const {
+    return (std::filesystem::path(folder_) / name).string();
+  }
+
+  Status check_free(const std::string& path) const {
+    std::error_code ignored;
+    if (request_.overwrite || !std::filesystem::exists(path, ignored)) return {};
+    return Error{path + ": is there already; expected a new name, or --overwrite"};
+  }
+
+  static Status make_folder(const std::string& folder) {
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    if (!failed) return {};
+    return Error{folder + ": the folder could not be made: " + failed.message()};
+  }
+
+  Status save(const std::string& path, std::string_view text) {
+    if (auto free = check_free(path); !free) return free;
+    if (auto made = make_folder(folder_of(path)); !made) return made;
+    auto done = write_file(path, std::as_bytes(std::span(text.data(), text.size())));
+    if (!done) return done;
+    saved_.insert(path);
+    written_.files.push_back(path);
+    return {};
+  }
+
+  const WriteSceneJob& request_;
+  std::string folder_;  ///< of the job
+  std::string made_;    ///< folder of what is made, from there on
+  std::unique_ptr<AssetResolver> disk_;
+  std::shared_ptr<const SceneSource> source_;
+  std::vector<int32_t> frames_;
+  Status status_;
+  Names names_;
+  std::map<std::string, MeshParts> parts_;
+  std::map<std::pair<std::string, std::string>, std::string> plys_;
+  std::map<std::string, std::string> wanted_;  ///< name in the job's folder -> in the scene's
+  std::set<std::string> saved_;
+  WrittenSceneJob written_;
+};
+
+}  // namespace
+
+Result<WrittenSceneJob> write_scene_job(const WriteSceneJob& request) {
+  return Writer(request).write();
+}
+
+}  // namespace hyades::core

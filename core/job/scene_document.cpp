@@ -1,0 +1,118 @@
+#include "core/job/scene_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include "core/job/read_values.h"
+
+namespace hyades::core {
+
+namespace {
+
+constexpr std::array<std::string_view, 5> kExtensions = {".gltf", ".glb", ".pbrt", ".obj", ".ply"};
+constexpr std::string_view kName = "scene";
+constexpr std::string_view kEnd = ".yaml";
+
+/// Text as part of a file's name: what is neither letter, digit nor one of _-. is %XX.
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (std::isalnum(u) != 0 || c == '_' || c == '-' || c == '.') {
+      out += c;
+    } else {
+      out += fmt::format("%{:02X}", u);
+    }
+  }
+  return out;
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+std::optional<std::string> unescaped(std::string_view text) {
+  std::string out;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      out += text[i];
+      continue;
+    }
+    if (i + 2 >= text.size()) return std::nullopt;
+    const int high = hex_digit(text[i + 1]);
+    const int low = hex_digit(text[i + 2]);
+    if (high < 0 || low < 0) return std::nullopt;
+    out += static_cast<char>(16 * high + low);
+    i += 2;
+  }
+  return out;
+}
+
+/// Takes one ",key=value" in. False: it says nothing that is known.
+bool read_option(std::string_view option, SceneDocument& document) {
+  const size_t equals = option.find('=');
+  if (equals == std::string_view::npos) return false;
+  const std::string_view key = option.substr(0, equals);
+  const auto value = unescaped(option.substr(equals + 1));
+  if (!value) return false;
+  if (key == "prefix") {
+    document.prefix = *value;
+  } else if (key == "animation") {
+    document.animation = *value;
+  } else if (key == "fps") {
+    double fps = 0.0;
+    if (!parse_number(*value, fps) || !(fps > 0.0 && fps <= 1e6)) return false;
+    document.fps = static_cast<float>(fps);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_scene_file(std::string_view name) {
+  return std::any_of(kExtensions.begin(), kExtensions.end(), [&](std::string_view extension) {
+    if (name.size() <= extension.size()) return false;
+    const std::string_view end = name.substr(name.size() - extension.size());
+    return std::equal(end.begin(), end.end(), extension.begin(), [](char a, char b) {
+      return std::tolower(static_cast<unsigned char>(a)) == b;
+    });
+  });
+}
+
+std::string reference_of(const SceneDocument& document) {
+  std::string name = fmt::format("{}{}/{}", document.scene, kMadeFolder, kName);
+  if (!document.prefix.empty()) name += ",prefix=" + escaped(document.prefix);
+  name += fmt::format(",fps={}", document.fps);
+  if (!document.animation.empty()) name += ",animation=" + escaped(document.animation);
+  return name + std::string(kEnd);
+}
+
+std::optional<SceneDocument> document_of(std::string_view reference) {
+  const size_t slash = reference.rfind('/');
+  if (slash == std::string_view::npos || !reference.ends_with(kEnd)) return std::nullopt;
+  const std::string_view folder = reference.substr(0, slash);
+  std::string_view name = reference.substr(slash + 1);
+  name.remove_suffix(kEnd.size());
+  if (!folder.ends_with(kMadeFolder) || !name.starts_with(kName)) return std::nullopt;
+  SceneDocument document;
+  document.scene = folder.substr(0, folder.size() - kMadeFolder.size());
+  name.remove_prefix(kName.size());
+  while (!name.empty()) {
+    if (name.front() != ',') return std::nullopt;
+    name.remove_prefix(1);
+    const size_t end = std::min(name.find(','), name.size());
+    if (!read_option(name.substr(0, end), document)) return std::nullopt;
+    name.remove_prefix(end);
+  }
+  return document;
+}
+
+}  // namespace hyades::core

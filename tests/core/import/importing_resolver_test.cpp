@@ -1,0 +1,172 @@
+#include "core/import/importing_resolver.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/image/read_image.h"
+#include "core/import/job_files.h"
+#include "core/import/names.h"
+#include "core/import/within_folder.h"
+#include "core/import/write_scene_job.h"
+#include "core/job/parse.h"
+#include "core/job/scene_document.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::core {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kQuads =
+    "mtllib looks/all.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\n"
+    "usemtl red paint\nf 1 2 3 4\nusemtl glow\nf 1 2 5\n";
+
+class Importing : public testing::Test {
+ protected:
+  Importing() {
+    write("quads.obj", kQuads);
+    write("looks/all.mtl",
+          "newmtl red paint\nKd 0.7 0.1 0.05\nmap_Kd ../pic/wood.png\nnewmtl glow\nKe 5 5 5\n");
+  }
+
+  std::string path(const std::string& name) const { return folder_.file(name); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(std::filesystem::path(path(name)).parent_path());
+    std::ofstream(path(name), std::ios::binary) << text;
+  }
+
+  static std::string text_of(AssetResolver& files, const std::string& reference) {
+    const auto bytes = files.open(reference);
+    return bytes ? std::string(bytes->chars(), bytes->size()) : "ERROR " + bytes.error().message;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(Importing, ASceneIsADocumentInAFolderBesideIt) {
+  const auto disk = make_file_resolver(folder_.path().string());
+  ImportingResolver files(*disk);
+  const std::string text = text_of(files, reference_of({"quads.obj", "q", 24.0F, ""}));
+  EXPECT_THAT(
+      text, HasSubstr("q.red-paint: {mesh: ../quads.obj, part: red paint, material: q.red-paint}"))
+      << text;
+  EXPECT_THAT(text, HasSubstr("file: ../pic/wood.png"));
+  EXPECT_TRUE(files.exists("quads.obj.files/scene.yaml"));
+  EXPECT_FALSE(files.exists("gone.obj.files/scene.yaml"));
+  EXPECT_THAT(text_of(files, "gone.obj.files/scene.yaml"),
+              HasSubstr("ERROR gone.obj: no such file"));
+  EXPECT_THAT(text_of(files, "quads.obj.files/meshes/x.ply"),
+              HasSubstr("ERROR quads.obj: 'meshes/x.ply'"));
+}
+
+TEST_F(Importing, MagentaStandsInForMissingPicturesOnlyWhereAsked) {
+  const auto disk = make_file_resolver(folder_.path().string());
+  ImportingResolver strict(*disk);
+  EXPECT_FALSE(strict.open("pic/wood.png"));
+  ImportingResolver lenient(*disk, MissingTextures::magenta);
+  const auto bytes = lenient.open("pic/wood.png");
+  ASSERT_TRUE(bytes);
+  const auto image = read_image(*bytes, "stand-in", ColorSpace::automatic);
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_EQ(image->width(), 1);
+  EXPECT_FALSE(lenient.open("mesh.ply"));
+  EXPECT_THAT(lenient.notes(),
+              ElementsAre("pic/wood.png: no such picture; magenta stands in for it"));
+  write("pic/wood.png", "not a picture");
+  EXPECT_EQ(text_of(lenient, "pic/wood.png"), "not a picture") << "what is broken is not missing";
+}
+
+/// One who renders, one who checks, one who submits: all see a scene through this.
+TEST_F(Importing, AnySceneIsAJob) {
+  write("pic/wood.png", "x");
+  const auto files = JobFiles::open(path("quads.obj"));
+  ASSERT_TRUE(files) << files.error().message;
+  RecordingResolver assets((*files)->files());
+  Diagnostics diagnostics;
+  const std::string text = text_of((*files)->files(), (*files)->document());
+  const Job job = parse_job(text, "quads.obj", assets, diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "") << text;
+  EXPECT_EQ(job.name, "quads");
+  ASSERT_EQ(job.objects.size(), 3U);
+  EXPECT_EQ(job.objects[2].name, "ground");
+  EXPECT_TRUE(job.objects[1].emit) << "it shines, and needs no other light";
+  EXPECT_TRUE(job.environment);
+  std::vector<std::string> names;
+  for (const AssetRecord& asset : assets.records()) names.push_back(asset.reference);
+  EXPECT_THAT(names, ElementsAre("pic/wood.png", "quads.obj"));
+  EXPECT_THAT((*files)->notes(), IsEmpty());
+}
+
+TEST_F(Importing, StreamsFilesOfTheDiskAndThoseThatAreMade) {
+  const auto files =
+      JobFiles::open(path("quads.obj"), {.media = {}, .missing = MissingTextures::magenta});
+  ASSERT_TRUE(files);
+  const auto all = [](std::istream& in) {
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  EXPECT_EQ(all(*(*files)->stream("quads.obj")), kQuads);
+  const auto made = (*files)->stream("quads.obj.yaml");
+  EXPECT_THAT(all(*made), testing::StartsWith("hyades: 1\nname: quads\n"));
+  made->clear();
+  made->seekg(8);
+  EXPECT_THAT(all(*made), testing::StartsWith("1\nname"));
+  EXPECT_TRUE((*files)->stream("pic/wood.png")->good());
+  EXPECT_FALSE((*files)->stream("gone.ply")->good());
+}
+
+TEST_F(Importing, WhatAMaterialNamesStaysWithinTheFolder) {
+  for (const char* out :
+       {"../../secret.png", "/etc/secret.png", "C:\\secret.png", "a/../../../x.png"}) {
+    write("looks/all.mtl", std::string("newmtl glow\nmap_Kd ") + out + "\n");
+    const auto files = JobFiles::open(path("quads.obj"));
+    ASSERT_FALSE(files) << out;
+    EXPECT_THAT(files.error().message, HasSubstr("lies outside of the scene's folder"));
+    EXPECT_THAT(files.error().message, HasSubstr("looks/all.mtl: material 'glow'"));
+  }
+  EXPECT_TRUE(within_folder("a/../b.png"));
+  EXPECT_FALSE(within_folder(".."));
+}
+
+TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
+  write("pic/wood.png", "x");
+  const auto written =
+      write_scene_job({.scene = path("quads.obj"), .job = path("jobs/new/q.yaml")});
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(written->files.size(), 3U);
+  EXPECT_EQ(written->files.back(), path("jobs/new/q.yaml"));
+  const auto files = JobFiles::open(path("jobs/new/q.yaml"));
+  ASSERT_TRUE(files);
+  Diagnostics diagnostics;
+  const std::string text = text_of((*files)->files(), "q.yaml");
+  const Job job = parse_job(text, path("jobs/new/q.yaml"), (*files)->files(), diagnostics);
+  EXPECT_EQ(diagnostics.to_string(), "") << text;
+  EXPECT_EQ(job.objects.at(0).mesh, "q.files/red-paint.ply");
+  EXPECT_EQ(job.objects.at(0).part, "");
+  EXPECT_THAT(text, HasSubstr("file: ../../pic/wood.png"));
+
+  const auto again = write_scene_job({.scene = path("quads.obj"), .job = path("jobs/new/q.yaml")});
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error().message, HasSubstr("q.yaml: is there already"));
+  EXPECT_TRUE(write_scene_job(
+      {.scene = path("quads.obj"), .job = path("jobs/new/q.yaml"), .overwrite = true}));
+}
+
+TEST(Names, AreSafeAndDifferent) {
+  EXPECT_EQ(safe_name("../../etc/passwd", "x"), "etc-passwd");
+  EXPECT_EQ(safe_name("...", "x"), "x");
+  EXPECT_EQ(safe_name(std::string(500, 'a'), "x").size(), 60U);
+  Names names;
+  EXPECT_EQ(names.add("a b", "x"), "a-b");
+  EXPECT_EQ(names.add("a/b", "x"), "a-b-2");
+  EXPECT_EQ(names.add("a-b-2", "x"), "a-b-2-2");
+  EXPECT_EQ(names.add("12", "x"), "x-12") << "would read as a number";
+  EXPECT_EQ(Names("robot").add("12", "x"), "robot.12");
+}
+
+}  // namespace
+}  // namespace hyades::core

@@ -1,0 +1,98 @@
+#include "core/import/obj/mtl_material.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/job/yaml_writer.h"
+
+namespace hyades::core {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// The material that the lines say, as a job's text.
+std::string look(const std::string& lines) {
+  const auto materials = parse_mtl("newmtl m\n" + lines);
+  if (!materials) return materials.error().message;
+  const MtlLook made = look_of(materials->front(), 1.0F, [](const std::string& f) { return f; });
+  std::string text = write_yaml(*YamlMap{{"m", made.material.node()}}.node());
+  if (!made.emit.empty()) text += write_yaml(*YamlMap{{"emit", made.emit.node()}}.node());
+  for (const std::string& note : made.notes) text += note + "\n";
+  return text;
+}
+
+TEST(MtlMaterial, ClassicOnes) {
+  EXPECT_EQ(look("Kd 0.8 0.2 0.1\n"), "m: {type: lambert, color: [0.8, 0.2, 0.1]}\n");
+  EXPECT_EQ(look("Kd 0.5\nKs 0 0 0\nNs 10\n"), "m: {type: lambert, color: 0.5}\n");
+  // alpha^2 = 2 / (Ns + 2), and roughness is the root of alpha.
+  EXPECT_EQ(look("Kd 1 0 0\nKs 0.5 0.5 0.5\nNs 30\nillum 2\n"),
+            "m: {type: principled, base_color: [1, 0, 0], roughness: 0.5, specular: 0.5}\n");
+  EXPECT_EQ(look("Kd 1 0 0\nKs 0.5 0.5 0.5\nillum 1\n"), "m: {type: lambert, color: [1, 0, 0]}\n")
+      << "model 1 has no highlights";
+  EXPECT_EQ(look("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n"),
+            "m: {type: conductor, color: [0.9, 0.8, 0.7], roughness: 0}\n");
+}
+
+TEST(MtlMaterial, Glass) {
+  EXPECT_EQ(look("Kd 0 0 0\nNi 1.4\nTf 1 0.9 0.8\nillum 7\n"),
+            "m: {type: dielectric, ior: 1.4, transmission: [1, 0.9, 0.8]}\n");
+  EXPECT_EQ(look("d 0.1\nNi 1.4\n"), "m: {type: dielectric, ior: 1.4}\n");
+  EXPECT_EQ(look("Kd 0.3\nTr 0.75\nNi 1\n"), "m: {type: lambert, color: 0.3, opacity: 0.25}\n")
+      << "without an index it only thins out";
+}
+
+TEST(MtlMaterial, PhysicallyBasedOnes) {
+  EXPECT_EQ(
+      look("Kd 0.9\nPr 0.3\nPm 1\nPs 0.2\nPc 0.5\nPcr 0.1\naniso 0.4\nanisor 1.25\nNi 1.6\n"),
+      "m: {type: principled, base_color: 0.9, roughness: 0.3, metallic: 1, sheen: 0.2, coat: 0.5,\n"
+      "  coat_roughness: 0.1, anisotropic: 0.4, anisotropic_rotation: 0.25, ior: 1.6}\n");
+}
+
+TEST(MtlMaterial, PicturesAndTheirOptions) {
+  EXPECT_EQ(look("map_Kd -s 2 3 1 -o 0.5 0 0 -clamp on my wood\\oak 1.png\n"),
+            "m: {type: lambert, color: {type: image, file: \"my wood/oak 1.png\", wrap: clamp, "
+            "scale: [2, 3], "
+            "offset: [0.5, 0]}}\n");
+  EXPECT_THAT(look("Kd 0.5 0.5 0.5\nmap_Kd a.png\n"),
+              HasSubstr("color: {type: scale, input: {type: image, file: a.png}, factor: 0.5}"));
+  EXPECT_THAT(look("Kd 0 0 0\nmap_Kd a.png\n"), HasSubstr("color: {type: image, file: a.png}"));
+  EXPECT_THAT(
+      look("map_d -imfchan m leaf.png\n"),
+      HasSubstr("opacity: {type: image, file: leaf.png, color_space: linear, channel: alpha}"));
+  EXPECT_THAT(look("map_bump -bm 0.5 -mm 0.1 0.8 b.png\n"), HasSubstr("to_low: 0.1"));
+  EXPECT_THAT(look("map_bump -bm 0.5 b.png\n"), HasSubstr("height: 0.001"));
+  EXPECT_THAT(look("norm n.png\n"),
+              HasSubstr("normal_map: {texture: {type: image, file: n.png, color_space: linear}}"));
+  EXPECT_THAT(look("Ke 3 2 1\n"),
+              HasSubstr("emit: {color: [3, 2, 1], radiance: 1, two_sided: true}"));
+  EXPECT_THAT(look("map_Ke glow.png\n"), HasSubstr("emit: {color: {type: image, file: glow.png}"));
+}
+
+TEST(MtlMaterial, WhatIsLeftOutIsTold) {
+  EXPECT_THAT(
+      look("disp d.png\nmap_Ns n.png\nKa 1 1 1\nrefl -type sphere r.png\n"),
+      testing::AllOf(HasSubstr("line 2: disp is left out"), HasSubstr("line 5: refl is left out"),
+                     HasSubstr("map_Ns of 'm'"), testing::Not(HasSubstr("Ka"))));
+}
+
+TEST(MtlMaterial, WrongLinesAreErrors) {
+  EXPECT_EQ(look("Kd 1 two 3\n"), "line 2: Kd: expected one or three finite numbers");
+  EXPECT_EQ(look("Kd 1 2\n"), "line 2: Kd: expected one or three finite numbers");
+  EXPECT_EQ(look("Ns nan\n"), "line 2: Ns: expected a finite number");
+  EXPECT_EQ(look("map_Kd -s 1 1\n"), "line 2: map_Kd: expected a file name after its options");
+}
+
+TEST(MtlFile, SeveralMaterialsAndTheLastOfAName) {
+  const auto materials =
+      parse_mtl("Kd 1\n# no material yet\nnewmtl a b\nKd 0.1\nnewmtl c\nnewmtl a b\nPr 0.5\n");
+  ASSERT_TRUE(materials);
+  std::vector<std::string> names;
+  for (const MtlMaterial& m : *materials) names.push_back(m.name);
+  EXPECT_THAT(names, ElementsAre("a b", "c"));
+  EXPECT_FALSE((*materials)[0].diffuse);
+  EXPECT_EQ((*materials)[0].line, 6);
+}
+
+}  // namespace
+}  // namespace hyades::core
