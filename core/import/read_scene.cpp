@@ -1,6 +1,7 @@
 #include <array>
 #include <string_view>
 
+#include "core/import/gltf/read_gltf.h"
 #include "core/import/obj/read_obj_scene.h"
 #include "core/import/scene_source.h"
 
@@ -16,7 +17,9 @@ struct Row {
   Reader read;
 };
 
-constexpr std::array<Row, 2> kReaders = {{
+constexpr std::array<Row, 4> kReaders = {{
+    {".glb", read_gltf},
+    {".gltf", read_gltf},
     {".obj", read_obj_scene},
     {".ply", read_obj_scene},
 }};

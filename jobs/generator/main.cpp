@@ -12,6 +12,7 @@
 #include "core/image/write_image.h"
 #include "jobs/generator/figure.h"
 #include "jobs/generator/images.h"
+#include "jobs/generator/lamplighter.h"
 #include "jobs/generator/scatter.h"
 #include "jobs/generator/shapes.h"
 #include "jobs/generator/sky.h"
@@ -199,6 +200,7 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(path.parent_path());
     return hyades::core::write_file(path.string(), std::as_bytes(std::span(made))).ok();
   };
+  good &= text("lamplighter/lamplighter.glb", make_lamplighter());
   good &= text("lanterns/flock.yaml", lanterns());
   good &= text("leaves/spray.yaml", spray_of_leaves());
 

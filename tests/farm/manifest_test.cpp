@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/import/job_files.h"
 #include "core/job/layers.h"
 #include "core/job/render_key.h"
 #include "core/render/render_frame.h"
@@ -47,10 +48,9 @@ std::string write_scattered_job(const TempFolder& folder) {
 }
 
 /// What a client uploads.
-void upload(const JobPackage& package, ContentStore& store) {
-  const auto files = core::make_file_resolver(package.folder);
+void upload(const JobPackage& package, core::JobFiles& door, ContentStore& store) {
   for (const AssetRecord& file : package.files) {
-    const auto bytes = files->open(file.reference);
+    const auto bytes = door.files().open(file.reference);
     ASSERT_TRUE(bytes) << error_of(bytes);
     EXPECT_EQ(put(store, {bytes->chars(), bytes->size()}), file.sha256);
   }
@@ -80,9 +80,22 @@ Rendered render(const std::string& document, core::AssetResolver& files, int32_t
           core::render_frame(renderer, window, samples, frame).film.digest()};
 }
 
+/// A job on the disk, and the door to its files.
+struct Packed {
+  std::unique_ptr<core::JobFiles> door;
+  core::Result<JobPackage> package;
+};
+
+Packed pack(const std::string& path) {
+  auto door = core::JobFiles::open(path);
+  if (!door) return {nullptr, door.error()};
+  auto package = package_job((*door)->document(), path, (*door)->files());
+  return {std::move(*door), std::move(package)};
+}
+
 TEST(Manifest, NamesWhatAnyFrameNeeds) {
   const TempFolder folder;
-  const auto package = package_job(write_scattered_job(folder));
+  const auto package = pack(write_scattered_job(folder)).package;
   ASSERT_TRUE(package) << error_of(package);
   std::vector<std::string> names;
   for (const AssetRecord& file : package->files) names.push_back(file.reference);
@@ -95,12 +108,11 @@ TEST(Manifest, NamesWhatAnyFrameNeeds) {
 /// The resolver must not find by path what it has by content: the files are gone when it is asked.
 TEST(Manifest, RendersTheSameBitsWithoutTheFiles) {
   const TempFolder folder;
-  const auto package = package_job(write_scattered_job(folder));
+  const auto [door, package] = pack(write_scattered_job(folder));
   ASSERT_TRUE(package) << error_of(package);
   const auto store = open_store(folder.file("store"));
-  upload(*package, *store);
-  const auto files = core::make_file_resolver(package->folder);
-  const Rendered truth = render("job.yaml", *files, 2, 16);
+  upload(*package, *door, *store);
+  const Rendered truth = render("job.yaml", door->files(), 2, 16);
   fs::remove_all(folder.file("jobs"));
   fs::remove_all(folder.file("elsewhere"));
   ManifestResolver manifest(package->files, *store);
@@ -116,15 +128,14 @@ TEST(Manifest, HoldsTheWholeGallery) {
   int jobs = 0;
   for (const auto& entry : fs::recursive_directory_iterator("jobs")) {
     if (entry.path().filename() != "job.yaml") continue;
-    const auto package = package_job(entry.path().string());
+    const auto [door, package] = pack(entry.path().string());
     ASSERT_TRUE(package) << error_of(package);
     const TempFolder folder;
     const auto store = open_store(folder.file("store"));
-    upload(*package, *store);
-    const auto files = core::make_file_resolver(package->folder);
-    ManifestResolver manifest(package->files, *store);
+    upload(*package, *door, *store);
+      ManifestResolver manifest(package->files, *store);
     const int32_t frame = package->job.frames.first;
-    const Rendered truth = render("job.yaml", *files, frame, 4);
+    const Rendered truth = render("job.yaml", door->files(), frame, 4);
     const Rendered copy = render("job.yaml", manifest, frame, 4);
     EXPECT_EQ(copy.key, truth.key) << entry.path();
     EXPECT_EQ(copy.digest, truth.digest) << entry.path();
@@ -159,10 +170,10 @@ TEST(Manifest, OpensNothingElse) {
 TEST(Manifest, ComplaintsNameTheDocumentAsItWasGiven) {
   const TempFolder folder;
   std::ofstream(folder.file("bad.yaml")) << "hyades: 1\nobjects: {a: {mesh: gone.obj}}\n";
-  const std::string message = error_of(package_job(folder.file("bad.yaml")));
+  const std::string message = error_of(pack(folder.file("bad.yaml")).package);
   EXPECT_NE(message.find(folder.file("bad.yaml") + ":2:"), std::string::npos) << message;
   EXPECT_NE(message.find("gone.obj: no such file"), std::string::npos) << message;
-  EXPECT_NE(error_of(package_job(folder.file("none.yaml"))).find("no such file"),
+  EXPECT_NE(error_of(pack(folder.file("none.yaml")).package).find("no such file"),
             std::string::npos);
 }
 
