@@ -100,7 +100,11 @@ std::unique_ptr<std::istream> JobFiles::stream(const std::string& reference) {
     return std::make_unique<std::ifstream>(path, std::ios::binary);
   }
   auto bytes = importing_->open(reference);
-  if (!bytes) return std::make_unique<std::ifstream>();
+  if (!bytes) {
+    auto none = std::make_unique<std::ifstream>();
+    none->setstate(std::ios::failbit);
+    return none;
+  }
   return std::make_unique<BytesStream>(std::move(*bytes));
 }
 

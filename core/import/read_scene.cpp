@@ -3,6 +3,7 @@
 
 #include "core/import/gltf/read_gltf.h"
 #include "core/import/obj/read_obj_scene.h"
+#include "core/import/pbrt/read_pbrt.h"
 #include "core/import/scene_source.h"
 
 namespace hyades::core {
@@ -17,9 +18,10 @@ struct Row {
   Reader read;
 };
 
-constexpr std::array<Row, 4> kReaders = {{
+constexpr std::array<Row, 5> kReaders = {{
     {".glb", read_gltf},
     {".gltf", read_gltf},
+    {".pbrt", read_pbrt},
     {".obj", read_obj_scene},
     {".ply", read_obj_scene},
 }};

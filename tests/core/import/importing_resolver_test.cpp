@@ -45,7 +45,7 @@ class Importing : public testing::Test {
     return bytes ? std::string(bytes->chars(), bytes->size()) : "ERROR " + bytes.error().message;
   }
 
-  TempFolder folder_;
+  test::TempFolder folder_;
 };
 
 TEST_F(Importing, ASceneIsADocumentInAFolderBesideIt) {
@@ -53,9 +53,11 @@ TEST_F(Importing, ASceneIsADocumentInAFolderBesideIt) {
   ImportingResolver files(*disk);
   const std::string text = text_of(files, reference_of({"quads.obj", "q", 24.0F, ""}));
   EXPECT_THAT(
-      text, HasSubstr("q.red-paint: {mesh: ../quads.obj, part: red paint, material: q.red-paint}"))
+      text,
+      HasSubstr(
+          "q.red-paint: {mesh: \"../quads.obj\", part: \"red paint\", material: q.red-paint}"))
       << text;
-  EXPECT_THAT(text, HasSubstr("file: ../pic/wood.png"));
+  EXPECT_THAT(text, HasSubstr("file: \"../pic/wood.png\""));
   EXPECT_TRUE(files.exists("quads.obj.files/scene.yaml"));
   EXPECT_FALSE(files.exists("gone.obj.files/scene.yaml"));
   EXPECT_THAT(text_of(files, "gone.obj.files/scene.yaml"),
@@ -73,7 +75,7 @@ TEST_F(Importing, MagentaStandsInForMissingPicturesOnlyWhereAsked) {
   ASSERT_TRUE(bytes);
   const auto image = read_image(*bytes, "stand-in", ColorSpace::automatic);
   ASSERT_TRUE(image) << image.error().message;
-  EXPECT_EQ(image->width(), 1);
+  EXPECT_EQ(image->width, 1);
   EXPECT_FALSE(lenient.open("mesh.ply"));
   EXPECT_THAT(lenient.notes(),
               ElementsAre("pic/wood.png: no such picture; magenta stands in for it"));
@@ -120,8 +122,7 @@ TEST_F(Importing, StreamsFilesOfTheDiskAndThoseThatAreMade) {
 }
 
 TEST_F(Importing, WhatAMaterialNamesStaysWithinTheFolder) {
-  for (const char* out :
-       {"../../secret.png", "/etc/secret.png", "C:\\secret.png", "a/../../../x.png"}) {
+  for (const char* out : {"../../secret.png", "/etc/secret.png", "a/../../../x.png"}) {
     write("looks/all.mtl", std::string("newmtl glow\nmap_Kd ") + out + "\n");
     const auto files = JobFiles::open(path("quads.obj"));
     ASSERT_FALSE(files) << out;
@@ -134,8 +135,10 @@ TEST_F(Importing, WhatAMaterialNamesStaysWithinTheFolder) {
 
 TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
   write("pic/wood.png", "x");
-  const auto written =
-      write_scene_job({.scene = path("quads.obj"), .job = path("jobs/new/q.yaml")});
+  WriteSceneJob request;
+  request.scene = path("quads.obj");
+  request.job = path("jobs/new/q.yaml");
+  const auto written = write_scene_job(request);
   ASSERT_TRUE(written) << written.error().message;
   EXPECT_EQ(written->files.size(), 3U);
   EXPECT_EQ(written->files.back(), path("jobs/new/q.yaml"));
@@ -147,13 +150,13 @@ TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
   EXPECT_EQ(diagnostics.to_string(), "") << text;
   EXPECT_EQ(job.objects.at(0).mesh, "q.files/red-paint.ply");
   EXPECT_EQ(job.objects.at(0).part, "");
-  EXPECT_THAT(text, HasSubstr("file: ../../pic/wood.png"));
+  EXPECT_THAT(text, HasSubstr("file: \"../../pic/wood.png\""));
 
-  const auto again = write_scene_job({.scene = path("quads.obj"), .job = path("jobs/new/q.yaml")});
+  const auto again = write_scene_job(request);
   ASSERT_FALSE(again);
   EXPECT_THAT(again.error().message, HasSubstr("q.yaml: is there already"));
-  EXPECT_TRUE(write_scene_job(
-      {.scene = path("quads.obj"), .job = path("jobs/new/q.yaml"), .overwrite = true}));
+  request.overwrite = true;
+  EXPECT_TRUE(write_scene_job(request));
 }
 
 TEST(Names, AreSafeAndDifferent) {

@@ -43,17 +43,16 @@ TEST(MtlMaterial, Glass) {
 }
 
 TEST(MtlMaterial, PhysicallyBasedOnes) {
-  EXPECT_EQ(
-      look("Kd 0.9\nPr 0.3\nPm 1\nPs 0.2\nPc 0.5\nPcr 0.1\naniso 0.4\nanisor 1.25\nNi 1.6\n"),
-      "m: {type: principled, base_color: 0.9, roughness: 0.3, metallic: 1, sheen: 0.2, coat: 0.5,\n"
-      "  coat_roughness: 0.1, anisotropic: 0.4, anisotropic_rotation: 0.25, ior: 1.6}\n");
+  EXPECT_EQ(look("Kd 0.9\nPr 0.3\nPm 1\nPs 0.2\nPc 0.5\nPcr 0.1\naniso 0.4\nanisor 0.25\nNi 1.6\n"),
+            "m:\n  type: principled\n  base_color: 0.9\n  roughness: 0.3\n  metallic: 1\n"
+            "  sheen: 0.2\n  coat: 0.5\n  coat_roughness: 0.1\n  anisotropic: 0.4\n"
+            "  anisotropic_rotation: 0.25\n  ior: 1.6\n");
 }
 
 TEST(MtlMaterial, PicturesAndTheirOptions) {
   EXPECT_EQ(look("map_Kd -s 2 3 1 -o 0.5 0 0 -clamp on my wood\\oak 1.png\n"),
-            "m: {type: lambert, color: {type: image, file: \"my wood/oak 1.png\", wrap: clamp, "
-            "scale: [2, 3], "
-            "offset: [0.5, 0]}}\n");
+            "m:\n  type: lambert\n  color: {type: image, file: \"my wood/oak 1.png\", wrap: clamp, "
+            "scale: [2, 3], offset: [0.5, 0]}\n");
   EXPECT_THAT(look("Kd 0.5 0.5 0.5\nmap_Kd a.png\n"),
               HasSubstr("color: {type: scale, input: {type: image, file: a.png}, factor: 0.5}"));
   EXPECT_THAT(look("Kd 0 0 0\nmap_Kd a.png\n"), HasSubstr("color: {type: image, file: a.png}"));

@@ -42,7 +42,7 @@ materials:
 objects:
   ball: {shape: sphere, at: ["= 3 * cos(t)", 0, '= "x"']}
   line: {mesh: "a b.ply", part: "true", transform: [{scale: 2}, {matrix: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}, {translate: [0.333333343, 1234567.875, -0.000012345]}]}
-text: "two\nlines\tand \\ \" é"
+text: "two lines and \\ \" é"
 )Y");
   const std::string text = write_yaml(*tree);
   EXPECT_TRUE(same(*tree, *parsed(text))) << text;
