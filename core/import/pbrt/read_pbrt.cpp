@@ -3,6 +3,7 @@
 #include "core/import/pbrt/camera.h"
 #include "core/import/pbrt/grid_media.h"
 #include "core/import/pbrt/lights.h"
+#include "core/import/pbrt/mesh_files.h"
 #include "core/import/pbrt/read_scene_text.h"
 #include "core/import/pbrt/render_sections.h"
 #include "core/import/pbrt/shapes.h"

@@ -1,12 +1,10 @@
 #include "core/import/pbrt/shapes.h"
 
 #include <algorithm>
-#include <charconv>
 
 #include "core/base/text.h"
-#include "core/geometry/read_mesh.h"
-#include "core/geometry/write_ply.h"
 #include "core/import/pbrt/lights.h"
+#include "core/import/pbrt/mesh_files.h"
 #include "core/import/pbrt/meshes.h"
 #include "core/import/pbrt/motion.h"
 #include "core/import/pbrt/transforms.h"
@@ -116,8 +114,10 @@ YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::strin
                         bool in_group) {
   Names names(in_group ? std::string() : context_.request.prefix);
   YamlMap out;
-  for (size_t i = 0; i < shapes.size(); ++i) {
+  size_t run = 1;
+  for (size_t i = 0; i < shapes.size(); i += run) {
     const ShapeEntity& shape = shapes[i];
+    run = mesh_run(shapes, i);
     const WrittenMaterial material = materials_.of(shape);
     if (material.name.empty()) continue;
     const bool shines = shape.area_light >= 0 && !material.is_interface && !in_group;
@@ -127,7 +127,14 @@ YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::strin
     }
     std::string wish = shape.material_name.empty() ? shape.type : shape.material_name;
     Mat4d before(1.0);
-    const std::string file = made + std::to_string(i);
+    const std::string file = made + mesh_run_name(i, run);
+    if (run > 1) {
+      for (size_t k = i + 1; k < i + run; ++k) {
+        if (Status ok = check_mesh(shapes[k], context_.report); !ok) {
+          context_.report.errors.push_back(ok.error().message);
+        }
+      }
+    }
     const YamlPtr geometry = this->geometry(shape, file, shines || material.sided, before, wish);
     if (geometry == nullptr) continue;
     YamlMap object;
@@ -205,66 +212,6 @@ void add_objects(Context& context, Textures& textures, YamlMap& out) {
   }
   if (!groups.empty()) out.put("groups", groups);
   if (!objects.empty()) out.put("objects", objects);
-}
-
-namespace {
-
-/// One file under a name that does not matter.
-class OneFile : public AssetResolver {
- public:
-  explicit OneFile(Bytes bytes) : bytes_(std::move(bytes)) {}
-  Result<Bytes> open(const std::string&, const std::string&) override { return bytes_; }
-
- private:
-  Bytes bytes_;
-};
-
-}  // namespace
-
-Result<Bytes> make_mesh_file(const LoadedScene& loaded, const std::string& name) {
-  // shape-N.ply or object-M-N.ply
-  const auto index = [](std::string_view text) {
-    size_t value = 0;
-    const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return wrong == std::errc() && end == text.data() + text.size() ? std::optional(value)
-                                                                    : std::nullopt;
-  };
-  const Error unknown{"the scene has no mesh '" + name + "'"};
-  if (!name.ends_with(".ply")) return unknown;
-  std::string_view rest(name.data(), name.size() - 4);
-  const std::vector<ShapeEntity>* shapes = &loaded.scene.shapes;
-  if (rest.starts_with("object-")) {
-    rest.remove_prefix(7);
-    const auto object = index(rest.substr(0, rest.find('-')));
-    if (!object || *object >= loaded.scene.objects.size() || rest.find('-') == rest.npos) {
-      return unknown;
-    }
-    shapes = &loaded.scene.objects[*object].shapes;
-    rest.remove_prefix(rest.find('-') + 1);
-  } else if (rest.starts_with("shape-")) {
-    rest.remove_prefix(6);
-  } else {
-    return unknown;
-  }
-  const auto i = index(rest);
-  if (!i || *i >= shapes->size()) return unknown;
-  const ShapeEntity& shape = (*shapes)[*i];
-  Report report;
-  if (shape.type == "plymesh") {
-    ParameterReader reader(shape.parameters, shape.place, report);
-    const std::string file = reader.text("filename");
-    const auto bytes = loaded.files.find(file);
-    if (bytes == loaded.files.end()) return shape.place.error("cannot open '" + file + "'");
-    OneFile files(bytes->second);
-    auto mesh = read_mesh(files, file);
-    if (!mesh) return shape.place.error(mesh.error().message);
-    reverse(**mesh);
-    return ply_bytes(**mesh);
-  }
-  if (!is_made_mesh(shape)) return unknown;
-  auto mesh = mesh_of(shape, report);
-  if (!mesh) return mesh.error();
-  return ply_bytes(*mesh);
 }
 
 }  // namespace hyades::core::pbrt

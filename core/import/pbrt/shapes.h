@@ -28,7 +28,4 @@ class Shapes {
 /// Puts `groups` and `objects` into `out`.
 void add_objects(Context& context, Textures& textures, YamlMap& out);
 
-/// The mesh "meshes/NAME.ply" of a scene.
-Result<Bytes> make_mesh_file(const LoadedScene& scene, const std::string& name);
-
 }  // namespace hyades::core::pbrt
