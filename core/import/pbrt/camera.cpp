@@ -1,8 +1,10 @@
 #include "core/import/pbrt/camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/import/pbrt/lens.h"
 #include "core/import/pbrt/motion.h"
 #include "core/import/pbrt/render_sections.h"
 
@@ -41,6 +43,34 @@ Window window_of(ParameterReader& camera, const FilmSize& size) {
                          "here, and its height counts");
   }
   return window;
+}
+
+/// A thin lens of the same focal length stands in for the elements of a real one; its field of view
+/// along the shorter side of a film of this diagonal, which is at the focus of what is far.
+/// Nothing, and an error of the report, where the lens cannot be read.
+std::optional<double> realistic_fov(Context& context, ParameterReader& camera,
+                                    const Window& window) {
+  const std::string file = camera.text("lensfile");
+  camera.text("aperture");
+  const auto bytes = context.loaded.files.find(file);
+  if (bytes == context.loaded.files.end()) {
+    const auto why = context.loaded.missing.find(file);
+    context.report.error(camera.place(), why == context.loaded.missing.end()
+                                             ? "a realistic camera needs a lensfile"
+                                             : why->second);
+    return std::nullopt;
+  }
+  const auto length = focal_length({bytes->second.chars(), bytes->second.size()});
+  if (!length) {
+    context.report.error(camera.place(), file + ": " + length.error().message);
+    return std::nullopt;
+  }
+  context.report.note(camera.place(), "a thin lens stands in for the elements of '" + file + "'");
+  ParameterReader film = read(context, context.scene.film);
+  const auto diagonal = static_cast<double>(film.number("diagonal", 35.0F));
+  // The window goes from -1 to 1 along the shorter side.
+  const double half = diagonal / std::hypot(window.width(), window.height());
+  return 2.0 * std::atan(half / *length) * kDegrees;
 }
 
 /// Where the camera is at a moment of the shutter.
@@ -92,8 +122,8 @@ void add_camera(Context& context, YamlMap& out) {
   Vec3d forward(0.0, 0.0, 1.0);
   Vec2 middle(0.0F);  // of the window, in the camera's space
   const double stretch = glm::length(Vec3d(at_shutter(context, entity.to_world, 0.0)[2]));
-  const float lens = camera.number("lensradius", 0.0F);
-  const float focus = camera.number("focaldistance", 1e6F);
+  float lens = camera.number("lensradius", 0.0F);
+  float focus = camera.number("focaldistance", 1e6F);
   if (around) {
     node.put("type", yaml_word("equirectangular"));
     forward = Vec3d(-1.0, 0.0, 0.0);
@@ -109,11 +139,17 @@ void add_camera(Context& context, YamlMap& out) {
       node.put("height", yaml_number(static_cast<float>(window.height() * stretch)));
       middle = Vec2((window.left + window.right) / 2.0, (window.bottom + window.top) / 2.0);
     } else {
-      if (entity.type != "perspective") {
-        context.report.note(entity.place,
-                            "a camera of perspective stands in for '" + entity.type + "'");
+      auto fov = static_cast<double>(camera.number("fov", 90.0F));
+      if (entity.type == "realistic") {
+        const auto found = realistic_fov(context, camera, window);
+        if (!found) return;
+        fov = *found;
+        lens = camera.number("aperturediameter", 1.0F) / 2000.0F;  // millimetres
+        focus = camera.number("focusdistance", 10.0F);
+      } else if (entity.type != "perspective") {
+        context.report.error(entity.place, "there is no camera '" + entity.type + "'");
+        return;
       }
-      const auto fov = static_cast<double>(camera.number("fov", 90.0F));
       if (!(fov > 0.0 && fov < 180.0)) {
         context.report.error(entity.place, "fov is not between 0 and 180 degrees");
         return;

@@ -32,6 +32,7 @@ class Loader {
       add(light);
       if (light.type == "infinite") add_file(light);
     }
+    if (scene.camera.type == "realistic") add_file(scene.camera, "lensfile");
     add_reversed(scene.shapes);
     for (const ObjectDefinition& object : scene.objects) add_reversed(object.shapes);
     return status_;
@@ -58,10 +59,10 @@ class Loader {
   }
 
   /// What is missing is an error when somebody asks for what is made of it.
-  void add_file(const Entity& entity) {
+  void add_file(const Entity& entity, const char* name = "filename") {
     Report unheard;
     ParameterReader reader(entity.parameters, entity.place, unheard);
-    const std::string file = reader.text("filename");
+    const std::string file = reader.text(name);
     if (file.empty() || loaded_.files.contains(file)) return;
     auto bytes = files_.open(file);
     if (bytes) {

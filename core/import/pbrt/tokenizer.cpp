@@ -1,5 +1,6 @@
 #include "core/import/pbrt/tokenizer.h"
 
+#include <array>
 #include <utility>
 
 namespace hyades::core::pbrt {
@@ -7,7 +8,20 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-bool ends_word(char c) { return is_blank(c) || c == '"' || c == '[' || c == ']' || c == '#'; }
+enum class Role : uint8_t { within, ends, control };
+
+/// What each byte is to a word.
+constexpr std::array<Role, 256> kRoles = [] {
+  std::array<Role, 256> roles{};
+  for (size_t c = 0; c < 0x20; ++c) roles[c] = Role::control;
+  roles[0x7F] = Role::control;
+  for (const char c : {' ', '\t', '\n', '\r', '"', '[', ']', '#'}) {
+    roles[static_cast<unsigned char>(c)] = Role::ends;
+  }
+  return roles;
+}();
+
+Role role_of(char c) { return kRoles[static_cast<unsigned char>(c)]; }
 
 }  // namespace
 
@@ -63,9 +77,9 @@ Token Tokenizer::read() {
     token.text = text_.substr(at_++, 1);
   } else {
     const size_t start = at_;
-    while (at_ < text_.size() && !ends_word(text_[at_])) {
-      const auto u = static_cast<unsigned char>(text_[at_++]);
-      if (u < 0x20 || u == 0x7F) return broken(token, "found a control character, expected text");
+    while (at_ < text_.size() && role_of(text_[at_]) == Role::within) ++at_;
+    if (at_ < text_.size() && role_of(text_[at_]) == Role::control) {
+      return broken(token, "found a control character, expected text");
     }
     token.kind = Token::Kind::word;
     token.text = text_.substr(start, at_ - start);

@@ -92,6 +92,25 @@ TEST(PbrtScene, TheFieldOfViewIsOfTheShorterSide) {
               HasSubstr("focus: 7"));
 }
 
+TEST(PbrtScene, ARealisticLensBecomesAThinOneOfItsFocalLength) {
+  PbrtFiles files(
+      "Film \"rgb\" \"integer xresolution\" 300 \"integer yresolution\" 200 \"float diagonal\" 36 "
+      "Camera \"realistic\" \"string lensfile\" \"a.dat\" \"float aperturediameter\" 10 "
+      "\"float focusdistance\" 2 WorldBegin Shape \"sphere\"");
+  // Two faces of 100 mm with nothing between: f = R / (2 (n - 1)) = 100 mm.
+  files.add("a.dat", "# lens\n100 0 1.5 30\n0 0 0 10\n-100 90 1 30\n");
+  const PbrtJob job = read_pbrt_job(files);
+  ASSERT_EQ(job.error, "");
+  // Half of the film's height is 36 / sqrt(13) = 9.98 mm.
+  EXPECT_THAT(job.text, HasSubstr("fov: 11.4"));
+  EXPECT_THAT(job.text, HasSubstr("aperture: {radius: 0.005}"));
+  EXPECT_THAT(job.notes, Contains(HasSubstr("a thin lens stands in")));
+  files.add("a.dat", "-100 0 1.5 30\n100 0 1 30");
+  EXPECT_THAT(read_pbrt_job(files).error, HasSubstr("does not gather light"));
+  files.add("a.dat", "1 2 3");
+  EXPECT_THAT(read_pbrt_job(files).error, HasSubstr("four numbers"));
+}
+
 TEST(PbrtScene, TheFilmsExposureGoesIntoTheLights) {
   const PbrtJob job = pbrt_job(
       "Film \"rgb\" \"float iso\" 50 Camera \"perspective\" \"float shutterclose\" 4 WorldBegin "
