@@ -12,9 +12,10 @@ namespace {
 
 /// Keys of which an entry has one: writing any of them replaces what `like` would bring of the
 /// whole row.
-const std::array<std::vector<std::string>, 2> kEither = {{
+const std::array<std::vector<std::string>, 3> kEither = {{
     {"shape", "mesh", "instance", "group"},
     {"metal", "eta", "k", "color"},
+    {"anisotropic", "roughness_along"},
 }};
 
 bool replaced_by_own(const YamlNode& own, const std::string& key) {

@@ -26,6 +26,7 @@ struct PrincipledDesc {
   ColorInput specular_tint{Animated<Rgb>(Rgb(1.0F)), {}};
   ScalarInput anisotropic{Animated<float>(0.0F), {}};
   ScalarInput anisotropic_rotation{Animated<float>(0.0F), {}};  ///< turns
+  std::optional<ScalarInput> roughness_along;  ///< along the tangent, in place of anisotropic
   ScalarInput transmission{Animated<float>(0.0F), {}};
   ScalarInput diffuse_transmission{Animated<float>(0.0F), {}};
   ScalarInput coat{Animated<float>(0.0F), {}};

@@ -169,6 +169,17 @@ void read_two_sided(MapReader& reader, MaterialDesc& material) {
   read_surface(reader, material);
 }
 
+void read_roughness_along(MapReader& reader, PrincipledDesc& p) {
+  ScalarInput along{Animated<float>(0.5F), {}};
+  reader.scalar_input("roughness_along", along, kUnitInterval);
+  if (reader.listing() || !reader.has("roughness_along")) return;
+  p.roughness_along = along;
+  if (reader.has("anisotropic")) {
+    reader.complain(reader.find("anisotropic")->where,
+                    "anisotropic and roughness_along are both there, expected one of them");
+  }
+}
+
 void read_principled(MapReader& reader, MaterialDesc& material) {
   PrincipledDesc p;
   material.roughness = ScalarInput{Animated<float>(0.5F), {}};
@@ -180,6 +191,7 @@ void read_principled(MapReader& reader, MaterialDesc& material) {
   reader.color_input("specular_tint", p.specular_tint, kUnitInterval);
   reader.scalar_input("anisotropic", p.anisotropic, kUnitInterval);
   reader.scalar_input("anisotropic_rotation", p.anisotropic_rotation, kUnitInterval);
+  read_roughness_along(reader, p);
   reader.scalar_input("transmission", p.transmission, kUnitInterval);
   reader.scalar_input("coat", p.coat, kUnitInterval);
   reader.scalar_input("coat_roughness", p.coat_roughness, kUnitInterval);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "core/base/udim.h"
@@ -22,12 +23,33 @@ void read_constant(MapReader& reader, TextureDesc& texture) {
   reader.color_input("value", texture.a, kNotNegative);
 }
 
+/// One mode, or [along u, along v].
+void read_wrap(MapReader& reader, TextureImage& image) {
+  const YamlNode* node = reader.find("wrap");
+  if (node == nullptr || node->kind != YamlNode::Kind::list) {
+    reader.choice("wrap", image.wrap, kWraps);
+    image.wrap_v = image.wrap;
+    return;
+  }
+  const auto is_mode = [](const YamlPtr& item) {
+    return item->kind == YamlNode::Kind::scalar &&
+           std::find(kWraps.begin(), kWraps.end(), item->scalar) != kWraps.end();
+  };
+  if (node->list.size() != 2 || !std::all_of(node->list.begin(), node->list.end(), is_mode)) {
+    reader.complain(node->where, "wrap is a list, expected one or two of " + join_names(kWraps) +
+                                     ": [along u, along v]");
+    return;
+  }
+  image.wrap = node->list[0]->scalar;
+  image.wrap_v = node->list[1]->scalar;
+}
+
 void read_image(MapReader& reader, TextureDesc& texture) {
   TextureImage& image = texture.image;
   reader.require("file", "an image file");
   reader.file("file", image.file);
   reader.choice("color_space", image.color_space, kColorSpaces);
-  reader.choice("wrap", image.wrap, kWraps);
+  read_wrap(reader, image);
   reader.choice("filter", image.filter, kFilters);
   reader.choice("channel", texture.channel, channel_names());
   read_mapping(reader, texture);

@@ -83,6 +83,7 @@ void write(FieldWriter& out, const PrincipledDesc& p) {
   out.put("specular_tint", p.specular_tint);
   out.put("anisotropic", p.anisotropic);
   out.put("anisotropic_rotation", p.anisotropic_rotation);
+  if (p.roughness_along) out.put("roughness_along", *p.roughness_along);
   out.put("transmission", p.transmission);
   out.put("diffuse_transmission", p.diffuse_transmission);
   out.put("coat", p.coat);

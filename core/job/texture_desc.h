@@ -14,7 +14,8 @@ namespace hyades::core {
 struct TextureImage {
   std::string file;                  ///< with <UDIM> in its name: one file per unit of uv
   std::string color_space = "auto";  ///< auto | srgb | linear
-  std::string wrap = "repeat";       ///< repeat | clamp | mirror | black
+  std::string wrap = "repeat";       ///< along u: repeat | clamp | mirror | black
+  std::string wrap_v = "repeat";     ///< along v
   std::string filter = "trilinear";  ///< trilinear | anisotropic | bilinear | nearest
 };
 

@@ -11,6 +11,7 @@ void write(FieldWriter& out, const TextureImage& image) {
   out.put_file("file", image.file);
   out.put("color_space", image.color_space);
   out.put("wrap", image.wrap);
+  if (image.wrap_v != image.wrap) out.put("wrap_v", image.wrap_v);
   out.put("filter", image.filter);
   out.leave();
 }

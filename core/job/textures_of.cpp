@@ -27,6 +27,7 @@ std::vector<std::string> textures_of(const MaterialDesc& m) {
           &p.diffuse_transmission, &p.coat, &p.coat_roughness, &p.sheen, &p.sheen_roughness}) {
       add(input->texture);
     }
+    if (p.roughness_along) add(p.roughness_along->texture);
   }
   return names;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/materials/make_material.h"
 
 namespace hyades::core {
@@ -13,7 +15,8 @@ struct PrincipledParams {
   ScalarParam specular{0.5F, nullptr};
   ColorParam specular_tint{Rgb(1.0F), nullptr};
   ScalarParam anisotropic;
-  ScalarParam anisotropic_rotation;  ///< turns
+  ScalarParam anisotropic_rotation;            ///< turns
+  std::optional<ScalarParam> roughness_along;  ///< along the tangent, in place of anisotropic
   ScalarParam transmission;
   ScalarParam diffuse_transmission;  ///< of thin walls
   ScalarParam coat;

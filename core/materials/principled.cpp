@@ -78,14 +78,24 @@ class Principled final : public Material {
   }
 
  private:
-  /// Widths by Burley 2012: their ratio is 1 - 0.9 anisotropic.
+  /// Widths by Burley 2012: their ratio is 1 - 0.9 anisotropic. Or by two roughnesses: neither
+  /// width is more than ten times the other then, either.
   void set_facets(PrincipledParts& parts, const SurfacePoint& point, Frame& frame) const {
-    const float anisotropic = fraction_at(params_.anisotropic, point);
     parts.facets = {parts.alpha, parts.alpha};
-    if (!(anisotropic > 0.0F) || parts.alpha < AnisotropicGgx::kLeastAlpha) return;
-    const float aspect = std::sqrt(1.0F - 0.9F * anisotropic);
-    parts.facets = {std::fmin(parts.alpha / aspect, 1.0F),
-                    std::fmax(parts.alpha * aspect, AnisotropicGgx::kLeastAlpha)};
+    if (params_.roughness_along) {
+      const float along = square(fraction_at(*params_.roughness_along, point));
+      const float wider = std::fmax(along, parts.alpha);
+      if (along == parts.alpha || wider < AnisotropicGgx::kLeastAlpha) return;
+      const float least = std::fmax(0.1F * wider, AnisotropicGgx::kLeastAlpha);
+      parts.facets = {std::fmax(along, least), std::fmax(parts.alpha, least)};
+      parts.alpha = std::sqrt(parts.facets.along_x * parts.facets.along_y);
+    } else {
+      const float anisotropic = fraction_at(params_.anisotropic, point);
+      if (!(anisotropic > 0.0F) || parts.alpha < AnisotropicGgx::kLeastAlpha) return;
+      const float aspect = std::sqrt(1.0F - 0.9F * anisotropic);
+      parts.facets = {std::fmin(parts.alpha / aspect, 1.0F),
+                      std::fmax(parts.alpha * aspect, AnisotropicGgx::kLeastAlpha)};
+    }
     const float turns = fraction_at(params_.anisotropic_rotation, point);
     if (turns == 0.0F) return;
     const auto [sine, cosine] = sin_cos(2.0F * kPi * turns);

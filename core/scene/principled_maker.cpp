@@ -34,6 +34,11 @@ Result<MaterialPtr> principled_material(const MaterialDesc& desc, Appearance& lo
     if (!made) return made.error();
     each.to = *made;
   }
+  if (p.roughness_along) {
+    auto along = looks.scalar(*p.roughness_along);
+    if (!along) return along.error();
+    params.roughness_along = *along;
+  }
   params.ior = desc.ior.at(looks.time());
   params.coat_ior = p.coat_ior.at(looks.time());
   params.thin_walled = p.thin_walled;

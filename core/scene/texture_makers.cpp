@@ -96,8 +96,11 @@ Result<ImageUse> image_use_of(const TextureDesc& desc) {
   if (!space) return space.error();
   const auto wrap = look_up(kWraps, desc.image.wrap, "wrap");
   if (!wrap) return wrap.error();
+  const auto upwards = look_up(kWraps, desc.image.wrap_v, "wrap");
+  if (!upwards) return upwards.error();
   // Tiles lie side by side: none repeats.
-  return ImageUse{(*space)->value, is_udim(desc.image.file) ? WrapMode::clamp : (*wrap)->value};
+  const WrapModes wraps((*wrap)->value, (*upwards)->value);
+  return ImageUse{(*space)->value, is_udim(desc.image.file) ? WrapMode::clamp : wraps};
 }
 
 std::vector<std::string> made_texture_types() { return names_of(kMakers); }

@@ -165,9 +165,9 @@ class ImageTexture final : public Texture {
   template <class Value, TexelFormat format>
   Value in_level(const Texels& level, const Vec2& uv) const {
     const bool between = desc_.filter != TextureFilter::nearest;
-    const WrapMode wrap = image_->wrap();
-    const Taps x = locate(double{uv.x} * level.width(), level.width(), wrap, between);
-    const Taps y = locate(double{uv.y} * level.height(), level.height(), wrap, between);
+    const WrapModes wrap = image_->wrap();
+    const Taps x = locate(double{uv.x} * level.width(), level.width(), wrap.u, between);
+    const Taps y = locate(double{uv.y} * level.height(), level.height(), wrap.v, between);
     if constexpr (std::is_same_v<Value, Texel>) {
       return read_slopes<format>(level, x, y);
     } else {

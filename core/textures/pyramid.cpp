@@ -101,10 +101,10 @@ Level weighed(Level level) {
   return level;
 }
 
-Level half_the_size(const Level& level, WrapMode wrap) {
-  Level plain = narrower(shorter(level, wrap), wrap);
+Level half_the_size(const Level& level, WrapModes wrap) {
+  Level plain = narrower(shorter(level, wrap.v), wrap.u);
   if (!has_alpha(level.channels)) return plain;
-  const Level by_alpha = narrower(shorter(weighed(level), wrap), wrap);
+  const Level by_alpha = narrower(shorter(weighed(level), wrap.v), wrap.u);
   const size_t colors = level.channels - 1;
   for (size_t i = 0; i < plain.values.size(); i += plain.channels) {
     const float alpha = plain.values[i + colors];
@@ -151,7 +151,7 @@ TexelCoding coding_of_means(const TexelCoding& image) {
 
 }  // namespace
 
-Result<PyramidPtr> ImagePyramid::make(const Image& image, WrapMode wrap, TexelStore& store) {
+Result<PyramidPtr> ImagePyramid::make(const Image& image, WrapModes wrap, TexelStore& store) {
   auto pyramid = std::make_shared<ImagePyramid>();
   pyramid->wrap_ = wrap;
   if (image.width <= 0 || image.height <= 0 || image.channels.empty()) return PyramidPtr(pyramid);

@@ -18,16 +18,16 @@ class ImagePyramid {
  public:
   /// Colour from channels R, G, B, else grey from Y, else from the first channel; alpha from A. An
   /// image without pixels has no levels. Errors: no room in `store`.
-  static Result<std::shared_ptr<const ImagePyramid>> make(const Image& image, WrapMode wrap,
+  static Result<std::shared_ptr<const ImagePyramid>> make(const Image& image, WrapModes wrap,
                                                           TexelStore& store);
 
   const std::vector<Texels>& levels() const { return levels_; }
-  WrapMode wrap() const { return wrap_; }
+  WrapModes wrap() const { return wrap_; }
   size_t memory() const;  ///< bytes of texels
 
  private:
   std::vector<Texels> levels_;
-  WrapMode wrap_ = WrapMode::repeat;
+  WrapModes wrap_;
 };
 
 using PyramidPtr = std::shared_ptr<const ImagePyramid>;

@@ -1,12 +1,24 @@
 #pragma once
 
 #include <cmath>
+#include <compare>
 #include <cstdint>
 
 namespace hyades::core {
 
 /// What lies outside of an image.
 enum class WrapMode { repeat, clamp, mirror, black };
+
+/// The same along u, from left to right, and along v, from bottom to top.
+struct WrapModes {
+  WrapMode u = WrapMode::repeat;
+  WrapMode v = WrapMode::repeat;
+
+  WrapModes() = default;
+  WrapModes(WrapMode both) : u(both), v(both) {}  // NOLINT: implicit on purpose: most have one
+  WrapModes(WrapMode along_u, WrapMode along_v) : u(along_u), v(along_v) {}
+  auto operator<=>(const WrapModes&) const = default;
+};
 
 /// Texel `i` of an endless row of n, as the wrap mode has it; -1 for black.
 inline int wrap_index(int64_t i, int n, WrapMode wrap) {

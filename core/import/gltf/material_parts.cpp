@@ -136,7 +136,32 @@ void write_anisotropy(MaterialSheet& sheet) {
   if (!value.exists()) return;
   const JsonValue map = value.member("anisotropyTexture");
   const std::string strength = sheet.textures.name(map, Meaning::data, "blue");
-  sheet.out.put("anisotropic", scaled(number_of(value, "anisotropyStrength", 0.0F), strength));
+  const float factor = number_of(value, "anisotropyStrength", 0.0F);
+  if (factor == 0.0F) return;
+  const JsonValue pbr = sheet.value.member("pbrMetallicRoughness");
+  const float roughness = number_of(pbr, "roughnessFactor", 1.0F);
+  const std::string rough =
+      sheet.textures.name(pbr.member("metallicRoughnessTexture"), Meaning::data, "green");
+  // Along the tangent the width of facets is alpha + (1 - alpha) strength^2, with alpha =
+  // roughness^2.
+  const auto power = [](const YamlPtr& input, float exponent) {
+    return YamlMap{
+        {"type", yaml_word("power")}, {"input", input}, {"exponent", yaml_number(exponent)}}
+        .node();
+  };
+  if (strength.empty() && rough.empty()) {
+    const float alpha = roughness * roughness;
+    sheet.out.put("roughness_along",
+                  yaml_number(std::sqrt(alpha + (1.0F - alpha) * factor * factor)));
+  } else {
+    sheet.out.put("roughness_along",
+                  power(YamlMap{{"type", yaml_word("mix")},
+                                {"a", power(scaled(roughness, rough), 2.0F)},
+                                {"b", yaml_number(1.0F)},
+                                {"amount", power(scaled(factor, strength), 2.0F)}}
+                            .node(),
+                        0.5F));
+  }
   if (!strength.empty()) {
     sheet.note("has an anisotropyTexture; only its strength (blue) is taken, not its directions");
   }

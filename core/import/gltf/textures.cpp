@@ -128,13 +128,14 @@ std::string GltfTextures::name(const JsonValue& info, Meaning meaning, const std
   int64_t set = info.integer("texCoord", 0, 64, 0);
   set = info.member("extensions").member("KHR_texture_transform").integer("texCoord", 0, 64, set);
   const YamlPtr mapping = mapping_of(info);
+  const int image = texture.index("source", model_.images.size());
+  const int sampler = texture.index("sampler", samplers_.size());
   const std::string key = fmt::format(
-      "{} {} {} {} {}", index, meaning == Meaning::color, channel, set,
+      "{} {} {} {} {} {}", image, sampler, meaning == Meaning::color, channel, set,
       mapping ? info.member("extensions").member("KHR_texture_transform").raw()->dump() : "");
   const auto known = made_.find(key);
   if (known != made_.end()) return known->second;
   std::string& name = made_[key];
-  const int image = texture.index("source", model_.images.size());
   if (image < 0) {
     notes_.push_back(texture.place() + " has no picture that can be read and is left out");
     return name;
@@ -158,7 +159,7 @@ std::string GltfTextures::name(const JsonValue& info, Meaning meaning, const std
   YamlMap out{{"type", yaml_word("image")}, {"file", yaml_text(file)}};
   if (meaning == Meaning::data) out.put("color_space", yaml_word("linear"));
   if (!channel.empty()) out.put("channel", yaml_word(channel));
-  describe_sampler(texture.index("sampler", samplers_.size()), out);
+  describe_sampler(sampler, out);
   if (mapping) out.put("mapping", mapping);
   section_.put(name, out);
   return name;

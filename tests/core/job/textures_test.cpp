@@ -68,6 +68,18 @@ TEST(Udim, WithoutATileItSaysWhatWasLookedFor) {
             std::string::npos);
 }
 
+TEST(Textures, WrapIsOneModeOrTwo) {
+  MemoryAssets assets;
+  assets.add("a.png", "x");
+  EXPECT_EQ(complaints("type: image, file: a.png, wrap: [repeat, clamp]", assets), "");
+  for (const char* wrong : {"[repeat]", "[repeat, clamp, mirror]", "[repeat, wound]", "[]"}) {
+    EXPECT_NE(complaints("type: image, file: a.png, wrap: " + std::string(wrong), assets)
+                  .find("expected one or two of repeat, clamp, mirror or black"),
+              std::string::npos)
+        << wrong;
+  }
+}
+
 TEST(Textures, MappingsAreOneWordOrAMap) {
   MemoryAssets assets;
   Diagnostics diagnostics;

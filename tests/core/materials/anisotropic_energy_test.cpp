@@ -66,6 +66,21 @@ TEST(BsdfFurnace, BrushedWhiteMetalKeepsEverything) {
   }
 }
 
+TEST(BsdfFurnace, TwoRoughnessesKeepEverything) {
+  for (const float along : {0.0F, 0.2F, 0.7F, 1.0F}) {
+    for (const float across : {0.0F, 0.3F, 0.8F}) {
+      EXPECT_TRUE(test::keeps_all_light(principled_with([&](PrincipledParams& p) {
+                                          p.base_color.value = Rgb(1.0F);
+                                          p.metallic.value = 1.0F;
+                                          p.roughness.value = across;
+                                          p.roughness_along = ScalarParam{along, nullptr};
+                                        }),
+                                        false, 3))
+          << along << " " << across;
+    }
+  }
+}
+
 // Fresnel's reflectance of stretched facets is scaled from that of even ones: 1 % at grazing
 // angles.
 TEST(BsdfFurnace, WhitePaintBelowBrushedFacetsKeepsEverything) {

@@ -69,6 +69,11 @@ inline std::vector<BsdfCase> principled_cases() {
          p.anisotropic_rotation.value = 0.15F;
          p.specular_tint.value = {0.9F, 0.5F, 0.7F};
        })},
+      {"principled_rough_along", principled_with([](P& p) {
+         p.metallic.value = 0.5F;
+         p.roughness.value = 0.4F;
+         p.roughness_along = ScalarParam{0.9F, nullptr};
+       })},
       {"principled_coat_and_fuzz", principled_with([](P& p) {
          p.metallic.value = 0.3F;
          p.coat.value = 0.8F;

@@ -17,7 +17,7 @@ TexturePoint at_uv(float u, float v) { return {.uv = {u, v}}; }
 /// 3 x 2 texels, grey: top row 1 2 3, bottom row 4 5 6.
 Image numbers() { return {.width = 3, .height = 2, .channels = {"Y"}, .data = {1, 2, 3, 4, 5, 6}}; }
 
-TexturePtr texture_of(const Image& image, WrapMode wrap, TextureFilter filter,
+TexturePtr texture_of(const Image& image, WrapModes wrap, TextureFilter filter,
                       const Vec3& scale = Vec3(1.0F), const Vec3& offset = Vec3(0.0F)) {
   ImageTextureDesc desc;
   desc.filter = filter;
@@ -26,7 +26,7 @@ TexturePtr texture_of(const Image& image, WrapMode wrap, TextureFilter filter,
   return make_image_texture(pyramid_of(image, wrap), desc);
 }
 
-float lookup(WrapMode wrap, TextureFilter filter, float u, float v) {
+float lookup(WrapModes wrap, TextureFilter filter, float u, float v) {
   return texture_of(numbers(), wrap, filter)->scalar(at_uv(u, v));
 }
 
@@ -81,6 +81,15 @@ TEST(ImageTexture, ScaleAndOffsetApplyToUv) {
                                   {2.0F, 2.0F, 1.0F}, {0.5F, 0.0F, 0.0F});
   EXPECT_EQ(texture->scalar(at_uv(0.0F, 0.0F)), 5.0F);
   EXPECT_EQ(texture->scalar(at_uv(0.0F, 0.3F)), 2.0F);
+}
+
+TEST(ImageTexture, WrapsAlongUAndVMayDiffer) {
+  const WrapModes across(WrapMode::repeat, WrapMode::clamp);
+  EXPECT_EQ(lookup(across, TextureFilter::nearest, 1.01F, 0.01F), 4.0F);
+  EXPECT_EQ(lookup(across, TextureFilter::nearest, 0.01F, 1.25F), 1.0F);
+  const WrapModes up(WrapMode::clamp, WrapMode::repeat);
+  EXPECT_EQ(lookup(up, TextureFilter::nearest, 1.01F, 0.01F), 6.0F);
+  EXPECT_EQ(lookup(up, TextureFilter::nearest, 0.01F, 1.25F), 4.0F);
 }
 
 TEST(ImageTexture, GradientIsThatOfTheInterpolation) {
