@@ -39,7 +39,7 @@ struct MeshUse {
 /// How a texture reads an image's file.
 struct ImageUse {
   ColorSpace space = ColorSpace::automatic;
-  WrapModes wrap;
+  WrapModes wrap{};
   auto operator<=>(const ImageUse&) const = default;
 };
 

@@ -1,5 +1,8 @@
 #include "tests/import/rendered_scene.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -10,6 +13,7 @@
 #include "core/job/yaml_build.h"
 #include "core/job/yaml_writer.h"
 #include "core/scene/build_scene.h"
+#include "tests/support/moments.h"
 
 namespace hyades::test {
 namespace {
@@ -66,6 +70,44 @@ core::Rgb ScenePicture::mean(int x0, int y0, int x1, int y1) const {
   return core::Rgb(sum / static_cast<double>((x1 - x0) * (y1 - y0)));
 }
 
+std::string Window::yaml() const {
+  return fmt::format(
+      "film: {{size: [{}, {}]}}\n"
+      "camera: {{type: orthographic, look_from: [{}, {}, {}], look_at: [{}, {}, {}], height: "
+      "{}}}\n",
+      pixels_across, pixels_high, x, y, from, x, y, from - 1.0F, height);
+}
+
+namespace {
+
+/// Pixels of a square around a place of a window.
+core::PixelRect pixels_of(const Window& window, float at_x, float at_y, float half) {
+  const float scale = static_cast<float>(window.pixels_high) / window.height;
+  const float column = 0.5F * static_cast<float>(window.pixels_across) + (at_x - window.x) * scale;
+  const float row = 0.5F * static_cast<float>(window.pixels_high) - (at_y - window.y) * scale;
+  const float reach = std::max(half * scale, 0.5F);
+  return {static_cast<int>(column - reach), static_cast<int>(row - reach),
+          static_cast<int>(column + reach), static_cast<int>(row + reach)};
+}
+
+}  // namespace
+
+core::Rgb Window::mean(const ScenePicture& picture, float at_x, float at_y, float half) const {
+  const core::PixelRect r = pixels_of(*this, at_x, at_y, half);
+  return picture.mean(r.x0, r.y0, r.x1, r.y1);
+}
+
+double Window::contrast(const ScenePicture& picture, float at_x, float at_y, float half) const {
+  const core::PixelRect r = pixels_of(*this, at_x, at_y, half);
+  Moments moments;
+  for (int row = r.y0; row < r.y1; ++row) {
+    for (int column = r.x0; column < r.x1; ++column) {
+      moments.add(static_cast<double>(core::luminance(picture.at(column, row))));
+    }
+  }
+  return moments.variance() / (moments.mean() * moments.mean());
+}
+
 ScenePicture render_scene(const core::SceneSource& source, const SceneView& view,
                           const std::string& folder, const std::string& name) {
   core::SceneRequest request;
@@ -76,6 +118,11 @@ ScenePicture render_scene(const core::SceneSource& source, const SceneView& view
   ScenePicture picture;
   picture.notes = sections->notes;
   picture.job = job_text(*sections->sections, view.yaml, view.samples);
+  for (const auto& [from, to] : view.edits) {
+    const size_t at = picture.job.find(from);
+    if (at == std::string::npos) throw std::runtime_error("no '" + from + "' in\n" + picture.job);
+    picture.job.replace(at, from.size(), to);
+  }
   MadeFiles files(source, folder);
   core::Diagnostics diagnostics;
   const core::Job job = core::parse_job(picture.job, "scene.yaml", files, diagnostics);

@@ -15,6 +15,8 @@ struct SceneView {
   std::string animation = {};  ///< the one that is meant
   int32_t frame = 1;
   int samples = 16;
+  /// Texts of the job that are replaced by others; each must be there.
+  std::vector<std::pair<std::string, std::string>> edits = {};
 };
 
 /// A picture of an imported scene.
@@ -26,6 +28,22 @@ struct ScenePicture {
   core::Rgb at(int x, int y) const;
   /// Mean over x0 <= x < x1, y0 <= y < y1; row 0 is the top.
   core::Rgb mean(int x0, int y0, int x1, int y1) const;
+};
+
+/// What an orthographic camera that looks along -z shows.
+struct Window {
+  float x = 0.0F;  ///< of the middle
+  float y = 0.0F;
+  float height = 1.0F;
+  int pixels_across = 64;
+  int pixels_high = 64;
+  float from = 50.0F;  ///< z of the camera
+
+  std::string yaml() const;  ///< film and camera
+  /// Mean over a square of side 2 half around a place.
+  core::Rgb mean(const ScenePicture& picture, float at_x, float at_y, float half) const;
+  /// The variance of the luminance there, over its squared mean.
+  double contrast(const ScenePicture& picture, float at_x, float at_y, float half) const;
 };
 
 /// Renders `source`; files beside it are relative to `folder`. Throws where it cannot be. Where the

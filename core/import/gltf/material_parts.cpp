@@ -16,6 +16,12 @@ float number_of(const JsonValue& from, const char* key, float absent, float most
   return std::clamp(from.number(key, absent), 0.0F, most);
 }
 
+/// The index of refraction whose surface reflects this share of what comes straight on.
+float index_that_reflects(float share) {
+  const float root = std::sqrt(std::clamp(share, 0.0F, 0.96F));
+  return (1.0F + root) / (1.0F - root);
+}
+
 }  // namespace
 
 Rgb color_of(const JsonValue& from, const char* key, const Rgb& absent, float most) {
@@ -98,9 +104,8 @@ void write_specular_glossiness(MaterialSheet& sheet) {
   }
   // The index whose facets reflect the brightest channel straight on, tinted to the colour.
   const Rgb specular = color_of(old, "specularFactor", Rgb(1.0F), 1.0F);
-  const float brightest = std::clamp(max_component(specular), 0.0F, 0.96F);
-  const float root = std::sqrt(brightest);
-  sheet.out.put("ior", yaml_number((1.0F + root) / (1.0F - root)));
+  const float brightest = max_component(specular);
+  sheet.out.put("ior", yaml_number(index_that_reflects(brightest)));
   const Rgb tint = brightest > 0.0F ? specular / max_component(specular) : Rgb(0.0F);
   sheet.out.put("specular_tint", tinted(tint, sheet.textures.name(packed, Meaning::color, "")));
   write_opacity(sheet, base[3], diffuse);
@@ -108,27 +113,32 @@ void write_specular_glossiness(MaterialSheet& sheet) {
 
 void write_specular(MaterialSheet& sheet) {
   const JsonValue ior = sheet.extension("KHR_materials_ior");
-  const float index = ior.number("ior", 1.5F);
   // 0 stands for an index without end; 1 to 100 are possible here.
-  if (ior.exists()) {
-    sheet.out.put("ior", yaml_number(index == 0.0F ? 100.0F : std::clamp(index, 1.0F, 100.0F)));
-  }
+  float index = ior.number("ior", 1.5F);
+  index = index == 0.0F ? 100.0F : std::clamp(index, 1.0F, 100.0F);
   const JsonValue specular = sheet.extension("KHR_materials_specular");
-  if (!specular.exists()) return;
   const Rgb color = color_of(specular, "specularColorFactor", Rgb(1.0F), 1e6F);
+  // Colours above 1 make the facets reflect more than the index says: of opaque surfaces that is
+  // said by another index, of clear ones `specular` gives up to twice as much.
+  const float brightest = std::max(max_component(color), 1.0F);
+  const bool clear =
+      sheet.extension("KHR_materials_transmission").number("transmissionFactor", 0.0F) > 0.0F;
+  const float more = clear ? std::min(brightest, 2.0F) : 1.0F;
+  if (more < brightest && clear) {
+    sheet.note("has a specularColorFactor above 2, which is held there");
+  } else if (more < brightest) {
+    const float root = (index - 1.0F) / (index + 1.0F);
+    index = index_that_reflects(root * root * brightest);
+  }
+  if (index != 1.5F) sheet.out.put("ior", yaml_number(index));
+  if (!specular.exists()) return;
   const std::string tint =
       sheet.textures.name(specular.member("specularColorTexture"), Meaning::color, "");
   const std::string amount =
       sheet.textures.name(specular.member("specularTexture"), Meaning::data, "alpha");
-  // Colours above 1 make the facets reflect more than the index says, which `specular` does up to
-  // twice as much.
-  const float more = std::clamp(max_component(color), 1.0F, 2.0F);
-  if (max_component(color) > 2.0F) {
-    sheet.note("has a specularColorFactor above 2, which is held there");
-  }
   sheet.out.put("specular",
                 scaled(0.5F * more * number_of(specular, "specularFactor", 1.0F), amount));
-  sheet.out.put("specular_tint", tinted(glm::min(color / more, Rgb(1.0F)), tint));
+  sheet.out.put("specular_tint", tinted(glm::min(color / brightest, Rgb(1.0F)), tint));
 }
 
 void write_anisotropy(MaterialSheet& sheet) {
@@ -222,7 +232,7 @@ YamlMap volume_of(const MaterialSheet& sheet) {
   if (!(clear.number("transmissionFactor", 0.0F) > 0.0F)) return {};
   // Of light that goes `distance` far, `color` is left.
   Rgb absorption(0.0F);
-  for (int i = 0; i < 3; ++i) absorption[i] = -std::log(std::max(color[i], 1e-6F)) / distance;
+  for (int i = 0; i < 3; ++i) absorption[i] = std::log(1.0F / std::max(color[i], 1e-6F)) / distance;
   return YamlMap{{"absorption", yaml_vector(absorption)}};
 }
 

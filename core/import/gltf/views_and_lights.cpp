@@ -21,7 +21,9 @@ Vec3 direction_of(const Vec3& v, const Vec3& otherwise) {
   return length > 1e-20F ? v / length : otherwise;
 }
 
-Vec3 forward_of(const Mat4& m) { return direction_of(-Vec3(m[2]), Vec3(0.0F, 0.0F, -1.0F)); }
+Vec3 forward_of(const Mat4& m) {
+  return direction_of(Vec3(0.0F) - Vec3(m[2]), Vec3(0.0F, 0.0F, -1.0F));
+}
 
 /// A film of this width over height.
 YamlMap film_of(float aspect) {
@@ -68,16 +70,14 @@ void write_place(const GltfStage& stage, int node, YamlMap& camera) {
       "up", vector([](const Mat4& m) { return direction_of(Vec3(m[1]), Vec3(0.0F, 1.0F, 0.0F)); }));
 }
 
-YamlMap spot_of(const GltfStage& stage, const JsonValue& light, int node) {
+void write_cone(const GltfStage& stage, const JsonValue& light, int node, YamlMap& out) {
   const JsonValue cone = light.member("spot");
   const float outer = std::clamp(cone.number("outerConeAngle", kPi / 4.0F), 1e-3F, kPi / 2.0F);
   const float inner = std::clamp(cone.number("innerConeAngle", 0.0F), 0.0F, outer);
-  YamlMap out;
   out.put("look_at", moving_vector(stage.model, stage.clip, node, stage.frames,
                                    [](const Mat4& m) { return origin_of(m) + forward_of(m); }));
   out.put("angle", yaml_number(outer * kDegrees));
   out.put("blend", yaml_number(1.0F - inner / outer));
-  return out;
 }
 
 YamlMap light_of(const GltfStage& stage, const JsonValue& light, int node) {
@@ -103,11 +103,7 @@ YamlMap light_of(const GltfStage& stage, const JsonValue& light, int node) {
   if (light.has("range")) {
     stage.notes.push_back(light.place() + ".range is left out: light ends nowhere");
   }
-  if (type == "spot") {
-    for (const YamlEntry& entry : spot_of(stage, light, node).node()->map) {
-      out.put(entry.key, entry.value);
-    }
-  }
+  if (type == "spot") write_cone(stage, light, node, out);
   return out;
 }
 

@@ -105,6 +105,17 @@ TEST(GltfScene, SkinnedMeshesAreFilesOfFrames) {
   EXPECT_EQ(mesh_of(b, "meshes/24/Bend_it/Bar.0099.ply")->positions, last->positions);
 }
 
+TEST(GltfScene, TurnsGoTheShorterWay) {
+  GltfBuilder b = bending_bar();
+  const int times = b.floats({0, 1}, "SCALAR");
+  // The same turns; the second quaternion has the other sign.
+  const int turns = b.floats({0, 0, 0, 1, 0, 0, -0.70710678F, -0.70710678F}, "VEC4");
+  b.json["animations"][0]["samplers"][0] = {{"input", times}, {"output", turns}};
+  const auto half = mesh_of(b, "meshes/24/Bend_it/Bar.0013.ply");
+  EXPECT_NEAR(half->positions[2].x, std::sqrt(0.5F), 1e-6F);
+  EXPECT_NEAR(half->positions[2].y, 1.0F + std::sqrt(0.5F), 1e-6F);
+}
+
 TEST(GltfScene, AnimationsAreChosenByName) {
   const GltfBuilder b = bending_bar();
   core::SceneRequest still;

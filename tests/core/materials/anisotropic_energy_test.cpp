@@ -75,7 +75,7 @@ TEST(BsdfFurnace, TwoRoughnessesKeepEverything) {
                                           p.roughness.value = across;
                                           p.roughness_along = ScalarParam{along, nullptr};
                                         }),
-                                        false, 3))
+                                        false, 3, 0.01))
           << along << " " << across;
     }
   }

@@ -5,7 +5,7 @@
 namespace hyades::core {
 
 /// `image` at all its sizes, in memory.
-inline PyramidPtr pyramid_of(const Image& image, WrapMode wrap) {
+inline PyramidPtr pyramid_of(const Image& image, WrapModes wrap) {
   TexelStore store;
   return *ImagePyramid::make(image, wrap, store);
 }
