@@ -34,6 +34,8 @@ bool finite(const Vec3& v) {
 
 bool finite(const Vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
+bool finite(const Vec4& v) { return finite(Vec3(v)) && std::isfinite(v.w); }
+
 template <class Vec>
 Status check_finite(const std::vector<Vec>& values, const char* what) {
   const size_t bad = find_first(values.size(), [&](size_t i) { return !finite(values[i]); });
@@ -63,7 +65,13 @@ void gather(std::vector<T>& values, const std::vector<uint32_t>& kept, size_t ro
 
 void drop_unused_vertices(TriangleMesh& mesh) {
   std::vector<uint8_t> used(mesh.positions.size(), 0);
-  for (const auto& t : mesh.triangles) used[t[0]] = used[t[1]] = used[t[2]] = 1;
+  for_chunks(mesh.triangles.size(), [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      for (const uint32_t v : mesh.triangles[i]) {
+        std::atomic_ref<uint8_t>(used[v]).store(1, std::memory_order_relaxed);
+      }
+    }
+  });
   if (std::find(used.begin(), used.end(), 0) == used.end()) return;
   std::vector<uint32_t> kept;
   std::vector<uint32_t> place(used.size(), 0);
@@ -75,6 +83,9 @@ void drop_unused_vertices(TriangleMesh& mesh) {
   gather(mesh.positions, kept, 1);
   gather(mesh.normals, kept, 0);
   gather(mesh.uvs, kept, 0);
+  gather(mesh.second_uvs, kept, 0);
+  gather(mesh.colors, kept, 0);
+  gather(mesh.vertex_tangents, kept, 0);
 }
 
 Status complete_mesh(TriangleMesh& mesh) {
@@ -93,6 +104,9 @@ Status complete_mesh(TriangleMesh& mesh) {
   if (Status s = check_finite(mesh.positions, "the position"); !s) return s;
   if (Status s = check_finite(mesh.normals, "the normal"); !s) return s;
   if (Status s = check_finite(mesh.uvs, "the texture coordinate"); !s) return s;
+  if (Status s = check_finite(mesh.second_uvs, "the second texture coordinate"); !s) return s;
+  if (Status s = check_finite(mesh.colors, "the colour"); !s) return s;
+  if (Status s = check_finite(mesh.vertex_tangents, "the tangent"); !s) return s;
   normalize(mesh.normals);
   drop_unused_vertices(mesh);
   finish_mesh(mesh);

@@ -38,7 +38,8 @@ Corners corners_of(const TriangleMesh& mesh, size_t triangle) {
 
 size_t TriangleMesh::memory() const {
   return positions.size() * sizeof(Vec3) + triangles.size() * sizeof(triangles[0]) +
-         normals.size() * sizeof(Vec3) + uvs.size() * sizeof(Vec2) +
+         normals.size() * sizeof(Vec3) + (uvs.size() + second_uvs.size()) * sizeof(Vec2) +
+         (colors.size() + vertex_tangents.size()) * sizeof(Vec4) +
          tangents.size() * sizeof(tangents[0]);
 }
 

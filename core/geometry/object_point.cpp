@@ -129,6 +129,8 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
   const double dv = static_cast<double>(hit.v);
   const Vec3d offset = e1 * du + e2 * dv;
   p.primitive = hit.primitive;
+  p.mesh = &mesh;
+  p.barycentrics = {hit.u, hit.v};
   p.world_to_object = pose.world_to_object;
 
   // Normal and error bound in the space of the buffers, then in the world.
@@ -161,7 +163,7 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
   }
 
   p.tangent = Vec3(0.0F);
-  if (!mesh.tangents.empty()) {
+  if (!mesh.tangents.empty() || !mesh.vertex_tangents.empty()) {
     p.tangent = Vec3(pose.to_world.vector(mesh_tangent(hit.primitive, du, dv, p.time)));
   }
 
@@ -206,11 +208,17 @@ Vec3d PlacedObject::mesh_normal(const std::array<uint32_t, 3>& vertices, double 
 Vec3d PlacedObject::mesh_tangent(uint32_t primitive, double u, double v, float time) const {
   const Shape& shape = buffers_->shape;
   const auto between = [&](const TriangleMesh& mesh) {
-    const auto& corners = mesh.tangents[primitive];
-    return Vec3d(corners[0]) * (1.0 - u - v) + Vec3d(corners[1]) * u + Vec3d(corners[2]) * v;
+    const std::array<uint32_t, 3>& t = indices_[primitive];
+    const auto corner = [&](size_t k) {
+      return Vec3d(mesh.tangents.empty() ? Vec3(mesh.vertex_tangents[t[k]])
+                                         : mesh.tangents[primitive][k]);
+    };
+    return corner(0) * (1.0 - u - v) + corner(1) * u + corner(2) * v;
   };
   const Vec3d here = between(*shape.mesh);
-  if (!shape.deforms() || shape.next->tangents.empty()) return here;
+  if (!shape.deforms() || (shape.next->tangents.empty() && shape.next->vertex_tangents.empty())) {
+    return here;
+  }
   const double f = static_cast<double>(time) * static_cast<double>(shape.reach);
   return here * (1.0 - f) + between(*shape.next) * f;
 }

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
 
 #include "core/geometry/chunks.h"
 #include "core/geometry/mesh_source.h"
+#include "core/geometry/ply_columns.h"
 #include "core/geometry/ply_header.h"
 #include "core/geometry/ply_layout.h"
 #include "core/geometry/ply_source.h"
@@ -75,11 +77,14 @@ class PlyReader {
     mesh_->positions.resize(n);
     if (layout->has_normals) mesh_->normals.resize(n);
     if (layout->has_uvs) mesh_->uvs.resize(n);
+    if (layout->has_second_uvs) mesh_->second_uvs.resize(n);
+    if (layout->has_colors) mesh_->colors.resize(n);
+    if (layout->has_tangents) mesh_->vertex_tangents.resize(n);
     if constexpr (!Source::kText) {
       if (!e.has_lists()) return read_fixed_vertices(e, *layout);
     }
     for (size_t i = 0; i < n; ++i) {
-      PlyRow row{};
+      PlyRow row = layout->defaults;
       for (size_t k = 0; k < e.properties.size(); ++k) {
         float value = 0.0F;
         const PlyProperty& p = e.properties[k];
@@ -88,7 +93,10 @@ class PlyReader {
         } else if (!source_.number(p.type, value)) {
           return source_.truncated().in("row " + std::to_string(i));
         }
-        if (layout->slots[k] != kIgnored) row[static_cast<size_t>(layout->slots[k])] = value;
+        const PlySlot slot = layout->slots[k];
+        if (slot == kIgnored) continue;
+        const bool color = slot >= kRed && slot <= kAlpha;
+        row[static_cast<size_t>(slot)] = color ? ply_color(p.type, slot, value) : value;
       }
       store(i, row);
     }
@@ -99,36 +107,33 @@ class PlyReader {
     mesh_->positions[i] = {row[kX], row[kY], row[kZ]};
     if (!mesh_->normals.empty()) mesh_->normals[i] = {row[kNx], row[kNy], row[kNz]};
     if (!mesh_->uvs.empty()) mesh_->uvs[i] = {row[kU], row[kV]};
+    if (!mesh_->second_uvs.empty()) mesh_->second_uvs[i] = {row[kSecondU], row[kSecondV]};
+    if (!mesh_->colors.empty()) {
+      mesh_->colors[i] = {row[kRed], row[kGreen], row[kBlue], row[kAlpha]};
+    }
+    if (!mesh_->vertex_tangents.empty()) {
+      mesh_->vertex_tangents[i] = {row[kTx], row[kTy], row[kTz], row[kTw]};
+    }
   }
 
   /// Rows of one size: read in parallel.
   Status read_fixed_vertices(const PlyElement& e, const PlyLayout& layout) {
-    struct Column {
-      size_t offset;
-      PlyType type;
-      PlySlot slot;
-    };
-    std::vector<Column> columns;
-    size_t stride = 0;
-    for (size_t k = 0; k < e.properties.size(); ++k) {
-      if (layout.slots[k] != kIgnored) {
-        columns.push_back({stride, e.properties[k].type, layout.slots[k]});
-      }
-      stride += size_of(e.properties[k].type);
-    }
-    if (e.count > source_.left() / stride) return source_.truncated();
+    const PlyColumns columns(e, layout);
+    if (e.count > source_.left() / columns.stride()) return source_.truncated();
     const char* data = source_.at();
     for_chunks(e.count, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        PlyRow row{};
-        for (const Column& c : columns) {
-          row[static_cast<size_t>(c.slot)] =
-              load_as<float, Source::kSwap>(c.type, data + i * stride + c.offset);
-        }
-        store(i, row);
-      }
+      const PlyRows rows{data, begin, end};
+      const auto read = [&]<size_t N>(const std::array<PlySlot, N>& slots, auto& values) {
+        if (!values.empty()) columns.read<Source::kSwap>(rows, slots, &values[0][0]);
+      };
+      read(std::array{kX, kY, kZ}, mesh_->positions);
+      read(std::array{kNx, kNy, kNz}, mesh_->normals);
+      read(std::array{kU, kV}, mesh_->uvs);
+      read(std::array{kSecondU, kSecondV}, mesh_->second_uvs);
+      read(std::array{kRed, kGreen, kBlue, kAlpha}, mesh_->colors);
+      read(std::array{kTx, kTy, kTz, kTw}, mesh_->vertex_tangents);
     });
-    source_.skip(e.count * stride);
+    source_.skip(e.count * columns.stride());
     return {};
   }
 
@@ -142,6 +147,7 @@ class PlyReader {
     if (!is_integer(corners->type)) return Error{"its vertex indices are not integers"};
     if constexpr (!Source::kText) {
       if (!strips && read_fixed_triangles(e)) return {};
+      if (!strips && one_list(e) != nullptr) return read_listed_polygons(e);
     }
     for (size_t i = 0; i < e.count; ++i) {
       for (const PlyProperty& p : e.properties) {
@@ -173,6 +179,7 @@ class PlyReader {
     const char* data = source_.at() + offset;
     const size_t first = size_of(list->count_type);
     const size_t step = size_of(list->type);
+    const bool plain = step == sizeof(uint32_t) && !Source::kSwap;
     mesh_->triangles.resize(e.count);
     std::atomic<bool> fits{true};
     for_chunks(e.count, [&](size_t begin, size_t end) {
@@ -182,9 +189,13 @@ class PlyReader {
           fits = false;
           return;
         }
+        // Negative ones become too large, which the check of all indices finds.
+        if (plain) {
+          std::memcpy(mesh_->triangles[i].data(), row + first, 3 * sizeof(uint32_t));
+          continue;
+        }
         for (size_t k = 0; k < 3; ++k) {
           const auto index = load_as<int64_t, Source::kSwap>(list->type, row + first + k * step);
-          // Negative ones become too large, which the check of all indices finds.
           mesh_->triangles[i][k] = static_cast<uint32_t>(index);
         }
       }
@@ -195,6 +206,73 @@ class PlyReader {
     }
     source_.skip(e.count * stride);
     return true;
+  }
+
+  /// The list of an element that has no other; null where it has several.
+  static const PlyProperty* one_list(const PlyElement& e) {
+    const PlyProperty* list = nullptr;
+    for (const PlyProperty& p : e.properties) {
+      if (!p.is_list) continue;
+      if (list != nullptr) return nullptr;
+      list = &p;
+    }
+    return list;
+  }
+
+  /// Faces of all sizes, where nothing else has one.
+  Status read_listed_polygons(const PlyElement& e) {
+    const PlyProperty* list = one_list(e);
+    size_t before = 0;
+    size_t after = 0;
+    for (const PlyProperty& p : e.properties) {
+      if (!p.is_list) (&p < list ? before : after) += size_of(p.type);
+    }
+    const size_t length_bytes = size_of(list->count_type);
+    const size_t step = size_of(list->type);
+    // At least three corners each, as far as there is room for them.
+    polygons_.sizes.reserve(polygons_.sizes.size() + e.count);
+    polygons_.corners.reserve(polygons_.corners.size() +
+                              std::min<size_t>(4 * e.count, source_.left() / step));
+    for (size_t i = 0; i < e.count; ++i) {
+      if (source_.left() < before + length_bytes) return at_row(i, source_.truncated());
+      source_.skip(before);
+      const auto count = load_as<int64_t, Source::kSwap>(list->count_type, source_.at());
+      source_.skip(length_bytes);
+      if (count < 0) return at_row(i, source_.error("a list has a negative length"));
+      const auto corners = static_cast<size_t>(count);
+      if (corners > (source_.left() + 1) / step) {
+        return at_row(
+            i, source_.error("the file is too short for a list of " + std::to_string(corners)));
+      }
+      if (corners > kMaxCorners) return at_row(i, too_many_corners(corners));
+      for (size_t k = 0; k < corners; ++k) {
+        if (source_.left() < step) return at_row(i, source_.truncated());
+        const auto index = load_as<int64_t, Source::kSwap>(list->type, source_.at());
+        source_.skip(step);
+        if (index < 0 || static_cast<uint64_t>(index) >= vertex_count_) {
+          return at_row(i, out_of_range(index));
+        }
+        polygons_.corners.push_back(static_cast<uint32_t>(index));
+      }
+      polygons_.sizes.push_back(static_cast<uint32_t>(corners));
+      if (source_.left() < after) return at_row(i, source_.truncated());
+      source_.skip(after);
+    }
+    return {};
+  }
+
+  static Error at_row(size_t row, const Error& error) {
+    return error.in("row " + std::to_string(row));
+  }
+
+  Error too_many_corners(size_t count) const {
+    return source_.error("a face has " + std::to_string(count) + " corners; at most " +
+                         std::to_string(kMaxCorners) + " are possible");
+  }
+
+  Error out_of_range(int64_t index) const {
+    return source_.error("vertex index " + std::to_string(index) + " is out of range: there are " +
+                         std::to_string(vertex_count_) + " vertices");
   }
 
   /// The length of a list, checked against what is left of the file.
@@ -239,9 +317,7 @@ class PlyReader {
     int64_t index = 0;
     if (!source_.integer(p.type, index)) return source_.truncated();
     if (index < 0 || static_cast<uint64_t>(index) >= vertex_count_) {
-      return source_.error("vertex index " + std::to_string(index) +
-                           " is out of range: there are " + std::to_string(vertex_count_) +
-                           " vertices");
+      return out_of_range(index);
     }
     return static_cast<uint32_t>(index);
   }
@@ -249,10 +325,7 @@ class PlyReader {
   Status read_polygon(const PlyProperty& p) {
     const auto count = list_length(p);
     if (!count) return count.error();
-    if (*count > kMaxCorners) {
-      return source_.error("a face has " + std::to_string(*count) + " corners; at most " +
-                           std::to_string(kMaxCorners) + " are possible");
-    }
+    if (*count > kMaxCorners) return too_many_corners(*count);
     for (size_t i = 0; i < *count; ++i) {
       const auto corner = read_corner(p);
       if (!corner) return corner.error();
@@ -276,9 +349,7 @@ class PlyReader {
         continue;
       }
       if (index < 0 || static_cast<uint64_t>(index) >= vertex_count_) {
-        return source_.error("vertex index " + std::to_string(index) +
-                             " is out of range: there are " + std::to_string(vertex_count_) +
-                             " vertices");
+        return out_of_range(index);
       }
       const auto corner = static_cast<uint32_t>(index);
       if (length >= 2) {

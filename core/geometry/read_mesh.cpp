@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/base/fp_mode.h"
+#include "core/base/gunzip.h"
 #include "core/geometry/mesh_source.h"
 
 namespace hyades::core {
@@ -30,7 +31,11 @@ struct MeshText {
 };
 
 Result<MeshText> open_mesh(AssetResolver& assets, const std::string& reference) {
-  const Result<Bytes> bytes = assets.open(reference);
+  Result<Bytes> bytes = assets.open(reference);
+  if (bytes && is_gzip(bytes->span())) {
+    bytes = gunzip(bytes->span(), unpacked_limit(bytes->size()));
+    if (!bytes) return bytes.error().in(reference);
+  }
   if (!bytes) return bytes.error();
   MeshText text;
   text.bytes = *bytes;

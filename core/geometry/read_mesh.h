@@ -10,7 +10,8 @@
 
 namespace hyades::core {
 
-/// Reads an OBJ or PLY (ASCII, binary little- or big-endian) mesh, told apart by content. Polygons
+/// Reads an OBJ or PLY (ASCII, binary little- or big-endian) mesh, told apart by content, perhaps
+/// packed by gzip. Polygons
 /// are triangulated; vertices without a face are dropped; OBJ vertices with several normals or UVs
 /// are split. Errors name the file and, for text, the line: truncated data, indices out of range,
 /// non-finite positions, absurd counts (checked against the file's size before memory is taken).

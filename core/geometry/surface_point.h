@@ -7,6 +7,8 @@
 
 namespace hyades::core {
 
+struct TriangleMesh;
+
 /// A point on a surface, in world space.
 struct SurfacePoint {
   Vec3 position{0.0F};
@@ -24,6 +26,10 @@ struct SurfacePoint {
       0.0F;  ///< distance along +-ng beyond which rays no longer meet this surface [length]
   uint32_t object = 0;     ///< index of the placement
   uint32_t primitive = 0;  ///< triangle index; 0 for quadrics
+  /// What the triangle belongs to, for the attributes of its corners (mesh_attributes.h); null for
+  /// quadrics. Lives as long as the world does.
+  const TriangleMesh* mesh = nullptr;
+  Vec2 barycentrics{0.0F};  ///< of corners 1 and 2
   float outside_index =
       1.0F;  ///< of refraction, of what is on the side of ng; who goes there knows
   Mat4 world_to_object{1.0F};  ///< at `time`

@@ -50,6 +50,7 @@ Vec3d in_plane(const Vec3d& v, const Vec3d& normal) { return v - normal * glm::d
 
 void compute_tangents(TriangleMesh& mesh) {
   mesh.tangents.clear();
+  mesh.vertex_tangents.clear();
   if (mesh.normals.empty() || mesh.uvs.empty()) return;
   const size_t count = mesh.triangles.size();
   std::vector<std::array<uint32_t, 3>> group_of(count);

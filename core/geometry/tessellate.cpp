@@ -97,6 +97,8 @@ class Pass {
     along_.resize(all);
     if (!mesh_.normals.empty()) mesh_.normals.resize(all);
     if (!mesh_.uvs.empty()) mesh_.uvs.resize(all);
+    if (!mesh_.second_uvs.empty()) mesh_.second_uvs.resize(all);
+    if (!mesh_.colors.empty()) mesh_.colors.resize(all);
     for_chunks(edges_.size(), [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const auto a = static_cast<uint32_t>(edges_[i] >> 32U);
@@ -106,9 +108,16 @@ class Pass {
         along_[at] = middle_direction(along_[a], along_[b]);
         if (!mesh_.normals.empty())
           mesh_.normals[at] = middle_direction(mesh_.normals[a], mesh_.normals[b]);
-        if (!mesh_.uvs.empty()) mesh_.uvs[at] = (mesh_.uvs[a] + mesh_.uvs[b]) * 0.5F;
+        halve(mesh_.uvs, a, b, at);
+        halve(mesh_.second_uvs, a, b, at);
+        halve(mesh_.colors, a, b, at);
       }
     });
+  }
+
+  template <class T>
+  static void halve(std::vector<T>& values, uint32_t a, uint32_t b, size_t at) {
+    if (!values.empty()) values[at] = (values[a] + values[b]) * 0.5F;
   }
 
   uint32_t middle_of(uint32_t a, uint32_t b) const {
@@ -183,6 +192,7 @@ double estimate_tessellation(const TriangleMesh& mesh, float max_edge) {
 
 Status tessellate(TriangleMesh& mesh, std::vector<Vec3>& along, float max_edge, size_t budget) {
   mesh.tangents.clear();
+  mesh.vertex_tangents.clear();
   const double estimate = estimate_tessellation(mesh, max_edge);
   if (estimate > static_cast<double>(budget)) return over_budget(estimate, budget);
   for (int i = 0; i < kMostPasses; ++i) {

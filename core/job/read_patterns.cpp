@@ -8,8 +8,8 @@ namespace hyades::core {
 
 namespace {
 
-const std::array<std::string, 8> kMappings = {"default", "uv",        "object",      "world",
-                                              "planar",  "spherical", "cylindrical", "triplanar"};
+const std::array<std::string, 9> kMappings = {
+    "default", "uv", "uv1", "object", "world", "planar", "spherical", "cylindrical", "triplanar"};
 const std::array<std::string, 2> kSpaces = {"object", "world"};
 const std::array<std::string, 3> kMetrics = {"euclidean", "manhattan", "chebyshev"};
 const std::array<std::string, 4> kFeatures = {"f1", "f2", "edges", "id"};

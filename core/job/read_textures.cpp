@@ -59,9 +59,14 @@ void read_image(MapReader& reader, TextureDesc& texture) {
   }
 }
 
-const std::array<TypeRow<TextureDesc>, 28> kTypes = {{
+void read_vertex_color(MapReader& reader, TextureDesc& texture) {
+  reader.choice("channel", texture.channel, channel_names());
+}
+
+const std::array<TypeRow<TextureDesc>, 29> kTypes = {{
     {"constant", read_constant},
     {"image", read_image},
+    {"vertex-color", read_vertex_color},
     {"checker", read_checker},
     {"brick", read_brick},
     {"stripes", read_lines},

@@ -21,7 +21,7 @@ struct TextureImage {
 
 /// From places to the coordinates that images and patterns read.
 struct TextureMapping {
-  /// default | uv | object | world | planar | spherical | cylindrical | triplanar
+  /// default | uv | uv1 | object | world | planar | spherical | cylindrical | triplanar
   std::string type = "default";
   std::string space = "object";  ///< object | world: of the last four
   TransformList transform;       ///< of the place, before it is mapped
@@ -89,7 +89,8 @@ struct TextureDesc {
   Animated<float> hue{0.0F};         ///< hue-saturation: turn, degrees
   Animated<float> saturation{1.0F};  ///< hue-saturation: factor
   Animated<float> value{1.0F};       ///< hue-saturation: factor
-  std::string channel = "color";     ///< image, channel: red | green | blue | alpha | luminance
+  std::string channel =
+      "color";  ///< image, vertex-color, channel: red | green | blue | alpha | luminance
 };
 
 /// The names of the textures that `texture` is made of, "" among them.

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/geometry/mesh_attributes.h"
 #include "core/materials/above_horizon.h"
 #include "core/materials/params.h"
 #include "core/materials/wrapped_material.h"
@@ -8,8 +9,8 @@ namespace hyades::core {
 namespace {
 
 /// The tangent is SurfacePoint::tangent, the bitangent the cross product of normal and tangent, to
-/// the side of growing v (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited",
-/// section 2.4).
+/// the side of growing v, or that which the mesh's file says (Mikkelsen 2008, "Simulation of
+/// Wrinkled Surfaces Revisited", section 2.4).
 class NormalMap final : public WrappedMaterial {
  public:
   NormalMap(MaterialPtr base, TexturePtr normals, ScalarParam strength)
@@ -30,7 +31,8 @@ class NormalMap final : public WrappedMaterial {
     const float y = strength * (2.0F * color.y - 1.0F);
     const Vec3 along = point.tangent != Vec3(0.0F) ? point.tangent : point.dpdu;
     const Frame tangents = Frame::around(frame.n, along);
-    const bool mirrored = glm::dot(glm::cross(point.dpdu, point.dpdv), point.ng) < 0.0F;
+    const bool mirrored = file_tangent_mirrored(point).value_or(
+        glm::dot(glm::cross(point.dpdu, point.dpdv), point.ng) < 0.0F);
     const Vec3 n = tangents.to_world({x, mirrored ? -y : y, 2.0F * color.z - 1.0F});
     const float length2 = glm::dot(n, n);
     if (!(length2 > 0.0F) || !(length2 < kInfinity)) return;

@@ -40,6 +40,11 @@ bool looks_at_world(const TextureDesc& texture) {
 constexpr std::array<std::string_view, 6> kOnUv = {"image",   "checker", "brick",
                                                    "stripes", "grid",    "gradient"};
 
+/// Colours and second coordinates of vertices are known of surfaces, and not while one is made.
+bool looks_at_vertices(const TextureDesc& texture) {
+  return texture.type == "vertex-color" || texture.mapping.type == "uv1";
+}
+
 bool looks_at_uv(const TextureDesc& texture) {
   const std::string& type = texture.mapping.type;
   return type == "uv" ||
@@ -53,7 +58,7 @@ std::string key_of(const ObjectDesc& object, const DisplacementSetting& setting,
   out.put("mesh", mesh_file_at(object.mesh, setting.looks.time()));
   out.put("part", object.part);
   out.put("normals", object.smooth);
-  out.put("tangents", setting.tangents);
+  out.put("tangents", setting.extras.tangents);
   write_displacement(out, *object.displacement);
   for (const TextureDesc* texture : textures) write_texture(out, *texture);
   if (std::any_of(textures.begin(), textures.end(),
@@ -80,17 +85,23 @@ Result<std::shared_ptr<const TriangleMesh>> make_displaced(const ObjectDesc& obj
                                                            const DisplacementSetting& setting,
                                                            bool on_uv) {
   const DisplacementDesc& desc = *object.displacement;
-  const auto asked = mesh_use_of(object, false);
+  const auto asked = mesh_use_of(object, {});
   if (!asked) return asked.error();
   SceneCache& cache = setting.looks.cache();
-  const auto base =
-      is_mesh_sequence(object.mesh)
-          ? cache.frame_mesh(mesh_file_at(object.mesh, setting.looks.time()), base_use_of(object))
-          : cache.mesh(object.mesh, base_use_of(object));
+  const auto base = is_mesh_sequence(object.mesh)
+                        ? cache.frame_mesh(mesh_file_at(object.mesh, setting.looks.time()),
+                                           base_use_of(object, setting.extras))
+                        : cache.mesh(object.mesh, base_use_of(object, setting.extras));
   if (!base) return base.error();
   if (on_uv && (*base)->uvs.empty()) {
     return Error{"displacement: its texture is mapped by uv, of which the mesh '" + object.mesh +
                  "' has none; expected a mapping by object or world"};
+  }
+  for (const TextureDesc* read : textures_read(setting.looks.job(), desc.texture)) {
+    if (!looks_at_vertices(*read)) continue;
+    return Error{"displacement: its texture '" + read->name +
+                 "' looks at colours or second coordinates of vertices; expected one that is "
+                 "mapped by uv, object or world"};
   }
   const auto texture = setting.looks.texture(desc.texture);
   if (!texture) return texture.error().in("displacement");
@@ -109,7 +120,7 @@ Result<std::shared_ptr<const TriangleMesh>> make_displaced(const ObjectDesc& obj
   how.normals = normals_of(asked->normals);
   auto made = displace(**base, how, field);
   if (!made) return made.error().in("displacement");
-  if (setting.tangents) compute_tangents(**made);
+  if (setting.extras.tangents) compute_tangents(**made);
   return std::shared_ptr<const TriangleMesh>(*made);
 }
 

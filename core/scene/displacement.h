@@ -11,9 +11,9 @@ namespace hyades::core {
 
 /// What displacing a mesh depends on besides its description.
 struct DisplacementSetting {
-  Appearance& looks;      ///< whose moment it is: the opening of the shutter
-  Mat4 to_world{1.0F};    ///< of the object at that moment, to metres
-  bool tangents = false;  ///< whether meshes need those of normal maps
+  Appearance& looks;    ///< whose moment it is: the opening of the shutter
+  Mat4 to_world{1.0F};  ///< of the object at that moment, to metres
+  MeshExtras extras;    ///< what meshes need besides their shape
 };
 
 /// Whether `object` is displaced at any time.

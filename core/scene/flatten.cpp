@@ -22,7 +22,7 @@ class Flattener {
         cache_(cache),
         looks_(job, job.time_of(frame), cache),
         displacements_(displacements),
-        tangents_(has_normal_maps(job)) {
+        extras_(mesh_extras_of(job)) {
     for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
     for (const MaterialDesc& material : job.materials) {
       if (material.principled && material.principled->emits())
@@ -71,10 +71,10 @@ class Flattener {
     }
     std::vector<Mat4> to_world =
         shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
-    const DisplacementSetting displacement{looks_, to_world.front(), tangents_};
+    const DisplacementSetting displacement{looks_, to_world.front(), extras_};
     const bool displaces = displacements_ == Displacements::made;
     FlatObject flat;
-    ShapeSetting setting{cache_, looks_.time(), tangents_, displaces ? &displacement : nullptr};
+    ShapeSetting setting{cache_, looks_.time(), extras_, displaces ? &displacement : nullptr};
     setting.shutter = displaces ? job_.frames.shutter : 0.0F;
     setting.notice = &flat.notice;
     auto shape = make_shape(object, setting);
@@ -178,7 +178,7 @@ class Flattener {
   SceneCache& cache_;
   Appearance looks_;  ///< when the shutter opens
   Displacements displacements_;
-  bool tangents_;
+  MeshExtras extras_;
   std::unordered_map<std::string_view, const GroupDesc*> groups_;
   std::unordered_map<std::string_view, const PrincipledDesc*> shining_;  ///< materials that do
   /// Of objects with overrides in the chain: the materials for which they were asked.

@@ -73,7 +73,11 @@ Result<std::shared_ptr<const TriangleMesh>> SceneCache::read(const std::string& 
   }
   if (use.normals == MeshNormals::flat) mesh->normals.clear();
   if (use.normals == MeshNormals::smooth) compute_smooth_normals(*mesh);
-  if (use.tangents) compute_tangents(*mesh);
+  if (!use.extras.colors) mesh->colors = {};
+  if (!use.extras.second_uvs) mesh->second_uvs = {};
+  const bool from_file = !mesh->vertex_tangents.empty() && use.normals == MeshNormals::file;
+  if (!use.extras.tangents || !from_file) mesh->vertex_tangents = {};
+  if (use.extras.tangents && !from_file) compute_tangents(*mesh);
   return std::shared_ptr<const TriangleMesh>(mesh);
 }
 

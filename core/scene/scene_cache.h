@@ -26,13 +26,21 @@ namespace hyades::core {
 /// its triangles, or smooth ones.
 enum class MeshNormals { file, flat, smooth };
 
+/// What of meshes besides their shape anything in a job looks at; the rest is not kept.
+struct MeshExtras {
+  bool tangents = false;    ///< those of the file or TriangleMesh::tangents, for normal maps
+  bool colors = false;      ///< of vertices
+  bool second_uvs = false;  ///< of vertices
+  auto operator<=>(const MeshExtras&) const = default;
+};
+
 /// What of a mesh's file is asked for.
 struct MeshUse {
   MeshUse(MeshNormals which, std::string material = {})  // NOLINT: implicit, mostly it is just that
       : normals(which), part(std::move(material)) {}
   MeshNormals normals;
-  std::string part;       ///< the material (usemtl) whose triangles are meant; empty: all
-  bool tangents = false;  ///< TriangleMesh::tangents, for normal maps
+  std::string part;  ///< the material (usemtl) whose triangles are meant; empty: all
+  MeshExtras extras;
   auto operator<=>(const MeshUse&) const = default;
 };
 

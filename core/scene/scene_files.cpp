@@ -21,7 +21,7 @@ namespace {
 /// to who builds the scene.
 class Walk {
  public:
-  Walk(const Job& job, std::optional<int32_t> frame) : tangents_(has_normal_maps(job)) {
+  Walk(const Job& job, std::optional<int32_t> frame) : extras_(mesh_extras_of(job)) {
     if (frame) add_frame(job, *frame);
     for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
     for (const MaterialDesc& material : job.materials) materials_.emplace(material.name, &material);
@@ -33,7 +33,7 @@ class Walk {
   /// Of all that the job holds. Follows no names, which may lead astray in a job with mistakes.
   static SceneFiles all(const Job& job) {
     Walk walk;
-    walk.tangents_ = has_normal_maps(job);
+    walk.extras_ = mesh_extras_of(job);
     for (int64_t at = job.frames.first; at <= job.frames.last; at += job.frames.step) {
       // Jobs may have billions of frames, but there are no files for so many.
       if (walk.times_.size() >= kMostFrames) break;
@@ -93,8 +93,8 @@ class Walk {
 
   void add_mesh(const ObjectDesc& object) {
     if (object.shape != "mesh") return;
-    const auto use = may_be_displaced(object) ? Result<MeshUse>(base_use_of(object))
-                                              : mesh_use_of(object, tangents_);
+    const auto use = may_be_displaced(object) ? Result<MeshUse>(base_use_of(object, extras_))
+                                              : mesh_use_of(object, extras_);
     if (!use) return;
     if (may_be_displaced(object)) visit_texture(object.displacement->texture);
     if (!seen_meshes_.insert({object.mesh, *use}).second) return;
@@ -136,7 +136,7 @@ class Walk {
     }
   }
 
-  bool tangents_ = false;
+  MeshExtras extras_;
   std::vector<JobTime> times_;  ///< at which sequences are looked at
   std::map<std::string, const GroupDesc*> groups_;
   std::map<std::string, const MaterialDesc*> materials_;

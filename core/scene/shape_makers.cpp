@@ -93,8 +93,8 @@ Result<Shape> mesh(const ObjectDesc& object, const ShapeSetting& setting) {
     return shape_of(*displaced);
   }
   const auto use = setting.displacement == nullptr && may_be_displaced(object)
-                       ? Result<MeshUse>(base_use_of(object))
-                       : mesh_use_of(object, setting.tangents);
+                       ? Result<MeshUse>(base_use_of(object, setting.extras))
+                       : mesh_use_of(object, setting.extras);
   if (!use) return use.error();
   if (is_mesh_sequence(object.mesh)) return mesh_of_sequence(object, setting, *use);
   auto loaded = setting.cache.mesh(object.mesh, *use);
@@ -120,11 +120,11 @@ Result<Shape> make_shape(const ObjectDesc& object, const ShapeSetting& setting) 
   return (*make)->value(object, setting);
 }
 
-Result<MeshUse> mesh_use_of(const ObjectDesc& object, bool tangents) {
+Result<MeshUse> mesh_use_of(const ObjectDesc& object, const MeshExtras& extras) {
   const auto normals = look_up(kMeshNormals, object.smooth, "kind of normals");
   if (!normals) return normals.error();
   MeshUse use((*normals)->value, object.part);
-  use.tangents = tangents;
+  use.extras = extras;
   return use;
 }
 
@@ -133,11 +133,23 @@ bool size_changes(const ObjectDesc& object) {
          !object.size.is_constant() || !object.height.is_constant();
 }
 
-MeshUse base_use_of(const ObjectDesc& object) { return {MeshNormals::file, object.part}; }
+MeshUse base_use_of(const ObjectDesc& object, const MeshExtras& extras) {
+  MeshUse use(MeshNormals::file, object.part);
+  use.extras = extras;
+  use.extras.tangents = false;
+  return use;
+}
 
-bool has_normal_maps(const Job& job) {
-  return std::any_of(job.materials.begin(), job.materials.end(),
-                     [](const MaterialDesc& material) { return material.normal_map.has_value(); });
+MeshExtras mesh_extras_of(const Job& job) {
+  MeshExtras extras;
+  extras.tangents =
+      std::any_of(job.materials.begin(), job.materials.end(),
+                  [](const MaterialDesc& material) { return material.normal_map.has_value(); });
+  for (const TextureDesc& texture : job.textures) {
+    extras.colors |= texture.type == "vertex-color";
+    extras.second_uvs |= texture.mapping.type == "uv1";
+  }
+  return extras;
 }
 
 std::vector<std::string> made_shapes() { return names_of(kMakers); }

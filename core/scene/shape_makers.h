@@ -14,8 +14,8 @@ namespace hyades::core {
 /// What shapes need besides their description.
 struct ShapeSetting {
   SceneCache& cache;
-  JobTime time;           ///< when the shutter opens: shapes keep their sizes while it is open
-  bool tangents = false;  ///< whether meshes need those of normal maps
+  JobTime time;       ///< when the shutter opens: shapes keep their sizes while it is open
+  MeshExtras extras;  ///< what meshes need besides their shape
   /// How meshes are displaced that are; null: they stay as they are in
   /// their files, and only their places are of interest.
   const DisplacementSetting* displacement = nullptr;
@@ -32,13 +32,13 @@ Result<Shape> make_shape(const ObjectDesc& object, const ShapeSetting& setting);
 bool size_changes(const ObjectDesc& object);
 
 /// What of its file the mesh `object` asks for.
-Result<MeshUse> mesh_use_of(const ObjectDesc& object, bool tangents);
+Result<MeshUse> mesh_use_of(const ObjectDesc& object, const MeshExtras& extras);
 
 /// What of its file the mesh `object` is made of where it is displaced.
-MeshUse base_use_of(const ObjectDesc& object);
+MeshUse base_use_of(const ObjectDesc& object, const MeshExtras& extras);
 
-/// Whether any material of the job has a normal map.
-bool has_normal_maps(const Job& job);
+/// What of meshes the materials and textures of the job look at.
+MeshExtras mesh_extras_of(const Job& job);
 
 /// The names that can be made: those of core/job/kinds.h.
 std::vector<std::string> made_shapes();

@@ -52,9 +52,17 @@ Result<TexturePtr> make_image(const TextureDesc& desc, Appearance& looks) {
   return make_channel_texture(*image, *(*channel)->value);
 }
 
-constexpr std::array<NameRow<TextureMaker>, 28> kMakers = {{
+Result<TexturePtr> make_vertex_color(const TextureDesc& desc, Appearance& /*looks*/) {
+  const auto channel = look_up(kChannels, desc.channel, "channel");
+  if (!channel) return channel.error();
+  const TexturePtr colors = make_vertex_color_texture();
+  return (*channel)->value ? make_channel_texture(colors, *(*channel)->value) : colors;
+}
+
+constexpr std::array<NameRow<TextureMaker>, 29> kMakers = {{
     {"constant", make_constant},
     {"image", make_image},
+    {"vertex-color", make_vertex_color},
     {"checker", make_checker},
     {"brick", make_brick},
     {"stripes", make_stripes},

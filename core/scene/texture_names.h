@@ -45,9 +45,10 @@ struct MappingKind {
   bool triplanar = false;
 };
 
-inline constexpr std::array<NameRow<MappingKind>, 8> kMappings = {{
+inline constexpr std::array<NameRow<MappingKind>, 9> kMappings = {{
     {"default", {std::nullopt, Projection::none, false}},
     {"uv", {MappingSpace::uv, Projection::none, false}},
+    {"uv1", {MappingSpace::second_uv, Projection::none, false}},
     {"object", {MappingSpace::object, Projection::none, false}},
     {"world", {MappingSpace::world, Projection::none, false}},
     {"planar", {std::nullopt, Projection::planar, false}},

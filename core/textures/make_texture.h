@@ -17,6 +17,9 @@ using TexturePtr = std::shared_ptr<const Texture>;
 
 TexturePtr make_constant_texture(const Rgb& value);
 
+/// The interpolated colours of a mesh's vertices; white, with alpha 1, where there are none.
+TexturePtr make_vertex_color_texture();
+
 /// How an image is read between its pixels, and where a pixel of the picture covers many of them.
 enum class TextureFilter {
   trilinear,    ///< the two sizes of the image nearest to what is covered, at its longest

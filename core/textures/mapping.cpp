@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/elementary.h"
+#include "core/geometry/mesh_attributes.h"
 
 namespace hyades::core {
 namespace {
@@ -53,10 +54,14 @@ ProjectionGradient gradient_of(Projection projection, const Vec3& p) {
 
 }  // namespace
 
-MappedPoint::MappedPoint(const MappingDesc& desc, const TexturePoint& at) : desc_(desc) {
-  const Vec3 source = desc.space == MappingSpace::uv       ? Vec3(at.uv.x, at.uv.y, 0.0F)
-                      : desc.space == MappingSpace::object ? at.object
-                                                           : at.world;
+MappedPoint::MappedPoint(const MappingDesc& desc, const TexturePoint& at)
+    : desc_(desc), surface_(at.surface) {
+  Vec3 source = at.world;
+  if (desc.space == MappingSpace::uv) source = {at.uv, 0.0F};
+  if (desc.space == MappingSpace::object) source = at.object;
+  if (desc.space == MappingSpace::second_uv) {
+    source = {at.surface != nullptr ? second_uv(*at.surface) : Vec2(0.0F), 0.0F};
+  }
   place_ = transform_point(desc.transform, source);
   coordinate_ = project(desc.projection, place_) * desc.scale + desc.offset;
 }
@@ -77,6 +82,10 @@ void MappedPoint::add_gradient(const Vec3& derivative, ScalarGradient& result) c
   const Vec3 by_place = project_back(derivative * desc_.scale);
   const Vec3 d = glm::transpose(Mat3(desc_.transform)) * by_place;
   if (desc_.space == MappingSpace::uv) result.d_uv += Vec2(d.x, d.y);
+  if (desc_.space == MappingSpace::second_uv && surface_ != nullptr) {
+    const auto [by_u, by_v] = second_uv_gradient(*surface_);
+    result.d_object += d.x * by_u + d.y * by_v;
+  }
   if (desc_.space == MappingSpace::object) result.d_object += d;
   if (desc_.space == MappingSpace::world) result.d_world += d;
 }
@@ -85,6 +94,10 @@ Vec3 MappedPoint::step(const Vec3& along, const SurfacePoint& surface) const {
   Vec3 source = along;
   if (desc_.space == MappingSpace::object) {
     source = transform_vector(surface.world_to_object, along);
+  } else if (desc_.space == MappingSpace::second_uv) {
+    const auto [by_u, by_v] = second_uv_gradient(surface);
+    const Vec3 object = transform_vector(surface.world_to_object, along);
+    source = {glm::dot(by_u, object), glm::dot(by_v, object), 0.0F};
   } else if (desc_.space == MappingSpace::uv) {
     // The least-squares solution of dpdu u + dpdv v = along.
     const float a = glm::dot(surface.dpdu, surface.dpdu);

@@ -7,7 +7,12 @@
 namespace hyades::core {
 
 /// What a mapping starts from.
-enum class MappingSpace { uv, object, world };
+enum class MappingSpace {
+  uv,
+  second_uv,  ///< of meshes that have one
+  object,
+  world
+};
 
 /// How a place becomes texture coordinates. All but `none` give u and v alone, z = 0:
 /// `planar` is x and y seen along z; `spherical` and `cylindrical` wrap u around the y axis as
@@ -15,7 +20,8 @@ enum class MappingSpace { uv, object, world };
 /// cylinder's is y.
 enum class Projection { none, planar, spherical, cylindrical };
 
-/// coordinate = project(transform * place) * scale + offset. With `uv` the place is (u, v, 0).
+/// coordinate = project(transform * place) * scale + offset. With `uv` and
+/// `second_uv` the place is (u, v, 0).
 struct MappingDesc {
   MappingSpace space = MappingSpace::object;
   Projection projection = Projection::none;
@@ -24,7 +30,10 @@ struct MappingDesc {
   Mat4 transform{1.0F};
 
   /// Whether the coordinate lies in a plane.
-  bool flat() const { return space == MappingSpace::uv || projection != Projection::none; }
+  bool flat() const {
+    return space == MappingSpace::uv || space == MappingSpace::second_uv ||
+           projection != Projection::none;
+  }
 };
 
 /// The coordinate that a texture reads at a place, and its derivative by the place.
@@ -48,7 +57,8 @@ class MappedPoint {
   Vec3 project_back(const Vec3& derivative) const;
 
   const MappingDesc& desc_;
-  Vec3 place_{0.0F};  ///< transformed, not yet projected
+  const SurfacePoint* surface_;  ///< null: none is known
+  Vec3 place_{0.0F};             ///< transformed, not yet projected
   Vec3 coordinate_{0.0F};
 };
 

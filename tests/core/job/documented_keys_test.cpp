@@ -140,6 +140,7 @@ const std::map<std::string, Place>& places() {
     }
     p["textures.power"] = named("textures", "power", {{"input", "marble"}, {"exponent", "3"}});
     p["textures.channel"] = named("textures", "channel", {{"input", "marble"}, {"channel", "red"}});
+    p["textures.vertex-color"] = named("textures", "vertex-color", {});
     p["textures.ramp"] =
         named("textures", "ramp", {{"input", "tiles"}, {"stops", "{0: 0.2, 1: 0.7}"}});
     for (const char* type : {"add", "min", "max", "mix"}) {
