@@ -133,7 +133,7 @@ TEST(Manifest, HoldsTheWholeGallery) {
     const TempFolder folder;
     const auto store = open_store(folder.file("store"));
     upload(*package, *door, *store);
-      ManifestResolver manifest(package->files, *store);
+    ManifestResolver manifest(package->files, *store);
     const int32_t frame = package->job.frames.first;
     const Rendered truth = render("job.yaml", door->files(), frame, 4);
     const Rendered copy = render("job.yaml", manifest, frame, 4);
