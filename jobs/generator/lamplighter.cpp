@@ -248,7 +248,7 @@ void add_walk(GlbWriter& out, const std::array<int, 2>& eyes, int lantern) {
 
 void add_wave(GlbWriter& out, const std::array<int, 2>& eyes) {
   Clip clip(out, "Wave", 2.0F, 49);
-  const auto raised = [](float u) { return std::sin(0.5F * kTurn * std::clamp(u, 0.0F, 1.0F)); };
+  const auto raised = [](float u) { return std::max(0.0F, std::sin(0.5F * kTurn * u)); };
   clip.rotate(arm_l, [=](float u) { return about(kZ, 115.0F * std::sqrt(raised(u))); });
   clip.rotate(fore_l, [=](float u) {
     return about(kZ, raised(u) * (20.0F + 26.0F * std::sin(4.0F * kTurn * u)));

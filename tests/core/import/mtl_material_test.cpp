@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/hash.h"
 #include "core/job/yaml_writer.h"
 
 namespace hyades::core {
@@ -91,6 +92,41 @@ TEST(MtlFile, SeveralMaterialsAndTheLastOfAName) {
   EXPECT_THAT(names, ElementsAre("a b", "c"));
   EXPECT_FALSE((*materials)[0].diffuse);
   EXPECT_EQ((*materials)[0].line, 6);
+}
+
+/// 20,000 damaged files: each is read or refused with a line, and what is read makes a material
+/// whose text a job's reader can parse.
+TEST(MtlFile, DamagedOnesAreReadOrRefused) {
+  const std::string good =
+      "newmtl a b\nKd 0.8 0.2 0.1\nKs 0.5\nNs 250\nNi 1.45\nd 0.5\nTf 1 1 0\nillum 7\nPr 0.2\nPm "
+      "1\n"
+      "map_Kd -s 2 2 2 -mm 0.1 0.9 wood.png\nmap_bump -bm 0.3 b.png\nKe 1 2 3\nnewmtl c\nTr 0.1\n";
+  constexpr std::string_view kBytes("\0\n -.#eE019azKmN\\/\xff\t", 21);
+  uint64_t state = 1;
+  const auto next = [&](size_t below) {
+    state = mix64(state + 0x9E3779B97F4A7C15ULL);
+    return static_cast<size_t>(state % below);
+  };
+  int refused = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    std::string text = good;
+    for (size_t k = 0; k <= next(4); ++k) text[next(text.size())] = kBytes[next(kBytes.size())];
+    if (next(4) == 0) text.resize(next(text.size()));
+    const auto materials = parse_mtl(text);
+    if (!materials) {
+      EXPECT_THAT(materials.error().message, testing::StartsWith("line "));
+      ++refused;
+      continue;
+    }
+    for (const MtlMaterial& material : *materials) {
+      const MtlLook made = look_of(material, 1.0F, [](const std::string&) { return "x.png"; });
+      Diagnostics diagnostics;
+      parse_yaml(write_yaml(*YamlMap{{"m", made.material.node()}}.node()), "m", diagnostics);
+      EXPECT_TRUE(diagnostics.empty()) << diagnostics.to_string();
+    }
+  }
+  EXPECT_GT(refused, 2'000);
+  EXPECT_LT(refused, 18'000);
 }
 
 }  // namespace
