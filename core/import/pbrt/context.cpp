@@ -3,7 +3,6 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/base/color.h"
 #include "core/import/pbrt/scene_files.h"
 #include "core/import/pbrt/transforms.h"
 
@@ -82,7 +81,7 @@ std::optional<Rgb> color_of(Context& context, const Parameter& p, ColorUse use) 
   if (p.type == "blackbody") {
     if (p.numbers.size() != 1) return wrong("expected one temperature in kelvin");
     if (use != ColorUse::light) return wrong("a black body is only a colour of light");
-    return blackbody_color(p.numbers[0]);
+    return blackbody_light(static_cast<double>(p.numbers[0]));
   }
   if (p.type != "spectrum") return wrong("type '" + p.type + "' says no colour");
   Spectrum from_file;

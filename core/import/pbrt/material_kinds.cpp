@@ -105,6 +105,13 @@ YamlPtr MaterialKinds::roughness(const std::string& prefix) {
       .node();
 }
 
+void MaterialKinds::put_facets(YamlMap& out, const std::string& prefix) {
+  const YamlPtr rough = roughness(prefix);
+  if (rough == nullptr) return;
+  // pbrt's facets lose the light that they throw onto each other.
+  out.put("roughness", rough).put("multiple_scattering", yaml_flag(false));
+}
+
 void MaterialKinds::put_bumps(YamlMap& out) {
   if (const Parameter* p = reader_.find("texture", "displacement")) {
     const Textures::Height height = textures_.height(p->texts[0], p->place);
@@ -158,7 +165,7 @@ YamlPtr MaterialKinds::diffuse_transmission() {
 
 YamlPtr MaterialKinds::dielectric() {
   YamlMap out{{"type", yaml_word("dielectric")}, {"ior", yaml_number(index("eta", 1.5F))}};
-  if (YamlPtr rough = roughness("")) out.put("roughness", rough);
+  put_facets(out, "");
   put_bumps(out);
   return out.node();
 }
@@ -221,7 +228,7 @@ void MaterialKinds::put_metal(YamlMap& out, const std::string& prefix, float aro
 YamlPtr MaterialKinds::conductor() {
   YamlMap out{{"type", yaml_word("conductor")}};
   put_metal(out, "", 1.0F);
-  if (YamlPtr rough = roughness("")) out.put("roughness", rough);
+  put_facets(out, "");
   put_bumps(out);
   return out.node();
 }
@@ -235,13 +242,45 @@ void MaterialKinds::put_layer_medium_note() {
   reader_.integer("nsamples", 1);
 }
 
+YamlPtr MaterialKinds::below_coat(const YamlPtr& color, float eta) {
+  // Of light that comes from below evenly from all sides a surface of this index throws back
+  // (Egan and Hilgeman 1973): 0.596 for 1.5.
+  const float outside = -1.4399F / (eta * eta) + 0.7099F / eta + 0.6681F + 0.0636F * eta;
+  const float back = eta > 1.0F ? std::clamp(outside, 0.0F, 0.95F) : 0.0F;
+  // Jobs let a base show through a coat in its own colour; here it is seen after all the light that
+  // goes to and fro between the two (Saunderson 1942).
+  const auto seen = [&](float r) { return (1.0F - back) * r / (1.0F - back * r); };
+  if (const auto number = plain_number(color)) return yaml_number(seen(*number));
+  if (color->kind == YamlNode::Kind::list) {
+    std::vector<YamlPtr> channels;
+    for (const YamlPtr& channel : color->list) {
+      channels.push_back(yaml_number(seen(plain_number(channel).value_or(0.0F))));
+    }
+    return yaml_list(std::move(channels));
+  }
+  // Of textures: r (a + r (b + r c)), which has the right values at 0, 0.5 and 1.
+  const float a = 1.0F - back;
+  const float half = 2.0F * seen(0.5F);
+  const float c = std::max(2.0F * (1.0F - a) - 4.0F * (half - a), 0.0F);
+  const float b = std::max(1.0F - a - c, 0.0F);
+  const auto times = [&](const YamlPtr& factor) {
+    return YamlMap{{"type", yaml_word("scale")}, {"input", color}, {"factor", factor}}.node();
+  };
+  const auto plus = [](float term, const YamlPtr& more) {
+    return YamlMap{{"type", yaml_word("add")}, {"a", yaml_number(term)}, {"b", more}}.node();
+  };
+  return times(plus(a, times(plus(b, times(yaml_number(c))))));
+}
+
 YamlPtr MaterialKinds::coated_diffuse() {
-  const YamlPtr base = YamlMap{{"type", yaml_word("lambert")},
-                               {"color", textures_.color(reader_, "reflectance", Rgb(0.5F))}}
-                           .node();
+  const float eta = std::max(index("eta", 1.5F), 1.0F);
+  const YamlPtr base =
+      YamlMap{{"type", yaml_word("lambert")},
+              {"color", below_coat(textures_.color(reader_, "reflectance", Rgb(0.5F)), eta)}}
+          .node();
   YamlMap out{{"type", yaml_word("coat")},
               {"base", yaml_text(part("base", base))},
-              {"ior", yaml_number(std::max(index("eta", 1.5F), 1.0F))}};
+              {"ior", yaml_number(eta)}};
   if (YamlPtr rough = roughness("")) out.put("roughness", rough);
   put_layer_medium_note();
   put_bumps(out);
@@ -252,7 +291,7 @@ YamlPtr MaterialKinds::coated_conductor() {
   const float eta = std::max(index("interface.eta", 1.5F), 1.0F);
   YamlMap base{{"type", yaml_word("conductor")}};
   put_metal(base, "conductor.", eta);
-  if (YamlPtr rough = roughness("conductor.")) base.put("roughness", rough);
+  put_facets(base, "conductor.");
   YamlMap out{{"type", yaml_word("coat")},
               {"base", yaml_text(part("base", base.node()))},
               {"ior", yaml_number(eta)}};
@@ -283,7 +322,7 @@ YamlPtr MaterialKinds::mix() {
 
 YamlPtr MaterialKinds::subsurface() {
   YamlMap out{{"type", yaml_word("dielectric")}, {"ior", yaml_number(index("eta", 1.33F))}};
-  if (YamlPtr rough = roughness("")) out.put("roughness", rough);
+  put_facets(out, "");
   const float scale = reader_.number("scale", 1.0F);
   const float g = reader_.number("g", 0.0F);
   if (reader_.find("reflectance") != nullptr && reader_.find("name") == nullptr &&

@@ -34,6 +34,10 @@ class MaterialKinds {
 
   /// Roughness as the job language has it, whose square is alpha; null where the surface is smooth.
   YamlPtr roughness(const std::string& prefix);
+  /// Adds it, and that facets are those of pbrt, where the surface is not smooth.
+  void put_facets(YamlMap& out, const std::string& prefix);
+  /// A base's colour as the job language's coat wants it, below a coat of index `eta`.
+  static YamlPtr below_coat(const YamlPtr& color, float eta);
   float index(const char* name, float otherwise);
   /// Adds eta and k, metal or color; those of metal are divided by `around`, the index outside.
   void put_metal(YamlMap& out, const std::string& prefix, float around);

@@ -10,35 +10,50 @@
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kFirst = 360.0;
-constexpr double kLast = 830.0;
+constexpr double kFirst = 380.0;
+constexpr double kLast = 780.0;
 
-/// A bell with another width on either side.
-double lobe(double wavelength, double height, double mean, double left, double right) {
-  const double t = (wavelength - mean) * (wavelength < mean ? left : right);
-  return height * std::exp(-0.5 * t * t);
+/// The CIE 1931 observer from 380 to 780 nm by tens (CIE 15:2004, table T.4).
+using Table = std::array<double, 41>;
+constexpr Table kX = {0.001368, 0.004243, 0.01431,  0.04351,  0.13438,  0.2839,  0.34828,
+                      0.3362,   0.2908,   0.19536,  0.09564,  0.03201,  0.0049,  0.0093,
+                      0.06327,  0.1655,   0.2904,   0.43345,  0.5945,   0.7621,  0.9163,
+                      1.0263,   1.0622,   1.0026,   0.85445,  0.6424,   0.4479,  0.2835,
+                      0.1649,   0.0874,   0.04677,  0.0227,   0.011359, 0.00579, 0.002899,
+                      0.00144,  0.00069,  0.000332, 0.000166, 83.0e-6,  42.0e-6};
+constexpr Table kY = {39.0e-6, 0.00012,  0.000396, 0.00121, 0.004,    0.0116,   0.023,
+                      0.038,   0.06,     0.09098,  0.13902, 0.20802,  0.323,    0.503,
+                      0.71,    0.862,    0.954,    0.99495, 0.995,    0.952,    0.87,
+                      0.757,   0.631,    0.503,    0.381,   0.265,    0.175,    0.107,
+                      0.061,   0.032,    0.017,    0.00821, 0.004102, 0.002091, 0.001047,
+                      0.00052, 0.000249, 0.00012,  60.0e-6, 30.0e-6,  15.0e-6};
+constexpr Table kZ = {0.00645, 0.02005, 0.06785, 0.2074, 0.6456, 1.3856,  1.74706, 1.77211, 1.6692,
+                      1.28764, 0.81295, 0.46518, 0.272,  0.1582, 0.07825, 0.04216, 0.0203,  0.00875,
+                      0.0039,  0.0021,  0.00165, 0.0011, 0.0008, 0.00034, 0.00019, 50.0e-6, 20.0e-6,
+                      0.0,     0.0,     0.0,     0.0,    0.0,    0.0,     0.0,     0.0,     0.0,
+                      0.0,     0.0,     0.0,     0.0,    0.0};
+
+/// Between the numbers of a table linearly; `beyond` them the last one, or nothing.
+double look_up(const Table& table, double w, bool beyond) {
+  const double at = (w - 380.0) / 10.0;
+  if (!beyond && (at < 0.0 || at > 40.0)) return 0.0;
+  const double held = std::clamp(at, 0.0, 40.0);
+  const auto i = std::min(static_cast<size_t>(held), table.size() - 2);
+  return std::lerp(table[i], table[i + 1], held - static_cast<double>(i));
 }
 
-/// x, y and z of the observer (Wyman et al. 2013, listing 1).
 Vec3d observer(double w) {
-  return {lobe(w, 0.362, 442.0, 0.0624, 0.0374) + lobe(w, 1.056, 599.8, 0.0264, 0.0323) -
-              lobe(w, 0.065, 501.1, 0.0490, 0.0382),
-          lobe(w, 0.821, 568.8, 0.0213, 0.0247) + lobe(w, 0.286, 530.9, 0.0613, 0.0322),
-          lobe(w, 1.217, 437.0, 0.0845, 0.0278) + lobe(w, 0.681, 459.0, 0.0385, 0.0725)};
+  return {look_up(kX, w, false), look_up(kY, w, false), look_up(kZ, w, false)};
 }
 
 /// D65 from 380 to 780 nm by tens (CIE S 014-2).
-constexpr std::array<double, 41> kD65 = {
-    49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.86, 117.01, 117.81, 114.86, 115.92,
-    108.81, 109.35, 107.80, 104.79, 107.69, 104.41, 104.05, 100.00, 96.33,  95.79,  88.69,
-    90.01,  89.60,  87.70,  83.29,  83.70,  80.03,  80.21,  82.28,  78.28,  69.72,  71.61,
-    74.35,  61.60,  69.89,  75.09,  63.59,  46.42,  66.81,  63.38};
+constexpr Table kD65 = {49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.86, 117.01, 117.81,
+                        114.86, 115.92, 108.81, 109.35, 107.80, 104.79, 107.69, 104.41, 104.05,
+                        100.00, 96.33,  95.79,  88.69,  90.01,  89.60,  87.70,  83.29,  83.70,
+                        80.03,  80.21,  82.28,  78.28,  69.72,  71.61,  74.35,  61.60,  69.89,
+                        75.09,  63.59,  46.42,  66.81,  63.38};
 
-double d65(double w) {
-  const double at = std::clamp((w - 380.0) / 10.0, 0.0, 40.0);
-  const auto i = std::min(static_cast<size_t>(at), kD65.size() - 2);
-  return std::lerp(kD65[i], kD65[i + 1], at - static_cast<double>(i));
-}
+double d65(double w) { return look_up(kD65, w, true); }
 
 Rgb without_negatives(const Vec3d& c) { return {glm::max(c, Vec3d(0.0))}; }
 
@@ -135,6 +150,19 @@ Rgb light_color(const Spectrum& spectrum) {
   for (double w = kFirst; w <= kLast; w += 1.0) xyz += spectrum.at(w) * observer(w);
   if (!(xyz.y > 0.0)) return Rgb(0.0F);
   return without_negatives(rec709_from_xyz(xyz / xyz.y));
+}
+
+Rgb blackbody_light(double kelvin) {
+  Spectrum spectrum;
+  const double peak = 2.8977721e6 / std::max(kelvin, 1.0);  // nm, Wien's law
+  for (double nm = kFirst; nm <= kLast; nm += 10.0) {
+    spectrum.wavelengths.push_back(nm);
+    const double x = 1.4387769e7 / (nm * std::max(kelvin, 1.0));
+    // Over its value at the peak, so that cold bodies keep a colour.
+    const double log_value = -5.0 * std::log(nm / peak) - (x > 30.0 ? x : std::log(std::expm1(x)));
+    spectrum.values.push_back(std::exp(std::max(log_value, -600.0)));
+  }
+  return light_color(spectrum);
 }
 
 Rgb surface_color(const Spectrum& spectrum) {

@@ -24,9 +24,11 @@ Result<Spectrum> spectrum_of_pairs(const std::vector<float>& numbers);
 Result<Spectrum> read_spd(std::string_view text);
 
 /// The colour of light of this spectrum, of luminance 1 in linear Rec.709 (parts outside of it are
-/// 0): the CIE 1931 observer by the fits of Wyman, Sloan and Shirley 2013, "Simple Analytic
-/// Approximations to the CIE XYZ Color Matching Functions". Black where there is none.
+/// 0), as the CIE 1931 observer sees it. Black where there is none.
 Rgb light_color(const Spectrum& spectrum);
+
+/// The same of a black body of `kelvin` (at least 1), by Planck's law.
+Rgb blackbody_light(double kelvin);
 
 /// What a surface of this reflectance, or a medium of this coefficient, is per channel: the mean of
 /// the spectrum as D65 light and the observer weigh it, so that a constant stays what it is.
