@@ -41,7 +41,9 @@ std::string GltfNames::make(const std::string& wanted, const std::string& otherw
   if (name.size() > room) name.resize(room);
   while (name.back() == ' ') name.pop_back();
   std::string out = name;
-  for (int i = 2; !taken_.insert(out).second; ++i) out = name + "-" + std::to_string(i);
+  // A thousand boxes must not try a thousand numbers each.
+  int& next = next_.try_emplace(name, 2).first->second;
+  while (!taken_.insert(out).second) out = name + "-" + std::to_string(next++);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 
@@ -24,6 +25,7 @@ class GltfNames {
  private:
   std::string prefix_;
   std::set<std::string> taken_;
+  std::map<std::string, int> next_;  ///< by name: the number to try next
 };
 
 /// `name` as a part of a file's name: letters, digits, '_', '-' and '.', at most 60 of them.

@@ -83,6 +83,13 @@ TEST(GltfHostile, ChainsOfNodesWithoutEnd) {
   EXPECT_THAT(trouble(b), HasSubstr("lies more than 1024 nodes deep"));
 }
 
+TEST(GltfHostile, ManyNodesOfOneName) {
+  GltfBuilder b = one_square();
+  for (int i = 0; i < 20'000; ++i) b.add("nodes", {{"mesh", 0}, {"name", "Box"}});
+  const std::string job = job_of(b);
+  EXPECT_THAT(job, HasSubstr("Box-20000:"));
+}
+
 TEST(GltfHostile, CountsAreCheckedBeforeMemoryIsTaken) {
   GltfBuilder b = one_square();
   b.json["accessors"][0]["count"] = 2'000'000'000;
