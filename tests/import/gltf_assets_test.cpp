@@ -292,6 +292,28 @@ TEST(GltfAssets, AnisotropyStrengthTestStretchesHighlights) {
   EXPECT_GT(stretch(6), 2.0);
 }
 
+TEST(GltfAssets, BoxVertexColorsShowsThoseOfItsCorners) {
+  NEEDS_ASSETS();
+  // The face towards +z: 0.8 times what the file says of its corners, near these.
+  struct Corner {
+    float x, y;
+    core::Rgb color;
+  };
+  const std::array<Corner, 4> corners = {{{-1, -1, {0.64F, 0.64F, 0.64F}},
+                                          {1, -1, {0, 0.1F, 0.8F}},
+                                          {-1, 1, {0.41F, 0.8F, 0}},
+                                          {1, 1, {0.8F, 0, 0.02F}}}};
+  const Window window{0, 0, 1.2F, 60, 60};
+  const ScenePicture picture =
+      render_asset("BoxVertexColors", {.yaml = kEven + window.yaml(), .samples = 16});
+  for (const Corner& corner : corners) {
+    const core::Rgb seen = window.mean(picture, 0.45F * corner.x, 0.45F * corner.y, 0.03F);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(seen[c], corner.color[c], 0.12F) << corner.x << " " << corner.y << " " << c;
+    }
+  }
+}
+
 TEST(GltfAssets, CornellBoxIsRedToTheLeftAndGreenToTheRight) {
   NEEDS_ASSETS();
   const ScenePicture picture = render_asset(

@@ -6,10 +6,10 @@
 #include <charconv>
 #include <limits>
 
+#include "core/geometry/write_ply.h"
 #include "core/import/gltf/accessor.h"
 #include "core/import/gltf/geometry.h"
 #include "core/import/gltf/names.h"
-#include "core/import/gltf/ply_writer.h"
 
 namespace hyades::core {
 
@@ -37,6 +37,23 @@ Result<std::vector<Mat4>> joint_matrices(const GltfModel& model, const GltfSkin&
     joints.push_back(pose.world[static_cast<size_t>(skin.joints[i])] * bind);
   }
   return joints;
+}
+
+/// The mesh in the terms of jobs: v of uv grows upwards.
+TriangleMesh mesh_of(GltfGeometry geometry) {
+  TriangleMesh mesh;
+  for (std::vector<Vec2>& uvs : geometry.uvs) {
+    for (Vec2& uv : uvs) uv.y = 1.0F - uv.y;
+  }
+  mesh.positions = std::move(geometry.positions);
+  mesh.triangles = std::move(geometry.triangles);
+  mesh.normals = std::move(geometry.normals);
+  mesh.uvs = std::move(geometry.uvs[0]);
+  mesh.second_uvs = std::move(geometry.uvs[1]);
+  mesh.colors = std::move(geometry.colors);
+  // Of facets the file's tangents mean nothing.
+  if (!mesh.normals.empty()) mesh.vertex_tangents = std::move(geometry.tangents);
+  return mesh;
 }
 
 /// The number that a text is, all of it.
@@ -166,9 +183,9 @@ Result<Bytes> GltfMeshFiles::made(const std::string& name) const {
   }
   const auto file = by_name_.find(std::string(rest));
   if (file == by_name_.end()) return unknown;
-  const auto geometry = shaped_geometry(*model_, files_[file->second], clip.get(), time);
+  auto geometry = shaped_geometry(*model_, files_[file->second], clip.get(), time);
   if (!geometry) return geometry.error();
-  return write_ply(*geometry);
+  return ply_bytes(mesh_of(std::move(*geometry)));
 }
 
 }  // namespace hyades::core

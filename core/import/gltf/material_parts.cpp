@@ -38,6 +38,15 @@ YamlPtr tinted(const Rgb& factor, const std::string& name) {
       .node();
 }
 
+YamlPtr base_color_of(MaterialSheet& sheet, const Rgb& factor, const JsonValue& texture) {
+  const YamlPtr plain = tinted(factor, sheet.textures.name(texture, Meaning::color, ""));
+  if (!sheet.colored) return plain;
+  return YamlMap{{"type", yaml_word("scale")},
+                 {"input", plain},
+                 {"factor", YamlMap{{"type", yaml_word("vertex-color")}}.node()}}
+      .node();
+}
+
 YamlPtr scaled(float factor, const std::string& name) {
   if (name.empty()) return yaml_number(factor);
   if (factor == 1.0F) return yaml_text(name);
@@ -53,8 +62,7 @@ void write_base(MaterialSheet& sheet) {
   for (float& each : base) each = std::clamp(each, 0.0F, 1.0F);
   const JsonValue color = pbr.member("baseColorTexture");
   const JsonValue packed = pbr.member("metallicRoughnessTexture");
-  sheet.out.put("base_color", tinted({base[0], base[1], base[2]},
-                                     sheet.textures.name(color, Meaning::color, "")));
+  sheet.out.put("base_color", base_color_of(sheet, {base[0], base[1], base[2]}, color));
   sheet.out.put("metallic", scaled(number_of(pbr, "metallicFactor", 1.0F),
                                    sheet.textures.name(packed, Meaning::data, "blue")));
   sheet.out.put("roughness", scaled(number_of(pbr, "roughnessFactor", 1.0F),
@@ -70,16 +78,21 @@ void write_opacity(MaterialSheet& sheet, float alpha, const JsonValue& texture) 
     return;
   }
   const std::string name = sheet.textures.name(texture, Meaning::color, "alpha");
+  YamlPtr all = scaled(alpha, name);
+  if (sheet.colored) {
+    const YamlMap painted{{"type", yaml_word("vertex-color")}, {"channel", yaml_word("alpha")}};
+    all = YamlMap{{"type", yaml_word("scale")}, {"input", all}, {"factor", painted.node()}}.node();
+  }
+  const bool varies = sheet.colored || !name.empty();
   const float cutoff = sheet.value.number("alphaCutoff", 0.5F);
   if (mode == "BLEND") {
-    if (alpha < 1.0F || !name.empty()) sheet.opacity = scaled(alpha, name);
-  } else if (name.empty()) {
+    if (alpha < 1.0F || varies) sheet.opacity = all;
+  } else if (!varies) {
     if (alpha < cutoff) sheet.opacity = yaml_number(0.0F);
   } else {
-    sheet.opacity = YamlMap{{"type", yaml_word("threshold")},
-                            {"input", scaled(alpha, name)},
-                            {"level", yaml_number(cutoff)}}
-                        .node();
+    sheet.opacity =
+        YamlMap{{"type", yaml_word("threshold")}, {"input", all}, {"level", yaml_number(cutoff)}}
+            .node();
   }
 }
 
@@ -90,8 +103,7 @@ void write_specular_glossiness(MaterialSheet& sheet) {
   for (float& each : base) each = std::clamp(each, 0.0F, 1.0F);
   const JsonValue diffuse = old.member("diffuseTexture");
   const JsonValue packed = old.member("specularGlossinessTexture");
-  sheet.out.put("base_color", tinted({base[0], base[1], base[2]},
-                                     sheet.textures.name(diffuse, Meaning::color, "")));
+  sheet.out.put("base_color", base_color_of(sheet, {base[0], base[1], base[2]}, diffuse));
   // Glossiness g is roughness 1 - g.
   const float glossiness = number_of(old, "glossinessFactor", 1.0F);
   const std::string gloss = sheet.textures.name(packed, Meaning::data, "alpha");

@@ -14,11 +14,15 @@ struct MaterialSheet {
   GltfTextures& textures;
   std::vector<std::string>& notes;
   YamlMap out{};
-  YamlPtr opacity{};  ///< null: 1
+  bool colored = false;  ///< the colours of the vertices count
+  YamlPtr opacity{};     ///< null: 1
 
   JsonValue extension(const char* name) const { return value.member("extensions").member(name); }
   void note(const std::string& what) const { notes.push_back(value.place() + " " + what); }
 };
+
+/// The base colour: a factor, a texture (if any), and the colours of the vertices.
+YamlPtr base_color_of(MaterialSheet& sheet, const Rgb& factor, const JsonValue& texture);
 
 /// `factor` times the colour of texture `name` (none: the factor alone).
 YamlPtr tinted(const Rgb& factor, const std::string& name);

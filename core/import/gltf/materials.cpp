@@ -35,8 +35,7 @@ Glow unlit_of(MaterialSheet& sheet) {
   pbr.numbers("baseColorFactor", base);
   const JsonValue texture = pbr.member("baseColorTexture");
   write_opacity(sheet, base[3], texture);
-  return {tinted({base[0], base[1], base[2]}, sheet.textures.name(texture, Meaning::color, "")),
-          1.0F};
+  return {base_color_of(sheet, {base[0], base[1], base[2]}, texture), 1.0F};
 }
 
 /// Whether two textureInfos mean the same.
@@ -55,25 +54,25 @@ GltfMaterials::GltfMaterials(const GltfModel& model, const SceneRequest& request
       values_(model.root(trouble_).list("materials")),
       names_(request.prefix) {}
 
-const GltfMaterial& GltfMaterials::get(int index) {
-  const auto known = made_.find(index);
+const GltfMaterial& GltfMaterials::get(int index, bool colored) {
+  static const nlohmann::json kDefault = nlohmann::json::object();
+  const auto known = made_.find({index, colored});
   if (known != made_.end()) return known->second;
-  GltfMaterial& out = made_[index];
-  const std::string wanted = index < 0 ? "" : values_[static_cast<size_t>(index)].text("name");
-  out.name = names_.full(names_.make(wanted, index < 0 ? "default" : "material"));
-  if (index >= 0) {
-    write(values_[static_cast<size_t>(index)], out);
-  } else {
-    materials_.put(out.name, YamlMap{{"type", yaml_word("principled")},
-                                     {"base_color", yaml_number(1.0F)},
-                                     {"metallic", yaml_number(1.0F)},
-                                     {"roughness", yaml_number(1.0F)}});
-  }
+  GltfMaterial& out = made_[{index, colored}];
+  const JsonValue value = index < 0 ? JsonValue(&kDefault, "the default material", trouble_)
+                                    : values_[static_cast<size_t>(index)];
+  // The same material of plain and of coloured meshes are two.
+  const bool second = made_.count({index, !colored}) != 0;
+  const std::string wanted = value.text("name");
+  out.name = names_.full(names_.make(wanted + (second && !wanted.empty() ? ".colored" : ""),
+                                     index < 0 ? "default" : "material"));
+  write(value, colored, out);
   return out;
 }
 
-void GltfMaterials::write(const JsonValue& value, GltfMaterial& out) {
+void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& out) {
   MaterialSheet sheet{value, textures_, notes_};
+  sheet.colored = colored;
   const JsonValue extensions = value.member("extensions");
   Glow glow;
   if (extensions.has("KHR_materials_unlit")) {

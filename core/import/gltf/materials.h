@@ -22,8 +22,8 @@ class GltfMaterials {
   GltfMaterials(const GltfModel& model, const SceneRequest& request, GltfTextures& textures,
                 std::vector<std::string>& notes);
 
-  /// Material `index`, or the default one for -1.
-  const GltfMaterial& get(int index);
+  /// Material `index`, or the default one for -1; `colored`: times the colours of the vertices.
+  const GltfMaterial& get(int index, bool colored);
 
   const YamlMap& materials() const { return materials_; }
   const YamlMap& media() const { return media_; }
@@ -31,7 +31,7 @@ class GltfMaterials {
   const JsonTrouble& trouble() const { return trouble_; }
 
  private:
-  void write(const JsonValue& value, GltfMaterial& out);
+  void write(const JsonValue& value, bool colored, GltfMaterial& out);
 
   const GltfModel& model_;
   GltfTextures& textures_;
@@ -39,7 +39,7 @@ class GltfMaterials {
   JsonTrouble trouble_;
   std::vector<JsonValue> values_;
   GltfNames names_;
-  std::map<int, GltfMaterial> made_;
+  std::map<std::pair<int, bool>, GltfMaterial> made_;  ///< by index and whether it is coloured
   YamlMap materials_;
   YamlMap media_;
 };

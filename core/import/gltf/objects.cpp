@@ -43,7 +43,8 @@ class Writer {
     const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
     const GltfMesh& mesh = stage_.model.meshes[static_cast<size_t>(node.mesh)];
     const GltfPrimitive& primitive = mesh.primitives[p];
-    const GltfMaterial& material = materials_.get(primitive.material);
+    const GltfMaterial& material =
+        materials_.get(primitive.material, primitive.attributes.count("COLOR_0") != 0);
     const GltfMeshFile& file = stage_.files.file(index, p);
     const bool deforms = stage_.clip != nullptr && stage_.files.changes(file, *stage_.clip);
     YamlMap object;

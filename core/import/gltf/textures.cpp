@@ -93,7 +93,7 @@ void GltfTextures::describe_sampler(int sampler, YamlMap& out) {
   if (value.integer("magFilter", 0, 65536, 9729) == 9728) out.put("filter", yaml_word("nearest"));
 }
 
-YamlPtr GltfTextures::mapping_of(const JsonValue& info) {
+YamlPtr GltfTextures::transform_of(const JsonValue& info) {
   const JsonValue moved = info.member("extensions").member("KHR_texture_transform");
   if (!moved.exists()) return nullptr;
   Vec2 offset(0.0F);
@@ -115,9 +115,7 @@ YamlPtr GltfTextures::mapping_of(const JsonValue& info) {
                                         1,           0,  //
                                         0,           0,
                                         0,           1};
-  YamlMap mapping{{"type", yaml_word("uv")}};
-  mapping.put("transform", yaml_list({YamlMap{{"matrix", yaml_numbers(matrix)}}.node()}));
-  return mapping.node();
+  return yaml_list({YamlMap{{"matrix", yaml_numbers(matrix)}}.node()});
 }
 
 std::string GltfTextures::name(const JsonValue& info, Meaning meaning, const std::string& channel) {
@@ -127,12 +125,12 @@ std::string GltfTextures::name(const JsonValue& info, Meaning meaning, const std
   const JsonValue& texture = textures_[static_cast<size_t>(index)];
   int64_t set = info.integer("texCoord", 0, 64, 0);
   set = info.member("extensions").member("KHR_texture_transform").integer("texCoord", 0, 64, set);
-  const YamlPtr mapping = mapping_of(info);
+  const YamlPtr transform = transform_of(info);
   const int image = texture.index("source", model_.images.size());
   const int sampler = texture.index("sampler", samplers_.size());
   const std::string key = fmt::format(
       "{} {} {} {} {} {}", image, sampler, meaning == Meaning::color, channel, set,
-      mapping ? info.member("extensions").member("KHR_texture_transform").raw()->dump() : "");
+      transform ? info.member("extensions").member("KHR_texture_transform").raw()->dump() : "");
   const auto known = made_.find(key);
   if (known != made_.end()) return known->second;
   std::string& name = made_[key];
@@ -147,8 +145,9 @@ std::string GltfTextures::name(const JsonValue& info, Meaning meaning, const std
                     texture.place(), file));
     return name;
   }
-  if (set != 0) {
+  if (set > 1) {
     notes_.push_back(fmt::format("{} wants TEXCOORD_{}; TEXCOORD_0 is taken", info.place(), set));
+    set = 0;
   }
   std::string wanted = texture.text("name");
   if (wanted.empty()) wanted = model_.images[static_cast<size_t>(image)].name;
@@ -160,7 +159,12 @@ std::string GltfTextures::name(const JsonValue& info, Meaning meaning, const std
   if (meaning == Meaning::data) out.put("color_space", yaml_word("linear"));
   if (!channel.empty()) out.put("channel", yaml_word(channel));
   describe_sampler(sampler, out);
-  if (mapping) out.put("mapping", mapping);
+  const YamlPtr coordinates = yaml_word(set == 1 ? "uv1" : "uv");
+  if (transform) {
+    out.put("mapping", YamlMap{{"type", coordinates}, {"transform", transform}});
+  } else if (set == 1) {
+    out.put("mapping", coordinates);
+  }
   section_.put(name, out);
   return name;
 }

@@ -32,7 +32,7 @@ class GltfTextures {
 
  private:
   void describe_sampler(int sampler, YamlMap& out);
-  YamlPtr mapping_of(const JsonValue& info);
+  YamlPtr transform_of(const JsonValue& info);  ///< steps, or null
   std::string file_of(int image) const;
 
   const GltfModel& model_;

@@ -103,6 +103,40 @@ TEST(GltfGeometry, InterleavedElements) {
   EXPECT_EQ(mesh->uvs[2], core::Vec2(0, 1));
 }
 
+TEST(GltfGeometry, ColoursSecondCoordinatesAndTangents) {
+  GltfBuilder b;
+  b.add("images", {{"uri", "wood.png"}});
+  b.add("textures", {{"source", 0}});
+  b.add("materials",
+        {{"name", "Paint"},
+         {"alphaMode", "BLEND"},
+         {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}}});
+  nlohmann::json square = b.square();
+  square["attributes"]["NORMAL"] = b.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+  square["attributes"]["TANGENT"] =
+      b.floats({1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1, 1, 0, 0, -1}, "VEC4");
+  square["attributes"]["TEXCOORD_1"] =
+      b.accessor<uint16_t>({0, 0, 65535, 0, 65535, 65535, 0, 65535}, "VEC2", true);
+  square["attributes"]["COLOR_0"] =
+      b.accessor<uint8_t>({255, 0, 51, 255, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3", true);
+  square["material"] = 0;
+  const auto mesh = built(b, square);
+  ASSERT_EQ(mesh->colors.size(), 4U);
+  // Colours of vertices are linear.
+  EXPECT_EQ(mesh->colors[0], core::Vec4(1, 0, 0.2F, 1));
+  ASSERT_EQ(mesh->second_uvs.size(), 4U);
+  EXPECT_EQ(mesh->second_uvs[0], core::Vec2(0, 1));
+  EXPECT_EQ(mesh->second_uvs[2], core::Vec2(1, 0));
+  ASSERT_EQ(mesh->vertex_tangents.size(), 4U);
+  EXPECT_EQ(mesh->vertex_tangents[0], core::Vec4(1, 0, 0, -1));
+  const std::string job = job_of(b);
+  EXPECT_THAT(job, HasSubstr("mapping: uv1"));
+  EXPECT_THAT(job, HasSubstr("base_color: {type: scale, input: texture, factor: {type: "
+                             "vertex-color}}"));
+  EXPECT_THAT(job, HasSubstr("opacity: {type: scale, input: texture.alpha, factor: {type: "
+                             "vertex-color, channel: alpha}}"));
+}
+
 TEST(GltfGeometry, SparseElementsReplaceOthersOrZeros) {
   for (const bool with_base : {true, false}) {
     GltfBuilder b;
