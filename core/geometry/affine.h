@@ -20,6 +20,7 @@ struct Affine {
 
   Vec3d point(const Vec3d& p) const { return linear * p + offset; }
   Vec3d vector(const Vec3d& v) const { return linear * v; }
+  Affine operator*(const Affine& o) const { return {linear * o.linear, point(o.offset)}; }
   double determinant() const { return glm::determinant(linear); }
 
   /// The inverse; all zeros where there is none.

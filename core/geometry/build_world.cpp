@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -28,22 +29,30 @@ size_t triangle_count(const Placement& p) {
 
 /// How a placement gets into the world.
 enum class Way {
+  copied,    ///< as a member of a swarm, by its copies
   direct,    ///< in world space, in the top scene; vertices may move
   shared,    ///< in world space, in the still scene that frames share
   instance,  ///< its mesh has a scene of its own
 };
 
-/// Depends on the placements alone: never on what was built before.
+/// Depends on the placements alone: never on what was built before. `inside_swarm`: they are what a
+/// swarm copies.
 std::vector<Way> choose_ways(const std::vector<Placement>& placements,
-                             const BuildThresholds& thresholds) {
+                             const BuildThresholds& thresholds, bool inside_swarm) {
   std::map<MeshKey, size_t> uses;
   for (const Placement& p : placements) {
-    if (p.shape.kind == Shape::Kind::mesh) ++uses[mesh_key(p.shape)];
+    if (p.shape.kind == Shape::Kind::mesh && (inside_swarm || p.swarm == nullptr)) {
+      ++uses[mesh_key(p.shape)];
+    }
   }
   std::vector<Way> ways;
   size_t still_triangles = 0;
   bool any_changes = false;
   for (const Placement& p : placements) {
+    if (p.swarm != nullptr && !inside_swarm) {
+      ways.push_back(Way::copied);
+      continue;
+    }
     const bool mesh = p.shape.kind == Shape::Kind::mesh;
     const size_t copies = mesh ? uses[mesh_key(p.shape)] : 1;
     const bool repeated = copies > 1 && copies * triangle_count(p) > thresholds.copied_triangles;
@@ -68,13 +77,6 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
   return ways;
 }
 
-bool same(const Placement& a, const Placement& b) {
-  return a.shape.kind == b.shape.kind && mesh_key(a.shape) == mesh_key(b.shape) &&
-         a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
-         a.to_world == b.to_world && a.visible_to_camera == b.visible_to_camera &&
-         a.blocks_light == b.blocks_light;
-}
-
 /// Makes the object of a placement in world space.
 std::shared_ptr<const PlacedObject> make_direct(Placement p) {
   std::shared_ptr<const MeshBuffers> buffers;
@@ -92,18 +94,29 @@ void attach_direct(SceneBuilder& builder, const PlacedObject& object, uint32_t n
                  number);
 }
 
-/// Builds worlds with the help of one cache, whose lock it holds.
+/// Builds worlds with the help of one cache, whose lock somebody holds.
 class WorldBuilder {
  public:
-  explicit WorldBuilder(GeometryCache::State& cache) : cache_(cache), lock_(cache.mutex) {}
+  explicit WorldBuilder(GeometryCache::State& cache) : cache_(cache) {}
 
   Result<std::shared_ptr<const World>> build(std::vector<Placement> placements,
                                              const BuildThresholds& thresholds) {
-    const std::vector<Way> ways = choose_ways(placements, thresholds);
+    auto world = build_parts(std::move(placements), thresholds);
+    if (!world) return world.error();
+    remember();
+    return std::shared_ptr<const World>(std::make_shared<EmbreeWorld>(std::move(parts_)));
+  }
+
+ private:
+  Status build_parts(std::vector<Placement> placements, const BuildThresholds& thresholds) {
+    const std::vector<Way> ways = choose_ways(placements, thresholds, inside_swarm_);
     if (Status s = add_shared(placements, ways); !s) return s.error();
     parts_.objects.resize(placements.size());
     if (parts_.still != nullptr) {
       for (const NumberedObject& o : parts_.still->objects) parts_.objects[o.number] = o.object;
+    }
+    if (!inside_swarm_) {
+      if (Status s = add_swarms(placements); !s) return s.error();
     }
     std::vector<std::shared_ptr<const MeshScene>> instanced(placements.size());
     for (size_t i = 0; i < placements.size(); ++i) {
@@ -115,12 +128,51 @@ class WorldBuilder {
       parts_.objects[i] =
           std::make_shared<const PlacedObject>(std::move(placements[i]), (*mesh)->buffers);
     }
-    if (Status s = build_top(ways, instanced); !s) return s.error();
-    remember();
-    return std::shared_ptr<const World>(std::make_shared<EmbreeWorld>(std::move(parts_)));
+    return build_top(ways, instanced);
   }
 
- private:
+  /// Each run of placements with the same swarm.
+  Status add_swarms(const std::vector<Placement>& placements) {
+    for (size_t first = 0; first < placements.size();) {
+      const std::shared_ptr<const Swarm>& swarm = placements[first].swarm;
+      size_t end = first + 1;
+      while (end < placements.size() && placements[end].swarm == swarm) ++end;
+      if (swarm != nullptr) {
+        const auto from = placements.begin();
+        auto scene = swarm_scene(
+            swarm, {from + static_cast<ptrdiff_t>(first), from + static_cast<ptrdiff_t>(end)});
+        if (!scene) return scene.error();
+        for (size_t i = first; i < end; ++i) {
+          parts_.objects[i] = (*scene)->inner().objects()[i - first];
+        }
+        parts_.swarms.push_back({static_cast<uint32_t>(first), *scene});
+      }
+      first = end;
+    }
+    return {};
+  }
+
+  /// The copies of `members`; those of the frame before where they are the same.
+  Result<std::shared_ptr<const SwarmScene>> swarm_scene(const std::shared_ptr<const Swarm>& swarm,
+                                                        const std::vector<Placement>& members) {
+    for (const auto& known : cache_.swarms) {
+      auto found = known.lock();
+      if (found != nullptr && found->is_of(*swarm, members)) return found;
+    }
+    // A world of what is copied. Nothing in it is an instance that need not be: a ray that comes
+    // near a copy would be transformed once more.
+    const BuildThresholds all_direct{std::numeric_limits<size_t>::max(),
+                                     std::numeric_limits<size_t>::max()};
+    WorldBuilder builder(cache_);
+    builder.inside_swarm_ = true;
+    if (Status s = builder.build_parts(members, all_direct); !s) return s.error();
+    const auto inner = std::make_shared<const EmbreeWorld>(std::move(builder.parts_));
+    auto scene = std::make_shared<SwarmScene>(swarm, members, inner);
+    if (Status s = scene->build(); !s) return s.error();
+    cache_.swarms.push_back(scene);
+    return std::shared_ptr<const SwarmScene>(std::move(scene));
+  }
+
   /// Finds the still scene of the frame before or makes one.
   Status add_shared(const std::vector<Placement>& placements, const std::vector<Way>& ways) {
     std::vector<uint32_t> numbers;
@@ -146,7 +198,8 @@ class WorldBuilder {
                          const std::vector<uint32_t>& numbers) {
     return std::equal(still.objects.begin(), still.objects.end(), numbers.begin(), numbers.end(),
                       [&](const NumberedObject& o, uint32_t i) {
-                        return o.number == i && same(o.object->placement(), placements[i]);
+                        return o.number == i &&
+                               same_placement(o.object->placement(), placements[i]);
                       });
   }
 
@@ -187,6 +240,11 @@ class WorldBuilder {
                                            Motion(), kAllRays),
                      static_cast<uint32_t>(ways.size()));
     }
+    for (size_t i = 0; i < parts_.swarms.size(); ++i) {
+      builder.attach(new_instance_geometry(builder.device(), parts_.swarms[i].scene->scene(),
+                                           Motion(), kAllRays),
+                     static_cast<uint32_t>(ways.size() + 1 + i));
+    }
     auto top = builder.commit();
     if (!top) return top.error();
     parts_.top = *top;
@@ -198,17 +256,28 @@ class WorldBuilder {
     std::vector<std::shared_ptr<const void>> recent(parts_.mesh_scenes.begin(),
                                                     parts_.mesh_scenes.end());
     if (parts_.still != nullptr) recent.push_back(parts_.still);
+    for (const PlacedSwarm& swarm : parts_.swarms) recent.push_back(swarm.scene);
     cache_.recent = std::move(recent);
+    std::erase_if(cache_.swarms, [](const auto& swarm) { return swarm.expired(); });
     std::erase_if(cache_.meshes, [](const auto& entry) { return entry.second.expired(); });
   }
 
   GeometryCache::State& cache_;
-  std::lock_guard<std::mutex> lock_;
+  bool inside_swarm_ = false;  ///< what is built is what a swarm copies
   WorldParts parts_;
   std::set<const MeshScene*> used_;  ///< those in parts_.mesh_scenes
 };
 
 }  // namespace
+
+bool same_placement(const Placement& a, const Placement& b) {
+  return a.shape.kind == b.shape.kind && mesh_key(a.shape) == mesh_key(b.shape) &&
+         a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
+         a.to_world == b.to_world && a.visible_to_camera == b.visible_to_camera &&
+         a.blocks_light == b.blocks_light && (a.swarm == nullptr) == (b.swarm == nullptr) &&
+         (a.swarm == nullptr ||
+          (a.swarm->places == b.swarm->places && a.swarm->to_world == b.swarm->to_world));
+}
 
 GeometryCache::GeometryCache() : state_(std::make_unique<State>()) {}
 GeometryCache::~GeometryCache() = default;
@@ -228,6 +297,7 @@ Result<std::shared_ptr<const World>> build_world(std::vector<Placement> placemen
     }
   }
   const FpMode mode;
+  const std::lock_guard lock(cache.state().mutex);
   return WorldBuilder(cache.state()).build(std::move(placements), thresholds);
 }
 

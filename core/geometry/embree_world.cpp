@@ -49,10 +49,16 @@ EmbreeWorld::EmbreeWorld(WorldParts parts)
       scene_(parts_.top->handle()),
       still_number_(static_cast<uint32_t>(parts_.objects.size())) {
   std::set<const MeshBuffers*> copies;
-  for (const auto& object : parts_.objects) {
+  for (uint32_t i = 0; i < parts_.objects.size(); ++i) {
+    if (swarm_of(i) != nullptr) continue;
+    const auto& object = parts_.objects[i];
     bounds_.include(object->bounds());
     const MeshBuffers* buffers = object->buffers();
     if (buffers != nullptr && copies.insert(buffers).second) memory_ += buffers->own_memory();
+  }
+  for (const PlacedSwarm& swarm : parts_.swarms) {
+    bounds_.include(swarm.scene->bounds());
+    memory_ += swarm.scene->memory();
   }
   memory_ += parts_.top->memory();
   if (parts_.still != nullptr) memory_ += parts_.still->scene->memory();
@@ -78,10 +84,13 @@ bool EmbreeWorld::find_nearest(const Ray& ray, RayKind kind, Take&& take) const 
     trace_nearest(scene_, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     const uint32_t instance = query.hit.instID[0];
-    const uint32_t number = instance == RTC_INVALID_GEOMETRY_ID || instance == still_number_
-                                ? query.hit.geomID
-                                : instance;
-    if (take(number, query.hit.primID)) return true;
+    if (instance != RTC_INVALID_GEOMETRY_ID && instance > still_number_) {
+      const PlacedSwarm& swarm = parts_.swarms[instance - still_number_ - 1];
+      const CopyHit on = copy_hit(query.hit);
+      if (take(swarm.first + on.object, query.hit.primID, swarm.scene.get(), on.copy)) return true;
+    } else if (take(object_of(query.hit), query.hit.primID, nullptr, 0U)) {
+      return true;
+    }
     // The primitive lies behind the origin, beyond the end or edge-on, by less than float can tell.
     query.ray.tnear = std::nextafter(query.ray.tfar, kInfinity);
     query.ray.tfar = ray.t_max;
@@ -92,20 +101,33 @@ bool EmbreeWorld::find_nearest(const Ray& ray, RayKind kind, Take&& take) const 
 
 std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
   std::optional<Hit> hit;
-  find_nearest(ray, kind, [&](uint32_t object, uint32_t primitive) {
-    hit = parts_.objects[object]->meet(ray, primitive);
-    if (hit) hit->object = object;
-    return hit.has_value();
-  });
+  find_nearest(ray, kind,
+               [&](uint32_t object, uint32_t primitive, const SwarmScene* swarm, uint32_t copy) {
+                 if (swarm == nullptr) {
+                   hit = parts_.objects[object]->meet(ray, primitive);
+                 } else {
+                   const CopyPose pose = swarm->pose(copy, ray.time);
+                   hit = parts_.objects[object]->meet(ray, primitive, &pose);
+                 }
+                 if (hit) hit->object = object;
+                 if (hit) hit->copy = copy;
+                 return hit.has_value();
+               });
   return hit;
 }
 
 bool EmbreeWorld::nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const {
-  return find_nearest(ray, kind, [&](uint32_t object, uint32_t primitive) {
-    if (!parts_.objects[object]->meet(ray, primitive, point)) return false;
-    point.object = object;
-    return true;
-  });
+  return find_nearest(
+      ray, kind, [&](uint32_t object, uint32_t primitive, const SwarmScene* swarm, uint32_t copy) {
+        if (swarm == nullptr) {
+          if (!parts_.objects[object]->meet(ray, primitive, point)) return false;
+        } else {
+          const CopyPose pose = swarm->pose(copy, ray.time);
+          if (!parts_.objects[object]->meet(ray, primitive, point, &pose)) return false;
+        }
+        point.object = object;
+        return true;
+      });
 }
 
 bool EmbreeWorld::occluded(const Ray& ray) const {
@@ -116,14 +138,19 @@ bool EmbreeWorld::occluded(const Ray& ray) const {
 }
 
 SurfacePoint EmbreeWorld::surface(const Ray& ray, const Hit& hit) const {
-  SurfacePoint p = parts_.objects[hit.object]->point(ray, hit);
+  std::optional<CopyPose> pose;
+  if (const SwarmScene* swarm = swarm_of(hit.object)) pose = swarm->pose(hit.copy, ray.time);
+  SurfacePoint p = parts_.objects[hit.object]->point(ray, hit, pose ? &*pose : nullptr);
   p.object = hit.object;
   return p;
 }
 
 SurfacePoint EmbreeWorld::triangle_point(uint32_t object, uint32_t primitive, float u, float v,
                                          float time) const {
-  SurfacePoint p = parts_.objects[object]->mesh_point(primitive, u, v, time);
+  std::optional<CopyPose> pose;
+  if (const SwarmScene* swarm = swarm_of(object)) pose = swarm->pose(0, time);
+  SurfacePoint p =
+      parts_.objects[object]->mesh_point(primitive, u, v, time, pose ? &*pose : nullptr);
   p.object = object;
   return p;
 }
@@ -135,6 +162,7 @@ SurfacePoint EmbreeWorld::quadric_point(uint32_t object, const Vec3& near, float
 }
 
 Mat4 EmbreeWorld::transform_at(uint32_t object, float time) const {
+  if (const SwarmScene* swarm = swarm_of(object)) return swarm->motion().at(time).to_mat4();
   const PlacedObject& placed = *parts_.objects[object];
   return placed.motion().still() ? placed.placement().to_world[0]
                                  : placed.motion().at(time).to_mat4();
@@ -142,6 +170,21 @@ Mat4 EmbreeWorld::transform_at(uint32_t object, float time) const {
 
 const Placement& EmbreeWorld::placement(uint32_t object) const {
   return parts_.objects[object]->placement();
+}
+
+const SwarmScene* EmbreeWorld::swarm_of(uint32_t object) const {
+  for (const PlacedSwarm& swarm : parts_.swarms) {
+    if (object >= swarm.first && object - swarm.first < swarm.scene->inner().placement_count()) {
+      return swarm.scene.get();
+    }
+  }
+  return nullptr;
+}
+
+Bounds EmbreeWorld::bounds_of(uint32_t object) const {
+  const SwarmScene* swarm = swarm_of(object);
+  const Bounds own = parts_.objects[object]->bounds();
+  return swarm == nullptr ? own : swarm->bounds_of(own);
 }
 
 uint32_t EmbreeWorld::placement_count() const {

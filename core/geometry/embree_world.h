@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry/geometry_cache.h"
+#include "core/geometry/swarm_scene.h"
 #include "core/geometry/world.h"
 
 namespace hyades::core {
@@ -16,11 +17,13 @@ struct WorldParts {
   std::vector<std::shared_ptr<const PlacedObject>> objects;
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;  ///< distinct, in use
   std::shared_ptr<const StillScene> still;                    ///< null: all is in `top`
+  std::vector<PlacedSwarm> swarms;
   std::shared_ptr<const EmbreeScene> top;
 };
 
 /// The world over one Embree scene. Geometry numbers in `top` are numbers of placements, but for
-/// the still scene, an instance with the number after the last.
+/// the still scene, an instance with the number after the last, and the
+/// swarms, instances with the numbers after that.
 class EmbreeWorld final : public World {
  public:
   explicit EmbreeWorld(WorldParts parts);
@@ -38,11 +41,24 @@ class EmbreeWorld final : public World {
   Bounds bounds() const override { return bounds_; }
   size_t memory() const override { return memory_; }
   uint64_t invalid_rays() const override { return invalid_rays_.load(); }
+  Bounds bounds_of(uint32_t object) const override;
+
+  RTCScene scene() const { return scene_; }
+  /// The placement that Embree's numbers of a hit name, in a world without swarms.
+  uint32_t object_of(const RTCHit& hit) const {
+    const uint32_t instance = hit.instID[0];
+    return instance == RTC_INVALID_GEOMETRY_ID || instance == still_number_ ? hit.geomID : instance;
+  }
+  const std::vector<std::shared_ptr<const PlacedObject>>& objects() const { return parts_.objects; }
 
  private:
   bool usable(const Ray& ray) const;
 
-  /// Hands what Embree finds along the ray to `take(placement, primitive)` until it returns true;
+  /// The swarm that placement `object` belongs to; null: none.
+  const SwarmScene* swarm_of(uint32_t object) const;
+
+  /// Hands what Embree finds along the ray to `take(placement, primitive, swarm, copy)`, the swarm
+  /// null where the placement stands in the world itself, until it returns true;
   /// false where it never does.
   template <class Take>
   bool find_nearest(const Ray& ray, RayKind kind, Take&& take) const;

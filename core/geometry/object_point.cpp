@@ -74,53 +74,55 @@ Vec3 shading_normal(const Vec3d& n, const Vec3& ng) {
 
 }  // namespace
 
-SurfacePoint PlacedObject::point(const Ray& ray, const Hit& hit) const {
-  SurfacePoint p =
-      is_quadric() ? quadric_surface(ray, hit) : mesh_point(hit.primitive, hit.u, hit.v, ray.time);
+SurfacePoint PlacedObject::point(const Ray& ray, const Hit& hit, const CopyPose* copy) const {
+  SurfacePoint p = is_quadric() ? quadric_surface(ray, hit, copy)
+                                : mesh_point(hit.primitive, hit.u, hit.v, ray.time, copy);
   p.t = hit.t;
   return p;
 }
 
-bool PlacedObject::meet(const Ray& ray, uint32_t primitive, SurfacePoint& point) const {
+bool PlacedObject::meet(const Ray& ray, uint32_t primitive, SurfacePoint& point,
+                        const CopyPose* copy) const {
   if (is_quadric()) {
-    const auto hit = meet(ray, primitive);
-    if (hit) point = this->point(ray, *hit);
+    const auto hit = meet(ray, primitive, copy);
+    if (hit) point = this->point(ray, *hit, copy);
     return hit.has_value();
   }
   const Triangle triangle = triangle_at(primitive, ray.time);
-  const auto hit = meet_triangle_of(ray, primitive, triangle);
+  const auto hit = meet_triangle_of(ray, primitive, triangle, copy);
   if (!hit) return false;
-  fill_mesh_point(point, *hit, triangle, ray.time);
+  fill_mesh_point(point, *hit, triangle, ray.time, copy);
   point.t = hit->t;
   return true;
 }
 
-SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, float time) const {
+SurfacePoint PlacedObject::mesh_point(uint32_t primitive, float u, float v, float time,
+                                      const CopyPose* copy) const {
   SurfacePoint p;
   Hit hit;
   hit.primitive = primitive;
   hit.u = u;
   hit.v = v;
-  fill_mesh_point(p, hit, triangle_at(primitive, time), time);
+  fill_mesh_point(p, hit, triangle_at(primitive, time), time, copy);
   return p;
 }
 
 void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
-                                   float time) const {
+                                   float time, const CopyPose* copy) const {
   p.time = time;
   if (!moves_) {
-    fill_mesh_point(p, hit, triangle, {to_world_, to_object_, world_to_object_, mirrors_});
+    fill_mesh_point(p, hit, triangle, {to_world_, to_object_, world_to_object_, mirrors_}, copy);
     return;
   }
   const Affine to_world = motion_.at(time);
   const Affine to_object = to_world.inverse();
   const Mat4 world_to_object = to_object.to_mat4();
   fill_mesh_point(p, hit, triangle,
-                  {to_world, to_object, world_to_object, to_world.determinant() < 0.0});
+                  {to_world, to_object, world_to_object, to_world.determinant() < 0.0}, copy);
 }
 
 void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
-                                   const Pose& pose) const {
+                                   const Pose& pose, const CopyPose* copy) const {
   const TriangleMesh& mesh = buffers_->mesh();
   const auto& vertices = indices_[hit.primitive];
   const Vec3d& e1 = triangle.e1;
@@ -131,40 +133,49 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
   p.primitive = hit.primitive;
   p.mesh = &mesh;
   p.barycentrics = {hit.u, hit.v};
-  p.world_to_object = pose.world_to_object;
+  p.world_to_object =
+      copy == nullptr ? pose.world_to_object : (pose.to_object * copy->to_copy).to_mat4();
 
   // Normal and error bound in the space of the buffers, then in the world.
-  const Vec3d n = unit(glm::cross(e1, e2));
+  Vec3d n = unit(glm::cross(e1, e2));
   Vec3d position = triangle.a + offset;
-  Vec3d ng = n;
   double embree_error = errors_ != nullptr ? static_cast<double>(errors_[hit.primitive])
                                            : triangle_error(-offset, e1 - offset, e2 - offset, n);
   if (vertices_move_) {
     embree_error += vertex_motion_error(triangle.a, triangle.a + e1, triangle.a + e2);
   }
-  if (in_world_) {
-    if (pose.mirrors) ng = -n;
-  } else {
-    position = pose.to_world.point(position);
-    const Vec3d world_n = glm::transpose(pose.to_object.linear) * n;
-    const double stretch = std::sqrt(glm::dot(world_n, world_n));
-    embree_error += transform_error(pose.to_world, pose.to_object, position, n);
+  const auto lift = [&](const Affine& out, const Affine& back) {
+    position = out.point(position);
+    const Vec3d normal = glm::transpose(back.linear) * n;
+    const double stretch = std::sqrt(glm::dot(normal, normal));
+    embree_error += transform_error(out, back, position, n);
     embree_error /= stretch;
-    ng = world_n / stretch;
+    n = normal / stretch;
+  };
+  if (!in_world_) {
+    lift(pose.to_world, pose.to_object);
+  } else if (pose.mirrors) {
+    n = -n;
   }
+  if (copy != nullptr) lift(copy->to_world, copy->to_copy);
+  const Vec3d& ng = n;
   p.position = Vec3(position);
   p.ng = Vec3(ng);
   p.clearance = static_cast<float>(position_error(position, ng) + 2.0 * embree_error);
 
   p.ns = p.ng;
   if (!mesh.normals.empty()) {
-    const Vec3d ns = mesh_normal(vertices, du, dv, p.time);
-    p.ns = shading_normal(glm::transpose(pose.to_object.linear) * ns, p.ng);
+    Vec3d ns = mesh_normal(vertices, du, dv, p.time);
+    ns = glm::transpose(pose.to_object.linear) * ns;
+    if (copy != nullptr) ns = glm::transpose(copy->to_copy.linear) * ns;
+    p.ns = shading_normal(ns, p.ng);
   }
 
   p.tangent = Vec3(0.0F);
   if (!mesh.tangents.empty() || !mesh.vertex_tangents.empty()) {
-    p.tangent = Vec3(pose.to_world.vector(mesh_tangent(hit.primitive, du, dv, p.time)));
+    Vec3d tangent = pose.to_world.vector(mesh_tangent(hit.primitive, du, dv, p.time));
+    if (copy != nullptr) tangent = copy->to_world.vector(tangent);
+    p.tangent = Vec3(tangent);
   }
 
   if (mesh.uvs.empty()) {
@@ -186,6 +197,10 @@ void PlacedObject::fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triang
   if (!in_world_) {
     dpdu = pose.to_world.vector(dpdu);
     dpdv = pose.to_world.vector(dpdv);
+  }
+  if (copy != nullptr) {
+    dpdu = copy->to_world.vector(dpdu);
+    dpdv = copy->to_world.vector(dpdv);
   }
   set_tangents(p, dpdu, dpdv);
 }
@@ -223,15 +238,28 @@ Vec3d PlacedObject::mesh_tangent(uint32_t primitive, double u, double v, float t
   return here * (1.0 - f) + between(*shape.next) * f;
 }
 
-SurfacePoint PlacedObject::quadric_surface(const Ray& ray, const Hit& hit) const {
-  const Affine to_world = to_world_at(ray.time);
-  const Affine to_object = to_object_at(ray.time);
+SurfacePoint PlacedObject::quadric_surface(const Ray& ray, const Hit& hit,
+                                           const CopyPose* copy) const {
+  Affine to_world = to_world_at(ray.time);
+  Affine to_object = to_object_at(ray.time);
+  if (copy != nullptr) {
+    to_world = copy->to_world * to_world;
+    to_object = to_object * copy->to_copy;
+  }
   const Vec3d origin = to_object.point(Vec3d(ray.origin));
   const Vec3d direction = to_object.vector(Vec3d(ray.direction));
   // hit.t was rounded to float: the exact one is found again.
   const double t = meet_quadric(quadric_, origin, direction, 0.0, static_cast<double>(ray.t_max))
                        .value_or(static_cast<double>(hit.t));
-  return quadric_place(origin + direction * t, ray.time, to_world, to_object);
+  SurfacePoint p = quadric_place(origin + direction * t, ray.time, to_world, to_object);
+  if (copy != nullptr) {
+    // Rays are rounded in the space of the copy.
+    const Vec3d n = unit(glm::transpose(copy->to_world.linear) * Vec3d(p.ng));
+    const Vec3d normal = glm::transpose(copy->to_copy.linear) * n;
+    const double error = transform_error(copy->to_world, copy->to_copy, Vec3d(p.position), n);
+    p.clearance += static_cast<float>(2.0 * error / std::sqrt(glm::dot(normal, normal)));
+  }
+  return p;
 }
 
 SurfacePoint PlacedObject::quadric_place(const Vec3d& near, float time) const {

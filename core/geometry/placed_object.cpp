@@ -94,11 +94,13 @@ PlacedObject::PlacedObject(Placement placement, std::shared_ptr<const MeshBuffer
   }
 }
 
-std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const {
+std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive,
+                                      const CopyPose* copy) const {
   if (!is_quadric()) {
-    return meet_triangle_of(ray, primitive, triangle_at(primitive, ray.time));
+    return meet_triangle_of(ray, primitive, triangle_at(primitive, ray.time), copy);
   }
-  const Affine m = to_object_at(ray.time);
+  Affine m = to_object_at(ray.time);
+  if (copy != nullptr) m = m * copy->to_copy;
   const double t_max = static_cast<double>(ray.t_max);
   const auto t = meet_quadric(quadric_, m.point(Vec3d(ray.origin)), m.vector(Vec3d(ray.direction)),
                               0.0, t_max);
@@ -110,9 +112,14 @@ std::optional<Hit> PlacedObject::meet(const Ray& ray, uint32_t primitive) const 
 }
 
 std::optional<Hit> PlacedObject::meet_triangle_of(const Ray& ray, uint32_t primitive,
-                                                  const Triangle& triangle) const {
+                                                  const Triangle& triangle,
+                                                  const CopyPose* copy) const {
   Vec3d origin(ray.origin);
   Vec3d direction(ray.direction);
+  if (copy != nullptr) {
+    origin = copy->to_copy.point(origin);
+    direction = copy->to_copy.vector(direction);
+  }
   if (!in_world_) {
     const Affine m = to_object_at(ray.time);
     origin = m.point(origin);

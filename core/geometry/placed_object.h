@@ -15,6 +15,12 @@
 
 namespace hyades::core {
 
+/// Where a copy of a swarm stands at some moment, both ways.
+struct CopyPose {
+  Affine to_world;
+  Affine to_copy;
+};
+
 /// A placement made ready for intersection: what was found by Embree is computed again here, in
 /// double precision from the primitive and the ray.
 class PlacedObject {
@@ -31,24 +37,29 @@ class PlacedObject {
   Affine to_world_at(float time) const { return moves_ ? motion_.at(time) : to_world_; }
   Affine to_object_at(float time) const { return moves_ ? motion_.at(time).inverse() : to_object_; }
 
+  /// `copy` in what follows: where the copy of a swarm stands that the object belongs to; null: the
+  /// object stands in the world itself.
+
   /// Where the ray's line meets triangle `primitive` (or the quadric: u = v = 0), as distance along
   /// the ray and barycentrics. Nothing where it does not, by this arithmetic.
-  std::optional<Hit> meet(const Ray& ray, uint32_t primitive) const;
+  std::optional<Hit> meet(const Ray& ray, uint32_t primitive, const CopyPose* copy = nullptr) const;
 
   /// The point of a hit.
-  SurfacePoint point(const Ray& ray, const Hit& hit) const;
+  SurfacePoint point(const Ray& ray, const Hit& hit, const CopyPose* copy = nullptr) const;
 
   /// Both at once: the same bits for less work. False where the line does not meet it; `point` is
   /// then unchanged.
-  bool meet(const Ray& ray, uint32_t primitive, SurfacePoint& point) const;
+  bool meet(const Ray& ray, uint32_t primitive, SurfacePoint& point,
+            const CopyPose* copy = nullptr) const;
 
   /// The point of a mesh at barycentrics (u, v) of triangle `primitive`.
-  SurfacePoint mesh_point(uint32_t primitive, float u, float v, float time) const;
+  SurfacePoint mesh_point(uint32_t primitive, float u, float v, float time,
+                          const CopyPose* copy = nullptr) const;
 
   /// The point of a quadric next to `near` (object space).
   SurfacePoint quadric_place(const Vec3d& near, float time) const;
 
-  Bounds bounds() const { return bounds_; }
+  Bounds bounds() const { return bounds_; }  ///< in the world, or in the space of copies
 
  private:
   /// Where it stands at some time.
@@ -59,14 +70,15 @@ class PlacedObject {
     bool mirrors;  ///< turns the shape inside out
   };
 
-  std::optional<Hit> meet_triangle_of(const Ray& ray, uint32_t primitive,
-                                      const Triangle& triangle) const;
-  void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle, float time) const;
-  void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle,
-                       const Pose& pose) const;
+  std::optional<Hit> meet_triangle_of(const Ray& ray, uint32_t primitive, const Triangle& triangle,
+                                      const CopyPose* copy) const;
+  void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle, float time,
+                       const CopyPose* copy) const;
+  void fill_mesh_point(SurfacePoint& p, const Hit& hit, const Triangle& triangle, const Pose& pose,
+                       const CopyPose* copy) const;
   Vec3d mesh_normal(const std::array<uint32_t, 3>& vertices, double u, double v, float time) const;
   Vec3d mesh_tangent(uint32_t primitive, double u, double v, float time) const;
-  SurfacePoint quadric_surface(const Ray& ray, const Hit& hit) const;
+  SurfacePoint quadric_surface(const Ray& ray, const Hit& hit, const CopyPose* copy) const;
   SurfacePoint quadric_place(const Vec3d& near, float time, const Affine& to_world,
                              const Affine& to_object) const;
   /// Triangle `primitive` in the space of the buffers.

@@ -9,6 +9,7 @@
 #include "core/base/result.h"
 #include "core/geometry/shape.h"
 #include "core/geometry/surface_point.h"
+#include "core/geometry/swarm.h"
 
 namespace hyades::core {
 
@@ -27,15 +28,22 @@ struct Placement {
   /// apart from the geometry that frames share. Decided by the job alone, never by which frames
   /// were built before, so that a frame's bits do not depend on them.
   bool changes_between_frames = false;
+  /// Null: it stands once in the world. Else `to_world` leads into the space of the swarm's copies,
+  /// each of which holds this and all neighbours in the list of placements with the same swarm.
+  std::shared_ptr<const Swarm> swarm;
 };
+
+/// Whether both put the same things into the world, by address.
+bool same_placement(const Placement& a, const Placement& b);
 
 /// What a ray met: enough to find the surface point again.
 struct Hit {
   uint32_t object = 0;  ///< index of the placement
   uint32_t primitive = 0;
-  float t = 0.0F;  ///< recomputed with exact divisions: the same bits on every CPU
-  float u = 0.0F;  ///< barycentric of vertex 1 (meshes)
-  float v = 0.0F;  ///< barycentric of vertex 2 (meshes)
+  uint32_t copy = 0;  ///< index in Swarm::places; 0 where there is no swarm
+  float t = 0.0F;     ///< recomputed with exact divisions: the same bits on every CPU
+  float u = 0.0F;     ///< barycentric of vertex 1 (meshes)
+  float v = 0.0F;     ///< barycentric of vertex 2 (meshes)
 };
 
 /// Acceleration structures that outlive a frame: one per distinct mesh that is instanced or moves,
@@ -72,7 +80,8 @@ class World {
   /// for less work. False, and `point` is unchanged, where there is none.
   virtual bool nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const = 0;
 
-  /// The surface point of placement `object` at triangle `primitive`, barycentrics (u, v), shutter
+  /// The surface point of placement `object` (of a swarm: in its first copy) at triangle
+  /// `primitive`, barycentrics (u, v), shutter
   /// time `time`: what light sampling on a mesh needs.
   virtual SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
                                       float time) const = 0;
@@ -81,10 +90,13 @@ class World {
   /// space) at shutter time `time`: what light sampling on a quadric needs.
   virtual SurfacePoint quadric_point(uint32_t object, const Vec3& near, float time) const = 0;
 
-  /// Object-to-world matrix of placement `object` at shutter time `time`.
+  /// Object-to-world matrix of placement `object` at shutter time `time`; of a swarm's members that
+  /// of the swarm as a whole.
   virtual Mat4 transform_at(uint32_t object, float time) const = 0;
 
   virtual const Placement& placement(uint32_t object) const = 0;
+  /// Of placement `object` over the shutter interval, all of its copies.
+  virtual Bounds bounds_of(uint32_t object) const = 0;
   virtual uint32_t placement_count() const = 0;
   virtual Bounds bounds() const = 0;  ///< over the whole shutter interval
   virtual size_t memory() const = 0;  ///< bytes that Embree holds for it, and copies of vertices

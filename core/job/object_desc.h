@@ -43,6 +43,7 @@ struct ObjectDesc {
   std::string mesh;   ///< file, or one for each frame (mesh_files.h)
   std::string part;   ///< mesh: the material of the file whose triangles are meant; empty: all
   std::string instance_of;            ///< name in Job::groups
+  std::string places;                 ///< instance: file of where copies stand; empty: one, here
   std::vector<ObjectDesc> children;   ///< group written in place
   Animated<float> radius{1.0F};       ///< sphere, disk, cylinder
   Animated<Vec2> extent{Vec2(1.0F)};  ///< rectangle: along x and z

@@ -122,6 +122,8 @@ void read_mesh(MapReader& reader, ObjectDesc& object) {
 void read_instance(MapReader& reader, ObjectDesc& object) {
   object.shape = "instance";
   reader.name_of("instance", object.instance_of, NameKind::group);
+  reader.enter_section("objects.instance");
+  reader.file("places", object.places);
 }
 
 void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects);

@@ -14,6 +14,7 @@ class FileList {
   void add_meshes(const std::vector<ObjectDesc>& objects) {
     for (const ObjectDesc& object : objects) {
       add(object.mesh);
+      add(object.places);
       add_meshes(object.children);
     }
   }

@@ -182,6 +182,7 @@ void write(FieldWriter& out, const ObjectDesc& object, bool ahead) {
   out.put_mesh_file("mesh", object.mesh, ahead);
   if (!object.part.empty()) out.put("part", object.part);
   out.put("instance_of", object.instance_of);
+  if (!object.places.empty()) out.put_file("places", object.places);
   out.put("radius", object.radius);
   out.put("extent", object.extent);
   out.put("size", object.size);

@@ -79,8 +79,11 @@ class SceneBuilder {
       const bool cutout = (*material)->is_cutout();
       placements.back().blocks_light = !(*material)->is_null() && !cutout;
       scene_->has_shells |= cutout;
-      if (object.placement.shape.mesh)
-        scene_->triangles += object.placement.shape.mesh->triangles.size();
+      if (object.placement.shape.mesh) {
+        const auto& swarm = object.placement.swarm;
+        scene_->triangles += object.placement.shape.mesh->triangles.size() *
+                             (swarm == nullptr ? 1 : swarm->places->size());
+      }
     }
     if (auto done = add_bodies(job_, *flat, looks_, *scene_, placements); !done) return done;
     scene_->medium_groups = looks_.medium_groups();
@@ -234,10 +237,11 @@ class SceneBuilder {
     motion->next_camera = make_sharp_camera(job_, job_.time_of(frame_ + 1));
     for (uint32_t i = 0; i < next->size(); ++i) {
       const Placement& then = (*next)[i].placement;
-      motion->to_world.push_back(then.to_world.front());
+      motion->to_world.push_back(then.swarm == nullptr ? then.to_world.front()
+                                                       : then.swarm->to_world.front());
       const auto& mesh = scene_->world->placement(i).shape.mesh;
-      const bool deforms = then.shape.mesh != mesh && then.shape.mesh != nullptr &&
-                           is_mesh_sequence((*next)[i].desc->mesh) &&
+      const bool deforms = then.swarm == nullptr && then.shape.mesh != mesh &&
+                           then.shape.mesh != nullptr && is_mesh_sequence((*next)[i].desc->mesh) &&
                            same_topology(*mesh, *then.shape.mesh);
       motion->meshes.push_back(deforms ? then.shape.mesh : nullptr);
     }
@@ -253,8 +257,11 @@ class SceneBuilder {
     for (uint32_t i = 0; i < scene_->objects.size(); ++i) {
       const std::string& path = scene_->objects[i].name;
       if (path != name && !path.starts_with(name + "/")) continue;
-      bounds.include(transformed(scene_->world->transform_at(i, shutter_time),
-                                 bounds_of(scene_->world->placement(i).shape)));
+      const Placement& placement = scene_->world->placement(i);
+      bounds.include(placement.swarm != nullptr
+                         ? scene_->world->bounds_of(i)
+                         : transformed(scene_->world->transform_at(i, shutter_time),
+                                       bounds_of(placement.shape)));
     }
     return bounds.empty() ? Vec3(0.0F) : bounds.center();
   }

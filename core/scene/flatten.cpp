@@ -63,7 +63,10 @@ class Flattener {
       if (group == groups_.end()) {
         return at(object, Error{"there is no group '" + object.instance_of + "'"});
       }
-      return add_all(group->second->objects, name + "/", material, visible);
+      if (object.places.empty()) {
+        return add_all(group->second->objects, name + "/", material, visible);
+      }
+      return add_copies(object, *group->second, name, material, visible);
     }
     if (flat_.size() >= kMaxPlacements) {
       return Error{"groups and instances make more than " + std::to_string(kMaxPlacements) +
@@ -86,6 +89,7 @@ class Flattener {
     flat.body = flat_.size();
     flat.emit = emission_of(object, look);
     flat.placement.shape = *shape;
+    flat.placement.swarm = swarm_;
     flat.placement.visible_to_camera = visible;
     flat.placement.changes_between_frames = chain_is_animated() || size_changes(object) ||
                                             displacement_changes(job_, object) ||
@@ -94,6 +98,50 @@ class Flattener {
     flat_.push_back(std::move(flat));
     if (object.shape == "cylinder" && object.caps) add_caps(object, name, look, visible);
     return {};
+  }
+
+  /// Copies of a group at the places of a file.
+  Status add_copies(const ObjectDesc& object, const GroupDesc& group, const std::string& name,
+                    const std::string& material, bool visible) {
+    const auto refuse = [&](const Error& error) {
+      return at(object, error.in("object '" + name + "'"));
+    };
+    if (swarm_ != nullptr) {
+      return refuse({"its copies would be copied in their turn by '" + swarm_->name +
+                     "'; expected one file of places at most around an object"});
+    }
+    const auto places = cache_.places(object.places);
+    if (!places) return refuse(places.error());
+    auto swarm = std::make_shared<Swarm>();
+    swarm->name = object.places;
+    swarm->places = *places;
+    swarm->to_world =
+        shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
+    swarm_ = std::move(swarm);
+    inside_ = chain_.size();
+    const size_t first = flat_.size();
+    const Status added = add_all(group.objects, name + "/", material, visible);
+    swarm_ = nullptr;
+    inside_ = 0;
+    if (!added) return added;
+    for (size_t i = first; i < flat_.size(); ++i) {
+      const FlatObject& flat = flat_[i];
+      if (flat.emit)
+        return refuse({"'" + flat.name +
+                       "' gives off light, which copies by a file of "
+                       "places cannot; expected lamps as objects of their own"});
+      if (varies(flat.desc->interior)) {
+        return refuse({"'" + flat.name + "' is filled with '" + flat.desc->interior +
+                       "', which varies within a body; expected a medium that is the same "
+                       "everywhere for copies by a file of places"});
+      }
+    }
+    return {};
+  }
+
+  bool varies(const std::string& medium) const {
+    return std::any_of(job_.media.begin(), job_.media.end(),
+                       [&](const MediumDesc& desc) { return desc.name == medium && desc.varying; });
   }
 
   /// The object's own, else that of its material.
@@ -139,6 +187,7 @@ class Flattener {
       cap.placement.shape.kind = Shape::Kind::disk;
       cap.placement.shape.radius = object.radius.at(looks_.time());
       cap.placement.visible_to_camera = visible;
+      cap.placement.swarm = swarm_;
       cap.placement.changes_between_frames = chain_is_animated() || size_changes(object);
       Mat4 place(1.0F);
       if (top) {
@@ -164,12 +213,13 @@ class Flattener {
     });
   }
 
-  /// Object to world, through all enclosing groups, scaled to metres.
+  /// Object to world, through all enclosing groups, scaled to metres; within a swarm to the space
+  /// of its copies.
   Mat4 chain_matrix(const JobTime& time) const {
     Mat4 m(1.0F);
-    for (int i = 0; i < 3; ++i) m[i][i] = job_.units;
-    for (const ObjectDesc* object : chain_)
-      m = m * transform_at(object->transform, object->at, time);
+    for (int i = 0; i < 3 && swarm_ == nullptr; ++i) m[i][i] = job_.units;
+    for (size_t i = swarm_ == nullptr ? 0 : inside_; i < chain_.size(); ++i)
+      m = m * transform_at(chain_[i]->transform, chain_[i]->at, time);
     return m;
   }
 
@@ -185,6 +235,8 @@ class Flattener {
   std::unordered_map<const ObjectDesc*, std::set<std::string>> overridden_;
   std::vector<const ObjectDesc*> chain_;  ///< from the outermost group to the object in hand
   std::vector<FlatObject> flat_;
+  std::shared_ptr<const Swarm> swarm_;  ///< whose copies hold what is added
+  size_t inside_ = 0;                   ///< of chain_, where its group begins
 };
 
 }  // namespace

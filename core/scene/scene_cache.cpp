@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/machine.h"
 #include "core/base/text.h"
 #include "core/base/udim.h"
+#include "core/geometry/read_places.h"
 
 namespace hyades::core {
 namespace {
@@ -15,14 +17,6 @@ constexpr int kMostCells = 128;
 
 /// Files of frames, cut into their materials, that are kept: those of two frames, and some more.
 constexpr size_t kRecentParts = 4;
-
-bool same_placement(const Placement& a, const Placement& b) {
-  return a.shape.kind == b.shape.kind && a.shape.mesh == b.shape.mesh &&
-         a.shape.next == b.shape.next && a.shape.reach == b.shape.reach &&
-         a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
-         a.visible_to_camera == b.visible_to_camera && a.blocks_light == b.blocks_light &&
-         a.to_world == b.to_world;
-}
 
 bool same_placements(const std::vector<Placement>& a, const std::vector<Placement>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_placement);
@@ -89,6 +83,11 @@ Result<std::shared_ptr<const TriangleMesh>> SceneCache::mesh(const std::string& 
 Result<std::shared_ptr<const TriangleMesh>> SceneCache::frame_mesh(const std::string& file,
                                                                    const MeshUse& use) {
   return frame_meshes_.get({file, use}, [&] { return read(file, use, true); });
+}
+
+Result<std::shared_ptr<const std::vector<PlaceMatrix>>> SceneCache::places(
+    const std::string& file) {
+  return places_.get(file, [&] { return read_places(assets_, file, usable_memory()); });
 }
 
 Result<std::shared_ptr<const Image>> SceneCache::image(const std::string& file, ColorSpace space) {

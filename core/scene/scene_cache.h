@@ -75,6 +75,9 @@ class SceneCache {
   Result<std::shared_ptr<const TriangleMesh>> frame_mesh(const std::string& file,
                                                          const MeshUse& use);
 
+  /// Where the copies of a swarm stand.
+  Result<std::shared_ptr<const std::vector<PlaceMatrix>>> places(const std::string& file);
+
   /// Whether there is such a file.
   bool exists(const std::string& file) { return assets_.exists(file); }
 
@@ -138,6 +141,7 @@ class SceneCache {
   OnceMap<std::string, MeshParts> mesh_parts_;
   WeakMap<std::pair<std::string, MeshUse>, TriangleMesh> frame_meshes_;
   WeakMap<std::string, MeshParts> frame_parts_;
+  OnceMap<std::string, std::vector<PlaceMatrix>> places_;
   std::mutex recent_parts_mutex_;
   /// So that the parts of a frame's file come from one reading. Guarded by recent_parts_mutex_.
   std::deque<std::shared_ptr<const MeshParts>> recent_parts_;

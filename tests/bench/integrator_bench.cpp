@@ -69,6 +69,7 @@ class RecordingWorld : public World {
   const Placement& placement(uint32_t o) const override { return inner_->placement(o); }
   uint32_t placement_count() const override { return inner_->placement_count(); }
   Bounds bounds() const override { return inner_->bounds(); }
+  Bounds bounds_of(uint32_t o) const override { return inner_->bounds_of(o); }
   size_t memory() const override { return inner_->memory(); }
   uint64_t invalid_rays() const override { return inner_->invalid_rays(); }
 

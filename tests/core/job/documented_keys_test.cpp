@@ -184,6 +184,7 @@ const std::map<std::string, Place>& places() {
     p["objects.mesh.displacement"] = {
         "objects: {x: {mesh: chair.obj, displacement: {", {{"texture", "marble"}}, "}}}"};
     p["objects.emit"] = {"objects: {x: {shape: sphere, emit: {", {}, "}}}"};
+    p["objects.instance"] = object("instance", "tree");
     p["objects.group"] = {"objects: {x: {group: {", {}, "}}}"};
     p["groups"] = {"groups: {x: {", {{"objects", "{a: {shape: disk}}"}}, "}}"};
     p["transform"] = {"objects: {x: {shape: box, transform: [{", {}, "}]}}"};
@@ -291,8 +292,8 @@ Outcome read(const std::string& text) {
   MemoryAssets inner;
   inner.add("base.yaml", kBase);
   inner.add("sky.yaml", "environment: {color: 0.3}\n");
-  for (const char* file : {"knot.ply", "chair.obj", "wood.png", "bricks.png", "sky.hdr",
-                           "smoke.vdb", "cloud.vdb", "aces/config.ocio", "view.ocio"}) {
+  for (const char* file : {"knot.ply", "forest.ply", "chair.obj", "wood.png", "bricks.png",
+                           "sky.hdr", "smoke.vdb", "cloud.vdb", "aces/config.ocio", "view.ocio"}) {
     inner.add(file, std::string("content of ") + file);
   }
   add_scenes(inner);
