@@ -172,6 +172,35 @@ TEST(Swarm, RaysLeaveTheirSurface) {
   EXPECT_GT(met, 20'000);
 }
 
+TEST(Swarm, RaysLeaveWhatIsFarFromTheMiddleOfItsCopy) {
+  const FpMode mode;
+  const Vec3 far(2e4F, -1e4F, 3e4F);
+  Random random(6);
+  std::vector<Mat4> places;
+  for (int i = 0; i < 20; ++i) {
+    places.push_back(test::translation({3.0F * static_cast<float>(i), 0.0F, 0.0F}) *
+                     test::random_rotation(random) * test::translation(-far));
+  }
+  const std::vector<Placement> all = {
+      test::place(test::make_ball(3), {test::translation(far)}),
+  };
+  const auto world = test::build(in_swarm(all, swarm_of(places)));
+  int met = 0;
+  for (int i = 0; i < 40'000; ++i) {
+    const Vec3 middle(3.0F * static_cast<float>(test::pick(random, places.size())), 0.0F, 0.0F);
+    Ray ray;
+    ray.origin = middle + 5.0F * random.direction();
+    ray.direction = glm::normalize(middle + 0.5F * random.direction() - ray.origin);
+    SurfacePoint on;
+    if (!world->nearest(ray, RayKind::other, on)) continue;
+    ++met;
+    Vec3 out = random.direction();
+    if (glm::dot(out, on.ng) < 0.0F) out = -out;
+    ASSERT_FALSE(world->occluded(spawn_ray(on, out, 0.3F))) << i;
+  }
+  EXPECT_GT(met, 30'000);
+}
+
 TEST(Swarm, SeesTheMasksOfItsMembers) {
   const FpMode mode;
   std::vector<Placement> all = {test::place(test::make_ball(2))};
@@ -198,6 +227,27 @@ TEST(Swarm, FramesShareIt) {
   const size_t alone = (*first)->memory();
   EXPECT_NEAR(static_cast<double>((*second)->memory()), static_cast<double>(alone), 4096.0);
   EXPECT_EQ(&(*first)->placement(0), &(*second)->placement(0));
+}
+
+TEST(Swarm, OnesThatDifferAreNotShared) {
+  const FpMode mode;
+  GeometryCache cache;
+  const auto height_at = [&](const std::vector<Placement>& all) {
+    const auto world = build_world(all, cache);
+    EXPECT_TRUE(world);
+    SurfacePoint p;
+    const Ray ray{{0.0F, 20.0F, 0.0F}, {0.0F, -1.0F, 0.0F}, kInfinity, 0.0F};
+    return (*world)->nearest(ray, RayKind::other, p) ? p.position.y : -100.0F;
+  };
+  const auto ball = test::place(Shape::Kind::sphere, 1.0F, 1.0F);
+  auto large = ball;
+  large.shape.radius = 2.0F;
+  const auto here = swarm_of({Mat4(1.0F)});
+  const auto above = swarm_of({test::translation({0.0F, 5.0F, 0.0F})});
+  EXPECT_FLOAT_EQ(height_at(in_swarm({ball}, here)), 1.0F);
+  EXPECT_FLOAT_EQ(height_at(in_swarm({large}, here)), 2.0F);
+  EXPECT_FLOAT_EQ(height_at(in_swarm({ball}, above)), 6.0F);
+  EXPECT_FLOAT_EQ(height_at({ball}), 1.0F);
 }
 
 TEST(Swarm, PlacesThatLeadNowhereAreRefused) {
