@@ -16,7 +16,7 @@ namespace hyades::cli {
 int import_command(int argc, char** argv) {
   CLI::App app(
       "Writes a scene of another tool as a job, with its meshes (binary PLY) and pictures in the "
-      "folder JOB.files beside it. 'hyades render' takes scenes without this too.",
+      "folder JOB_files beside it. 'hyades render' takes scenes without this too.",
       "hyades import");
   core::WriteSceneJob request;
   app.add_option("scene", request.scene, "the scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
@@ -33,8 +33,7 @@ int import_command(int argc, char** argv) {
   app.add_flag("--overwrite", request.overwrite, "replace files that are there already");
   app.footer(
       "example:\n  hyades import robot.glb -o robot.yaml && hyades render robot.yaml\n"
-      "exit status: 0 written, 1 files could not be written, 2 the scene or the arguments are "
-      "wrong");
+      "exit status: 0 written, 2 not");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {
     std::fprintf(stderr, "%s: expected a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)\n",

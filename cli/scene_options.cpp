@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "cli/printable.h"
 
 namespace hyades::cli {
@@ -16,13 +18,18 @@ constexpr size_t kMostNotes = 40;
 void declare_scene_options(CLI::App& app, SceneOptions& options) {
   app.add_option("--media", options.media,
                  "of a scene or mesh: fill the materials that have the names of this file's media");
+  app.add_option("--animation", options.animation,
+                 "of a scene with several animations, the one that is meant (default: the first; "
+                 "none: it stands still)");
   app.add_flag("--missing-textures", options.missing_textures,
                "let magenta stand in for pictures that are not there");
 }
 
 core::JobFileOptions job_file_options(const SceneOptions& options) {
-  return {options.media, options.missing_textures ? core::MissingTextures::magenta
-                                                  : core::MissingTextures::refused};
+  return {
+      options.media,
+      options.missing_textures ? core::MissingTextures::magenta : core::MissingTextures::refused,
+      options.animation};
 }
 
 void print_notes(const core::JobFiles& files) {

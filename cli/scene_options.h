@@ -2,19 +2,22 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "core/import/job_files.h"
+
+namespace CLI {
+class App;
+}
 
 namespace hyades::cli {
 
 /// What commands that read jobs are told of scenes of other tools.
 struct SceneOptions {
   std::string media;              ///< file of media for a scene's materials; empty: none
+  std::string animation;          ///< of a scene with several, the one that is meant
   bool missing_textures = false;  ///< pictures that are not there are magenta, not errors
 };
 
-/// Options --media and --missing-textures.
+/// Options --media, --animation and --missing-textures.
 void declare_scene_options(CLI::App& app, SceneOptions& options);
 
 core::JobFileOptions job_file_options(const SceneOptions& options);

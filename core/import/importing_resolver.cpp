@@ -41,20 +41,51 @@ std::optional<Inside> inside_of(const std::string& reference) {
 
 }  // namespace
 
+/// Files, and what stands in for pictures that are not there.
+class ImportingResolver::Sources : public AssetResolver {
+ public:
+  Sources(AssetResolver& files, MissingTextures missing) : files_(files), missing_(missing) {}
+
+  Result<Bytes> open(const std::string& reference, const std::string& from) override {
+    auto bytes = files_.open(reference, from);
+    const std::string resolved = resolve_reference(reference, from);
+    const bool refused = missing_ == MissingTextures::refused || !names_picture(resolved);
+    if (bytes || refused || files_.exists(resolved)) return bytes;
+    note(resolved + ": no such picture; magenta stands in for it");
+    return magenta_picture();
+  }
+
+  bool exists(const std::string& reference) override { return files_.exists(reference); }
+
+  /// Keeps a line, once.
+  void note(const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    if (noted_.insert(line).second) notes_.push_back(line);
+  }
+
+  std::vector<std::string> notes() const {
+    const std::lock_guard lock(mutex_);
+    return notes_;
+  }
+
+ private:
+  AssetResolver& files_;
+  MissingTextures missing_;
+  mutable std::mutex mutex_;
+  // Guarded by mutex_.
+  std::vector<std::string> notes_;
+  std::set<std::string> noted_;
+};
+
 struct ImportingResolver::State {
   AssetResolver& files;
-  MissingTextures missing;
+  Sources lenient;
   mutable std::mutex mutex;
   // Guarded by mutex.
   std::map<std::string, Bytes> added;
   std::map<std::string, SourcePtr> sources;
-  std::vector<std::string> notes;
-  std::set<std::string> noted;
 
-  void note(const std::string& line) {
-    const std::lock_guard lock(mutex);
-    if (noted.insert(line).second) notes.push_back(line);
-  }
+  State(AssetResolver& below, MissingTextures missing) : files(below), lenient(below, missing) {}
 
   /// Reads a scene once. Two who ask for the same one at the same time may both read it; one result
   /// stays.
@@ -63,7 +94,7 @@ struct ImportingResolver::State {
       const std::lock_guard lock(mutex);
       if (const auto found = sources.find(scene); found != sources.end()) return found->second;
     }
-    auto read = read_scene(files, scene);
+    auto read = read_scene(lenient, scene);
     if (!read) return read;
     const std::lock_guard lock(mutex);
     return sources.emplace(scene, *read).first->second;
@@ -79,7 +110,7 @@ struct ImportingResolver::State {
     request.beside = "../";
     const auto told = (*scene)->sections(request);
     if (!told) return told.error();
-    for (const std::string& line : told->notes) note(line);
+    for (const std::string& line : told->notes) lenient.note(line);
     return owned(write_yaml(*told->sections));
   }
 
@@ -87,20 +118,12 @@ struct ImportingResolver::State {
     if (const auto wanted = document_of(reference)) return document(*wanted);
     const auto scene = source(inside.scene);
     if (!scene) return scene.error();
-    auto bytes = (*scene)->made_file(inside.name);
-    if (!bytes) return bytes.error().in(inside.scene);
-    return bytes;
+    return (*scene)->made_file(inside.name);
   }
 };
 
 ImportingResolver::ImportingResolver(AssetResolver& files, MissingTextures missing)
-    : state_(new State{.files = files,
-                       .missing = missing,
-                       .mutex = {},
-                       .added = {},
-                       .sources = {},
-                       .notes = {},
-                       .noted = {}}) {}
+    : state_(new State(files, missing)) {}
 
 ImportingResolver::~ImportingResolver() = default;
 
@@ -114,13 +137,7 @@ Result<Bytes> ImportingResolver::open(const std::string& reference, const std::s
   const auto inside = inside_of(resolved);
   // A folder of that name on the disk, as left by a person, comes first.
   if (inside && !state_->files.exists(resolved)) return state_->made(*inside, resolved);
-  auto bytes = state_->files.open(reference, from);
-  if (bytes || state_->missing == MissingTextures::refused || !names_picture(resolved)) {
-    return bytes;
-  }
-  if (state_->files.exists(resolved)) return bytes;
-  state_->note(resolved + ": no such picture; magenta stands in for it");
-  return magenta_picture();
+  return state_->lenient.open(reference, from);
 }
 
 bool ImportingResolver::exists(const std::string& reference) {
@@ -147,9 +164,13 @@ void ImportingResolver::add(const std::string& reference, std::string text) {
   state_->added[resolve_reference(reference)] = owned(std::move(text));
 }
 
-std::vector<std::string> ImportingResolver::notes() const {
+void ImportingResolver::adopt(const std::string& scene, SourcePtr source) {
   const std::lock_guard lock(state_->mutex);
-  return state_->notes;
+  state_->sources[resolve_reference(scene)] = std::move(source);
 }
+
+AssetResolver& ImportingResolver::sources() { return state_->lenient; }
+
+std::vector<std::string> ImportingResolver::notes() const { return state_->lenient.notes(); }
 
 }  // namespace hyades::core

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/import/scene_source.h"
 
 namespace hyades::core {
 
@@ -30,6 +31,12 @@ class ImportingResolver : public AssetResolver {
   /// Whether open() reads a file of the resolver below, and makes nothing.
   bool is_on_disk(const std::string& reference) const;
 
+  /// Takes over a scene that has been read, so that it is not read again.
+  void adopt(const std::string& scene, std::shared_ptr<const SceneSource> source);
+
+  /// What importers open their files with: those below, and what stands in for missing pictures.
+  AssetResolver& sources();
+
   /// Another file that only this resolver has.
   void add(const std::string& reference, std::string text);
 
@@ -38,6 +45,7 @@ class ImportingResolver : public AssetResolver {
   std::vector<std::string> notes() const;
 
  private:
+  class Sources;
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -77,9 +77,11 @@ Result<std::unique_ptr<JobFiles>> JobFiles::open(const std::string& path,
   request.scene = file;
   request.media = reference_from(options.media, opened->folder_);
   request.media_in_job = request.media;
+  request.how.animation = options.animation;
   request.how.made = file + std::string(kMadeFolder) + "/";
-  auto job = scene_job(*opened->disk_, request);
+  auto job = scene_job(opened->importing_->sources(), request);
   if (!job) return job.error();
+  opened->importing_->adopt(file, job->source);
   opened->notes_ = std::move(job->notes);
   opened->document_ = file + ".yaml";
   opened->importing_->add(opened->document_, write_yaml(*job->tree));

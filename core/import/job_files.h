@@ -15,6 +15,7 @@ namespace hyades::core {
 struct JobFileOptions {
   std::string media;  ///< of a scene: a file of media for its materials, as a path; empty: none
   MissingTextures missing = MissingTextures::refused;
+  std::string animation;  ///< of a scene: SceneRequest::animation
 };
 
 /// A job, or a scene that is to be one (is_scene_file()), with the door to all files that it names.

@@ -29,7 +29,8 @@ std::string Names::add(const std::string& text, const std::string& otherwise) {
   std::string name = safe_name(text, otherwise);
   if (looks_like_color(name) && prefix_.empty()) name = otherwise + "-" + name;
   const std::string first = name;
-  for (int i = 2; !taken_.insert(name).second; ++i) name = first + "-" + std::to_string(i);
+  int& number = last_.try_emplace(first, 1).first->second;
+  while (!taken_.insert(name).second) name = first + "-" + std::to_string(++number);
   return prefix_.empty() ? name : prefix_ + "." + name;
 }
 

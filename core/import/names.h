@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ class Names {
  private:
   std::string prefix_;
   std::set<std::string> taken_;
+  std::map<std::string, int> last_;  ///< number that a name was last told apart by
 };
 
 }  // namespace hyades::core

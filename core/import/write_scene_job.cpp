@@ -1,5 +1,6 @@
 #include "core/import/write_scene_job.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -23,6 +24,9 @@ namespace {
 
 using Kind = YamlNode::Kind;
 
+/// Of a scene that moves for longer, the first so many frames are written.
+constexpr int kMostFrames = 100'000;
+
 /// A tree with some of its maps replaced: `change` gets each map after those within it, and answers
 /// what stands in its place.
 YamlPtr changed(const YamlPtr& node, const std::function<YamlPtr(const YamlPtr&)>& change) {
@@ -38,7 +42,7 @@ class Writer {
   explicit Writer(const WriteSceneJob& request)
       : request_(request),
         folder_(folder_of(request.job)),
-        made_(std::filesystem::path(request.job).stem().string() + ".files/"),
+        made_(std::filesystem::path(request.job).stem().string() + "_files/"),
         disk_(make_file_resolver(folder_)) {}
 
   Result<WrittenSceneJob> write() {
@@ -83,7 +87,9 @@ class Writer {
     if (range != nullptr && std::sscanf(range->value->scalar.c_str(), "%d-%d", &first, &last) < 2) {
       last = first;
     }
-    for (int frame = first; frame <= last + 1; ++frame) frames_.push_back(frame);
+    for (int frame = first; frame <= std::min(last, first + kMostFrames) + 1; ++frame) {
+      frames_.push_back(frame);
+    }
   }
 
   /// An object whose mesh is a part of an OBJ file, its triangles written by themselves.
@@ -132,9 +138,13 @@ class Writer {
   void find_made(const YamlNode& node) {
     if (node.kind == Kind::scalar && node.scalar.starts_with(made_)) {
       const std::string inside = node.scalar.substr(made_.size());
-      for (const int32_t frame : frames_) {
-        const std::string file = output_path(inside, frame);
-        wanted_[made_ + file] = file;
+      if (inside.find('#') == std::string::npos) {
+        wanted_[made_ + inside] = inside;
+      } else {
+        for (const int32_t frame : frames_) {
+          const std::string file = output_path(inside, frame);
+          wanted_[made_ + file] = file;
+        }
       }
     }
     for (const YamlPtr& item : node.list) find_made(*item);

@@ -24,7 +24,7 @@ struct WrittenSceneJob {
   std::vector<std::string> notes;  ///< of the importer
 };
 
-/// Writes the job of a scene (scene_job()) to `job`, and beside it, in the folder "<job>.files",
+/// Writes the job of a scene (scene_job()) to `job`, and beside it, in the folder "<job>_files",
 /// what it is made of that is no file yet: meshes as binary PLY (those of OBJ files too), pictures
 /// as they are. Pictures that are files stay where they are. Each file is complete or absent; the
 /// job comes last. Errors: the scene's, a file that is there already, a disk that takes no more.

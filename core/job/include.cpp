@@ -49,7 +49,13 @@ class Loader {
           const SourceLocation where = name.where;
           const auto included = tree.shown.find(where.file);
           const bool own = included == tree.shown.end();
-          return load_scene(wanted, name, own ? main_reference() : included->second, what);
+          const std::string from = own ? main_reference() : included->second;
+          if (seen_.contains(resolve_reference(reference_of(wanted), from))) {
+            diagnostics_.add(where, what + ": another object brings this scene under the name '" +
+                                        wanted.prefix + "' too, expected names that differ");
+            return YamlPtr();
+          }
+          return load_scene(wanted, name, from, what);
         },
         diagnostics_);
   }

@@ -41,9 +41,10 @@ class Maker {
 
  private:
   bool is_glass() const {
+    if (from_.dissolve_map.given() || from_.diffuse_map.given()) return false;
     const int model = from_.illumination.value_or(-1);
     if (model == 4 || model == 6 || model == 7 || model == 9) return true;
-    return from_.dissolve < 1.0F && from_.index.value_or(1.0F) > 1.0F && !from_.diffuse_map.given();
+    return from_.dissolve < 1.0F && from_.index.value_or(1.0F) > 1.0F;
   }
 
   /// Nothing is diffuse, and something is reflected.
@@ -148,10 +149,8 @@ class Maker {
       look_.material.put("opacity", yaml_number(from_.dissolve));
       return;
     }
-    // A picture with an alpha means that; others mean how bright they are.
-    MtlMap map = from_.dissolve_map;
     const float factor = from_.dissolve > 0.0F ? from_.dissolve : 1.0F;
-    look_.material.put("opacity", tinted(map, Rgb(factor), true));
+    look_.material.put("opacity", tinted(from_.dissolve_map, Rgb(factor), true));
   }
 
   void emission() {

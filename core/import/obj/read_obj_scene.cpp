@@ -66,7 +66,7 @@ class ObjScene : public SceneSource {
   }
 
   Result<Bytes> made_file(const std::string& name) const override {
-    return Error{"'" + name + "' is not made of it"};
+    return Error{place + ": '" + name + "' is not made of it"};
   }
 };
 

@@ -148,7 +148,7 @@ TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
   const std::string text = text_of((*files)->files(), "q.yaml");
   const Job job = parse_job(text, path("jobs/new/q.yaml"), (*files)->files(), diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "") << text;
-  EXPECT_EQ(job.objects.at(0).mesh, "q.files/red-paint.ply");
+  EXPECT_EQ(job.objects.at(0).mesh, "q_files/red-paint.ply");
   EXPECT_EQ(job.objects.at(0).part, "");
   EXPECT_THAT(text, HasSubstr("file: \"../../pic/wood.png\""));
 
@@ -169,6 +169,10 @@ TEST(Names, AreSafeAndDifferent) {
   EXPECT_EQ(names.add("a-b-2", "x"), "a-b-2-2");
   EXPECT_EQ(names.add("12", "x"), "x-12") << "would read as a number";
   EXPECT_EQ(Names("robot").add("12", "x"), "robot.12");
+  // What takes the square of their number takes minutes.
+  Names many;
+  for (int i = 1; i < 100'000; ++i) many.add("Mesh", "x");
+  EXPECT_EQ(many.add("Mesh", "x"), "Mesh-100000");
 }
 
 }  // namespace

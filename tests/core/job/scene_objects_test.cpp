@@ -133,6 +133,11 @@ TEST(SceneObjects, ComplaintsNameTheKeyAndTheScene) {
             "sphere\n");
   EXPECT_THAT(complaints("objects: {a: {gltf: in/robot.glb, animation: [1]}}\n"),
               HasSubstr("animation is a list of 1, expected the name of an animation"));
+  assets.add("in/robot.glb.files/scene,prefix=g.b,fps=24.yaml", robot("g.b."));
+  EXPECT_EQ(complaints("groups: {g: {objects: {b: {gltf: in/robot.glb}}}}\n"
+                       "objects: {g: {group: {objects: {b: {gltf: in/robot.glb}}}}}\n"),
+            "job.yaml:3:43: gltf: another object brings this scene under the name 'g.b' too, "
+            "expected names that differ\n");
   assets.add("in/bad.glb.files/scene,prefix=a,fps=24.yaml", "objects: {a.x: {shape: bawl}}\n");
   EXPECT_THAT(complaints("objects: {a: {gltf: in/bad.glb}}\n"), HasSubstr("in/bad.glb: shape"))
       << "lines of what importers make are nobody's business";
