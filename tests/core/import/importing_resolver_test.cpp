@@ -105,8 +105,7 @@ TEST_F(Importing, AnySceneIsAJob) {
 }
 
 TEST_F(Importing, StreamsFilesOfTheDiskAndThoseThatAreMade) {
-  const auto files =
-      JobFiles::open(path("quads.obj"), {.media = {}, .missing = MissingTextures::magenta});
+  const auto files = JobFiles::open(path("quads.obj"), {{}, MissingTextures::magenta, {}});
   ASSERT_TRUE(files);
   const auto all = [](std::istream& in) {
     return std::string(std::istreambuf_iterator<char>(in), {});
