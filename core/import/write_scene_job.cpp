@@ -73,8 +73,10 @@ class Writer {
     how.how.fps = request_.fps;
     how.how.animation = request_.animation;
     how.how.made = made_;
-    how.how.beside = reference_from(folder_of(request_.scene), folder_) + "/";
-    if (how.how.beside == "./") how.how.beside.clear();
+    // "../scenes/"; nothing where the job lies beside the scene.
+    std::string& beside = how.how.beside;
+    beside = reference_from(request_.scene, folder_);
+    beside.resize(beside.rfind('/') == std::string::npos ? 0 : beside.rfind('/') + 1);
     return scene_job(*disk_, how);
   }
 
