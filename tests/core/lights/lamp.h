@@ -24,6 +24,14 @@ namespace hyades::core {
 
 inline const Rgb kRadiance(3.0F, 2.0F, 1.0F);
 
+/// A shape put into a world, moving from one matrix to the next.
+inline Placement placed(const Shape& shape, const std::vector<Mat4>& to_world) {
+  Placement placement;
+  placement.shape = shape;
+  placement.to_world = to_world;
+  return placement;
+}
+
 /// One shape alone in the world, giving off light.
 struct Lamp {
   GeometryCache cache;
@@ -34,7 +42,7 @@ struct Lamp {
       : Lamp(shape, to_world, SurfaceEmission{kRadiance, two_sided}) {}
 
   Lamp(const Shape& shape, const std::vector<Mat4>& to_world, const SurfaceEmission& emission) {
-    auto built = build_world({Placement{shape, to_world, true}}, cache);
+    auto built = build_world({placed(shape, to_world)}, cache);
     EXPECT_TRUE(built) << (built ? "" : built.error().message);
     world = *built;
     light = make_area_light(*world, 0, emission);

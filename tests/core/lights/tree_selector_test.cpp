@@ -42,7 +42,7 @@ struct ManyLights {
           std::array{Shape::Kind::sphere, Shape::Kind::disk, Shape::Kind::cylinder}[i % 5 - 2];
       std::vector<Mat4> motion{placed(at, random)};
       if (i % 7 == 0) motion.push_back(placed(at + Vec3(0.5F), random));
-      placements.push_back(Placement{quadric(kind, size, 4.0F * size), motion, true});
+      placements.push_back(placed(quadric(kind, size, 4.0F * size), motion));
       two_sided.push_back(i % 3 == 0);
     }
     world = *build_world(placements, cache);
@@ -107,11 +107,10 @@ TEST(TreeSelector, ForgetsNoLightThatArrives) {
 TEST(TreeSelector, LeavesOutLampsThatLookAway) {
   const auto disk = quadric(Shape::Kind::disk, 0.1F);
   GeometryCache cache;
-  const auto world = *build_world({{disk, {moved({0, 0, 0})}},
-                                   {disk, {moved({1, 0, 0})}},
-                                   {disk, {moved({0, 2, 0})}},
-                                   {disk, {moved({1, 2, 0})}}},
-                                  cache);
+  const auto world =
+      *build_world({placed(disk, {moved({0, 0, 0})}), placed(disk, {moved({1, 0, 0})}),
+                    placed(disk, {moved({0, 2, 0})}), placed(disk, {moved({1, 2, 0})})},
+                   cache);
   std::vector<LightPtr> lights;
   for (uint32_t i = 0; i < 4; ++i) lights.push_back(make_area_light(*world, i, {Rgb(1.0F)}));
   const auto selector = make_tree_selector(lights);
@@ -141,12 +140,12 @@ TEST(TreeSelector, StarvesNoLargeLampNearby) {
   panel->triangles = {{0, 1, 2}, {0, 2, 3}};
   finish_mesh(*panel);
   std::vector<Placement> placements{
-      {mesh(panel), {moved({0, 0, 0})}},
-      {quadric(Shape::Kind::cylinder, 0.02F, 8.0F), {moved({4, 0, 0})}}};
+      placed(mesh(panel), {moved({0, 0, 0})}),
+      placed(quadric(Shape::Kind::cylinder, 0.02F, 8.0F), {moved({4, 0, 0})})};
   test::Random random(41);
   for (int i = 0; i < 300; ++i) {
     const Vec3 at = 10.0F * Vec3(random.uniform(), random.uniform(), random.uniform()) - 5.0F;
-    placements.push_back({quadric(Shape::Kind::sphere, 0.05F), {moved(at)}});
+    placements.push_back(placed(quadric(Shape::Kind::sphere, 0.05F), {moved(at)}));
   }
   const auto world = *build_world(placements, cache);
   std::vector<LightPtr> lights;
@@ -179,11 +178,11 @@ TEST(TreeSelector, StarvesNoLongLampAmongSmallOnes) {
   constexpr float kLength = 8.0F;
   GeometryCache cache;
   std::vector<Placement> placements{
-      {quadric(Shape::Kind::cylinder, 0.02F, kLength), {moved({0, -0.5F * kLength, 0})}}};
+      placed(quadric(Shape::Kind::cylinder, 0.02F, kLength), {moved({0, -0.5F * kLength, 0})})};
   test::Random random(41);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 at = 20.0F * (Vec3(random.uniform(), random.uniform(), random.uniform()) - 0.5F);
-    placements.push_back({quadric(Shape::Kind::sphere, 0.05F), {moved(at)}});
+    placements.push_back(placed(quadric(Shape::Kind::sphere, 0.05F), {moved(at)}));
   }
   const auto world = *build_world(placements, cache);
   std::vector<LightPtr> lights;
