@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <glm/gtc/matrix_inverse.hpp>
-
 #include "core/import/gltf/accessor.h"
 #include "core/import/gltf/geometry.h"
 
@@ -33,6 +31,17 @@ Status add_target(const GltfModel& model, const GltfPrimitive& primitive,
 Vec3 unit(const Vec3& v) {
   const float length = glm::length(v);
   return length > 0.0F ? v / length : v;
+}
+
+/// A unit normal under `matrix`, by its cofactors: these are there where the inverse is not, as of
+/// joints that are scaled to 0 to hide what hangs on them. The normal itself where nothing is left.
+Vec3 turned_normal(const Mat3& matrix, const Vec3& normal) {
+  const Mat3 cofactors(glm::cross(matrix[1], matrix[2]), glm::cross(matrix[2], matrix[0]),
+                       glm::cross(matrix[0], matrix[1]));
+  const float mirrored = glm::determinant(matrix) < 0.0F ? -1.0F : 1.0F;
+  const Vec3 turned = mirrored * (cofactors * normal);
+  const float length = glm::length(turned);
+  return length > 0.0F ? turned / length : normal;
 }
 
 }  // namespace
@@ -115,7 +124,7 @@ void skin(const GltfBones& bones, const std::vector<Mat4>& joints, GltfGeometry&
     }
     geometry.positions[i] = transform_point(matrix, geometry.positions[i]);
     if (!geometry.normals.empty()) {
-      geometry.normals[i] = unit(glm::inverseTranspose(Mat3(matrix)) * geometry.normals[i]);
+      geometry.normals[i] = turned_normal(Mat3(matrix), geometry.normals[i]);
     }
     if (!geometry.tangents.empty()) {
       const Vec3 turned = unit(transform_vector(matrix, Vec3(geometry.tangents[i])));

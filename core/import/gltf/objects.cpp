@@ -31,6 +31,12 @@ class Writer {
         }
         continue;
       }
+      if (is_empty(primitive)) {
+        if (left_out_.insert(primitive.place).second) {
+          stage_.notes.push_back(primitive.place + " has no triangles and is left out");
+        }
+        continue;
+      }
       if (Status s = part(index, p, mesh.primitives.size() > 1); !s) return s;
     }
     return {};
@@ -39,6 +45,15 @@ class Writer {
   GltfObjects out;
 
  private:
+  /// Whether it has too few corners for a triangle. Of packed ones that is seen when they are read.
+  bool is_empty(const GltfPrimitive& primitive) const {
+    if (primitive.draco) return false;
+    const auto position = primitive.attributes.find("POSITION");
+    int accessor = primitive.indices;
+    if (accessor < 0 && position != primitive.attributes.end()) accessor = position->second;
+    return accessor >= 0 && stage_.model.accessors[static_cast<size_t>(accessor)].count < 3;
+  }
+
   Status part(int index, size_t p, bool one_of_several) {
     const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
     const GltfMesh& mesh = stage_.model.meshes[static_cast<size_t>(node.mesh)];
@@ -64,10 +79,13 @@ class Writer {
     if (one_of_several) {
       name += (name.empty() ? "" : ".") + std::to_string(p + 1);
     }
-    if (Status s = extend_bounds(index, file, primitive); !s) return s;
-    if (node.instances.empty()) return put(name, object, steps);
+    if (node.instances.empty()) {
+      if (Status s = extend_bounds(index, file, primitive, {Mat4(1.0F)}); !s) return s;
+      return put(name, object, steps);
+    }
     auto places = instance_places(stage_.model, node.instances);
     if (!places) return places.error();
+    if (Status s = extend_bounds(index, file, primitive, *places); !s) return s;
     for (const Mat4& place : *places) {
       std::vector<YamlPtr> moved{matrix_step(place)};
       moved.insert(moved.end(), steps.begin(), steps.end());
@@ -89,7 +107,9 @@ class Writer {
     return {};
   }
 
-  Status extend_bounds(int index, const GltfMeshFile& file, const GltfPrimitive& primitive) {
+  /// `places`: of its copies, in the space of the node.
+  Status extend_bounds(int index, const GltfMeshFile& file, const GltfPrimitive& primitive,
+                       const std::vector<Mat4>& places) {
     const auto position = primitive.attributes.find("POSITION");
     const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
     Bounds own;
@@ -107,11 +127,12 @@ class Writer {
     }
     const Mat4 world =
         node.skin >= 0 ? Mat4(1.0F) : world_matrix(stage_.model, stage_.clip, index, 0.0);
-    for (int corner = 0; corner < 8; ++corner) {
+    for (size_t i = 0; i < 8 * places.size(); ++i) {
+      const size_t corner = i % 8;
       const Vec3 p((corner & 1) != 0 ? own.upper.x : own.lower.x,
                    (corner & 2) != 0 ? own.upper.y : own.lower.y,
                    (corner & 4) != 0 ? own.upper.z : own.lower.z);
-      out.bounds.include(transform_point(world, p));
+      out.bounds.include(transform_point(world, transform_point(places[i / 8], p)));
     }
     return {};
   }

@@ -31,7 +31,4 @@ class SceneFiles {
   std::string main_;
 };
 
-/// The bytes themselves, or, where they begin as gzip's do, what they unpack to.
-Result<Bytes> without_gzip(const Bytes& bytes, size_t most);
-
 }  // namespace hyades::core::pbrt

@@ -105,6 +105,15 @@ TEST(GltfScene, SkinnedMeshesAreFilesOfFrames) {
   EXPECT_EQ(mesh_of(b, "meshes/24/Bend_it/Bar.0099.ply")->positions, last->positions);
 }
 
+/// Bones are scaled to 0 to hide what hangs on them; their matrices have no inverse.
+TEST(GltfScene, BonesMayVanish) {
+  GltfBuilder b = bending_bar();
+  b.json["nodes"][2]["scale"] = {0, 0, 0};
+  const auto mesh = mesh_of(b, "meshes/24/Bend_it/Bar.0013.ply");
+  EXPECT_EQ(mesh->positions[2], core::Vec3(0, 1, 0));
+  for (const core::Vec3& normal : mesh->normals) EXPECT_EQ(normal, core::Vec3(0, 0, 1));
+}
+
 TEST(GltfScene, TurnsGoTheShorterWay) {
   GltfBuilder b = bending_bar();
   const int times = b.floats({0, 1}, "SCALAR");
@@ -144,6 +153,19 @@ TEST(GltfScene, NodesMoveByKeys) {
                              "      - {scale: [2, 2, 2]}\n"
                              "      - {translate: {keys: {1: [0, 0, 0], 6: [1, 0, 0], "
                              "21: [1, 0, 4]}, ease: step}}"));
+}
+
+TEST(GltfScene, WhatHasNoTrianglesIsLeftOutAndTold) {
+  GltfBuilder builder;
+  nlohmann::json empty = builder.square();
+  empty["indices"] = builder.accessor<uint16_t>({0, 1}, "SCALAR");
+  builder.add("meshes", {{"primitives", {builder.square(), empty}}});
+  builder.add("nodes", {{"mesh", 0}});
+  builder.json["scenes"] = {{{"nodes", {0}}}};
+  const std::string job = job_of(builder);
+  EXPECT_NE(job.find("meshes[0].primitives[1] has no triangles and is left out"), std::string::npos)
+      << job;
+  EXPECT_NE(job.find("objects:"), std::string::npos) << job;
 }
 
 }  // namespace
