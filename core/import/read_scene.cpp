@@ -5,6 +5,7 @@
 #include "core/import/obj/read_obj_scene.h"
 #include "core/import/pbrt/read_pbrt.h"
 #include "core/import/scene_source.h"
+#include "core/job/output_path.h"
 
 namespace hyades::core {
 
@@ -30,10 +31,9 @@ constexpr std::array<Row, 5> kReaders = {{
 
 Result<std::shared_ptr<const SceneSource>> read_scene(AssetResolver& files,
                                                       const std::string& reference) {
-  std::string lower = reference;
-  for (char& c : lower) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  const std::string extension = file_extension(reference);
   for (const Row& row : kReaders) {
-    if (lower.ends_with(row.extension)) return row.read(files, reference);
+    if (extension == row.extension) return row.read(files, reference);
   }
   return Error{reference +
                ": no scene or mesh that is known by its name; expected one that ends in "

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/job/output_path.h"
+
 namespace hyades::core {
 
 namespace {
@@ -33,10 +35,8 @@ void put_chunk(std::vector<uint8_t>& out, std::string_view name, const std::vect
 }  // namespace
 
 bool names_picture(const std::string& reference) {
-  std::string lower = reference;
-  for (char& c : lower) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return std::any_of(kPictures.begin(), kPictures.end(),
-                     [&](std::string_view end) { return lower.ends_with(end); });
+  const std::string extension = file_extension(reference);
+  return std::find(kPictures.begin(), kPictures.end(), extension) != kPictures.end();
 }
 
 Bytes magenta_picture() {

@@ -99,7 +99,7 @@ class Writer {
     const YamlEntry* mesh = map->find("mesh");
     if (mesh == nullptr || mesh->value->kind != Kind::scalar || !status_) return map;
     const std::string file = mesh->value->scalar;
-    if (!file.ends_with(".obj") && !file.ends_with(".OBJ")) return map;
+    if (file_extension(file) != ".obj") return map;
     const YamlEntry* part = map->find("part");
     const auto name = ply_of(file, part != nullptr ? part->value->scalar : std::string());
     if (!name) {

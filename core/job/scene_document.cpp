@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/job/output_path.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core {
@@ -78,13 +79,8 @@ bool read_option(std::string_view option, SceneDocument& document) {
 }  // namespace
 
 bool is_scene_file(std::string_view name) {
-  return std::any_of(kExtensions.begin(), kExtensions.end(), [&](std::string_view extension) {
-    if (name.size() <= extension.size()) return false;
-    const std::string_view end = name.substr(name.size() - extension.size());
-    return std::equal(end.begin(), end.end(), extension.begin(), [](char a, char b) {
-      return std::tolower(static_cast<unsigned char>(a)) == b;
-    });
-  });
+  const std::string extension = file_extension(std::string(name));
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }
 
 std::string reference_of(const SceneDocument& document) {

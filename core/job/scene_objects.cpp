@@ -6,6 +6,7 @@
 
 #include "core/base/text.h"
 #include "core/job/join_trees.h"
+#include "core/job/output_path.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core {
@@ -36,10 +37,8 @@ const SceneKey* scene_key_of(const YamlNode& object) {
 }
 
 bool has_extension(const std::string& name, const SceneKey& row) {
-  std::string lower = name;
-  for (char& c : lower) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return std::any_of(row.extensions.begin(), row.extensions.end(),
-                     [&](const char* extension) { return lower.ends_with(extension); });
+  const std::string extension = file_extension(name);
+  return std::find(row.extensions.begin(), row.extensions.end(), extension) != row.extensions.end();
 }
 
 YamlPtr map_of(YamlEntry entry, const YamlPlace& where) {
