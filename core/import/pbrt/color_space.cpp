@@ -39,9 +39,9 @@ glm::dmat3 bradford() {
       glm::dmat3(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
 }
 
-Rgb without_negatives(const Vec3d& c) { return {glm::max(c, Vec3d(0.0))}; }
-
 }  // namespace
+
+Rgb without_negatives(const Vec3d& color) { return {glm::max(color, Vec3d(0.0))}; }
 
 Vec3d xyz_of_chromaticity(double x, double y) { return {x / y, 1.0, (1.0 - x - y) / y}; }
 

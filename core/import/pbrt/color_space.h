@@ -26,6 +26,9 @@ Rgb light_from_rgb(const RgbSpace& space, const Vec3d& rgb);
 /// Bradford from the space's white). Negative parts become 0.
 Rgb surface_from_rgb(const RgbSpace& space, const Vec3d& rgb);
 
+/// A colour with 0 where it has less: what lies outside of Rec.709.
+Rgb without_negatives(const Vec3d& color);
+
 /// XYZ of luminance 1 with chromaticity x, y.
 Vec3d xyz_of_chromaticity(double x, double y);
 

@@ -55,8 +55,6 @@ constexpr Table kD65 = {49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.86, 
 
 double d65(double w) { return look_up(kD65, w, true); }
 
-Rgb without_negatives(const Vec3d& c) { return {glm::max(c, Vec3d(0.0))}; }
-
 struct Named {
   std::string_view name;
   double x, y;
