@@ -3,29 +3,31 @@
 #include <map>
 #include <set>
 #include <string>
-#include <vector>
 
 namespace hyades::core {
 
-/// A name for objects, materials, files and folders out of any text: what is not a letter, a digit
-/// or one of _-. becomes '-', and it begins with a letter or digit, so that it can neither hide nor
-/// lead out of a folder. `otherwise` where nothing is left. At most 60 characters.
+/// A name for files and folders out of any text: what is not a letter, a digit or one of _-.
+/// becomes '_', and it begins with a letter, a digit or '_', so that it can neither hide nor lead
+/// out of a folder. `otherwise` where nothing is left. At most 60 characters.
 std::string safe_name(const std::string& text, const std::string& otherwise);
 
-/// Names of one kind, each different from the others.
+/// Names of one kind that the job language takes, each different from the others: "Körper 1"
+/// becomes "K_rper 1", the second "Box" becomes "Box-2". A thousand boxes take linear time.
 class Names {
  public:
-  /// Of all names, `prefix` and a '.' stand before them where it is not empty.
-  explicit Names(std::string prefix = {}) : prefix_(std::move(prefix)) {}
+  /// `kind`: what something without a name is called. `prefix` and a '.' stand before all names
+  /// where it is not empty.
+  explicit Names(std::string kind, std::string prefix = {});
 
-  /// safe_name() of `text`, behind the prefix, and a number where another has it already. Never a
-  /// name that reads as a number or colour.
-  std::string add(const std::string& text, const std::string& otherwise);
+  /// A new name, the prefix before it, as near to `wanted` as can be: letters, digits, '_', '-',
+  /// '.' and inner spaces, the others '_'; never one that reads as a number or colour.
+  std::string add(const std::string& wanted);
 
  private:
-  std::string prefix_;
+  std::string kind_;
+  std::string prefix_;  ///< with its '.'
   std::set<std::string> taken_;
-  std::map<std::string, int> last_;  ///< number that a name was last told apart by
+  std::map<std::string, int> next_;  ///< by name: the number to try next
 };
 
 }  // namespace hyades::core

@@ -6,9 +6,10 @@
 
 namespace hyades::core {
 
-/// Whether `reference`, as a scene file names another file, stays within the scene's folder: not
-/// absolute, and not out of it by "..". A scene comes from somewhere else, and what it names is
-/// read and sent to a farm; an error that says so.
-Status within_folder(const std::string& reference);
+/// The one rule for what a scene may name: `reference`, which is relative to the scene's folder,
+/// with "." and ".." folded away; it stays in the folder or below it. A scene comes from somewhere
+/// else, and what it names is read and sent to a farm. Errors say so: an absolute path, one that
+/// leads out by "..", another scheme ("http:"), control characters, nothing at all.
+Result<std::string> within_folder(const std::string& reference);
 
 }  // namespace hyades::core

@@ -126,7 +126,7 @@ class Writer {
     for (const MeshPart& one : parts_.at(file).parts) {
       if (!part.empty() && one.name != part) continue;
       const std::string stem = part.empty() ? std::filesystem::path(file).stem().string() : part;
-      const std::string name = made_ + names_.add(stem, "mesh") + ".ply";
+      const std::string name = made_ + names_.add(safe_name(stem, "mesh")) + ".ply";
       const Bytes bytes = ply_bytes(*one.mesh);
       if (auto done = save(in_folder(name), {bytes.chars(), bytes.size()}); !done) {
         return done.error();
@@ -194,7 +194,7 @@ class Writer {
   std::shared_ptr<const SceneSource> source_;
   std::vector<int32_t> frames_;
   Status status_;
-  Names names_;
+  Names names_{"mesh"};
   std::map<std::string, MeshParts> parts_;
   std::map<std::pair<std::string, std::string>, std::string> plys_;
   std::map<std::string, std::string> wanted_;  ///< name in the job's folder -> in the scene's

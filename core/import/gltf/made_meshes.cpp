@@ -9,7 +9,7 @@
 #include "core/geometry/write_ply.h"
 #include "core/import/gltf/accessor.h"
 #include "core/import/gltf/geometry.h"
-#include "core/import/gltf/names.h"
+#include "core/import/names.h"
 
 namespace hyades::core {
 
@@ -87,7 +87,7 @@ Result<GltfGeometry> shaped_geometry(const GltfModel& model, const GltfMeshFile&
 }
 
 GltfMeshFiles::GltfMeshFiles(std::shared_ptr<const GltfModel> model) : model_(std::move(model)) {
-  GltfNames names;
+  Names names("mesh");
   std::map<std::pair<int, size_t>, size_t> unshaped;
   for (const int node : model_->order) {
     const GltfNode& at = model_->nodes[static_cast<size_t>(node)];
@@ -100,18 +100,17 @@ GltfMeshFiles::GltfMeshFiles(std::shared_ptr<const GltfModel> model) : model_(st
         of_node_[{node, p}] = known->second;
         continue;
       }
-      const std::string base = file_name_of(mesh.name.empty() ? at.name : mesh.name, "mesh");
+      const std::string base = safe_name(mesh.name.empty() ? at.name : mesh.name, "mesh");
       const std::string part = mesh.primitives.size() > 1 ? "-" + std::to_string(p + 1) : "";
-      files_.push_back({names.make(base + part, "mesh"), at.mesh, p, own ? node : -1});
+      files_.push_back({names.add(base + part), at.mesh, p, own ? node : -1});
       by_name_[files_.back().name] = files_.size() - 1;
       of_node_[{node, p}] = files_.size() - 1;
       if (!own) unshaped[{at.mesh, p}] = files_.size() - 1;
     }
   }
-  GltfNames clip_names;
+  Names clip_names("animation");
   for (const GltfAnimation& animation : model_->animations) {
-    clip_folders_.push_back(
-        clip_names.make(file_name_of(animation.name, "animation"), "animation"));
+    clip_folders_.push_back(clip_names.add(safe_name(animation.name, "animation")));
   }
 }
 

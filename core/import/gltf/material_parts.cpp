@@ -30,29 +30,10 @@ Rgb color_of(const JsonValue& from, const char* key, const Rgb& absent, float mo
   return glm::clamp(color, Rgb(0.0F), Rgb(most));
 }
 
-YamlPtr tinted(const Rgb& factor, const std::string& name) {
-  if (name.empty()) return yaml_vector(factor);
-  if (factor == Rgb(1.0F)) return yaml_text(name);
-  return YamlMap{
-      {"type", yaml_word("scale")}, {"input", yaml_text(name)}, {"factor", yaml_vector(factor)}}
-      .node();
-}
-
 YamlPtr base_color_of(MaterialSheet& sheet, const Rgb& factor, const JsonValue& texture) {
   const YamlPtr plain = tinted(factor, sheet.textures.name(texture, Meaning::color, ""));
   if (!sheet.colored) return plain;
-  return YamlMap{{"type", yaml_word("scale")},
-                 {"input", plain},
-                 {"factor", YamlMap{{"type", yaml_word("vertex-color")}}.node()}}
-      .node();
-}
-
-YamlPtr scaled(float factor, const std::string& name) {
-  if (name.empty()) return yaml_number(factor);
-  if (factor == 1.0F) return yaml_text(name);
-  return YamlMap{
-      {"type", yaml_word("scale")}, {"input", yaml_text(name)}, {"factor", yaml_number(factor)}}
-      .node();
+  return product(plain, YamlMap{{"type", yaml_word("vertex-color")}}.node());
 }
 
 void write_base(MaterialSheet& sheet) {
@@ -81,7 +62,7 @@ void write_opacity(MaterialSheet& sheet, float alpha, const JsonValue& texture) 
   YamlPtr all = scaled(alpha, name);
   if (sheet.colored) {
     const YamlMap painted{{"type", yaml_word("vertex-color")}, {"channel", yaml_word("alpha")}};
-    all = YamlMap{{"type", yaml_word("scale")}, {"input", all}, {"factor", painted.node()}}.node();
+    all = product(all, painted.node());
   }
   const bool varies = sheet.colored || !name.empty();
   const float cutoff = sheet.value.number("alphaCutoff", 0.5F);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/import/gltf/textures.h"
+#include "core/import/tinted.h"
 
 /// The parts of a glTF material, each as keys of a job's principled material.
 namespace hyades::core {
@@ -23,12 +24,6 @@ struct MaterialSheet {
 
 /// The base colour: a factor, a texture (if any), and the colours of the vertices.
 YamlPtr base_color_of(MaterialSheet& sheet, const Rgb& factor, const JsonValue& texture);
-
-/// `factor` times the colour of texture `name` (none: the factor alone).
-YamlPtr tinted(const Rgb& factor, const std::string& name);
-
-/// `factor` times the number of texture `name`.
-YamlPtr scaled(float factor, const std::string& name);
 
 /// A colour `key` of `from`, three numbers, each held within 0..most.
 Rgb color_of(const JsonValue& from, const char* key, const Rgb& absent, float most);

@@ -52,7 +52,7 @@ GltfMaterials::GltfMaterials(const GltfModel& model, const SceneRequest& request
       textures_(textures),
       notes_(notes),
       values_(model.root(trouble_).list("materials")),
-      names_(request.prefix) {}
+      names_("material", request.prefix) {}
 
 const GltfMaterial& GltfMaterials::get(int index, bool colored) {
   static const nlohmann::json kDefault = nlohmann::json::object();
@@ -63,9 +63,8 @@ const GltfMaterial& GltfMaterials::get(int index, bool colored) {
                                     : values_[static_cast<size_t>(index)];
   // The same material of plain and of coloured meshes are two.
   const bool second = made_.count({index, !colored}) != 0;
-  const std::string wanted = value.text("name");
-  out.name = names_.full(names_.make(wanted + (second && !wanted.empty() ? ".colored" : ""),
-                                     index < 0 ? "default" : "material"));
+  const std::string wanted = index < 0 ? "default" : value.text("name");
+  out.name = names_.add(wanted + (second && !wanted.empty() ? ".colored" : ""));
   write(value, colored, out);
   return out;
 }
@@ -135,7 +134,8 @@ void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& ou
     materials_.put(out.name, sheet.out);
     return;
   }
-  const std::string base = names_.full(names_.make(value.text("name") + ".base", "base"));
+  const std::string called = value.text("name");
+  const std::string base = names_.add(called.empty() ? "base" : called + ".base");
   materials_.put(base, sheet.out);
   YamlMap layer{{"type", yaml_word("coat")}, {"base", yaml_text(base)}};
   layer.put("amount", coat_amount()).put("roughness", coat_roughness());

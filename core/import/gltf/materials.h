@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/import/gltf/textures.h"
+#include "core/import/names.h"
 
 namespace hyades::core {
 
@@ -38,7 +39,7 @@ class GltfMaterials {
   std::vector<std::string>& notes_;
   JsonTrouble trouble_;
   std::vector<JsonValue> values_;
-  GltfNames names_;
+  Names names_;
   std::map<std::pair<int, bool>, GltfMaterial> made_;  ///< by index and whether it is coloured
   YamlMap materials_;
   YamlMap media_;

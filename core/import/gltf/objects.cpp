@@ -16,7 +16,7 @@ constexpr const char* kModes[] = {"points", "lines", "line loops", "line strips"
 class Writer {
  public:
   Writer(const GltfStage& stage, GltfMaterials& materials)
-      : stage_(stage), materials_(materials), names_(stage.request.prefix) {}
+      : stage_(stage), materials_(materials), names_("object", stage.request.prefix) {}
 
   Status node(int index) {
     const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
@@ -103,7 +103,7 @@ class Writer {
           fmt::format("its nodes and keys take more than {} values, the most that a job may have",
                       kMaxYamlNodes));
     }
-    out.section.put(names_.full(names_.make(name, "object")), made);
+    out.section.put(names_.add(name), made);
     return {};
   }
 
@@ -139,7 +139,7 @@ class Writer {
 
   const GltfStage& stage_;
   GltfMaterials& materials_;
-  GltfNames names_;
+  Names names_;
   std::set<std::string> left_out_;
   uint64_t weight_ = 0;
 };

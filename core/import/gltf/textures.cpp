@@ -48,16 +48,16 @@ bool can_be_shown(const std::string& file) {
 }  // namespace
 
 std::vector<std::string> image_file_names(const GltfModel& model) {
-  GltfNames names;
+  Names names("image");
   std::vector<std::string> files;
   for (const GltfImage& image : model.images) {
     if (!image.file.empty()) {
       files.emplace_back();
       continue;
     }
-    std::string name = file_name_of(image.name, "image");
+    std::string name = safe_name(image.name, "image");
     if (can_be_shown(name)) name.resize(name.rfind('.'));
-    files.push_back("images/" + names.make(name, "image") + ending_of(model, image));
+    files.push_back("images/" + names.add(name) + ending_of(model, image));
   }
   return files;
 }
@@ -71,7 +71,7 @@ GltfTextures::GltfTextures(const GltfModel& model, const SceneRequest& request,
       notes_(notes),
       textures_(model.root(trouble_).list("textures")),
       samplers_(model.root(trouble_).list("samplers")),
-      names_(request.prefix) {}
+      names_("texture", request.prefix) {}
 
 std::string GltfTextures::file_of(int image) const {
   const std::string& made = image_files_[static_cast<size_t>(image)];
@@ -154,7 +154,7 @@ std::string GltfTextures::name(const JsonValue& info, Meaning meaning, const std
   if (can_be_shown(wanted)) wanted.resize(wanted.rfind('.'));
   if (wanted.empty()) wanted = "texture";
   if (!channel.empty()) wanted += "." + channel;
-  name = names_.full(names_.make(wanted, "texture"));
+  name = names_.add(wanted);
   YamlMap out{{"type", yaml_word("image")}, {"file", yaml_text(file)}};
   if (meaning == Meaning::data) out.put("color_space", yaml_word("linear"));
   if (!channel.empty()) out.put("channel", yaml_word(channel));

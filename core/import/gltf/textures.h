@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/import/gltf/model.h"
-#include "core/import/gltf/names.h"
+#include "core/import/names.h"
 #include "core/import/scene_source.h"
 #include "core/job/yaml_build.h"
 
@@ -42,7 +42,7 @@ class GltfTextures {
   JsonTrouble trouble_;
   std::vector<JsonValue> textures_;
   std::vector<JsonValue> samplers_;
-  GltfNames names_;
+  Names names_;
   std::map<std::string, std::string> made_;  ///< name by all that decides a texture
   YamlMap section_;
 };

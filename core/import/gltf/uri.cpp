@@ -1,11 +1,11 @@
 #include "core/import/gltf/uri.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
+
+#include "core/import/within_folder.h"
 
 namespace hyades::core {
 
@@ -32,19 +32,6 @@ int hex_digit(char c) {
 
 std::string shown(std::string_view uri) {
   return std::string(uri.substr(0, 80)) + (uri.size() > 80 ? "..." : "");
-}
-
-bool climbs_out(std::string_view path) {
-  int depth = 0;
-  while (!path.empty()) {
-    const size_t slash = std::min(path.find('/'), path.size());
-    const std::string_view part = path.substr(0, slash);
-    if (part == "..") --depth;
-    if (!part.empty() && part != "." && part != "..") ++depth;
-    if (depth < 0) return true;
-    path.remove_prefix(std::min(slash + 1, path.size()));
-  }
-  return false;
 }
 
 }  // namespace
@@ -92,20 +79,8 @@ Result<std::string> decode_file_uri(std::string_view uri) {
       path += uri[i];
     }
   }
-  const auto refused = [&](const char* why) {
-    return Error{fmt::format("'{}' {}; expected a file in the folder of the scene or below it",
-                             shown(uri), why)};
-  };
-  if (path.empty()) return refused("names nothing");
-  if (std::any_of(path.begin(), path.end(), [](unsigned char c) { return c < 32 || c == 127; })) {
-    return refused("has control characters");
-  }
   std::replace(path.begin(), path.end(), '\\', '/');
-  if (path.front() == '/') return refused("is an absolute path");
-  const size_t colon = path.find(':');
-  if (colon != std::string::npos && colon < path.find('/')) return refused("is not a file");
-  if (climbs_out(path)) return refused("climbs out of the scene's folder");
-  return path;
+  return within_folder(path);
 }
 
 }  // namespace hyades::core

@@ -17,8 +17,9 @@ Result<Bytes> decode_data_uri(std::string_view uri);
 /// "image/png" of "data:image/png;base64,..."; empty where it says nothing.
 std::string data_uri_type(std::string_view uri);
 
-/// The file that a relative URI names, %20 and the like decoded. Errors: an absolute path, another
-/// scheme, a path that climbs out of the folder, control characters.
+/// The file that a relative URI names, %20 and the like decoded. Errors: an absolute path, those of
+/// within_folder(); without
+/// "." and "..".
 Result<std::string> decode_file_uri(std::string_view uri);
 
 }  // namespace hyades::core

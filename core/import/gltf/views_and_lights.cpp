@@ -128,7 +128,7 @@ GltfCamera write_camera(const GltfStage& stage, const JsonValue& root) {
 YamlMap write_lights(const GltfStage& stage, const JsonValue& root) {
   const std::vector<JsonValue> lights =
       root.member("extensions").member("KHR_lights_punctual").list("lights");
-  GltfNames names(stage.request.prefix);
+  Names names("light", stage.request.prefix);
   YamlMap out;
   for (const int index : stage.model.order) {
     const GltfNode& node = stage.model.nodes[static_cast<size_t>(index)];
@@ -136,7 +136,7 @@ YamlMap write_lights(const GltfStage& stage, const JsonValue& root) {
     const JsonValue& light = lights[static_cast<size_t>(node.light)];
     const std::string wanted = !node.name.empty() ? node.name : light.text("name");
     const YamlMap made = light_of(stage, light, index);
-    if (!made.empty()) out.put(names.full(names.make(wanted, "light")), made);
+    if (!made.empty()) out.put(names.add(wanted), made);
   }
   return out;
 }

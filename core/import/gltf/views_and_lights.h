@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/import/gltf/names.h"
 #include "core/import/gltf/objects.h"
+#include "core/import/names.h"
 
 namespace hyades::core {
 

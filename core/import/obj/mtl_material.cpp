@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/import/tinted.h"
+
 namespace hyades::core {
 
 namespace {
@@ -18,7 +20,7 @@ constexpr float kUsualIndex = 1.5F;
 class Maker {
  public:
   Maker(const MtlMaterial& from, float diagonal, const PictureOf& picture)
-      : from_(from), diagonal_(diagonal), picture_(picture) {}
+      : from_(from), diagonal_(diagonal), reference_(picture) {}
 
   MtlLook make() {
     if (is_glass()) {
@@ -73,7 +75,8 @@ class Maker {
     const bool known = from_.diffuse && !(from_.diffuse_map.given() && is_black(*from_.diffuse));
     const Rgb color =
         known ? *from_.diffuse : Rgb(kUsualDiffuse[0], kUsualDiffuse[1], kUsualDiffuse[2]);
-    return tinted(from_.diffuse_map, known || !from_.diffuse_map.given() ? color : Rgb(1.0F));
+    return tinted(known || !from_.diffuse_map.given() ? color : Rgb(1.0F),
+                  picture(from_.diffuse_map));
   }
 
   void glass() {
@@ -87,7 +90,7 @@ class Maker {
 
   void metal() {
     look_.material.put("type", yaml_word("conductor"));
-    look_.material.put("color", tinted(from_.specular_map, *from_.specular));
+    look_.material.put("color", tinted(*from_.specular, picture(from_.specular_map)));
     const float rough = from_.exponent ? roughness() : 0.0F;
     look_.material.put("roughness", yaml_number(rough));
   }
@@ -98,7 +101,7 @@ class Maker {
     look_.material.put("roughness", yaml_number(roughness()));
     const Rgb strength = from_.specular.value_or(Rgb(1.0F));
     const float mean = (strength.x + strength.y + strength.z) / 3.0F;
-    look_.material.put("specular", tinted(from_.specular_map, Rgb(mean), true));
+    look_.material.put("specular", scaled(mean, picture(from_.specular_map, true)));
     index();
   }
 
@@ -130,17 +133,17 @@ class Maker {
   YamlPtr share(const MtlMap& map, const std::optional<float>& number, float otherwise) const {
     if (!map.given()) return yaml_number(number.value_or(otherwise));
     const float factor = number && *number > 0.0F ? *number : 1.0F;
-    return tinted(map, Rgb(factor), true);
+    return scaled(factor, picture(map, true));
   }
 
   void relief() {
     if (from_.normal_map.given()) {
-      look_.material.put("normal_map", YamlMap{{"texture", image(from_.normal_map, true)}});
+      look_.material.put("normal_map", YamlMap{{"texture", picture(from_.normal_map, true)}});
     }
     if (!from_.bump_map.given() || from_.bump_map.bump == 0.0F) return;
     const float height = from_.bump_map.bump * kBumpShare * diagonal_;
-    look_.material.put(
-        "bump", YamlMap{{"texture", image(from_.bump_map, true)}, {"height", yaml_number(height)}});
+    look_.material.put("bump", YamlMap{{"texture", picture(from_.bump_map, true)},
+                                       {"height", yaml_number(height)}});
   }
 
   void opacity() {
@@ -150,13 +153,13 @@ class Maker {
       return;
     }
     const float factor = from_.dissolve > 0.0F ? from_.dissolve : 1.0F;
-    look_.material.put("opacity", tinted(from_.dissolve_map, Rgb(factor), true));
+    look_.material.put("opacity", scaled(factor, picture(from_.dissolve_map, true)));
   }
 
   void emission() {
     if (is_black(from_.emission) && !from_.emission_map.given()) return;
     const Rgb color = is_black(from_.emission) ? Rgb(1.0F) : from_.emission;
-    look_.emit.put("color", tinted(from_.emission_map, color));
+    look_.emit.put("color", tinted(color, picture(from_.emission_map)));
     look_.emit.put("radiance", yaml_integer(1));
     look_.emit.put("two_sided", yaml_flag(true));
   }
@@ -168,19 +171,10 @@ class Maker {
     }
   }
 
-  /// The picture times a colour; the colour where there is no picture.
-  YamlPtr tinted(const MtlMap& map, const Rgb& tint, bool numbers = false) const {
-    const bool grey = tint.x == tint.y && tint.y == tint.z;
-    const YamlPtr color = grey ? yaml_number(tint.x) : yaml_vector(tint);
-    if (!map.given()) return color;
-    const YamlPtr picture = image(map, numbers);
-    if (tint == Rgb(1.0F)) return picture;
-    return YamlMap{{"type", yaml_word("scale")}, {"input", picture}, {"factor", color}}.node();
-  }
-
-  /// `numbers`: what it holds are no colours.
-  YamlPtr image(const MtlMap& map, bool numbers) const {
-    YamlMap out{{"type", yaml_word("image")}, {"file", yaml_text(picture_(map.file))}};
+  /// A map's picture, null where there is none. `numbers`: what it holds are no colours.
+  YamlPtr picture(const MtlMap& map, bool numbers = false) const {
+    if (!map.given()) return nullptr;
+    YamlMap out{{"type", yaml_word("image")}, {"file", yaml_text(reference_(map.file))}};
     if (numbers) out.put("color_space", yaml_word("linear"));
     if (map.clamp) out.put("wrap", yaml_word("clamp"));
     if (!map.channel.empty()) out.put("channel", yaml_word(map.channel));
@@ -198,7 +192,7 @@ class Maker {
 
   const MtlMaterial& from_;
   float diagonal_;
-  const PictureOf& picture_;
+  const PictureOf& reference_;
   MtlLook look_;
 };
 

@@ -37,12 +37,12 @@ class ObjScene : public SceneSource {
     for (const Part& part : parts) told.bounds.include(part.bounds);
     const Vec3 size = told.bounds.size();
     const float diagonal = std::sqrt(glm::dot(size, size));
-    Names names(request.prefix);
+    Names names(kOnlyName, request.prefix);
     YamlMap looks;
     YamlMap objects;
     for (const Part& part : parts) {
       const bool unnamed = parts.size() == 1 && part.material == kNoMaterial;
-      const std::string name = names.add(unnamed ? kOnlyName : part.material, kOnlyName);
+      const std::string name = names.add(unnamed ? kOnlyName : part.material);
       YamlMap object{{"mesh", yaml_text(request.beside + file)}};
       if (parts.size() > 1) object.put("part", yaml_text(part.material));
       const auto found = materials.find(part.material);

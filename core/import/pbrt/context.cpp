@@ -3,32 +3,10 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/import/pbrt/scene_files.h"
 #include "core/import/pbrt/transforms.h"
+#include "core/import/within_folder.h"
 
 namespace hyades::core::pbrt {
-
-Names::Names(std::string prefix) : prefix_(std::move(prefix)) {
-  if (!prefix_.empty()) prefix_ += '.';
-}
-
-std::string Names::take(const std::string& wish) {
-  constexpr size_t kLongest = 80;
-  std::string name;
-  for (const char c : wish.substr(0, kLongest)) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
-    name += plain || c == '_' || c == '-' || c == '.' ? c : '_';
-  }
-  // Names that begin with a digit might read as numbers or temperatures.
-  if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0) {
-    name = "n" + name;
-  }
-  std::string full = prefix_ + name;
-  while (!taken_.insert(full).second) {
-    full = prefix_ + name + "-" + std::to_string(++counts_[name] + 1);
-  }
-  return full;
-}
 
 namespace {
 
@@ -46,16 +24,16 @@ Context::Context(const LoadedScene& from, const SceneRequest& asked)
     : loaded(from),
       scene(from.scene),
       request(asked),
-      texture_names(asked.prefix),
-      material_names(asked.prefix),
-      medium_names(asked.prefix),
-      light_names(asked.prefix) {
+      texture_names("texture", asked.prefix),
+      material_names("material", asked.prefix),
+      medium_names("medium", asked.prefix),
+      light_names("light", asked.prefix) {
   report.notes = scene.notes;
   if (needs_mirror(scene)) to_job = scaling(Vec3d(-1.0, 1.0, 1.0));
 }
 
 std::string Context::beside(const std::string& reference, const Place& place) {
-  auto path = SceneFiles::inside(reference);
+  auto path = within_folder(reference);
   if (!path) {
     report.error(place, path.error().message);
     return {};
@@ -101,11 +79,6 @@ std::optional<Rgb> color_of(Context& context, const Parameter& p, ColorUse use) 
     from_file = std::move(*spectrum);
   }
   return use == ColorUse::light ? light_color(from_file) : surface_color(from_file);
-}
-
-YamlPtr color_node(const Rgb& color) {
-  if (color.x == color.y && color.y == color.z) return yaml_number(color.x);
-  return yaml_vector(color);
 }
 
 YamlPtr transform_node(const Mat4d& m) {

@@ -3,11 +3,12 @@
 #include <functional>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 
+#include "core/import/names.h"
 #include "core/import/pbrt/scene.h"
 #include "core/import/pbrt/spectra.h"
 #include "core/import/scene_source.h"
+#include "core/import/tinted.h"
 #include "core/job/yaml_build.h"
 
 namespace hyades::core::pbrt {
@@ -18,21 +19,6 @@ struct LoadedScene {
   std::unordered_map<std::string, Spectrum> spectra;     ///< of .spd files, by their names
   std::unordered_map<std::string, Bytes> files;          ///< what made files are made from
   std::unordered_map<std::string, std::string> missing;  ///< why a file is not in `files`
-};
-
-/// Names that the job language takes, each given once.
-class Names {
- public:
-  /// `prefix` and a '.' before all of them, where it is not empty.
-  explicit Names(std::string prefix);
-
-  /// A name as near to `wish` as can be.
-  std::string take(const std::string& wish);
-
- private:
-  std::string prefix_;
-  std::unordered_set<std::string> taken_;
-  std::unordered_map<std::string, size_t> counts_;
 };
 
 /// What is shared while a scene is put into the job language.
@@ -66,9 +52,6 @@ enum class ColorUse { light, surface };
 /// The colour that a parameter of type rgb, spectrum or blackbody says; spectra of light have
 /// luminance 1. An error of the report, and nothing, where it says none.
 std::optional<Rgb> color_of(Context& context, const Parameter& parameter, ColorUse use);
-
-/// One number where all channels are the same.
-YamlPtr color_node(const Rgb& color);
 
 /// {matrix: ...} in a list, or simpler steps that do the same; null where nothing moves.
 YamlPtr transform_node(const Mat4d& m);

@@ -30,7 +30,7 @@ void add_point(Context& context, const LightEntity& light, ParameterReader& read
     intensity *= power / kAllRound;
   }
   const Vec3d from = reader.triple("point3", "from", Vec3d(0.0));
-  context.lights.put(context.light_names.take("point"),
+  context.lights.put(context.light_names.add("point"),
                      YamlMap{{"type", yaml_word("point")},
                              {"at", yaml_vector(place_of(context, light, from))},
                              {"color", color_node(intensity)},
@@ -53,7 +53,7 @@ void add_spot(Context& context, const LightEntity& light, ParameterReader& reade
     context.report.error(light.place, "a spotlight's 'from' and 'to' are the same point");
     return;
   }
-  context.lights.put(context.light_names.take("spot"),
+  context.lights.put(context.light_names.add("spot"),
                      YamlMap{{"type", yaml_word("spot")},
                              {"at", yaml_vector(place_of(context, light, from))},
                              {"look_at", yaml_vector(place_of(context, light, to))},
@@ -79,7 +79,7 @@ void add_pictured(Context& context, const LightEntity& light, ParameterReader& r
     intensity *= power / (2.0F * kPi * (1.0F - std::cos(angle * kPi / 180.0F)));
   }
   context.lights.put(
-      context.light_names.take("projection"),
+      context.light_names.add("projection"),
       YamlMap{{"type", yaml_word("spot")},
               {"at", yaml_vector(place_of(context, light, Vec3d(0.0)))},
               {"look_at", yaml_vector(place_of(context, light, Vec3d(0.0, 0.0, 1.0)))},
@@ -101,7 +101,7 @@ void add_distant(Context& context, const LightEntity& light, ParameterReader& re
     context.report.error(light.place, "a distant light's 'from' and 'to' are the same point");
     return;
   }
-  context.lights.put(context.light_names.take("distant"),
+  context.lights.put(context.light_names.add("distant"),
                      YamlMap{{"type", yaml_word("sun")},
                              {"direction", yaml_vector(Vec3(glm::normalize(way)))},
                              {"color", color_node(irradiance)},

@@ -134,7 +134,7 @@ void MaterialKinds::put_bumps(YamlMap& out) {
 }
 
 std::string MaterialKinds::part(const char* name, const YamlPtr& node) {
-  std::string ours = context_.material_names.take(wish_ + "." + name);
+  std::string ours = context_.material_names.add(wish_ + "." + name);
   context_.materials.put(ours, node);
   return ours;
 }
@@ -153,8 +153,7 @@ YamlPtr MaterialKinds::diffuse_transmission() {
   const auto scaled = [&](const char* name) {
     YamlPtr color = textures_.color(reader_, name, Rgb(0.25F));
     if (scale == 1.0F) return color;
-    return YamlMap{{"type", yaml_word("scale")}, {"input", color}, {"factor", yaml_number(scale)}}
-        .node();
+    return product(color, yaml_number(scale));
   };
   YamlMap out{{"type", yaml_word("diffuse-transmission")},
               {"color", scaled("reflectance")},
@@ -263,9 +262,7 @@ YamlPtr MaterialKinds::below_coat(const YamlPtr& color, float eta) {
   const float half = 2.0F * seen(0.5F);
   const float c = std::max(2.0F * (1.0F - a) - 4.0F * (half - a), 0.0F);
   const float b = std::max(1.0F - a - c, 0.0F);
-  const auto times = [&](const YamlPtr& factor) {
-    return YamlMap{{"type", yaml_word("scale")}, {"input", color}, {"factor", factor}}.node();
-  };
+  const auto times = [&](const YamlPtr& factor) { return product(color, factor); };
   const auto plus = [](float term, const YamlPtr& more) {
     return YamlMap{{"type", yaml_word("add")}, {"a", yaml_number(term)}, {"b", more}}.node();
   };

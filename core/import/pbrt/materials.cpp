@@ -43,7 +43,7 @@ const WrittenMaterial& Materials::written(const Entity& entity, const std::strin
   // Scenes say the same again and again where materials have no names.
   std::string& same = same_[wish + "\n" + write_yaml(*made.node) + made.interior];
   if (same.empty()) {
-    same = context_.material_names.take(wish);
+    same = context_.material_names.add(wish);
     context_.materials.put(same, made.node);
   }
   out.name = same;
@@ -54,7 +54,7 @@ const WrittenMaterial& Materials::written(const Entity& entity, const std::strin
 std::string Materials::cut_out(const WrittenMaterial& material, const YamlPtr& opacity) {
   std::string& name = cut_outs_[material.name + "\n" + opacity->scalar];
   if (name.empty()) {
-    name = context_.material_names.take("cutout");
+    name = context_.material_names.add("cutout");
     context_.materials.put(
         name, YamlMap{{"like", yaml_text(material.name)}, {"opacity", opacity}}.node());
   }

@@ -52,7 +52,7 @@ std::string add_subsurface_medium(Context& context, ParameterReader& material, f
   YamlMap out{{"absorption", color_node(c.absorption * scale)},
               {"scattering", color_node(c.scattering * scale)}};
   if (g != 0.0F) out.put("g", yaml_number(std::clamp(g, -0.999F, 0.999F)));
-  std::string ours = context.medium_names.take(wish);
+  std::string ours = context.medium_names.add(wish);
   context.media.put(ours, out);
   return ours;
 }
@@ -93,7 +93,7 @@ std::string Media::named(const std::string& name, const Mat4d& body, const Place
     context_.report.error(entity.place, "there is no medium of type '" + type + "'");
   }
   if (made == nullptr) return {};
-  known->second = context_.medium_names.take(name);
+  known->second = context_.medium_names.add(name);
   context_.media.put(known->second, made);
   return known->second;
 }

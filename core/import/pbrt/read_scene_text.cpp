@@ -4,6 +4,7 @@
 
 #include "core/base/text.h"
 #include "core/import/pbrt/directives.h"
+#include "core/import/within_folder.h"
 
 namespace hyades::core::pbrt {
 namespace {
@@ -28,7 +29,7 @@ class TextReader : public Includer {
   }
 
   Status include(const std::string& reference, const Place& place) override {
-    auto path = SceneFiles::inside(reference);
+    auto path = within_folder(reference);
     if (!path) return place.error(path.error().message);
     if (std::find(open_.begin(), open_.end(), *path) != open_.end()) {
       return place.error("'" + *path + "' includes itself");

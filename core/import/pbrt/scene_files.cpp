@@ -5,27 +5,15 @@
 #include <utility>
 
 #include "core/base/gunzip.h"
-#include "core/base/text.h"
+#include "core/import/within_folder.h"
 
 namespace hyades::core::pbrt {
 
 SceneFiles::SceneFiles(AssetResolver& files, std::string main)
     : files_(files), main_(std::move(main)) {}
 
-Result<std::string> SceneFiles::inside(const std::string& reference) {
-  if (reference.empty()) return Error{"the name of the file is empty"};
-  if (reference.front() == '/' || reference.find('\0') != std::string::npos) {
-    return Error{"'" + reference + "' is not a path in the scene's folder"};
-  }
-  const std::string folded = resolve_reference(reference);
-  if (folded == ".." || folded.starts_with("../")) {
-    return Error{"'" + reference + "' leaves the scene's folder"};
-  }
-  return folded;
-}
-
 Result<Bytes> SceneFiles::open(const std::string& reference) const {
-  auto path = inside(reference);
+  auto path = within_folder(reference);
   if (!path) return path.error();
   auto bytes = files_.open(*path, main_);
   if (!bytes) return bytes.error();
@@ -36,7 +24,7 @@ Result<Bytes> SceneFiles::open(const std::string& reference) const {
 }
 
 bool SceneFiles::exists(const std::string& reference) const {
-  auto path = inside(reference);
+  auto path = within_folder(reference);
   return path.ok() && files_.exists(resolve_reference(*path, main_));
 }
 

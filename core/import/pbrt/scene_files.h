@@ -14,10 +14,6 @@ class SceneFiles {
  public:
   SceneFiles(AssetResolver& files, std::string main);
 
-  /// The reference with "." and ".." folded away, relative to the scene's folder; an error where it
-  /// leaves it.
-  static Result<std::string> inside(const std::string& reference);
-
   /// The bytes of a file beside the scene's; unpacked where they are gzip's, to kMostUnpacked at
   /// most.
   Result<Bytes> open(const std::string& reference) const;

@@ -112,7 +112,7 @@ YamlPtr Shapes::geometry(const ShapeEntity& shape, const std::string& file, bool
 
 YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::string& made,
                         bool in_group) {
-  Names names(in_group ? std::string() : context_.request.prefix);
+  Names names("object", in_group ? std::string() : context_.request.prefix);
   YamlMap out;
   size_t run = 1;
   for (size_t i = 0; i < shapes.size(); i += run) {
@@ -168,7 +168,7 @@ YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::strin
             motion_node(context_, shape.to_world, before, shape.place, in_group)) {
       object.put("transform", steps);
     }
-    out.put(names.take(wish), object);
+    out.put(names.add(wish), object);
   }
   return out.empty() ? nullptr : out.node();
 }
@@ -187,7 +187,7 @@ void add_objects(Context& context, Textures& textures, YamlMap& out) {
     for (const YamlEntry& entry : own->map) objects.put(entry.key, entry.value);
   }
   YamlMap groups;
-  Names group_names(context.request.prefix);
+  Names group_names("group", context.request.prefix);
   std::vector<std::string> names(context.scene.objects.size());
   for (const ObjectInstance& instance : context.scene.instances) {
     std::string& name = names[instance.object];
@@ -196,10 +196,10 @@ void add_objects(Context& context, Textures& textures, YamlMap& out) {
     const YamlPtr inside =
         shapes.objects(object.shapes, "object-" + std::to_string(instance.object) + "-", true);
     if (inside == nullptr) continue;
-    name = group_names.take(object.name);
+    name = group_names.add(object.name);
     groups.put(name, YamlMap{{"objects", inside}});
   }
-  Names instance_names(context.request.prefix);
+  Names instance_names("instance", context.request.prefix);
   for (const ObjectInstance& instance : context.scene.instances) {
     if (names[instance.object].empty()) continue;
     YamlMap object{{"instance", yaml_text(names[instance.object])}};
@@ -207,7 +207,7 @@ void add_objects(Context& context, Textures& textures, YamlMap& out) {
             motion_node(context, instance.to_world, Mat4d(1.0), instance.place, false)) {
       object.put("transform", steps);
     }
-    objects.put(instance_names.take("instance-" + context.scene.objects[instance.object].name),
+    objects.put(instance_names.add("instance-" + context.scene.objects[instance.object].name),
                 object);
   }
   if (!groups.empty()) out.put("groups", groups);

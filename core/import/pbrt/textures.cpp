@@ -40,7 +40,7 @@ std::string Textures::named(bool floats, const std::string& name, const Place& p
   }
   YamlPtr made = make(floats, *entity);
   if (made == nullptr) return {};
-  std::string ours = context_.texture_names.take(name);
+  std::string ours = context_.texture_names.add(name);
   context_.textures.put(ours, std::move(made));
   names_[entity] = ours;
   return ours;

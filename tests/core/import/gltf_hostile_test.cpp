@@ -139,8 +139,7 @@ TEST(GltfHostile, PathsThatLeaveTheFolder) {
     GltfBuilder b = one_square();
     nlohmann::json json = b.json;
     json["buffers"] = {{{"byteLength", 1000}, {"uri", path}}};
-    EXPECT_THAT(trouble(json.dump()), HasSubstr("expected a file in the folder of the scene"))
-        << path;
+    EXPECT_THAT(trouble(json.dump()), HasSubstr("expected a file in the scene's folder")) << path;
     b.add("images", {{"uri", path}});
     EXPECT_THAT(trouble(b), HasSubstr("a.glb: images[0]: ")) << path;
   }
