@@ -20,12 +20,25 @@ Result<Image> decode_exr(std::span<const std::byte> file, bool srgb, const Image
 /// 8 and 16 bits or 32 of floating point, in strips or tiles, however libtiff can unpack them.
 Result<Image> decode_tiff(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
 
+Result<Image> decode_bmp(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+Result<Image> decode_qoi(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+Result<Image> decode_netpbm(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+Result<Image> decode_pfm(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+Result<Image> decode_tga(std::span<const std::byte> file, bool srgb, const ImageLimits& limits);
+
+/// Whether a file is a TGA picture by all that its header says: the format has no mark of its own.
+bool looks_like_tga(std::span<const std::byte> file);
+
 /// Whether the numbers of a TIFF are floating point, and so light rather than codes of a display.
 bool tiff_holds_floats(std::span<const std::byte> file);
 
 /// Refuses sizes that are empty or above the limits. Several channels count as several pixels
 /// from the fifth on, so that memory stays within 16 bytes per allowed pixel.
 Status check_image_size(int64_t width, int64_t height, int64_t channels, const ImageLimits& limits);
+
+/// Makes a picture opaque whose last channel, its alpha, is 0 everywhere: TGA and BMP of many
+/// programs leave the fourth byte 0 where they mean nothing by it.
+void ignore_empty_alpha(Image& image);
 
 /// Linear value of 8-bit code `code`, read as sRGB or as linear. 0..255 -> 0..1.
 const float* linear_of_8_bits(bool srgb);

@@ -34,13 +34,20 @@ constexpr Format kFormats[] = {
     {std::string_view("II+\0", 4), decode_tiff, "TIFF", true},  // with 64-bit offsets
     {std::string_view("MM\0+", 4), decode_tiff, "TIFF", true},
     {"GIF8", nullptr, "GIF", true},
-    {"BM", nullptr, "BMP", true},
+    {"BM", decode_bmp, "BMP", true},
+    {"qoif", decode_qoi, "QOI", true},
+    {"8BPS", nullptr, "Photoshop", true},
     {std::string_view("II*\0", 4), decode_tiff, "TIFF", true},
     {std::string_view("MM\0*", 4), decode_tiff, "TIFF", true},
     {"RIFF", nullptr, "WebP", true},
     {"DDS ", nullptr, "DDS", true},
-    {"PF", nullptr, "PFM", false},
+    {"PF", decode_pfm, "PFM", false},
+    {"Pf", decode_pfm, "PFM", false},
+    {"P6", decode_netpbm, "PPM", true},
+    {"P5", decode_netpbm, "PGM", true},
 };
+
+constexpr Format kTga = {"", decode_tga, "TGA", true};
 
 const Format* format_of(std::span<const std::byte> file) {
   for (const Format& format : kFormats) {
@@ -49,7 +56,7 @@ const Format* format_of(std::span<const std::byte> file) {
       return &format;
     }
   }
-  return nullptr;
+  return looks_like_tga(file) ? &kTga : nullptr;
 }
 
 template <size_t N>
@@ -88,6 +95,14 @@ Status check_image_size(int64_t width, int64_t height, int64_t channels,
   return {};
 }
 
+void ignore_empty_alpha(Image& image) {
+  const size_t count = image.channels.size();
+  for (size_t i = count - 1; i < image.data.size(); i += count) {
+    if (image.data[i] != 0.0F) return;
+  }
+  for (size_t i = count - 1; i < image.data.size(); i += count) image.data[i] = 1.0F;
+}
+
 const float* linear_of_8_bits(bool srgb) {
   static const std::vector<float> decoded = make_table<256>(true);
   static const std::vector<float> plain = make_table<256>(false);
@@ -105,7 +120,8 @@ Result<Image> read_image(const Bytes& bytes, const std::string& name, ColorSpace
   const std::span<const std::byte> file = bytes.span();
   if (file.empty()) return Error{name + ": the file is empty"};
   const Format* format = format_of(file);
-  constexpr const char* kExpected = "expected PNG, JPEG, TIFF, Radiance HDR or OpenEXR";
+  constexpr const char* kExpected =
+      "expected PNG, JPEG, TIFF, TGA, BMP, QOI, PPM, PFM, Radiance HDR or OpenEXR";
   if (format == nullptr) return Error{fmt::format("{}: not a known picture; {}", name, kExpected)};
   if (format->decode == nullptr) {
     return Error{fmt::format("{}: {} files are not read; {}", name, format->name, kExpected)};

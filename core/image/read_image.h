@@ -12,7 +12,7 @@ namespace hyades::core {
 
 /// How the numbers of an 8- or 16-bit file become linear.
 enum class ColorSpace {
-  automatic,  ///< PNG, JPEG and codes of TIFF as sRGB; EXR, HDR and floats are linear already
+  automatic,  ///< codes of 8 and 16 bits as sRGB; EXR, HDR, PFM and floats of TIFF as linear
   srgb,
   linear,
 };
@@ -24,8 +24,9 @@ struct ImageLimits {
 };
 
 /// Decodes PNG (1-16 bits), JPEG, TIFF (grey or RGB of 8, 16 or 32 floating bits; the first
-/// picture), Radiance HDR (flat and RLE) or OpenEXR (any compression, half or float, scanline or
-/// tiled), told apart by their first bytes. Colour is linear Rec.709 on return;
+/// picture), TGA, BMP (not packed), QOI, binary PPM and PGM, PFM, Radiance HDR (flat and RLE) or
+/// OpenEXR (any compression, half or float, scanline or tiled), told apart by their first bytes,
+/// TGA by its whole header. Colour is linear Rec.709 on return;
 /// alpha stays straight and is never decoded. Grey files have channel "Y"[,"A"], colour ones
 /// "R","G","B"[,"A"]; an EXR keeps its own channel names, R G B A Y first (first part, all of its
 /// data window; subsampled channels and deep data are refused). EXPOSURE of a Radiance file is

@@ -15,8 +15,9 @@ namespace hyades::core {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kPictures = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
-                                                        ".exr", ".hdr", ".tga",  ".bmp", ".webp"};
+constexpr std::array<std::string_view, 14> kPictures = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
+                                                        ".qoi", ".pfm", ".ppm",  ".pgm", ".exr",
+                                                        ".hdr", ".tga", ".bmp",  ".webp"};
 
 void put_number(std::vector<uint8_t>& out, uint32_t number) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<uint8_t>(number >> shift));

@@ -64,6 +64,23 @@ class SampleMaker {
         28);
     hdr += std::string("\x80\x80\x80\x80\x01\x01\x01\x08", 8);
     samples_.push_back({"rle.hdr", hdr});
+    samples_.push_back({"runs.tga", std::string("\0\0\x0A\0\0\0\0\0\0\0\0\0\3\0\2\0\x20\x08", 18) +
+                                        "\x83" + "abcd" + "\x01" + "abcdefgh"});
+    samples_.push_back({"palette.tga", std::string("\0\1\1\0\0\2\0\x18\0\0\0\0\3\0\2\0\x08\0", 18) +
+                                           "abcdef" + std::string("\0\1\0\1\0\1", 6)});
+    samples_.push_back(
+        {"palette.bmp", "BM" +
+                            std::string("\0\0\0\0\0\0\0\0\x3E\0\0\0\x28\0\0\0\3\0\0\0\2\0\0\0"
+                                        "\1\0\4\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\2\0\0\0"
+                                        "\0\0\0\0",
+                                        52) +
+                            "abcdefgh" + std::string("\1\0\0\0\0\1\0\0", 8)});
+    samples_.push_back({"all.qoi", "qoif" + std::string("\0\0\0\3\0\0\0\3\4\0\xFE"
+                                                        "abc\x55\xA0\x88\xC1\x05\xFF"
+                                                        "abcd\xC2",
+                                                        27)});
+    samples_.push_back({"deep.ppm", "P6 # made by a test\n1 2\n65535\nabcdefghijkl"});
+    samples_.push_back({"grey.pfm", "Pf\n1 2\n-1.5\nabcdefgh"});
     return std::move(samples_);
   }
 
@@ -246,10 +263,10 @@ TEST(Hostile, UnknownFilesAreNamed) {
     return image ? std::string("no error") : image.error().message;
   };
   EXPECT_EQ(error(""), "x: the file is empty");
-  EXPECT_EQ(error("hello"),
-            "x: not a known picture; expected PNG, JPEG, TIFF, Radiance HDR or OpenEXR");
-  EXPECT_EQ(error("GIF89a..."),
-            "x: GIF files are not read; expected PNG, JPEG, TIFF, Radiance HDR or OpenEXR");
+  const std::string expected =
+      "; expected PNG, JPEG, TIFF, TGA, BMP, QOI, PPM, PFM, Radiance HDR or OpenEXR";
+  EXPECT_EQ(error("hello"), "x: not a known picture" + expected);
+  EXPECT_EQ(error("GIF89a..."), "x: GIF files are not read" + expected);
   const Result<Image> missing = read_image_file("no/such/file.png");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().message, "no/such/file.png: no such file");
