@@ -169,6 +169,12 @@ bool can_be_instanced(const Placement& p) {
   return true;
 }
 
+bool can_be_instanced(const Mat4& to_world) {
+  const Affine map(to_world);
+  return largest_coordinate(Vec3(map.offset)) <= kLargestCoordinate &&
+         inverse_bound(map, map) <= kLargestEnlargement;
+}
+
 std::string describe_placement(const Placement& p, size_t number) {
   std::string text = "object " + std::to_string(number);
   if (p.shape.kind == Shape::Kind::mesh && p.shape.mesh != nullptr) {

@@ -21,6 +21,9 @@ Status check_placement(const Placement& p);
 /// nowhere comes near to being singular. If not, its vertices are transformed instead.
 bool can_be_instanced(const Placement& p);
 
+/// The same of one that stands still.
+bool can_be_instanced(const Mat4& to_world);
+
 /// "object 3 (bunny.obj)", for messages.
 std::string describe_placement(const Placement& p, size_t number);
 

@@ -48,48 +48,78 @@ bool is_glass(const YamlNode* materials, const std::string& name) {
   return material != nullptr && text_at(*material->value, "type") == "dielectric";
 }
 
+/// Section `key` of a tree; an empty map where there is none.
+const YamlNode& section(const YamlNode& tree, const char* key) {
+  const YamlEntry* entry = tree.find(key);
+  return entry != nullptr ? *entry->value : empty_map();
+}
+
+/// How many objects there are that are not copies of others.
+size_t count_things(const YamlNode& sections) {
+  const auto count = [](const YamlNode& objects) {
+    return static_cast<size_t>(std::count_if(
+        objects.map.begin(), objects.map.end(),
+        [](const YamlEntry& entry) { return entry.value->find("instance") == nullptr; }));
+  };
+  size_t things = count(section(sections, "objects"));
+  for (const YamlEntry& group : section(sections, "groups").map) {
+    things += count(section(*group.value, "objects"));
+  }
+  return things;
+}
+
 }  // namespace
 
 Result<YamlPtr> fill_with_media(const YamlNode& sections, const MediaFile& media,
                                 const std::string& scene, AssetResolver& files) {
   const auto known = read_media(media.reference, files);
   if (!known) return known.error();
-  const YamlEntry* objects = sections.find("objects");
   const YamlEntry* materials = sections.find("materials");
-  const YamlNode& all = objects != nullptr ? *objects->value : empty_map();
   std::vector<std::string> called;
   std::set<std::string> clear;  // materials that let everything through
-  YamlMap filled;
   YamlMap looks;
   bool bound = false;
   std::set<std::string> unused;
-  for (const YamlEntry& entry : all.map) {
-    const YamlNode& object = *entry.value;
-    const std::string material = text_at(object, "material");
-    const std::string part = object.find("part") != nullptr ? text_at(object, "part") : material;
-    called.push_back(part);
-    const auto named = known->contains(part) ? known->find(part) : known->find(material);
-    const bool only = known->size() == 1 && all.map.size() == 1;
-    const auto medium = named == known->end() && only ? known->begin() : named;
-    if (medium == known->end()) {
-      filled.put(entry.key, entry.value);
-      continue;
-    }
-    bound = true;
-    YamlMap own;
-    for (const YamlEntry& key : object.map) {
-      if (key.key == "interior") continue;
-      if (key.key == "material" && medium->second) {
-        unused.insert(material);
+  const bool only_one = known->size() == 1 && count_things(sections) == 1;
+  const auto fill = [&](const YamlNode& all) {
+    YamlMap filled;
+    for (const YamlEntry& entry : all.map) {
+      const YamlNode& object = *entry.value;
+      if (object.find("instance") != nullptr) {
+        filled.put(entry.key, entry.value);
         continue;
       }
-      own.put(key.key, key.value);
+      const std::string material = text_at(object, "material");
+      const std::string part = object.find("part") != nullptr ? text_at(object, "part") : material;
+      called.push_back(part);
+      const auto named = known->contains(part) ? known->find(part) : known->find(material);
+      const auto medium = named == known->end() && only_one ? known->begin() : named;
+      if (medium == known->end()) {
+        filled.put(entry.key, entry.value);
+        continue;
+      }
+      bound = true;
+      YamlMap own;
+      for (const YamlEntry& key : object.map) {
+        if (key.key == "interior") continue;
+        if (key.key == "material" && medium->second) {
+          unused.insert(material);
+          continue;
+        }
+        own.put(key.key, key.value);
+      }
+      if (!medium->second &&
+          !is_glass(materials != nullptr ? materials->value.get() : nullptr, material))
+        clear.insert(material);
+      own.put("interior", yaml_text(medium->first));
+      filled.put(entry.key, own);
     }
-    if (!medium->second &&
-        !is_glass(materials != nullptr ? materials->value.get() : nullptr, material))
-      clear.insert(material);
-    own.put("interior", yaml_text(medium->first));
-    filled.put(entry.key, own);
+    return filled;
+  };
+  const YamlMap filled = fill(section(sections, "objects"));
+  YamlMap groups;
+  for (const YamlEntry& group : section(sections, "groups").map) {
+    groups.put(group.key, YamlMap{{"objects", fill(section(*group.value, "objects")).node()}});
   }
   if (!bound) {
     std::vector<std::string> names;
@@ -109,6 +139,8 @@ Result<YamlPtr> fill_with_media(const YamlNode& sections, const MediaFile& media
   for (const YamlEntry& section : sections.map) {
     if (section.key == "objects") {
       result.put("objects", filled);
+    } else if (section.key == "groups") {
+      result.put("groups", groups);
     } else if (section.key == "materials") {
       if (!looks.empty()) result.put("materials", looks);
     } else if (section.key != "media") {

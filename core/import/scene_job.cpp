@@ -148,7 +148,12 @@ void put_head(YamlMap& job, const YamlNode& scene, const std::string& name, bool
 YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& name) {
   const Extent extent(bounds);
   const YamlNode& own = section(scene, "objects");
-  const bool has_media = has_interiors(own);
+  const YamlNode& groups = section(scene, "groups");
+  const bool has_media =
+      has_interiors(own) ||
+      std::any_of(groups.map.begin(), groups.map.end(), [](const YamlEntry& group) {
+        return has_interiors(section(*group.value, "objects"));
+      });
   const bool lit = has_light(scene);
   const bool seen = scene.find("camera") != nullptr;
   YamlMap job;

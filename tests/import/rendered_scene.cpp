@@ -41,7 +41,8 @@ std::string job_text(const core::YamlNode& sections, const std::string& own, int
   core::YamlMap job{{"hyades", core::yaml_integer(1)}};
   job.put("sampling", core::YamlMap{{"samples", core::yaml_integer(samples)}});
   for (const core::YamlEntry& entry : sections.map) {
-    if (more->find(entry.key) == nullptr) job.put(entry.key, entry.value);
+    const bool replaced = entry.key == "sampling" || more->find(entry.key) != nullptr;
+    if (!replaced) job.put(entry.key, entry.value);
   }
   for (const core::YamlEntry& entry : more->map) job.put(entry.key, entry.value);
   return core::write_yaml(*job.node());

@@ -77,6 +77,7 @@ void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& ou
   if (extensions.has("KHR_materials_unlit")) {
     sheet.out.put("type", yaml_word("black"));
     glow = unlit_of(sheet);
+    out.shines = true;
     sheet.note("is unlit: it gives off its colour, and lights what is around it");
     out.emit = YamlMap{{"color", glow.color},
                        {"radiance", yaml_number(glow.strength)},
@@ -120,6 +121,7 @@ void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& ou
     sheet.out.put("coat", coat_amount()).put("coat_roughness", coat_roughness());
   }
   glow = glow_of(sheet);
+  out.shines = glow.strength > 0.0F;
   const bool both_sides = value.flag("doubleSided", false);
   if (glow.strength > 0.0F && (both_sides || apart)) {
     YamlMap emit{{"color", glow.color}, {"radiance", yaml_number(glow.strength)}};

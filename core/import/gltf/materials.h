@@ -15,6 +15,7 @@ struct GltfMaterial {
   std::string name;      ///< in the job
   std::string interior;  ///< the medium that fills it; empty: none
   YamlPtr emit;          ///< the light of a surface that shines on both sides, or null
+  bool shines = false;   ///< whether it gives off light at all
 };
 
 /// The materials of a file as a job's materials and media, each as it is first asked for.

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "core/geometry/placed_object.h"
 #include "core/import/gltf/geometry.h"
-#include "core/import/gltf/instancing.h"
+#include "core/import/mass_copies.h"
 
 namespace hyades::core {
 
@@ -13,38 +16,60 @@ namespace {
 
 constexpr const char* kModes[] = {"points", "lines", "line loops", "line strips"};
 
+/// Whether what hangs on a node has no size, or is turned inside out, at some time of a clip.
+bool may_vanish(const GltfModel& model, const GltfClip* clip, int node) {
+  constexpr float kLeast = 1e-3F;
+  for (int at = node; clip != nullptr && at >= 0;
+       at = model.nodes[static_cast<size_t>(at)].parent) {
+    const GltfTrack* sizes = clip->track(at, GltfChannel::Path::scale);
+    if (sizes == nullptr) continue;
+    for (size_t i = 0; i < sizes->times.size(); ++i) {
+      for (size_t k = 0; k < 3; ++k) {
+        const float size = sizes->key(i)[k];
+        if (!(std::abs(size) > kLeast) || size * sizes->key(0)[k] < 0.0F) return true;
+      }
+    }
+  }
+  return false;
+}
+
 class Writer {
  public:
   Writer(const GltfStage& stage, GltfMaterials& materials)
-      : stage_(stage), materials_(materials), names_("object", stage.request.prefix) {}
+      : stage_(stage),
+        materials_(materials),
+        names_("object", stage.request.prefix),
+        group_names_("copies", stage.request.prefix) {}
 
   Status node(int index) {
     const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
     if (node.mesh < 0) return {};
-    const GltfMesh& mesh = stage_.model.meshes[static_cast<size_t>(node.mesh)];
-    for (size_t p = 0; p < mesh.primitives.size(); ++p) {
-      const GltfPrimitive& primitive = mesh.primitives[p];
-      if (!has_triangles(primitive)) {
-        if (left_out_.insert(primitive.place).second) {
-          stage_.notes.push_back(primitive.place + " is made of " + kModes[primitive.mode] +
-                                 ", which are left out");
-        }
-        continue;
-      }
-      if (is_empty(primitive)) {
-        if (left_out_.insert(primitive.place).second) {
-          stage_.notes.push_back(primitive.place + " has no triangles and is left out");
-        }
-        continue;
-      }
-      if (Status s = part(index, p, mesh.primitives.size() > 1); !s) return s;
+    const std::vector<Part> parts = parts_of(index);
+    if (parts.empty()) return {};
+    std::vector<YamlPtr> steps;
+    // A skin places its mesh by its bones alone (glTF 2.0, section 3.7.3.3).
+    if (node.skin < 0) {
+      steps = transform_steps(stage_.model, stage_.clip, index, stage_.frames);
     }
-    return {};
+    if (!node.instances.empty()) return copies(index, parts, steps);
+    for (const Part& part : parts) {
+      if (Status s = put(part.name, part.object, steps); !s) return s;
+    }
+    return extend_bounds(index, parts, {});
   }
 
   GltfObjects out;
 
  private:
+  /// A primitive of a node's mesh as an object without its place.
+  struct Part {
+    std::string name;
+    YamlMap object;
+    const GltfMeshFile* file = nullptr;
+    const GltfPrimitive* primitive = nullptr;
+    bool shines = false;
+  };
+
   /// Whether it has too few corners for a triangle. Of packed ones that is seen when they are read.
   bool is_empty(const GltfPrimitive& primitive) const {
     if (primitive.draco) return false;
@@ -54,44 +79,106 @@ class Writer {
     return accessor >= 0 && stage_.model.accessors[static_cast<size_t>(accessor)].count < 3;
   }
 
-  Status part(int index, size_t p, bool one_of_several) {
+  void leave_out(const GltfPrimitive& primitive, const std::string& why) {
+    if (left_out_.insert(primitive.place).second) stage_.notes.push_back(primitive.place + why);
+  }
+
+  std::vector<Part> parts_of(int index) {
     const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
     const GltfMesh& mesh = stage_.model.meshes[static_cast<size_t>(node.mesh)];
-    const GltfPrimitive& primitive = mesh.primitives[p];
+    std::vector<Part> parts;
+    for (size_t p = 0; p < mesh.primitives.size(); ++p) {
+      const GltfPrimitive& primitive = mesh.primitives[p];
+      if (!has_triangles(primitive)) {
+        leave_out(primitive,
+                  std::string(" is made of ") + kModes[primitive.mode] + ", which are left out");
+      } else if (is_empty(primitive)) {
+        leave_out(primitive, " has no triangles and is left out");
+      } else {
+        parts.push_back(part_of(index, p));
+        std::string& name = parts.back().name;
+        name = !node.name.empty() ? node.name : mesh.name;
+        if (mesh.primitives.size() > 1) name += (name.empty() ? "" : ".") + std::to_string(p + 1);
+      }
+    }
+    return parts;
+  }
+
+  Part part_of(int index, size_t p) {
+    Part part;
+    const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
+    part.primitive = &stage_.model.meshes[static_cast<size_t>(node.mesh)].primitives[p];
     const GltfMaterial& material =
-        materials_.get(primitive.material, primitive.attributes.count("COLOR_0") != 0);
-    const GltfMeshFile& file = stage_.files.file(index, p);
-    const bool deforms = stage_.clip != nullptr && stage_.files.changes(file, *stage_.clip);
-    YamlMap object;
+        materials_.get(part.primitive->material, part.primitive->attributes.count("COLOR_0") != 0);
+    part.file = &stage_.files.file(index, p);
+    part.shines = material.shines;
+    const bool deforms = stage_.clip != nullptr && stage_.files.changes(*part.file, *stage_.clip);
     const std::string folder =
         deforms ? stage_.files.folder(stage_.frames.fps, stage_.animation) : "";
-    object.put("mesh", yaml_text(fmt::format("{}meshes/{}{}{}.ply", stage_.request.made, folder,
-                                             file.name, deforms ? ".####" : "")));
-    object.put("material", yaml_text(material.name));
-    if (!material.interior.empty()) object.put("interior", yaml_text(material.interior));
-    if (material.emit) object.put("emit", material.emit);
-    std::vector<YamlPtr> steps;
-    // A skin places its mesh by its bones alone (glTF 2.0, section 3.7.3.3).
-    if (node.skin < 0) {
-      steps = transform_steps(stage_.model, stage_.clip, index, stage_.frames);
+    part.object.put("mesh",
+                    yaml_text(fmt::format("{}meshes/{}{}{}.ply", stage_.request.made, folder,
+                                          part.file->name, deforms ? ".####" : "")));
+    part.object.put("material", yaml_text(material.name));
+    if (!material.interior.empty()) part.object.put("interior", yaml_text(material.interior));
+    if (material.emit) part.object.put("emit", material.emit);
+    return part;
+  }
+
+  /// EXT_mesh_gpu_instancing.
+  Status copies(int index, const std::vector<Part>& parts, const std::vector<YamlPtr>& steps) {
+    const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
+    copies_ += count_copies(stage_.model, node);
+    if (copies_ > kMostCopies) {
+      return stage_.model.error(
+          fmt::format("nodes[{}] and those before it have {} instances; at most {} are possible",
+                      index, copies_, kMostCopies));
     }
-    std::string name = !node.name.empty() ? node.name : mesh.name;
-    if (one_of_several) {
-      name += (name.empty() ? "" : ".") + std::to_string(p + 1);
+    auto copies = copies_of(stage_.model, index);
+    if (!copies) return copies.error();
+    if (copies->vanished > 0) {
+      stage_.notes.push_back(fmt::format("nodes[{}] has {} instances of size 0, which are left out",
+                                         index, copies->vanished));
     }
-    if (node.instances.empty()) {
-      if (Status s = extend_bounds(index, file, primitive, {Mat4(1.0F)}); !s) return s;
-      return put(name, object, steps);
+    std::vector<PlaceMatrix>& in_file = copies->in_file;
+    if (Status s = extend_bounds(index, parts, in_file); !s) return s;
+    if (Status s = extend_bounds(index, parts, copies->single); !s) return s;
+    const bool lamp =
+        std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.shines; });
+    if (lamp || in_file.size() < kFewestCopies || may_vanish(stage_.model, stage_.clip, index)) {
+      if (Status s = put_each(in_file, parts, steps); !s) return s;
+    } else {
+      in_file = {};
+      if (Status s = put_group(index, parts, steps); !s) return s;
     }
-    auto places = instance_places(stage_.model, node.instances);
-    if (!places) return places.error();
-    if (Status s = extend_bounds(index, file, primitive, *places); !s) return s;
-    for (const Mat4& place : *places) {
-      std::vector<YamlPtr> moved{matrix_step(place)};
-      moved.insert(moved.end(), steps.begin(), steps.end());
-      if (Status s = put(name, object, moved); !s) return s;
+    return put_each(copies->single, parts, steps);
+  }
+
+  Status put_each(const std::vector<PlaceMatrix>& places, const std::vector<Part>& parts,
+                  const std::vector<YamlPtr>& steps) {
+    for (const Part& part : parts) {
+      for (const PlaceMatrix& place : places) {
+        std::vector<YamlPtr> moved{matrix_step(place_matrix(place))};
+        moved.insert(moved.end(), steps.begin(), steps.end());
+        if (Status s = put(part.name, part.object, moved); !s) return s;
+      }
     }
     return {};
+  }
+
+  Status put_group(int index, const std::vector<Part>& parts, const std::vector<YamlPtr>& steps) {
+    const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
+    const GltfMesh& mesh = stage_.model.meshes[static_cast<size_t>(node.mesh)];
+    const std::string& name = !node.name.empty() ? node.name : mesh.name;
+    Names inside("object");
+    YamlMap members;
+    for (const Part& part : parts) members.put(inside.add(part.name), part.object);
+    const std::string group = group_names_.add(name);
+    const YamlMap body{{"objects", members.node()}};
+    weight_ += body.node()->weight;
+    out.groups.put(group, body);
+    const YamlMap object{{"instance", yaml_text(group)},
+                         {"places", yaml_text(stage_.request.made + stage_.places.name(index))}};
+    return put(name, object, steps);
   }
 
   Status put(const std::string& name, YamlMap object, const std::vector<YamlPtr>& steps) {
@@ -107,32 +194,40 @@ class Writer {
     return {};
   }
 
-  /// `places`: of its copies, in the space of the node.
-  Status extend_bounds(int index, const GltfMeshFile& file, const GltfPrimitive& primitive,
-                       const std::vector<Mat4>& places) {
-    const auto position = primitive.attributes.find("POSITION");
-    const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
+  /// Of a part of a node, in the space of its mesh (of a skin's, in that of the scene).
+  Result<Bounds> own_bounds(const Part& part) const {
+    const auto position = part.primitive->attributes.find("POSITION");
     Bounds own;
     const auto* extent =
-        position == primitive.attributes.end()
+        position == part.primitive->attributes.end()
             ? nullptr
             : &stage_.model.accessors[static_cast<size_t>(position->second)].extent;
-    if (file.node < 0 && extent != nullptr && extent->has_value()) {
+    if (part.file->node < 0 && extent != nullptr && extent->has_value()) {
       own.include((**extent)[0]);
       own.include((**extent)[1]);
-    } else {
-      const auto geometry = shaped_geometry(stage_.model, file, stage_.clip, 0.0);
-      if (!geometry) return geometry.error();
-      for (const Vec3& p : geometry->positions) own.include(p);
+      return own;
     }
-    const Mat4 world =
-        node.skin >= 0 ? Mat4(1.0F) : world_matrix(stage_.model, stage_.clip, index, 0.0);
-    for (size_t i = 0; i < 8 * places.size(); ++i) {
-      const size_t corner = i % 8;
-      const Vec3 p((corner & 1) != 0 ? own.upper.x : own.lower.x,
-                   (corner & 2) != 0 ? own.upper.y : own.lower.y,
-                   (corner & 4) != 0 ? own.upper.z : own.lower.z);
-      out.bounds.include(transform_point(world, transform_point(places[i / 8], p)));
+    const auto geometry = shaped_geometry(stage_.model, *part.file, stage_.clip, 0.0);
+    if (!geometry) return geometry.error();
+    for (const Vec3& p : geometry->positions) own.include(p);
+    return own;
+  }
+
+  /// `places`: of its copies, in the space of the node; none: it stands there itself.
+  Status extend_bounds(int index, const std::vector<Part>& parts,
+                       const std::vector<PlaceMatrix>& places) {
+    const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
+    if (places.empty() && !node.instances.empty()) return {};
+    const Affine world(node.skin >= 0 ? Mat4(1.0F)
+                                      : world_matrix(stage_.model, stage_.clip, index, 0.0));
+    for (const Part& part : parts) {
+      const auto own = own_bounds(part);
+      if (!own) return own.error();
+      if (own->empty()) continue;
+      if (places.empty()) out.bounds.include(transform_bounds(world, *own));
+      for (const PlaceMatrix& place : places) {
+        out.bounds.include(transform_bounds(world * Affine(place_matrix(place)), *own));
+      }
     }
     return {};
   }
@@ -140,8 +235,10 @@ class Writer {
   const GltfStage& stage_;
   GltfMaterials& materials_;
   Names names_;
+  Names group_names_;
   std::set<std::string> left_out_;
   uint64_t weight_ = 0;
+  size_t copies_ = 0;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/bounds.h"
+#include "core/import/gltf/instancing.h"
 #include "core/import/gltf/made_meshes.h"
 #include "core/import/gltf/materials.h"
 #include "core/import/gltf/motion.h"
@@ -11,10 +12,11 @@
 namespace hyades::core {
 
 /// The meshes of the scene's nodes as a job's objects: one per primitive, with the way from its
-/// node to the scene as its transform.
+/// node to the scene as its transform. Many copies of one are a group and a file of places.
 struct GltfObjects {
   YamlMap section;
-  Bounds bounds;  ///< of all that is seen at the first frame
+  YamlMap groups;  ///< what copies by files of places are copies of
+  Bounds bounds;   ///< of all that is seen at the first frame
 };
 
 /// What an object is made from.
@@ -22,6 +24,7 @@ struct GltfStage {
   const GltfModel& model;
   const SceneRequest& request;
   const GltfMeshFiles& files;
+  const GltfPlaceFiles& places;
   const GltfClip* clip = nullptr;  ///< null: everything stands still
   size_t animation = 0;            ///< its number
   GltfFrames frames;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/import/gltf/instancing.h"
 #include "core/import/gltf/made_meshes.h"
 #include "core/import/gltf/materials.h"
 #include "core/import/gltf/objects.h"
@@ -28,7 +29,10 @@ struct Chosen {
 class GltfSource : public SceneSource {
  public:
   explicit GltfSource(std::shared_ptr<const GltfModel> model)
-      : model_(std::move(model)), files_(model_), images_(image_file_names(*model_)) {}
+      : model_(std::move(model)),
+        files_(model_),
+        places_(model_),
+        images_(image_file_names(*model_)) {}
 
   Result<SceneSections> sections(const SceneRequest& request) const override;
   Result<Bytes> made_file(const std::string& name) const override;
@@ -38,6 +42,7 @@ class GltfSource : public SceneSource {
 
   std::shared_ptr<const GltfModel> model_;
   GltfMeshFiles files_;
+  GltfPlaceFiles places_;
   std::vector<std::string> images_;
 };
 
@@ -71,7 +76,7 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
   const auto chosen = choose(request.animation);
   if (!chosen) return chosen.error();
   std::vector<std::string> notes = model_->notes;
-  GltfStage stage{*model_, request, files_, chosen->clip.get(), chosen->index, {}, notes};
+  GltfStage stage{*model_, request, files_, places_, chosen->clip.get(), chosen->index, {}, notes};
   stage.frames.fps = request.fps;
   if (stage.clip != nullptr) {
     // A key at 1 s is frame 25 of 24 per second, whatever the last bits of its time are.
@@ -100,6 +105,7 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
   put_unless_empty(sections, "textures", textures.section());
   put_unless_empty(sections, "materials", materials.materials());
   put_unless_empty(sections, "media", materials.media());
+  put_unless_empty(sections, "groups", objects->groups);
   put_unless_empty(sections, "objects", objects->section);
   put_unless_empty(sections, "lights", lights);
   out.sections = sections.node();
@@ -109,6 +115,7 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
 }
 
 Result<Bytes> GltfSource::made_file(const std::string& name) const {
+  if (name.starts_with("places/")) return places_.made(name);
   const auto image = std::find(images_.begin(), images_.end(), name);
   if (image == images_.end() || name.empty()) return files_.made(name);
   const GltfImage& from = model_->images[static_cast<size_t>(image - images_.begin())];

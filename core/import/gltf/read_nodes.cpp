@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/import/gltf/read_model.h"
 
@@ -14,7 +15,8 @@ struct Counts {
   size_t lights = 0;
 };
 
-GltfNode read_node(const JsonValue& value, const GltfModel& model, const Counts& counts) {
+GltfNode read_node(const JsonValue& value, const GltfModel& model, const Counts& counts,
+                   std::set<std::string>& notes) {
   GltfNode node;
   node.name = value.text("name");
   for (const JsonValue& child : value.list("children")) {
@@ -45,6 +47,10 @@ GltfNode read_node(const JsonValue& value, const GltfModel& model, const Counts&
   node.light = extensions.member("KHR_lights_punctual").index("light", counts.lights);
   const JsonValue instancing = extensions.member("EXT_mesh_gpu_instancing").member("attributes");
   for (const std::string& key : instancing.keys()) {
+    if (key != "TRANSLATION" && key != "ROTATION" && key != "SCALE") {
+      notes.insert("instances of nodes have " + key + ", which is left out");
+      continue;
+    }
     node.instances[key] = instancing.required_index(key, model.accessors.size());
   }
   return node;
@@ -92,7 +98,11 @@ Status read_nodes(const JsonValue& root, GltfModel& model) {
   const Counts counts{
       root.list("cameras").size(),
       root.member("extensions").member("KHR_lights_punctual").list("lights").size()};
-  for (size_t i = 0; i < values.size(); ++i) model.nodes[i] = read_node(values[i], model, counts);
+  std::set<std::string> notes;
+  for (size_t i = 0; i < values.size(); ++i) {
+    model.nodes[i] = read_node(values[i], model, counts, notes);
+  }
+  model.notes.insert(model.notes.end(), notes.begin(), notes.end());
   if (Status s = link_parents(model.nodes); !s) return s;
   const std::vector<JsonValue> scenes = root.list("scenes");
   std::vector<int> waiting;

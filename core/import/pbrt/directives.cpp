@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/base/text.h"
+#include "core/import/mass_copies.h"
 #include "core/import/pbrt/transforms.h"
 
 namespace hyades::core::pbrt {
@@ -11,7 +12,7 @@ namespace {
 
 constexpr size_t kDeepest = 4096;
 constexpr size_t kMostShapes = size_t{1} << 22;  ///< objects of a job
-constexpr size_t kMostInstances = size_t{1} << 26;
+constexpr size_t kMostSingle = size_t{1} << 17;  ///< instances that are objects of a job
 
 }  // namespace
 
@@ -421,7 +422,9 @@ Status Directives::object_begin() {
     return error("object '" + name + "' is already defined");
   }
   object_ = static_cast<int>(scene_.objects.size());
-  scene_.objects.push_back({name, place_, {}});
+  ObjectDefinition& object = scene_.objects.emplace_back();
+  object.name = name;
+  object.place = place_;
   return {};
 }
 
@@ -439,10 +442,26 @@ Status Directives::object_instance() {
   if (object_ >= 0) return error("ObjectInstance within an object, expected ObjectEnd before it");
   const auto found = objects_.find(name);
   if (found == objects_.end()) return error("there is no object '" + name + "'");
-  if (scene_.instances.size() >= kMostInstances) {
-    return error("the scene has more than " + format_count(kMostInstances) + " instances");
+  ObjectDefinition& object = scene_.objects[found->second];
+  const bool still = !state_.to_world.moves();
+  if (still && ++object.still >= kFewestCopies) return one_of_many(object);
+  if (scene_.instances.size() >= kMostSingle) {
+    return error("the scene has more than " + format_count(kMostSingle) +
+                 " instances that move, or are of objects with few of them");
   }
   scene_.instances.push_back({found->second, place_, state_.to_world});
+  return {};
+}
+
+Status Directives::one_of_many(ObjectDefinition& object) {
+  if (++copies_ > kMostCopies) {
+    return error("the scene has more than " + format_count(kMostCopies) + " instances");
+  }
+  const PlaceMatrix place{Mat4(state_.to_world.at[0])};
+  for (int c = 0; c < 4; ++c) {
+    if (glm::any(glm::isinf(place[c]))) return error("the instance is too far away or too large");
+  }
+  object.copies.push_back(place);
   return {};
 }
 

@@ -85,6 +85,8 @@ class Directives {
   Status translate();
   Status world_begin();
 
+  /// Another instance of an object that has many which do not move.
+  Status one_of_many(ObjectDefinition& object);
   Status render_entity(Entity& out, const std::string& what);
   Status multiply(const Mat4d& m);
   Status set(const Mat4d& m);
@@ -104,7 +106,8 @@ class Directives {
   GraphicsState state_;
   std::vector<Pushed> pushed_;
   bool in_world_ = false;
-  int object_ = -1;  ///< index of the object that is being defined
+  int object_ = -1;    ///< index of the object that is being defined
+  size_t copies_ = 0;  ///< of all objects
   std::unordered_map<std::string, Motion> coordinate_systems_;
   std::unordered_map<std::string, size_t> objects_;
   std::unordered_map<std::string, Place> float_textures_, spectrum_textures_, materials_, media_;

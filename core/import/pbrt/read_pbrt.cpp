@@ -2,6 +2,7 @@
 
 #include "core/import/pbrt/camera.h"
 #include "core/import/pbrt/grid_media.h"
+#include "core/import/pbrt/instances.h"
 #include "core/import/pbrt/lights.h"
 #include "core/import/pbrt/mesh_files.h"
 #include "core/import/pbrt/read_scene_text.h"
@@ -117,6 +118,7 @@ class PbrtSource : public SceneSource {
   Result<Bytes> made_file(const std::string& name) const override {
     if (name == "sky.exr") return make_sky(loaded_);
     if (name.starts_with("media/")) return make_medium_file(loaded_, name.substr(6));
+    if (name.starts_with("places/")) return make_places_file(loaded_, name.substr(7));
     if (name.starts_with("meshes/")) return make_mesh_file(loaded_, name.substr(7));
     return Error{"the scene makes no file '" + name + "'"};
   }

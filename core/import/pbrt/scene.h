@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/geometry/swarm.h"
 #include "core/import/pbrt/parameters.h"
 
 namespace hyades::core::pbrt {
@@ -51,6 +52,9 @@ struct ObjectDefinition {
   std::string name;
   Place place;
   std::vector<ShapeEntity> shapes;
+  size_t still = 0;  ///< how many of its instances do not move
+  /// Where they stand, but for the first kFewestCopies - 1, which are among Scene::instances.
+  std::vector<PlaceMatrix> copies;
 };
 
 struct ObjectInstance {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/text.h"
+#include "core/import/pbrt/instances.h"
 #include "core/import/pbrt/lights.h"
 #include "core/import/pbrt/mesh_files.h"
 #include "core/import/pbrt/meshes.h"
@@ -187,29 +188,7 @@ void add_objects(Context& context, Textures& textures, YamlMap& out) {
     for (const YamlEntry& entry : own->map) objects.put(entry.key, entry.value);
   }
   YamlMap groups;
-  Names group_names("group", context.request.prefix);
-  std::vector<std::string> names(context.scene.objects.size());
-  for (const ObjectInstance& instance : context.scene.instances) {
-    std::string& name = names[instance.object];
-    const ObjectDefinition& object = context.scene.objects[instance.object];
-    if (!name.empty() || object.shapes.empty()) continue;
-    const YamlPtr inside =
-        shapes.objects(object.shapes, "object-" + std::to_string(instance.object) + "-", true);
-    if (inside == nullptr) continue;
-    name = group_names.add(object.name);
-    groups.put(name, YamlMap{{"objects", inside}});
-  }
-  Names instance_names("instance", context.request.prefix);
-  for (const ObjectInstance& instance : context.scene.instances) {
-    if (names[instance.object].empty()) continue;
-    YamlMap object{{"instance", yaml_text(names[instance.object])}};
-    if (const YamlPtr steps =
-            motion_node(context, instance.to_world, Mat4d(1.0), instance.place, false)) {
-      object.put("transform", steps);
-    }
-    objects.put(instance_names.add("instance-" + context.scene.objects[instance.object].name),
-                object);
-  }
+  add_instances(context, shapes, groups, objects);
   if (!groups.empty()) out.put("groups", groups);
   if (!objects.empty()) out.put("objects", objects);
 }
