@@ -28,6 +28,11 @@ inline constexpr uint32_t kMaxCorners = 1U << 14;
 void triangulate(const std::vector<Vec3>& positions, std::span<const uint32_t> polygon,
                  std::vector<std::array<uint32_t, 3>>& out);
 
+/// The same of all polygons, whose corners stand one after the other and of which there are
+/// `sizes`: in parallel, and in the same order whatever the number of threads.
+void triangulate_all(const std::vector<Vec3>& positions, std::span<const uint32_t> corners,
+                     std::span<const uint32_t> sizes, std::vector<std::array<uint32_t, 3>>& out);
+
 /// Removes vertices that no triangle uses, keeping the order of the others.
 void drop_unused_vertices(TriangleMesh& mesh);
 

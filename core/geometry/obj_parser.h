@@ -24,9 +24,13 @@ struct ObjMaterial {
   std::string name;
 };
 
+/// Of a vertex of which no colour is said.
+inline constexpr Vec4 kNoColor{1.0F, 1.0F, 1.0F, -1.0F};
+
 /// What an OBJ file (Wavefront, "Advanced Visualizer Manual", appendix B1) holds of polygons.
 struct ObjData {
   std::vector<Vec3> positions;
+  std::vector<Vec4> colors;  ///< of positions, linear, 0..1, or kNoColor; empty where none has one
   std::vector<Vec2> uvs;
   std::vector<Vec3> normals;
   std::vector<ObjCorner> corners;
@@ -36,7 +40,10 @@ struct ObjData {
 };
 
 /// Parses the lines v, vt, vn, f, usemtl and mtllib, in parallel; other lines (groups, curves) are
-/// passed over. Indices are in range. Errors name the line: that of the first one.
+/// passed over. Indices are in range, and there are fewer than 2^32 corners. A position may have a
+/// colour behind it, as MeshLab and Blender write it: `v x y z r g b` or with an alpha, codes of
+/// sRGB from 0 to 1, or from 0 to 255 where one of the file is above 1; one number alone is the
+/// weight of a curve and means nothing. Errors name the line: that of the first one.
 Result<ObjData> parse_obj(std::span<const char> bytes);
 
 }  // namespace hyades::core

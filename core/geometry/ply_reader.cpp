@@ -46,10 +46,7 @@ class PlyReader {
       if (!s) return s.error().in("element '" + e.name + "'");
     }
     if (!has_vertices) return Error{"it has no vertices"};
-    for (size_t i = 0, at = 0; i < polygons_.sizes.size(); at += polygons_.sizes[i++]) {
-      const std::span<const uint32_t> corners(polygons_.corners);
-      triangulate(mesh_->positions, corners.subspan(at, polygons_.sizes[i]), mesh_->triangles);
-    }
+    triangulate_all(mesh_->positions, polygons_.corners, polygons_.sizes, mesh_->triangles);
     if (Status s = complete_mesh(*mesh_); !s) return s.error();
     return std::move(mesh_);
   }

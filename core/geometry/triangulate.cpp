@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "core/geometry/chunks.h"
 #include "core/geometry/mesh_source.h"
 
 namespace hyades::core {
@@ -144,6 +145,39 @@ void triangulate(const std::vector<Vec3>& positions, std::span<const uint32_t> p
   } else {
     clip_ears(positions, polygon, out);
   }
+}
+
+void triangulate_all(const std::vector<Vec3>& positions, std::span<const uint32_t> corners,
+                     std::span<const uint32_t> sizes, std::vector<std::array<uint32_t, 3>>& out) {
+  // Where the corners and triangles of each chunk of polygons begin.
+  struct Start {
+    size_t corner = 0;
+    size_t triangle = 0;
+  };
+  std::vector<Start> starts(chunk_count(sizes.size()) + 1);
+  for_chunks(sizes.size(), [&](size_t begin, size_t end) {
+    Start& after = starts[begin / kChunk + 1];
+    for (size_t i = begin; i < end; ++i) {
+      after.corner += sizes[i];
+      after.triangle += std::max(sizes[i], 2U) - 2;
+    }
+  });
+  starts[0].triangle = out.size();
+  for (size_t i = 1; i < starts.size(); ++i) {
+    starts[i].corner += starts[i - 1].corner;
+    starts[i].triangle += starts[i - 1].triangle;
+  }
+  out.resize(starts.back().triangle);
+  for_chunks(sizes.size(), [&](size_t begin, size_t end) {
+    const Start& start = starts[begin / kChunk];
+    std::vector<std::array<uint32_t, 3>> cut;
+    cut.reserve(starts[begin / kChunk + 1].triangle - start.triangle);
+    size_t at = start.corner;
+    for (size_t i = begin; i < end; at += sizes[i++]) {
+      triangulate(positions, corners.subspan(at, sizes[i]), cut);
+    }
+    std::copy(cut.begin(), cut.end(), out.begin() + static_cast<ptrdiff_t>(start.triangle));
+  });
 }
 
 }  // namespace hyades::core

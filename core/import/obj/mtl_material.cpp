@@ -19,8 +19,8 @@ constexpr float kUsualIndex = 1.5F;
 
 class Maker {
  public:
-  Maker(const MtlMaterial& from, float diagonal, const PictureOf& picture)
-      : from_(from), diagonal_(diagonal), reference_(picture) {}
+  Maker(const MtlMaterial& from, const MtlMesh& mesh, const PictureOf& picture)
+      : from_(from), mesh_(mesh), reference_(picture) {}
 
   MtlLook make() {
     if (is_glass()) {
@@ -72,6 +72,9 @@ class Maker {
   }
 
   YamlPtr diffuse() const {
+    if (mesh_.colored && !from_.diffuse && !from_.diffuse_map.given()) {
+      return YamlMap{{"type", yaml_word("vertex-color")}}.node();
+    }
     const bool known = from_.diffuse && !(from_.diffuse_map.given() && is_black(*from_.diffuse));
     const Rgb color =
         known ? *from_.diffuse : Rgb(kUsualDiffuse[0], kUsualDiffuse[1], kUsualDiffuse[2]);
@@ -141,7 +144,7 @@ class Maker {
       look_.material.put("normal_map", YamlMap{{"texture", picture(from_.normal_map, true)}});
     }
     if (!from_.bump_map.given() || from_.bump_map.bump == 0.0F) return;
-    const float height = from_.bump_map.bump * kBumpShare * diagonal_;
+    const float height = from_.bump_map.bump * kBumpShare * mesh_.diagonal;
     look_.material.put("bump", YamlMap{{"texture", picture(from_.bump_map, true)},
                                        {"height", yaml_number(height)}});
   }
@@ -165,6 +168,10 @@ class Maker {
   }
 
   void left_out() {
+    if (mesh_.colored && (from_.diffuse || from_.diffuse_map.given())) {
+      look_.notes.push_back("the colours of vertices are left out where '" + from_.name +
+                            "' is: it has its own");
+    }
     for (const std::string& line : from_.unknown) look_.notes.push_back(line + " is left out");
     if (from_.exponent_map.given()) {
       look_.notes.push_back("map_Ns of '" + from_.name + "' is left out: Ns counts everywhere");
@@ -191,15 +198,15 @@ class Maker {
   static YamlPtr pair(const Vec2& v) { return yaml_list({yaml_number(v.x), yaml_number(v.y)}); }
 
   const MtlMaterial& from_;
-  float diagonal_;
+  const MtlMesh& mesh_;
   const PictureOf& reference_;
   MtlLook look_;
 };
 
 }  // namespace
 
-MtlLook look_of(const MtlMaterial& material, float diagonal, const PictureOf& picture) {
-  return Maker(material, diagonal, picture).make();
+MtlLook look_of(const MtlMaterial& material, const MtlMesh& mesh, const PictureOf& picture) {
+  return Maker(material, mesh, picture).make();
 }
 
 }  // namespace hyades::core

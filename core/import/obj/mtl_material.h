@@ -16,6 +16,12 @@ struct MtlLook {
   std::vector<std::string> notes;  ///< what is left out
 };
 
+/// The mesh that has a material.
+struct MtlMesh {
+  float diagonal = 1.0F;  ///< its size [length], for the height of bumps, which files do not say
+  bool colored = false;   ///< its vertices have colours
+};
+
 /// A picture's reference in the job, of a map's file.
 using PictureOf = std::function<std::string(const std::string& file)>;
 
@@ -23,8 +29,8 @@ using PictureOf = std::function<std::string(const std::string& file)>;
 /// roughness is that of Walter et al. 2007 (alpha^2 = 2 / (Ns + 2)), Ks as the strength of the
 /// reflection as Blender writes it (0.5 is glass or varnish); glass where `illum` is 4, 6, 7 or 9,
 /// or where d is below 1 and Ni above 1; a mirror or metal where nothing is diffuse. Physically
-/// based ones: `principled`. d and map_d are otherwise the opacity. `diagonal` [length]: the size
-/// of the mesh, for the height of bumps, which files do not say.
-MtlLook look_of(const MtlMaterial& material, float diagonal, const PictureOf& picture);
+/// based ones: `principled`. d and map_d are otherwise the opacity. Where neither Kd nor map_Kd is
+/// said, the vertices' own colours count, if they have some, else clay.
+MtlLook look_of(const MtlMaterial& material, const MtlMesh& mesh, const PictureOf& picture);
 
 }  // namespace hyades::core

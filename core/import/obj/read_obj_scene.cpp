@@ -19,6 +19,7 @@ constexpr const char* kOnlyName = "mesh";
 struct Part {
   std::string material;  ///< as the file names it
   Bounds bounds;
+  bool colored = false;  ///< its vertices are
 };
 
 class ObjScene : public SceneSource {
@@ -51,9 +52,10 @@ class ObjScene : public SceneSource {
       const auto in_library = libraries.find(part.material);
       const std::string library =
           in_library != libraries.end() ? in_library->second : std::string();
-      const MtlLook look = look_of(material, diagonal, [&](const std::string& picture) {
-        return request.beside + resolve_reference(picture, library);
-      });
+      const MtlLook look =
+          look_of(material, {diagonal, part.colored}, [&](const std::string& picture) {
+            return request.beside + resolve_reference(picture, library);
+          });
       for (const std::string& line : look.notes)
         told.notes.push_back(resolve_reference(library, place) + ": " + line);
       looks.put(name, look.material);
@@ -114,7 +116,7 @@ Result<std::shared_ptr<const SceneSource>> read_obj_scene(AssetResolver& files,
   scene->file = std::filesystem::path(reference).filename().string();
   Bounds bounds;
   for (const MeshPart& part : mesh->parts) {
-    scene->parts.push_back({part.name, part.mesh->bounds});
+    scene->parts.push_back({part.name, part.mesh->bounds, !part.mesh->colors.empty()});
     bounds.include(part.mesh->bounds);
   }
   if (bounds.empty()) return Error{reference + ": the mesh has no triangles"};

@@ -13,10 +13,10 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// The material that the lines say, as a job's text.
-std::string look(const std::string& lines) {
+std::string look(const std::string& lines, const MtlMesh& mesh = {}) {
   const auto materials = parse_mtl("newmtl m\n" + lines);
   if (!materials) return materials.error().message;
-  const MtlLook made = look_of(materials->front(), 1.0F, [](const std::string& f) { return f; });
+  const MtlLook made = look_of(materials->front(), mesh, [](const std::string& f) { return f; });
   std::string text = write_yaml(*YamlMap{{"m", made.material.node()}}.node());
   if (!made.emit.empty()) text += write_yaml(*YamlMap{{"emit", made.emit.node()}}.node());
   for (const std::string& note : made.notes) text += note + "\n";
@@ -33,6 +33,16 @@ TEST(MtlMaterial, ClassicOnes) {
       << "model 1 has no highlights";
   EXPECT_EQ(look("Kd 0 0 0\nKs 0.9 0.8 0.7\nillum 3\n"),
             "m: {type: conductor, color: [0.9, 0.8, 0.7], roughness: 0}\n");
+}
+
+TEST(MtlMaterial, ColoursOfVerticesCountWhereItSaysNone) {
+  const MtlMesh colored{1.0F, true};
+  EXPECT_EQ(look("", colored), "m: {type: lambert, color: {type: vertex-color}}\n");
+  EXPECT_EQ(look("Pr 0.5\n", colored),
+            "m: {type: principled, base_color: {type: vertex-color}, roughness: 0.5}\n");
+  EXPECT_EQ(look("Kd 0.5\n", colored),
+            "m: {type: lambert, color: 0.5}\n"
+            "the colours of vertices are left out where 'm' is: it has its own\n");
 }
 
 TEST(MtlMaterial, Glass) {
@@ -119,7 +129,7 @@ TEST(MtlFile, DamagedOnesAreReadOrRefused) {
       continue;
     }
     for (const MtlMaterial& material : *materials) {
-      const MtlLook made = look_of(material, 1.0F, [](const std::string&) { return "x.png"; });
+      const MtlLook made = look_of(material, {}, [](const std::string&) { return "x.png"; });
       Diagnostics diagnostics;
       parse_yaml(write_yaml(*YamlMap{{"m", made.material.node()}}.node()), "m", diagnostics);
       EXPECT_TRUE(diagnostics.empty()) << diagnostics.to_string();
