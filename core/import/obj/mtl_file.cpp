@@ -1,109 +1,16 @@
 #include "core/import/obj/mtl_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <span>
 #include <utility>
 
-#include "core/geometry/text_scanner.h"
+#include "core/import/obj/mtl_words.h"
 
 namespace hyades::core {
 
 namespace {
 
 using Material = MtlMaterial;
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Takes the first word off `text`.
-std::string_view next_word(std::string_view& text) {
-  text = trimmed(text);
-  size_t end = 0;
-  while (end < text.size() && !is_space(text[end])) ++end;
-  const std::string_view word = text.substr(0, end);
-  text = trimmed(text.substr(end));
-  return word;
-}
-
-/// Reads finite numbers into `out`; how many there were, or -1 where something else stands there.
-int read_numbers(std::string_view text, std::span<float> out) {
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  int count = 0;
-  while (static_cast<size_t>(count) < out.size()) {
-    while (at < end && is_space(*at)) ++at;
-    if (at == end || *at == '#') break;
-    float& number = out[static_cast<size_t>(count)];
-    at = scan_float(at, end, number);
-    if (at == nullptr || !std::isfinite(number)) return -1;
-    ++count;
-  }
-  return count;
-}
-
-bool is_number(std::string_view word) {
-  float number = 0.0F;
-  const char* end = word.data() + word.size();
-  return !word.empty() && scan_float(word.data(), end, number) == end && std::isfinite(number);
-}
-
-/// Numbers of an option, at most as many as `out` has; those that are missing stay as they are.
-void take_numbers(std::string_view& rest, std::span<float> out) {
-  for (float& number : out) {
-    std::string_view after = rest;
-    const std::string_view word = next_word(after);
-    if (!is_number(word)) return;
-    read_numbers(word, {&number, 1});
-    rest = after;
-  }
-}
-
-std::string channel_of(std::string_view word) {
-  if (word == "r") return "red";
-  if (word == "g") return "green";
-  if (word == "b") return "blue";
-  if (word == "m") return "alpha";
-  return "luminance";
-}
-
-/// A picture and its options. Null, or what was expected.
-const char* read_map(std::string_view rest, MtlMap& map) {
-  map = {};
-  while (rest.starts_with('-')) {
-    const std::string_view option = next_word(rest);
-    float numbers[3] = {};
-    if (option == "-o" || option == "-t") {
-      take_numbers(rest, numbers);
-      if (option == "-o") map.offset = {numbers[0], numbers[1]};
-    } else if (option == "-s") {
-      numbers[0] = 1.0F;
-      numbers[1] = 1.0F;
-      take_numbers(rest, numbers);
-      map.scale = {numbers[0], numbers[1]};
-    } else if (option == "-mm") {
-      numbers[1] = 1.0F;
-      take_numbers(rest, {numbers, 2});
-      map.base = numbers[0];
-      map.gain = numbers[1];
-    } else if (option == "-bm") {
-      take_numbers(rest, {&map.bump, 1});
-    } else if (option == "-clamp") {
-      map.clamp = next_word(rest) == "on";
-    } else if (option == "-imfchan") {
-      map.channel = channel_of(next_word(rest));
-    } else {  // -blendu on, -blendv on, -cc off, -boost 1, -texres 1, -type sphere
-      next_word(rest);
-    }
-  }
-  map.file = std::string(rest);
-  std::replace(map.file.begin(), map.file.end(), '\\', '/');
-  return map.file.empty() ? "expected a file name after its options" : nullptr;
-}
 
 /// A colour: three numbers, or one for all channels. Null, or what was expected.
 const char* read_color(std::string_view text, Rgb& color) {
@@ -125,13 +32,15 @@ constexpr Shares kShares[] = {{"Pr", &Material::roughness},       {"Pm", &Materi
                               {"anisor", &Material::rotation}};
 
 using Maps = std::pair<std::string_view, MtlMap Material::*>;
-constexpr Maps kMaps[] = {{"map_Kd", &Material::diffuse_map},   {"map_Ks", &Material::specular_map},
-                          {"map_Ns", &Material::exponent_map},  {"map_Ke", &Material::emission_map},
-                          {"map_d", &Material::dissolve_map},   {"map_bump", &Material::bump_map},
-                          {"map_Bump", &Material::bump_map},    {"bump", &Material::bump_map},
-                          {"norm", &Material::normal_map},      {"map_Kn", &Material::normal_map},
-                          {"map_Pr", &Material::roughness_map}, {"map_Pm", &Material::metallic_map},
-                          {"map_Ps", &Material::sheen_map}};
+constexpr Maps kMaps[] = {
+    {"map_Kd", &Material::diffuse_map},        {"map_Ks", &Material::specular_map},
+    {"map_Ns", &Material::exponent_map},       {"map_Ke", &Material::emission_map},
+    {"map_d", &Material::dissolve_map},        {"map_bump", &Material::bump_map},
+    {"map_Bump", &Material::bump_map},         {"bump", &Material::bump_map},
+    {"norm", &Material::normal_map},           {"map_Kn", &Material::normal_map},
+    {"map_Pr", &Material::roughness_map},      {"map_Pm", &Material::metallic_map},
+    {"map_Ps", &Material::sheen_map},          {"map_Pc", &Material::coat_map},
+    {"map_Pcr", &Material::coat_roughness_map}};
 
 /// What says nothing about a path-traced picture: ambient light and its pictures, anti-aliasing,
 /// sharpness of reflections.
@@ -143,8 +52,13 @@ auto find_row(const Table& table, std::string_view key) {
                       [&](const auto& row) { return row.first == key; });
 }
 
+void leave_out(int line, std::string_view key, std::string_view what, Material& material) {
+  material.unknown.push_back("line " + std::to_string(line) + ": " + std::string(key) +
+                             (what.empty() ? "" : " ") + std::string(what));
+}
+
 /// Numbers and words of a classic material. Null where it was read; `known` is false for others.
-const char* read_classic(std::string_view key, std::string_view rest, Material& material,
+const char* read_classic(std::string_view key, std::string_view rest, int line, Material& material,
                          bool& known) {
   float number = 0.0F;
   known = true;
@@ -154,7 +68,7 @@ const char* read_classic(std::string_view key, std::string_view rest, Material& 
     return wrong;
   }
   if (key == "d" || key == "Tr") {
-    if (rest.starts_with("-halo")) next_word(rest);
+    if (rest.starts_with("-halo")) leave_out(line, key, next_word(rest), material);
     if (read_numbers(rest, {&number, 1}) != 1) return "expected a finite number";
     const float there = key == "d" ? number : 1.0F - number;
     material.dissolve = std::clamp(there, 0.0F, 1.0F);
@@ -175,8 +89,7 @@ const char* read_classic(std::string_view key, std::string_view rest, Material& 
 const char* read_line(std::string_view key, std::string_view rest, int line, Material& material) {
   if (const auto* row = find_row(kColors, key); row != std::end(kColors)) {
     if (rest.starts_with("spectral") || rest.starts_with("xyz")) {
-      material.unknown.push_back("line " + std::to_string(line) + ": " + std::string(key) + " " +
-                                 std::string(rest.substr(0, rest.find(' '))));
+      leave_out(line, key, next_word(rest), material);
       return nullptr;
     }
     Rgb color;
@@ -191,13 +104,18 @@ const char* read_line(std::string_view key, std::string_view rest, int line, Mat
     return nullptr;
   }
   if (const auto* row = find_row(kMaps, key); row != std::end(kMaps)) {
-    return read_map(rest, material.*row->second);
+    MtlMap& map = material.*row->second;
+    std::vector<std::string> left_out;
+    const char* wrong = read_mtl_map(rest, map, left_out);
+    for (const std::string& option : left_out) leave_out(line, key, option, material);
+    const bool relief = &map == &material.bump_map || &map == &material.normal_map;
+    if (map.strength != 1.0F && !relief) leave_out(line, key, "-bm", material);
+    return wrong;
   }
   bool known = false;
-  if (const char* wrong = read_classic(key, rest, material, known); known) return wrong;
+  if (const char* wrong = read_classic(key, rest, line, material, known); known) return wrong;
   if (std::find(std::begin(kMeaningless), std::end(kMeaningless), key) == std::end(kMeaningless)) {
-    material.unknown.push_back("line " + std::to_string(line) + ": " +
-                               std::string(key.substr(0, 40)));
+    leave_out(line, key.substr(0, 40), {}, material);
   }
   return nullptr;
 }
@@ -206,7 +124,7 @@ const char* read_line(std::string_view key, std::string_view rest, int line, Mat
 
 bool MtlMaterial::physical() const {
   return roughness || metallic || sheen || coat || anisotropy || roughness_map.given() ||
-         metallic_map.given() || sheen_map.given();
+         metallic_map.given() || sheen_map.given() || coat_map.given();
 }
 
 Result<std::vector<MtlMaterial>> parse_mtl(std::string_view text) {

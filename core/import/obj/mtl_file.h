@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,21 +8,9 @@
 
 #include "core/base/result.h"
 #include "core/base/vec.h"
+#include "core/import/obj/mtl_map.h"
 
 namespace hyades::core {
-
-/// A picture in an MTL file, and what stands before its name.
-struct MtlMap {
-  std::string file;     ///< as written, '\' made '/'
-  Vec2 offset{0.0F};    ///< -o
-  Vec2 scale{1.0F};     ///< -s
-  float base = 0.0F;    ///< -mm base gain: base + gain * value
-  float gain = 1.0F;    ///< see base
-  float bump = 1.0F;    ///< -bm
-  bool clamp = false;   ///< -clamp on
-  std::string channel;  ///< -imfchan: red | green | blue | alpha | luminance; empty: not said
-  bool given() const { return !file.empty(); }
-};
 
 /// A material of an MTL file (Wavefront, "MTL material format", 1995; the keys of physically based
 /// shading as exporters have written them since 2015). What the file does not say is not there.
@@ -55,7 +42,9 @@ struct MtlMaterial {
   MtlMap roughness_map;                 ///< map_Pr
   MtlMap metallic_map;                  ///< map_Pm
   MtlMap sheen_map;                     ///< map_Ps
-  std::vector<std::string> unknown;     ///< lines that have no counterpart: "line 7: disp"
+  MtlMap coat_map;                      ///< map_Pc
+  MtlMap coat_roughness_map;            ///< map_Pcr
+  std::vector<std::string> unknown;     ///< what has no counterpart: "line 7: disp"
 
   /// Whether any key of physically based shading is there.
   bool physical() const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "core/import/tinted.h"
 
@@ -16,6 +18,18 @@ constexpr float kUsualDiffuse[3] = {0.60F, 0.45F, 0.35F};
 constexpr float kBumpShare = 0.002F;
 
 constexpr float kUsualIndex = 1.5F;
+
+/// Of a normal map, in the job language.
+constexpr float kMostStrength = 100.0F;
+
+/// All that may be shown; map_Ns has no counterpart.
+constexpr std::pair<const char*, MtlMap MtlMaterial::*> kMaps[] = {
+    {"map_Kd", &MtlMaterial::diffuse_map},        {"map_Ks", &MtlMaterial::specular_map},
+    {"map_Ke", &MtlMaterial::emission_map},       {"map_d", &MtlMaterial::dissolve_map},
+    {"map_bump", &MtlMaterial::bump_map},         {"norm", &MtlMaterial::normal_map},
+    {"map_Pr", &MtlMaterial::roughness_map},      {"map_Pm", &MtlMaterial::metallic_map},
+    {"map_Ps", &MtlMaterial::sheen_map},          {"map_Pc", &MtlMaterial::coat_map},
+    {"map_Pcr", &MtlMaterial::coat_roughness_map}};
 
 class Maker {
  public:
@@ -71,7 +85,7 @@ class Maker {
     return 0.5F;
   }
 
-  YamlPtr diffuse() const {
+  YamlPtr diffuse() {
     if (mesh_.colored && !from_.diffuse && !from_.diffuse_map.given()) {
       return YamlMap{{"type", yaml_word("vertex-color")}}.node();
     }
@@ -115,8 +129,8 @@ class Maker {
     out.put("roughness", share(from_.roughness_map, from_.roughness, roughness()));
     share_if("metallic", from_.metallic_map, from_.metallic);
     share_if("sheen", from_.sheen_map, from_.sheen);
-    if (from_.coat) out.put("coat", yaml_number(*from_.coat));
-    if (from_.coat_roughness) out.put("coat_roughness", yaml_number(*from_.coat_roughness));
+    share_if("coat", from_.coat_map, from_.coat);
+    share_if("coat_roughness", from_.coat_roughness_map, from_.coat_roughness);
     if (from_.anisotropy) out.put("anisotropic", yaml_number(*from_.anisotropy));
     if (from_.rotation) {
       out.put("anisotropic_rotation", yaml_number(*from_.rotation - std::floor(*from_.rotation)));
@@ -133,7 +147,7 @@ class Maker {
   }
 
   /// A number or its picture; the number multiplies the picture where it is above 0.
-  YamlPtr share(const MtlMap& map, const std::optional<float>& number, float otherwise) const {
+  YamlPtr share(const MtlMap& map, const std::optional<float>& number, float otherwise) {
     if (!map.given()) return yaml_number(number.value_or(otherwise));
     const float factor = number && *number > 0.0F ? *number : 1.0F;
     return scaled(factor, picture(map, true));
@@ -141,10 +155,13 @@ class Maker {
 
   void relief() {
     if (from_.normal_map.given()) {
-      look_.material.put("normal_map", YamlMap{{"texture", picture(from_.normal_map, true)}});
+      YamlMap normals{{"texture", picture(from_.normal_map, true)}};
+      const float strength = std::clamp(from_.normal_map.strength, 0.0F, kMostStrength);
+      if (strength != 1.0F) normals.put("strength", yaml_number(strength));
+      look_.material.put("normal_map", normals);
     }
-    if (!from_.bump_map.given() || from_.bump_map.bump == 0.0F) return;
-    const float height = from_.bump_map.bump * kBumpShare * mesh_.diagonal;
+    if (!from_.bump_map.given() || from_.bump_map.strength == 0.0F) return;
+    const float height = from_.bump_map.strength * kBumpShare * mesh_.diagonal;
     look_.material.put("bump", YamlMap{{"texture", picture(from_.bump_map, true)},
                                        {"height", yaml_number(height)}});
   }
@@ -168,22 +185,30 @@ class Maker {
   }
 
   void left_out() {
+    for (const std::string& line : from_.unknown) look_.notes.push_back(line + " is left out");
+    const auto note = [&](const std::string& what, const char* why) {
+      look_.notes.push_back(what + " of '" + from_.name + "' is left out" + why);
+    };
+    for (const auto& [key, map] : kMaps) {
+      if ((from_.*map).given() && !used_.contains(&(from_.*map))) note(key, "");
+    }
+    if (from_.exponent_map.given()) note("map_Ns", ": Ns counts everywhere");
+    const bool tints = from_.filter && !is_black(*from_.filter) && *from_.filter != Rgb(1.0F);
+    if (tints && !is_glass()) note("Tf", ": only glass is tinted");
     if (mesh_.colored && (from_.diffuse || from_.diffuse_map.given())) {
       look_.notes.push_back("the colours of vertices are left out where '" + from_.name +
                             "' is: it has its own");
     }
-    for (const std::string& line : from_.unknown) look_.notes.push_back(line + " is left out");
-    if (from_.exponent_map.given()) {
-      look_.notes.push_back("map_Ns of '" + from_.name + "' is left out: Ns counts everywhere");
-    }
   }
 
   /// A map's picture, null where there is none. `numbers`: what it holds are no colours.
-  YamlPtr picture(const MtlMap& map, bool numbers = false) const {
+  YamlPtr picture(const MtlMap& map, bool numbers = false) {
     if (!map.given()) return nullptr;
+    used_.insert(&map);
     YamlMap out{{"type", yaml_word("image")}, {"file", yaml_text(reference_(map.file))}};
     if (numbers) out.put("color_space", yaml_word("linear"));
     if (map.clamp) out.put("wrap", yaml_word("clamp"));
+    if (!map.blend) out.put("filter", yaml_word("nearest"));
     if (!map.channel.empty()) out.put("channel", yaml_word(map.channel));
     if (map.scale != Vec2(1.0F)) out.put("scale", pair(map.scale));
     if (map.offset != Vec2(0.0F)) out.put("offset", pair(map.offset));
@@ -200,6 +225,7 @@ class Maker {
   const MtlMaterial& from_;
   const MtlMesh& mesh_;
   const PictureOf& reference_;
+  std::set<const MtlMap*> used_;  ///< those that the job has
   MtlLook look_;
 };
 

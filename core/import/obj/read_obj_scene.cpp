@@ -74,8 +74,9 @@ class ObjScene : public SceneSource {
 
 /// All pictures of a material.
 std::vector<const MtlMap*> maps_of(const MtlMaterial& m) {
-  return {&m.diffuse_map, &m.specular_map,  &m.emission_map, &m.dissolve_map, &m.bump_map,
-          &m.normal_map,  &m.roughness_map, &m.metallic_map, &m.sheen_map};
+  return {&m.diffuse_map, &m.specular_map, &m.emission_map,      &m.dissolve_map,
+          &m.bump_map,    &m.normal_map,   &m.roughness_map,     &m.metallic_map,
+          &m.sheen_map,   &m.coat_map,     &m.coat_roughness_map};
 }
 
 /// The materials of one library, as mtllib names it.

@@ -79,7 +79,44 @@ TEST(MtlMaterial, PicturesAndTheirOptions) {
   EXPECT_THAT(look("map_Ke glow.png\n"), HasSubstr("emit: {color: {type: image, file: glow.png}"));
 }
 
+TEST(MtlMaterial, OptionsOfPicturesThatHaveACounterpart) {
+  EXPECT_THAT(look("map_Kd -blendu off -blendv off a.png\n"),
+              HasSubstr("color: {type: image, file: a.png, filter: nearest}"));
+  EXPECT_THAT(look("norm -bm 0.5 n.png\n"), HasSubstr("color_space: linear}, strength: 0.5}"));
+  EXPECT_THAT(look("map_Kd -imfchan r -o 1 -s 2 a.png\n"),
+              HasSubstr("channel: red, scale: [2, 1], offset: [1, 0]}"));
+  EXPECT_THAT(look("Pr 0.5\nmap_Pc c.png\nPcr 0.2\nmap_Pcr r.png\n"),
+              HasSubstr("coat: {type: image, file: c.png, color_space: linear}\n  coat_roughness: "
+                        "{type: scale, input: {type: image, file: r.png, color_space: linear}, "
+                        "factor: 0.2}"));
+  // Those that change nothing are not worth a word.
+  EXPECT_EQ(look("map_Kd -cc off -boost 0 -t 0 0 0 -mm 0 1 -blendu on -blendv on -o 0 0 0 -s 1 1 1 "
+                 "-clamp off a.png\n"),
+            "m: {type: lambert, color: {type: image, file: a.png}}\n");
+}
+
+TEST(MtlMaterial, OptionsOfPicturesThatHaveNoneAreTold) {
+  const std::pair<const char*, const char*> options[] = {
+      {"-boost 2", "-boost 2"},       {"-t 0 0.5 0", "-t 0 0.5 0"},
+      {"-cc on", "-cc on"},           {"-type sphere", "-type sphere"},
+      {"-texres 512", "-texres 512"}, {"-blendu off", "-blendu off"},
+      {"-blendv off", "-blendv off"}, {"-clamp maybe", "-clamp maybe"},
+      {"-imfchan z", "-imfchan z"},   {"-bm 2", "-bm"},
+      {"-unheard of", "-unheard of"},
+  };
+  for (const auto& [option, told] : options) {
+    const std::string text = look(std::string("map_Kd ") + option + " a.png\n");
+    EXPECT_EQ(text, std::string("m: {type: lambert, color: {type: image, file: a.png}}\n"
+                                "line 2: map_Kd ") +
+                        told + " is left out\n");
+  }
+  EXPECT_THAT(look("d -halo 0.5\n"), HasSubstr("line 2: d -halo is left out"));
+}
+
 TEST(MtlMaterial, WhatIsLeftOutIsTold) {
+  EXPECT_THAT(look("Kd 1\nKs 1\nillum 1\nmap_Ks s.png\n"), HasSubstr("map_Ks of 'm' is left out"));
+  EXPECT_THAT(look("illum 7\nmap_Pr r.png\n"), HasSubstr("map_Pr of 'm' is left out"));
+  EXPECT_THAT(look("Kd 1\nTf 1 0 0\n"), HasSubstr("Tf of 'm' is left out: only glass is tinted"));
   EXPECT_THAT(
       look("disp d.png\nmap_Ns n.png\nKa 1 1 1\nrefl -type sphere r.png\n"),
       testing::AllOf(HasSubstr("line 2: disp is left out"), HasSubstr("line 5: refl is left out"),
