@@ -47,7 +47,9 @@ void normalize(std::vector<Vec3>& normals) {
   (void)find_first(normals.size(), [&](size_t i) {
     const Vec3d n(normals[i]);
     const double length2 = glm::dot(n, n);
-    normals[i] = length2 > 0.0 ? Vec3(n / std::sqrt(length2)) : Vec3(0.0F);
+    // Programs write such normals for facets of no area; there the facet's own one counts.
+    normals[i] =
+        length2 > 0.0 && std::isfinite(length2) ? Vec3(n / std::sqrt(length2)) : Vec3(0.0F);
     return false;
   });
 }
@@ -102,7 +104,6 @@ Status complete_mesh(TriangleMesh& mesh) {
                  std::to_string(n) + " (counted from 0)"};
   }
   if (Status s = check_finite(mesh.positions, "the position"); !s) return s;
-  if (Status s = check_finite(mesh.normals, "the normal"); !s) return s;
   if (Status s = check_finite(mesh.uvs, "the texture coordinate"); !s) return s;
   if (Status s = check_finite(mesh.second_uvs, "the second texture coordinate"); !s) return s;
   if (Status s = check_finite(mesh.colors, "the colour"); !s) return s;

@@ -37,8 +37,9 @@ void triangulate_all(const std::vector<Vec3>& positions, std::span<const uint32_
 void drop_unused_vertices(TriangleMesh& mesh);
 
 /// What every reader does last: checks that indices are in range, drops unused vertices, makes
-/// normals unit vectors, reads off the bounds. Errors: an index out of range (with its face), a
-/// position, normal or UV that is not finite, no triangles.
+/// normals unit vectors (those that are not finite, or 0, become 0: there facets are flat), reads
+/// off the bounds. Errors: an index out of range (with its face), a position or UV that is not
+/// finite, no triangles.
 Status complete_mesh(TriangleMesh& mesh);
 
 /// The complaint about a file that is of no format known here.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/import/pbrt/layer_walk.h"
 #include "core/import/pbrt/materials.h"
 
 namespace hyades::core::pbrt {
@@ -36,12 +37,14 @@ class MaterialKinds {
   YamlPtr roughness(const std::string& prefix);
   /// Adds it, and that facets are those of pbrt, where the surface is not smooth.
   void put_facets(YamlMap& out, const std::string& prefix);
-  /// A base's colour as the job language's coat wants it, below a coat of index `eta`.
-  static YamlPtr below_coat(const YamlPtr& color, float eta);
+  /// The layer that parameters tell, all but whether it scatters; `rough`: its roughness().
+  CoatLayer layer(const std::string& prefix, const YamlPtr& rough);
+  Rgb layer_albedo();
+  /// A matt base's colour as the job language's coat wants it, below a layer of pbrt.
+  YamlPtr below_coat(const YamlPtr& color, const CoatLayer& layer, const Rgb& albedo);
   float index(const char* name, float otherwise);
   /// Adds eta and k, metal or color; those of metal are divided by `around`, the index outside.
   void put_metal(YamlMap& out, const std::string& prefix, float around);
-  void put_layer_medium_note();
   /// Another material that this one is made of.
   std::string part(const char* name, const YamlPtr& node);
   void put_bumps(YamlMap& out);

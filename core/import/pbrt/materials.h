@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/import/pbrt/layer_walk.h"
 #include "core/import/pbrt/textures.h"
 
 namespace hyades::core::pbrt {
@@ -33,6 +34,7 @@ class Materials {
   std::unordered_map<const Entity*, WrittenMaterial> written_;
   std::unordered_map<std::string, std::string> same_;      ///< text -> name, of those without one
   std::unordered_map<std::string, std::string> cut_outs_;  ///< material and opacity -> name
+  LayerAnswers layers_;
   friend class MaterialKinds;
 };
 

@@ -235,6 +235,16 @@ TEST(ReadPly, Errors) {
                "no list 'vertex_indices'");
 }
 
+TEST(ReadPly, NormalsThatAreNoneAreFlat) {
+  const auto mesh = read_text(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 nan nan nan\n1 0 0 0 2 0\n0 1 0 0 inf 0\n3 0 1 2\n");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_EQ((*mesh)->normals, (std::vector<Vec3>{Vec3(0.0F), Vec3(0, 1, 0), Vec3(0.0F)}));
+}
+
 TEST(ReadPly, BinaryErrors) {
   const std::string layout =
       "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
