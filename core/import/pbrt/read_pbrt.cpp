@@ -29,6 +29,9 @@ class Loader {
          {&scene.named_materials, &scene.float_textures, &scene.spectrum_textures, &scene.media}) {
       for (const NamedEntity& entity : *list) add(entity);
     }
+    for (const NamedEntity& texture : scene.float_textures) {
+      if (texture.type == "imagemap") add_file(texture);
+    }
     for (const LightEntity& light : scene.lights) {
       add(light);
       if (light.type == "infinite") add_file(light);

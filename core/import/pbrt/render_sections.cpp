@@ -164,6 +164,11 @@ void add_integrator(Context& context, YamlMap& out) {
   std::string type = "path";
   if (entity.type == "bdpt" || entity.type == "mlt") {
     type = entity.type;
+  } else if (entity.type == "sppm" || entity.type == "lightpath") {
+    // Made for what paths from the eye do not find.
+    type = "bdpt";
+    context.report.note(entity.place, "bidirectional path tracing stands in for the integrator '" +
+                                          entity.type + "'");
   } else if (entity.type != "volpath" && entity.type != "path") {
     context.report.note(entity.place,
                         "path tracing stands in for the integrator '" + entity.type + "'");

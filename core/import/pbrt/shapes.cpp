@@ -160,6 +160,13 @@ YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::strin
       std::string inside = media_.named(shape.inside, shape.to_world.at[0] * before, shape.place);
       if (!material.interior.empty()) inside = material.interior;
       if (!inside.empty()) object.put("interior", yaml_text(inside));
+      if (inside.empty() && !shape.outside.empty() && material.sided &&
+          shape.outside != context_.scene.camera_medium) {
+        context_.report.note(
+            shape.place, "the medium '" + shape.outside +
+                             "' is only outside of this surface: bodies here are told by what "
+                             "is inside, and those of several surfaces do not keep their light");
+      }
     }
     if (shines) {
       const Entity& light = context_.scene.area_lights[static_cast<size_t>(shape.area_light)];

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/text.h"
+#include "core/image/read_image.h"
 #include "core/import/pbrt/read_parameters.h"
 #include "core/import/pbrt/transforms.h"
 
@@ -141,6 +142,23 @@ YamlPtr TextureKinds::ptex() {
   return typed("constant", {{"value", yaml_number(0.5F)}});
 }
 
+TextureKinds::FloatOf TextureKinds::float_of(const std::string& file) const {
+  // What cannot be read is told when the job asks for it.
+  const auto bytes = context_.loaded.files.find(file);
+  if (bytes == context_.loaded.files.end()) return FloatOf::grey;
+  const auto picture = read_image(bytes->second, file, ColorSpace::linear);
+  if (!picture || picture->find_channel("R") < 0) return FloatOf::grey;
+  const auto channels = static_cast<size_t>(picture->channel_count());
+  const int alpha = picture->find_channel("A");
+  bool colored = false;
+  for (size_t at = 0; at < picture->data.size(); at += channels) {
+    const float* pixel = &picture->data[at];
+    if (alpha >= 0 && pixel[alpha] != 1.0F) return FloatOf::alpha;
+    colored = colored || pixel[0] != pixel[1] || pixel[1] != pixel[2];
+  }
+  return colored ? FloatOf::mean : FloatOf::grey;
+}
+
 YamlPtr TextureKinds::image() {
   const std::string reference = reader_.text("filename");
   if (reference.empty()) {
@@ -173,10 +191,26 @@ YamlPtr TextureKinds::image() {
     out.put("filter", yaml_word("anisotropic"));
   }
   reader_.number("maxanisotropy", 8.0F);
-  if (floats_) out.put("channel", yaml_word("luminance"));
   put_plane_mapping(out);
-  YamlPtr made = out.node();
-  if (gamma != 1.0F) made = typed("power", {{"input", made}, {"exponent", yaml_number(gamma)}});
+  const auto of_channel = [&](const char* channel) {
+    YamlMap image = out;
+    if (channel != nullptr) image.put("channel", yaml_word(channel));
+    YamlPtr node = image.node();
+    if (gamma == 1.0F) return node;
+    return typed("power", {{"input", node}, {"exponent", yaml_number(gamma)}});
+  };
+  YamlPtr made;
+  if (!floats_) {
+    made = of_channel(nullptr);
+  } else if (const FloatOf of = float_of(reference); of == FloatOf::mean) {
+    const auto sum = [](const YamlPtr& a, const YamlPtr& b) {
+      return typed("add", {{"a", a}, {"b", b}});
+    };
+    const YamlPtr all = sum(sum(of_channel("red"), of_channel("green")), of_channel("blue"));
+    made = typed("scale", {{"input", all}, {"factor", yaml_number(1.0F / 3.0F)}});
+  } else {
+    made = of_channel(of == FloatOf::alpha ? "alpha" : "luminance");
+  }
   const float scale = reader_.number("scale", 1.0F);
   if (scale != 1.0F)
     made = typed("scale", {{"input", made}, {"factor", yaml_number(std::max(scale, 0.0F))}});

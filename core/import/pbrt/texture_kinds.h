@@ -40,6 +40,11 @@ class TextureKinds {
   Textures& textures_;
   Context& context_;
   const NamedEntity& entity_;
+  /// What pbrt takes for the number of a picture: alpha where some pixel is not opaque, else the
+  /// mean of red, green and blue.
+  enum class FloatOf { grey, mean, alpha };
+  FloatOf float_of(const std::string& file) const;
+
   bool floats_;
   ParameterReader reader_;
 };

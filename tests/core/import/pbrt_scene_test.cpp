@@ -151,6 +151,51 @@ TEST(PbrtScene, FacetsAreThoseOfPbrt) {
               HasSubstr("multiple_scattering: false"));
 }
 
+TEST(PbrtScene, FloatsOfPicturesAreTheirAlphaOrMean) {
+  const auto job = [](const std::string& picture, const std::string& more = "") {
+    PbrtFiles files(
+        pbrt_world("Texture \"t\" \"float\" \"imagemap\" \"string filename\" "
+                   "\"t.tga\" " +
+                   more +
+                   " Material \"diffuse\" \"texture displacement\" \"t\" "
+                   "Shape \"sphere\""));
+    if (!picture.empty()) files.add("t.tga", picture);
+    return read_pbrt_job(files).text;
+  };
+  const std::string color("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0\1\2\3", 21);
+  const std::string grey("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0\2\2\2", 21);
+  const std::string clear("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x08\1\2\3\4", 22);
+  const std::string opaque("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x20\x08\2\2\2\xFF", 22);
+  EXPECT_THAT(job(grey), HasSubstr("channel: luminance"));
+  EXPECT_THAT(job(opaque), HasSubstr("channel: luminance"));
+  EXPECT_THAT(job(clear), HasSubstr("channel: alpha"));
+  EXPECT_THAT(job(""), HasSubstr("channel: luminance"));
+  const std::string mean = job(color, "\"string encoding\" \"gamma 2\"");
+  EXPECT_THAT(mean, HasSubstr("channel: red"));
+  EXPECT_THAT(mean, HasSubstr("channel: green"));
+  EXPECT_THAT(mean, HasSubstr("factor: 0.33333"));
+}
+
+TEST(PbrtScene, CausticsAreLeftToBothEnds) {
+  const PbrtJob job =
+      pbrt_job("Integrator \"sppm\" \"integer maxdepth\" 7 " + pbrt_world("Shape \"sphere\""));
+  EXPECT_THAT(job.text, HasSubstr("integrator: {type: bdpt, max_depth: 7}"));
+  EXPECT_THAT(job.notes, Contains(HasSubstr("bidirectional path tracing stands in")));
+}
+
+TEST(PbrtScene, SurfacesWithAMediumOutsideOnlyAreTold) {
+  const std::string fog = "MakeNamedMedium \"tea\" \"string type\" \"homogeneous\" ";
+  const auto notes = [&](const char* interface, const char* material) {
+    return pbrt_job(pbrt_world(fog + "MediumInterface " + interface + " Material " + material +
+                               " Shape \"sphere\""))
+        .notes;
+  };
+  const auto told = Contains(HasSubstr("'tea' is only outside of this surface"));
+  EXPECT_THAT(notes("\"\" \"tea\"", "\"dielectric\""), told);
+  EXPECT_THAT(notes("\"tea\" \"\"", "\"dielectric\""), Not(told));
+  EXPECT_THAT(notes("\"\" \"tea\"", "\"diffuse\""), Not(told));
+}
+
 TEST(PbrtScene, WhatIsLeftOutIsNoted) {
   const PbrtJob job =
       pbrt_job(pbrt_world("Material \"hair\" \"float wetness\" 1\n"
