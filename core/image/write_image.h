@@ -40,6 +40,10 @@ Result<Bytes> encode_exr(const Image& image, const ImageMetadata& metadata = {},
 Status write_png(const std::string& path, const Image& image, const ImageMetadata& metadata = {},
                  const CodeOptions& options = {});
 
+/// The same file in memory.
+Result<Bytes> encode_png(const Image& image, const ImageMetadata& metadata = {},
+                         const CodeOptions& options = {});
+
 /// As write_png, a TIFF: deflate with differences, in strips; an ICC profile tells the colour
 /// space.
 Status write_tiff(const std::string& path, const Image& image, const ImageMetadata& metadata = {},

@@ -5,6 +5,7 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "core/base/atomic_file.h"
@@ -109,21 +110,27 @@ Status add_texts(Writer& writer, const ImageMetadata& metadata) {
 
 }  // namespace
 
+Result<Bytes> encode_png(const Image& image, const ImageMetadata& metadata,
+                         const CodeOptions& options) {
+  const Result<Codes> codes = encode_codes(image, true, options.bits);
+  if (!codes) return codes.error();
+  const auto writer = std::make_shared<Writer>();
+  if (const Status status = add_texts(*writer, metadata); !status) return status.error();
+  writer->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, writer.get(), on_error, on_warning);
+  if (writer->png != nullptr) writer->info = png_create_info_struct(writer->png);
+  if (writer->info == nullptr) return Error{"not enough memory"};
+  if (!encode(*writer, *codes, static_cast<png_uint_32>(image.width),
+              static_cast<png_uint_32>(image.height), options.color)) {
+    return Error{writer->message};
+  }
+  return Bytes(writer, std::as_bytes(std::span(writer->file)));
+}
+
 Status write_png(const std::string& path, const Image& image, const ImageMetadata& metadata,
                  const CodeOptions& options) {
-  const std::string context = "cannot write " + path;
-  const Result<Codes> codes = encode_codes(image, true, options.bits);
-  if (!codes) return codes.error().in(context);
-  Writer writer;
-  if (const Status status = add_texts(writer, metadata); !status) return status.error().in(context);
-  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
-  if (writer.png != nullptr) writer.info = png_create_info_struct(writer.png);
-  if (writer.info == nullptr) return Error{context + ": not enough memory"};
-  if (!encode(writer, *codes, static_cast<png_uint_32>(image.width),
-              static_cast<png_uint_32>(image.height), options.color)) {
-    return Error{context + ": " + writer.message};
-  }
-  return write_file(path, std::as_bytes(std::span(writer.file)));
+  const Result<Bytes> file = encode_png(image, metadata, options);
+  if (!file) return file.error().in("cannot write " + path);
+  return write_file(path, file->span());
 }
 
 }  // namespace hyades::core

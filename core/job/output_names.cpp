@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/film/layout.h"
+#include "core/image/tone_map.h"
 
 namespace hyades::core {
 
@@ -28,10 +29,7 @@ std::vector<std::string> unfolded(const std::string& layer) {
   return names;
 }
 
-std::span<const std::string> tone_map_names() {
-  static const std::array<std::string, 5> names = {"srgb", "filmic", "aces", "agx", "linear"};
-  return names;
-}
+std::span<const std::string> tone_map_names() { return tone_curve_names(); }
 
 std::span<const std::string> denoise_names() {
   static const std::array<std::string, 4> names = {"true", "false", "features", "oidn"};

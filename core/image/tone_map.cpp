@@ -1,10 +1,10 @@
-#include "core/finish/tone_map.h"
+#include "core/image/tone_map.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/base/color.h"
 #include "core/base/elementary.h"
-#include "core/job/output_names.h"
 
 namespace hyades::core {
 namespace {
@@ -88,7 +88,10 @@ std::optional<ToneCurve> find_tone_curve(std::string_view name) {
   return std::nullopt;
 }
 
-std::span<const std::string> tone_curve_names() { return tone_map_names(); }
+std::span<const std::string> tone_curve_names() {
+  static const std::array<std::string, 5> names = {"srgb", "filmic", "aces", "agx", "linear"};
+  return names;
+}
 
 Rgb tone_map(const Rgb& color, ToneCurve curve, float exposure) {
   const float gain = core::exp2(exposure);

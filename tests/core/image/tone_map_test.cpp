@@ -1,4 +1,4 @@
-#include "core/finish/tone_map.h"
+#include "core/image/tone_map.h"
 
 #include <gtest/gtest.h>
 
