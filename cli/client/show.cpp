@@ -10,15 +10,6 @@
 namespace hyades::cli {
 namespace {
 
-/// "JOB_STATE_DONE" without `prefix`, in small letters.
-std::string word(const std::string& name, const std::string& prefix) {
-  std::string text = name.starts_with(prefix) ? name.substr(prefix.size()) : "unknown";
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text == "unspecified" ? "unknown" : text;
-}
-
 size_t columns_of(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
@@ -26,74 +17,6 @@ size_t columns_of(const std::string& text) {
 }
 
 }  // namespace
-
-std::string state_name(v1::JobState state) { return word(v1::JobState_Name(state), "JOB_STATE_"); }
-std::string state_name(v1::FrameState state) {
-  return word(v1::FrameState_Name(state), "FRAME_STATE_");
-}
-std::string state_name(v1::WorkerState state) {
-  return word(v1::WorkerState_Name(state), "WORKER_STATE_");
-}
-std::string level_name(v1::LogLevel level) { return word(v1::LogLevel_Name(level), "LOG_LEVEL_"); }
-
-Json to_json(const v1::Job& job) {
-  return {{"id", job.id()},
-          {"name", job.name()},
-          {"owner", job.owner()},
-          {"priority", job.priority()},
-          {"state", state_name(job.state())},
-          {"frames", job.frames()},
-          {"frames_done", job.frames_done()},
-          {"frames_failed", job.frames_failed()},
-          {"samples", job.samples()},
-          {"samples_done", job.samples_done()},
-          {"leased", job.leased()},
-          {"samples_per_second", job.samples_per_second()},
-          {"seconds_left", job.seconds_left()},
-          {"submitted_ms", job.submitted_ms()},
-          {"ended_ms", job.ended_ms()},
-          {"reason", job.reason()},
-          {"max_workers", job.max_workers()},
-          {"tags", std::vector<std::string>(job.tags().begin(), job.tags().end())},
-          {"memory_bytes", job.memory_bytes()},
-          {"max_attempts", job.max_attempts()},
-          {"frame_order", word(v1::FrameOrder_Name(job.frame_order()), "FRAME_ORDER_")}};
-}
-
-Json to_json(const v1::Frame& frame) {
-  return {{"id", frame.frame()},          {"state", state_name(frame.state())},
-          {"samples", frame.samples()},   {"samples_done", frame.samples_done()},
-          {"reason", frame.reason()},     {"worker_class", frame.worker_class()},
-          {"restarts", frame.restarts()}, {"doubtful", frame.doubtful()}};
-}
-
-Json to_json(const v1::Worker& worker) {
-  return {{"id", worker.id()},
-          {"name", worker.name()},
-          {"host", worker.host()},
-          {"worker_class", worker.worker_class()},
-          {"build", worker.build()},
-          {"threads", worker.threads()},
-          {"state", state_name(worker.state())},
-          {"reason", worker.reason()},
-          {"leased", worker.leased()},
-          {"units_done", worker.units_done()},
-          {"units_failed", worker.units_failed()},
-          {"samples_done", worker.samples_done()},
-          {"joined_ms", worker.joined_ms()},
-          {"heard_ms", worker.heard_ms()},
-          {"memory_bytes", worker.memory_bytes()},
-          {"memory_limit_bytes", worker.memory_limit_bytes()},
-          {"tags", std::vector<std::string>(worker.tags().begin(), worker.tags().end())}};
-}
-
-Json to_json(const v1::LogLine& line) {
-  Json json = {{"time_ms", line.time_ms()}, {"level", level_name(line.level())}};
-  if (line.of_frame()) json["frame"] = line.frame();
-  json["worker"] = line.worker();
-  json["text"] = line.text();
-  return json;
-}
 
 void print_json(const Json& json) {
   // What is no UTF-8 becomes a replacement character, not an exception.

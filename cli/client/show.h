@@ -4,28 +4,15 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/printable.h"
-#include "hyades/v1/farm.pb.h"
-#include "hyades/v1/jobs.pb.h"
+#include "farm/json_form.h"
 
 namespace hyades::cli {
 
-// The farm's messages as people and scripts see them. In JSON fields are called as in
-// proto/hyades/v1 and states are lower-case words; times are milliseconds since 1970, UTC.
-
-using Json = nlohmann::ordered_json;
-
-std::string state_name(v1::JobState state);
-std::string state_name(v1::FrameState state);
-std::string state_name(v1::WorkerState state);
-std::string level_name(v1::LogLevel level);
-
-Json to_json(const v1::Job& job);
-Json to_json(const v1::Frame& frame);
-Json to_json(const v1::Worker& worker);
-Json to_json(const v1::LogLine& line);
+using farm::Json;
+using farm::level_name;
+using farm::state_name;
+using farm::to_json;
 
 /// Prints JSON in one line to standard output.
 void print_json(const Json& json);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "hyades/v1/farm.pb.h"
+#include "hyades/v1/jobs.pb.h"
+
+namespace hyades::farm {
+
+// The farm's messages as people and scripts see them: `--json` of the commands and the HTTP API.
+// Fields are called as in proto/hyades/v1, states are lower-case words, times are milliseconds
+// since 1970, UTC; what is listed has a field `id`.
+
+using Json = nlohmann::ordered_json;
+
+std::string state_name(v1::JobState state);
+std::string state_name(v1::FrameState state);
+std::string state_name(v1::WorkerState state);
+std::string level_name(v1::LogLevel level);
+
+Json to_json(const v1::Job& job);
+Json to_json(const v1::Frame& frame);
+Json to_json(const v1::Worker& worker);
+Json to_json(const v1::LogLine& line);
+
+}  // namespace hyades::farm
