@@ -19,6 +19,7 @@
 #include "coordinator/brain/chores.h"
 #include "coordinator/brain/clerks.h"
 #include "coordinator/brain/job_desk.h"
+#include "coordinator/brain/timeline.h"
 #include "coordinator/brain/worker_link.h"
 #include "coordinator/finisher/finish_task.h"
 #include "coordinator/scheduler/scheduler.h"
@@ -101,6 +102,16 @@ class Brain {
   /// A copy of the frame's film as it is now, or, where films are kept, was in the end; given to
   /// `then` (which is quick), perhaps by another thread. May wait for the disk.
   grpc::Status film(uint64_t job, int32_t frame, FilmTaker then);
+  /// A frame as it is now, and how its job shows it.
+  struct FrameNow {
+    v1::Frame frame;
+    std::string tone_map = "srgb";  ///< of the job's first output for displays; of open jobs only
+    float exposure = 0;             ///< stops; the same
+  };
+  /// May wait for the store.
+  grpc::Status frame_now(uint64_t job, int32_t frame, FrameNow& now);
+  /// Which units of the job were rendered where and when, as far as it is kept in memory.
+  Timelines::OfJob timeline(uint64_t job) const;
   /// Whether a file is there only until the open job's video is made of it.
   bool is_for_video(uint64_t job, const std::string& path) const;
   /// How far somebody has been told of a job's changes; at first of nothing.
@@ -350,6 +361,7 @@ class Brain {
   TimePoint adopting_at_most_;  ///< until then
   Scheduler scheduler_;
   std::map<JobId, std::unique_ptr<JobDesk>> desks_;
+  Timelines timelines_;
   std::map<WorkerId, Seat> seats_;
   std::map<std::string, WorkerId> worker_ids_;  ///< by what they call themselves
   uint64_t next_worker_ = 1;

@@ -21,6 +21,10 @@ grpc::Status no_job(uint64_t id) {
   return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
 }
 
+grpc::Status no_frame(uint64_t id, int32_t frame) {
+  return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no frame {}", id, frame)};
+}
+
 v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
   v1::Frame wire;
   wire.set_frame(frame.frame);
@@ -176,6 +180,38 @@ grpc::Status Brain::changes(uint64_t id, ToldOf& told, v1::WatchEvent& event, bo
   return grpc::Status::OK;
 }
 
+grpc::Status Brain::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const JobDesk* desk = desk_of(id)) {
+      const auto noted = desk->frames.find(frame);
+      if (noted == desk->frames.end()) return no_frame(id, frame);
+      now.frame = desk->describe_frame(frame, noted->second);
+      for (const core::OutputDesc& output : desk->read.job.outputs) {
+        if (output.file.ends_with(".exr")) continue;
+        now.tone_map = output.tone_map;
+        now.exposure = output.exposure;
+        break;
+      }
+      return grpc::Status::OK;
+    }
+  }
+  const auto stored = store_->job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!*stored) return no_job(id);
+  const auto before = frame == INT32_MIN ? std::nullopt : std::optional(frame - 1);
+  const auto frames = store_->frames(id, before, 1);
+  if (!frames) return farm::unavailable(frames.error());
+  if (frames->empty() || frames->front().frame != frame) return no_frame(id, frame);
+  now.frame = describe_over(frames->front(), **stored);
+  return grpc::Status::OK;
+}
+
+Timelines::OfJob Brain::timeline(uint64_t job) const {
+  const std::lock_guard lock(mutex_);
+  return timelines_.of(job);
+}
+
 uint64_t Brain::watch(uint64_t job, std::function<void()> poke) {
   const std::lock_guard lock(mutex_);
   watches_.emplace(next_watch_, Watch{job, 0, std::move(poke)});
@@ -216,7 +252,7 @@ grpc::Status Brain::film(uint64_t id, int32_t frame, FilmTaker then) {
   }
   const auto noted = desk->frames.find(frame);
   if (noted == desk->frames.end()) {
-    return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no frame {}", id, frame)};
+    return no_frame(id, frame);
   }
   if (noted->second.state == v1::FRAME_STATE_DONE) {
     lock.unlock();

@@ -204,6 +204,11 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
     } else {
       ++seat->units_done;
       seat->samples_done += result.samples();
+      const int64_t now = wall_ms();
+      const auto took_ms = static_cast<int64_t>(result.render_ns() / 1'000'000);
+      if (desk != nullptr) {
+        timelines_.note(result.job(), {seat->hello.name(), *unit, now - took_ms, now});
+      }
       for (int i = 0; desk != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
         note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
              farm::wire_text(result.notes(i)));

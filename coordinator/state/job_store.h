@@ -151,6 +151,8 @@ class JobStore {
   core::Result<std::vector<StoredFrame>> frames(uint64_t job) {
     return frames(job, std::nullopt, UINT32_MAX);
   }
+  /// A frame's outputs, in the order of their paths.
+  virtual core::Result<std::vector<StoredOutput>> outputs_of(uint64_t job, int32_t frame) = 0;
   /// In the order in which they were finished; those after number `after` (0: all), at most
   /// `limit`.
   virtual core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t after,

@@ -278,6 +278,18 @@ class SqliteJobStore final : public JobStore {
     return outputs;
   }
 
+  core::Result<std::vector<StoredOutput>> outputs_of(uint64_t job, int32_t frame) override {
+    const std::lock_guard lock(mutex_);
+    Query rows(db_.get(),
+               "SELECT path, frame, size, sha256, number FROM outputs "
+               "WHERE job = ? AND frame = ? ORDER BY path");
+    rows.bind(number(job)).bind(int64_t{frame});
+    std::vector<StoredOutput> outputs;
+    while (rows.next()) outputs.push_back(read_output(rows));
+    if (core::Status status = rows.status(); !status) return status.error();
+    return outputs;
+  }
+
   core::Result<std::optional<StoredOutput>> output(uint64_t job, const std::string& path) override {
     const std::lock_guard lock(mutex_);
     Query row(db_.get(),

@@ -107,6 +107,9 @@ class TroubledStore final : public JobStore {
                                                   uint32_t limit) override {
     return read([&] { return store_->outputs(job, after, limit); });
   }
+  core::Result<std::vector<StoredOutput>> outputs_of(uint64_t job, int32_t frame) override {
+    return read([&] { return store_->outputs_of(job, frame); });
+  }
   core::Result<std::optional<StoredOutput>> output(uint64_t job, const std::string& path) override {
     return read([&] { return store_->output(job, path); });
   }
