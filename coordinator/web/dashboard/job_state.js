@@ -1,0 +1,119 @@
+// One job as it is now: shared by the views that look at it.
+import * as api from './api.js';
+import { farm, isOpen, onFarm } from './farm_state.js';
+import { listen } from './live.js';
+
+/** A job that no view looks at is kept for so long: going from the grid to a frame and back costs nothing. */
+const KEPT_FOR = 8000;
+
+const open = new Map();
+
+class JobState {
+  constructor(id) {
+    this.id = id;
+    /** As in the API; null until known. */
+    this.job = null;
+    /** Frames by number. */
+    this.frames = new Map();
+    /** Their numbers, ascending. */
+    this.numbers = [];
+    /** Why there is nothing: an ApiError. */
+    this.error = null;
+    this.listeners = new Set();
+    this.users = 0;
+    this.listenOn();
+    this.leaveFarm = onFarm((what) => {
+      if (!what.has('jobs')) return;
+      const now = farm.jobs.get(id);
+      if (this.ended && now && isOpen(now)) this.listenOn();
+    });
+  }
+
+  listenOn() {
+    this.stop?.();
+    this.ended = false;
+    this.stop = listen(`api/v1/jobs/${this.id}/events`, {
+      snapshot: (change) => {
+        this.frames.clear();
+        this.take(change);
+        // Nothing more comes of a job that has ended.
+        if (!isOpen(change.job)) {
+          this.ended = true;
+          this.stop();
+        }
+      },
+      change: (change) => this.take(change),
+      end: (change) => {
+        this.ended = true;
+        this.take(change);
+      },
+      refused: () => this.ask(),
+    });
+    this.ask();
+  }
+
+  // The stream does not say why it was refused; and a first answer comes sooner than a large snapshot.
+  async ask() {
+    try {
+      const { job } = await api.job(this.id, { after: 2147483646 });
+      this.error = null;
+      this.take({ job, frames: [] });
+    } catch (error) {
+      if (error.code === 'unreachable' || error.code === 'unauthenticated') return;
+      this.error = error;
+      this.stop();
+      this.tell(new Set());
+    }
+  }
+
+  take({ job, frames }) {
+    this.job = job;
+    const changed = new Set();
+    let added = false;
+    for (const frame of frames) {
+      added ||= !this.frames.has(frame.id);
+      this.frames.set(frame.id, frame);
+      changed.add(frame.id);
+    }
+    if (added) this.numbers = [...this.frames.keys()].sort((a, b) => a - b);
+    this.tell(changed);
+  }
+
+  /** Takes in what an action answered. */
+  learn(job) {
+    this.job = job;
+    this.tell(new Set());
+    if (this.ended && isOpen(job)) this.listenOn();
+  }
+
+  tell(changed) {
+    for (const listener of this.listeners) listener(changed);
+  }
+}
+
+/**
+ * Looks at a job. `listener(changed)` is called after each change, with the numbers of the frames that changed. Returns
+ * {state, leave()}.
+ */
+export function watchJob(id, listener) {
+  let state = open.get(id);
+  if (!state) open.set(id, (state = new JobState(id)));
+  clearTimeout(state.timer);
+  ++state.users;
+  state.listeners.add(listener);
+  return {
+    state,
+    leave() {
+      state.listeners.delete(listener);
+      if (--state.users > 0) return;
+      state.timer = setTimeout(() => {
+        state.stop();
+        state.leaveFarm();
+        open.delete(id);
+      }, state.error ? 0 : KEPT_FOR);
+    },
+  };
+}
+
+/** How much of a job is rendered, 0..1. */
+export const share = (job) => (job.samples > 0 ? Math.min(1, job.samples_done / job.samples) : 0);

@@ -1,0 +1,291 @@
+// All jobs: open ones live, ended ones brought in page by page.
+import * as api from './api.js';
+import { ACTIONS, act, askPriority } from './job_actions.js';
+import { bar, chip, nothing } from './parts.js';
+import { counted, duration, moment, percent, rate, whole } from './format.js';
+import { farm, isOpen, learnJobs, onFarm } from './farm_state.js';
+import { h, oncePerFrame, setText, toast } from './dom.js';
+import { parse, replaceQuery, to } from './router.js';
+import { icon } from './icons.js';
+import { share } from './job_state.js';
+import { Table } from './table.js';
+
+const PAGE = 500;
+const STATES = [['open', 'Open'], ['', 'All'], ['running', 'Running'], ['paused', 'Paused'], ['done', 'Done'], ['failed', 'Failed'], ['cancelled', 'Cancelled']];
+const ORDER = { running: 0, paused: 1, failed: 2, cancelled: 3, done: 4 };
+
+// How far back the ended ones are known; kept between visits of the view.
+const past = { before: null, whole: false };
+
+const elapsed = (job, now = Date.now()) => ((job.ended_ms || now) - job.submitted_ms) / 1000;
+
+function nameCell(td, job) {
+  if (!td.firstChild) td.append(h('span', { class: 'two' }, h('a', { class: 'row-link', testid: 'job-link' }), h('span', { class: 'sub' })));
+  const [link, sub] = td.firstChild.children;
+  setText(link, job.name);
+  link.title = job.name;
+  link.href = to('job', { job: job.id });
+  setText(sub, job.reason ? `#${job.id} · ${job.reason}` : `#${job.id}${job.tags.length ? ` · ${job.tags.join(', ')}` : ''}`);
+  sub.title = job.reason;
+  sub.classList.toggle('warn', Boolean(job.reason) && job.state !== 'done');
+}
+
+function progressCell(td, job) {
+  if (!td.firstChild) td.append(h('span', { class: 'progress' }, bar('Progress'), h('span', { class: 'progress-text' })));
+  const [gauge, text] = td.firstChild.children;
+  gauge.set(share(job), { failed: job.frames > 0 ? job.frames_failed / job.frames : 0, state: job.state });
+  setText(text, `${percent(share(job))} · ${whole(job.frames_done)}/${whole(job.frames)}`);
+  td.title = `${counted(job.frames, 'frame')}, ${whole(job.frames_done)} done${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`;
+}
+
+const left = (job) => (job.state === 'running' && job.seconds_left >= 0 ? job.seconds_left : Infinity);
+
+/** What is shown where there has never been a job. */
+export const noJobs = () => nothing('No jobs yet',
+  h('p', {}, 'Drop a job with its files anywhere on this page, or '), h('p', {}, h('a', { class: 'button primary', href: to('submit'), text: 'Submit a job', testid: 'empty-submit' })),
+  h('p', { class: 'soft' }, 'From a terminal: ', h('code', { text: 'hyades submit job.yaml --watch' })));
+
+class JobsView {
+  constructor(route) {
+    const { q = '', state = 'open', owner = '', sort = 'id', up } = route.query;
+    this.query = { q, state: STATES.some(([value]) => value === state) || state === 'all' ? state : 'open', owner };
+    if (this.query.state === 'all') this.query.state = '';
+    this.chosen = new Set();
+    this.lastChosen = null;
+    this.search = h('input', { type: 'search', value: q, placeholder: 'Name, id, owner or tag', 'aria-label': 'Search jobs', testid: 'job-search', oninput: () => this.filter() });
+    this.states = h('div', { class: 'pills', role: 'group', 'aria-label': 'State' }, STATES.map(([value, text]) => h('button', {
+      type: 'button', 'data-state': value, testid: `state-${value || 'all'}`, onclick: () => { this.query.state = value; this.filter(); },
+    }, h('span', { text }), h('span', { class: 'pill-count' }))));
+    this.owners = h('select', { 'aria-label': 'Owner', testid: 'owner', onchange: () => this.filter() });
+    this.tableOf({ key: sort, down: up === undefined });
+    this.more = h('div', { class: 'more' });
+    this.actions = h('div', { class: 'selection', role: 'region', 'aria-label': 'Chosen jobs', testid: 'selection' });
+    this.node = h('div', { class: 'view' },
+      h('div', { class: 'view-head' }, h('h1', { text: 'Jobs' }), h('a', { class: 'button primary', href: to('submit') }, icon('submit'), 'Submit')),
+      h('div', { class: 'filters' }, this.search, this.states, this.owners), this.table.node, this.more, this.actions);
+    const drawSoon = oncePerFrame(() => this.draw());
+    this.leaveFarm = onFarm((what) => what.has('jobs') && drawSoon());
+    this.timer = setInterval(() => this.table.refresh(), 10000);
+    this.onScroll = () => this.nearEnd();
+    addEventListener('scroll', this.onScroll, { passive: true });
+    this.title = 'Jobs';
+    this.keysTitle = 'Jobs';
+    this.keys = [
+      { keys: 'j', what: 'Next job', run: () => this.step(1) }, { keys: 'k', what: 'Job before', run: () => this.step(-1) },
+      { keys: 'x', what: 'Choose the job', run: () => this.table.active !== null && this.choose(this.table.active) },
+      { keys: 'Escape', what: 'Choose none', run: () => this.chooseNone() },
+    ];
+    this.draw();
+  }
+
+  tableOf(sort) {
+    const all = h('input', { type: 'checkbox', 'aria-label': 'Choose all that are listed', testid: 'choose-all', onchange: () => this.chooseAll(all.checked) });
+    this.all = all;
+    this.table = new Table({
+      label: 'Jobs', testid: 'jobs-table', cards: true, rowKey: (job) => job.id, sort, chosen: this.chosen, onChosen: (id, range) => this.choose(id, range),
+      onSort: () => this.remember(), empty: () => this.emptiness(),
+      columns: [
+        { key: 'choose', label: '', header: () => all, cell: (td, job, chosen) => this.chooseCell(td, job, chosen) },
+        { key: 'name', label: 'Job', sort: (job) => job.name, up: true, cell: nameCell },
+        { key: 'state', label: 'State', sort: (job) => ORDER[job.state] ?? 9, up: true, cell: (td, job) => (td.firstChild ? td.firstChild.set(job.state) : td.append(chip(job.state))) },
+        { key: 'progress', label: 'Progress', sort: share, cell: progressCell },
+        { key: 'left', label: 'Time left', kind: 'num', sort: left, up: true, cell: (td, job) => setText(td, Number.isFinite(left(job)) ? duration(left(job)) : '') },
+        { key: 'speed', label: 'Speed', kind: 'num', drop: 2, sort: (job) => (isOpen(job) ? job.samples_per_second : 0), cell: (td, job) => setText(td, isOpen(job) && job.samples_per_second > 0 ? rate(job.samples_per_second) : '') },
+        { key: 'priority', label: 'Priority', kind: 'num', drop: 1, sort: (job) => job.priority, cell: (td, job) => this.priorityCell(td, job) },
+        { key: 'owner', label: 'Owner', drop: 1, sort: (job) => job.owner, up: true, cell: (td, job) => setText(td, job.owner) },
+        { key: 'took', label: 'Since submit', kind: 'num', drop: 3, always: true, sort: (job) => elapsed(job), cell: (td, job) => setText(td, duration(elapsed(job))) },
+        { key: 'id', label: 'Submitted', kind: 'num', drop: 2, sort: (job) => job.id, cell: (td, job) => { setText(td, moment(job.submitted_ms)); td.title = new Date(job.submitted_ms).toLocaleString(); } },
+      ],
+    });
+  }
+
+  chooseCell(td, job, chosen) {
+    if (!td.firstChild) {
+      td.append(h('label', {}, h('input', { type: 'checkbox', testid: 'choose', tabindex: -1, onclick: (event) => this.choose(td.job.id, event.shiftKey) })));
+    }
+    td.job = job;
+    const box = td.firstChild.firstChild;
+    box.checked = chosen;
+    box.setAttribute('aria-label', `Choose ${job.name}, job ${job.id}`);
+  }
+
+  priorityCell(td, job) {
+    if (!td.firstChild) td.append(h('button', { type: 'button', class: 'plain number', testid: 'priority', tabindex: -1, onclick: () => isOpen(td.job) && askPriority(td.job) }));
+    td.job = job;
+    setText(td.firstChild, job.priority);
+    td.firstChild.disabled = !isOpen(job);
+    td.firstChild.setAttribute('aria-label', `Priority ${job.priority}${isOpen(job) ? ', change' : ''}`);
+  }
+
+  emptiness() {
+    if (!farm.info) return h('p', { class: 'soft', text: 'Asking the coordinator…' });
+    if (this.loading) return h('p', { class: 'soft', text: 'Looking for ended jobs…' });
+    if (this.query.q || this.query.owner) return h('p', { class: 'soft', text: 'No job is like that.' });
+    if (this.query.state === 'open') return farm.jobs.size === 0 ? noJobs() : nothing('Nothing to do', h('p', { text: 'All jobs have ended.' }));
+    return this.query.state === '' ? noJobs() : h('p', { class: 'soft', text: 'No job is in this state.' });
+  }
+
+  remember() {
+    const { key, down } = this.table.sort;
+    replaceQuery({ q: this.query.q, state: this.query.state === 'open' ? '' : this.query.state || 'all', owner: this.query.owner, sort: key === 'id' && down ? '' : key, up: down ? '' : 1 });
+  }
+
+  filter() {
+    this.query.q = this.search.value;
+    this.query.owner = this.owners.value;
+    this.remember();
+    this.draw();
+  }
+
+  get wantsEnded() {
+    return !['open', 'running', 'paused'].includes(this.query.state);
+  }
+
+  fits(job) {
+    const { state, owner } = this.query;
+    return (state === '' || (state === 'open' ? isOpen(job) : job.state === state)) && (owner === '' || job.owner === owner) && this.hasWords(job);
+  }
+
+  hasWords(job) {
+    return this.words.every((word) => job.name.toLowerCase().includes(word) || `#${job.id}`.includes(word) || job.owner.toLowerCase().includes(word) || job.tags.some((tag) => tag.toLowerCase().includes(word)));
+  }
+
+  draw() {
+    if (this.left) return;
+    this.words = this.query.q.toLowerCase().split(/\s+/).filter(Boolean);
+    const all = [...farm.jobs.values()];
+    for (const id of this.chosen) if (!farm.jobs.has(id)) this.chosen.delete(id);
+    this.table.setRows(all.filter((job) => this.fits(job)));
+    const counts = { open: 0, '': all.length };
+    for (const job of all) {
+      counts[job.state] = (counts[job.state] ?? 0) + 1;
+      if (isOpen(job)) ++counts.open;
+    }
+    for (const pill of this.states.children) {
+      const { state } = pill.dataset;
+      pill.setAttribute('aria-pressed', state === this.query.state);
+      const known = ['open', 'running', 'paused'].includes(state) || past.whole;
+      setText(pill.lastChild, known ? whole(counts[state] ?? 0) : '');
+    }
+    const owners = [...new Set(all.map((job) => job.owner).filter(Boolean))].sort();
+    if (this.ownerList !== owners.join('\n')) {
+      this.ownerList = owners.join('\n');
+      const now = this.query.owner;
+      if (now && !owners.includes(now)) owners.push(now);
+      this.owners.replaceChildren(h('option', { value: '', text: 'All owners' }), ...owners.map((text) => h('option', { value: text, text })));
+      this.owners.value = now;
+    }
+    this.drawChosen();
+    this.drawMore();
+    if (this.wantsEnded && past.before === null && farm.info) this.loadMore();
+  }
+
+  drawMore() {
+    this.more.hidden = !this.wantsEnded;
+    if (!this.wantsEnded) return;
+    if (past.whole) this.more.replaceChildren(h('p', { class: 'soft', text: this.table.rows.length > 0 ? `${counted(this.table.rows.length, 'job')}. No older ones.` : '' }));
+    else this.more.replaceChildren(h('button', { type: 'button', text: this.loading ? 'Loading…' : 'Older jobs', disabled: Boolean(this.loading), testid: 'older', onclick: () => this.loadMore() }));
+    this.nearEnd();
+  }
+
+  nearEnd() {
+    if (!this.wantsEnded || past.whole || this.loading || past.before === null) return;
+    if (this.more.getBoundingClientRect().top < innerHeight + 600) this.loadMore();
+  }
+
+  async loadMore() {
+    if (this.loading || past.whole) return;
+    this.loading = true;
+    try {
+      const page = await api.jobs({ ended: true, limit: PAGE, before: past.before ?? undefined });
+      past.before = page.next_before;
+      past.whole = page.next_before === 0;
+      this.loading = false;
+      learnJobs(page.jobs);
+    } catch (error) {
+      past.before ??= undefined;
+      toast(error.message, 'bad');
+      // Not at once again: 'Older jobs' asks.
+      setTimeout(() => { this.loading = false; }, 5000);
+    }
+  }
+
+  step(by) {
+    const at = this.table.rows.findIndex((job) => job.id === this.table.active);
+    const inside = this.table.body.contains(document.activeElement);
+    this.table.focusRow(inside ? Math.min(this.table.rows.length - 1, Math.max(0, at + by)) : Math.max(0, at));
+  }
+
+  choose(id, range = false) {
+    const ids = this.table.rows.map((job) => job.id);
+    const on = !this.chosen.has(id);
+    let list = [id];
+    if (range && this.lastChosen !== null) {
+      const [a, b] = [ids.indexOf(this.lastChosen), ids.indexOf(id)].sort((x, y) => x - y);
+      if (a >= 0) list = ids.slice(a, b + 1);
+    }
+    for (const one of list) {
+      if (on) this.chosen.add(one);
+      else this.chosen.delete(one);
+    }
+    this.lastChosen = id;
+    this.drawChosen();
+    this.table.refresh();
+  }
+
+  chooseAll(on) {
+    this.chosen.clear();
+    if (on) for (const job of this.table.rows) this.chosen.add(job.id);
+    this.drawChosen();
+    this.table.refresh();
+  }
+
+  chooseNone() {
+    this.chooseAll(false);
+  }
+
+  drawChosen() {
+    const jobs = [...this.chosen].map((id) => farm.jobs.get(id)).filter(Boolean);
+    this.all.checked = jobs.length > 0 && jobs.length === this.table.rows.length;
+    this.all.indeterminate = jobs.length > 0 && jobs.length < this.table.rows.length;
+    this.actions.hidden = jobs.length === 0;
+    if (jobs.length === 0) {
+      this.actions.replaceChildren();
+      return;
+    }
+    const key = jobs.map((job) => `${job.id}${job.state}${job.frames_failed > 0}`).join();
+    if (this.actions.key === key && this.actions.firstChild) return;
+    this.actions.key = key;
+    const buttons = Object.entries(ACTIONS).map(([name, action]) => {
+      const count = jobs.filter(action.fits).length;
+      const text = count === 0 || count === jobs.length ? action.text : `${action.text} ${count}`;
+      return h('button', { type: 'button', class: action.danger ? 'danger' : '', disabled: count === 0, testid: `chosen-${name}`, onclick: () => this.actOn(name) }, icon(action.icon), text);
+    });
+    this.actions.replaceChildren(h('b', { text: `${counted(jobs.length, 'job')} chosen` }), h('span', { class: 'buttons' }, buttons),
+      h('button', { type: 'button', class: 'plain', text: 'Choose none', testid: 'choose-none', onclick: () => this.chooseNone() }));
+  }
+
+  async actOn(name) {
+    const jobs = [...this.chosen].map((id) => farm.jobs.get(id)).filter(Boolean);
+    if (await act(name, jobs)) this.chooseNone();
+  }
+
+  take(route) {
+    return route.view === 'jobs' && parse(location.hash).query.q === this.query.q && (route.query.state ?? 'open') === (this.query.state || 'all');
+  }
+
+  shown() {
+    this.draw();
+  }
+
+  leave() {
+    this.left = true;
+    this.leaveFarm();
+    clearInterval(this.timer);
+    removeEventListener('scroll', this.onScroll);
+    this.table.leave();
+  }
+}
+
+/** The view. */
+export const jobsView = (route) => new JobsView(route);
