@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "cli/command_line.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/server.h"
+#include "coordinator/web/web_server.h"
 #include "core/base/atomic_file.h"
 #include "core/base/machine.h"
 #include "farm/last_words.h"
@@ -26,8 +28,10 @@ using hyades::coordinator::Brain;
 using hyades::coordinator::BrainOptions;
 using hyades::coordinator::Duration;
 using hyades::coordinator::Server;
+using hyades::coordinator::WebServer;
 
 constexpr int kBadArguments = 2;
+constexpr const char* kHttp = "127.0.0.1:8080";
 
 Duration seconds(double value) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
@@ -36,6 +40,8 @@ Duration seconds(double value) {
 struct Arguments {
   BrainOptions brain;
   hyades::farm::Listen listen;
+  std::string http = kHttp;
+  bool http_asked = false;
   double unit_seconds = 5;
   double lease_seconds = 30;
   double class_patience = 300;
@@ -45,6 +51,20 @@ struct Arguments {
   double asset_grace = 3600;
 };
 
+/// The dashboard and the HTTP API; null where there is to be none. Where nobody has asked for the
+/// address, somebody else may have it.
+hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& arguments,
+                                                           Brain& brain) {
+  if (arguments.http == "off") return std::unique_ptr<WebServer>();
+  hyades::farm::Listen listen = arguments.listen;
+  listen.address = arguments.http;
+  auto server = WebServer::start(listen, brain);
+  if (server || arguments.http_asked) return server;
+  std::fprintf(stderr, "hyades coordinator: no dashboard: %s; choose another place with --http\n",
+               server.error().message.c_str());
+  return std::unique_ptr<WebServer>();
+}
+
 /// A thousand workers are a thousand open files; the usual limit is that, and the hard one is
 /// higher.
 void open_many_files() {
@@ -52,6 +72,20 @@ void open_many_files() {
   if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
   files.rlim_cur = files.rlim_max;
   (void)::setrlimit(RLIMIT_NOFILE, &files);
+}
+
+/// Writes where it listens; an empty text where it does not. That it cannot be written keeps
+/// nothing from starting: who makes room has to reach the coordinator.
+void note_address(const std::string& path, const std::string& address) {
+  if (address.empty()) {
+    (void)std::remove(path.c_str());
+    return;
+  }
+  auto noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
+  if (!noted && std::remove(path.c_str()) == 0) {  // what it said is not true any more
+    noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
+  }
+  if (!noted) std::fprintf(stderr, "hyades coordinator: %s\n", noted.error().message.c_str());
 }
 
 int serve(const Arguments& arguments) {
@@ -83,19 +117,18 @@ int serve(const Arguments& arguments) {
       return 1;
     }
     const std::string address = (*server)->address() + "\n";
-    // Neither keeps it from starting: who makes room has to reach it.
-    const std::string path = arguments.brain.folder + "/address";
-    auto noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
-    if (!noted && std::remove(path.c_str()) == 0) {  // what it said is not true any more
-      noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
-    }
-    if (!noted) {
-      std::fprintf(stderr, "hyades coordinator: %s\n", noted.error().message.c_str());
-    }
+    note_address(arguments.brain.folder + "/address", address);
     if (const grpc::Status room = (*brain)->admit(0); !room.ok()) {
       std::fprintf(stderr, "hyades coordinator: %s\n", room.error_message().c_str());
     }
+    auto http = open_http(arguments, **brain);
+    if (!http) {
+      std::fprintf(stderr, "hyades coordinator: %s\n", http.error().message.c_str());
+      return 1;
+    }
+    note_address(arguments.brain.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
     std::printf("listening on %s", address.c_str());
+    if (*http) std::printf("dashboard at %s\n", (*http)->url().c_str());
     std::fflush(stdout);
     int signal = 0;
     sigwait(&signals, &signal);
@@ -118,6 +151,13 @@ int main(int argc, char** argv) {
   app.add_option("--listen", arguments.listen.address, "HOST:PORT; port 0 takes a free one")
       ->check(hyades::cli::address_error)
       ->capture_default_str();
+  auto* http = app.add_option("--http", arguments.http,
+                              "HOST:PORT of the dashboard and the HTTP API, or off; where the "
+                              "default is taken it goes without")
+                   ->check([](const std::string& text) {
+                     return text == "off" ? std::string() : hyades::cli::address_error(text);
+                   })
+                   ->capture_default_str();
   app.add_option("--tls-cert", arguments.listen.cert_file, "certificate (PEM): TLS");
   app.add_option("--tls-key", arguments.listen.key_file, "its private key (PEM)");
   app.add_option("--tls-ca", arguments.listen.ca_file,
@@ -176,6 +216,7 @@ int main(int argc, char** argv) {
           hyades::cli::parse_command_line(app, argc - skipped, argv + skipped, kBadArguments)) {
     return *status;
   }
+  arguments.http_asked = http->count() > 0;
   arguments.brain.finisher = hyades::core::program_folder() + "hyades-film";
   arguments.brain.unit_time = seconds(arguments.unit_seconds);
   arguments.brain.lease_time = seconds(arguments.lease_seconds);

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/desks.h"
+#include "coordinator/web/router.h"
+#include "farm/content_writer.h"
+
+namespace hyades::coordinator {
+
+/// Files by content, in pieces.
+class AssetsApi {
+ public:
+  AssetsApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  void add_routes(Router& router);
+
+ private:
+  WebReply missing(const std::string& body);
+  WebReply take(const std::string& name, uint64_t size, uint64_t offset, const std::string& piece);
+  WebReply append(farm::ContentWriter& writer, uint64_t offset, const std::string& piece);
+
+  /// A file in the making, between two pieces: to open it anew is to read what is there of it.
+  struct Open {
+    std::unique_ptr<farm::ContentWriter> writer;
+    std::chrono::steady_clock::time_point used;
+  };
+  struct Taken {
+    std::unique_ptr<farm::ContentWriter> writer;
+    grpc::Status status;
+    bool ok() const { return writer != nullptr; }
+  };
+  Taken take_writer(const std::string& name, uint64_t size);
+  void put_back(const std::string& name, std::unique_ptr<farm::ContentWriter> writer);
+  void let_go_of_old();
+
+  Brain& brain_;
+  Desks& desks_;
+  std::mutex mutex_;
+  std::map<std::string, Open> open_;  ///< by the file's name
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace hyades::coordinator {
+
+/// Bytes [first, last] of a file.
+struct ByteRange {
+  uint64_t first = 0;
+  uint64_t last = 0;
+};
+
+/// What a header Range asks for.
+enum class RangeAsked {
+  whole,       ///< nothing, several ranges, or something that is none: the whole file is right
+  part,        ///< `range` says which
+  impossible,  ///< beyond the file's end
+};
+RangeAsked read_range(std::string_view header, uint64_t size, ByteRange& range);
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,364 @@
+#include "coordinator/web/connection.h"
+
+#include <chrono>
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/ssl.hpp>
+
+#include "coordinator/web/target.h"
+
+namespace hyades::coordinator {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using ErrorCode = beast::error_code;
+using Plain = beast::tcp_stream;
+using Tls = beast::ssl_stream<beast::tcp_stream>;
+
+/// Between requests, and for a handshake.
+constexpr std::chrono::seconds kIdle{75};
+/// For a request's body: 8 MiB over a slow line.
+constexpr std::chrono::minutes kReceive{5};
+/// What a reader may take for a piece of at most a megabyte.
+constexpr std::chrono::seconds kSend{60};
+constexpr uint32_t kMostHeaderBytes = 16U << 10U;
+/// A job that names as many files as it may; uploads come in pieces of 8 MiB.
+constexpr uint64_t kMostBodyBytes = uint64_t{16} << 20U;
+/// What may wait for a reader of what happens before it is broken off.
+constexpr size_t kMostWaitingBytes = size_t{8} << 20U;
+constexpr std::chrono::seconds kHeartbeat{15};
+constexpr std::chrono::minutes kTlsShutdown{1};
+
+Plain& tcp(Plain& stream) { return stream; }
+Plain& tcp(Tls& stream) { return beast::get_lowest_layer(stream); }
+
+template <class Stream>
+class ConnectionOver final : public Connection,
+                             public std::enable_shared_from_this<ConnectionOver<Stream>> {
+ public:
+  template <class... Arguments>
+  explicit ConnectionOver(ConnectionWorld& world, Arguments&&... stream)
+      : world_(world),
+        stream_(std::forward<Arguments>(stream)...),
+        heartbeat_(stream_.get_executor()) {}
+
+  void begin() override {
+    world_.open.insert(self());
+    if constexpr (std::is_same_v<Stream, Tls>) {
+      tcp(stream_).expires_after(kIdle);
+      stream_.async_handshake(asio::ssl::stream_base::server, [me = self()](ErrorCode error) {
+        if (error) return me->close();
+        me->read();
+      });
+    } else {
+      read();
+    }
+  }
+
+  void push(std::shared_ptr<const std::string> bytes) override {
+    world_.outlet->post([weak = weak_from_this_(), bytes = std::move(bytes)]() mutable {
+      if (const auto me = weak.lock()) me->enqueue(std::move(bytes));
+    });
+  }
+
+  void end() override {
+    world_.outlet->post([weak = weak_from_this_()] {
+      if (const auto me = weak.lock()) me->end_live();
+    });
+  }
+
+ private:
+  std::shared_ptr<ConnectionOver> self() { return this->shared_from_this(); }
+  std::weak_ptr<ConnectionOver> weak_from_this_() { return this->weak_from_this(); }
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(kMostHeaderBytes);
+    parser_->body_limit(kMostBodyBytes);
+    tcp(stream_).expires_after(kIdle);
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [me = self()](ErrorCode error, size_t) { me->on_header(error); });
+  }
+
+  void on_header(ErrorCode error) {
+    if (error == http::error::end_of_stream) return shut_down();
+    if (error) return refuse(error);
+    tcp(stream_).expires_after(kReceive);
+    if (beast::iequals(parser_->get()[http::field::expect], "100-continue")) {
+      static const std::string kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+      asio::async_write(stream_, asio::buffer(kContinue), [me = self()](ErrorCode bad, size_t) {
+        if (bad) return me->close();
+        me->read_body();
+      });
+      return;
+    }
+    read_body();
+  }
+
+  void read_body() {
+    http::async_read(stream_, buffer_, *parser_, [me = self()](ErrorCode error, size_t) {
+      if (error) return me->refuse(error);
+      me->on_request();
+    });
+  }
+
+  /// What is no HTTP, or too much of it, is told so where that can be done.
+  void refuse(ErrorCode error) {
+    if (error.category() != http::make_error_code(http::error::bad_method).category() ||
+        error == http::error::partial_message) {
+      return close();
+    }
+    keep_alive_ = false;
+    head_only_ = false;
+    const bool large = error == http::error::body_limit || error == http::error::header_limit;
+    WebReply reply = error_reply(
+        {grpc::StatusCode::INVALID_ARGUMENT, large ? "the request is too large" : error.message()});
+    if (large) reply.status = error == http::error::body_limit ? 413 : 431;
+    send(std::move(reply));
+  }
+
+  void on_request() {
+    auto message = parser_->release();
+    keep_alive_ = message.keep_alive();
+    head_only_ = message.method() == http::verb::head;
+    WebRequest request;
+    request.method = head_only_ ? "GET" : std::string(message.method_string());
+    for (const auto& field : message) {
+      std::string name(field.name_string());
+      for (char& c : name) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+      }
+      request.headers[name] = std::string(field.value());
+    }
+    request.body = std::move(message.body());
+    known_ = request.header("if-none-match");
+    auto target = parse_target(std::string(message.target()));
+    if (!target) {
+      return send(error_reply({grpc::StatusCode::INVALID_ARGUMENT, "the address makes no sense"}));
+    }
+    request.path = std::move(target->path);
+    request.query = std::move(target->query);
+    // However long the answer takes.
+    tcp(stream_).expires_never();
+    world_.serve(std::move(request),
+                 [outlet = world_.outlet, weak = weak_from_this_()](WebReply reply) {
+                   outlet->post([weak, reply = std::move(reply)]() mutable {
+                     if (const auto me = weak.lock()) me->send(std::move(reply));
+                   });
+                 });
+  }
+
+  void send(WebReply reply) {
+    reply_ = std::move(reply);
+    if (is_known(reply_)) {
+      reply_.status = 304;
+      reply_.type.clear();
+      reply_.source.reset();
+      reply_.text = std::make_shared<const std::string>();
+    }
+    header_.emplace();
+    header_->version(11);
+    header_->result(reply_.status);
+    header_->set(http::field::server, "Hyades");
+    if (!reply_.type.empty()) header_->set(http::field::content_type, reply_.type);
+    header_->set("X-Content-Type-Options", "nosniff");
+    for (const auto& [name, value] : reply_.headers) header_->set(name, value);
+    const bool sized = reply_.text || (reply_.source && reply_.source->size());
+    const uint64_t size = reply_.source ? reply_.source->size().value_or(0)
+                          : reply_.text ? reply_.text->size()
+                                        : 0;
+    if (reply_.topic) keep_alive_ = false;
+    if (reply_.status == 204 || reply_.status == 304) {
+      // No body, so no length.
+    } else if (sized) {
+      header_->set(http::field::content_length, std::to_string(size));
+    } else if (!reply_.topic) {
+      header_->chunked(true);
+    }
+    header_->keep_alive(keep_alive_);
+    serializer_.emplace(*header_);
+    tcp(stream_).expires_after(kSend);
+    http::async_write_header(stream_, *serializer_, [me = self()](ErrorCode error, size_t) {
+      if (error) return me->close();
+      me->send_body();
+    });
+  }
+
+  /// Whether the client has told that it has just this.
+  bool is_known(const WebReply& reply) const {
+    if (reply.status != 200 || known_.empty()) return false;
+    for (const auto& [name, value] : reply.headers) {
+      if (name == "ETag") return known_.find(value) != std::string::npos;
+    }
+    return false;
+  }
+
+  void send_body() {
+    if (head_only_) return sent();
+    if (reply_.topic) return go_live();
+    if (reply_.source) return next_piece();
+    if (!reply_.text || reply_.text->empty()) return sent();
+    asio::async_write(stream_, asio::buffer(*reply_.text), [me = self()](ErrorCode error, size_t) {
+      if (error) return me->close();
+      me->sent();
+    });
+  }
+
+  void next_piece() {
+    tcp(stream_).expires_never();
+    const bool taken = world_.files.hand(
+        [outlet = world_.outlet, weak = weak_from_this_(), source = reply_.source] {
+          std::optional<std::string> piece = source->next();
+          outlet->post([weak, piece = std::move(piece)]() mutable {
+            if (const auto me = weak.lock()) me->send_piece(std::move(piece));
+          });
+        });
+    if (!taken) close();
+  }
+
+  void send_piece(std::optional<std::string> piece) {
+    // Half of a body is told from the whole by the connection's end.
+    if (!piece) return close();
+    const bool chunked = !reply_.source->size();
+    const bool last = piece->empty();
+    if (last && !chunked) return sent();
+    piece_ = std::move(*piece);
+    tcp(stream_).expires_after(kSend);
+    const auto then = [me = self(), last](ErrorCode error, size_t) {
+      if (error) return me->close();
+      if (last) return me->sent();
+      me->next_piece();
+    };
+    if (!chunked) {
+      asio::async_write(stream_, asio::buffer(piece_), then);
+    } else if (last) {
+      asio::async_write(stream_, http::make_chunk_last(), then);
+    } else {
+      asio::async_write(stream_, http::make_chunk(asio::buffer(piece_)), then);
+    }
+  }
+
+  void sent() {
+    reply_ = {};
+    serializer_.reset();
+    header_.reset();
+    if (!keep_alive_) return shut_down();
+    read();
+  }
+
+  // What happens, as it happens.
+
+  void go_live() {
+    live_ = true;
+    tcp(stream_).expires_never();
+    reply_.topic->join(weak_from_this_());
+    watch_for_end();
+    beat();
+  }
+
+  /// Nothing is expected from the other side but its end.
+  void watch_for_end() {
+    stream_.async_read_some(asio::buffer(&unexpected_, 1), [me = self()](ErrorCode error, size_t) {
+      if (error) return me->close();
+      me->watch_for_end();
+    });
+  }
+
+  void beat() {
+    heartbeat_.expires_after(kHeartbeat);
+    heartbeat_.async_wait([weak = weak_from_this_()](ErrorCode error) {
+      const auto me = weak.lock();
+      if (error || !me || !me->live_) return;
+      static const auto kComment = std::make_shared<const std::string>(":\n\n");
+      me->enqueue(kComment);
+      me->beat();
+    });
+  }
+
+  void enqueue(std::shared_ptr<const std::string> bytes) {
+    if (!live_ || ending_) return;
+    waiting_bytes_ += bytes->size();
+    // The first thing told may be as large as it is.
+    if (waiting_bytes_ > kMostWaitingBytes && !waiting_.empty()) return close();
+    waiting_.push_back(std::move(bytes));
+    if (waiting_.size() == 1) send_waiting();
+  }
+
+  void send_waiting() {
+    tcp(stream_).expires_after(kSend);
+    asio::async_write(stream_, asio::buffer(*waiting_.front()),
+                      [me = self()](ErrorCode error, size_t) {
+                        if (error || !me->live_) return me->close();
+                        me->waiting_bytes_ -= me->waiting_.front()->size();
+                        me->waiting_.pop_front();
+                        if (!me->waiting_.empty()) return me->send_waiting();
+                        tcp(me->stream_).expires_never();
+                        if (me->ending_) me->shut_down();
+                      });
+  }
+
+  void end_live() {
+    ending_ = true;
+    if (live_ && waiting_.empty()) shut_down();
+  }
+
+  void shut_down() {
+    live_ = false;
+    heartbeat_.cancel();
+    if constexpr (std::is_same_v<Stream, Tls>) {
+      tcp(stream_).expires_after(kTlsShutdown);
+      stream_.async_shutdown([me = self()](ErrorCode) { me->close(); });
+    } else {
+      ErrorCode ignored;
+      tcp(stream_).socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+      close();
+    }
+  }
+
+  void close() {
+    live_ = false;
+    heartbeat_.cancel();
+    ErrorCode ignored;
+    tcp(stream_).socket().close(ignored);
+    world_.open.erase(self());
+  }
+
+  ConnectionWorld& world_;
+  Stream stream_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  bool keep_alive_ = false;
+  bool head_only_ = false;
+  std::string known_;  ///< If-None-Match
+  WebReply reply_;
+  std::optional<http::response<http::empty_body>> header_;
+  std::optional<http::response_serializer<http::empty_body>> serializer_;
+  std::string piece_;
+  asio::steady_timer heartbeat_;
+  bool live_ = false;
+  bool ending_ = false;  ///< once all that waits is sent
+  char unexpected_ = 0;
+  std::deque<std::shared_ptr<const std::string>> waiting_;
+  size_t waiting_bytes_ = 0;
+};
+
+}  // namespace
+
+std::shared_ptr<Connection> make_connection(asio::ip::tcp::socket socket, asio::ssl::context* tls,
+                                            ConnectionWorld& world) {
+  if (tls != nullptr) {
+    return std::make_shared<ConnectionOver<Tls>>(world, std::move(socket), *tls);
+  }
+  return std::make_shared<ConnectionOver<Plain>>(world, std::move(socket));
+}
+
+}  // namespace hyades::coordinator

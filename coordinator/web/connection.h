@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <set>
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include "coordinator/brain/clerks.h"
+#include "coordinator/web/exchange.h"
+#include "coordinator/web/outlet.h"
+
+namespace boost::asio::ssl {
+class context;
+}
+
+namespace hyades::coordinator {
+
+/// One connection, over which requests come one after the other. Everything but push() and end()
+/// happens on the network's thread.
+class Connection : public LiveReader {
+ public:
+  virtual void begin() = 0;
+};
+
+/// What all connections share.
+struct ConnectionWorld {
+  /// Answers a request; called by the network's thread.
+  std::function<void(WebRequest, Answer)> serve;
+  Clerks& files;  ///< who reads what is sent from the disk
+  std::shared_ptr<Outlet> outlet;
+  std::set<std::shared_ptr<Connection>> open;  ///< of the network's thread
+};
+
+/// `tls`: null for plain text. The world outlives the connection.
+std::shared_ptr<Connection> make_connection(boost::asio::ip::tcp::socket socket,
+                                            boost::asio::ssl::context* tls, ConnectionWorld& world);
+
+}  // namespace hyades::coordinator

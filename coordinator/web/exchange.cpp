@@ -1,0 +1,100 @@
+#include "coordinator/web/exchange.h"
+
+#include <fmt/format.h>
+
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+struct Code {
+  grpc::StatusCode code;
+  const char* name;
+  unsigned http;
+};
+
+constexpr Code kCodes[] = {
+    {grpc::StatusCode::CANCELLED, "cancelled", 499},
+    {grpc::StatusCode::INVALID_ARGUMENT, "invalid_argument", 400},
+    {grpc::StatusCode::DEADLINE_EXCEEDED, "deadline_exceeded", 504},
+    {grpc::StatusCode::NOT_FOUND, "not_found", 404},
+    {grpc::StatusCode::ALREADY_EXISTS, "already_exists", 409},
+    {grpc::StatusCode::PERMISSION_DENIED, "permission_denied", 403},
+    {grpc::StatusCode::UNAUTHENTICATED, "unauthenticated", 401},
+    {grpc::StatusCode::RESOURCE_EXHAUSTED, "resource_exhausted", 503},
+    {grpc::StatusCode::FAILED_PRECONDITION, "failed_precondition", 409},
+    {grpc::StatusCode::ABORTED, "aborted", 409},
+    {grpc::StatusCode::OUT_OF_RANGE, "out_of_range", 416},
+    {grpc::StatusCode::UNIMPLEMENTED, "unimplemented", 501},
+    {grpc::StatusCode::INTERNAL, "internal", 500},
+    {grpc::StatusCode::UNAVAILABLE, "unavailable", 503},
+    {grpc::StatusCode::DATA_LOSS, "data_loss", 422},
+};
+
+Code code_of(grpc::StatusCode code) {
+  for (const Code& known : kCodes) {
+    if (known.code == code) return known;
+  }
+  return {code, "unknown", 500};
+}
+
+std::shared_ptr<const std::string> dump(const farm::Json& json) {
+  // What is no UTF-8 becomes a replacement character, not an exception.
+  return std::make_shared<const std::string>(
+      json.dump(-1, ' ', false, farm::Json::error_handler_t::replace));
+}
+
+}  // namespace
+
+const std::string& WebRequest::header(const std::string& name) const {
+  static const std::string none;
+  const auto found = headers.find(name);
+  return found == headers.end() ? none : found->second;
+}
+
+WebReply json_reply(const farm::Json& json) {
+  WebReply reply;
+  reply.headers.emplace_back("Cache-Control", "no-store");
+  reply.text = dump(json);
+  return reply;
+}
+
+WebReply text_reply(std::string text, const char* type) {
+  WebReply reply;
+  reply.type = type;
+  reply.text = std::make_shared<const std::string>(std::move(text));
+  return reply;
+}
+
+WebReply empty_reply(unsigned status) {
+  WebReply reply;
+  reply.status = status;
+  reply.type.clear();
+  reply.text = std::make_shared<const std::string>();
+  return reply;
+}
+
+WebReply error_reply(const grpc::Status& status) {
+  const Code code = code_of(status.error_code());
+  const v1::ErrorDetail detail = farm::detail_of(status);
+  farm::Json error = {{"code", code.name}, {"message", status.error_message()}};
+  if (detail.retry_after_ms() > 0) error["retry_after_ms"] = detail.retry_after_ms();
+  if (detail.missing_size() > 0) {
+    farm::Json missing = farm::Json::array();
+    for (const std::string& digest : detail.missing()) {
+      missing.push_back(farm::hex_from_wire(digest));
+    }
+    error["missing"] = std::move(missing);
+  }
+  WebReply reply = json_reply({{"error", std::move(error)}});
+  reply.status = code.http;
+  if (detail.retry_after_ms() > 0) {
+    reply.headers.emplace_back("Retry-After",
+                               std::to_string((detail.retry_after_ms() + 999) / 1000));
+  }
+  if (code.http == 401) reply.headers.emplace_back("WWW-Authenticate", "Bearer");
+  return reply;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/desks.h"
+#include "coordinator/web/exchange.h"
+#include "coordinator/web/live_readers.h"
+
+namespace hyades::coordinator {
+
+/// What happens to one job (openapi.yaml, /jobs/{job}/events). Made again for every round of
+/// readers.
+class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobFeed> {
+ public:
+  JobFeed(Brain& brain, Desks& desks, uint64_t job) : brain_(brain), desks_(desks), job_(job) {}
+  ~JobFeed() override;
+  JobFeed(const JobFeed&) = delete;
+  JobFeed& operator=(const JobFeed&) = delete;
+
+  void join(std::weak_ptr<LiveReader> reader) override;
+
+  /// Tells what has changed since it was last called, if anything has; for a clock of the network's
+  /// thread. False where nobody reads any more, or the job has ended and all know.
+  bool tick();
+  /// Whether it may be joined.
+  bool is_of_use() const { return !over_; }
+
+ private:
+  void step();
+  grpc::Status changes(Brain::ToldOf& told, farm::Json& change, bool& ended);
+
+  Brain& brain_;
+  Desks& desks_;
+  const uint64_t job_;
+  uint64_t watch_ = 0;
+  std::shared_ptr<std::atomic<bool>> changed_ = std::make_shared<std::atomic<bool>>(true);
+  std::atomic<bool> stepping_{false};
+  std::atomic<bool> over_{false};
+  std::mutex mutex_;  ///< guards readers_
+  LiveReaders readers_;
+  Brain::ToldOf told_;  ///< to those who know; of the clerk that steps
+  bool begun_ = false;  ///< told_ means something
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,235 @@
+#include "coordinator/web/jobs_api.h"
+
+#include <utility>
+
+#include "coordinator/web/handing.h"
+#include "coordinator/web/submission.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kLinesAtOnce = 1000;
+
+/// What a question answers with, where its status is OK.
+template <class Response, class Show>
+WebReply reply_with(const grpc::Status& status, const Response& response, Show show) {
+  return status.ok() ? json_reply(show(response)) : error_reply(status);
+}
+
+farm::Json job_with_frames(const v1::GetJobResponse& got) {
+  farm::Json frames = farm::Json::array();
+  for (const v1::Frame& frame : got.frames()) frames.push_back(farm::to_json(frame));
+  return {{"job", farm::to_json(got.job())}, {"frames", std::move(frames)}, {"more", got.more()}};
+}
+
+farm::Json show(const TimedUnit& timed) {
+  const core::PixelRect& tile = timed.unit.tile;
+  return {{"worker", timed.worker},
+          {"frame", timed.unit.frame},
+          {"tile", {tile.x0, tile.y0, tile.x1, tile.y1}},
+          {"first_batch", timed.unit.batches.first},
+          {"batches", timed.unit.batches.count},
+          {"begun_ms", timed.begun_ms},
+          {"ended_ms", timed.ended_ms}};
+}
+
+farm::Json reasons(const v1::ExplainResponse& why) {
+  farm::Json all = farm::Json::array();
+  for (const std::string& reason : why.reasons()) all.push_back(reason);
+  return {{"reasons", std::move(all)}};
+}
+
+}  // namespace
+
+void JobsApi::add_routes(Router& router) {
+  add_questions(router);
+  add_steering(router);
+}
+
+void JobsApi::add_questions(Router& router) {
+  router.add("GET", "/api/v1/jobs", [this](const WebRequest& request, const Answer& answer) {
+    v1::ListJobsRequest asked;
+    asked.set_ended(query_flag(request, "ended"));
+    const auto owner = request.query.find("owner");
+    if (owner != request.query.end()) asked.set_owner(owner->second);
+    const auto limit = query_number<uint32_t>(request, "limit", 0, answer);
+    if (!limit) return;
+    const auto before = query_number<uint64_t>(request, "before", 0, answer);
+    if (!before) return;
+    asked.set_limit(*limit);
+    asked.set_before(*before);
+    answer_by(desks_.rows, answer, [this, asked] { return list(asked); });
+  });
+  router.add("GET", "/api/v1/jobs/{job}", [this](const WebRequest& request, const Answer& answer) {
+    const auto job = parameter<uint64_t>(request, "job", answer);
+    if (!job) return;
+    std::optional<int32_t> after;
+    if (request.query.contains("after")) {
+      after = query_number<int32_t>(request, "after", 0, answer);
+      if (!after) return;
+    }
+    answer_by(desks_.rows, answer, [this, id = *job, after] {
+      v1::GetJobResponse got;
+      return reply_with(brain_.get(id, after, got), got, job_with_frames);
+    });
+  });
+  router.add("GET", "/api/v1/jobs/{job}/explain",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(desks_.rows, answer, [this, id = *job] {
+                 v1::ExplainResponse why;
+                 return reply_with(brain_.explain(id, why), why, reasons);
+               });
+             });
+  router.add(
+      "GET", "/api/v1/jobs/{job}/logs", [this](const WebRequest& request, const Answer& answer) {
+        const auto job = parameter<uint64_t>(request, "job", answer);
+        if (!job) return;
+        const auto after = query_number<uint64_t>(request, "after", 0, answer);
+        if (!after) return;
+        answer_by(desks_.rows, answer, [this, id = *job, from = *after] { return logs(id, from); });
+      });
+  router.add("GET", "/api/v1/jobs/{job}/timeline",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(desks_.rows, answer, [this, id = *job] {
+                 const Timelines::OfJob timeline = brain_.timeline(id);
+                 farm::Json units = farm::Json::array();
+                 for (const TimedUnit& unit : timeline.units) units.push_back(show(unit));
+                 return json_reply({{"units", std::move(units)}, {"dropped", timeline.dropped}});
+               });
+             });
+  router.add("GET", "/api/v1/jobs/{job}/document",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(desks_.files, answer, [this, id = *job] { return document(id); });
+             });
+}
+
+void JobsApi::add_steering(Router& router) {
+  router.add("POST", "/api/v1/jobs", [this](const WebRequest& request, const Answer& answer) {
+    answer_by(desks_.files, answer, [this, body = request.body] {
+      auto asked = read_submission(body);
+      if (!asked) {
+        return error_reply({grpc::StatusCode::INVALID_ARGUMENT, asked.error().message});
+      }
+      v1::SubmitResponse response;
+      const grpc::Status done = brain_.submit(*asked, response);
+      if (!done.ok()) return error_reply(done);
+      WebReply reply =
+          json_reply({{"job", farm::to_json(response.job())}, {"existed", response.existed()}});
+      reply.status = response.existed() ? 200 : 201;
+      return reply;
+    });
+  });
+  using Steer = void (Brain::*)(uint64_t, Brain::Told);
+  const std::pair<const char*, Steer> steers[] = {
+      {"pause", &Brain::pause}, {"resume", &Brain::resume}, {"cancel", &Brain::cancel}};
+  const auto told = [](const Answer& answer) {
+    return [answer](const grpc::Status& done, const v1::Job& now) {
+      answer(done.ok() ? json_reply(farm::to_json(now)) : error_reply(done));
+    };
+  };
+  for (const auto& [name, what] : steers) {
+    router.add("POST", std::string("/api/v1/jobs/{job}/") + name,
+               [this, told, steer = what](const WebRequest& request, const Answer& answer) {
+                 const auto job = parameter<uint64_t>(request, "job", answer);
+                 if (!job) return;
+                 const bool taken = desks_.rows.hand(
+                     [this, told, steer, answer, id = *job] { (brain_.*steer)(id, told(answer)); });
+                 if (!taken) answer(error_reply(crowded()));
+               });
+  }
+  router.add("PUT", "/api/v1/jobs/{job}/priority",
+             [this, told](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               const auto json = farm::Json::parse(request.body, nullptr, false);
+               const bool number = json.is_object() && json.contains("priority") &&
+                                   json["priority"].is_number_integer();
+               const int64_t priority = number ? json["priority"].get<int64_t>() : INT64_MAX;
+               if (priority < INT32_MIN || priority > INT32_MAX) {
+                 answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
+                                     "expected {\"priority\": a whole number}"}));
+                 return;
+               }
+               const bool taken = desks_.rows.hand([this, told, answer, id = *job, priority] {
+                 brain_.set_priority(id, static_cast<int>(priority), told(answer));
+               });
+               if (!taken) answer(error_reply(crowded()));
+             });
+  router.add("POST", "/api/v1/jobs/{job}/retry",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(desks_.files, answer, [this, id = *job] {
+                 v1::Job now;
+                 const grpc::Status done = brain_.retry(id, now);
+                 return reply_with(done, now, [](const v1::Job& j) { return farm::to_json(j); });
+               });
+             });
+  router.add("DELETE", "/api/v1/jobs/{job}",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(desks_.files, answer, [this, id = *job] {
+                 const grpc::Status done = brain_.remove(id);
+                 return done.ok() ? empty_reply(204) : error_reply(done);
+               });
+             });
+}
+
+WebReply JobsApi::list(const v1::ListJobsRequest& request) {
+  v1::ListJobsResponse response;
+  const grpc::Status status =
+      brain_.list_open(request, response) ? grpc::Status::OK : brain_.list(request, response);
+  if (!status.ok()) return error_reply(status);
+  farm::Json jobs = farm::Json::array();
+  for (const v1::Job& job : response.jobs()) jobs.push_back(farm::to_json(job));
+  return json_reply({{"jobs", std::move(jobs)}, {"next_before", response.next_before()}});
+}
+
+WebReply JobsApi::logs(uint64_t job, uint64_t after) {
+  const auto stored = brain_.store().job(job);
+  if (!stored) return error_reply(farm::unavailable(stored.error()));
+  if (!*stored) {
+    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+  }
+  const auto lines = brain_.store().lines(job, after, kLinesAtOnce);
+  if (!lines) return error_reply(farm::unavailable(lines.error()));
+  farm::Json all = farm::Json::array();
+  for (const StoredLine& line : *lines) {
+    farm::Json one = {{"id", line.number},
+                      {"time_ms", line.time_ms},
+                      {"level", farm::level_name(static_cast<v1::LogLevel>(line.level))}};
+    if (line.frame) one["frame"] = *line.frame;
+    one["worker"] = line.worker;
+    one["text"] = line.text;
+    all.push_back(std::move(one));
+  }
+  return json_reply({{"lines", std::move(all)}, {"more", lines->size() == kLinesAtOnce}});
+}
+
+WebReply JobsApi::document(uint64_t job) {
+  const auto stored = brain_.store().job(job);
+  if (!stored) return error_reply(farm::unavailable(stored.error()));
+  if (!*stored) {
+    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+  }
+  v1::JobSpec spec;
+  spec.ParseFromString((*stored)->spec);
+  for (const v1::JobFile& file : spec.files()) {
+    if (file.path() != spec.document()) continue;
+    const auto bytes = brain_.assets().read(farm::hex_from_wire(file.sha256()));
+    if (!bytes) return error_reply({grpc::StatusCode::DATA_LOSS, bytes.error().message});
+    return text_reply(std::string(bytes->chars(), bytes->size()), "text/plain; charset=utf-8");
+  }
+  return error_reply({grpc::StatusCode::NOT_FOUND, "the job's document is not here"});
+}
+
+}  // namespace hyades::coordinator

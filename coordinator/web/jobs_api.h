@@ -1,0 +1,26 @@
+#pragma once
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/desks.h"
+#include "coordinator/web/router.h"
+
+namespace hyades::coordinator {
+
+/// What people ask about jobs, and have done with them.
+class JobsApi {
+ public:
+  JobsApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  void add_routes(Router& router);
+
+ private:
+  void add_questions(Router& router);
+  void add_steering(Router& router);
+  WebReply list(const v1::ListJobsRequest& request);
+  WebReply logs(uint64_t job, uint64_t after);
+  WebReply document(uint64_t job);
+
+  Brain& brain_;
+  Desks& desks_;
+};
+
+}  // namespace hyades::coordinator

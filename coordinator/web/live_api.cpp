@@ -1,0 +1,69 @@
+#include "coordinator/web/live_api.h"
+
+#include <chrono>
+#include <utility>
+
+#include "coordinator/web/handing.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr std::chrono::milliseconds kTick{500};
+
+WebReply live(std::shared_ptr<LiveTopic> topic) {
+  WebReply reply;
+  reply.type = "text/event-stream; charset=utf-8";
+  reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
+  reply.topic = std::move(topic);
+  return reply;
+}
+
+}  // namespace
+
+LiveApi::LiveApi(Brain& brain, Desks& desks, boost::asio::io_context& network,
+                 std::shared_ptr<Outlet> outlet)
+    : brain_(brain),
+      desks_(desks),
+      outlet_(std::move(outlet)),
+      timer_(network),
+      farm_(std::make_shared<FarmFeed>(brain, desks)) {}
+
+void LiveApi::add_routes(Router& router) {
+  router.add("GET", "/api/v1/events",
+             [this](const WebRequest&, const Answer& answer) { answer(live(farm_)); });
+  router.add("GET", "/api/v1/jobs/{job}/events",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               // Whether there is such a job is known before the stream begins.
+               const bool taken = desks_.rows.hand([this, id = *job, answer] {
+                 v1::GetJobResponse got;
+                 const grpc::Status status = brain_.get(id, INT32_MAX, got);
+                 if (!status.ok()) return answer(error_reply(status));
+                 outlet_->post([this, id, answer] { answer(live(feed_of(id))); });
+               });
+               if (!taken) answer(error_reply(crowded()));
+             });
+}
+
+std::shared_ptr<JobFeed> LiveApi::feed_of(uint64_t job) {
+  auto& feed = jobs_[job];
+  if (!feed || !feed->is_of_use()) feed = std::make_shared<JobFeed>(brain_, desks_, job);
+  return feed;
+}
+
+void LiveApi::begin() { tick(); }
+
+void LiveApi::tick() {
+  static constexpr int kFarmEvery = 2;  // once a second
+  if (++ticks_ % kFarmEvery == 0) farm_->tick();
+  std::erase_if(jobs_, [](const auto& feed) { return !feed.second->tick(); });
+  timer_.expires_after(kTick);
+  timer_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) tick();
+  });
+}
+
+void LiveApi::stop() { jobs_.clear(); }
+
+}  // namespace hyades::coordinator

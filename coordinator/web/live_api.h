@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/desks.h"
+#include "coordinator/web/farm_feed.h"
+#include "coordinator/web/job_feed.h"
+#include "coordinator/web/outlet.h"
+#include "coordinator/web/router.h"
+
+namespace hyades::coordinator {
+
+/// What happens on the farm and with jobs, as server-sent events. Each event is made once, however
+/// many read it.
+class LiveApi {
+ public:
+  LiveApi(Brain& brain, Desks& desks, boost::asio::io_context& network,
+          std::shared_ptr<Outlet> outlet);
+  void add_routes(Router& router);
+  /// From now on the farm's throughput is noted, whether anybody looks or not.
+  void begin();
+  /// Nobody is told anything any more; after the network's thread has ended.
+  void stop();
+
+ private:
+  void tick();
+  std::shared_ptr<JobFeed> feed_of(uint64_t job);
+
+  Brain& brain_;
+  Desks& desks_;
+  std::shared_ptr<Outlet> outlet_;
+  boost::asio::steady_timer timer_;
+  std::shared_ptr<FarmFeed> farm_;
+  std::map<uint64_t, std::shared_ptr<JobFeed>> jobs_;  ///< that somebody reads; network's thread
+  unsigned ticks_ = 0;
+};
+
+}  // namespace hyades::coordinator

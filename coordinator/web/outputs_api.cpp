@@ -1,0 +1,167 @@
+#include "coordinator/web/outputs_api.h"
+
+#include <set>
+#include <utility>
+
+#include "coordinator/web/byte_range.h"
+#include "coordinator/web/file_source.h"
+#include "coordinator/web/handing.h"
+#include "coordinator/web/zip_source.h"
+#include "core/base/assets.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kRowsAtOnce = 1000;
+
+const char* type_of(const std::string& path) {
+  constexpr std::pair<const char*, const char*> kTypes[] = {
+      {".png", "image/png"},  {".jpg", "image/jpeg"},      {".jpeg", "image/jpeg"},
+      {".tif", "image/tiff"}, {".tiff", "image/tiff"},     {".exr", "image/x-exr"},
+      {".mp4", "video/mp4"},  {".mov", "video/quicktime"}, {".webm", "video/webm"}};
+  for (const auto& [ending, type] : kTypes) {
+    if (path.ends_with(ending)) return type;
+  }
+  return "application/octet-stream";
+}
+
+/// A file's name as a header holds it: nothing but harmless characters.
+std::string header_name(const std::string& path) {
+  std::string name = path.substr(path.rfind('/') + 1);
+  for (char& c : name) {
+    const bool harmless = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
+    if (!harmless) c = '_';
+  }
+  return name;
+}
+
+WebReply not_found(uint64_t job, const std::string& path) {
+  return error_reply(
+      {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no output '{}' (yet)", job, path)});
+}
+
+WebReply lost(const std::string& path) {
+  return error_reply({grpc::StatusCode::DATA_LOSS, path + " is damaged on the coordinator's disk"});
+}
+
+}  // namespace
+
+core::Result<std::vector<StoredOutput>> finished_files(Brain& brain, uint64_t job) {
+  std::vector<StoredOutput> all;
+  uint64_t seen = 0;
+  for (;;) {
+    auto outputs = brain.store().outputs(job, seen, kRowsAtOnce);
+    if (!outputs) return outputs.error();
+    if (outputs->empty()) return all;
+    seen = outputs->back().number;
+    for (StoredOutput& output : *outputs) {
+      if (!brain.is_for_video(job, output.path)) all.push_back(std::move(output));
+    }
+  }
+}
+
+void OutputsApi::add_routes(Router& router) {
+  router.add("GET", "/api/v1/jobs/{job}/outputs",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(desks_.rows, answer, [this, id = *job] { return list(id); });
+             });
+  router.add("GET", "/api/v1/jobs/{job}/outputs/{path...}",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(
+                   desks_.files, answer,
+                   [this, id = *job, path = request.parameters.at("path"),
+                    range = request.header("range"), download = query_flag(request, "download")] {
+                     return file(id, path, range, download);
+                   });
+             });
+  router.add("GET", "/api/v1/jobs/{job}/archive.zip",
+             [this](const WebRequest& request, const Answer& answer) {
+               const auto job = parameter<uint64_t>(request, "job", answer);
+               if (!job) return;
+               answer_by(desks_.files, answer, [this, id = *job] { return archive(id); });
+             });
+}
+
+WebReply OutputsApi::list(uint64_t job) {
+  const auto state = brain_.store().state(job);
+  if (!state) return error_reply(farm::unavailable(state.error()));
+  if (!*state) {
+    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+  }
+  const auto outputs = finished_files(brain_, job);
+  if (!outputs) return error_reply(farm::unavailable(outputs.error()));
+  farm::Json all = farm::Json::array();
+  for (const StoredOutput& output : *outputs) {
+    all.push_back({{"id", output.path},
+                   {"frame", output.frame},
+                   {"size", output.size},
+                   {"sha256", farm::hex_from_wire(output.sha256)}});
+  }
+  return json_reply({{"outputs", std::move(all)}});
+}
+
+WebReply OutputsApi::file(uint64_t job, const std::string& path, const std::string& range,
+                          bool download) {
+  // The path is looked up among the job's outputs and never taken for one of the file system's.
+  const auto output = brain_.store().output(job, path);
+  if (!output) return error_reply(farm::unavailable(output.error()));
+  if (!*output) return not_found(job, path);
+  auto bytes = core::map_file(brain_.output_folder(job) + "/" + (*output)->path);
+  if (!bytes || bytes->size() != (*output)->size) return lost(path);
+  const uint64_t size = bytes->size();
+  WebReply reply;
+  reply.type = type_of(path);
+  reply.headers = {{"Accept-Ranges", "bytes"},
+                   {"ETag", "\"" + farm::hex_from_wire((*output)->sha256) + "\""},
+                   {"Cache-Control", "private, no-cache"},
+                   {"Content-Security-Policy", "sandbox"}};
+  reply.headers.emplace_back(
+      "Content-Disposition",
+      fmt::format("{}; filename=\"{}\"", download ? "attachment" : "inline", header_name(path)));
+  ByteRange part{0, size == 0 ? 0 : size - 1};
+  const RangeAsked asked = read_range(range, size, part);
+  if (asked == RangeAsked::impossible) {
+    WebReply none =
+        error_reply({grpc::StatusCode::OUT_OF_RANGE, fmt::format("the file has {} bytes", size)});
+    none.headers.emplace_back("Content-Range", fmt::format("bytes */{}", size));
+    return none;
+  }
+  if (asked == RangeAsked::part) {
+    reply.status = 206;
+    reply.headers.emplace_back("Content-Range",
+                               fmt::format("bytes {}-{}/{}", part.first, part.last, size));
+  }
+  const uint64_t count = size == 0 ? 0 : part.last - part.first + 1;
+  reply.source = std::make_shared<FileSource>(std::move(*bytes), part.first, count);
+  return reply;
+}
+
+WebReply OutputsApi::archive(uint64_t job) {
+  const auto stored = brain_.store().job(job);
+  if (!stored) return error_reply(farm::unavailable(stored.error()));
+  if (!*stored) {
+    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+  }
+  const auto outputs = finished_files(brain_, job);
+  if (!outputs) return error_reply(farm::unavailable(outputs.error()));
+  std::vector<ZipSource::File> files;
+  for (const StoredOutput& output : *outputs) {
+    files.push_back({output.path, brain_.output_folder(job) + "/" + output.path, output.size});
+  }
+  WebReply reply;
+  reply.type = "application/zip";
+  reply.headers = {{"Cache-Control", "no-store"},
+                   {"Content-Disposition", fmt::format("attachment; filename=\"{}-{}.zip\"",
+                                                       header_name((*stored)->name), job)}};
+  reply.source = std::make_shared<ZipSource>(std::move(files));
+  return reply;
+}
+
+}  // namespace hyades::coordinator

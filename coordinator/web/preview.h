@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/bytes.h"
+#include "core/base/result.h"
+#include "core/image/image.h"
+#include "core/image/tone_map.h"
+
+namespace hyades::coordinator {
+
+/// The layers that a normalised film (core::Film::normalised) or a finished EXR holds: "beauty",
+/// where R, G and B are there, "alpha", and what stands before the dot of the other channels.
+std::vector<std::string> layers_of(const core::Image& image);
+
+/// The channels of one layer, in the image's order; the error names those that there are.
+core::Result<core::Image> take_layer(const core::Image& image, const std::string& layer);
+
+/// The picture averaged down to at most `width` pixels a row; pixels count by the area of theirs
+/// that falls into the new one. What is not finite counts only where nothing else is there.
+core::Image shrink(const core::Image& image, int width);
+
+/// R, G, B of a linear picture as a PNG for displays.
+core::Result<core::Bytes> display_png(const core::Image& image, core::ToneCurve curve,
+                                      float exposure);
+
+/// What a picture for programs says of itself.
+struct HalfFacts {
+  std::string layer;
+  std::vector<std::string> layers;
+  uint64_t samples_done = 0;
+  bool exact = true;
+};
+/// openapi.yaml's `half`: a line of JSON, then planes of 16-bit floats.
+std::string half_planes(const core::Image& image, const HalfFacts& facts);
+
+}  // namespace hyades::coordinator

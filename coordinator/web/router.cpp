@@ -1,0 +1,70 @@
+#include "coordinator/web/router.h"
+
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/web/target.h"
+
+namespace hyades::coordinator {
+namespace {
+
+bool is_name(const std::string& part) { return part.starts_with('{') && part.ends_with('}'); }
+
+/// What the pattern's names stand for, where it matches.
+std::optional<std::map<std::string, std::string>> match(const std::vector<std::string>& pattern,
+                                                        const std::vector<std::string>& path) {
+  std::map<std::string, std::string> found;
+  for (size_t i = 0; i < pattern.size(); ++i) {
+    if (i >= path.size()) return std::nullopt;
+    const std::string& part = pattern[i];
+    if (part.ends_with("...}")) {
+      std::string rest = path[i];
+      for (size_t k = i + 1; k < path.size(); ++k) rest += "/" + path[k];
+      found[part.substr(1, part.size() - 5)] = rest;
+      return found;
+    }
+    if (is_name(part)) {
+      found[part.substr(1, part.size() - 2)] = path[i];
+    } else if (part != path[i]) {
+      return std::nullopt;
+    }
+  }
+  if (path.size() > pattern.size()) return std::nullopt;
+  return found;
+}
+
+}  // namespace
+
+void Router::add(const std::string& method, const std::string& pattern, Handler handler) {
+  routes_.push_back({method, pattern, parse_target(pattern)->path, std::move(handler)});
+}
+
+void Router::answer(WebRequest request, const Answer& answer) const {
+  std::string allowed;
+  for (const Route& route : routes_) {
+    auto found = match(route.parts, request.path);
+    if (!found) continue;
+    if (route.method != request.method) {
+      allowed += (allowed.empty() ? "" : ", ") + route.method;
+      continue;
+    }
+    request.parameters = std::move(*found);
+    route.handler(request, answer);
+    return;
+  }
+  std::string path;
+  for (const std::string& part : request.path) path += "/" + part;
+  if (allowed.empty()) {
+    answer(error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no '{}' here", path)}));
+    return;
+  }
+  WebReply reply = error_reply(
+      {grpc::StatusCode::UNIMPLEMENTED, fmt::format("'{}' takes {} only", path, allowed)});
+  reply.status = 405;
+  reply.headers.emplace_back("Allow", allowed);
+  answer(std::move(reply));
+}
+
+}  // namespace hyades::coordinator

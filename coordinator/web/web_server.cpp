@@ -1,0 +1,227 @@
+#include "coordinator/web/web_server.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/steady_timer.hpp>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/services/desks.h"
+#include "coordinator/web/assets_api.h"
+#include "coordinator/web/connection.h"
+#include "coordinator/web/dashboard.h"
+#include "coordinator/web/farm_api.h"
+#include "coordinator/web/gatekeeper.h"
+#include "coordinator/web/jobs_api.h"
+#include "coordinator/web/live_api.h"
+#include "coordinator/web/outputs_api.h"
+#include "coordinator/web/pictures_api.h"
+#include "coordinator/web/router.h"
+#include "farm/tls_files.h"
+
+namespace hyades::coordinator {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+constexpr size_t kMostConnections = 4000;
+constexpr std::chrono::milliseconds kAcceptAgain{200};
+
+struct HostAndPort {
+  std::string host;
+  std::string port;
+};
+
+HostAndPort split(const std::string& address) {
+  const size_t colon = address.rfind(':');
+  std::string host = address.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  return {host, address.substr(colon + 1)};
+}
+
+/// What needs no token: whether it is alive, and what a sign-in needs.
+bool is_open_to_all(const WebRequest& request) {
+  if (request.path.empty()) return true;
+  const std::string& first = request.path.front();
+  if (first == "healthz" || first == "readyz") return true;
+  if (request.path == std::vector<std::string>{"api", "v1", "session"}) return true;
+  return first != "api" && first != "metrics";
+}
+
+}  // namespace
+
+struct WebServer::Parts {
+  Parts(Brain& brain, Gatekeeper keeper)
+      : gatekeeper(std::move(keeper)),
+        outlet(std::make_shared<Outlet>(network)),
+        farm(brain, desks),
+        jobs(brain, desks),
+        assets(brain, desks),
+        outputs(brain, desks),
+        pictures(brain, desks),
+        live(brain, desks, network, outlet),
+        world{[this](WebRequest request, Answer answer) {
+                serve(std::move(request), std::move(answer));
+              },
+              desks.files,
+              outlet,
+              {}},
+        acceptor(network),
+        again(network) {
+    add_dashboard(router);
+    add_session(router);
+    farm.add_routes(router);
+    jobs.add_routes(router);
+    assets.add_routes(router);
+    outputs.add_routes(router);
+    pictures.add_routes(router);
+    live.add_routes(router);
+  }
+
+  void add_session(Router& to) {
+    to.add("POST", "/api/v1/session", [this](const WebRequest& request, const Answer& answer) {
+      const auto json = farm::Json::parse(request.body, nullptr, false);
+      const std::string token =
+          json.is_object() && json.contains("token") && json["token"].is_string()
+              ? json["token"].get<std::string>()
+              : std::string();
+      const auto cookie = gatekeeper.open_session(token);
+      if (!cookie) {
+        answer(error_reply(
+            {grpc::StatusCode::UNAUTHENTICATED, "this is not the coordinator's token"}));
+        return;
+      }
+      WebReply reply = empty_reply(204);
+      reply.headers.emplace_back("Set-Cookie", *cookie);
+      answer(std::move(reply));
+    });
+    to.add("DELETE", "/api/v1/session", [this](const WebRequest&, const Answer& answer) {
+      WebReply reply = empty_reply(204);
+      reply.headers.emplace_back("Set-Cookie", gatekeeper.end_session());
+      answer(std::move(reply));
+    });
+  }
+
+  void serve(WebRequest request, Answer answer) {
+    const grpc::Status allowed = gatekeeper.check(request);
+    if (!allowed.ok() &&
+        !(allowed.error_code() == grpc::StatusCode::UNAUTHENTICATED && is_open_to_all(request))) {
+      answer(error_reply(allowed));
+      return;
+    }
+    router.answer(std::move(request), answer);
+  }
+
+  core::Status listen(const std::string& address) {
+    const auto [host, port] = split(address);
+    boost::system::error_code error;
+    tcp::resolver resolver(network);
+    const auto found = resolver.resolve(
+        host, port, tcp::resolver::passive | tcp::resolver::numeric_service, error);
+    if (!error) {
+      const tcp::endpoint endpoint = found.begin()->endpoint();
+      acceptor.open(endpoint.protocol(), error);
+      if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
+      if (!error) acceptor.bind(endpoint, error);
+      if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    }
+    if (error) {
+      return core::Error{address + ": cannot listen there (" + error.message() + ")"};
+    }
+    return {};
+  }
+
+  void accept() {
+    acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+      if (error == asio::error::operation_aborted) return;
+      if (!error && world.open.size() < kMostConnections) {
+        boost::system::error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+        make_connection(std::move(socket), tls.get(), world)->begin();
+      }
+      if (!error) return accept();
+      // No descriptors left, say.
+      again.expires_after(kAcceptAgain);
+      again.async_wait([this](boost::system::error_code) { accept(); });
+    });
+  }
+
+  // The network is there before all that belongs to it, and ends after it.
+  asio::io_context network{1};
+  Gatekeeper gatekeeper;
+  std::shared_ptr<Outlet> outlet;
+  Desks desks;
+  FarmApi farm;
+  JobsApi jobs;
+  AssetsApi assets;
+  OutputsApi outputs;
+  PicturesApi pictures;
+  LiveApi live;
+  Router router;
+  ConnectionWorld world;
+  std::unique_ptr<asio::ssl::context> tls;
+  tcp::acceptor acceptor;
+  asio::steady_timer again;
+  std::thread thread;
+};
+
+WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+WebServer::~WebServer() {
+  if (!parts_) return;
+  parts_->network.stop();
+  if (parts_->thread.joinable()) parts_->thread.join();
+  parts_->outlet->close();
+  parts_->live.stop();
+  parts_->world.open.clear();
+}
+
+std::vector<std::string> WebServer::routes() const {
+  std::vector<std::string> all;
+  for (const Router::Route& route : parts_->router.routes()) {
+    all.push_back(route.method + " " + route.pattern);
+  }
+  return all;
+}
+
+core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& listen,
+                                                          Brain& brain) {
+  auto door = farm::open_door(listen);  // its rules are ours
+  if (!door) return door.error();
+  const bool secure = !listen.cert_file.empty();
+  auto parts = std::make_unique<Parts>(
+      brain, Gatekeeper(door->token, farm::is_loopback(listen.address), secure));
+  if (secure) {
+    const auto pair = farm::read_key_pair(listen.cert_file, listen.key_file);
+    if (!pair) return pair.error();
+    parts->tls = std::make_unique<asio::ssl::context>(asio::ssl::context::tls_server);
+    boost::system::error_code error;
+    parts->tls->set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_tlsv1 |
+                                asio::ssl::context::no_tlsv1_1,
+                            error);
+    if (!error) parts->tls->use_certificate_chain(asio::buffer(pair->cert), error);
+    if (!error) {
+      parts->tls->use_private_key(asio::buffer(pair->key), asio::ssl::context::pem, error);
+    }
+    if (error) return core::Error{listen.cert_file + ": " + error.message()};
+  }
+  if (core::Status bound = parts->listen(listen.address); !bound) return bound.error();
+  std::unique_ptr<WebServer> server(new WebServer(std::move(parts)));
+  Parts& running = *server->parts_;
+  boost::system::error_code error;
+  const uint16_t port = running.acceptor.local_endpoint(error).port();
+  server->url_ = (secure ? "https://" : "http://") +
+                 listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
+  running.accept();
+  running.live.begin();
+  running.thread = std::thread([&running] { running.network.run(); });
+  return server;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "farm/channel.h"
+
+namespace hyades::coordinator {
+
+class Brain;
+
+/// The coordinator's HTTP server: the dashboard and the API of openapi.yaml over a brain.
+///
+/// One thread does all that concerns connections, so that thousands of them cost no more than what
+/// they ask for; what may wait for the disk is done by clerks, as for gRPC.
+class WebServer {
+ public:
+  /// Listens at listen.address, with its certificate and token (farm::open_door has the rules). An
+  /// error where they do not hold together, or the address is taken or not this machine's. `brain`
+  /// outlives the server.
+  static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen, Brain& brain);
+
+  /// Breaks off all connections and stops listening.
+  ~WebServer();
+  WebServer(const WebServer&) = delete;
+  WebServer& operator=(const WebServer&) = delete;
+
+  /// "http://HOST:PORT" as bound.
+  const std::string& url() const { return url_; }
+  /// What it answers: "GET /api/v1/jobs/{job}", ...
+  std::vector<std::string> routes() const;
+
+ private:
+  struct Parts;
+  explicit WebServer(std::unique_ptr<Parts> parts);
+
+  std::unique_ptr<Parts> parts_;
+  std::string url_;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,164 @@
+// openapi.yaml says what the server does: every path of it is answered, nothing else is, and
+// answers have the form that it gives them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <regex>
+#include <set>
+
+#include <yaml-cpp/yaml.h>
+
+#include "tests/coordinator/web/web_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using farm::Json;
+
+class OpenApi : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    world.start();
+    const auto page = world.client->get("/openapi.yaml");
+    ASSERT_EQ(page.status, 200);
+    api = YAML::Load(page.body);
+  }
+
+  YAML::Node schema_of(const std::string& name) const { return api["components"]["schemas"][name]; }
+
+  YAML::Node resolve(const YAML::Node& schema) const {
+    if (!schema["$ref"]) return schema;
+    const auto reference = schema["$ref"].as<std::string>();
+    return schema_of(reference.substr(reference.rfind('/') + 1));
+  }
+
+  /// Whether `value` is as `said` has it; no field that is not named there.
+  void expect_form(const Json& value, const YAML::Node& said, const std::string& where) const {
+    const YAML::Node schema = resolve(said);
+    const auto type = schema["type"].as<std::string>();
+    if (type == "object") {
+      ASSERT_TRUE(value.is_object()) << where;
+      for (const YAML::Node& needed : schema["required"]) {
+        EXPECT_TRUE(value.contains(needed.as<std::string>()))
+            << where << " lacks " << needed.as<std::string>();
+      }
+      for (const auto& [name, field] : value.items()) {
+        const YAML::Node of_field = schema["properties"][name];
+        ASSERT_TRUE(of_field.IsDefined()) << where << "." << name << " is not told of";
+        expect_form(field, of_field, where + "." + name);
+      }
+    } else if (type == "array") {
+      ASSERT_TRUE(value.is_array()) << where;
+      for (const Json& item : value) expect_form(item, schema["items"], where + "[]");
+    } else if (type == "string") {
+      ASSERT_TRUE(value.is_string()) << where;
+      if (!schema["enum"]) return;
+      bool known = false;
+      for (const YAML::Node& one : schema["enum"]) known |= one.as<std::string>() == value;
+      EXPECT_TRUE(known) << where << ": " << value;
+    } else if (type == "integer") {
+      EXPECT_TRUE(value.is_number_integer()) << where << ": " << value;
+    } else if (type == "number") {
+      EXPECT_TRUE(value.is_number()) << where << ": " << value;
+    } else {
+      EXPECT_EQ(type, "boolean");
+      EXPECT_TRUE(value.is_boolean()) << where << ": " << value;
+    }
+  }
+
+  /// What the description says of a call's answer.
+  void expect_as_told(const std::string& method, const std::string& path, const std::string& target,
+                      const std::string& body = {}) const {
+    const auto response = world.client->send(method, target, body);
+    ASSERT_LT(response.status, 300) << method << " " << target << ": " << response.body;
+    std::string small = method;
+    std::transform(small.begin(), small.end(), small.begin(), ::tolower);
+    const YAML::Node told = api["paths"][path][small]["responses"][std::to_string(response.status)];
+    ASSERT_TRUE(told.IsDefined()) << method << " " << path << " gives " << response.status;
+    if (response.status == 204) return;
+    const YAML::Node content = told["content"]["application/json"];
+    ASSERT_TRUE(content.IsDefined()) << method << " " << path;
+    expect_form(Json::parse(response.body), content["schema"], method + " " + path);
+  }
+
+  WebWorld world;
+  YAML::Node api;
+};
+
+TEST_F(OpenApi, EveryPathIsAnsweredAndEveryRouteIsTold) {
+  std::set<std::string> told;
+  for (const auto& path : api["paths"]) {
+    for (const auto& method : path.second) {
+      auto name = method.first.as<std::string>();
+      if (name == "parameters") continue;
+      std::transform(name.begin(), name.end(), name.begin(), ::toupper);
+      const auto text = path.first.as<std::string>();
+      const size_t action = text.find("{action}");
+      if (action == std::string::npos) {
+        told.insert(name + " " + text);
+        continue;
+      }
+      for (const YAML::Node& parameter : path.second["parameters"]) {
+        if (!parameter["schema"] || !parameter["schema"]["enum"]) continue;
+        for (const YAML::Node& one : parameter["schema"]["enum"]) {
+          told.insert(name + " " + text.substr(0, action) + one.as<std::string>());
+        }
+      }
+    }
+  }
+  std::set<std::string> answered;
+  for (const std::string& route : world.web->routes()) {
+    const bool page = route.find(" /api/") == std::string::npos && route != "GET /metrics" &&
+                      route != "GET /healthz" && route != "GET /readyz";
+    if (!page) answered.insert(std::regex_replace(route, std::regex("\\.\\.\\.\\}"), "}"));
+  }
+  EXPECT_EQ(told, answered);
+}
+
+TEST_F(OpenApi, AnswersHaveTheFormThatItGives) {
+  const uint64_t job = world.farm.submit(2);
+  const ScriptedWorker worker(world.farm.address, world.farm.script());
+  ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
+  const std::string one = "/api/v1/jobs/" + std::to_string(job);
+  expect_as_told("GET", "/api/v1/info", "/api/v1/info");
+  expect_as_told("GET", "/api/v1/jobs", "/api/v1/jobs?ended=true");
+  expect_as_told("GET", "/api/v1/jobs/{job}", one);
+  expect_as_told("GET", "/api/v1/jobs/{job}/logs", one + "/logs");
+  expect_as_told("GET", "/api/v1/jobs/{job}/outputs", one + "/outputs");
+  expect_as_told("GET", "/api/v1/jobs/{job}/explain", one + "/explain");
+  expect_as_told("GET", "/api/v1/jobs/{job}/timeline", one + "/timeline");
+  expect_as_told("GET", "/api/v1/workers", "/api/v1/workers");
+  const Json workers = world.json("/api/v1/workers")["workers"];
+  ASSERT_FALSE(workers.empty());
+  expect_as_told("POST", "/api/v1/workers/{worker}/{action}",
+                 "/api/v1/workers/" + workers[0]["id"].dump() + "/quarantine",
+                 R"({"reason": "odd"})");
+  const std::string document = FarmWorld::document(5);
+  const std::string digest = core::to_hex(core::sha256(document));
+  expect_as_told("POST", "/api/v1/assets/missing", "/api/v1/assets/missing",
+                 Json({{"files", WebWorld::submission(document)["files"]}}).dump());
+  expect_as_told("PUT", "/api/v1/assets/{sha256}",
+                 "/api/v1/assets/" + digest + "?size=" + std::to_string(document.size()), document);
+  expect_as_told("POST", "/api/v1/jobs", "/api/v1/jobs", WebWorld::submission(document).dump());
+  const std::string next = "/api/v1/jobs/" + std::to_string(job + 1);
+  expect_as_told("POST", "/api/v1/jobs/{job}/{action}", next + "/pause");
+  expect_as_told("PUT", "/api/v1/jobs/{job}/priority", next + "/priority", R"({"priority": 3})");
+  expect_as_told("DELETE", "/api/v1/jobs/{job}", one);
+  const auto wrong = world.client->get("/api/v1/jobs/999");
+  expect_form(Json::parse(wrong.body), schema_of("Error"), "Error");
+}
+
+TEST_F(OpenApi, EventsHaveTheFormThatItGives) {
+  const uint64_t job = world.farm.submit(2);
+  HttpClient::Events of_farm(*world.client, "/api/v1/events");
+  expect_form(Json::parse(of_farm.next().data), schema_of("FarmSnapshot"), "FarmSnapshot");
+  HttpClient::Events of_job(*world.client, "/api/v1/jobs/" + std::to_string(job) + "/events");
+  const ScriptedWorker worker(world.farm.address, world.farm.script());
+  for (auto event = of_job.next(); !event.name.empty(); event = of_job.next()) {
+    expect_form(Json::parse(event.data), schema_of("JobChange"), event.name);
+  }
+  expect_form(Json::parse(of_farm.next().data), schema_of("FarmChange"), "FarmChange");
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

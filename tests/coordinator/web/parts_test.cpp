@@ -1,0 +1,158 @@
+// Targets, ranges, archives, previews: what needs no server.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "coordinator/web/byte_range.h"
+#include "coordinator/web/preview.h"
+#include "coordinator/web/submission.h"
+#include "coordinator/web/target.h"
+#include "coordinator/web/zip_source.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::coordinator {
+namespace {
+
+TEST(Target, PathsAndQueriesAreDecoded) {
+  const auto target = parse_target("/a%20b//c%2Fd?x=1&y=a+b%26&x=2&z");
+  ASSERT_TRUE(target);
+  EXPECT_EQ(target->path, (std::vector<std::string>{"a b", "c/d"}));
+  EXPECT_EQ(target->query.at("x"), "2");
+  EXPECT_EQ(target->query.at("y"), "a b&");
+  EXPECT_EQ(target->query.at("z"), "");
+}
+
+TEST(Target, WhatClimbsOrIsBrokenIsNone) {
+  for (const char* text : {"", "a", "/..", "/a/%2e%2E/b", "/.", "/%zz", "/%4", "/a%00b", "/?x=%"}) {
+    EXPECT_FALSE(parse_target(text)) << text;
+  }
+}
+
+TEST(ByteRange, AsRfc9110HasThem) {
+  ByteRange range;
+  EXPECT_EQ(read_range("", 10, range), RangeAsked::whole);
+  EXPECT_EQ(read_range("bytes=0-1,3-4", 10, range), RangeAsked::whole);
+  EXPECT_EQ(read_range("bytes=5-3", 10, range), RangeAsked::whole);
+  EXPECT_EQ(read_range("bytes=2-4", 10, range), RangeAsked::part);
+  EXPECT_EQ(range.first, 2U);
+  EXPECT_EQ(range.last, 4U);
+  EXPECT_EQ(read_range("bytes=7-", 10, range), RangeAsked::part);
+  EXPECT_EQ(range.last, 9U);
+  EXPECT_EQ(read_range("bytes=-3", 10, range), RangeAsked::part);
+  EXPECT_EQ(range.first, 7U);
+  EXPECT_EQ(read_range("bytes=-30", 10, range), RangeAsked::part);
+  EXPECT_EQ(range.first, 0U);
+  EXPECT_EQ(read_range("bytes=10-", 10, range), RangeAsked::impossible);
+  EXPECT_EQ(read_range("bytes=0-", 0, range), RangeAsked::impossible);
+}
+
+TEST(ZipSource, HoldsEveryFileWhole) {
+  const test::TempFolder folder;
+  std::vector<ZipSource::File> files;
+  for (const size_t size : {0U, 1U, 3'000'000U}) {
+    const std::string name = "frames/" + std::to_string(size) + ".bin";
+    const std::string path = folder.file(std::to_string(size));
+    std::ofstream(path) << std::string(size, 'x');
+    files.push_back({name, path, size});
+  }
+  ZipSource source(files);
+  std::string archive;
+  for (auto piece = source.next(); piece && !piece->empty(); piece = source.next())
+    archive += *piece;
+  const std::string file = folder.file("all.zip");
+  std::ofstream(file) << archive;
+  // Read by another program than the one that made it.
+  const std::string test =
+      "python3 -c \"import zipfile,sys; z=zipfile.ZipFile('" + file +
+      "'); assert z.testzip() is None; "
+      "assert [i.file_size for i in z.infolist()] == [0, 1, 3000000], z.infolist()\"";
+  EXPECT_EQ(std::system(test.c_str()), 0);
+}
+
+TEST(ZipSource, AFileThatIsGoneBreaksTheArchiveOff) {
+  ZipSource source({{"a", "/nowhere/at/all", 5}});
+  EXPECT_FALSE(source.next());
+}
+
+TEST(Preview, ShrinkingKeepsTheMean) {
+  core::Image image = core::make_image(7, 5, {"R", "G", "B"});
+  double sum = 0;
+  for (size_t i = 0; i < image.data.size(); ++i) {
+    image.data[i] = static_cast<float>((i * 37) % 11);
+    sum += static_cast<double>(image.data[i]);
+  }
+  const core::Image small = shrink(image, 3);
+  EXPECT_EQ(small.width, 3);
+  EXPECT_EQ(small.height, 2);
+  double after = 0;
+  for (const float value : small.data) after += static_cast<double>(value);
+  EXPECT_NEAR(after / static_cast<double>(small.data.size()),
+              sum / static_cast<double>(image.data.size()), 1e-5);
+}
+
+TEST(Preview, WhatIsNotFiniteDoesNotSpread) {
+  core::Image depth = core::make_image(4, 1, {"depth.Z"});
+  depth.data = {1, std::numeric_limits<float>::infinity(), 3, 3};
+  const core::Image small = shrink(depth, 2);
+  EXPECT_EQ(small.data[0], 1);
+  EXPECT_EQ(small.data[1], 3);
+}
+
+TEST(Preview, LayersAreTakenByName) {
+  core::Image film = core::make_image(
+      1, 1, {"R", "G", "B", "A", "depth.Z", "normal.X", "normal.Y", "normal.Z", "samples.N"});
+  for (size_t i = 0; i < film.data.size(); ++i) film.data[i] = static_cast<float>(i);
+  EXPECT_EQ(layers_of(film),
+            (std::vector<std::string>{"beauty", "alpha", "depth", "normal", "samples"}));
+  EXPECT_EQ(take_layer(film, "normal")->data, (std::vector<float>{5, 6, 7}));
+  const auto none = take_layer(film, "albedo");
+  ASSERT_FALSE(none.ok());
+  EXPECT_NE(none.error().message.find("beauty, alpha, depth"), std::string::npos);
+}
+
+TEST(Preview, HalfPlanesLieOneAfterTheOther) {
+  core::Image image = core::make_image(2, 1, {"R", "G"});
+  image.data = {1, 2, 1e9F, -0.5F};
+  const std::string bytes = half_planes(image, {"beauty", {"beauty"}, 16, true});
+  const std::string planes = bytes.substr(bytes.find('\n') + 1);
+  const unsigned char expected[] = {0x00, 0x3C, 0xFF, 0x7B, 0x00, 0x40, 0x00, 0xB8};
+  ASSERT_EQ(planes.size(), sizeof expected);
+  for (size_t i = 0; i < planes.size(); ++i) {
+    EXPECT_EQ(static_cast<unsigned char>(planes[i]), expected[i]) << i;
+  }
+}
+
+TEST(Submission, FieldsThatAreWrongAreNamed) {
+  const std::string digest(64, 'a');
+  const auto error = [](const std::string& body) {
+    const auto read = read_submission(body);
+    return read ? std::string() : read.error().message;
+  };
+  EXPECT_NE(error("[]").find("object"), std::string::npos);
+  EXPECT_NE(error(R"({"document": "j", "files": []})").find("name"), std::string::npos);
+  EXPECT_NE(
+      error(R"({"name": "n", "document": "j", "files": [{"path": "p", "sha256": "x", "size": 1}]})")
+          .find("files[0].sha256"),
+      std::string::npos);
+  const std::string start =
+      R"({"name": "n", "document": "j", "files": [{"path": "j", "sha256": ")" + digest +
+      R"(", "size": 1}], )";
+  EXPECT_NE(error(start + R"("priority": 1.5})").find("priority"), std::string::npos);
+  EXPECT_NE(error(start + R"("max_workers": -1})").find("max_workers"), std::string::npos);
+  EXPECT_NE(error(start + R"("samples": 4294967296})").find("samples"), std::string::npos);
+  EXPECT_NE(error(start + R"("frames": [{"first": 1}]})").find("frames[0].last"),
+            std::string::npos);
+  EXPECT_NE(error(start + R"("frame_order": "backwards"})").find("frame_order"), std::string::npos);
+  const auto read = read_submission(
+      start +
+      R"("priority": -3, "frames": [{"first": 1, "last": 9, "step": 2}], "tags": ["big"]})");
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read->priority(), -3);
+  EXPECT_EQ(read->spec().frames(0).step(), 2);
+  EXPECT_EQ(read->tags(0), "big");
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
