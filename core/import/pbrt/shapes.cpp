@@ -162,10 +162,10 @@ YamlPtr Shapes::objects(const std::vector<ShapeEntity>& shapes, const std::strin
       if (!inside.empty()) object.put("interior", yaml_text(inside));
       if (inside.empty() && !shape.outside.empty() && material.sided &&
           shape.outside != context_.scene.camera_medium) {
-        context_.report.note(
-            shape.place, "the medium '" + shape.outside +
-                             "' is only outside of this surface: bodies here are told by what "
-                             "is inside, and those of several surfaces do not keep their light");
+        context_.report.note(shape.place,
+                             "the medium '" + shape.outside +
+                                 "' is only outside of this surface: a closed body of it has to be "
+                                 "around; a surface that two bodies share cannot be said");
       }
     }
     if (shines) {
