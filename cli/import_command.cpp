@@ -31,6 +31,8 @@ int import_command(int argc, char** argv) {
       ->check(CLI::Range(0.001F, 1e6F))
       ->capture_default_str();
   app.add_flag("--overwrite", request.overwrite, "replace files that are there already");
+  app.add_flag("--follow-links", request.follow_links,
+               "follow links that lead out of the scene's folder: only of scenes that you trust");
   app.footer(
       "example:\n  hyades import robot.glb -o robot.yaml && hyades render robot.yaml\n"
       "exit status: 0 written, 2 not");

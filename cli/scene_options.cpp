@@ -23,13 +23,15 @@ void declare_scene_options(CLI::App& app, SceneOptions& options) {
                  "none: it stands still)");
   app.add_flag("--missing-textures", options.missing_textures,
                "let magenta stand in for pictures that are not there");
+  app.add_flag("--follow-links", options.follow_links,
+               "follow links that lead out of a scene's folder: only of scenes that you trust");
 }
 
 core::JobFileOptions job_file_options(const SceneOptions& options) {
   return {
       options.media,
       options.missing_textures ? core::MissingTextures::magenta : core::MissingTextures::refused,
-      options.animation};
+      options.animation, options.follow_links};
 }
 
 void print_notes(const core::JobFiles& files) {

@@ -34,7 +34,8 @@ class FileResolver : public AssetResolver {
     const std::string path = (std::filesystem::path(folder_) / resolved).string();
     Result<Bytes> bytes = map_file(path);
     if (!bytes) {
-      const std::string where = path == reference ? "" : " (looked for " + path + ")";
+      const bool same = path == reference || path == "./" + reference;
+      const std::string where = same ? "" : " (looked for " + path + ")";
       return Error{reference + ": " + bytes.error().message + where};
     }
     return bytes;

@@ -44,11 +44,15 @@ std::optional<Inside> inside_of(const std::string& reference) {
 /// Files, and what stands in for pictures that are not there.
 class ImportingResolver::Sources : public AssetResolver {
  public:
-  Sources(AssetResolver& files, MissingTextures missing) : files_(files), missing_(missing) {}
+  Sources(AssetResolver& files, MissingTextures missing, SceneLinks links)
+      : files_(files), missing_(missing), links_(std::move(links)) {}
 
   Result<Bytes> open(const std::string& reference, const std::string& from) override {
-    auto bytes = files_.open(reference, from);
     const std::string resolved = resolve_reference(reference, from);
+    if (is_scene_file(from)) {
+      if (auto inside = links_.check(from, resolved); !inside) return inside.error();
+    }
+    auto bytes = files_.open(reference, from);
     const bool refused = missing_ == MissingTextures::refused || !names_picture(resolved);
     if (bytes || refused || files_.exists(resolved)) return bytes;
     note(resolved + ": no such picture; magenta stands in for it");
@@ -56,6 +60,14 @@ class ImportingResolver::Sources : public AssetResolver {
   }
 
   bool exists(const std::string& reference) override { return files_.exists(reference); }
+
+  Status check(const std::string& scene, const std::vector<std::string>& files) const {
+    for (const std::string& file : files) {
+      const auto inside = links_.check(scene, resolve_reference(file, scene));
+      if (!inside) return inside.error().in(scene);
+    }
+    return {};
+  }
 
   /// Keeps a line, once.
   void note(const std::string& line) {
@@ -71,6 +83,7 @@ class ImportingResolver::Sources : public AssetResolver {
  private:
   AssetResolver& files_;
   MissingTextures missing_;
+  SceneLinks links_;
   mutable std::mutex mutex_;
   // Guarded by mutex_.
   std::vector<std::string> notes_;
@@ -85,7 +98,8 @@ struct ImportingResolver::State {
   std::map<std::string, Bytes> added;
   std::map<std::string, SourcePtr> sources;
 
-  State(AssetResolver& below, MissingTextures missing) : files(below), lenient(below, missing) {}
+  State(AssetResolver& below, MissingTextures missing, SceneLinks links)
+      : files(below), lenient(below, missing, std::move(links)) {}
 
   /// Reads a scene once. Two who ask for the same one at the same time may both read it; one result
   /// stays.
@@ -110,11 +124,22 @@ struct ImportingResolver::State {
     request.beside = "../";
     const auto told = (*scene)->sections(request);
     if (!told) return told.error();
+    if (auto inside = lenient.check(wanted.scene, told->files); !inside) return inside.error();
     for (const std::string& line : told->notes) lenient.note(line);
     return owned(write_yaml(*told->sections));
   }
 
+  /// Whether a file of a scene's folder is to be made: not where no such scene is.
+  bool makes(const Inside& inside) {
+    return files.exists(inside.scene) || !files.exists(inside.scene + std::string(kMadeFolder));
+  }
+
   Result<Bytes> made(const Inside& inside, const std::string& reference) {
+    if (files.exists(inside.scene + std::string(kMadeFolder)) || files.exists(reference)) {
+      return Error{inside.scene + std::string(kMadeFolder) + ": there is a folder of this name; " +
+                   "it stands for what is made of " + inside.scene +
+                   ". Give the folder another name"};
+    }
     if (const auto wanted = document_of(reference)) return document(*wanted);
     const auto scene = source(inside.scene);
     if (!scene) return scene.error();
@@ -122,8 +147,9 @@ struct ImportingResolver::State {
   }
 };
 
-ImportingResolver::ImportingResolver(AssetResolver& files, MissingTextures missing)
-    : state_(new State(files, missing)) {}
+ImportingResolver::ImportingResolver(AssetResolver& files, MissingTextures missing,
+                                     SceneLinks links)
+    : state_(new State(files, missing, std::move(links))) {}
 
 ImportingResolver::~ImportingResolver() = default;
 
@@ -135,8 +161,7 @@ Result<Bytes> ImportingResolver::open(const std::string& reference, const std::s
     if (found != state_->added.end()) return found->second;
   }
   const auto inside = inside_of(resolved);
-  // A folder of that name on the disk, as left by a person, comes first.
-  if (inside && !state_->files.exists(resolved)) return state_->made(*inside, resolved);
+  if (inside && state_->makes(*inside)) return state_->made(*inside, resolved);
   return state_->lenient.open(reference, from);
 }
 
@@ -146,9 +171,9 @@ bool ImportingResolver::exists(const std::string& reference) {
     const std::lock_guard lock(state_->mutex);
     if (state_->added.contains(resolved)) return true;
   }
-  if (state_->files.exists(reference)) return true;
   const auto inside = inside_of(resolved);
-  return inside && state_->made(*inside, resolved).ok();
+  if (inside && state_->makes(*inside)) return state_->made(*inside, resolved).ok();
+  return state_->files.exists(reference);
 }
 
 bool ImportingResolver::is_on_disk(const std::string& reference) const {
@@ -156,7 +181,8 @@ bool ImportingResolver::is_on_disk(const std::string& reference) const {
     const std::lock_guard lock(state_->mutex);
     if (state_->added.contains(resolve_reference(reference))) return false;
   }
-  return state_->files.exists(reference);
+  const auto inside = inside_of(resolve_reference(reference));
+  return !(inside && state_->makes(*inside)) && state_->files.exists(reference);
 }
 
 void ImportingResolver::add(const std::string& reference, std::string text) {
@@ -170,6 +196,11 @@ void ImportingResolver::adopt(const std::string& scene, SourcePtr source) {
 }
 
 AssetResolver& ImportingResolver::sources() { return state_->lenient; }
+
+Status ImportingResolver::check_files(const std::string& scene,
+                                      const std::vector<std::string>& files) const {
+  return state_->lenient.check(scene, files);
+}
 
 std::vector<std::string> ImportingResolver::notes() const { return state_->lenient.notes(); }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/import/scene_links.h"
 #include "core/import/scene_source.h"
 
 namespace hyades::core {
@@ -18,11 +19,13 @@ enum class MissingTextures {
 /// A resolver that also has, beside every scene file F of `files` (is_scene_file()), the folder
 /// F.files: the scene as a document of the job language (core/job/scene_document.h) and the meshes
 /// and pictures that the document names. They are made when they are opened; each scene is read
-/// once. Thread-safe.
+/// once. A folder of that name on the disk, beside the scene, would be taken for what is made:
+/// opening anything in it is an error that says so. Thread-safe.
 class ImportingResolver : public AssetResolver {
  public:
   explicit ImportingResolver(AssetResolver& files,
-                             MissingTextures missing = MissingTextures::refused);
+                             MissingTextures missing = MissingTextures::refused,
+                             SceneLinks links = {});
   ~ImportingResolver() override;
 
   Result<Bytes> open(const std::string& reference, const std::string& from = {}) override;
@@ -35,7 +38,11 @@ class ImportingResolver : public AssetResolver {
   void adopt(const std::string& scene, std::shared_ptr<const SceneSource> source);
 
   /// What importers open their files with: those below, and what stands in for missing pictures.
+  /// What a scene names there must lie in its folder, by links too.
   AssetResolver& sources();
+
+  /// Whether all of SceneSections::files of a scene lie there.
+  Status check_files(const std::string& scene, const std::vector<std::string>& files) const;
 
   /// Another file that only this resolver has.
   void add(const std::string& reference, std::string text);

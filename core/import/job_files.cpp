@@ -62,7 +62,9 @@ Result<std::unique_ptr<JobFiles>> JobFiles::open(const std::string& path,
   std::unique_ptr<JobFiles> opened(new JobFiles);
   opened->folder_ = folder_of(path);
   opened->disk_ = make_file_resolver(opened->folder_);
-  opened->importing_ = std::make_unique<ImportingResolver>(*opened->disk_, options.missing);
+  opened->importing_ = std::make_unique<ImportingResolver>(
+      *opened->disk_, options.missing,
+      options.follow_links ? SceneLinks() : SceneLinks(opened->folder_));
   const std::string file = std::filesystem::path(path).filename().string();
   if (!is_scene_file(path)) {
     if (!options.media.empty()) {
@@ -81,6 +83,8 @@ Result<std::unique_ptr<JobFiles>> JobFiles::open(const std::string& path,
   request.how.made = file + std::string(kMadeFolder) + "/";
   auto job = scene_job(opened->importing_->sources(), request);
   if (!job) return job.error();
+  const auto inside = opened->importing_->check_files(file, job->files);
+  if (!inside) return inside.error();
   opened->importing_->adopt(file, job->source);
   opened->notes_ = std::move(job->notes);
   opened->document_ = file + ".yaml";

@@ -15,7 +15,8 @@ namespace hyades::core {
 struct JobFileOptions {
   std::string media;  ///< of a scene: a file of media for its materials, as a path; empty: none
   MissingTextures missing = MissingTextures::refused;
-  std::string animation;  ///< of a scene: SceneRequest::animation
+  std::string animation;      ///< of a scene: SceneRequest::animation
+  bool follow_links = false;  ///< of scenes' folders, wherever they lead
 };
 
 /// A job, or a scene that is to be one (is_scene_file()), with the door to all files that it names.

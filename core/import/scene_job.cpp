@@ -199,7 +199,7 @@ Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request)
   }
   const std::string stem = std::filesystem::path(request.scene).stem().string();
   return SceneJob{staged(*scene, told->bounds, safe_name(stem, "scene")), *source,
-                  std::move(told->notes)};
+                  std::move(told->notes), std::move(told->files)};
 }
 
 }  // namespace hyades::core

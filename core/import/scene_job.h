@@ -21,6 +21,7 @@ struct SceneJob {
   YamlPtr tree;  ///< a whole job
   std::shared_ptr<const SceneSource> source;
   std::vector<std::string> notes;  ///< of the importer
+  std::vector<std::string> files;  ///< SceneSections::files
 };
 
 /// The job that shows a scene: as it says itself, and with what it does not say. Without a camera,

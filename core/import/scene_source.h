@@ -38,6 +38,8 @@ struct SceneSections {
   Bounds bounds;
   /// What the scene says and has no counterpart here, one line each, the place in the file first.
   std::vector<std::string> notes;
+  /// The files beside the scene's that the sections name, from the scene's folder on.
+  std::vector<std::string> files{};
 };
 
 /// One scene file that has been read. Immutable and thread-safe.

@@ -11,6 +11,7 @@
 #include "core/base/atomic_file.h"
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/write_ply.h"
+#include "core/import/importing_resolver.h"
 #include "core/import/job_files.h"
 #include "core/import/names.h"
 #include "core/import/scene_job.h"
@@ -43,7 +44,9 @@ class Writer {
       : request_(request),
         folder_(folder_of(request.job)),
         made_(std::filesystem::path(request.job).stem().string() + "_files/"),
-        disk_(make_file_resolver(folder_)) {}
+        disk_(make_file_resolver(folder_)),
+        importing_(*disk_, MissingTextures::refused,
+                   request.follow_links ? SceneLinks() : SceneLinks(folder_)) {}
 
   Result<WrittenSceneJob> write() {
     if (auto free = check_free(request_.job); !free) return free.error();
@@ -77,7 +80,11 @@ class Writer {
     std::string& beside = how.how.beside;
     beside = reference_from(request_.scene, folder_);
     beside.resize(beside.rfind('/') == std::string::npos ? 0 : beside.rfind('/') + 1);
-    return scene_job(*disk_, how);
+    auto job = scene_job(importing_.sources(), how);
+    if (!job) return job;
+    const auto inside = importing_.check_files(how.scene, job->files);
+    if (!inside) return inside.error();
+    return job;
   }
 
   /// Frames of meshes that change: those of the job, and the one after, which the shutter needs.
@@ -191,6 +198,7 @@ class Writer {
   std::string folder_;  ///< of the job
   std::string made_;    ///< folder of what is made, from there on
   std::unique_ptr<AssetResolver> disk_;
+  ImportingResolver importing_;
   std::shared_ptr<const SceneSource> source_;
   std::vector<int32_t> frames_;
   Status status_;

@@ -15,7 +15,8 @@ struct WriteSceneJob {
   std::string media;      ///< path of a file of media for its materials; empty: none
   std::string animation;  ///< SceneRequest::animation
   float fps = 24.0F;
-  bool overwrite = false;  ///< replace what is there already
+  bool overwrite = false;     ///< replace what is there already
+  bool follow_links = false;  ///< of the scene's folder, wherever they lead
 };
 
 /// What was written.

@@ -111,6 +111,9 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
   out.sections = sections.node();
   out.bounds = objects->bounds;
   for (const std::string& note : notes) out.notes.push_back(model_->file + ": " + note);
+  for (const GltfImage& image : model_->images) {
+    if (!image.file.empty()) out.files.push_back(image.file);
+  }
   return out;
 }
 

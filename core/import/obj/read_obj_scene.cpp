@@ -54,7 +54,8 @@ class ObjScene : public SceneSource {
           in_library != libraries.end() ? in_library->second : std::string();
       const MtlLook look =
           look_of(material, {diagonal, part.colored}, [&](const std::string& picture) {
-            return request.beside + resolve_reference(picture, library);
+            told.files.push_back(resolve_reference(picture, library));
+            return request.beside + told.files.back();
           });
       for (const std::string& line : look.notes)
         told.notes.push_back(resolve_reference(library, place) + ": " + line);
@@ -86,6 +87,7 @@ Status read_library(AssetResolver& files, const std::string& library, ObjScene& 
   const std::string place = resolve_reference(name, scene.place);
   if (auto inside = within_folder(name); !inside) return inside.error().in(scene.place);
   const auto bytes = files.open(name, scene.place);
+  if (!bytes && files.exists(place)) return bytes.error().in(scene.place);
   if (!bytes) {
     scene.notes.push_back(scene.place + ": " + bytes.error().message + "; its materials are clay");
     return {};

@@ -38,6 +38,7 @@ std::string Context::beside(const std::string& reference, const Place& place) {
     report.error(place, path.error().message);
     return {};
   }
+  files.push_back(*path);
   return request.beside + *path;
 }
 

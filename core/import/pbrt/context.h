@@ -41,6 +41,7 @@ struct Context {
   /// "beside" put before the reference of a file that the scene names; its path is checked. Empty,
   /// and an error of the report, where it is none.
   std::string beside(const std::string& reference, const Place& place);
+  std::vector<std::string> files;  ///< SceneSections::files
 };
 
 /// The parameters of one thing of the scene.

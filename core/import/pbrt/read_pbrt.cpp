@@ -115,7 +115,7 @@ class PbrtSource : public SceneSource {
       }
       return Error{all};
     }
-    return SceneSections{out.node(), {}, std::move(context.report.notes)};
+    return SceneSections{out.node(), {}, std::move(context.report.notes), std::move(context.files)};
   }
 
   Result<Bytes> made_file(const std::string& name) const override {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "core/base/result.h"
+
+namespace hyades::core {
+
+/// Links of the disk that lead out of a scene's folder. A scene may name files of its own folder
+/// only (within_folder()); with a link in that folder it could name any, so they are followed only
+/// where somebody said so. Immutable.
+class SceneLinks {
+ public:
+  /// Links are not looked at.
+  SceneLinks() = default;
+  /// `folder`: on the disk, where references begin.
+  explicit SceneLinks(std::string folder) : folder_(std::move(folder)), looked_at_(true) {}
+
+  /// Whether `file`, as a reference that scene file `scene` names, lies in the scene's folder or
+  /// below it when all links are followed. An error that names the link and says what to do. Files
+  /// that are not there are none of its business; of a pattern (`<UDIM>`, `####`) all are looked at
+  /// that it may mean.
+  Status check(const std::string& scene, const std::string& file) const;
+
+ private:
+  Status check_one(const std::string& base, const std::string& file) const;
+
+  std::string folder_;
+  bool looked_at_ = false;
+};
+
+}  // namespace hyades::core
