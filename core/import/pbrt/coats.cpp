@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/import/pbrt/material_kinds.h"
+#include "core/import/pbrt/smooth_reflectance.h"
 #include "core/materials/interface_energy.h"
 
 /// Coated materials. pbrt lets light walk at random between the coat's surface, its base and what
@@ -39,10 +40,20 @@ YamlPtr MaterialKinds::below_coat(const YamlPtr& color, const CoatLayer& layer, 
   };
   if (const auto number = plain_number(color)) return node(seen(*number));
   if (color->kind == YamlNode::Kind::list && color->list.size() == 3) {
-    return color_node(each([&](int c) {
-      const auto r = plain_number(color->list[static_cast<size_t>(c)]).value_or(0.0F);
-      return answer.share(r, albedo[c]);
-    }));
+    Rgb base;
+    for (int c = 0; c < 3; ++c) {
+      base[c] = plain_number(color->list[static_cast<size_t>(c)]).value_or(0.0F);
+    }
+    if (albedo.x != albedo.y || albedo.y != albedo.z) {
+      return color_node(each([&](int c) { return answer.share(base[c], albedo[c]); }));
+    }
+    // Wavelength by wavelength, for what comes back is no straight line of what the base reflects.
+    Spectrum spectrum = smooth_reflectance(base);
+    for (double& value : spectrum.values) {
+      value = answer.share(static_cast<float>(value), albedo.x);
+    }
+    const Rgb seen_by_all = surface_color(spectrum);
+    return color_node(each([&](int c) { return seen_by_all[c]; }));
   }
   // Of textures: n + r (a + r (b + r c)), right at 0 with its slope, at 0.5 and at 1.
   const Rgb none = each([&](int c) { return answer.scattered_only(albedo[c]); });

@@ -163,11 +163,15 @@ Rgb blackbody_light(double kelvin) {
   return light_color(spectrum);
 }
 
+Vec3d surface_weight(double wavelength) {
+  return rec709_from_xyz(d65(wavelength) * observer(wavelength));
+}
+
 Rgb surface_color(const Spectrum& spectrum) {
   Vec3d seen(0.0);
   Vec3d white(0.0);
   for (double w = kFirst; w <= kLast; w += 1.0) {
-    const Vec3d weight = rec709_from_xyz(d65(w) * observer(w));
+    const Vec3d weight = surface_weight(w);
     seen += spectrum.at(w) * weight;
     white += weight;
   }

@@ -35,6 +35,9 @@ Rgb blackbody_light(double kelvin);
 /// Negative parts become 0.
 Rgb surface_color(const Spectrum& spectrum);
 
+/// How much a wavelength [nm] of 380 to 780 counts in each channel of that mean; not normalised.
+Vec3d surface_weight(double wavelength);
+
 /// The chromaticity of a light that has a name ("stdillum-D65"), luminance 1, in linear Rec.709;
 /// CIE 15:2004, table T.3 and T.7; ACES D60 of SMPTE ST 2065-1.
 std::optional<Rgb> named_light(std::string_view name);

@@ -5,6 +5,7 @@
 #include "core/image/write_image.h"
 #include "core/import/pbrt/color_space.h"
 #include "core/import/pbrt/sky.h"
+#include "core/import/pbrt/smooth_reflectance.h"
 #include "core/import/pbrt/spectra.h"
 #include "tests/core/import/pbrt_files.h"
 
@@ -168,6 +169,24 @@ TEST(PbrtSky, MissingAndUnfitPictures) {
   files.add("sky.exr", {bytes->chars(), bytes->size()});
   EXPECT_THAT(read_pbrt_job(files).source->made_file("sky.exr").error().message,
               HasSubstr("is not square"));
+}
+
+TEST(PbrtSpectra, SmoothReflectancesLookAsTheyShould) {
+  for (const Rgb& color : {Rgb(0.5F), Rgb(0.2F, 0.5F, 0.7F), Rgb(0.8F, 0.3F, 0.1F),
+                           Rgb(0.05F, 0.3F, 0.1F), Rgb(0.9F, 0.85F, 0.2F)}) {
+    const Spectrum spectrum = smooth_reflectance(color);
+    const Rgb seen = surface_color(spectrum);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], color[c], 0.004F) << color.x;
+    for (const double value : spectrum.values) {
+      EXPECT_GE(value, 0.0);
+      EXPECT_LE(value, 1.0);
+    }
+  }
+  // The strongest colours have no such spectrum; what comes near is still one.
+  for (const Rgb& color : {Rgb(1, 0, 0), Rgb(0, 0, 1), Rgb(1, 1, 0), Rgb(0.0F), Rgb(1.0F)}) {
+    const Rgb seen = surface_color(smooth_reflectance(color));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], color[c], 0.15F) << color.x << color.z;
+  }
 }
 
 }  // namespace

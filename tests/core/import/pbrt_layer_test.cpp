@@ -81,6 +81,9 @@ TEST(PbrtLayer, ColorsBelowCoatsAreThoseOfTheWalk) {
   EXPECT_THAT(material("\"coateddiffuse\""), HasSubstr("color: 0.27"));
   EXPECT_THAT(material("\"coateddiffuse\" \"float thickness\" 0 \"integer maxdepth\" 100"),
               HasSubstr("color: 0.28"));
+  // Red by red alone would be 0.859: a spectrum that looks so is not 1 for all of red.
+  EXPECT_THAT(material("\"coateddiffuse\" \"rgb reflectance\" [1 .378676 .013473]"),
+              HasSubstr("color: [0.73"));
   EXPECT_THAT(material("\"coateddiffuse\" \"rgb reflectance\" [0 0 0]"), HasSubstr("color: 0}"));
   EXPECT_THAT(material("\"coateddiffuse\" \"rgb reflectance\" [0 0 0] \"rgb albedo\" [0 1 0]"
                        " \"float thickness\" 1"),
