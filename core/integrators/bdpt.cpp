@@ -328,11 +328,11 @@ class BidirectionalSample final : public WalkWatcher {
     if (!seen) return;
     find_places(seen->film);
     if (places_.empty()) return;
+    const bool surface = y.kind == PathVertex::Kind::surface;
+    if (surface && is_unseen(*y.object, y.point, seen->direction, RayKind::camera)) return;
     const Rgb f = y.evaluate(y.wo, -seen->direction, TransportMode::importance);
     if (is_black(f)) return;
-    const Vec3 end = y.kind == PathVertex::Kind::surface
-                         ? offset_position(y.point, -seen->direction)
-                         : y.position;
+    const Vec3 end = surface ? offset_position(y.point, -seen->direction) : y.position;
     const MediaNumbers numbers(sampler_, s * 256 + 1, MediaNumbers::Purpose::connection);
     const Rgb share = visible_share_from_camera(scene_, ray_between(seen->position, end, ray_.time),
                                                 numbers, work_);

@@ -45,8 +45,8 @@ class Path {
     while (true) {
       ++work_.rays;
       SurfacePoint point;
-      const bool met =
-          scene_.world->nearest(ray_, depth_ == 0 ? RayKind::camera : RayKind::other, point);
+      const RayKind kind = depth_ == 0 ? RayKind::camera : RayKind::other;
+      const bool met = scene_.world->nearest(ray_, kind, point);
       if (const Medium* medium = around_.medium(); medium != nullptr) {
         const Flight flight = fly(*medium, met ? &point : nullptr);
         if (flight == Flight::ended) break;
@@ -57,8 +57,9 @@ class Path {
         break;
       }
       const SceneObject& object = scene_.objects[point.object];
-      if (goes_straight(object, point, around_, passing_)) {
-        add_emission(point, object);
+      const bool unseen = is_unseen(object, point, ray_.direction, kind);
+      if (unseen || goes_straight(object, point, around_, passing_)) {
+        if (!unseen) add_emission(point, object);
         if (++null_crossings > kMaxNullCrossings) break;
         cross(object, point, ray_.direction, around_);
         ray_ = spawn_ray(point, ray_.direction);

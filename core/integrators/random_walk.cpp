@@ -79,8 +79,9 @@ PathVertex* RandomWalk::next_vertex(Subpath& path, Way& way, WalkWatcher& watche
       return nullptr;
     }
     const SceneObject& object = scene_.objects[point.object];
-    watcher.meets(way, point, object);
-    if (!goes_straight(object, point, way.around, passing)) {
+    const bool unseen = is_unseen(object, point, way.ray.direction, kind);
+    if (!unseen) watcher.meets(way, point, object);
+    if (!unseen && !goes_straight(object, point, way.around, passing)) {
       PathVertex& v = path.add(PathVertex::Kind::surface);
       v.point = point;
       v.point.outside_index = way.around.index_outside(object.body);

@@ -34,7 +34,9 @@ Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
       return share;
     }
     const SceneObject& object = scene.objects[point.object];
-    const float straight = straight_share(object, point, inside);
+    const float straight = is_unseen(object, point, way.direction, kind)
+                               ? 1.0F
+                               : straight_share(object, point, inside);
     if (!(straight > 0.0F)) return Rgb(0.0F);
     share *= straight;
     pass(inside.medium(), way, point.t);

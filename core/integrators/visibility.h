@@ -31,6 +31,13 @@ inline float straight_share(const SceneObject& object, const SurfacePoint& point
   return material.is_cutout() ? 1.0F - material.opacity(point) : 0.0F;
 }
 
+/// Whether a ray of `kind` along `direction` does not see `object`, whose surface it meets at
+/// `point`: the camera looks through the backs of what shows it its front only.
+inline bool is_unseen(const SceneObject& object, const SurfacePoint& point, const Vec3& direction,
+                      RayKind kind) {
+  return object.front_only && kind == RayKind::camera && glm::dot(direction, point.ng) > 0.0F;
+}
+
 /// Whether a path goes on straight there, which it does with probability straight_share().
 inline bool goes_straight(const SceneObject& object, const SurfacePoint& point,
                           const MediumStack& around, MediaNumbers& numbers) {

@@ -76,6 +76,8 @@ struct MaterialDesc {
   std::string first, second;  ///< materials: parts of a mix, front and back; coat, sheen: the base
   ScalarInput amount{Animated<float>(0.5F), {}};   ///< mix: share of `second`; coat
   ScalarInput opacity{Animated<float>(1.0F), {}};  ///< the rest passes straight; all but null
+  std::string sides =
+      "both";  ///< that the camera sees: both | front; of whole objects; all but null
   std::optional<BumpDesc> bump;
   std::optional<NormalMapDesc> normal_map;
   std::optional<PrincipledDesc> principled;

@@ -10,10 +10,13 @@ namespace hyades::core {
 
 namespace {
 
+const std::array<std::string, 2> kSides = {"both", "front"};
+
 /// Keys of all materials but null.
 void read_opacity(MapReader& reader, MaterialDesc& material) {
   reader.enter_section("materials.solids");
   reader.scalar_input("opacity", material.opacity, kUnitInterval);
+  reader.choice("sides", material.sides, kSides);
 }
 
 /// Keys of all materials but null and black.

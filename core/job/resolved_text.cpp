@@ -117,6 +117,7 @@ void write(FieldWriter& out, const MaterialDesc& material) {
   out.put("second", material.second);
   out.put("amount", material.amount);
   out.put("opacity", material.opacity);
+  if (material.sides != "both") out.put("sides", material.sides);
   if (material.bump) {
     out.put("bump.texture", material.bump->texture);
     out.put("bump.height", material.bump->height);

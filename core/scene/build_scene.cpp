@@ -66,12 +66,14 @@ class SceneBuilder {
     if (auto done = add_atmosphere(*flat); !done) return done;
     std::vector<Placement> placements;
     placements.reserve(flat->size());
+    const std::set<std::string> front_only = materials_seen_from_the_front();
     add_notices(*flat);
     for (const FlatObject& object : *flat) {
       auto material = looks_.surface(object.material, object.desc->interior);
       if (!material) return at_object(object, material.error());
       const std::string& look = object.material.empty() ? kDefaultMaterial : object.material;
       scene_->objects.push_back({.material = *material,
+                                 .front_only = front_only.contains(look),
                                  .name = object.name,
                                  .material_name = look,
                                  .ids = {id_of(object.name), id_of(look)}});
@@ -93,6 +95,14 @@ class SceneBuilder {
     scene_->world = *world;
     if (auto done = check_exteriors(job_, *flat, *scene_); !done) return done;
     return add_emitters(*flat);
+  }
+
+  std::set<std::string> materials_seen_from_the_front() const {
+    std::set<std::string> names;
+    for (const MaterialDesc& material : job_.materials) {
+      if (material.sides == "front") names.insert(material.name);
+    }
+    return names;
   }
 
   /// What instances of one object have in common is told once.

@@ -28,6 +28,9 @@ struct SceneObject {
 
   MaterialPtr material;
   uint32_t light = kNoLight;  ///< index in Scene::lights where the surface emits
+  /// Whether rays straight from the camera go through it where they come from behind (see
+  /// docs/job.md, "Sides"); all others meet both sides.
+  bool front_only = false;
   /// The body that light which crosses the surface comes into; null: none, or none that matters to
   /// light.
   const Body* body = nullptr;
