@@ -63,7 +63,7 @@ void read_vertex_color(MapReader& reader, TextureDesc& texture) {
   reader.choice("channel", texture.channel, channel_names());
 }
 
-const std::array<TypeRow<TextureDesc>, 29> kTypes = {{
+const std::array<TypeRow<TextureDesc>, 30> kTypes = {{
     {"constant", read_constant},
     {"image", read_image},
     {"vertex-color", read_vertex_color},
@@ -83,6 +83,7 @@ const std::array<TypeRow<TextureDesc>, 29> kTypes = {{
     {"cellular", read_cellular},
     {"scale", read_product},
     {"add", read_pair},
+    {"divide", read_pair},
     {"min", read_pair},
     {"max", read_pair},
     {"mix", read_mix},

@@ -23,6 +23,7 @@ Result<TexturePtr> make_cellular(const TextureDesc& desc, Appearance& looks);
 // What becomes of other textures.
 Result<TexturePtr> make_scale(const TextureDesc& desc, Appearance& looks);
 Result<TexturePtr> make_add(const TextureDesc& desc, Appearance& looks);
+Result<TexturePtr> make_divided(const TextureDesc& desc, Appearance& looks);
 Result<TexturePtr> make_least(const TextureDesc& desc, Appearance& looks);
 Result<TexturePtr> make_greatest(const TextureDesc& desc, Appearance& looks);
 Result<TexturePtr> make_mixed(const TextureDesc& desc, Appearance& looks);

@@ -59,7 +59,7 @@ Result<TexturePtr> make_vertex_color(const TextureDesc& desc, Appearance& /*look
   return (*channel)->value ? make_channel_texture(colors, *(*channel)->value) : colors;
 }
 
-constexpr std::array<NameRow<TextureMaker>, 29> kMakers = {{
+constexpr std::array<NameRow<TextureMaker>, 30> kMakers = {{
     {"constant", make_constant},
     {"image", make_image},
     {"vertex-color", make_vertex_color},
@@ -79,6 +79,7 @@ constexpr std::array<NameRow<TextureMaker>, 29> kMakers = {{
     {"cellular", make_cellular},
     {"scale", make_scale},
     {"add", make_add},
+    {"divide", make_divided},
     {"min", make_least},
     {"max", make_greatest},
     {"mix", make_mixed},

@@ -47,6 +47,10 @@ Result<TexturePtr> make_add(const TextureDesc& desc, Appearance& looks) {
   return of_pair(desc, looks, make_sum_texture);
 }
 
+Result<TexturePtr> make_divided(const TextureDesc& desc, Appearance& looks) {
+  return of_pair(desc, looks, make_quotient_texture);
+}
+
 Result<TexturePtr> make_least(const TextureDesc& desc, Appearance& looks) {
   return of_pair(desc, looks, [](auto& a, auto& b) { return make_extreme_texture(a, b, false); });
 }

@@ -53,6 +53,28 @@ class Sum final : public Pair {
   }
 };
 
+/// a over b; 0 where b is 0.
+class Quotient final : public Pair {
+ public:
+  using Pair::Pair;
+  Rgb color(const TexturePoint& at) const override { return a_->color(at) * inverse_of(at); }
+  ScalarGradient gradient(const TexturePoint& at, const Vec4& weights) const override {
+    const Rgb a = a_->color(at);
+    const Rgb inverse = inverse_of(at);
+    return sum_of(at, weights, a * inverse, inverse, -a * inverse * inverse);
+  }
+
+ private:
+  Rgb inverse_of(const TexturePoint& at) const {
+    const Rgb b = b_->color(at);
+    Rgb inverse(0.0F);
+    for (int c = 0; c < 3; ++c) {
+      if (b[c] != 0.0F) inverse[c] = 1.0F / b[c];
+    }
+    return inverse;
+  }
+};
+
 /// The lesser or the greater of two, channel by channel.
 class Extreme final : public Pair {
  public:
@@ -115,6 +137,9 @@ TexturePtr make_scale_texture(TexturePtr input, TexturePtr factor) {
 }
 TexturePtr make_sum_texture(TexturePtr a, TexturePtr b) {
   return std::make_shared<Sum>(std::move(a), std::move(b));
+}
+TexturePtr make_quotient_texture(TexturePtr a, TexturePtr b) {
+  return std::make_shared<Quotient>(std::move(a), std::move(b));
 }
 TexturePtr make_extreme_texture(TexturePtr a, TexturePtr b, bool greater) {
   return std::make_shared<Extreme>(std::move(a), std::move(b), greater);

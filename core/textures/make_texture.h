@@ -53,6 +53,8 @@ TexturePtr make_pattern_texture(TexturePtr a, TexturePtr b, PatternPtr pattern,
 /// input times factor.
 TexturePtr make_scale_texture(TexturePtr input, TexturePtr factor);
 TexturePtr make_sum_texture(TexturePtr a, TexturePtr b);
+/// a over b; 0 where b is 0.
+TexturePtr make_quotient_texture(TexturePtr a, TexturePtr b);
 /// The greater of a and b, or the lesser.
 TexturePtr make_extreme_texture(TexturePtr a, TexturePtr b, bool greater);
 /// (1 - w) a + w b with w the number of `amount`, held within 0..1.

@@ -134,7 +134,7 @@ TEST(Kinds, ASceneIsBuiltOfEach) {
     for (const char* of_one : {"scale", "invert", "remap", "threshold", "hue-saturation"}) {
       if (type == of_one) more = ", input: 0.5";
     }
-    for (const char* of_two : {"add", "min", "max", "mix"}) {
+    for (const char* of_two : {"add", "divide", "min", "max", "mix"}) {
       if (type == of_two) more = ", a: 0.5, b: 0.2";
     }
     expect_builds("textures: {x: {type: '" + type + "'" + more +

@@ -42,6 +42,7 @@ TEST(Nodes, GradientsAreThoseOfDifferences) {
   } nodes[] = {
       {"scale", make_scale_texture(a, b)},
       {"add", make_sum_texture(a, b)},
+      {"divide", make_quotient_texture(a, make_sum_texture(b, of({0.5F, 0.7F, 0.9F})))},
       {"min", make_extreme_texture(a, b, false)},
       {"max", make_extreme_texture(a, b, true)},
       {"mix", make_mix_texture(a, b, clouds(5.0F))},
@@ -94,6 +95,8 @@ TEST(Nodes, ArithmeticIsByChannel) {
   const TexturePtr b = of({0.4F, 0.25F, 0.5F});
   expect_color(at(make_scale_texture(a, b)), {0.08F, 0.125F, 0.45F});
   expect_color(at(make_sum_texture(a, b)), {0.6F, 0.75F, 1.4F});
+  expect_color(at(make_quotient_texture(a, b)), {0.5F, 2.0F, 1.8F});
+  expect_color(at(make_quotient_texture(a, of({0.5F, 0.0F, 1.0F}))), {0.4F, 0.0F, 0.9F});
   expect_color(at(make_extreme_texture(a, b, false)), {0.2F, 0.25F, 0.5F});
   expect_color(at(make_extreme_texture(a, b, true)), {0.4F, 0.5F, 0.9F});
   expect_color(at(make_mix_texture(a, b, of(Rgb(0.25F)))), {0.25F, 0.4375F, 0.8F});
