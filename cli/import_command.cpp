@@ -27,6 +27,7 @@ int import_command(int argc, char** argv) {
   app.add_option("--animation", request.animation,
                  "of several animations in the file, the one that is meant (default: the first; "
                  "none: the scene stands still)");
+  app.add_flag("--loop", request.loop, "the animation begins again where it ends");
   app.add_option("--fps", request.fps, "frames per second of the job")
       ->check(CLI::Range(0.001F, 1e6F))
       ->capture_default_str();

@@ -21,6 +21,7 @@ void declare_scene_options(CLI::App& app, SceneOptions& options) {
   app.add_option("--animation", options.animation,
                  "of a scene with several animations, the one that is meant (default: the first; "
                  "none: it stands still)");
+  app.add_flag("--loop", options.loop, "the scene's animation begins again where it ends");
   app.add_flag("--missing-textures", options.missing_textures,
                "let magenta stand in for pictures that are not there");
   app.add_flag("--follow-links", options.follow_links,
@@ -31,7 +32,7 @@ core::JobFileOptions job_file_options(const SceneOptions& options) {
   return {
       options.media,
       options.missing_textures ? core::MissingTextures::magenta : core::MissingTextures::refused,
-      options.animation, options.follow_links};
+      options.animation, options.loop, options.follow_links};
 }
 
 void print_notes(const core::JobFiles& files) {

@@ -14,11 +14,12 @@ namespace hyades::cli {
 struct SceneOptions {
   std::string media;              ///< file of media for a scene's materials; empty: none
   std::string animation;          ///< of a scene with several, the one that is meant
+  bool loop = false;              ///< whether it begins again where it ends
   bool missing_textures = false;  ///< pictures that are not there are magenta, not errors
   bool follow_links = false;      ///< out of scenes' folders too
 };
 
-/// Options --media, --animation, --missing-textures and --follow-links.
+/// Options --media, --animation, --loop, --missing-textures and --follow-links.
 void declare_scene_options(CLI::App& app, SceneOptions& options);
 
 core::JobFileOptions job_file_options(const SceneOptions& options);

@@ -121,6 +121,7 @@ struct ImportingResolver::State {
     request.prefix = wanted.prefix;
     request.fps = wanted.fps;
     request.animation = wanted.animation;
+    request.loop = wanted.loop;
     request.beside = "../";
     const auto told = (*scene)->sections(request);
     if (!told) return told.error();

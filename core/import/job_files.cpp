@@ -80,6 +80,7 @@ Result<std::unique_ptr<JobFiles>> JobFiles::open(const std::string& path,
   request.media = reference_from(options.media, opened->folder_);
   request.media_in_job = request.media;
   request.how.animation = options.animation;
+  request.how.loop = options.loop;
   request.how.made = file + std::string(kMadeFolder) + "/";
   auto job = scene_job(opened->importing_->sources(), request);
   if (!job) return job.error();

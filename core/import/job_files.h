@@ -16,6 +16,7 @@ struct JobFileOptions {
   std::string media;  ///< of a scene: a file of media for its materials, as a path; empty: none
   MissingTextures missing = MissingTextures::refused;
   std::string animation;      ///< of a scene: SceneRequest::animation
+  bool loop = false;          ///< of a scene: SceneRequest::loop
   bool follow_links = false;  ///< of scenes' folders, wherever they lead
 };
 

@@ -75,6 +75,7 @@ class Writer {
     how.media_in_job = how.media;
     how.how.fps = request_.fps;
     how.how.animation = request_.animation;
+    how.how.loop = request_.loop;
     how.how.made = made_;
     // "../scenes/"; nothing where the job lies beside the scene.
     std::string& beside = how.how.beside;

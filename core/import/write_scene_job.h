@@ -14,6 +14,7 @@ struct WriteSceneJob {
   std::string job;        ///< path of the job to be written
   std::string media;      ///< path of a file of media for its materials; empty: none
   std::string animation;  ///< SceneRequest::animation
+  bool loop = false;      ///< SceneRequest::loop
   float fps = 24.0F;
   bool overwrite = false;     ///< replace what is there already
   bool follow_links = false;  ///< of the scene's folder, wherever they lead

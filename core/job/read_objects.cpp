@@ -182,7 +182,7 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
       if (std::string_view(row.key) != "group") row.read(reader, object);
     }
     reader.enter_section("objects");
-    for (const char* scene : {"gltf", "pbrt", "obj", "animation"}) reader.find(scene);
+    for (const char* scene : {"gltf", "pbrt", "obj", "animation", "loop"}) reader.find(scene);
     reader.find("group");
     reader.context().listing->insert({"objects.group", "objects"});
     return;

@@ -66,6 +66,9 @@ bool read_option(std::string_view option, SceneDocument& document) {
     document.prefix = *value;
   } else if (key == "animation") {
     document.animation = *value;
+  } else if (key == "loop") {
+    if (*value != "true") return false;
+    document.loop = true;
   } else if (key == "fps") {
     double fps = 0.0;
     if (!parse_number(*value, fps) || !(fps > 0.0 && fps <= 1e6)) return false;
@@ -88,6 +91,7 @@ std::string reference_of(const SceneDocument& document) {
   if (!document.prefix.empty()) name += ",prefix=" + escaped(document.prefix);
   name += fmt::format(",fps={}", document.fps);
   if (!document.animation.empty()) name += ",animation=" + escaped(document.animation);
+  if (document.loop) name += ",loop=true";
   return name + std::string(kEnd);
 }
 

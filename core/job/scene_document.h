@@ -15,6 +15,7 @@ struct SceneDocument {
   std::string prefix;     ///< stands before all names that it gives, and a '.'; empty: nothing
   float fps = 24.0F;      ///< of the job
   std::string animation;  ///< the one that is meant, of several; empty: the first; "none": still
+  bool loop = false;      ///< whether it begins again where it ends
 };
 
 /// Added to a scene file's name: the folder of what is made of it.

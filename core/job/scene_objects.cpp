@@ -26,6 +26,7 @@ constexpr std::array<SceneKey, 3> kSceneKeys = {{
     {"pbrt", {".pbrt", ".pbrt"}},
     {"obj", {".obj", ".obj"}},
 }};
+constexpr std::array<std::string_view, 2> kAnimationKeys = {"animation", "loop"};
 constexpr std::array<const char*, 4> kOtherKinds = {"shape", "mesh", "instance", "group"};
 constexpr std::array<const char*, 4> kBrought = {"textures", "materials", "media", "groups"};
 
@@ -145,6 +146,22 @@ class Expander {
       }
       wanted.animation = animation->value->scalar;
     }
+    if (const YamlEntry* loop = node.find("loop")) {
+      const std::string& value = loop->value->scalar;
+      if (loop->value->kind != Kind::scalar || (value != "true" && value != "false")) {
+        diagnostics_.add(loop->value->where,
+                         "loop is " + describe(*loop->value) + ", expected true or false");
+        return std::nullopt;
+      }
+      wanted.loop = value == "true";
+    }
+    for (const std::string_view key : kAnimationKeys) {
+      const YamlEntry* entry = node.find(key);
+      if (entry == nullptr || std::string_view(row.key) == "gltf") continue;
+      diagnostics_.add(entry->key_where, std::string(key) + " is for scenes of glTF, but this is " +
+                                             row.key + ": " + wanted.scene);
+      return std::nullopt;
+    }
     return wanted;
   }
 
@@ -153,7 +170,8 @@ class Expander {
     std::erase_if(result->map, [](const YamlEntry& entry) {
       const bool scene = std::any_of(kSceneKeys.begin(), kSceneKeys.end(),
                                      [&](const SceneKey& row) { return entry.key == row.key; });
-      return scene || entry.key == "animation";
+      return scene || std::find(kAnimationKeys.begin(), kAnimationKeys.end(), entry.key) !=
+                          kAnimationKeys.end();
     });
     return result;
   }

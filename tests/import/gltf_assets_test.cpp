@@ -124,7 +124,7 @@ Green green_of(const Window& window, const ScenePicture& picture, const core::Ve
 
 TEST(GltfAssets, TextureSettingsTestLooksLikeItsSamples) {
   NEEDS_ASSETS();
-  const Window window{1.5F, -1.6F, 7.2F, 140, 288};
+  const Window window{1.5F, -1.05F, 8.3F, 140, 332};
   const ScenePicture picture =
       render_asset("TextureSettingsTest", {.yaml = kEven + window.yaml(), .samples = 8});
   struct Row {
@@ -132,9 +132,9 @@ TEST(GltfAssets, TextureSettingsTestLooksLikeItsSamples) {
     float y;
     bool plain;
   };
-  // To the left the test, to the right what it should look like: a tick, or green all over. The row
-  // "single-sided" is left out: surfaces have two sides here.
-  const std::array<Row, 7> rows = {{{"double-sided", 1.52F, false},
+  // To the left the test, to the right what it should look like: a tick, or green all over.
+  const std::array<Row, 8> rows = {{{"single-sided", 2.54F, false},
+                                    {"double-sided", 1.52F, false},
                                     {"clamp s", 0.47F, true},
                                     {"clamp t", -0.57F, true},
                                     {"repeat s", -1.6F, false},
@@ -163,7 +163,7 @@ TEST(GltfAssets, AttenuationTestDarkensByBeersLaw) {
       {.yaml = "integrator: {max_depth: 16}\n" + window.yaml(),
        .samples = 32,
        .edits = {{"FlatBackdrop: {type: principled, base_color: PlainGrid, metallic: 0, "
-                  "roughness: 0.5}",
+                  "roughness: 0.5, sides: front}",
                   "FlatBackdrop: {type: principled, base_color: 0, specular: 0, "
                   "emission_strength: 1}"}}});
   struct Block {
@@ -200,13 +200,18 @@ TEST(GltfAssets, ClearCoatTestsCoatsReflect) {
   EXPECT_GT(coated.x, bare.x);
   EXPECT_LT(coated.x, bare.x + 0.05F);
   // In all other rows too, by as much as the coat alone reflects or a little less.
-  for (const float y : {3.15F, 1.05F, -1.05F, -3.15F, -5.25F}) {
+  for (const float y : {1.05F, -1.05F, -3.15F, -5.25F}) {
     const float base = window.mean(picture, -2.1F, y, 0.5F).x;
     const float with_coat = window.mean(picture, 0, y, 0.5F).x;
     const float coat_alone = window.mean(picture, 2.1F, y, 0.5F).x;
     EXPECT_GT(with_coat, base + 0.1F * coat_alone) << y;
     EXPECT_LT(with_coat, base + 1.1F * coat_alone) << y;
   }
+  // A coat with holes: alone it shows the sky through them, and not its own inside, for it is of
+  // one side.
+  const float half = window.mean(picture, 0, 3.15F, 0.5F).x;
+  EXPECT_GT(half, window.mean(picture, -2.1F, 3.15F, 0.5F).x + 0.002F);
+  EXPECT_GT(window.mean(picture, 2.1F, 3.15F, 0.5F).x, 3.0F * half);
 }
 
 TEST(GltfAssets, SpecularTestReflectsMoreToTheRight) {
@@ -243,7 +248,7 @@ TEST(GltfAssets, TransmissionRoughnessTestBlursMoreToTheRight) {
       {.yaml = "integrator: {max_depth: 8}\n" + window.yaml(),
        .samples = 16,
        .edits = {{"FlatBackdrop: {type: principled, base_color: GridWithDetails, metallic: 0, "
-                  "roughness: 0.5}",
+                  "roughness: 0.5, sides: front}",
                   "FlatBackdrop: {type: principled, base_color: 0, specular: 0, "
                   "emission_strength: 1, emission_color: GridWithDetails}"}}});
   const auto contrast = [&](int row, int column) {

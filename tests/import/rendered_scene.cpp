@@ -113,6 +113,8 @@ ScenePicture render_scene(const core::SceneSource& source, const SceneView& view
                           const std::string& folder, const std::string& name) {
   core::SceneRequest request;
   request.animation = view.animation;
+  request.loop = view.loop;
+  request.fps = view.fps;
   request.made = "made/";
   auto sections = source.sections(request);
   if (!sections) throw std::runtime_error(sections.error().message);

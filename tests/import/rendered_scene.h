@@ -13,6 +13,8 @@ namespace hyades::test {
 struct SceneView {
   std::string yaml;  ///< sections of a job that replace those of the scene: film, camera, ...
   std::string animation = {};  ///< the one that is meant
+  bool loop = false;           ///< whether it begins again
+  float fps = 24.0F;
   int32_t frame = 1;
   int samples = 16;
   /// Texts of the job that are replaced by others; each must be there.

@@ -157,15 +157,30 @@ Result<std::shared_ptr<const GltfClip>> read_clip(const GltfModel& model, size_t
   auto clip = std::make_shared<GltfClip>();
   clip->name = animation.name;
   clip->tracks.resize(model.nodes.size());
+  constexpr size_t kMostNotes = 10;
+  size_t left_out = 0;
   for (const GltfChannel& channel : animation.channels) {
     const GltfNode& node = model.nodes[static_cast<size_t>(channel.node)];
     const size_t width = width_of(channel.path, model, channel.node);
-    if (width == 0 || (node.matrix && channel.path != Path::weights)) continue;
-    if (clip->track(channel.node, channel.path) != nullptr) continue;
+    const char* why = nullptr;
+    if (width == 0) why = "which has no morph targets";
+    if (node.matrix && channel.path != Path::weights) why = "which has a matrix";
+    if (clip->track(channel.node, channel.path) != nullptr) why = "as another channel does";
+    if (why != nullptr) {
+      if (left_out++ < kMostNotes) {
+        clip->notes.push_back(fmt::format("{} is left out: it moves nodes[{}], {}", channel.place,
+                                          channel.node, why));
+      }
+      continue;
+    }
     auto track = read_track(model, channel, width);
     if (!track) return track.error();
     clip->duration = std::max(clip->duration, static_cast<double>(track->times.back()));
     clip->tracks[static_cast<size_t>(channel.node)].push_back(std::move(*track));
+  }
+  if (left_out > kMostNotes) {
+    clip->notes.push_back(fmt::format("animations[{}]: {} more channels are left out likewise",
+                                      index, left_out - kMostNotes));
   }
   clip->carried.assign(model.nodes.size(), 0);
   for (const int node : model.order) {

@@ -31,13 +31,14 @@ struct GltfClip {
   std::vector<std::vector<GltfTrack>> tracks;
   std::vector<uint8_t> carried;       ///< by node: whether it or one above it moves
   std::vector<uint8_t> moving_skins;  ///< by skin: whether one of its joints does
+  std::vector<std::string> notes;     ///< channels that are left out
 
   const GltfTrack* track(int node, GltfChannel::Path path) const;
   bool moves(int node) const;  ///< whether translation, rotation or scale change
 };
 
-/// Reads animation `index`; errors name the channel. Channels of nodes that have a matrix, and
-/// second ones of the same property, are left out, as the specification has it.
+/// Reads animation `index`; errors name the channel. Channels of nodes that have a matrix, second
+/// ones of the same property, and weights of what has no morph targets are left out and noted.
 Result<std::shared_ptr<const GltfClip>> read_clip(const GltfModel& model, size_t index);
 
 /// Where the nodes are at one moment.

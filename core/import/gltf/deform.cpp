@@ -78,9 +78,9 @@ Result<GltfBones> read_bones(const GltfModel& model, const GltfPrimitive& primit
   GltfBones out;
   std::vector<std::vector<uint32_t>> ids;
   std::vector<std::vector<float>> shares;
-  for (const char* digit : {"0", "1"}) {
-    const auto at = primitive.attributes.find(std::string("JOINTS_") + digit);
-    const auto by = primitive.attributes.find(std::string("WEIGHTS_") + digit);
+  for (size_t set = 0;; ++set) {
+    const auto at = primitive.attributes.find(fmt::format("JOINTS_{}", set));
+    const auto by = primitive.attributes.find(fmt::format("WEIGHTS_{}", set));
     if (at == primitive.attributes.end() || by == primitive.attributes.end()) break;
     auto id = read_whole(model, at->second, 4);
     if (!id) return id.error();
@@ -88,7 +88,7 @@ Result<GltfBones> read_bones(const GltfModel& model, const GltfPrimitive& primit
     if (!share) return share.error();
     if (id->size() != 4 * vertices || share->size() != 4 * vertices) {
       return model.error(fmt::format("{} has {} vertices, but {} of JOINTS_{}", primitive.place,
-                                     vertices, id->size() / 4, digit));
+                                     vertices, id->size() / 4, set));
     }
     ids.push_back(std::move(*id));
     shares.push_back(std::move(*share));

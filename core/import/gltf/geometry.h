@@ -17,7 +17,8 @@ struct GltfGeometry {
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 
-/// The bones of each vertex: up to four (or eight) joints of the skin and how much each counts.
+/// The bones of each vertex: four joints of the skin for each set of them, and how much each
+/// counts.
 struct GltfBones {
   size_t each = 0;               ///< joints per vertex
   std::vector<uint32_t> joints;  ///< each of them per vertex, below the skin's count

@@ -53,6 +53,11 @@ Result<std::vector<GltfPlace>> read_places(const GltfModel& model,
   return places;
 }
 
+bool has_targets(const GltfMesh& mesh) {
+  return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),
+                     [](const GltfPrimitive& primitive) { return !primitive.targets.empty(); });
+}
+
 }  // namespace
 
 size_t count_copies(const GltfModel& model, const GltfNode& node) {
@@ -84,25 +89,75 @@ Result<GltfCopies> copies_of(const GltfModel& model, int node) {
   return out;
 }
 
-GltfPlaceFiles::GltfPlaceFiles(std::shared_ptr<const GltfModel> model) : model_(std::move(model)) {
+GltfPlaceFiles::GltfPlaceFiles(std::shared_ptr<const GltfModel> model, const GltfMeshFiles& files)
+    : model_(std::move(model)), files_(files) {
   Names names("copies");
   for (const int node : model_->order) {
     const GltfNode& at = model_->nodes[static_cast<size_t>(node)];
-    if (at.mesh < 0 || at.instances.empty()) continue;
-    const std::string& mesh = model_->meshes[static_cast<size_t>(at.mesh)].name;
-    const std::string base = safe_name(at.name.empty() ? mesh : at.name, "copies");
-    names_[node] = "places/" + names.add(base) + ".ply";
+    if (at.mesh < 0) continue;
+    const GltfMesh& mesh = model_->meshes[static_cast<size_t>(at.mesh)];
+    if (!at.instances.empty()) {
+      names_[node] = names.add(safe_name(at.name.empty() ? mesh.name : at.name, "copies"));
+    } else if (at.skin < 0 && !has_targets(mesh)) {
+      nodes_[at.mesh].push_back(node);
+    }
+  }
+  std::erase_if(nodes_, [](const auto& entry) { return entry.second.size() < kFewestNodes; });
+  for (const auto& [mesh, nodes] : nodes_) {
+    const std::string& own = model_->meshes[static_cast<size_t>(mesh)].name;
+    const std::string& first = model_->nodes[static_cast<size_t>(nodes.front())].name;
+    shared_names_[mesh] = names.add(safe_name(own.empty() ? first : own, "copies"));
   }
 }
 
+std::vector<int> GltfPlaceFiles::shared_meshes() const {
+  std::vector<int> meshes;
+  for (const auto& [mesh, nodes] : nodes_) meshes.push_back(mesh);
+  return meshes;
+}
+
+GltfSharedMesh GltfPlaceFiles::shared(int mesh, const GltfClip* clip) const {
+  GltfSharedMesh out;
+  for (const int node : nodes_.at(mesh)) {
+    if (moves_in_scene(clip, node)) continue;
+    const Mat4 world = world_matrix(*model_, clip, node, 0.0);
+    if (!can_be_copied(world)) continue;
+    out.places.emplace_back(world);
+    out.nodes.push_back(node);
+  }
+  return out.nodes.size() >= kFewestNodes ? out : GltfSharedMesh();
+}
+
+std::string GltfPlaceFiles::shared_name(int mesh, const GltfClip* clip, size_t animation) const {
+  const std::string folder = clip != nullptr ? files_.clip_name(animation) + "/" : "";
+  return "places/" + folder + shared_names_.at(mesh) + ".ply";
+}
+
 Result<Bytes> GltfPlaceFiles::made(const std::string& name) const {
-  for (const auto& [node, file] : names_) {
-    if (file != name) continue;
+  const Error unknown = model_->error("it has no part '" + name + "'");
+  std::string_view rest = name;
+  if (!rest.starts_with("places/") || !rest.ends_with(".ply")) return unknown;
+  rest = rest.substr(7, rest.size() - 11);
+  std::shared_ptr<const GltfClip> clip;
+  const size_t slash = rest.find('/');
+  if (slash != std::string_view::npos) {
+    const auto index = files_.clip_in_folder(rest.substr(0, slash));
+    if (!index) return unknown;
+    auto read = files_.clip(*index);
+    if (!read) return read.error();
+    clip = *read;
+    rest = rest.substr(slash + 1);
+  }
+  for (const auto& [mesh, own] : shared_names_) {
+    if (own == rest) return places_bytes(shared(mesh, clip.get()).places);
+  }
+  for (const auto& [node, own] : names_) {
+    if (own != rest || clip != nullptr) continue;
     const auto copies = copies_of(*model_, node);
     if (!copies) return copies.error();
     return places_bytes(copies->in_file);
   }
-  return model_->error("it has no part '" + name + "'");
+  return unknown;
 }
 
 }  // namespace hyades::core

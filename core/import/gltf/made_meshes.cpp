@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "core/geometry/write_ply.h"
@@ -14,6 +15,8 @@
 namespace hyades::core {
 
 namespace {
+
+constexpr std::string_view kLoop = "loop/";
 
 /// Whether a node shapes the mesh that it shows.
 bool shapes(const GltfNode& node, const GltfPrimitive& primitive) {
@@ -126,8 +129,8 @@ bool GltfMeshFiles::changes(const GltfMeshFile& file, const GltfClip& clip) cons
   return skin >= 0 && clip.moving_skins[static_cast<size_t>(skin)] != 0;
 }
 
-std::string GltfMeshFiles::folder(float fps, size_t animation) const {
-  return fmt::format("{}/{}/", fps, clip_folders_[animation]);
+std::string GltfMeshFiles::folder(float fps, size_t animation, bool loop) const {
+  return fmt::format("{}{}/{}/", loop ? kLoop : "", fps, clip_folders_[animation]);
 }
 
 Result<std::shared_ptr<const GltfClip>> GltfMeshFiles::clip(size_t index) const {
@@ -139,6 +142,12 @@ Result<std::shared_ptr<const GltfClip>> GltfMeshFiles::clip(size_t index) const 
     known = *read;
   }
   return known;
+}
+
+std::optional<size_t> GltfMeshFiles::clip_in_folder(std::string_view folder) const {
+  const auto at = std::find(clip_folders_.begin(), clip_folders_.end(), folder);
+  if (at == clip_folders_.end()) return std::nullopt;
+  return static_cast<size_t>(at - clip_folders_.begin());
 }
 
 int GltfMeshFiles::animation_named(const std::string& name) const {
@@ -160,7 +169,10 @@ Result<Bytes> GltfMeshFiles::made(const std::string& name) const {
   double time = 0.0;
   const size_t slash = rest.rfind('/');
   if (slash != std::string_view::npos) {
-    const std::string_view folder = rest.substr(0, slash);
+    const bool loop = rest.starts_with(kLoop);
+    const size_t begin = loop ? kLoop.size() : 0;
+    if (slash < begin) return unknown;
+    const std::string_view folder = rest.substr(begin, slash - begin);
     rest = rest.substr(slash + 1);
     const size_t middle = folder.find('/');
     const size_t dot = rest.rfind('.');
@@ -171,13 +183,13 @@ Result<Bytes> GltfMeshFiles::made(const std::string& name) const {
         !parse(rest.substr(dot + 1), frame)) {
       return unknown;
     }
-    const auto at =
-        std::find(clip_folders_.begin(), clip_folders_.end(), folder.substr(middle + 1));
-    if (at == clip_folders_.end()) return unknown;
-    auto read = this->clip(static_cast<size_t>(at - clip_folders_.begin()));
+    const auto index = clip_in_folder(folder.substr(middle + 1));
+    if (!index) return unknown;
+    auto read = this->clip(*index);
     if (!read) return read.error();
     clip = *read;
     time = (static_cast<double>(frame) - 1.0) / static_cast<double>(fps);
+    if (loop && clip->duration > 0.0) time -= clip->duration * std::floor(time / clip->duration);
     rest = rest.substr(0, dot);
   }
   const auto file = by_name_.find(std::string(rest));

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,14 +33,21 @@ class GltfMeshFiles {
   bool changes(const GltfMeshFile& file, const GltfClip& clip) const;
 
   /// The bytes of "meshes/<name>.ply", the mesh at rest, or of
-  /// "meshes/<fps>/<clip>/<name>.<frame>.ply".
+  /// "meshes/<fps>/<clip>/<name>.<frame>.ply", "meshes/loop/<fps>/<clip>/<name>.<frame>.ply".
   Result<Bytes> made(const std::string& name) const;
 
-  /// What stands between "meshes/" and the mesh's name: "24/Walk/".
-  std::string folder(float fps, size_t animation) const;
+  /// What stands between "meshes/" and the mesh's name: "24/Walk/", or "loop/24/Walk/" where the
+  /// clip begins again when it ends.
+  std::string folder(float fps, size_t animation, bool loop) const;
 
   /// Animation `index`, read once.
   Result<std::shared_ptr<const GltfClip>> clip(size_t index) const;
+
+  /// The name of its folder, by which animation_named() finds it too.
+  const std::string& clip_name(size_t animation) const { return clip_folders_[animation]; }
+
+  /// The animation whose folder this is.
+  std::optional<size_t> clip_in_folder(std::string_view folder) const;
 
   /// The number of the animation of this name: its own or that of its folder; or -1.
   int animation_named(const std::string& name) const;

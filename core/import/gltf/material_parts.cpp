@@ -77,6 +77,44 @@ void write_opacity(MaterialSheet& sheet, float alpha, const JsonValue& texture) 
   }
 }
 
+namespace {
+
+YamlPtr node_of(const char* type, const YamlPtr& a, const YamlPtr& b) {
+  return YamlMap{{"type", yaml_word(type)}, {"a", a}, {"b", b}}.node();
+}
+
+YamlPtr remapped(const YamlPtr& input, float low, float high, float to_high) {
+  YamlMap out{{"type", yaml_word("remap")}, {"input", input}};
+  if (low != 0.0F) out.put("low", yaml_number(low));
+  if (high != 1.0F) out.put("high", yaml_number(high));
+  if (to_high != 1.0F) out.put("to_high", yaml_number(to_high));
+  return out.node();
+}
+
+/// What reflects `specular` straight on and leaves the rest to the body, from place to place:
+/// facets of index 1.5, which reflect 0.04, mixed with a mirror of the same hue, so that both add
+/// up to the brightest channel: (1 - m) 0.04 + m = max. The body keeps 1 - m of its light, which is
+/// (1 - max) / 0.96, as the extension's 1 - max is below what facets let through.
+void write_textured_specular(MaterialSheet& sheet, const YamlPtr& specular) {
+  constexpr float kGlass = 0.04F;
+  const auto channel = [&](const char* name) {
+    return YamlMap{
+        {"type", yaml_word("channel")}, {"input", specular}, {"channel", yaml_word(name)}}
+        .node();
+  };
+  const YamlPtr peak =
+      node_of("max", channel("red"), node_of("max", channel("green"), channel("blue")));
+  const YamlPtr hue = node_of("divide", specular, peak);
+  sheet.out.put("specular", remapped(peak, 0.0F, kGlass, 0.5F)).put("specular_tint", hue);
+  sheet.mirror_amount = remapped(peak, kGlass, 1.0F, 1.0F);
+  sheet.mirror.put("type", yaml_word("principled"))
+      .put("base_color", hue)
+      .put("metallic", yaml_number(1.0F))
+      .put("roughness", sheet.out.node()->find("roughness")->value);
+}
+
+}  // namespace
+
 void write_specular_glossiness(MaterialSheet& sheet) {
   const JsonValue old = sheet.extension("KHR_materials_pbrSpecularGlossiness");
   std::array<float, 4> base = {1.0F, 1.0F, 1.0F, 1.0F};
@@ -95,12 +133,16 @@ void write_specular_glossiness(MaterialSheet& sheet) {
         "roughness",
         YamlMap{{"type", yaml_word("invert")}, {"input", scaled(glossiness, gloss)}}.node());
   }
-  // The index whose facets reflect the brightest channel straight on, tinted to the colour.
   const Rgb specular = color_of(old, "specularFactor", Rgb(1.0F), 1.0F);
-  const float brightest = max_component(specular);
-  sheet.out.put("ior", yaml_number(index_that_reflects(brightest)));
-  const Rgb tint = brightest > 0.0F ? specular / max_component(specular) : Rgb(0.0F);
-  sheet.out.put("specular_tint", tinted(tint, sheet.textures.name(packed, Meaning::color, "")));
+  const std::string map = sheet.textures.name(packed, Meaning::color, "");
+  if (map.empty()) {
+    // The index whose facets reflect the brightest channel straight on, tinted to the colour.
+    const float brightest = max_component(specular);
+    sheet.out.put("ior", yaml_number(index_that_reflects(brightest)));
+    sheet.out.put("specular_tint", yaml_vector(brightest > 0.0F ? specular / brightest : Rgb(0)));
+  } else {
+    write_textured_specular(sheet, tinted(specular, map));
+  }
   write_opacity(sheet, base[3], diffuse);
 }
 
@@ -213,6 +255,15 @@ void write_transmission(MaterialSheet& sheet) {
     }
   }
   if (!solid && (through > 0.0F || matt > 0.0F)) sheet.out.put("thin_walled", yaml_flag(true));
+}
+
+bool lets_light_in(const MaterialSheet& sheet) {
+  const auto above_zero = [&](const char* extension, const char* key) {
+    return sheet.extension(extension).number(key, 0.0F) > 0.0F;
+  };
+  return above_zero("KHR_materials_transmission", "transmissionFactor") ||
+         above_zero("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor") ||
+         above_zero("KHR_materials_volume", "thicknessFactor");
 }
 
 YamlMap volume_of(const MaterialSheet& sheet) {

@@ -17,6 +17,8 @@ struct MaterialSheet {
   YamlMap out{};
   bool colored = false;  ///< the colours of the vertices count
   YamlPtr opacity{};     ///< null: 1
+  YamlMap mirror{};      ///< what `out` is mixed with; empty: nothing
+  YamlPtr mirror_amount{};
 
   JsonValue extension(const char* name) const { return value.member("extensions").member(name); }
   void note(const std::string& what) const { notes.push_back(value.place() + " " + what); }
@@ -41,6 +43,9 @@ void write_anisotropy(MaterialSheet& sheet);
 void write_sheen(MaterialSheet& sheet);
 /// KHR_materials_transmission, _diffuse_transmission; thin walls where there is no volume.
 void write_transmission(MaterialSheet& sheet);
+/// Whether light goes into what the surface bounds or through it: then `doubleSided` says nothing
+/// (KHR_materials_volume: no effect on the boundaries of volumes).
+bool lets_light_in(const MaterialSheet& sheet);
 /// The medium of KHR_materials_volume as its keys; empty where light goes through unharmed.
 YamlMap volume_of(const MaterialSheet& sheet);
 

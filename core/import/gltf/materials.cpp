@@ -74,15 +74,16 @@ void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& ou
   sheet.colored = colored;
   const JsonValue extensions = value.member("extensions");
   Glow glow;
+  const bool both_sides = value.flag("doubleSided", false);
   if (extensions.has("KHR_materials_unlit")) {
     sheet.out.put("type", yaml_word("black"));
     glow = unlit_of(sheet);
     out.shines = true;
     sheet.note("is unlit: it gives off its colour, and lights what is around it");
-    out.emit = YamlMap{{"color", glow.color},
-                       {"radiance", yaml_number(glow.strength)},
-                       {"two_sided", yaml_flag(true)}}
-                   .node();
+    YamlMap emit{{"color", glow.color}, {"radiance", yaml_number(glow.strength)}};
+    if (both_sides) emit.put("two_sided", yaml_flag(true));
+    out.emit = emit.node();
+    if (!both_sides) sheet.out.put("sides", yaml_word("front"));
     if (sheet.opacity) sheet.out.put("opacity", sheet.opacity);
     materials_.put(out.name, sheet.out);
     return;
@@ -108,8 +109,12 @@ void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& ou
   const JsonValue coat_bumps = coat.member("clearcoatNormalTexture");
   // The coat has a normal map of its own, or none: where that is not the base's, it has to be a
   // layer by itself.
-  const bool apart = coated > 0.0F && !same(bumps, coat_bumps);
-  if (const YamlPtr normals = normal_map_of(sheet, bumps)) sheet.out.put("normal_map", normals);
+  const bool mixed = !sheet.mirror.empty();
+  const bool apart = coated > 0.0F && (mixed || !same(bumps, coat_bumps));
+  if (const YamlPtr normals = normal_map_of(sheet, bumps)) {
+    sheet.out.put("normal_map", normals);
+    if (mixed) sheet.mirror.put("normal_map", normals);
+  }
   const auto coat_amount = [&] {
     return scaled(coated, textures_.name(coat.member("clearcoatTexture"), Meaning::data, "red"));
   };
@@ -122,8 +127,7 @@ void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& ou
   }
   glow = glow_of(sheet);
   out.shines = glow.strength > 0.0F;
-  const bool both_sides = value.flag("doubleSided", false);
-  if (glow.strength > 0.0F && (both_sides || apart)) {
+  if (glow.strength > 0.0F && (both_sides || apart || mixed)) {
     YamlMap emit{{"color", glow.color}, {"radiance", yaml_number(glow.strength)}};
     if (both_sides) emit.put("two_sided", yaml_flag(true));
     out.emit = emit.node();
@@ -131,19 +135,30 @@ void GltfMaterials::write(const JsonValue& value, bool colored, GltfMaterial& ou
     sheet.out.put("emission_color", glow.color);
     sheet.out.put("emission_strength", yaml_number(glow.strength));
   }
-  if (!apart) {
-    if (sheet.opacity) sheet.out.put("opacity", sheet.opacity);
-    materials_.put(out.name, sheet.out);
-    return;
-  }
   const std::string called = value.text("name");
-  const std::string base = names_.add(called.empty() ? "base" : called + ".base");
-  materials_.put(base, sheet.out);
-  YamlMap layer{{"type", yaml_word("coat")}, {"base", yaml_text(base)}};
-  layer.put("amount", coat_amount()).put("roughness", coat_roughness());
-  if (const YamlPtr normals = normal_map_of(sheet, coat_bumps)) layer.put("normal_map", normals);
-  if (sheet.opacity) layer.put("opacity", sheet.opacity);
-  materials_.put(out.name, layer);
+  const auto part = [&](const char* what) {
+    return names_.add(called.empty() ? what : called + "." + what);
+  };
+  YamlMap whole = sheet.out;
+  if (mixed) {
+    const std::string body = part("body");
+    const std::string mirror = part("mirror");
+    materials_.put(body, sheet.out).put(mirror, sheet.mirror);
+    whole = YamlMap{{"type", yaml_word("mix")},
+                    {"first", yaml_text(body)},
+                    {"second", yaml_text(mirror)},
+                    {"amount", sheet.mirror_amount}};
+  }
+  if (apart) {
+    const std::string base = part("base");
+    materials_.put(base, whole);
+    whole = YamlMap{{"type", yaml_word("coat")}, {"base", yaml_text(base)}};
+    whole.put("amount", coat_amount()).put("roughness", coat_roughness());
+    if (const YamlPtr normals = normal_map_of(sheet, coat_bumps)) whole.put("normal_map", normals);
+  }
+  if (!both_sides && !lets_light_in(sheet)) whole.put("sides", yaml_word("front"));
+  if (sheet.opacity) whole.put("opacity", sheet.opacity);
+  materials_.put(out.name, whole);
 }
 
 }  // namespace hyades::core

@@ -13,34 +13,61 @@ using Way = GltfChannel::Way;
 
 std::string frame_text(double frame) { return fmt::format("{}", static_cast<float>(frame)); }
 
-YamlPtr keyed(const YamlMap& keys, const char* ease) {
-  YamlMap out{{"keys", keys.node()}};
-  if (ease != nullptr) out.put("ease", yaml_word(ease));
-  return out.node();
-}
+/// Keys in the making.
+class Keys {
+ public:
+  explicit Keys(const GltfFrames& frames) : frames_(frames) {}
+
+  void put(double frame, const YamlPtr& value) {
+    const std::string text = frame_text(frame);
+    if (text != last_) keys_.put(text, value);
+    last_ = text;
+  }
+
+  /// `value` at every frame, and where the clip begins again.
+  template <class Value>
+  void put_each(const Value& value) {
+    const double end = frames_.loop() ? frames_.seam : frames_.last + 1.0;
+    for (int frame = 1; frame <= end; frame += frames_.step()) put(frame, value(frame));
+    if (frames_.loop()) put(frames_.seam, value(frames_.seam));
+  }
+
+  YamlPtr node(const char* ease = nullptr) const {
+    YamlMap out{{"keys", keys_.node()}};
+    if (ease != nullptr) out.put("ease", yaml_word(ease));
+    if (frames_.loop()) out.put("repeat", yaml_word("loop"));
+    return out.node();
+  }
+
+ private:
+  const GltfFrames& frames_;
+  YamlMap keys_;
+  std::string last_;  ///< frame
+};
 
 /// A track as a keyed value. Cubic splines, and linear ones whose keys lie closer than frames, are
 /// told frame by frame.
 YamlPtr track_keys(const GltfTrack& track, const GltfFrames& frames) {
   std::vector<float> value(track.width);
-  YamlMap keys;
-  std::string last;
-  const auto put = [&](const std::string& frame) {
-    if (frame != last) keys.put(frame, yaml_numbers(value));
-    last = frame;
-  };
+  Keys keys(frames);
   if (track.way == Way::cubic || track.times.size() > static_cast<size_t>(4 * frames.last)) {
-    for (int frame = 1; frame <= frames.last + 1; frame += frames.step()) {
+    keys.put_each([&](double frame) {
       track.at(frames.time(frame), value.data());
-      put(frame_text(frame));
-    }
-    return keyed(keys, nullptr);
+      return yaml_numbers(value);
+    });
+    return keys.node();
   }
-  for (size_t i = 0; i < track.times.size(); ++i) {
+  const auto key = [&](size_t i) {
     std::copy_n(track.key(i), track.width, value.begin());
-    put(frame_text(1.0 + static_cast<double>(track.times[i]) * static_cast<double>(frames.fps)));
+    return yaml_numbers(value);
+  };
+  // What repeats does so from its first key to its last one: these stand at the clip's ends.
+  if (frames.loop()) keys.put(1.0, key(0));
+  for (size_t i = 0; i < track.times.size(); ++i) {
+    keys.put(1.0 + static_cast<double>(track.times[i]) * static_cast<double>(frames.fps), key(i));
   }
-  return keyed(keys, track.way == Way::step ? "step" : nullptr);
+  if (frames.loop()) keys.put(frames.seam, key(track.times.size() - 1));
+  return keys.node(track.way == Way::step ? "step" : nullptr);
 }
 
 /// The steps of a node that moves, in its parent's space.
@@ -127,12 +154,11 @@ YamlPtr moving_vector(const GltfModel& model, const GltfClip* clip, int node,
   if (!moves_in_scene(clip, node)) {
     return yaml_vector(at(world_matrix(model, clip, node, 0.0)));
   }
-  YamlMap keys;
-  for (int frame = 1; frame <= frames.last + 1; frame += frames.step()) {
-    keys.put(std::to_string(frame),
-             yaml_vector(at(world_matrix(model, clip, node, frames.time(frame)))));
-  }
-  return keyed(keys, nullptr);
+  Keys keys(frames);
+  keys.put_each([&](double frame) {
+    return yaml_vector(at(world_matrix(model, clip, node, frames.time(frame))));
+  });
+  return keys.node();
 }
 
 }  // namespace hyades::core

@@ -13,12 +13,16 @@ namespace hyades::core {
 struct GltfFrames {
   float fps = 24.0F;
   int last = 1;  ///< frames 1 to this one show the clip
+  /// Where the clip begins again, as a frame (perhaps a fraction of one); 0: nowhere, its last pose
+  /// stays.
+  double seam = 0.0;
 
   /// Most keys of what is told frame by frame; of longer clips every second, third, ... frame.
   static constexpr int kMostKeys = 20'000;
 
   int step() const { return 1 + last / kMostKeys; }
-  double time(int frame) const { return (frame - 1) / static_cast<double>(fps); }
+  bool loop() const { return seam > 0.0; }
+  double time(double frame) const { return (frame - 1) / static_cast<double>(fps); }
 };
 
 /// The steps that bring the space of a node into that of the scene: what stands still as one

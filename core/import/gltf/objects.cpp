@@ -41,9 +41,30 @@ class Writer {
         names_("object", stage.request.prefix),
         group_names_("copies", stage.request.prefix) {}
 
+  /// Nodes that stand still and show the same mesh, where they are very many.
+  Status shared_meshes() {
+    told_.assign(stage_.model.nodes.size(), 0);
+    for (const int mesh : stage_.places.shared_meshes()) {
+      const GltfSharedMesh shared = stage_.places.shared(mesh, stage_.clip);
+      if (shared.nodes.empty()) continue;
+      std::vector<Part> parts = parts_of(shared.nodes.front());
+      if (parts.empty() || shine(parts)) continue;
+      const std::string& own = stage_.model.meshes[static_cast<size_t>(mesh)].name;
+      const std::string& first = stage_.model.nodes[static_cast<size_t>(shared.nodes.front())].name;
+      for (Part& part : parts) part.name = own.empty() ? first : own;
+      const std::string file = stage_.places.shared_name(mesh, stage_.clip, stage_.animation);
+      if (Status s = put_group(own.empty() ? first : own, file, parts, {}); !s) return s;
+      for (const Part& part : parts) {
+        if (Status s = extend_bounds(part, Affine(), shared.places); !s) return s;
+      }
+      for (const int node : shared.nodes) told_[static_cast<size_t>(node)] = 1;
+    }
+    return {};
+  }
+
   Status node(int index) {
     const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
-    if (node.mesh < 0) return {};
+    if (node.mesh < 0 || told_[static_cast<size_t>(index)] != 0) return {};
     const std::vector<Part> parts = parts_of(index);
     if (parts.empty()) return {};
     std::vector<YamlPtr> steps;
@@ -114,7 +135,8 @@ class Writer {
     part.shines = material.shines;
     const bool deforms = stage_.clip != nullptr && stage_.files.changes(*part.file, *stage_.clip);
     const std::string folder =
-        deforms ? stage_.files.folder(stage_.frames.fps, stage_.animation) : "";
+        deforms ? stage_.files.folder(stage_.frames.fps, stage_.animation, stage_.frames.loop())
+                : "";
     part.object.put("mesh",
                     yaml_text(fmt::format("{}meshes/{}{}{}.ply", stage_.request.made, folder,
                                           part.file->name, deforms ? ".####" : "")));
@@ -142,13 +164,14 @@ class Writer {
     std::vector<PlaceMatrix>& in_file = copies->in_file;
     if (Status s = extend_bounds(index, parts, in_file); !s) return s;
     if (Status s = extend_bounds(index, parts, copies->single); !s) return s;
-    const bool lamp =
-        std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.shines; });
-    if (lamp || in_file.size() < kFewestCopies || may_vanish(stage_.model, stage_.clip, index)) {
+    if (shine(parts) || in_file.size() < kFewestCopies ||
+        may_vanish(stage_.model, stage_.clip, index)) {
       if (Status s = put_each(in_file, parts, steps); !s) return s;
     } else {
       in_file = {};
-      if (Status s = put_group(index, parts, steps); !s) return s;
+      const std::string& mesh = stage_.model.meshes[static_cast<size_t>(node.mesh)].name;
+      const std::string& name = node.name.empty() ? mesh : node.name;
+      if (Status s = put_group(name, stage_.places.name(index), parts, steps); !s) return s;
     }
     return put_each(copies->single, parts, steps);
   }
@@ -165,10 +188,13 @@ class Writer {
     return {};
   }
 
-  Status put_group(int index, const std::vector<Part>& parts, const std::vector<YamlPtr>& steps) {
-    const GltfNode& node = stage_.model.nodes[static_cast<size_t>(index)];
-    const GltfMesh& mesh = stage_.model.meshes[static_cast<size_t>(node.mesh)];
-    const std::string& name = !node.name.empty() ? node.name : mesh.name;
+  static bool shine(const std::vector<Part>& parts) {
+    return std::any_of(parts.begin(), parts.end(), [](const Part& part) { return part.shines; });
+  }
+
+  /// Copies of `parts` at the places of `file`, as a group and an object.
+  Status put_group(const std::string& name, const std::string& file, const std::vector<Part>& parts,
+                   const std::vector<YamlPtr>& steps) {
     Names inside("object");
     YamlMap members;
     for (const Part& part : parts) members.put(inside.add(part.name), part.object);
@@ -177,7 +203,7 @@ class Writer {
     weight_ += body.node()->weight;
     out.groups.put(group, body);
     const YamlMap object{{"instance", yaml_text(group)},
-                         {"places", yaml_text(stage_.request.made + stage_.places.name(index))}};
+                         {"places", yaml_text(stage_.request.made + file)}};
     return put(name, object, steps);
   }
 
@@ -221,13 +247,19 @@ class Writer {
     const Affine world(node.skin >= 0 ? Mat4(1.0F)
                                       : world_matrix(stage_.model, stage_.clip, index, 0.0));
     for (const Part& part : parts) {
-      const auto own = own_bounds(part);
-      if (!own) return own.error();
-      if (own->empty()) continue;
-      if (places.empty()) out.bounds.include(transform_bounds(world, *own));
-      for (const PlaceMatrix& place : places) {
-        out.bounds.include(transform_bounds(world * Affine(place_matrix(place)), *own));
-      }
+      if (Status s = extend_bounds(part, world, places); !s) return s;
+    }
+    return {};
+  }
+
+  Status extend_bounds(const Part& part, const Affine& world,
+                       const std::vector<PlaceMatrix>& places) {
+    const auto own = own_bounds(part);
+    if (!own) return own.error();
+    if (own->empty()) return {};
+    if (places.empty()) out.bounds.include(transform_bounds(world, *own));
+    for (const PlaceMatrix& place : places) {
+      out.bounds.include(transform_bounds(world * Affine(place_matrix(place)), *own));
     }
     return {};
   }
@@ -238,6 +270,7 @@ class Writer {
   Names group_names_;
   std::set<std::string> left_out_;
   uint64_t weight_ = 0;
+  std::vector<uint8_t> told_;  ///< by node: whether it is among the copies of a mesh
   size_t copies_ = 0;
 };
 
@@ -245,6 +278,7 @@ class Writer {
 
 Result<GltfObjects> write_objects(const GltfStage& stage, GltfMaterials& materials) {
   Writer writer(stage, materials);
+  if (Status s = writer.shared_meshes(); !s) return s.error();
   for (const int node : stage.model.order) {
     if (Status s = writer.node(node); !s) return s.error();
   }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/import/gltf/instancing.h"
+#include "core/import/gltf/left_out.h"
 #include "core/import/gltf/made_meshes.h"
 #include "core/import/gltf/materials.h"
 #include "core/import/gltf/objects.h"
@@ -31,7 +32,7 @@ class GltfSource : public SceneSource {
   explicit GltfSource(std::shared_ptr<const GltfModel> model)
       : model_(std::move(model)),
         files_(model_),
-        places_(model_),
+        places_(model_, files_),
         images_(image_file_names(*model_)) {}
 
   Result<SceneSections> sections(const SceneRequest& request) const override;
@@ -39,6 +40,7 @@ class GltfSource : public SceneSource {
 
  private:
   Result<Chosen> choose(const std::string& name) const;
+  void note_others(size_t played, const std::string& asked, std::vector<std::string>& notes) const;
 
   std::shared_ptr<const GltfModel> model_;
   GltfMeshFiles files_;
@@ -67,6 +69,28 @@ Result<Chosen> GltfSource::choose(const std::string& name) const {
   return chosen;
 }
 
+/// Where nobody has chosen, the animations that might have been.
+void GltfSource::note_others(size_t played, const std::string& asked,
+                             std::vector<std::string>& notes) const {
+  constexpr size_t kMost = 12;
+  const std::vector<GltfAnimation>& all = model_->animations;
+  if (!asked.empty() || all.size() < 2) return;
+  const auto name_of = [&](size_t i) {
+    return all[i].name.empty() ? files_.clip_name(i) : all[i].name;
+  };
+  std::string others;
+  for (size_t i = 0, told = 0; i < all.size(); ++i) {
+    if (i == played) continue;
+    if (told++ == kMost) {
+      others += fmt::format(" and {} more", all.size() - 1 - kMost);
+      break;
+    }
+    others += (others.empty() ? "'" : ", '") + name_of(i) + "'";
+  }
+  notes.push_back(fmt::format("of its {} animations '{}' is played; others: {}", all.size(),
+                              name_of(played), others));
+}
+
 void put_unless_empty(YamlMap& sections, const char* key, const YamlMap& map) {
   if (!map.empty()) sections.put(key, map);
 }
@@ -80,8 +104,19 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
   stage.frames.fps = request.fps;
   if (stage.clip != nullptr) {
     // A key at 1 s is frame 25 of 24 per second, whatever the last bits of its time are.
-    const double frames = stage.clip->duration * static_cast<double>(request.fps) + 1e-4;
-    stage.frames.last = static_cast<int>(1.0 + std::floor(std::min(frames, kMostFrames)));
+    const double frames =
+        std::min(stage.clip->duration * static_cast<double>(request.fps), kMostFrames);
+    stage.frames.last = static_cast<int>(1.0 + std::floor(frames + 1e-4));
+    if (request.loop && frames > 0.0) {
+      stage.frames.seam = 1.0 + frames;
+      // The frame at the seam is the first one again.
+      stage.frames.last = static_cast<int>(std::max(1.0, std::ceil(frames - 1e-4)));
+    }
+  }
+  note_others(chosen->index, request.animation, notes);
+  for (const std::string& note : left_out_attributes(*model_)) notes.push_back(note);
+  if (stage.clip != nullptr) {
+    notes.insert(notes.end(), stage.clip->notes.begin(), stage.clip->notes.end());
   }
   JsonTrouble trouble;
   const JsonValue root = model_->root(trouble);

@@ -1,6 +1,7 @@
 #include "core/import/pbrt/directives.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/base/text.h"
@@ -459,7 +460,9 @@ Status Directives::one_of_many(ObjectDefinition& object) {
   }
   const PlaceMatrix place{Mat4(state_.to_world.at[0])};
   for (int c = 0; c < 4; ++c) {
-    if (glm::any(glm::isinf(place[c]))) return error("the instance is too far away or too large");
+    const bool finite =
+        std::isfinite(place[c].x) && std::isfinite(place[c].y) && std::isfinite(place[c].z);
+    if (!finite) return error("the instance is too far away or too large");
   }
   object.copies.push_back(place);
   return {};

@@ -17,22 +17,38 @@ GltfBuilder one_square() {
   return b;
 }
 
+/// What is wrong with the meshes and places that objects name; empty: nothing.
+std::string trouble_of(const core::SceneSource& source, const core::YamlNode& objects) {
+  for (const core::YamlEntry& object : objects.map) {
+    for (const char* key : {"mesh", "places"}) {
+      const core::YamlEntry* file = object.value->find(key);
+      if (file == nullptr) continue;
+      std::string name = file->value->scalar;
+      const size_t at = name.find("####");
+      if (at != std::string::npos) name.replace(at, 4, "0002");
+      const auto made = source.made_file(name);
+      if (!made) return made.error().message;
+    }
+  }
+  return {};
+}
+
 /// What is wrong with a scene and all of its meshes; empty: nothing.
 std::string trouble(const std::string& glb) {
   const auto source = read_glb(glb);
   if (!source) return source.error().message;
-  const auto sections = (*source)->sections({});
+  core::SceneRequest request;
+  request.loop = true;
+  const auto sections = (*source)->sections(request);
   if (!sections) return sections.error().message;
-  const core::YamlEntry* objects = (*sections->sections).find("objects");
-  if (objects == nullptr) return {};
-  for (const core::YamlEntry& object : objects->value->map) {
-    std::string name = object.value->find("mesh")->value->scalar;
-    const size_t at = name.find("####");
-    if (at != std::string::npos) name.replace(at, 4, "0002");
-    const auto made = (*source)->made_file(name);
-    if (!made) return made.error().message;
+  if (const core::YamlEntry* groups = sections->sections->find("groups")) {
+    for (const core::YamlEntry& group : groups->value->map) {
+      const std::string wrong = trouble_of(**source, *group.value->find("objects")->value);
+      if (!wrong.empty()) return wrong;
+    }
   }
-  return {};
+  const core::YamlEntry* objects = sections->sections->find("objects");
+  return objects == nullptr ? "" : trouble_of(**source, *objects->value);
 }
 
 std::string trouble(const GltfBuilder& b) { return trouble(b.glb()); }
@@ -85,7 +101,8 @@ TEST(GltfHostile, ChainsOfNodesWithoutEnd) {
 
 TEST(GltfHostile, ManyNodesOfOneName) {
   GltfBuilder b = one_square();
-  for (int i = 0; i < 20'000; ++i) b.add("nodes", {{"mesh", 0}, {"name", "Box"}});
+  for (int i = 1; i < 20; ++i) b.mesh(b.square());
+  for (int i = 0; i < 20'000; ++i) b.add("nodes", {{"mesh", i % 20}, {"name", "Box"}});
   const std::string job = job_of(b);
   EXPECT_THAT(job, HasSubstr("Box-20000:"));
 }
@@ -160,7 +177,7 @@ TEST(GltfHostile, SparseElementsBeyondTheirAccessor) {
   EXPECT_THAT(trouble(b), HasSubstr("accessors[0].sparse.count is 1000000000"));
 }
 
-/// A file with a skin, targets, sparse elements, an animation, materials and extensions.
+/// A file with a skin, targets, instances, an animation, materials and extensions.
 std::string rich_file() {
   GltfBuilder b;
   nlohmann::json square = b.square();
@@ -178,6 +195,12 @@ std::string rich_file() {
              {"attenuationDistance", 2},
              {"attenuationColor", {0.5, 0.6, 0.7}}}},
            {"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
+  b.add(
+      "materials",
+      {{"doubleSided", true},
+       {"extensions",
+        {{"KHR_materials_pbrSpecularGlossiness",
+          {{"specularFactor", {0.5, 0.6, 0.7}}, {"specularGlossinessTexture", {{"index", 0}}}}}}}});
   b.add("textures", {{"source", 0}});
   b.add("images", {{"uri", "data:image/png;base64,iVBORw0KGgo="}});
   b.add("nodes", {{"mesh", b.mesh(square)}, {"skin", 0}, {"weights", {0.5}}});
@@ -189,6 +212,20 @@ std::string rich_file() {
   b.add("animations",
         {{"samplers", {{{"input", times}, {"output", moves}, {"interpolation", "CUBICSPLINE"}}}},
          {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}});
+  nlohmann::json plain = b.square();
+  plain["material"] = 1;
+  std::vector<float> at;
+  std::vector<float> turn;
+  for (int i = 0; i < 70; ++i) {
+    at.insert(at.end(), {static_cast<float>(i), 0, 1});
+    turn.insert(turn.end(), {0, 0.6F, 0, 0.8F});
+  }
+  b.add("nodes",
+        {{"mesh", b.mesh(plain)},
+         {"extensions",
+          {{"EXT_mesh_gpu_instancing",
+            {{"attributes",
+              {{"TRANSLATION", b.floats(at, "VEC3")}, {"ROTATION", b.floats(turn, "VEC4")}}}}}}}});
   return b.glb();
 }
 

@@ -35,8 +35,37 @@ std::string job_with(const nlohmann::json& material) {
 }
 
 TEST(GltfMaterial, DefaultsAreThoseOfTheSpecification) {
-  EXPECT_THAT(job_with(nlohmann::json::object()),
-              HasSubstr("{type: principled, base_color: 1, metallic: 1, roughness: 1}"));
+  EXPECT_THAT(
+      job_with(nlohmann::json::object()),
+      HasSubstr("{type: principled, base_color: 1, metallic: 1, roughness: 1, sides: front}"));
+}
+
+TEST(GltfMaterial, BacksAreNotSeenButWhereLightGoesInOrTheFileSaysSo) {
+  const auto transmission = [](const char* name, const char* key) {
+    return nlohmann::json{{"extensions", {{name, {{key, 1}}}}}};
+  };
+  EXPECT_THAT(job_with({{"doubleSided", true}}), Not(HasSubstr("sides")));
+  EXPECT_THAT(job_with(transmission("KHR_materials_transmission", "transmissionFactor")),
+              Not(HasSubstr("sides")));
+  EXPECT_THAT(
+      job_with(transmission("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor")),
+      Not(HasSubstr("sides")));
+  EXPECT_THAT(job_with(transmission("KHR_materials_volume", "thicknessFactor")),
+              Not(HasSubstr("sides")));
+  EXPECT_THAT(job_with(transmission("KHR_materials_clearcoat", "clearcoatFactor")),
+              HasSubstr("sides: front"));
+}
+
+TEST(GltfMaterial, SpecularOfATextureIsAMixture) {
+  const std::string job =
+      job_with({{"name", "Old"},
+                {"emissiveFactor", {1, 1, 1}},
+                {"extensions",
+                 {{"KHR_materials_pbrSpecularGlossiness",
+                   {{"specularGlossinessTexture", {{"index", 0}}}, {"glossinessFactor", 0.5}}}}}});
+  EXPECT_THAT(job, HasSubstr("Old:\n    type: mix\n    first: Old.body\n    second: Old.mirror"));
+  EXPECT_THAT(job, HasSubstr("emit: {color: 1, radiance: 1}"));
+  EXPECT_THAT(job, Not(HasSubstr("emission_strength")));
 }
 
 TEST(GltfMaterial, AlphaModes) {
@@ -107,7 +136,9 @@ TEST(GltfMaterial, ACoatOverBumpsIsALayerOfItsOwn) {
                 {"normalTexture", {{"index", 0}, {"scale", 0.5}}},
                 {"extensions", {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}}}});
   EXPECT_THAT(job, HasSubstr("normal_map: {texture: texture, strength: 0.5}"));
-  EXPECT_THAT(job, HasSubstr("Paint: {type: coat, base: Paint.base, amount: 1, roughness: 0}"));
+  EXPECT_THAT(
+      job,
+      HasSubstr("Paint: {type: coat, base: Paint.base, amount: 1, roughness: 0, sides: front}"));
 }
 
 TEST(GltfMaterial, SurfacesThatShine) {
@@ -119,8 +150,8 @@ TEST(GltfMaterial, SurfacesThatShine) {
   const std::string unlit =
       job_with({{"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 1, 1}}}},
                 {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}});
-  EXPECT_THAT(unlit, HasSubstr("{type: black}"));
-  EXPECT_THAT(unlit, HasSubstr("emit: {color: [0.25, 0.5, 1], radiance: 1, two_sided: true}"));
+  EXPECT_THAT(unlit, HasSubstr("{type: black, sides: front}"));
+  EXPECT_THAT(unlit, HasSubstr("emit: {color: [0.25, 0.5, 1], radiance: 1}"));
 }
 
 TEST(GltfMaterial, AnisotropyIsRoughnessAlongTheTangent) {

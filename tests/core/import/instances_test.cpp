@@ -161,6 +161,63 @@ TEST(GltfInstances, CountsThatNoFileHoldsAreRefused) {
   EXPECT_THAT(job_of(b), HasSubstr("accessors[3]"));
 }
 
+/// 1,100 nodes of one mesh below one that is moved up; the first one moves by itself.
+GltfBuilder many_nodes(const nlohmann::json& material = nlohmann::json::object()) {
+  GltfBuilder b;
+  b.add("materials", material);
+  nlohmann::json square = b.square();
+  square["material"] = 0;
+  const int mesh = b.mesh(square);
+  b.json["meshes"][0]["name"] = "Stone";
+  nlohmann::json children;
+  b.add("nodes", {{"translation", {0, 7, 0}}});
+  for (int i = 1; i <= 1100; ++i) {
+    b.add("nodes", {{"mesh", mesh}, {"name", "S" + std::to_string(i)}, {"translation", {i, 0, 0}}});
+    children.push_back(i);
+  }
+  b.json["nodes"][0]["children"] = children;
+  const int times = b.floats({0, 1}, "SCALAR");
+  const int ways = b.floats({0, 0, 0, 1, 1, 1}, "VEC3");
+  b.add("animations",
+        {{"name", "Roll it"},
+         {"samplers", {{{"input", times}, {"output", ways}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}});
+  return b;
+}
+
+TEST(GltfInstances, VeryManyNodesOfAMeshAreOneObjectToo) {
+  const GltfBuilder b = many_nodes();
+  const std::string job = job_of(b);
+  EXPECT_THAT(job, HasSubstr("Stone: {instance: Stone, places: places/Roll_it/Stone.ply}"));
+  EXPECT_THAT(job, HasSubstr("S1:\n"));
+  EXPECT_THAT(job, Not(HasSubstr("S2:")));
+  const auto source = read_glb(b.glb());
+  ASSERT_TRUE(source.ok());
+  const auto moving = places_in(**source, "places/Roll_it/Stone.ply");
+  ASSERT_EQ(moving.size(), 1099U);
+  EXPECT_EQ(moving[0][3], core::Vec3(2, 7, 0));
+  EXPECT_EQ(places_in(**source, "places/Stone.ply").size(), 1100U);
+  EXPECT_FALSE((*source)->made_file("places/Walk/Stone.ply").ok());
+  const auto sections = (*source)->sections({});
+  ASSERT_TRUE(sections.ok());
+  EXPECT_NEAR(sections->bounds.upper.x, 1101.0F, 1e-3F);
+  EXPECT_NEAR(sections->bounds.upper.y, 8.0F, 1e-5F);
+  const core::SceneRequest still = [] {
+    core::SceneRequest request;
+    request.animation = "none";
+    return request;
+  }();
+  EXPECT_THAT(job_of(b, still), HasSubstr("places: places/Stone.ply"));
+  EXPECT_THAT(job_of(b, still), Not(HasSubstr("S1:")));
+}
+
+TEST(GltfInstances, NodesThatShineOrAreFewerAreObjects) {
+  EXPECT_THAT(job_of(many_nodes({{"emissiveFactor", {1, 1, 1}}})), HasSubstr("S1100:"));
+  GltfBuilder fewer = many_nodes();
+  for (int i = 1; i <= 100; ++i) fewer.json["nodes"][i].erase("mesh");
+  EXPECT_THAT(job_of(fewer), HasSubstr("S1100:"));
+}
+
 std::string row_of_instances(const std::string& object, int n, int first = 0) {
   std::string text;
   for (int i = first; i < first + n; ++i) {

@@ -121,6 +121,13 @@ TEST(PbrtHostile, ThingsThatAreNotThere) {
               HasSubstr("made of itself"));
 }
 
+/// Enough of object "o" for a file of places.
+std::string many_instances() {
+  std::string text;
+  for (int i = 0; i < 66; ++i) text += "Translate 0 0 1 ObjectInstance \"o\"\n";
+  return text;
+}
+
 /// Any damage gives a scene or an error, in bounded time.
 TEST(PbrtHostile, MutatedFiles) {
   const std::string scene = pbrt_world(R"(
@@ -133,6 +140,7 @@ AttributeBegin NamedMaterial "m" Translate 1 2 3
 Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 2] AttributeEnd
 ObjectBegin "o" Shape "loopsubdiv" "integer levels" 1 "point3 P" [0 0 0 1 0 0 0 1 0]
 "integer indices" [0 1 2] ObjectEnd ObjectInstance "o"
+)" + many_instances() + R"(
 Material "coateddiffuse" "texture reflectance" "s" MediumInterface "fog" ""
 Shape "curve" "point3 P" [0 0 0 1 0 0 1 1 0 2 2 2] "float width" .1
 AreaLightSource "diffuse" "blackbody L" 3000 Shape "sphere" "float zmin" -.5
@@ -140,7 +148,7 @@ AreaLightSource "diffuse" "blackbody L" 3000 Shape "sphere" "float zmin" -.5
   ASSERT_EQ(error_of(scene), "");
   std::mt19937 random(7);
   const std::string letters = "0123456789.-+e \"[]#ABCabc\\\n";
-  for (int round = 0; round < 1500; ++round) {
+  for (int round = 0; round < 2500; ++round) {
     std::string damaged = scene;
     const int changes = 1 + static_cast<int>(random() % 4);
     for (int i = 0; i < changes; ++i) {
@@ -162,8 +170,9 @@ AreaLightSource "diffuse" "blackbody L" 3000 Shape "sphere" "float zmin" -.5
     }
     const PbrtJob job = pbrt_job(damaged);
     if (job.source == nullptr) continue;
-    for (const char* name : {"meshes/shape-0.ply", "meshes/shape-1.ply", "meshes/shape-2.ply",
-                             "meshes/object-0-0.ply", "sky.exr", "meshes/shape-99999999999.ply"}) {
+    for (const char* name :
+         {"meshes/shape-0.ply", "meshes/shape-1.ply", "meshes/shape-2.ply", "meshes/object-0-0.ply",
+          "places/object-0.ply", "sky.exr", "meshes/shape-99999999999.ply"}) {
       if (job.error.empty()) (void)job.source->made_file(name);
     }
   }

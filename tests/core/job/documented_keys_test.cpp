@@ -143,7 +143,7 @@ const std::map<std::string, Place>& places() {
     p["textures.vertex-color"] = named("textures", "vertex-color", {});
     p["textures.ramp"] =
         named("textures", "ramp", {{"input", "tiles"}, {"stops", "{0: 0.2, 1: 0.7}"}});
-    for (const char* type : {"add", "min", "max", "mix"}) {
+    for (const char* type : {"add", "divide", "min", "max", "mix"}) {
       p[std::string("textures.") + type] = named("textures", type, {{"a", "marble"}, {"b", "0.3"}});
     }
     p["materials"] = named("materials", "lambert", {});
@@ -224,6 +224,7 @@ Pairs company(const JobKey& id) {
   if (id == JobKey{"textures.mapping", "blend"}) return {{"type", "triplanar"}};
   if (id == JobKey{"media.emission", "kelvin"}) return {{"temperature", "heat"}};
   if (id == JobKey{"objects", "animation"}) return {{"gltf", "robot.glb"}};
+  if (id == JobKey{"objects", "loop"}) return {{"gltf", "robot.glb"}};
   if (id == JobKey{"media", "albedo"}) return {{"density", "2"}};
   if (id == JobKey{"media", "density"}) return {{"albedo", "0.5"}};
   if (id == JobKey{"media", "mean_free_path"}) return {{"albedo", "0.5"}};
@@ -235,8 +236,8 @@ bool excludes(const JobKey& id, const std::string& other) {
   const bool of_density = id.section == "media.density";
   const std::vector<std::string> kinds =
       of_density ? std::vector<std::string>{"vdb", "noise", "shell"}
-                 : std::vector<std::string>{"shape", "mesh", "instance", "group",
-                                            "gltf",  "pbrt", "obj",      "animation"};
+                 : std::vector<std::string>{"shape", "mesh", "instance",  "group", "gltf",
+                                            "pbrt",  "obj",  "animation", "loop"};
   const auto is_kind = [&](const std::string& k) {
     return std::find(kinds.begin(), kinds.end(), k) != kinds.end();
   };
@@ -284,6 +285,7 @@ void add_scenes(MemoryAssets& assets) {
       assets.add(reference_of({scene, "x", 24.0F, animation}),
                  "objects: {x." + std::string(1, *scene) + ": {shape: " + shape + "}}\n");
     }
+    assets.add(reference_of({scene, "x", 24.0F, "", true}), "objects: {x.o: {shape: disk}}\n");
   }
 }
 

@@ -44,17 +44,20 @@ MemoryAssets with_robot() {
 }
 
 TEST(SceneDocument, ItsReferenceSaysWhatIsWanted) {
-  const SceneDocument all{"x/robot.glb", "crowd.a b", 29.97F, "Walk, 100 %"};
+  const SceneDocument all{"x/robot.glb", "crowd.a b", 29.97F, "Walk, 100 %", true};
   const auto back = document_of(reference_of(all));
   ASSERT_TRUE(back);
   EXPECT_EQ(back->scene, all.scene);
   EXPECT_EQ(back->prefix, all.prefix);
   EXPECT_EQ(back->fps, all.fps);
   EXPECT_EQ(back->animation, all.animation);
+  EXPECT_TRUE(back->loop);
+  EXPECT_FALSE(document_of(reference_of({"a.glb", "", 24.0F, "Walk"}))->loop);
   for (const char* other :
        {"robot.glb", "robot.glb.files/meshes/a.ply", "robot.glb.files/scene,fps=x.yaml",
         "robot.glb.files/scene,fps=-1.yaml", "robot.glb.files/scene,who=me.yaml",
-        "robot.glb.files/scene,prefix=%2.yaml", "scene.yaml", "robot.files.yaml"}) {
+        "robot.glb.files/scene,loop=1.yaml", "robot.glb.files/scene,prefix=%2.yaml", "scene.yaml",
+        "robot.files.yaml"}) {
     EXPECT_FALSE(document_of(other)) << other;
   }
 }
@@ -133,6 +136,10 @@ TEST(SceneObjects, ComplaintsNameTheKeyAndTheScene) {
             "sphere\n");
   EXPECT_THAT(complaints("objects: {a: {gltf: in/robot.glb, animation: [1]}}\n"),
               HasSubstr("animation is a list of 1, expected the name of an animation"));
+  EXPECT_EQ(complaints("objects: {a: {gltf: in/robot.glb, loop: often}}\n"),
+            "job.yaml:2:41: loop is 'often', expected true or false\n");
+  EXPECT_EQ(complaints("objects: {a: {obj: in/chair.obj, loop: true}}\n"),
+            "job.yaml:2:34: loop is for scenes of glTF, but this is obj: in/chair.obj\n");
   assets.add("in/robot.glb.files/scene,prefix=g.b,fps=24.yaml", robot("g.b."));
   EXPECT_EQ(complaints("groups: {g: {objects: {b: {gltf: in/robot.glb}}}}\n"
                        "objects: {g: {group: {objects: {b: {gltf: in/robot.glb}}}}}\n"),
