@@ -21,7 +21,7 @@ struct SceneRequest {
   std::string prefix;
   float fps = 24.0F;  ///< the job's frames per second: frame f shows the scene at (f - 1) / fps
   std::string
-      animation;  ///< of several in the file, the one meant; empty: the first; "none": still
+      animation;      ///< of several in the file, the one meant; empty: the first; "none": still
   bool loop = false;  ///< whether the animation begins again where it ends
   /// Stands before the names of files that are made: "meshes/body.ply" is `made` + that.
   std::string made;
