@@ -32,6 +32,9 @@ int import_command(int argc, char** argv) {
       ->check(CLI::Range(0.001F, 1e6F))
       ->capture_default_str();
   app.add_flag("--overwrite", request.overwrite, "replace files that are there already");
+  bool missing_textures = false;
+  app.add_flag("--missing-textures", missing_textures,
+               "let magenta stand in for pictures that are not there and that have to be read");
   app.add_flag("--follow-links", request.follow_links,
                "follow links that lead out of the scene's folder: only of scenes that you trust");
   app.footer(
@@ -46,6 +49,7 @@ int import_command(int argc, char** argv) {
   if (request.job.empty()) {
     request.job = std::filesystem::path(request.scene).stem().string() + ".yaml";
   }
+  if (missing_textures) request.missing = core::MissingTextures::magenta;
   const auto written = core::write_scene_job(request);
   if (!written) {
     std::fprintf(stderr, "%s\n", written.error().message.c_str());

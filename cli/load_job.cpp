@@ -35,7 +35,7 @@ std::optional<LoadedJob> load_job(const std::string& path, const SceneOptions& s
   Diagnostics diagnostics;
   auto loaded = read_job_file(path, diagnostics, scene);
   if (!diagnostics.empty()) {
-    std::fprintf(stderr, "%s\n", diagnostics.to_string().c_str());
+    std::fputs(diagnostics.to_string().c_str(), stderr);
     return std::nullopt;
   }
   return loaded;

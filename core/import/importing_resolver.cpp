@@ -41,20 +41,28 @@ std::optional<Inside> inside_of(const std::string& reference) {
 
 }  // namespace
 
-/// Files, and what stands in for pictures that are not there.
+/// Files as importers see them, and what stands in for pictures that are not there.
 class ImportingResolver::Sources : public AssetResolver {
  public:
   Sources(AssetResolver& files, MissingTextures missing, SceneLinks links)
       : files_(files), missing_(missing), links_(std::move(links)) {}
 
   Result<Bytes> open(const std::string& reference, const std::string& from) override {
-    const std::string resolved = resolve_reference(reference, from);
     if (is_scene_file(from)) {
-      if (auto inside = links_.check(from, resolved); !inside) return inside.error();
+      const auto inside = links_.check(from, resolve_reference(reference, from));
+      if (!inside) return inside.error();
     }
+    return open_anywhere(reference, from);
+  }
+
+  /// The same for jobs, which may name what they like.
+  Result<Bytes> open_anywhere(const std::string& reference, const std::string& from) {
+    const std::string resolved = resolve_reference(reference, from);
     auto bytes = files_.open(reference, from);
-    const bool refused = missing_ == MissingTextures::refused || !names_picture(resolved);
-    if (bytes || refused || files_.exists(resolved)) return bytes;
+    if (bytes || !names_picture(resolved) || files_.exists(resolved)) return bytes;
+    if (missing_ == MissingTextures::refused) {
+      return Error{bytes.error().message + "; --missing-textures lets magenta stand in for it"};
+    }
     note(resolved + ": no such picture; magenta stands in for it");
     return magenta_picture();
   }
@@ -163,7 +171,7 @@ Result<Bytes> ImportingResolver::open(const std::string& reference, const std::s
   }
   const auto inside = inside_of(resolved);
   if (inside && state_->makes(*inside)) return state_->made(*inside, resolved);
-  return state_->lenient.open(reference, from);
+  return state_->lenient.open_anywhere(reference, from);
 }
 
 bool ImportingResolver::exists(const std::string& reference) {

@@ -33,7 +33,11 @@ Result<std::shared_ptr<const SceneSource>> read_scene(AssetResolver& files,
                                                       const std::string& reference) {
   const std::string extension = file_extension(reference);
   for (const Row& row : kReaders) {
-    if (extension == row.extension) return row.read(files, reference);
+    if (extension != row.extension) continue;
+    const auto bytes = files.open(reference);
+    if (!bytes) return bytes.error();
+    if (bytes->size() == 0) return Error{reference + ": the file is empty"};
+    return row.read(files, reference);
   }
   return Error{reference +
                ": no scene or mesh that is known by its name; expected one that ends in "

@@ -19,6 +19,7 @@ YamlPtr product(const YamlPtr& input, const YamlPtr& factor) {
 
 YamlPtr tinted(const Rgb& factor, const YamlPtr& texture) {
   if (!texture) return color_node(factor);
+  if (factor == Rgb(0.0F)) return color_node(factor);
   return factor == Rgb(1.0F) ? texture : product(texture, color_node(factor));
 }
 

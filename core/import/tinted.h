@@ -14,7 +14,7 @@ YamlPtr color_node(const Rgb& color);
 YamlPtr product(const YamlPtr& input, const YamlPtr& factor);
 
 /// `factor` times a texture, its name or the texture itself; the factor alone where that is null or
-/// empty, the texture alone where the factor is 1.
+/// empty or the factor is 0, the texture alone where it is 1.
 YamlPtr tinted(const Rgb& factor, const YamlPtr& texture);
 YamlPtr tinted(const Rgb& factor, const std::string& name);
 YamlPtr scaled(float factor, const YamlPtr& texture);

@@ -45,7 +45,7 @@ class Writer {
         folder_(folder_of(request.job)),
         made_(std::filesystem::path(request.job).stem().string() + "_files/"),
         disk_(make_file_resolver(folder_)),
-        importing_(*disk_, MissingTextures::refused,
+        importing_(*disk_, request.missing,
                    request.follow_links ? SceneLinks() : SceneLinks(folder_)) {}
 
   Result<WrittenSceneJob> write() {

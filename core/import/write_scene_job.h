@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/import/importing_resolver.h"
 
 namespace hyades::core {
 
@@ -18,6 +19,7 @@ struct WriteSceneJob {
   float fps = 24.0F;
   bool overwrite = false;     ///< replace what is there already
   bool follow_links = false;  ///< of the scene's folder, wherever they lead
+  MissingTextures missing = MissingTextures::refused;
 };
 
 /// What was written.

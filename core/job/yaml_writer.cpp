@@ -18,10 +18,14 @@ bool is_plain_inside(char c) {
   return std::isalnum(u) != 0 || c == '_' || c == '-' || c == '.' || c == '/' || c == '+';
 }
 
-/// Whether the text reads as itself without quotes: one word that means nothing else.
+/// Whether the text reads as itself without quotes: words that mean nothing else, as of names and
+/// of files.
 bool is_plain(const std::string& text) {
-  if (text.empty() || std::isalnum(static_cast<unsigned char>(text.front())) == 0) return false;
-  if (!std::all_of(text.begin(), text.end(), is_plain_inside)) return false;
+  if (text.empty() || text.back() == ' ') return false;
+  const bool begins = std::isalnum(static_cast<unsigned char>(text.front())) != 0 ||
+                      text.front() == '_' || text.starts_with("./") || text.starts_with("../");
+  const auto fits = [](char c) { return c == ' ' || is_plain_inside(c); };
+  if (!begins || !std::all_of(text.begin(), text.end(), fits)) return false;
   return text != "null" && text != "Null" && text != "NULL";
 }
 

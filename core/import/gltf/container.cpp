@@ -52,6 +52,10 @@ Result<std::shared_ptr<const nlohmann::json>> parse(std::string_view text) {
         fmt::format("its JSON has {} bytes; at most {} are possible", text.size(), kMaxGltfJson)};
   }
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos || (text[first] != '{' && text[first] != '[')) {
+    return Error{"it is no glTF file: expected 'glTF' (binary) or '{' (JSON) where it begins"};
+  }
   if (too_deep(text)) {
     return Error{fmt::format("its JSON is more than {} levels deep", kMaxGltfDepth)};
   }

@@ -62,8 +62,8 @@ TEST(MtlMaterial, PhysicallyBasedOnes) {
 
 TEST(MtlMaterial, PicturesAndTheirOptions) {
   EXPECT_EQ(look("map_Kd -s 2 3 1 -o 0.5 0 0 -clamp on my wood\\oak 1.png\n"),
-            "m:\n  type: lambert\n  color: {type: image, file: \"my wood/oak 1.png\", wrap: clamp, "
-            "scale: [2, 3], offset: [0.5, 0]}\n");
+            "m: {type: lambert, color: {type: image, file: my wood/oak 1.png, wrap: clamp, "
+            "scale: [2, 3], offset: [0.5, 0]}}\n");
   EXPECT_THAT(look("Kd 0.5 0.5 0.5\nmap_Kd a.png\n"),
               HasSubstr("color: {type: scale, input: {type: image, file: a.png}, factor: 0.5}"));
   EXPECT_THAT(look("Kd 0 0 0\nmap_Kd a.png\n"), HasSubstr("color: {type: image, file: a.png}"));

@@ -39,7 +39,7 @@ TEST(PbrtScene, TriangleWithAPictureALampSkyAndFog) {
   EXPECT_THAT(job.notes, IsEmpty());
   EXPECT_THAT(job.text, HasSubstr("size: [64, 48]"));
   EXPECT_THAT(job.text, HasSubstr("room.wood:"));
-  EXPECT_THAT(job.text, HasSubstr("{type: image, file: \"../textures/wood.png\", wrap: clamp, "
+  EXPECT_THAT(job.text, HasSubstr("{type: image, file: ../textures/wood.png, wrap: clamp, "
                                   "scale: [4, 1]}"));
   EXPECT_THAT(job.text, HasSubstr("color: room.wood"));
   EXPECT_THAT(job.text, HasSubstr("mesh: made/meshes/shape-0.ply"));

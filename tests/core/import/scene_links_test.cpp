@@ -121,6 +121,13 @@ TEST_F(Links, ImportKeepsToTheSameRule) {
   EXPECT_TRUE(write_scene_job(request));
 }
 
+// The job around a scene may name what it likes: a file of media beside the scene's folder.
+TEST_F(Links, AreNoBusinessOfJobs) {
+  const auto files = JobFiles::open(path("scene/a.obj"));
+  ASSERT_TRUE(files) << files.error().message;
+  EXPECT_TRUE((*files)->files().open("../secrets/id.mtl", "a.obj"));
+}
+
 TEST_F(Links, FilesThatAreNotThereAreTheirOpenersBusiness) {
   EXPECT_EQ(trouble("scene/a.obj"), "");
   link("nowhere", "scene/tex");

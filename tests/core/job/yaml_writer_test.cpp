@@ -50,8 +50,10 @@ text: "two lines and \\ \" é"
 
 TEST(YamlWriter, TextStaysTextAndNumbersStayNumbers) {
   for (const char* odd :
-       {"1", "-2e5", "true", "null", "~", "",  " x", "x ", "#123456", "= t", "-",  "a: b", "[x]",
-        "{", "&a",   "*a",   "!t",   "%", "@", "'",  "|",  ">",       "?",   "<<", "nan",  ".5"}) {
+       {"red paint", "../a b.png", "_x",   "a  b", "a - b", "..", "../", "1 2", "null x",
+        "true x",    "1",          "-2e5", "true", "null",  "~",  "",    " x",  "x ",
+        "#123456",   "= t",        "-",    "a: b", "[x]",   "{",  "&a",  "*a",  "!t",
+        "%",         "@",          "'",    "|",    ">",     "?",  "<<",  "nan", ".5"}) {
     YamlMap map;
     map.put("value", yaml_text(odd));
     const YamlPtr back = parsed(write_yaml(*map.node()))->map.front().value;
