@@ -70,14 +70,20 @@ struct Extent {
     radius = std::max(0.5F * std::sqrt(glm::dot(size, size)), 1e-18F);
     floor = bounds.lower.y;
   }
+
+  /// A place or length to about a hundredth of the size: numbers that a person can read.
+  Vec3 rounded(const Vec3& v) const {
+    const double unit = std::pow(10.0, std::floor(std::log10(static_cast<double>(radius))) - 2.0);
+    return Vec3(glm::round(Vec3d(v) / unit) * unit);
+  }
 };
 
 YamlPtr camera(const Extent& extent) {
   // The bounding sphere fills the height of the view, a little air included.
   const float distance = 1.02F * extent.radius / 0.2588F;  // sin of half the field of view
   const Vec3 from = extent.center + distance * Vec3(0.48F, 0.32F, 0.8165F);
-  return YamlMap{{"look_from", yaml_vector(from)},
-                 {"look_at", yaml_vector(extent.center)},
+  return YamlMap{{"look_from", yaml_vector(extent.rounded(from))},
+                 {"look_at", yaml_vector(extent.rounded(extent.center))},
                  {"fov", yaml_integer(30)}}
       .node();
 }
@@ -85,7 +91,7 @@ YamlPtr camera(const Extent& extent) {
 YamlPtr ground(const Extent& extent, const std::string& material) {
   const Vec3 at = {extent.center.x, extent.floor - 1e-4F * extent.radius, extent.center.z};
   return YamlMap{{"shape", yaml_word("disk")},
-                 {"radius", yaml_number(40.0F * extent.radius)},
+                 {"radius", yaml_number(extent.rounded(Vec3(40.0F * extent.radius)).x)},
                  {"at", yaml_vector(at)},
                  {"material", yaml_text(material)}}
       .node();
@@ -98,8 +104,8 @@ YamlPtr key_light(const Extent& extent, bool has_media) {
   const YamlMap emit{{"color", yaml_vector({1.0F, 0.93F, 0.82F})},
                      {"radiance", yaml_number(has_media ? 4.8F : 30.0F)}};
   return YamlMap{{"shape", yaml_word("sphere")},
-                 {"radius", yaml_number(size * extent.radius)},
-                 {"at", yaml_vector(at)},
+                 {"radius", yaml_number(extent.rounded(Vec3(size * extent.radius)).x)},
+                 {"at", yaml_vector(extent.rounded(at))},
                  {"visible_to_camera", yaml_flag(false)},
                  {"emit", emit.node()}}
       .node();
@@ -145,7 +151,9 @@ void put_head(YamlMap& job, const YamlNode& scene, const std::string& name, bool
   own_or("integrator", has_media ? deep.node() : nullptr);
 }
 
-YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& name) {
+/// The job; `added` gets what the scene does not say itself.
+YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& name,
+               std::vector<std::string>& added) {
   const Extent extent(bounds);
   const YamlNode& own = section(scene, "objects");
   const YamlNode& groups = section(scene, "groups");
@@ -159,6 +167,7 @@ YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& n
   YamlMap job;
   put_head(job, scene, name, has_media);
   job.put("camera", seen ? scene.find("camera")->value : camera(extent));
+  if (!seen) added.emplace_back("camera");
   YamlMap materials;
   YamlMap objects;
   for (const YamlEntry& entry : section(scene, "materials").map) {
@@ -169,8 +178,12 @@ YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& n
     const std::string look = free_name(section(scene, "materials"), "ground");
     materials.put(look, YamlMap{{"type", yaml_word("lambert")}, {"color", yaml_number(0.35F)}});
     objects.put(free_name(own, "ground"), ground(extent, look));
+    added.push_back("objects." + free_name(own, "ground"));
   }
-  if (!lit) objects.put(free_name(own, "key"), key_light(extent, has_media));
+  if (!lit) {
+    objects.put(free_name(own, "key"), key_light(extent, has_media));
+    added.push_back("objects." + free_name(own, "key"));
+  }
   for (const YamlEntry& entry : scene.map) {
     if (!job.has(entry.key) && entry.key != "materials" && entry.key != "objects") {
       job.put(entry.key, entry.value);
@@ -178,7 +191,10 @@ YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& n
   }
   if (!materials.empty()) job.put("materials", materials);
   job.put("objects", objects);
-  if (!job.has("environment") && !(lit && seen)) job.put("environment", sky(lit ? 0.1F : 0.8F));
+  if (!job.has("environment") && !(lit && seen)) {
+    job.put("environment", sky(lit ? 0.1F : 0.8F));
+    added.emplace_back("environment");
+  }
   job.put("outputs", outputs(name, is_animated(scene)));
   return job.node();
 }
@@ -198,8 +214,9 @@ Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request)
     scene = *filled;
   }
   const std::string stem = std::filesystem::path(request.scene).stem().string();
-  return SceneJob{staged(*scene, told->bounds, safe_name(stem, "scene")), *source,
-                  std::move(told->notes), std::move(told->files)};
+  SceneJob job{nullptr, *source, std::move(told->notes), std::move(told->files), {}};
+  job.tree = staged(*scene, told->bounds, safe_name(stem, "scene"), job.added);
+  return job;
 }
 
 }  // namespace hyades::core

@@ -22,6 +22,7 @@ struct SceneJob {
   std::shared_ptr<const SceneSource> source;
   std::vector<std::string> notes;  ///< of the importer
   std::vector<std::string> files;  ///< SceneSections::files
+  std::vector<std::string> added;  ///< what the scene does not say itself: "camera", "objects.key"
 };
 
 /// The job that shows a scene: as it says itself, and with what it does not say. Without a camera,

@@ -63,7 +63,8 @@ class Writer {
     for (const auto& [name, in_scene] : wanted_) {
       if (auto done = copy(name, in_scene); !done) return done.error();
     }
-    if (auto done = save(request_.job, write_yaml(*tree)); !done) return done.error();
+    const std::string text = heading(job->added) + write_yaml(*tree);
+    if (auto done = save(request_.job, text); !done) return done.error();
     return std::move(written_);
   }
 
@@ -86,6 +87,33 @@ class Writer {
     const auto inside = importing_.check_files(how.scene, job->files);
     if (!inside) return inside.error();
     return job;
+  }
+
+  /// Comments for who reads the job: where it is from, what is not of the scene, what is left out.
+  std::string heading(const std::vector<std::string>& added) const {
+    const std::string scene = std::filesystem::path(request_.scene).filename().string();
+    std::string text = comment(scene + ", as 'hyades import' tells it.");
+    if (!added.empty()) text += comment("Not of the scene, which has none: " + listed(added));
+    constexpr size_t kMostNotes = 40;
+    const std::vector<std::string>& notes = written_.notes;
+    for (size_t i = 0; i < std::min(notes.size(), kMostNotes); ++i) text += comment(notes[i]);
+    if (notes.size() > kMostNotes) {
+      text += comment("and " + std::to_string(notes.size() - kMostNotes) + " more such notes");
+    }
+    return text;
+  }
+
+  static std::string listed(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+  }
+
+  /// A line of a comment, whatever characters a scene's names have.
+  static std::string comment(std::string line) {
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+    return "# " + line + "\n";
   }
 
   /// Frames of meshes that change: those of the job, and the one after, which the shutter needs.

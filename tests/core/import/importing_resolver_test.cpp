@@ -142,6 +142,10 @@ TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
   const std::string text = text_of((*files)->files(), "q.yaml");
   const Job job = parse_job(text, path("jobs/new/q.yaml"), (*files)->files(), diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "") << text;
+  EXPECT_THAT(text, testing::StartsWith(
+                        "# quads.obj, as 'hyades import' tells it.\n"
+                        "# Not of the scene, which has none: camera, objects.ground, environment\n"
+                        "hyades: 1\n"));
   EXPECT_EQ(job.objects.at(0).mesh, "q_files/red_paint.ply");
   EXPECT_EQ(job.objects.at(0).part, "");
   EXPECT_THAT(text, HasSubstr("file: ../../pic/wood.png"));
