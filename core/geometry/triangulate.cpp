@@ -170,6 +170,15 @@ void triangulate_all(const std::vector<Vec3>& positions, std::span<const uint32_
   out.resize(starts.back().triangle);
   for_chunks(sizes.size(), [&](size_t begin, size_t end) {
     const Start& start = starts[begin / kChunk];
+    // Most meshes have nothing to cut.
+    if (std::all_of(&sizes[begin], &sizes[begin] + (end - begin),
+                    [](uint32_t size) { return size == 3; })) {
+      for (size_t i = 0; i < end - begin; ++i) {
+        const uint32_t* c = &corners[start.corner + 3 * i];
+        out[start.triangle + i] = {c[0], c[1], c[2]};
+      }
+      return;
+    }
     std::vector<std::array<uint32_t, 3>> cut;
     cut.reserve(starts[begin / kChunk + 1].triangle - start.triangle);
     size_t at = start.corner;
