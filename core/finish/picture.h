@@ -7,8 +7,8 @@
 
 #include "core/base/result.h"
 #include "core/finish/display_transform.h"
-#include "core/image/tone_map.h"
 #include "core/image/image.h"
+#include "core/image/tone_map.h"
 #include "core/image/write_image.h"
 #include "core/job/job.h"
 #include "core/job/output_names.h"

@@ -61,8 +61,8 @@ class CoordinatorProcess {
     const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
     std::string program(path, length > 0 ? static_cast<size_t>(length) : 0);
     program = program.substr(0, program.rfind('/') + 1) + "hyades-coordinator";
-    std::vector<std::string> words{program, "coordinator", "--http", "off", "--data",
-                                   folder,  "--listen",    "127.0.0.1:0"};
+    std::vector<std::string> words{program,  "coordinator", "--http",   "off",
+                                   "--data", folder,        "--listen", "127.0.0.1:0"};
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
