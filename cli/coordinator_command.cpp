@@ -16,6 +16,7 @@
 #include "cli/address_option.h"
 #include "cli/command_line.h"
 #include "coordinator/brain/brain.h"
+#include "coordinator/notify/notifier.h"
 #include "coordinator/services/server.h"
 #include "coordinator/web/web_server.h"
 #include "core/base/atomic_file.h"
@@ -27,6 +28,8 @@ namespace {
 using hyades::coordinator::Brain;
 using hyades::coordinator::BrainOptions;
 using hyades::coordinator::Duration;
+using hyades::coordinator::Hook;
+using hyades::coordinator::Notifier;
 using hyades::coordinator::Server;
 using hyades::coordinator::WebServer;
 
@@ -42,6 +45,7 @@ struct Arguments {
   hyades::farm::Listen listen;
   std::string http = kHttp;
   bool http_asked = false;
+  Notifier::Options news;
   double unit_seconds = 5;
   double lease_seconds = 30;
   double class_patience = 300;
@@ -74,6 +78,19 @@ void open_many_files() {
   (void)::setrlimit(RLIMIT_NOFILE, &files);
 }
 
+/// Tells those who want to hear of jobs; null where nobody does.
+std::unique_ptr<Notifier> open_notifier(const Arguments& arguments, Brain& brain,
+                                        const WebServer* http) {
+  Notifier::Options options = arguments.news;
+  if (options.hooks.empty() && options.chats.empty()) return nullptr;
+  if (options.dashboard.empty() && http != nullptr) options.dashboard = http->url();
+  options.stall = std::chrono::duration_cast<std::chrono::milliseconds>(arguments.brain.stall_time);
+  options.hook.tell = [](const std::string& line) {
+    std::fprintf(stderr, "hyades coordinator: %s\n", line.c_str());
+  };
+  return std::make_unique<Notifier>(brain, std::move(options));
+}
+
 /// Writes where it listens; an empty text where it does not. That it cannot be written keeps
 /// nothing from starting: who makes room has to reach the coordinator.
 void note_address(const std::string& path, const std::string& address) {
@@ -86,6 +103,11 @@ void note_address(const std::string& path, const std::string& address) {
     noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
   }
   if (!noted) std::fprintf(stderr, "hyades coordinator: %s\n", noted.error().message.c_str());
+}
+
+std::string hook_error(const std::string& url) {
+  const auto right = Hook::check(url);
+  return right ? std::string() : right.error().message;
 }
 
 int serve(const Arguments& arguments) {
@@ -126,6 +148,7 @@ int serve(const Arguments& arguments) {
       std::fprintf(stderr, "hyades coordinator: %s\n", http.error().message.c_str());
       return 1;
     }
+    const auto notifier = open_notifier(arguments, **brain, http->get());
     note_address(arguments.brain.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
     std::printf("listening on %s", address.c_str());
     if (*http) std::printf("dashboard at %s\n", (*http)->url().c_str());
@@ -166,6 +189,15 @@ int main(int argc, char** argv) {
                  "file with the token that every call has to carry");
   app.add_flag("--insecure", arguments.listen.insecure,
                "plaintext, or no token, also beyond this machine");
+  app.add_option("--notify", arguments.news.hooks,
+                 "URL that hears, as JSON, of jobs that are done, failed or stand still; again for "
+                 "others")
+      ->check(hook_error);
+  app.add_option("--notify-chat", arguments.news.chats,
+                 "the same for a chat server's incoming webhook: {\"text\": ...}")
+      ->check(hook_error);
+  app.add_option("--dashboard-url", arguments.news.dashboard,
+                 "the dashboard as people reach it, for links (default: as --http has it)");
   app.add_option("--unit-seconds", arguments.unit_seconds, "what one thread shall take for a unit")
       ->check(CLI::Range(0.01, 3600.0))
       ->capture_default_str();

@@ -1,0 +1,71 @@
+#include "coordinator/notify/news.h"
+
+#include <fmt/format.h>
+
+#include "core/base/text.h"
+#include "farm/json_form.h"
+
+namespace hyades::coordinator {
+namespace {
+
+std::string address_of(const News& news, const std::string& dashboard) {
+  return dashboard.empty() ? "" : fmt::format("{}/#/jobs/{}", dashboard, news.job.id());
+}
+
+std::string dump(const farm::Json& json) {
+  return json.dump(-1, ' ', false, farm::Json::error_handler_t::replace);
+}
+
+std::string frames(uint32_t count) {
+  return fmt::format("{} frame{}", count, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+const char* name_of(News::Kind kind) {
+  switch (kind) {
+    case News::Kind::done:
+      return "done";
+    case News::Kind::failed:
+      return "failed";
+    case News::Kind::stalled:
+      break;
+  }
+  return "stalled";
+}
+
+std::string text_of(const News& news) {
+  const v1::Job& job = news.job;
+  const std::string who = fmt::format("Job {}, {}, ", job.id(), job.name());
+  switch (news.kind) {
+    case News::Kind::done:
+      return who +
+             fmt::format("is done: {} in {}", frames(job.frames_done()),
+                         core::format_duration(
+                             1e-3 * static_cast<double>(job.ended_ms() - job.submitted_ms())));
+    case News::Kind::failed:
+      return who + fmt::format("failed: {} of {} are done{}{}", job.frames_done(),
+                               frames(job.frames()), job.reason().empty() ? "" : ": ",
+                               job.reason());
+    case News::Kind::stalled:
+      break;
+  }
+  return who + fmt::format("stands still{}{}", news.reasons.empty() ? "" : ": ",
+                           news.reasons.empty() ? "" : news.reasons.front());
+}
+
+std::string program_message(const News& news, const std::string& dashboard) {
+  farm::Json json = {{"event", name_of(news.kind)},
+                     {"text", text_of(news)},
+                     {"job", farm::to_json(news.job)},
+                     {"reasons", news.reasons}};
+  if (!dashboard.empty()) json["url"] = address_of(news, dashboard);
+  return dump(json);
+}
+
+std::string chat_message(const News& news, const std::string& dashboard) {
+  const std::string address = address_of(news, dashboard);
+  return dump({{"text", text_of(news) + (address.empty() ? "" : "\n" + address)}});
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "coordinator/notify/hook.h"
+#include "coordinator/notify/news.h"
+
+namespace hyades::coordinator {
+
+class Brain;
+
+/// Watches all jobs and posts what people want to hear of: that one is done, has failed, or stands
+/// still. It only asks the brain, so that nothing of the farm ever waits for it. Jobs that end
+/// while the coordinator ends are not told of.
+class Notifier {
+ public:
+  struct Options {
+    std::vector<std::string> hooks;            ///< URLs that take program_message()
+    std::vector<std::string> chats;            ///< URLs that take chat_message()
+    std::string dashboard;                     ///< its URL as people reach it; empty: none is told
+    std::chrono::milliseconds stall{600'000};  ///< without a new sample of a running job
+    std::chrono::milliseconds look{1000};
+    Hook::Options hook{};  ///< of all; their URLs are those above
+  };
+  /// `brain` outlives the notifier.
+  Notifier(Brain& brain, Options options);
+  ~Notifier();
+  Notifier(const Notifier&) = delete;
+  Notifier& operator=(const Notifier&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// An open job as it was seen last.
+  struct Seen {
+    uint64_t samples_done = 0;
+    Clock::time_point since;
+    bool told = false;  ///< that it stands still
+  };
+
+  void run();
+  void look();
+  void look_at(const v1::Job& job, Clock::time_point now);
+  void tell_of_ended();
+  void tell(const News& news);
+
+  Brain& brain_;
+  const Options options_;
+  std::vector<std::unique_ptr<Hook>> hooks_;
+  std::vector<std::unique_ptr<Hook>> chats_;
+  std::map<uint64_t, Seen> open_;
+  uint64_t newest_ = 0;  ///< all jobs up to this one have been seen
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,158 @@
+// People hear of jobs that are done, fail or stand still; once each, whatever the other side does.
+#include <gtest/gtest.h>
+
+#include "coordinator/notify/notifier.h"
+#include "farm/json_form.h"
+#include "tests/coordinator/notify/fake_hook.h"
+#include "tests/coordinator/services/farm_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using farm::Json;
+
+Hook::Options quick(const std::string& url) {
+  Hook::Options options;
+  options.url = url;
+  options.first_wait = 10ms;
+  return options;
+}
+
+Notifier::Options watching(const FakeHook& hook) {
+  Notifier::Options options;
+  options.hooks = {hook.url()};
+  options.look = 20ms;
+  options.hook.first_wait = 10ms;
+  return options;
+}
+
+TEST(Hook, WhatIsNotTakenComesAgain) {
+  FakeHook server;
+  server.answer_with({500, 503, 429, 200});
+  Hook hook(quick(server.url()));
+  hook.post("one");
+  hook.post("two");
+  ASSERT_TRUE(eventually([&] { return server.bodies().size() == 5; }));
+  EXPECT_EQ(server.bodies(), (std::vector<std::string>{"one", "one", "one", "one", "two"}));
+}
+
+TEST(Hook, WhatIsRefusedIsToldAndDoesNotComeAgain) {
+  FakeHook server;
+  server.answer_with({404});
+  std::mutex mutex;
+  std::string told;
+  Hook::Options options = quick(server.url());
+  options.tell = [&](const std::string& line) {
+    const std::lock_guard lock(mutex);
+    told = line;
+  };
+  {
+    Hook hook(options);
+    hook.post("one");
+    hook.post("two");
+    ASSERT_TRUE(eventually([&] { return server.bodies().size() == 2; }));
+  }
+  EXPECT_NE(told.find("404"), std::string::npos);
+  EXPECT_EQ(told.find("secret"), std::string::npos) << "an address may hold a key";
+}
+
+TEST(Hook, NobodyThereIsGivenUpInTheEnd) {
+  std::string url;
+  {
+    const FakeHook gone;
+    url = gone.url();
+  }
+  std::atomic<int> told{0};
+  Hook::Options options = quick(url);
+  options.give_up = 100ms;
+  options.tell = [&](const std::string&) { ++told; };
+  Hook hook(options);
+  hook.post("one");
+  EXPECT_TRUE(eventually([&] { return told == 1; }));
+}
+
+TEST(Hook, AnAddressIsOfTheWeb) {
+  EXPECT_TRUE(Hook::check("https://chat.example.org/hooks/1").ok());
+  EXPECT_FALSE(Hook::check("file:///etc/passwd").ok());
+  EXPECT_FALSE(Hook::check("https://").ok());
+}
+
+TEST(Notifier, AJobThatIsDoneIsToldOfOnce) {
+  FarmWorld world;
+  world.start();
+  FakeHook server;
+  FakeHook chat;
+  Notifier::Options options = watching(server);
+  options.chats = {chat.url()};
+  options.dashboard = "https://farm.example.org";
+  const Notifier notifier(*world.brain, options);
+  const uint64_t job = world.submit(2);
+  const ScriptedWorker worker(world.address, world.script());
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  ASSERT_TRUE(eventually([&] { return !server.bodies().empty() && !chat.bodies().empty(); }));
+  const Json said = Json::parse(server.bodies().front());
+  EXPECT_EQ(said["event"], "done");
+  EXPECT_EQ(said["job"]["id"], job);
+  EXPECT_EQ(said["url"], "https://farm.example.org/#/jobs/" + std::to_string(job));
+  EXPECT_NE(said["text"].get<std::string>().find("2 frames"), std::string::npos);
+  const Json chatted = Json::parse(chat.bodies().front());
+  EXPECT_EQ(chatted.size(), 1U);
+  EXPECT_NE(chatted["text"].get<std::string>().find("is done"), std::string::npos);
+  std::this_thread::sleep_for(200ms);
+  EXPECT_EQ(server.bodies().size(), 1U);
+}
+
+TEST(Notifier, ManyQuickJobsAreAllToldOf) {
+  FarmWorld world;
+  world.start();
+  const uint64_t before = world.submit(1);
+  const ScriptedWorker worker(world.address, world.script());
+  ASSERT_TRUE(world.wait_for(before, v1::JOB_STATE_DONE));
+  FakeHook server;
+  Notifier::Options options = watching(server);
+  options.look = 300ms;  // most begin and end between two looks
+  const Notifier notifier(*world.brain, options);
+  std::set<uint64_t> jobs;
+  for (int i = 0; i < 8; ++i) jobs.insert(world.submit(1));
+  ASSERT_TRUE(eventually([&] { return server.bodies().size() >= jobs.size(); }));
+  std::set<uint64_t> told;
+  for (const std::string& body : server.bodies())
+    told.insert(Json::parse(body)["job"]["id"].get<uint64_t>());
+  EXPECT_EQ(told, jobs) << "not of the one that was over before";
+}
+
+TEST(Notifier, AJobThatStandsStillIsToldOfWithTheReason) {
+  FarmWorld world;
+  world.start();
+  FakeHook server;
+  Notifier::Options options = watching(server);
+  options.stall = 150ms;
+  const Notifier notifier(*world.brain, options);
+  const uint64_t job = world.submit(1);
+  ASSERT_TRUE(eventually([&] { return !server.bodies().empty(); }));
+  const Json said = Json::parse(server.bodies().front());
+  EXPECT_EQ(said["event"], "stalled");
+  EXPECT_EQ(said["job"]["id"], job);
+  EXPECT_GE(said["reasons"].size(), 1U);
+  std::this_thread::sleep_for(400ms);
+  EXPECT_EQ(server.bodies().size(), 1U) << "once, until it has moved";
+}
+
+TEST(Notifier, APausedJobDoesNotStandStill) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  v1::JobRequest request;
+  request.set_job(job);
+  v1::JobResponse response;
+  ASSERT_TRUE(world.jobs->Pause(world.context().get(), request, &response).ok());
+  FakeHook server;
+  Notifier::Options options = watching(server);
+  options.stall = 100ms;
+  const Notifier notifier(*world.brain, options);
+  std::this_thread::sleep_for(400ms);
+  EXPECT_TRUE(server.bodies().empty());
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
