@@ -59,6 +59,7 @@ constexpr Command kCommands[] = {
     {"retry", "hyades-client", "take up a job's failed frames again"},
     {"priority", "hyades-client", "change a job's priority"},
     {"delete", "hyades-client", "forget a job that has ended"},
+    {"top", "hyades-client", "show jobs and workers as they change"},
     {"workers", "hyades-client", "list the farm's workers"},
     {"drain", "hyades-client", "let a worker finish and leave"},
     {"quarantine", "hyades-client", "give a worker no more work"},

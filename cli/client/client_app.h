@@ -19,6 +19,8 @@ class ClientApp {
 
   CLI::App& app() { return app_; }
   const char* command() const { return command_; }
+  /// HOST:PORT of the coordinator.
+  const std::string& address() const { return options_.peer.address; }
 
   /// Exit status where the arguments end the command (they are wrong, or --help).
   std::optional<int> parse(int argc, char** argv);

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
       {"retry", retry_command},     {"priority", priority_command},
       {"delete", delete_command},   {"workers", workers_command},
       {"drain", drain_command},     {"quarantine", quarantine_command},
-      {"release", release_command},
+      {"release", release_command}, {"top", top_command},
   };
   hyades::core::ignore_file_size_signal();
   return run_program(kCommands, argc, argv);

@@ -21,6 +21,7 @@ int retry_command(int argc, char** argv);
 int delete_command(int argc, char** argv);
 int priority_command(int argc, char** argv);
 
+int top_command(int argc, char** argv);
 int workers_command(int argc, char** argv);
 int drain_command(int argc, char** argv);
 int quarantine_command(int argc, char** argv);

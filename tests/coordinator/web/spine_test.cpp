@@ -54,6 +54,14 @@ TEST(WebSpine, AJobIsSubmittedWatchedLookedAtAndDownloaded) {
     ASSERT_EQ(file.status, 200);
     EXPECT_EQ(core::to_hex(core::sha256(file.body)), output["sha256"]);
   }
+  const std::string file = path + "/outputs/balls.0001.exr";
+  const auto part = world.client->get(file, {{"Range", "bytes=0-3"}});
+  EXPECT_EQ(part.status, 206);
+  EXPECT_EQ(part.body, "\x76\x2f\x31\x01") << "the first bytes of every EXR";
+  EXPECT_EQ(world.client->get(file, {{"Range", "bytes=999999999-"}}).status, 416);
+  const auto archive = world.client->get(path + "/archive.zip");
+  EXPECT_TRUE(archive.whole);
+  EXPECT_EQ(archive.body.substr(0, 2), "PK");
   EXPECT_EQ(world.client->get(path + "/document").body, document);
   EXPECT_GE(world.json(path + "/logs")["lines"].size(), 1U);
 }

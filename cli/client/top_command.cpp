@@ -1,0 +1,150 @@
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/top_page.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr double kLeastInterval = 0.2;
+
+volatile std::sig_atomic_t g_end = 0;
+
+void on_end(int) { g_end = 1; }
+
+/// The terminal's other screen, without echo, until this is destroyed.
+class Screen {
+ public:
+  Screen() {
+    tcgetattr(STDIN_FILENO, &before_);
+    termios raw = before_;
+    raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+    struct sigaction action {};
+    action.sa_handler = on_end;  // without SA_RESTART: what waits is woken
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+    std::fputs("\033[?1049h\033[?25l", stdout);
+  }
+  ~Screen() {
+    std::fputs("\033[?25h\033[?1049l", stdout);
+    std::fflush(stdout);
+    tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  static void draw(const std::vector<std::string>& lines) {
+    std::string all = "\033[H";
+    for (size_t i = 0; i < lines.size(); ++i) all += (i == 0 ? "" : "\r\n") + lines[i];
+    all += "\033[J";
+    std::fwrite(all.data(), 1, all.size(), stdout);
+    std::fflush(stdout);
+  }
+
+  /// Whether somebody has asked for the end meanwhile.
+  static bool wait(double seconds) {
+    pollfd keys{STDIN_FILENO, POLLIN, 0};
+    if (g_end == 0 && poll(&keys, 1, static_cast<int>(seconds * 1000)) > 0) {
+      char key = 0;
+      if (::read(STDIN_FILENO, &key, 1) != 1) return true;
+      return key == 'q' || key == 'Q' || key == 27;
+    }
+    return g_end != 0;
+  }
+
+ private:
+  termios before_{};
+};
+
+winsize terminal_size() {
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) {
+    size.ws_col = 160;
+    size.ws_row = 60;
+  }
+  return size;
+}
+
+bool shows_colors() {
+  const char* none = std::getenv("NO_COLOR");
+  return isatty(STDOUT_FILENO) == 1 && (none == nullptr || *none == '\0');
+}
+
+Outcome look(FarmClient& client, FarmNow& now) {
+  v1::ListJobsRequest request;
+  v1::ListJobsResponse jobs;
+  if (auto failure = client.list(request, jobs)) return failure;
+  v1::WorkersResponse workers;
+  if (auto failure = client.workers(workers)) return failure;
+  now.jobs.assign(jobs.jobs().begin(), jobs.jobs().end());
+  now.workers.assign(workers.workers().begin(), workers.workers().end());
+  now.time_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+                    std::chrono::system_clock::now().time_since_epoch())
+                    .count();
+  return std::nullopt;
+}
+
+Outcome show_once(FarmClient& client, const std::string& address) {
+  FarmNow now;
+  if (auto failure = look(client, now)) return failure;
+  WorkerSpeeds speeds;
+  speeds.note(now);
+  const int rows = static_cast<int>(now.jobs.size() + now.workers.size()) + 8;
+  for (const std::string& line : top_page(now, speeds, address, 160, rows, false)) {
+    const size_t end = line.find_last_not_of(' ');
+    std::printf("%s\n", line.substr(0, end + 1).c_str());
+  }
+  return std::nullopt;
+}
+
+Outcome show_always(FarmClient& client, const std::string& address, double interval) {
+  const bool colors = shows_colors();
+  WorkerSpeeds speeds;
+  const Screen screen;
+  do {
+    FarmNow now;
+    if (auto failure = look(client, now)) return failure;
+    speeds.note(now);
+    const winsize size = terminal_size();
+    Screen::draw(top_page(now, speeds, address, size.ws_col, size.ws_row, colors));
+  } while (!Screen::wait(interval));
+  return std::nullopt;
+}
+
+}  // namespace
+
+int top_command(int argc, char** argv) {
+  ClientApp app("top",
+                "Shows jobs and workers as they change; once, where the output is no terminal.");
+  double interval = 1;
+  bool once = false;
+  app.app()
+      .add_option("--interval", interval, "seconds between two looks")
+      ->check(CLI::Range(kLeastInterval, 3600.0))
+      ->capture_default_str();
+  app.app().add_flag("--once", once, "print it once and end");
+  app.app().footer(
+      "q ends it. NO_COLOR in the environment turns colours off.\n"
+      "examples:\n  hyades top\n  hyades top --coordinator farm:7700 --interval 5\n  hyades top "
+      "--once | head");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  const bool terminal = isatty(STDOUT_FILENO) == 1 && isatty(STDIN_FILENO) == 1;
+  const Outcome failure = once || !terminal ? show_once(*client, app.address())
+                                            : show_always(*client, app.address(), interval);
+  return failure ? app.report(*failure) : kDone;
+}
+
+}  // namespace hyades::cli
