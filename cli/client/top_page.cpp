@@ -248,7 +248,7 @@ std::vector<std::string> top_page(const FarmNow& now, const WorkerSpeeds& speeds
   page.line(fmt::format("hyades top - {} - {} job{}, {} worker{} with {} threads, {}", coordinator,
                         now.jobs.size(), now.jobs.size() == 1 ? "" : "s", connected,
                         connected == 1 ? "" : "s", threads, speed_text(speeds.all())));
-  page.line(format_time(now.time_ms) + "   q ends", Style::faint);
+  page.line(format_time(now.time_ms), Style::faint);
   // Two heads, and what lies between them; jobs get half of the rest, and what workers do not need.
   const int rows = std::max(height - 5, 0);
   const int for_workers =
