@@ -37,8 +37,11 @@ async function refusal(response) {
     // A proxy's page, say: the status is all that is known.
   }
   const told = error.message || `the coordinator answered ${response.status} ${response.statusText}`.trim();
-  return new ApiError(error.code ?? (response.status === 401 ? 'unauthenticated' : 'unknown'), told,
-    { status: response.status, retryAfterMs: error.retry_after_ms ?? 0, missing: error.missing ?? [] });
+  return new ApiError(error.code ?? (response.status === 401 ? 'unauthenticated' : 'unknown'), told, {
+    status: response.status,
+    retryAfterMs: error.retry_after_ms ?? 0,
+    missing: error.missing ?? [],
+  });
 }
 
 /**
@@ -54,7 +57,11 @@ export async function call(method, path, { query, body, signal, cache } = {}) {
       signal,
       cache: cache ?? 'default',
       credentials: 'same-origin',
-      headers: plain ? (body ? { 'content-type': 'application/octet-stream' } : {}) : { 'content-type': 'application/json' },
+      headers: plain
+        ? body
+          ? { 'content-type': 'application/octet-stream' }
+          : {}
+        : { 'content-type': 'application/json' },
       body: plain ? body : JSON.stringify(body),
     });
   } catch (error) {
@@ -86,7 +93,8 @@ export const timeline = (id, signal) => json('GET', `api/v1/jobs/${id}/timeline`
 export const missing = (files, signal) => json('POST', 'api/v1/assets/missing', { body: { files }, signal });
 export const putPiece = (sha256, size, offset, piece, signal) =>
   json('PUT', `api/v1/assets/${sha256}`, { query: { size, offset }, body: piece, signal });
-export const steerWorker = (id, action, reason) => json('POST', `api/v1/workers/${id}/${action}`, { body: reason ? { reason } : {} });
+export const steerWorker = (id, action, reason) =>
+  json('POST', `api/v1/workers/${id}/${action}`, { body: reason ? { reason } : {} });
 
 /** A frame's picture as it is now. `query`: format, width, layer. The browser's cache asks again by ETag. */
 export const picture = (id, frame, query, signal) =>
@@ -94,7 +102,9 @@ export const picture = (id, frame, query, signal) =>
 
 /** Where a finished file is. */
 export const outputAddress = (id, path, download) =>
-  address(`api/v1/jobs/${id}/outputs/${path.split('/').map(encodeURIComponent).join('/')}`, { download: download ? 'true' : '' });
+  address(`api/v1/jobs/${id}/outputs/${path.split('/').map(encodeURIComponent).join('/')}`, {
+    download: download ? 'true' : '',
+  });
 
 /** Where all finished files are in one. */
 export const archiveAddress = (id) => address(`api/v1/jobs/${id}/archive.zip`);

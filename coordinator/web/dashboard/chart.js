@@ -42,22 +42,34 @@ export function flowChart() {
     shape = { x, y, values, end, count, inner, width };
     const points = values.map((value, i) => `${x(i).toFixed(1)},${y(value).toFixed(1)}`);
     curve.setAttribute('d', points.length > 1 ? `M${points.join('L')}` : '');
-    area.setAttribute('d', points.length > 1 ? `M${x(0)},${y(0)}L${points.join('L')}L${x(values.length - 1)},${y(0)}Z` : '');
+    area.setAttribute(
+      'd',
+      points.length > 1 ? `M${x(0)},${y(0)}L${points.join('L')}L${x(values.length - 1)},${y(0)}Z` : '',
+    );
     const lines = [];
     for (let i = 0; i <= (values.some((value) => value > 0) ? 2 : 0); ++i) {
       const value = (top * i) / 2;
-      lines.push(s('line', { class: 'grid', x1: LEFT, x2: width - RIGHT, y1: y(value), y2: y(value) }),
-        s('text', { x: LEFT - 8, y: y(value) + 4, 'text-anchor': 'end' }, value === 0 ? '0' : rate(value)));
+      lines.push(
+        s('line', { class: 'grid', x1: LEFT, x2: width - RIGHT, y1: y(value), y2: y(value) }),
+        s('text', { x: LEFT - 8, y: y(value) + 4, 'text-anchor': 'end' }, value === 0 ? '0' : rate(value)),
+      );
     }
     const minutes = (count * STEP_SECONDS) / 60;
     const step = [1, 2, 5, 10, 15, 20].find((m) => minutes / m <= Math.max(2, inner / 110)) ?? 30;
     for (let m = 0; m <= minutes; m += step) {
       const at = width - RIGHT - (inner * m * 60) / STEP_SECONDS / (count - 1);
       if (at < LEFT) break;
-      lines.push(s('text', { x: at, y: HEIGHT - 6, 'text-anchor': m === 0 ? 'end' : 'middle' }, m === 0 ? 'now' : `${m} min`));
+      lines.push(
+        s('text', { x: at, y: HEIGHT - 6, 'text-anchor': m === 0 ? 'end' : 'middle' }, m === 0 ? 'now' : `${m} min`),
+      );
     }
     grid.replaceChildren(...lines);
-    svg.setAttribute('aria-label', values.length > 0 ? `Samples per second over the last ${duration(values.length * STEP_SECONDS)}: now ${rateInWords(values[values.length - 1])}, highest ${rateInWords(Math.max(...values))}` : 'Samples per second: nothing yet');
+    svg.setAttribute(
+      'aria-label',
+      values.length > 0
+        ? `Samples per second over the last ${duration(values.length * STEP_SECONDS)}: now ${rateInWords(values[values.length - 1])}, highest ${rateInWords(Math.max(...values))}`
+        : 'Samples per second: nothing yet',
+    );
   };
   const point = (event) => {
     if (!shape || shape.values.length < 2) return;
@@ -77,7 +89,9 @@ export function flowChart() {
     setText(label, `${rate(values[i])} at ${clock(end - (values.length - 1 - i) * STEP_SECONDS * 1000)}`);
   };
   svg.addEventListener('pointermove', point);
-  svg.addEventListener('pointerleave', () => [cursor, spot, label].forEach((node) => node.setAttribute('visibility', 'hidden')));
+  svg.addEventListener('pointerleave', () =>
+    [cursor, spot, label].forEach((node) => node.setAttribute('visibility', 'hidden')),
+  );
   const resized = new ResizeObserver(() => last && draw(...last));
   resized.observe(svg);
   return { node: svg, draw, leave: () => resized.disconnect() };

@@ -8,13 +8,26 @@ import { h } from './dom.js';
 export function ask({ title, body = [], buttons, testid = 'dialog', check }) {
   return new Promise((resolve) => {
     const problem = h('p', { class: 'problem', role: 'alert' });
-    const form = h('form', { method: 'dialog', class: 'dialog-form' },
-      h('h2', { id: 'dialog-title', text: title }), ...body, problem,
-      h('div', { class: 'buttons' }, buttons.map(({ value, text, kind }, index) =>
-        h('button', {
-          type: index === buttons.length - 1 ? 'submit' : 'button', class: kind ?? '', text, testid: `dialog-${value || 'close'}`,
-          onclick: index === buttons.length - 1 ? undefined : () => dialog.close(value),
-        }))));
+    const form = h(
+      'form',
+      { method: 'dialog', class: 'dialog-form' },
+      h('h2', { id: 'dialog-title', text: title }),
+      ...body,
+      problem,
+      h(
+        'div',
+        { class: 'buttons' },
+        buttons.map(({ value, text, kind }, index) =>
+          h('button', {
+            type: index === buttons.length - 1 ? 'submit' : 'button',
+            class: kind ?? '',
+            text,
+            testid: `dialog-${value || 'close'}`,
+            onclick: index === buttons.length - 1 ? undefined : () => dialog.close(value),
+          }),
+        ),
+      ),
+    );
     const dialog = h('dialog', { 'aria-labelledby': 'dialog-title', testid }, form);
     form.addEventListener('submit', async (event) => {
       event.preventDefault();
@@ -42,8 +55,13 @@ export function ask({ title, body = [], buttons, testid = 'dialog', check }) {
 /** Asks before something happens; true where it is to. */
 export async function confirm({ title, body, action, danger = false }) {
   const answer = await ask({
-    title, body, testid: 'confirm',
-    buttons: [{ value: '', text: 'Keep as it is' }, { value: 'yes', text: action, kind: danger ? 'danger' : 'primary' }],
+    title,
+    body,
+    testid: 'confirm',
+    buttons: [
+      { value: '', text: 'Keep as it is' },
+      { value: 'yes', text: action, kind: danger ? 'danger' : 'primary' },
+    ],
   });
   return answer === 'yes';
 }

@@ -89,8 +89,12 @@ export function say(text) {
 
 /** Shows a short message for some seconds. Kinds: 'good', 'bad'. */
 export function toast(text, kind = 'good') {
-  const node = h('div', { class: `toast ${kind}`, testid: 'toast' }, h('p', { text }),
-    h('button', { class: 'plain', type: 'button', 'aria-label': 'Dismiss', text: '×', onclick: () => node.remove() }));
+  const node = h(
+    'div',
+    { class: `toast ${kind}`, testid: 'toast' },
+    h('p', { text }),
+    h('button', { class: 'plain', type: 'button', 'aria-label': 'Dismiss', text: '×', onclick: () => node.remove() }),
+  );
   document.getElementById('toasts').append(node);
   setTimeout(() => node.remove(), kind === 'bad' ? 12000 : 5000);
 }

@@ -5,11 +5,10 @@ import { counted, duration, moment, percent, rate, rateInWords, whole } from './
 import { farm, isOpen, learnJobs, onFarm, speed } from './farm_state.js';
 import { h, keyed, setText } from './dom.js';
 import { flowChart } from './chart.js';
-import { icon } from './icons.js';
+import { Alerts } from './alerts.js';
 import { noJobs } from './jobs.js';
 import { noWorkers } from './workers.js';
 import { preview } from './preview.js';
-import { recall, remember } from './memory.js';
 import { share } from './job_state.js';
 import { starMap } from './stars.js';
 import { Thumbs } from './thumbs.js';
@@ -18,37 +17,18 @@ import { workerTable } from './worker_table.js';
 
 const MOST_NOW = 6;
 const MOST_QUEUED = 12;
-const MOST_ALERTS = 4;
 const MOST_ENDED = 6;
-/** Jobs that failed so lately are told. */
-const FRESH = 12 * 3600e3;
-
-/** What needs a person: [{key, text, bad, href, what}], the worst first. */
-export function alertsOf({ info, jobs, workers }, now = Date.now()) {
-  const list = [];
-  if (info?.trouble) list.push({ key: `trouble ${info.trouble}`, bad: true, text: info.trouble });
-  for (const worker of workers.values()) {
-    if (worker.state === 'quarantined') list.push({ key: `w${worker.id}q`, bad: true, href: to('workers'), what: worker.name, text: `is quarantined${worker.reason ? `: ${worker.reason}` : ''}` });
-    if (worker.state === 'gone') list.push({ key: `w${worker.id}g${worker.heard_ms}`, href: to('workers'), what: worker.name, text: `is gone${worker.reason ? `: ${worker.reason}` : ''}; what it had in hand goes to others` });
-  }
-  for (const job of jobs.values()) {
-    const href = to('job', { job: job.id });
-    if (job.state === 'failed' && job.ended_ms > now - FRESH) list.push({ key: `j${job.id}f${job.ended_ms}`, bad: true, href, what: job.name, text: `has failed${job.reason ? `: ${job.reason}` : ''}` });
-    else if (isOpen(job) && job.reason) list.push({ key: `j${job.id}r${job.reason}`, href, what: job.name, text: job.reason });
-    else if (isOpen(job) && job.frames_failed > 0) list.push({ key: `j${job.id}n${job.frames_failed}`, href, what: job.name, text: `${counted(job.frames_failed, 'frame')} failed so far` });
-  }
-  return list.sort((a, b) => Boolean(b.bad) - Boolean(a.bad));
-}
 
 /** Open jobs in the order in which they get units: running before paused, higher priority first, older first. */
-export const inOrder = (jobs) => [...jobs].filter(isOpen).sort((a, b) =>
-  (a.state === 'paused') - (b.state === 'paused') || b.priority - a.priority || a.id - b.id);
+export const inOrder = (jobs) =>
+  [...jobs]
+    .filter(isOpen)
+    .sort((a, b) => (a.state === 'paused') - (b.state === 'paused') || b.priority - a.priority || a.id - b.id);
 
 class FarmView {
   constructor() {
     this.title = 'Farm';
-    this.hushed = new Set(recall('hushed', '').split('\n').filter(Boolean));
-    this.alerts = h('ul', { class: 'alerts', 'aria-label': 'What needs attention', testid: 'alerts' });
+    this.alerts = new Alerts();
     this.thumbs = new Thumbs();
     this.sky = starMap((worker) => this.goToWorker(worker));
     this.chart = flowChart();
@@ -59,21 +39,63 @@ class FarmView {
     this.queueCount = h('span', { class: 'soft' });
     this.queueNone = h('p', { class: 'soft box-head', text: 'Nothing waits.' });
     this.ended = h('ul', { class: 'queue-list', testid: 'ended' });
-    this.endedBox = h('div', {}, h('div', { class: 'box-head' }, h('h2', { text: 'Ended lately' }), h('a', { href: to('jobs', { query: { state: 'all' } }), text: 'All of them' })), this.ended);
+    this.endedBox = h(
+      'div',
+      {},
+      h(
+        'div',
+        { class: 'box-head' },
+        h('h2', { text: 'Ended lately' }),
+        h('a', { href: to('jobs', { query: { state: 'all' } }), text: 'All of them' }),
+      ),
+      this.ended,
+    );
     this.nowNone = h('div', {});
     this.table = workerTable(noWorkers);
     this.tableCount = h('span', { class: 'soft' });
-    const box = (kind, title, more, ...body) => h('section', { class: `panel-box ${kind}` }, h('div', { class: 'box-head' }, h('h2', { text: title }), more), ...body);
+    const box = (kind, title, more, ...body) =>
+      h(
+        'section',
+        { class: `panel-box ${kind}` },
+        h('div', { class: 'box-head' }, h('h2', { text: title }), more),
+        ...body,
+      );
     this.skyBox = box('farm-sky', 'Cluster', this.skyNow, this.sky.node);
     this.flowBox = box('farm-flow', 'Throughput', this.speedNow, this.chart.node);
     this.nowBox = box('farm-now', 'Rendering now', null, this.now, this.nowNone);
-    this.queueBox = box('farm-queue', 'Queue', [this.queueCount, h('a', { href: to('jobs'), text: 'All jobs' })], this.queue, this.queueNone, this.endedBox);
-    this.workersBox = box('farm-workers', 'Workers', [this.tableCount, h('a', { href: to('workers'), text: 'All workers' })], this.table.node);
-    this.grid = h('div', { class: 'farm-grid' }, this.skyBox, this.flowBox, this.nowBox, this.queueBox, this.workersBox);
-    this.node = h('div', { class: 'view' }, h('h1', { class: 'unseen', text: 'Farm' }), this.alerts, this.grid);
+    this.queueBox = box(
+      'farm-queue',
+      'Queue',
+      [this.queueCount, h('a', { href: to('jobs'), text: 'All jobs' })],
+      this.queue,
+      this.queueNone,
+      this.endedBox,
+    );
+    this.workersBox = box(
+      'farm-workers',
+      'Workers',
+      [this.tableCount, h('a', { href: to('workers'), text: 'All workers' })],
+      this.table.node,
+    );
+    this.grid = h(
+      'div',
+      { class: 'farm-grid' },
+      this.skyBox,
+      this.flowBox,
+      this.nowBox,
+      this.queueBox,
+      this.workersBox,
+    );
+    this.node = h('div', { class: 'view' }, h('h1', { class: 'unseen', text: 'Farm' }), this.alerts.node, this.grid);
     this.leaveFarm = onFarm((what) => this.draw(what));
     // Those that have ended lately: what failed at night is seen in the morning.
-    api.jobs({ ended: true, limit: 60 }).then(({ jobs }) => { this.asked = true; learnJobs(jobs); }).catch(() => {});
+    api
+      .jobs({ ended: true, limit: 60 })
+      .then(({ jobs }) => {
+        this.asked = true;
+        learnJobs(jobs);
+      })
+      .catch(() => {});
     this.timer = setInterval(() => this.draw(new Set(['workers', 'tick'])), 5000);
     this.draw(null);
   }
@@ -92,7 +114,7 @@ class FarmView {
     // A farm that has just been set up: what to do first, and nothing else.
     this.grid.classList.toggle('fresh', this.asked === true && farm.workers.size === 0 && farm.jobs.size === 0);
     const is = (name) => what === null || what.has(name);
-    if (is('info') || is('jobs') || is('workers')) this.drawAlerts();
+    if (is('info') || is('jobs') || is('workers')) this.alerts.draw();
     if (is('series')) {
       this.chart.draw(farm.series, farm.seriesEnd);
       setText(this.speedNow, rateInWords(farm.series[farm.series.length - 1] ?? 0));
@@ -101,36 +123,16 @@ class FarmView {
     if (is('jobs')) this.drawJobs();
   }
 
-  drawAlerts() {
-    const list = alertsOf(farm).filter(({ key }) => !this.hushed.has(key));
-    this.alerts.hidden = list.length === 0;
-    const most = this.allAlerts ? list.length : MOST_ALERTS;
-    const shown = list.slice(0, list.length === most + 1 ? most + 1 : most);
-    if (shown.length < list.length) shown.push({ key: 'more', more: list.length - shown.length });
-    keyed(this.alerts, shown, ({ key }) => key, ({ key, text, bad, href, what, more }) => (more ? this.moreAlerts(more) : h('li', { class: `alert ${bad ? 'bad' : ''}` }, icon('warning'),
-      h('p', {}, href ? [h('a', { href, text: what }), ' '] : null, text),
-      h('button', { type: 'button', class: 'plain small', text: 'Hide', 'aria-label': `Hide: ${what ?? ''} ${text}`, onclick: () => this.hush(key) }))));
-  }
-
-  moreAlerts(more) {
-    const button = h('button', { type: 'button', class: 'plain', testid: 'more-alerts', onclick: () => { this.allAlerts = true; this.drawAlerts(); } });
-    const node = h('li', {}, button);
-    node.refresh = (item) => setText(button, `${item.more} more`);
-    node.refresh({ more });
-    return node;
-  }
-
-  hush(key) {
-    this.hushed.add(key);
-    remember('hushed', [...this.hushed].slice(-100).join('\n'));
-    this.drawAlerts();
-  }
-
   drawWorkers() {
     const all = [...farm.workers.values()];
     const here = all.filter(({ state }) => state !== 'gone');
     this.sky.draw(all, (worker) => speed(worker));
-    setText(this.skyNow, here.length === 0 ? '' : `${counted(here.length, 'worker')}, ${whole(here.reduce((sum, { threads }) => sum + threads, 0))} threads`);
+    setText(
+      this.skyNow,
+      here.length === 0
+        ? ''
+        : `${counted(here.length, 'worker')}, ${whole(here.reduce((sum, { threads }) => sum + threads, 0))} threads`,
+    );
     this.table.setRows(all);
     setText(this.tableCount, counted(here.length, 'worker'));
   }
@@ -139,43 +141,104 @@ class FarmView {
     const open = inOrder(farm.jobs.values());
     const running = open.filter((job) => job.state === 'running' && job.leased > 0).slice(0, MOST_NOW);
     const rest = open.filter((job) => !running.includes(job));
-    keyed(this.now, running, (job) => job.id, (job) => this.card(job));
+    keyed(
+      this.now,
+      running,
+      (job) => job.id,
+      (job) => this.card(job),
+    );
     const none = running.length > 0 ? null : open.length > 0 ? (farm.info.workers > 0 ? 'held' : 'alone') : 'empty';
     if (this.noneKind !== none) {
       this.noneKind = none;
-      this.nowNone.replaceChildren(...(none === null ? [] : [none === 'empty' ? (farm.jobs.size === 0 ? noJobs() : nothing('Nothing to do', h('p', { class: 'soft', text: 'All jobs have ended.' }), h('a', { class: 'button primary', href: to('submit'), text: 'Submit a job' })))
-        : nothing('Nothing is being rendered', h('p', { class: 'soft', text: none === 'alone' ? 'Jobs wait for a worker.' : 'The jobs in the queue wait; each says why.' }))]));
+      this.nowNone.replaceChildren(
+        ...(none === null
+          ? []
+          : [
+              none === 'empty'
+                ? farm.jobs.size === 0
+                  ? noJobs()
+                  : nothing(
+                      'Nothing to do',
+                      h('p', { class: 'soft', text: 'All jobs have ended.' }),
+                      h('a', { class: 'button primary', href: to('submit'), text: 'Submit a job' }),
+                    )
+                : nothing(
+                    'Nothing is being rendered',
+                    h('p', {
+                      class: 'soft',
+                      text: none === 'alone' ? 'Jobs wait for a worker.' : 'The jobs in the queue wait; each says why.',
+                    }),
+                  ),
+            ]),
+      );
     }
-    keyed(this.queue, rest.slice(0, MOST_QUEUED), (job) => job.id, () => {
-      const name = h('span', { class: 'name' });
-      const end = h('span', { class: 'soft num' });
-      const sub = h('span', { class: 'sub' });
-      const link = h('a', { testid: 'queued' }, name, end, sub);
-      const node = h('li', {}, link);
-      node.refresh = (job) => {
-        link.href = to('job', { job: job.id });
-        setText(name, job.name);
-        setText(end, job.state === 'paused' ? 'paused' : percent(share(job)));
-        setText(sub, job.reason || [`#${job.id}`, job.owner, counted(job.frames, 'frame'), job.priority !== 0 && `priority ${job.priority}`, `since ${moment(job.submitted_ms)}`].filter(Boolean).join(' · '));
-      };
-      return node;
-    });
-    setText(this.queueCount, rest.length > MOST_QUEUED ? `${whole(rest.length)}, the next ${MOST_QUEUED}` : rest.length > 0 ? whole(rest.length) : '');
+    keyed(
+      this.queue,
+      rest.slice(0, MOST_QUEUED),
+      (job) => job.id,
+      () => {
+        const name = h('span', { class: 'name' });
+        const end = h('span', { class: 'soft num' });
+        const sub = h('span', { class: 'sub' });
+        const link = h('a', { testid: 'queued' }, name, end, sub);
+        const node = h('li', {}, link);
+        node.refresh = (job) => {
+          link.href = to('job', { job: job.id });
+          setText(name, job.name);
+          setText(end, job.state === 'paused' ? 'paused' : percent(share(job)));
+          setText(
+            sub,
+            job.reason ||
+              [
+                `#${job.id}`,
+                job.owner,
+                counted(job.frames, 'frame'),
+                job.priority !== 0 && `priority ${job.priority}`,
+                `since ${moment(job.submitted_ms)}`,
+              ]
+                .filter(Boolean)
+                .join(' · '),
+          );
+        };
+        return node;
+      },
+    );
+    setText(
+      this.queueCount,
+      rest.length > MOST_QUEUED
+        ? `${whole(rest.length)}, the next ${MOST_QUEUED}`
+        : rest.length > 0
+          ? whole(rest.length)
+          : '',
+    );
     this.queueNone.hidden = rest.length > 0;
-    const over = [...farm.jobs.values()].filter((job) => !isOpen(job)).sort((a, b) => b.ended_ms - a.ended_ms).slice(0, MOST_ENDED);
+    const over = [...farm.jobs.values()]
+      .filter((job) => !isOpen(job))
+      .sort((a, b) => b.ended_ms - a.ended_ms)
+      .slice(0, MOST_ENDED);
     this.endedBox.hidden = over.length === 0;
-    keyed(this.ended, over, (job) => job.id, (job) => {
-      const name = h('span', { class: 'name' });
-      const end = chip(job.state);
-      const sub = h('span', { class: 'sub' });
-      const node = h('li', {}, h('a', { href: to('job', { job: job.id }) }, name, end, sub));
-      node.refresh = (now) => {
-        setText(name, now.name);
-        end.set(now.state);
-        setText(sub, now.reason && now.state === 'failed' ? now.reason : `${moment(now.ended_ms)} · ${counted(now.frames, 'frame')} in ${duration((now.ended_ms - now.submitted_ms) / 1000)}`);
-      };
-      return node;
-    });
+    keyed(
+      this.ended,
+      over,
+      (job) => job.id,
+      (job) => {
+        const name = h('span', { class: 'name' });
+        const end = chip(job.state);
+        const sub = h('span', { class: 'sub' });
+        const node = h('li', {}, h('a', { href: to('job', { job: job.id }) }, name, end, sub));
+        node.refresh = (now) => {
+          setText(name, now.name);
+          end.set(now.state);
+          setText(
+            sub,
+            now.reason && now.state === 'failed'
+              ? now.reason
+              : `${moment(now.ended_ms)} · ${counted(now.frames, 'frame')} in ${duration((now.ended_ms - now.submitted_ms) / 1000)}`,
+          );
+        };
+        return node;
+      },
+    );
   }
 
   card(job) {
@@ -185,8 +248,14 @@ class FarmView {
     const gauge = bar('Progress');
     const sub = h('span', { class: 'sub' });
     const speedText = h('span', { class: 'sub' });
-    const node = h('a', { class: 'now', href: to('job', { job: job.id }), testid: 'now-job' }, picture.node,
-      h('span', { class: 'now-line' }, name, left), gauge, h('span', { class: 'now-line' }, sub, speedText));
+    const node = h(
+      'a',
+      { class: 'now', href: to('job', { job: job.id }), testid: 'now-job' },
+      picture.node,
+      h('span', { class: 'now-line' }, name, left),
+      gauge,
+      h('span', { class: 'now-line' }, sub, speedText),
+    );
     node.refresh = (now) => {
       setText(name, now.name);
       setText(left, now.seconds_left >= 0 ? `${duration(now.seconds_left)} left` : '');

@@ -83,41 +83,45 @@ function takeWorker(worker, now) {
 
 /** Begins to listen; once, by main.js. */
 export function startFarm() {
-  listen('api/v1/events', {
-    snapshot(all) {
-      const now = Date.now();
-      for (const [id, job] of farm.jobs) if (isOpen(job)) farm.jobs.delete(id);
-      for (const job of all.jobs) farm.jobs.set(job.id, job);
-      farm.workers = new Map();
-      for (const worker of all.workers) takeWorker(worker, now);
-      farm.info = all.info;
-      farm.series = all.samples_per_second;
-      farm.seriesEnd = now;
-      tell('snapshot', 'info', 'jobs', 'workers', 'series');
-    },
-    change(change) {
-      const now = Date.now();
-      const what = [];
-      if (change.info) {
-        farm.info = change.info;
-        what.push('info');
-      }
-      for (const job of change.jobs ?? []) takeJob(job);
-      for (const id of change.removed_jobs ?? []) farm.jobs.delete(id);
-      if (change.jobs?.length || change.removed_jobs?.length) what.push('jobs');
-      for (const worker of change.workers ?? []) takeWorker(worker, now);
-      for (const id of change.removed_workers ?? []) {
-        farm.workers.delete(id);
-        histories.delete(id);
-      }
-      if (change.workers?.length || change.removed_workers?.length) what.push('workers');
-      if (change.samples_per_second !== undefined) {
-        farm.series.push(change.samples_per_second);
-        if (farm.series.length > LONGEST_SERIES) farm.series.shift();
+  listen(
+    'api/v1/events',
+    {
+      snapshot(all) {
+        const now = Date.now();
+        for (const [id, job] of farm.jobs) if (isOpen(job)) farm.jobs.delete(id);
+        for (const job of all.jobs) farm.jobs.set(job.id, job);
+        farm.workers = new Map();
+        for (const worker of all.workers) takeWorker(worker, now);
+        farm.info = all.info;
+        farm.series = all.samples_per_second;
         farm.seriesEnd = now;
-        what.push('series');
-      }
-      if (what.length > 0) tell(...what);
+        tell('snapshot', 'info', 'jobs', 'workers', 'series');
+      },
+      change(change) {
+        const now = Date.now();
+        const what = [];
+        if (change.info) {
+          farm.info = change.info;
+          what.push('info');
+        }
+        for (const job of change.jobs ?? []) takeJob(job);
+        for (const id of change.removed_jobs ?? []) farm.jobs.delete(id);
+        if (change.jobs?.length || change.removed_jobs?.length) what.push('jobs');
+        for (const worker of change.workers ?? []) takeWorker(worker, now);
+        for (const id of change.removed_workers ?? []) {
+          farm.workers.delete(id);
+          histories.delete(id);
+        }
+        if (change.workers?.length || change.removed_workers?.length) what.push('workers');
+        if (change.samples_per_second !== undefined) {
+          farm.series.push(change.samples_per_second);
+          if (farm.series.length > LONGEST_SERIES) farm.series.shift();
+          farm.seriesEnd = now;
+          what.push('series');
+        }
+        if (what.length > 0) tell(...what);
+      },
     },
-  }, { lively: true });
+    { lively: true },
+  );
 }

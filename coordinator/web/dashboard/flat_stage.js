@@ -21,18 +21,32 @@ export function flatStage(canvas) {
   const colorOf = (scene, value, beside) => {
     const part = (value[0] - scene.low) / (scene.high - scene.low);
     switch (scene.kind) {
-      case 'light': return value.some(Number.isNaN) ? [1, 0, 1] : toneMap(value, scene.curve, scene.exposure);
+      case 'light':
+        return value.some(Number.isNaN) ? [1, 0, 1] : toneMap(value, scene.curve, scene.exposure);
       case 'grey': {
         if (!Number.isFinite(value[0])) return scene.ground;
         const share = scene.low === 0 && scene.high === 1 ? part : 1 - part;
         return toneMap([share, share, share], 'srgb');
       }
-      case 'heat': return heat(part);
-      case 'signed': return value.map((x) => Math.min(1, Math.max(0, (x / (scene.high > 1.5 ? scene.high : 1)) * 0.5 + 0.5)));
-      case 'places': return value.map((x) => x / 10 - Math.floor(x / 10));
-      case 'ids': return value[0] === 0 ? [0, 0, 0] : [0.37, 0.73, 0.51].map((k) => 0.25 + 0.75 * Math.abs((value[0] * k * 7.31) % 1));
-      default: return heat(relativeError(value, beside) / scene.high);
+      case 'heat':
+        return heat(part);
+      case 'signed':
+        return value.map((x) => Math.min(1, Math.max(0, (x / (scene.high > 1.5 ? scene.high : 1)) * 0.5 + 0.5)));
+      case 'places':
+        return value.map((x) => x / 10 - Math.floor(x / 10));
+      case 'ids':
+        return value[0] === 0
+          ? [0, 0, 0]
+          : [0.37, 0.73, 0.51].map((k) => 0.25 + 0.75 * Math.abs((value[0] * k * 7.31) % 1));
+      default:
+        return heat(relativeError(value, beside) / scene.high);
     }
+  };
+
+  const gapColor = (scene, a, b) => {
+    const gap = a.map((x, i) => Math.abs(x - b[i]));
+    if (scene.kind === 'light') return toneMap(gap, scene.curve, scene.exposure);
+    return heat(gap[0] / (scene.high - scene.low));
   };
 
   return {
@@ -46,10 +60,11 @@ export function flatStage(canvas) {
       const height = Math.ceil(canvas.height / coarse);
       const image = new ImageData(width, height);
       const out = new Uint32Array(image.data.buffer);
-      const pack = ([r, g, b]) => 0xff000000 | (Math.round(b * 255) << 16) | (Math.round(g * 255) << 8) | Math.round(r * 255);
+      const pack = ([r, g, b]) =>
+        0xff000000 | (Math.round(b * 255) << 16) | (Math.round(g * 255) << 8) | Math.round(r * 255);
       const ground = pack(scene.ground);
       for (let y = 0; y < height; ++y) {
-        const v = ((y + 0.5) * coarse / scene.dense - scene.offset[1]) / (scene.scale * scene.logical[1]);
+        const v = (((y + 0.5) * coarse) / scene.dense - scene.offset[1]) / (scene.scale * scene.logical[1]);
         for (let x = 0; x < width; ++x) {
           const place = ((x + 0.5) * coarse) / scene.dense;
           const u = (place - scene.offset[0]) / (scene.scale * scene.logical[0]);
@@ -58,12 +73,11 @@ export function flatStage(canvas) {
             continue;
           }
           const side = scene.mode === 1 && place >= scene.split ? 'B' : 'A';
-          let value = look(pictures[`pic${side}`], u, v);
-          if (scene.mode === 2) {
-            const other = look(pictures.picB, u, v);
-            value = value.map((a, i) => Math.abs(a - other[i]));
-          }
-          out[y * width + x] = pack(colorOf(scene, value, scene.kind === 'noise' ? look(pictures[`beside${side}`], u, v) : null));
+          const value = look(pictures[`pic${side}`], u, v);
+          const beside = scene.kind === 'noise' ? look(pictures[`beside${side}`], u, v) : null;
+          const color =
+            scene.mode === 2 ? gapColor(scene, value, look(pictures.picB, u, v)) : colorOf(scene, value, beside);
+          out[y * width + x] = pack(color);
         }
       }
       if (coarse === 1) {

@@ -2,10 +2,11 @@
 import { h, oncePerFrame, setAttribute, setText } from './dom.js';
 import { icon } from './icons.js';
 import { nothing } from './parts.js';
+import { leavePlace } from './place.js';
 import { picture } from './api.js';
 import { recall, remember } from './memory.js';
 import { replaceQuery, to } from './router.js';
-import { stampOf } from './thumbs.js';
+import { madeAt, stampOf } from './thumbs.js';
 import { watchJob } from './job_state.js';
 import { whole } from './format.js';
 
@@ -36,36 +37,124 @@ class Flipbook {
 
   make() {
     this.canvas = h('canvas', { class: 'stage-canvas', role: 'img', 'aria-label': 'The film', testid: 'film-stage' });
-    this.message = h('div', { class: 'stage-message' }, nothing('Nothing to play yet', h('p', { class: 'soft', text: 'Frames appear here as soon as their first samples are there.' })));
+    this.message = h(
+      'div',
+      { class: 'stage-message' },
+      nothing(
+        'Nothing to play yet',
+        h('p', { class: 'soft', text: 'Frames appear here as soon as their first samples are there.' }),
+      ),
+    );
     this.stage = h('div', { class: 'stage plain-stage', onclick: () => this.toggle() }, this.canvas, this.message);
-    this.playButton = h('button', { type: 'button', class: 'square primary', 'aria-label': 'Play', title: 'Play (space)', testid: 'play', onclick: () => this.toggle() }, icon('play'));
-    const step = (by, name, text) => h('button', { type: 'button', class: 'square', 'aria-label': text, title: text, testid: `step-${name}`, onclick: () => this.step(by) }, icon(name));
-    this.scrub = h('input', { type: 'range', class: 'scrub', min: 0, max: 0, step: 1, value: 0, 'aria-label': 'Frame', testid: 'scrub', oninput: () => { this.pause(); this.go(Number(this.scrub.value)); } });
+    this.playButton = h(
+      'button',
+      {
+        type: 'button',
+        class: 'square primary',
+        'aria-label': 'Play',
+        title: 'Play (space)',
+        testid: 'play',
+        onclick: () => this.toggle(),
+      },
+      icon('play'),
+    );
+    const step = (by, name, text) =>
+      h(
+        'button',
+        {
+          type: 'button',
+          class: 'square',
+          'aria-label': text,
+          title: text,
+          testid: `step-${name}`,
+          onclick: () => this.step(by),
+        },
+        icon(name),
+      );
+    this.scrub = h('input', {
+      type: 'range',
+      class: 'scrub',
+      min: 0,
+      max: 0,
+      step: 1,
+      value: 0,
+      'aria-label': 'Frame',
+      testid: 'scrub',
+      oninput: () => {
+        this.pause();
+        this.go(Number(this.scrub.value));
+      },
+    });
     this.loaded = h('canvas', { class: 'loaded', 'aria-hidden': 'true' });
     this.label = h('output', { class: 'mono', testid: 'film-frame' });
-    this.speed = h('select', { 'aria-label': 'Frames per second', testid: 'fps', onchange: () => this.setFps(Number(this.speed.value)) }, SPEEDS.map((fps) => h('option', { value: fps, text: `${fps} fps` })));
+    this.speed = h(
+      'select',
+      { 'aria-label': 'Frames per second', testid: 'fps', onchange: () => this.setFps(Number(this.speed.value)) },
+      SPEEDS.map((fps) => h('option', { value: fps, text: `${fps} fps` })),
+    );
     this.speed.value = this.fps;
     this.loop = h('input', { type: 'checkbox', checked: true, testid: 'loop' });
-    this.size = h('select', { 'aria-label': 'Size of pictures', testid: 'film-size', onchange: () => this.resize() }, [[480, 'Small'], [960, 'Medium'], [1920, 'Large']].map(([value, text]) => h('option', { value, text })));
+    this.size = h(
+      'select',
+      { 'aria-label': 'Size of pictures', testid: 'film-size', onchange: () => this.resize() },
+      [
+        [480, 'Small'],
+        [960, 'Medium'],
+        [1920, 'Large'],
+      ].map(([value, text]) => h('option', { value, text })),
+    );
     this.size.value = recall('film-size', innerWidth > 900 ? '960' : '480');
     if (!this.size.value) this.size.value = '960';
     this.heading = h('h1', { text: 'Flip-book' });
     this.back = h('a', { class: 'viewer-back', href: to('job', { job: this.id }), testid: 'back' });
     this.open = h('a', { class: 'button', text: 'Look at this frame', testid: 'open-frame' });
     this.note = h('span', { class: 'soft', testid: 'film-note' });
-    this.node = h('div', { class: 'viewer' },
-      h('div', { class: 'viewer-bar' }, h('div', { class: 'viewer-group' }, h('span', { class: 'viewer-name' }, this.back, this.heading)), h('div', { class: 'viewer-group grow' }, this.note, this.size, this.open)),
+    this.node = h(
+      'div',
+      { class: 'viewer' },
+      h(
+        'div',
+        { class: 'viewer-bar' },
+        h('div', { class: 'viewer-group' }, h('span', { class: 'viewer-name' }, this.back, this.heading)),
+        h('div', { class: 'viewer-group grow' }, this.note, this.size, this.open),
+      ),
       this.stage,
-      h('div', { class: 'film-bar' }, step(-1, 'left', 'Frame before'), this.playButton, step(1, 'right', 'Next frame'), h('div', { class: 'scrub-box' }, this.loaded, this.scrub), this.label, this.speed, h('label', { class: 'check' }, this.loop, 'Loop')));
+      h(
+        'div',
+        { class: 'film-bar' },
+        step(-1, 'left', 'Frame before'),
+        this.playButton,
+        step(1, 'right', 'Next frame'),
+        h('div', { class: 'scrub-box' }, this.loaded, this.scrub),
+        this.label,
+        this.speed,
+        h('label', { class: 'check' }, this.loop, 'Loop'),
+      ),
+    );
     this.paint = oncePerFrame(() => this.draw());
     this.resized = new ResizeObserver(this.paint);
     this.resized.observe(this.stage);
     this.keysTitle = 'Flip-book';
     this.keys = [
-      { keys: 'Space', what: 'Play or stop', run: () => this.toggle() }, { keys: 'ArrowRight|.', shown: '→', what: 'Next frame', run: () => this.step(1) }, { keys: 'ArrowLeft|,', shown: '←', what: 'Frame before', run: () => this.step(-1) },
-      { keys: 'Home', what: 'First frame', run: () => this.go(0) }, { keys: 'End', what: 'Last frame', run: () => this.go(this.numbers.length - 1) },
-      { keys: '+|=', what: 'Faster', run: () => this.setFps(SPEEDS[Math.min(SPEEDS.length - 1, SPEEDS.indexOf(this.fps) + 1)]) }, { keys: '-', what: 'Slower', run: () => this.setFps(SPEEDS[Math.max(0, SPEEDS.indexOf(this.fps) - 1)]) },
-      { keys: 'Enter', what: 'Look at this frame', run: () => this.open.click() }, { keys: 'Escape', what: 'Back to the job', run: () => { location.hash = to('job', { job: this.id }); } },
+      { keys: 'Space', what: 'Play or stop', run: () => this.toggle() },
+      { keys: 'ArrowRight|.', shown: '→', what: 'Next frame', run: () => this.step(1) },
+      { keys: 'ArrowLeft|,', shown: '←', what: 'Frame before', run: () => this.step(-1) },
+      { keys: 'Home', what: 'First frame', run: () => this.go(0) },
+      { keys: 'End', what: 'Last frame', run: () => this.go(this.numbers.length - 1) },
+      {
+        keys: '+|=',
+        what: 'Faster',
+        run: () => this.setFps(SPEEDS[Math.min(SPEEDS.length - 1, SPEEDS.indexOf(this.fps) + 1)]),
+      },
+      { keys: '-', what: 'Slower', run: () => this.setFps(SPEEDS[Math.max(0, SPEEDS.indexOf(this.fps) - 1)]) },
+      { keys: 'Enter', what: 'Look at this frame', run: () => this.open.click() },
+      {
+        keys: 'Escape',
+        what: 'Back to the job',
+        run: () => {
+          location.hash = to('job', { job: this.id });
+        },
+      },
     ];
   }
 
@@ -82,7 +171,9 @@ class Flipbook {
     setText(this.back, state.job?.name ?? `Job ${this.id}`);
     this.retitle();
     const now = this.numbers[this.at];
-    this.numbers = state.numbers.filter((number) => state.frames.get(number).samples_done > 0 || state.frames.get(number).state === 'done');
+    this.numbers = state.numbers.filter(
+      (number) => state.frames.get(number).samples_done > 0 || state.frames.get(number).state === 'done',
+    );
     if (Number.isInteger(this.wanted) && this.numbers.includes(this.wanted)) {
       this.at = this.numbers.indexOf(this.wanted);
       this.wanted = null;
@@ -91,7 +182,10 @@ class Flipbook {
     }
     this.message.hidden = this.numbers.length > 0;
     setAttribute(this.scrub, 'max', Math.max(0, this.numbers.length - 1));
-    setText(this.note, state.job ? `${whole(this.numbers.length)} of ${whole(state.job.frames)} frames have a picture` : '');
+    setText(
+      this.note,
+      state.job ? `${whole(this.numbers.length)} of ${whole(state.job.frames)} frames have a picture` : '',
+    );
     this.load();
     this.paint();
   }
@@ -201,7 +295,7 @@ class Flipbook {
         return;
       }
       this.bitmaps.get(frame.id)?.bitmap.close();
-      this.bitmaps.set(frame.id, { bitmap, stamp, at: Date.now() });
+      this.bitmaps.set(frame.id, { bitmap, stamp: madeAt(response, stamp), at: Date.now() });
       if (this.numbers[this.at] === frame.id) this.paint();
     } catch {
       // Asked again with the others.
@@ -232,7 +326,13 @@ class Flipbook {
     const pen = this.canvas.getContext('2d');
     pen.clearRect(0, 0, width, height);
     pen.imageSmoothingQuality = 'high';
-    pen.drawImage(bitmap, (width - bitmap.width * scale) / 2, (height - bitmap.height * scale) / 2, bitmap.width * scale, bitmap.height * scale);
+    pen.drawImage(
+      bitmap,
+      (width - bitmap.width * scale) / 2,
+      (height - bitmap.height * scale) / 2,
+      bitmap.width * scale,
+      bitmap.height * scale,
+    );
   }
 
   drawLoaded() {
@@ -257,6 +357,7 @@ class Flipbook {
 
   leave() {
     this.left = true;
+    if (this.numbers.length > 0) leavePlace(this.id, this.numbers[this.at]);
     this.pause();
     clearTimeout(this.timer);
     this.paint.cancel();

@@ -57,7 +57,8 @@ export function duration(seconds) {
   const total = Math.round(seconds);
   if (total < 60) return `${total} s`;
   if (total < 3600) return `${Math.floor(total / 60)} min ${String(total % 60).padStart(2, '0')} s`;
-  if (total < 86400) return `${Math.floor(total / 3600)} h ${String(Math.floor((total % 3600) / 60)).padStart(2, '0')} min`;
+  if (total < 86400)
+    return `${Math.floor(total / 3600)} h ${String(Math.floor((total % 3600) / 60)).padStart(2, '0')} min`;
   return `${Math.floor(total / 86400)} d ${Math.floor((total % 86400) / 3600)} h`;
 }
 
@@ -106,8 +107,14 @@ export function value(number) {
   if (number === 0) return '0';
   const size = Math.abs(number);
   if (size >= 10000 || size < 0.0005) return number.toExponential(2);
-  return number.toPrecision(4).replace(/(\.\d*?)0+$/, '$1').replace(/\.$/, '');
+  return number
+    .toPrecision(4)
+    .replace(/(\.\d*?)0+$/, '$1')
+    .replace(/\.$/, '');
 }
+
+/** A digest by its beginning; other texts as they are. */
+export const brief = (text) => (/^[0-9a-f]{40,}$/.test(text) ? text.slice(0, 8) : text);
 
 /** 'a', 'a and b', 'a, b and c'. */
 export function listed(texts) {

@@ -2,7 +2,7 @@
 import { picture } from './api.js';
 import { readHalf } from './half.js';
 import { sourcesOf } from './layers.js';
-import { stampOf } from './thumbs.js';
+import { madeAt, stampOf } from './thumbs.js';
 
 const PAUSE = 2000;
 
@@ -53,7 +53,12 @@ export class FrameSource {
     this.abort = abort;
     this.running = true;
     this.tellBusy(true);
-    const ask = async (name, width) => readHalf(await (await picture(job, frame.id, { format: 'half', layer: name, width }, abort.signal)).arrayBuffer());
+    let got = stamp;
+    const ask = async (name, width) => {
+      const response = await picture(job, frame.id, { format: 'half', layer: name, width }, abort.signal);
+      got = madeAt(response, stamp);
+      return readHalf(await response.arrayBuffer());
+    };
     try {
       const [main, beside] = sourcesOf(layer);
       if (preview > 0) {
@@ -65,14 +70,14 @@ export class FrameSource {
         this.got(first, second, layer);
         this.preview = 0;
         if (whole) {
-          this.shown = stamp;
+          this.shown = got;
           return;
         }
       }
       const most = this.largest < 16384 ? this.largest : undefined;
       const [first, second] = [await ask(main, most), beside && (await ask(beside, most))];
       if (abort.signal.aborted) return;
-      this.shown = stamp;
+      this.shown = got;
       this.got(first, second, layer);
     } catch (error) {
       if (abort.signal.aborted) return;

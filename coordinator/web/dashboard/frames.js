@@ -1,23 +1,33 @@
 // A job's frames as pictures that refine. Of ten thousand only those on the screen exist.
 import { h, oncePerFrame, setAttribute, setText } from './dom.js';
 import { chip } from './parts.js';
-import { color, onTheme } from './theme.js';
-import { counted, percent, whole } from './format.js';
+import { brief, counted, percent, whole } from './format.js';
 import { recall, remember } from './memory.js';
+import { FrameMap } from './frame_map.js';
+import { frameShare } from './job_state.js';
+import { takePlace } from './place.js';
 import { Thumbs } from './thumbs.js';
 import { to } from './router.js';
 
 const SIZES = { small: 120, medium: 200, large: 340 };
 const CAPTION = 26;
 const GAP = 8;
-const FILTERS = [['', 'All'], ['rendering', 'Rendering'], ['waiting', 'Waiting'], ['done', 'Done'], ['failed', 'Failed'], ['doubtful', 'In doubt']];
+const FILTERS = [
+  ['', 'All'],
+  ['rendering', 'Rendering'],
+  ['waiting', 'Waiting'],
+  ['done', 'Done'],
+  ['failed', 'Failed'],
+  ['doubtful', 'In doubt'],
+];
 /** Browsers do not know elements that are much taller (Firefox: 17.9 million); beyond it, scrolling is geared. */
 const TALLEST = 8e6;
 
-const fits = (frame, filter) => filter === '' || (filter === 'doubtful' ? frame.doubtful : frame.state === filter || (filter === 'rendering' && frame.state === 'finishing'));
-
-/** How much of a frame is rendered, 0..1. */
-export const frameShare = (frame) => (frame.state === 'done' ? 1 : frame.samples > 0 ? Math.min(1, frame.samples_done / frame.samples) : 0);
+const fits = (frame, filter) =>
+  filter === '' ||
+  (filter === 'doubtful'
+    ? frame.doubtful
+    : frame.state === filter || (filter === 'rendering' && frame.state === 'finishing'));
 
 /** The grid of frames of `state` (job_state.js), with its filters and the map of all frames. */
 export class Frames {
@@ -32,34 +42,85 @@ export class Frames {
     this.thumbs = new Thumbs();
     this.size = recall('thumbs', 'medium');
     if (!SIZES[this.size]) this.size = 'medium';
-    this.pills = h('div', { class: 'pills', role: 'group', 'aria-label': 'Frames' }, FILTERS.map(([value, text]) => h('button', {
-      type: 'button', 'data-filter': value, testid: `frames-${value || 'all'}`, onclick: () => { this.filter = value; this.refilter(); this.draw(); },
-    }, h('span', { text }), h('span', { class: 'pill-count' }))));
-    this.sizes = h('div', { class: 'pills', role: 'group', 'aria-label': 'Size of pictures' }, Object.keys(SIZES).map((name) => h('button', {
-      type: 'button', 'aria-label': `${name} pictures`, title: `${name} pictures`, 'data-size': name, testid: `size-${name}`, text: name[0].toUpperCase(), onclick: () => this.resize(name),
-    })));
-    this.jump = h('input', { type: 'number', class: 'jump', placeholder: 'Frame', 'aria-label': 'Go to frame', testid: 'jump', onchange: () => this.goTo(Number(this.jump.value)) });
-    this.map = h('canvas', { class: 'frame-map', 'aria-hidden': 'true', title: 'All frames; click to go there', testid: 'frame-map', onclick: (event) => this.mapClick(event) });
-    this.grid = h('div', { class: 'frames', role: 'list', 'aria-label': 'Frames', testid: 'frames', onkeydown: (event) => this.key(event) });
+    this.pills = h(
+      'div',
+      { class: 'pills', role: 'group', 'aria-label': 'Frames' },
+      FILTERS.map(([value, text]) =>
+        h(
+          'button',
+          {
+            type: 'button',
+            'data-filter': value,
+            testid: `frames-${value || 'all'}`,
+            onclick: () => {
+              this.filter = value;
+              this.refilter();
+              this.draw();
+            },
+          },
+          h('span', { text }),
+          h('span', { class: 'pill-count' }),
+        ),
+      ),
+    );
+    this.sizes = h(
+      'div',
+      { class: 'pills', role: 'group', 'aria-label': 'Size of pictures' },
+      Object.keys(SIZES).map((name) =>
+        h('button', {
+          type: 'button',
+          'aria-label': `${name} pictures`,
+          title: `${name} pictures`,
+          'data-size': name,
+          testid: `size-${name}`,
+          text: name[0].toUpperCase(),
+          onclick: () => this.resize(name),
+        }),
+      ),
+    );
+    this.jump = h('input', {
+      type: 'number',
+      class: 'jump',
+      placeholder: 'Frame',
+      'aria-label': 'Go to frame',
+      testid: 'jump',
+      onchange: () => this.goTo(Number(this.jump.value)),
+    });
+    this.map = new FrameMap(state, (number) => this.goTo(number));
+    this.grid = h('div', {
+      class: 'frames',
+      role: 'list',
+      'aria-label': 'Frames',
+      testid: 'frames',
+      onkeydown: (event) => this.key(event),
+    });
     this.nothing = h('p', { class: 'soft pad' });
     this.tools = h('div', { class: 'filters' }, this.pills, h('span', { class: 'spring' }), this.jump, this.sizes);
-    this.node = h('div', { class: 'frames-tab' }, this.tools, this.map, this.grid, this.nothing);
+    this.node = h('div', { class: 'frames-tab' }, this.tools, this.map.node, this.grid, this.nothing);
     this.draw = oncePerFrame(() => this.layout());
-    this.drawMap = oncePerFrame(() => this.paintMap());
     addEventListener('scroll', this.draw, { passive: true });
     addEventListener('resize', this.draw);
-    addEventListener('resize', this.drawMap);
-    this.leaveTheme = onTheme(() => { this.mapColors = null; this.drawMap(); });
+    // What is above may grow and shrink: then others are on the screen.
+    this.moved = new ResizeObserver(this.draw);
+    this.moved.observe(document.body);
     this.update(null);
+  }
+
+  /** Shows the frame that was looked at last, with the focus; false where none was. */
+  atPlace() {
+    const frame = takePlace(this.state.id);
+    const index = frame === null ? -1 : this.list.indexOf(frame);
+    if (index < 0 || this.list.length < 2) return false;
+    this.focusOn(index);
+    return true;
   }
 
   leave() {
     this.draw.cancel();
-    this.drawMap.cancel();
-    this.leaveTheme();
+    this.moved.disconnect();
+    this.map.leave();
     removeEventListener('scroll', this.draw);
     removeEventListener('resize', this.draw);
-    removeEventListener('resize', this.drawMap);
     this.thumbs.leave();
   }
 
@@ -75,7 +136,7 @@ export class Frames {
     if (changed === null || this.filter !== '' || this.list.length !== this.state.numbers.length) this.refilter();
     this.count();
     this.draw();
-    this.drawMap();
+    this.map.draw();
   }
 
   refilter() {
@@ -99,18 +160,27 @@ export class Frames {
     for (const pill of this.sizes.children) setAttribute(pill, 'aria-pressed', pill.dataset.size === this.size);
     const one = this.state.numbers.length <= 1;
     this.tools.hidden = one;
-    this.map.hidden = this.state.numbers.length < 40;
+    this.map.node.hidden = this.state.numbers.length < 40;
     this.jump.hidden = this.state.numbers.length < 40;
-    setText(this.nothing, this.list.length === 0 ? (this.state.numbers.length === 0 ? '' : 'No frame is like that.') : '');
+    setText(
+      this.nothing,
+      this.list.length === 0 ? (this.state.numbers.length === 0 ? '' : 'No frame is like that.') : '',
+    );
   }
 
   measure() {
     const width = this.grid.clientWidth;
     const many = this.list.length;
     // Few frames have much room each.
-    const wish = many === 1 ? Math.min(width, 960, (innerHeight * 0.62) / this.aspect) : many <= 4 && this.size === 'medium' ? 340 : Math.min(SIZES[this.size], Math.max(96, (width - GAP) / 2 - GAP));
+    const wish =
+      many === 1
+        ? Math.min(width, 960, (innerHeight * 0.62) / this.aspect)
+        : many <= 4 && this.size === 'medium'
+          ? 340
+          : Math.min(SIZES[this.size], Math.max(96, (width - GAP) / 2 - GAP));
     const columns = many === 1 ? 1 : Math.max(1, Math.floor((width + GAP) / (wish + GAP)));
-    const cellWidth = many === 1 ? wish : Math.min((width - GAP * (columns - 1)) / columns, many <= columns ? wish * 1.25 : Infinity);
+    const cellWidth =
+      many === 1 ? wish : Math.min((width - GAP * (columns - 1)) / columns, many <= columns ? wish * 1.25 : Infinity);
     const rowHeight = Math.round(cellWidth * this.aspect) + CAPTION + GAP;
     return { columns, cellWidth, rowHeight, rows: Math.ceil(many / columns) };
   }
@@ -128,7 +198,10 @@ export class Frames {
     const shift = above * gear - above;
     const top = above + shift;
     const from = Math.max(0, Math.floor((top - shape.rowHeight) / shape.rowHeight)) * shape.columns;
-    const until = Math.min(this.list.length, Math.ceil((top + innerHeight + shape.rowHeight) / shape.rowHeight) * shape.columns);
+    const until = Math.min(
+      this.list.length,
+      Math.ceil((top + innerHeight + shape.rowHeight) / shape.rowHeight) * shape.columns,
+    );
     const wanted = new Set(this.list.slice(from, until));
     if (this.active === null || !this.state.frames.has(this.active)) this.active = this.list[0] ?? null;
     for (const [number, cell] of this.cells) {
@@ -163,8 +236,19 @@ export class Frames {
     const note = h('span', { class: 'frame-note' });
     const mark = chip('waiting');
     const line = h('i', { class: 'frame-line' });
-    const link = h('a', { class: 'frame', testid: 'frame', onfocus: () => { this.active = cell.number; this.roving(); } },
-      h('span', { class: 'frame-picture' }, image, line), h('span', { class: 'frame-caption' }, mark, name, note));
+    const link = h(
+      'a',
+      {
+        class: 'frame',
+        testid: 'frame',
+        onfocus: () => {
+          this.active = cell.number;
+          this.roving();
+        },
+      },
+      h('span', { class: 'frame-picture' }, image, line),
+      h('span', { class: 'frame-caption' }, mark, name, note),
+    );
     const node = h('div', { class: 'frame-cell', role: 'listitem' }, link);
     const cell = { node, link, image, name, note, mark, line, frame: null };
     return cell;
@@ -186,10 +270,37 @@ export class Frames {
       const part = frameShare(frame);
       cell.link.dataset.state = frame.state;
       cell.mark.set(frame.doubtful ? 'doubtful' : frame.state);
-      setText(cell.note, frame.state === 'rendering' ? percent(part) : frame.doubtful ? 'in doubt' : frame.state === 'finishing' ? 'finishing' : frame.state === 'failed' ? 'failed' : '');
+      setText(
+        cell.note,
+        frame.state === 'rendering'
+          ? percent(part)
+          : frame.doubtful
+            ? 'in doubt'
+            : frame.state === 'finishing'
+              ? 'finishing'
+              : frame.state === 'failed'
+                ? 'failed'
+                : '',
+      );
       cell.line.style.transform = `scaleX(${part})`;
-      cell.link.title = frame.reason || (frame.worker_class ? `${frame.state}, ${frame.worker_class}${frame.restarts ? `, begun anew ${counted(frame.restarts, 'time')}` : ''}` : '');
-      setAttribute(cell.link, 'aria-label', `Frame ${frame.id}, ${frame.doubtful ? 'in doubt, ' : ''}${frame.state}${frame.state === 'rendering' ? `, ${percent(part)}` : ''}${frame.reason ? `, ${frame.reason}` : ''}`);
+      cell.link.title =
+        frame.reason ||
+        (frame.worker_class
+          ? `${frame.state}, class ${brief(frame.worker_class)}${frame.restarts ? `, begun anew ${counted(frame.restarts, 'time')}` : ''}`
+          : '');
+      setAttribute(
+        cell.link,
+        'aria-label',
+        [
+          `Frame ${frame.id}`,
+          frame.doubtful && 'in doubt',
+          frame.state,
+          frame.state === 'rendering' && percent(part),
+          frame.reason,
+        ]
+          .filter(Boolean)
+          .join(', '),
+      );
     }
     this.thumbs.want(cell, { job: this.state.id, frame, width, show: (url, picture) => this.show(cell, url, picture) });
   }
@@ -215,7 +326,16 @@ export class Frames {
     const at = this.list.indexOf(this.active);
     const { columns, rowHeight } = this.shape;
     const page = columns * Math.max(1, Math.floor(innerHeight / rowHeight) - 1);
-    const step = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: columns, ArrowUp: -columns, PageDown: page, PageUp: -page, Home: -at, End: this.list.length - 1 - at }[event.key];
+    const step = {
+      ArrowRight: 1,
+      ArrowLeft: -1,
+      ArrowDown: columns,
+      ArrowUp: -columns,
+      PageDown: page,
+      PageUp: -page,
+      Home: -at,
+      End: this.list.length - 1 - at,
+    }[event.key];
     if (step === undefined || at < 0) return;
     event.preventDefault();
     const next = at + step;
@@ -224,6 +344,7 @@ export class Frames {
   }
 
   focusOn(index) {
+    this.layout();
     this.reveal(index);
     this.active = this.list[index];
     this.layout();
@@ -246,46 +367,5 @@ export class Frames {
     let index = this.list.findIndex((other) => other >= number);
     if (index < 0) index = this.list.length - 1;
     this.focusOn(index);
-  }
-
-  mapClick(event) {
-    const { columns, size, numbers } = this.mapShape;
-    const box = this.map.getBoundingClientRect();
-    const index = Math.floor((event.clientY - box.top) / size) * columns + Math.floor((event.clientX - box.left) / size);
-    if (index < numbers.length) this.goTo(numbers[index]);
-  }
-
-  // All frames at a glance: a square each, as large as fits in a strip.
-  paintMap() {
-    if (this.map.hidden || !this.map.isConnected) return;
-    const { frames, numbers } = this.state;
-    const width = this.map.parentNode.clientWidth;
-    let size = 14;
-    while (size > 3 && Math.ceil(numbers.length / Math.floor(width / size)) * size > 84) --size;
-    const columns = Math.max(1, Math.floor(width / size));
-    const height = Math.min(240, Math.ceil(numbers.length / columns) * size);
-    const dense = devicePixelRatio;
-    this.mapShape = { columns, size, numbers };
-    if (this.map.width !== Math.round(width * dense) || this.map.height !== Math.round(height * dense)) {
-      this.map.width = Math.round(width * dense);
-      this.map.height = Math.round(height * dense);
-      this.map.style.height = `${height}px`;
-    }
-    this.mapColors ??= { waiting: color('--map-waiting'), rendering: color('--warm'), finishing: color('--teal'), done: color('--map-done'), failed: color('--red'), doubtful: color('--violet'), unknown: color('--map-waiting') };
-    const pen = this.map.getContext('2d');
-    pen.setTransform(dense, 0, 0, dense, 0, 0);
-    pen.clearRect(0, 0, width, height);
-    const inner = size > 5 ? size - 1.5 : size - 0.75;
-    numbers.forEach((number, i) => {
-      const frame = frames.get(number);
-      const x = (i % columns) * size;
-      const y = Math.floor(i / columns) * size;
-      pen.fillStyle = this.mapColors[frame.doubtful ? 'doubtful' : frame.state === 'rendering' ? 'waiting' : frame.state];
-      pen.fillRect(x, y, inner, inner);
-      if (frame.state !== 'rendering') return;
-      const part = Math.max(0.2, frameShare(frame));
-      pen.fillStyle = this.mapColors.rendering;
-      pen.fillRect(x, y + inner * (1 - part), inner, inner * part);
-    });
   }
 }

@@ -37,7 +37,8 @@ export function ofDrop(transfer) {
 export const ofInput = (files) => [...files].map((file) => ({ path: file.webkitRelativePath || file.name, file }));
 
 /** What systems and tools leave in folders, nobody's job. */
-export const isHidden = (path) => path.split('/').some((part) => part.startsWith('.') || ['Thumbs.db', 'desktop.ini', '__MACOSX'].includes(part));
+export const isHidden = (path) =>
+  path.split('/').some((part) => part.startsWith('.') || ['Thumbs.db', 'desktop.ini', '__MACOSX'].includes(part));
 
 export const isYaml = (path) => /\.ya?ml$/i.test(path);
 
@@ -62,10 +63,14 @@ export function includesOf(text) {
     if (!hit) return;
     let value = hit[1].replace(/\s+#.*$/, '').trim();
     if (value === '') {
-      for (let k = i + 1; k < lines.length && /^\s*-\s|^\s*$/.test(lines[k]); ++k) value += `,${lines[k].replace(/^\s*-\s*/, '')}`;
+      for (let k = i + 1; k < lines.length && /^\s*-\s|^\s*$/.test(lines[k]); ++k)
+        value += `,${lines[k].replace(/^\s*-\s*/, '')}`;
     }
     for (const name of value.replace(/^\[|\]$/g, '').split(',')) {
-      const clean = name.replace(/\s+#.*$/, '').trim().replace(/^["']|["']$/g, '');
+      const clean = name
+        .replace(/\s+#.*$/, '')
+        .trim()
+        .replace(/^["']|["']$/g, '');
       if (clean) found.push(clean);
     }
   });
@@ -86,7 +91,9 @@ const resolve = (folder, name) => {
  * those that say what a job says; 'job.yaml' and what lies higher wins.
  */
 export function likelyJobs(documents) {
-  const included = new Set(documents.flatMap(({ path, text }) => includesOf(text).map((name) => resolve(folderOf(path), name))));
+  const included = new Set(
+    documents.flatMap(({ path, text }) => includesOf(text).map((name) => resolve(folderOf(path), name))),
+  );
   const weight = ({ path, text }) => {
     let sum = 0;
     if (/^hyades:/m.test(text)) sum += 8;
@@ -100,8 +107,13 @@ export function likelyJobs(documents) {
 
 /** Whether only one of them can be meant: nobody needs to be asked then. */
 export function clearlyFirst(documents) {
-  const included = new Set(documents.flatMap(({ path, text }) => includesOf(text).map((name) => resolve(folderOf(path), name))));
-  return documents.filter(({ path, text }) => /^hyades:/m.test(text) && !included.has(path)).length === 1 || documents.length === 1;
+  const included = new Set(
+    documents.flatMap(({ path, text }) => includesOf(text).map((name) => resolve(folderOf(path), name))),
+  );
+  return (
+    documents.filter(({ path, text }) => /^hyades:/m.test(text) && !included.has(path)).length === 1 ||
+    documents.length === 1
+  );
 }
 
 /** The YAML files among them, with their texts. */
@@ -117,13 +129,21 @@ export async function documentsOf(files) {
 export function isNamed(path, texts) {
   const name = path.slice(path.lastIndexOf('/') + 1);
   const sequence = name.replace(/\d+(?=\.[^.]*$)/, (digits) => '#'.repeat(digits.length));
-  return texts.some((text) => text.includes(name) || (sequence !== name && text.includes(sequence)) || /<udim>/i.test(text) && text.includes(name.replace(/\d{4}(?=\.)/, '<UDIM>')));
+  return texts.some(
+    (text) =>
+      text.includes(name) ||
+      (sequence !== name && text.includes(sequence)) ||
+      (/<udim>/i.test(text) && text.includes(name.replace(/\d{4}(?=\.)/, '<UDIM>'))),
+  );
 }
 
 /** Reads '1-24x2, 30' as the API's frames; throws an Error that says what is wrong. */
 export function framesOf(text) {
   const ranges = [];
-  for (const part of text.split(',').map((piece) => piece.trim()).filter(Boolean)) {
+  for (const part of text
+    .split(',')
+    .map((piece) => piece.trim())
+    .filter(Boolean)) {
     const hit = /^(\d+)(?:\s*-\s*(\d+)(?:\s*x\s*(\d+))?)?$/.exec(part);
     if (!hit) throw new Error(`Frames: '${part}' is not like 7, 1-24 or 1-24x2.`);
     const first = Number(hit[1]);

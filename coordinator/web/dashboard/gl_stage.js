@@ -108,7 +108,8 @@ export function glStage(canvas) {
     const texture = gl.createTexture();
     gl.activeTexture(gl.TEXTURE0 + unit);
     gl.bindTexture(gl.TEXTURE_2D_ARRAY, texture);
-    for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D_ARRAY, side, gl.NEAREST);
+    for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, side, gl.NEAREST);
     gl.texImage3D(gl.TEXTURE_2D_ARRAY, 0, gl.R16F, 1, 1, 1, 0, gl.RED, gl.HALF_FLOAT, new Uint16Array(1));
     gl.uniform1i(uniform(name), unit);
     return texture;
@@ -122,7 +123,18 @@ export function glStage(canvas) {
       const unit = SLOTS.indexOf(slot);
       const layers = Math.min(3, picture.channels.length);
       gl.activeTexture(gl.TEXTURE0 + unit);
-      gl.texImage3D(gl.TEXTURE_2D_ARRAY, 0, gl.R16F, picture.width, picture.height, layers, 0, gl.RED, gl.HALF_FLOAT, picture.planes.subarray(0, picture.width * picture.height * layers));
+      gl.texImage3D(
+        gl.TEXTURE_2D_ARRAY,
+        0,
+        gl.R16F,
+        picture.width,
+        picture.height,
+        layers,
+        0,
+        gl.RED,
+        gl.HALF_FLOAT,
+        picture.planes.subarray(0, picture.width * picture.height * layers),
+      );
       sizes[unit] = [picture.width, picture.height, layers];
     },
     draw(scene) {

@@ -33,7 +33,8 @@ export function readHalf(buffer) {
   const { width, height, channels } = head;
   const count = width * height * channels.length;
   if (!(width > 0 && height > 0 && channels.length > 0)) throw new Error('the picture is empty');
-  if (bytes.length - end - 1 !== count * 2) throw new Error(`the picture has ${bytes.length - end - 1} bytes instead of ${count * 2}`);
+  if (bytes.length - end - 1 !== count * 2)
+    throw new Error(`the picture has ${bytes.length - end - 1} bytes instead of ${count * 2}`);
   const body = buffer.slice(end + 1);
   if (BIG_ENDIAN) {
     const view = new DataView(body);
@@ -69,4 +70,5 @@ export function sorted(picture, of = null) {
 }
 
 /** The value below which a share of sorted values lies; 0 of none. */
-export const quantile = (values, share) => (values.length === 0 ? 0 : values[Math.min(values.length - 1, Math.floor(share * values.length))]);
+export const quantile = (values, share) =>
+  values.length === 0 ? 0 : values[Math.min(values.length - 1, Math.floor(share * values.length))];

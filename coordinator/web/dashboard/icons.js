@@ -7,7 +7,8 @@ const PATHS = {
   workers: 'M2.5 3.5h11v6h-11zM5.5 13h5M8 9.5V13',
   submit: 'M8 11V3M4.5 6.5 8 3l3.5 3.5M3 13.5h10',
   system: 'M8 2.5a5.5 5.5 0 1 0 0 11zM8 2.5a5.5 5.5 0 0 1 0 11',
-  light: 'M8 5.2a2.8 2.8 0 1 0 0 5.6 2.8 2.8 0 0 0 0-5.6M8 1.5v1.4M8 13.1v1.4M1.5 8h1.4M13.1 8h1.4M3.4 3.4l1 1M11.6 11.6l1 1M12.6 3.4l-1 1M4.4 11.6l-1 1',
+  light:
+    'M8 5.2a2.8 2.8 0 1 0 0 5.6 2.8 2.8 0 0 0 0-5.6M8 1.5v1.4M8 13.1v1.4M1.5 8h1.4M13.1 8h1.4M3.4 3.4l1 1M11.6 11.6l1 1M12.6 3.4l-1 1M4.4 11.6l-1 1',
   dark: 'M13 9.5A5.5 5.5 0 0 1 6.5 3 5.5 5.5 0 1 0 13 9.5',
   help: 'M5.8 6.1a2.2 2.2 0 1 1 3.2 2c-.7.4-1 .8-1 1.6M8 12.2v.3',
   pause: 'M5.5 3.5v9M10.5 3.5v9',
@@ -34,7 +35,16 @@ export const icon = (name) =>
 
 /** The mark: the V of the Hyades with Aldebaran, which only stands before them. */
 export const mark = () =>
-  s('svg', { class: 'mark', viewBox: '0 0 32 32', 'aria-hidden': 'true' },
+  s(
+    'svg',
+    { class: 'mark', viewBox: '0 0 32 32', 'aria-hidden': 'true' },
     s('path', { d: 'M8 5.5 11.6 13 13.5 19.5 17 26 19.5 19 26 8.5' }),
-    ...[[8, 5.5, 2], [11.6, 13, 1.5], [13.5, 19.5, 1.8], [17, 26, 2.1], [19.5, 19, 1.8]].map(([cx, cy, r]) => s('circle', { cx, cy, r })),
-    s('circle', { class: 'giant', cx: 26, cy: 8.5, r: 3.1 }));
+    ...[
+      [8, 5.5, 2],
+      [11.6, 13, 1.5],
+      [13.5, 19.5, 1.8],
+      [17, 26, 2.1],
+      [19.5, 19, 1.8],
+    ].map(([cx, cy, r]) => s('circle', { cx, cy, r })),
+    s('circle', { class: 'giant', cx: 26, cy: 8.5, r: 3.1 }),
+  );

@@ -20,7 +20,13 @@ const MOST_FAILURES = 3;
 
 function framesTab(state) {
   const frames = new Frames(state);
-  return { node: frames.node, update: (changed) => frames.update(changed), shown: () => frames.update(null), leave: () => frames.leave() };
+  return {
+    node: frames.node,
+    update: (changed) => frames.update(changed),
+    shown: () => frames.update(null),
+    atPlace: () => frames.atPlace(),
+    leave: () => frames.leave(),
+  };
 }
 
 const MAKERS = { frames: framesTab, log: logTab, outputs: outputsTab, document: documentTab, timeline: timelineTab };
@@ -38,9 +44,25 @@ class JobView {
     this.node = h('div', { class: 'view job' }, this.head, this.tabs, this.panel);
     this.keysTitle = 'This job';
     this.keys = [
-      ...TABS.map((name, i) => ({ keys: String(i + 1), what: LABELS[name], run: () => { location.hash = to('job', { job: this.id, tab: name }); } })),
-      { keys: 'p', what: 'Pause or resume', run: () => this.act(this.state.job?.state === 'paused' ? 'resume' : 'pause') },
-      { keys: 'b', what: 'Flip-book', run: () => { location.hash = to('play', { job: this.id }); } },
+      ...TABS.map((name, i) => ({
+        keys: String(i + 1),
+        what: LABELS[name],
+        run: () => {
+          location.hash = to('job', { job: this.id, tab: name });
+        },
+      })),
+      {
+        keys: 'p',
+        what: 'Pause or resume',
+        run: () => this.act(this.state.job?.state === 'paused' ? 'resume' : 'pause'),
+      },
+      {
+        keys: 'b',
+        what: 'Flip-book',
+        run: () => {
+          location.hash = to('play', { job: this.id });
+        },
+      },
     ];
     this.timer = setInterval(() => this.why(), EXPLAIN_EVERY);
     this.openTab();
@@ -56,24 +78,70 @@ class JobView {
     this.gauge = bar('Progress');
     this.gauge.classList.add('big');
     this.figures = {
-      progress: figure('Progress', 'job-progress'), frames: figure('Frames', 'job-frames'), left: figure('Time left', 'job-left'), speed: figure('Speed', 'job-speed', 'Samples per second, lately'),
-      leased: figure('Units out', 'job-leased', 'Units that are with workers'), took: figure('Since submit', 'job-took'), priority: figure('Priority', 'job-priority'),
+      progress: figure('Progress', 'job-progress'),
+      frames: figure('Frames', 'job-frames'),
+      left: figure('Time left', 'job-left'),
+      speed: figure('Speed', 'job-speed', 'Samples per second, lately'),
+      leased: figure('Units out', 'job-leased', 'Units that are with workers'),
+      took: figure('Since submit', 'job-took'),
+      priority: figure('Priority', 'job-priority'),
     };
-    const priority = h('button', { type: 'button', class: 'plain square', 'aria-label': 'Change the priority', title: 'Change the priority', testid: 'change-priority', onclick: async () => {
-      const job = await askPriority(this.state.job);
-      if (job) this.state.learn(job);
-    } }, icon('edit'));
+    const priority = h(
+      'button',
+      {
+        type: 'button',
+        class: 'plain square',
+        'aria-label': 'Change the priority',
+        title: 'Change the priority',
+        testid: 'change-priority',
+        onclick: async () => {
+          const job = await askPriority(this.state.job);
+          if (job) this.state.learn(job);
+        },
+      },
+      icon('edit'),
+    );
     this.priorityButton = priority;
     this.figures.priority.lastChild.append(priority);
     this.reasons = h('ul', { class: 'reasons' });
-    this.whyBox = h('details', { class: 'why', testid: 'why' }, h('summary', { text: 'Why is it waiting?' }), this.reasons);
+    this.whyBox = h(
+      'details',
+      { class: 'why', testid: 'why' },
+      h('summary', { text: 'Why is it waiting?' }),
+      this.reasons,
+    );
     this.trouble = h('p', { class: 'job-reason', testid: 'job-reason' });
     this.failures = h('ul', { class: 'reasons failures', 'aria-label': 'Frames that failed', testid: 'failures' });
-    this.head = h('section', { class: 'job-head', 'aria-label': 'This job' },
-      h('div', { class: 'job-title' }, h('div', {}, h('div', { class: 'job-name' }, this.name, this.chip), this.meta), this.buttons),
-      this.gauge, h('dl', { class: 'figures' }, Object.values(this.figures)), this.trouble, this.failures, this.whyBox);
-    this.tabs = h('div', { class: 'tabs', role: 'tablist', 'aria-label': 'Of this job', onkeydown: (event) => this.tabKey(event) }, TABS.map((name) =>
-      h('a', { role: 'tab', id: `tab-${name}`, 'data-tab': name, href: to('job', { job: this.id, tab: name }), 'aria-controls': 'panel', testid: `tab-${name}`, text: LABELS[name] })));
+    this.head = h(
+      'section',
+      { class: 'job-head', 'aria-label': 'This job' },
+      h(
+        'div',
+        { class: 'job-title' },
+        h('div', {}, h('div', { class: 'job-name' }, this.name, this.chip), this.meta),
+        this.buttons,
+      ),
+      this.gauge,
+      h('dl', { class: 'figures' }, Object.values(this.figures)),
+      this.trouble,
+      this.failures,
+      this.whyBox,
+    );
+    this.tabs = h(
+      'div',
+      { class: 'tabs', role: 'tablist', 'aria-label': 'Of this job', onkeydown: (event) => this.tabKey(event) },
+      TABS.map((name) =>
+        h('a', {
+          role: 'tab',
+          id: `tab-${name}`,
+          'data-tab': name,
+          href: to('job', { job: this.id, tab: name }),
+          'aria-controls': 'panel',
+          testid: `tab-${name}`,
+          text: LABELS[name],
+        }),
+      ),
+    );
   }
 
   tabKey(event) {
@@ -114,6 +182,10 @@ class JobView {
     this.content.shown?.();
   }
 
+  atPlace() {
+    return this.content.atPlace?.() ?? false;
+  }
+
   title() {
     const { job } = this.state;
     if (!job) return `Job ${this.id}`;
@@ -142,7 +214,18 @@ class JobView {
   update(changed) {
     const { job, error } = this.state;
     if (error && !job) {
-      this.node.replaceChildren(h('section', {}, h('h1', { text: `Job ${this.id}` }), nothing(error.code === 'not_found' ? 'There is no such job' : 'It cannot be shown', h('p', { text: error.message }), h('p', {}, h('a', { href: to('jobs'), text: 'To the jobs' })))));
+      this.node.replaceChildren(
+        h(
+          'section',
+          {},
+          h('h1', { text: `Job ${this.id}` }),
+          nothing(
+            error.code === 'not_found' ? 'There is no such job' : 'It cannot be shown',
+            h('p', { text: error.message }),
+            h('p', {}, h('a', { href: to('jobs'), text: 'To the jobs' })),
+          ),
+        ),
+      );
       return;
     }
     if (job) this.drawHead(job);
@@ -154,8 +237,16 @@ class JobView {
     setText(this.name, job.name);
     if (this.was && this.was !== job.state) say(`The job is ${job.state}.`);
     this.chip.set(job.state);
-    const meta = [`#${job.id}`, job.owner && `by ${job.owner}`, `submitted ${moment(job.submitted_ms)}`, job.ended_ms && `ended ${moment(job.ended_ms)}`,
-      job.frame_order === 'progressive' && 'all frames a little at a time', job.tags.length > 0 && `tags ${job.tags.join(', ')}`, job.max_workers > 0 && `at most ${counted(job.max_workers, 'worker')}`, job.memory_bytes > 0 && `needs ${bytes(job.memory_bytes)}`];
+    const meta = [
+      `#${job.id}`,
+      job.owner && `by ${job.owner}`,
+      `submitted ${moment(job.submitted_ms)}`,
+      job.ended_ms && `ended ${moment(job.ended_ms)}`,
+      job.frame_order === 'progressive' && 'all frames a little at a time',
+      job.tags.length > 0 && `tags ${job.tags.join(', ')}`,
+      job.max_workers > 0 && `at most ${counted(job.max_workers, 'worker')}`,
+      job.memory_bytes > 0 && `needs ${bytes(job.memory_bytes)}`,
+    ];
     setText(this.meta, meta.filter(Boolean).join(' · '));
     const open = isOpen(job);
     const part = share(job);
@@ -163,7 +254,9 @@ class JobView {
     const { figures } = this;
     figures.progress.set(percent(part));
     figures.progress.title = `${short(job.samples_done)} of ${short(job.samples)} samples`;
-    figures.frames.set(`${whole(job.frames_done)} / ${whole(job.frames)}${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`);
+    figures.frames.set(
+      `${whole(job.frames_done)} / ${whole(job.frames)}${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`,
+    );
     figures.left.set(!open ? '–' : job.seconds_left >= 0 ? duration(job.seconds_left) : 'not known');
     figures.left.title = open && job.seconds_left >= 0 ? `about ${clock(Date.now() + job.seconds_left * 1000)}` : '';
     figures.speed.set(open && job.samples_per_second > 0 ? rateInWords(job.samples_per_second) : '–');
@@ -190,8 +283,18 @@ class JobView {
       const frame = this.state.frames.get(number);
       if (frame.state === 'failed' && failed.push(frame) === MOST_FAILURES) break;
     }
-    keyed(this.failures, failed, ({ id, reason }) => `${id} ${reason}`, ({ id, reason }) =>
-      h('li', {}, h('a', { href: to('frame', { job: this.id, frame: id }), text: `Frame ${id}` }), `: ${reason || 'failed'}`));
+    keyed(
+      this.failures,
+      failed,
+      ({ id, reason }) => `${id} ${reason}`,
+      ({ id, reason }) =>
+        h(
+          'li',
+          {},
+          h('a', { href: to('frame', { job: this.id, frame: id }), text: `Frame ${id}` }),
+          `: ${reason || 'failed'}`,
+        ),
+    );
   }
 
   drawButtons(job) {
@@ -201,9 +304,40 @@ class JobView {
     if (this.buttons.key === key) return;
     this.buttons.key = key;
     this.buttons.replaceChildren(
-      ...(job.frames > 1 ? [h('a', { class: 'button', href: to('play', { job: this.id }), testid: 'open-flipbook' }, icon('film'), 'Flip-book')] : []),
-      ...(job.frames_done > 0 ? [h('a', { class: 'button', href: archiveAddress(this.id), download: '', testid: 'archive' }, icon('download'), 'Download all')] : []),
-      ...names.map((name) => h('button', { type: 'button', class: ACTIONS[name].danger ? 'danger' : '', testid: `job-${name}`, onclick: () => this.act(name) }, icon(ACTIONS[name].icon), ACTIONS[name].text)));
+      ...(job.frames > 1
+        ? [
+            h(
+              'a',
+              { class: 'button', href: to('play', { job: this.id }), testid: 'open-flipbook' },
+              icon('film'),
+              'Flip-book',
+            ),
+          ]
+        : []),
+      ...(job.frames_done > 0
+        ? [
+            h(
+              'a',
+              { class: 'button', href: archiveAddress(this.id), download: '', testid: 'archive' },
+              icon('download'),
+              'Download all',
+            ),
+          ]
+        : []),
+      ...names.map((name) =>
+        h(
+          'button',
+          {
+            type: 'button',
+            class: ACTIONS[name].danger ? 'danger' : '',
+            testid: `job-${name}`,
+            onclick: () => this.act(name),
+          },
+          icon(ACTIONS[name].icon),
+          ACTIONS[name].text,
+        ),
+      ),
+    );
   }
 
   // Moving along well needs no reasons: they wait behind a line.
@@ -213,11 +347,19 @@ class JobView {
     const stuck = isOpen(job) && job.leased === 0;
     if (this.stuck !== stuck) this.whyBox.open = stuck;
     this.stuck = stuck;
-    setText(this.whyBox.firstChild, !isOpen(job) ? 'How did it end?' : stuck ? 'Why is it waiting?' : 'What is it doing?');
+    setText(
+      this.whyBox.firstChild,
+      !isOpen(job) ? 'How did it end?' : stuck ? 'Why is it waiting?' : 'What is it doing?',
+    );
     try {
       const { reasons } = await explain(this.id);
       this.whyBox.hidden = reasons.length === 0;
-      keyed(this.reasons, reasons.map((text, i) => ({ text, key: `${i} ${text}` })), ({ key }) => key, ({ text }) => h('li', { text }));
+      keyed(
+        this.reasons,
+        reasons.map((text, i) => ({ text, key: `${i} ${text}` })),
+        ({ key }) => key,
+        ({ text }) => h('li', { text }),
+      );
     } catch {
       // The next time, or the job is gone: then the stream says so.
     }

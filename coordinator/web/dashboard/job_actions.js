@@ -7,16 +7,43 @@ import { h, say, toast } from './dom.js';
 
 /** name -> {text, icon, fits(job), done, what(jobs): what will happen, danger}. */
 export const ACTIONS = {
-  pause: { text: 'Pause', icon: 'pause', fits: (job) => job.state === 'running', done: 'paused', what: () => 'No more units go out. What is out is delivered and kept.' },
-  resume: { text: 'Resume', icon: 'play', fits: (job) => job.state === 'paused', done: 'resumed', what: () => 'Units go out again.' },
-  cancel: { text: 'Cancel', icon: 'cancel', fits: isOpen, done: 'cancelled', danger: true, what: () => 'Rendering ends. Finished frames stay; what unfinished frames have is kept for a retry.' },
+  pause: {
+    text: 'Pause',
+    icon: 'pause',
+    fits: (job) => job.state === 'running',
+    done: 'paused',
+    what: () => 'No more units go out. What is out is delivered and kept.',
+  },
+  resume: {
+    text: 'Resume',
+    icon: 'play',
+    fits: (job) => job.state === 'paused',
+    done: 'resumed',
+    what: () => 'Units go out again.',
+  },
+  cancel: {
+    text: 'Cancel',
+    icon: 'cancel',
+    fits: isOpen,
+    done: 'cancelled',
+    danger: true,
+    what: () => 'Rendering ends. Finished frames stay; what unfinished frames have is kept for a retry.',
+  },
   retry: {
-    text: 'Retry', icon: 'retry', fits: (job) => job.state === 'failed' || job.state === 'cancelled' || job.frames_failed > 0 || job.doubtful > 0, done: 'taken up again',
+    text: 'Retry',
+    icon: 'retry',
+    fits: (job) => job.state === 'failed' || job.state === 'cancelled' || job.frames_failed > 0 || job.doubtful > 0,
+    done: 'taken up again',
     what: () => 'Failed frames, frames in doubt and what was cancelled are rendered again. Finished frames stay.',
   },
   delete: {
-    text: 'Delete', icon: 'trash', fits: (job) => !isOpen(job), done: 'deleted', danger: true,
-    what: (jobs) => `${whole(jobs.reduce((sum, job) => sum + job.frames_done, 0))} finished frames, with films, pictures and logs, are deleted from the coordinator. This cannot be undone.`,
+    text: 'Delete',
+    icon: 'trash',
+    fits: (job) => !isOpen(job),
+    done: 'deleted',
+    danger: true,
+    what: (jobs) =>
+      `${whole(jobs.reduce((sum, job) => sum + job.frames_done, 0))} finished frames, with films, pictures and logs, are deleted from the coordinator. This cannot be undone.`,
   },
 };
 
@@ -24,8 +51,11 @@ const MOST_NAMED = 8;
 
 function question(name, jobs) {
   const action = ACTIONS[name];
-  const named = jobs.slice(0, MOST_NAMED).map((job) => h('li', {}, h('b', { text: job.name }), h('span', { class: 'soft', text: ` #${job.id}` })));
-  if (jobs.length > MOST_NAMED) named.push(h('li', { class: 'soft', text: `and ${counted(jobs.length - MOST_NAMED, 'more job')}` }));
+  const named = jobs
+    .slice(0, MOST_NAMED)
+    .map((job) => h('li', {}, h('b', { text: job.name }), h('span', { class: 'soft', text: ` #${job.id}` })));
+  if (jobs.length > MOST_NAMED)
+    named.push(h('li', { class: 'soft', text: `and ${counted(jobs.length - MOST_NAMED, 'more job')}` }));
   return confirm({
     title: jobs.length === 1 ? `${action.text} this job?` : `${action.text} ${jobs.length} jobs?`,
     body: [h('ul', { class: 'named' }, named), h('p', { text: action.what(jobs) })],
@@ -60,19 +90,34 @@ export async function act(name, jobs) {
     }
   }
   const good = fitting.length - failures.length;
-  if (good > 0) toast(fitting.length === 1 ? `${fitting[0].name} ${action.done}` : `${counted(good, 'job')} ${action.done}`);
+  if (good > 0)
+    toast(fitting.length === 1 ? `${fitting[0].name} ${action.done}` : `${counted(good, 'job')} ${action.done}`);
   if (failures.length > 0) toast(failures.slice(0, 5).join('\n'), 'bad');
   return failures.length < fitting.length ? results : null;
 }
 
 /** Asks for a job's priority and sets it. */
 export async function askPriority(job) {
-  const field = h('input', { type: 'number', step: 1, value: job.priority, required: true, autofocus: true, testid: 'priority-field' });
+  const field = h('input', {
+    type: 'number',
+    step: 1,
+    value: job.priority,
+    required: true,
+    autofocus: true,
+    testid: 'priority-field',
+  });
   let changed = null;
   await ask({
-    title: 'Priority', testid: 'priority-dialog',
-    body: [h('p', {}, h('b', { text: job.name }), ' · higher goes first; equal ones share the farm.'), h('label', { class: 'field' }, 'Priority', field)],
-    buttons: [{ value: '', text: 'Keep as it is' }, { value: 'set', text: 'Set', kind: 'primary' }],
+    title: 'Priority',
+    testid: 'priority-dialog',
+    body: [
+      h('p', {}, h('b', { text: job.name }), ' · higher goes first; equal ones share the farm.'),
+      h('label', { class: 'field' }, 'Priority', field),
+    ],
+    buttons: [
+      { value: '', text: 'Keep as it is' },
+      { value: 'set', text: 'Set', kind: 'primary' },
+    ],
     check: async () => {
       const priority = Number(field.value);
       if (!Number.isInteger(priority)) throw new Error('A whole number is needed.');

@@ -47,6 +47,7 @@ class JobState {
         this.ended = true;
         this.take(change);
       },
+      gone: () => this.ask(),
       refused: () => this.ask(),
     });
     this.ask();
@@ -106,14 +107,21 @@ export function watchJob(id, listener) {
     leave() {
       state.listeners.delete(listener);
       if (--state.users > 0) return;
-      state.timer = setTimeout(() => {
-        state.stop();
-        state.leaveFarm();
-        open.delete(id);
-      }, state.error ? 0 : KEPT_FOR);
+      state.timer = setTimeout(
+        () => {
+          state.stop();
+          state.leaveFarm();
+          open.delete(id);
+        },
+        state.error ? 0 : KEPT_FOR,
+      );
     },
   };
 }
 
 /** How much of a job is rendered, 0..1. */
 export const share = (job) => (job.samples > 0 ? Math.min(1, job.samples_done / job.samples) : 0);
+
+/** How much of a frame is rendered, 0..1. */
+export const frameShare = (frame) =>
+  frame.state === 'done' ? 1 : frame.samples > 0 ? Math.min(1, frame.samples_done / frame.samples) : 0;

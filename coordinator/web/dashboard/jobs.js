@@ -1,49 +1,36 @@
 // All jobs: open ones live, ended ones brought in page by page.
 import * as api from './api.js';
-import { ACTIONS, act, askPriority } from './job_actions.js';
-import { bar, chip, nothing } from './parts.js';
-import { counted, duration, moment, percent, rate, whole } from './format.js';
+import { ACTIONS, act } from './job_actions.js';
+import { nothing } from './parts.js';
+import { counted, whole } from './format.js';
 import { farm, isOpen, learnJobs, onFarm } from './farm_state.js';
 import { h, oncePerFrame, setText, toast } from './dom.js';
 import { parse, replaceQuery, to } from './router.js';
 import { icon } from './icons.js';
-import { share } from './job_state.js';
-import { Table } from './table.js';
+import { jobTable } from './job_table.js';
 
 const PAGE = 500;
-const STATES = [['open', 'Open'], ['', 'All'], ['running', 'Running'], ['paused', 'Paused'], ['done', 'Done'], ['failed', 'Failed'], ['cancelled', 'Cancelled']];
-const ORDER = { running: 0, paused: 1, failed: 2, cancelled: 3, done: 4 };
+const STATES = [
+  ['open', 'Open'],
+  ['', 'All'],
+  ['running', 'Running'],
+  ['paused', 'Paused'],
+  ['done', 'Done'],
+  ['failed', 'Failed'],
+  ['cancelled', 'Cancelled'],
+];
 
 // How far back the ended ones are known; kept between visits of the view.
 const past = { before: null, whole: false };
 
-const elapsed = (job, now = Date.now()) => ((job.ended_ms || now) - job.submitted_ms) / 1000;
-
-function nameCell(td, job) {
-  if (!td.firstChild) td.append(h('span', { class: 'two' }, h('a', { class: 'row-link', testid: 'job-link' }), h('span', { class: 'sub' })));
-  const [link, sub] = td.firstChild.children;
-  setText(link, job.name);
-  link.title = job.name;
-  link.href = to('job', { job: job.id });
-  setText(sub, job.reason ? `#${job.id} · ${job.reason}` : `#${job.id}${job.tags.length ? ` · ${job.tags.join(', ')}` : ''}`);
-  sub.title = job.reason;
-  sub.classList.toggle('warn', Boolean(job.reason) && job.state !== 'done');
-}
-
-function progressCell(td, job) {
-  if (!td.firstChild) td.append(h('span', { class: 'progress' }, bar('Progress'), h('span', { class: 'progress-text' })));
-  const [gauge, text] = td.firstChild.children;
-  gauge.set(share(job), { failed: job.frames > 0 ? job.frames_failed / job.frames : 0, state: job.state });
-  setText(text, `${percent(share(job))} · ${whole(job.frames_done)}/${whole(job.frames)}`);
-  td.title = `${counted(job.frames, 'frame')}, ${whole(job.frames_done)} done${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`;
-}
-
-const left = (job) => (job.state === 'running' && job.seconds_left >= 0 ? job.seconds_left : Infinity);
-
 /** What is shown where there has never been a job. */
-export const noJobs = () => nothing('No jobs yet',
-  h('p', {}, 'Drop a job with its files anywhere on this page, or '), h('p', {}, h('a', { class: 'button primary', href: to('submit'), text: 'Submit a job', testid: 'empty-submit' })),
-  h('p', { class: 'soft' }, 'From a terminal: ', h('code', { text: 'hyades submit job.yaml --watch' })));
+export const noJobs = () =>
+  nothing(
+    'No jobs yet',
+    h('p', {}, 'Drop a job with its files anywhere on this page, or '),
+    h('p', {}, h('a', { class: 'button primary', href: to('submit'), text: 'Submit a job', testid: 'empty-submit' })),
+    h('p', { class: 'soft' }, 'From a terminal: ', h('code', { text: 'hyades submit job.yaml --watch' })),
+  );
 
 class JobsView {
   constructor(route) {
@@ -52,17 +39,65 @@ class JobsView {
     if (this.query.state === 'all') this.query.state = '';
     this.chosen = new Set();
     this.lastChosen = null;
-    this.search = h('input', { type: 'search', value: q, placeholder: 'Name, id, owner or tag', 'aria-label': 'Search jobs', testid: 'job-search', oninput: () => this.filter() });
-    this.states = h('div', { class: 'pills', role: 'group', 'aria-label': 'State' }, STATES.map(([value, text]) => h('button', {
-      type: 'button', 'data-state': value, testid: `state-${value || 'all'}`, onclick: () => { this.query.state = value; this.filter(); },
-    }, h('span', { text }), h('span', { class: 'pill-count' }))));
+    this.search = h('input', {
+      type: 'search',
+      value: q,
+      placeholder: 'Name, id, owner or tag',
+      'aria-label': 'Search jobs',
+      testid: 'job-search',
+      oninput: () => this.filter(),
+    });
+    this.states = h(
+      'div',
+      { class: 'pills', role: 'group', 'aria-label': 'State' },
+      STATES.map(([value, text]) =>
+        h(
+          'button',
+          {
+            type: 'button',
+            'data-state': value,
+            testid: `state-${value || 'all'}`,
+            onclick: () => {
+              this.query.state = value;
+              this.filter();
+            },
+          },
+          h('span', { text }),
+          h('span', { class: 'pill-count' }),
+        ),
+      ),
+    );
     this.owners = h('select', { 'aria-label': 'Owner', testid: 'owner', onchange: () => this.filter() });
-    this.tableOf({ key: sort, down: up === undefined });
+    this.all = h('input', {
+      type: 'checkbox',
+      'aria-label': 'Choose all that are listed',
+      testid: 'choose-all',
+      onchange: () => this.chooseAll(this.all.checked),
+    });
+    this.table = jobTable({
+      all: this.all,
+      sort: { key: sort, down: up === undefined },
+      chosen: this.chosen,
+      choose: (id, range) => this.choose(id, range),
+      onSort: () => this.remember(),
+      empty: () => this.emptiness(),
+    });
     this.more = h('div', { class: 'more' });
     this.actions = h('div', { class: 'selection', role: 'region', 'aria-label': 'Chosen jobs', testid: 'selection' });
-    this.node = h('div', { class: 'view' },
-      h('div', { class: 'view-head' }, h('h1', { text: 'Jobs' }), h('a', { class: 'button primary', href: to('submit') }, icon('submit'), 'Submit')),
-      h('div', { class: 'filters' }, this.search, this.states, this.owners), this.table.node, this.more, this.actions);
+    this.node = h(
+      'div',
+      { class: 'view' },
+      h(
+        'div',
+        { class: 'view-head' },
+        h('h1', { text: 'Jobs' }),
+        h('a', { class: 'button primary', href: to('submit') }, icon('submit'), 'Submit'),
+      ),
+      h('div', { class: 'filters' }, this.search, this.states, this.owners),
+      this.table.node,
+      this.more,
+      this.actions,
+    );
     const drawSoon = oncePerFrame(() => this.draw());
     this.leaveFarm = onFarm((what) => what.has('jobs') && drawSoon());
     this.timer = setInterval(() => this.table.refresh(), 10000);
@@ -71,63 +106,32 @@ class JobsView {
     this.title = 'Jobs';
     this.keysTitle = 'Jobs';
     this.keys = [
-      { keys: 'j', what: 'Next job', run: () => this.step(1) }, { keys: 'k', what: 'Job before', run: () => this.step(-1) },
+      { keys: 'j', what: 'Next job', run: () => this.step(1) },
+      { keys: 'k', what: 'Job before', run: () => this.step(-1) },
       { keys: 'x', what: 'Choose the job', run: () => this.table.active !== null && this.choose(this.table.active) },
       { keys: 'Escape', what: 'Choose none', run: () => this.chooseNone() },
     ];
     this.draw();
   }
 
-  tableOf(sort) {
-    const all = h('input', { type: 'checkbox', 'aria-label': 'Choose all that are listed', testid: 'choose-all', onchange: () => this.chooseAll(all.checked) });
-    this.all = all;
-    this.table = new Table({
-      label: 'Jobs', testid: 'jobs-table', cards: true, rowKey: (job) => job.id, sort, chosen: this.chosen, onChosen: (id, range) => this.choose(id, range),
-      onSort: () => this.remember(), empty: () => this.emptiness(),
-      columns: [
-        { key: 'choose', label: '', header: () => all, cell: (td, job, chosen) => this.chooseCell(td, job, chosen) },
-        { key: 'name', label: 'Job', sort: (job) => job.name, up: true, cell: nameCell },
-        { key: 'state', label: 'State', sort: (job) => ORDER[job.state] ?? 9, up: true, cell: (td, job) => (td.firstChild ? td.firstChild.set(job.state) : td.append(chip(job.state))) },
-        { key: 'progress', label: 'Progress', sort: share, cell: progressCell },
-        { key: 'left', label: 'Time left', kind: 'num', sort: left, up: true, cell: (td, job) => setText(td, Number.isFinite(left(job)) ? duration(left(job)) : '') },
-        { key: 'speed', label: 'Speed', kind: 'num', drop: 2, sort: (job) => (isOpen(job) ? job.samples_per_second : 0), cell: (td, job) => setText(td, isOpen(job) && job.samples_per_second > 0 ? rate(job.samples_per_second) : '') },
-        { key: 'priority', label: 'Priority', kind: 'num', drop: 1, sort: (job) => job.priority, cell: (td, job) => this.priorityCell(td, job) },
-        { key: 'owner', label: 'Owner', drop: 1, sort: (job) => job.owner, up: true, cell: (td, job) => setText(td, job.owner) },
-        { key: 'took', label: 'Since submit', kind: 'num', drop: 3, always: true, sort: (job) => elapsed(job), cell: (td, job) => setText(td, duration(elapsed(job))) },
-        { key: 'id', label: 'Submitted', kind: 'num', drop: 2, sort: (job) => job.id, cell: (td, job) => { setText(td, moment(job.submitted_ms)); td.title = new Date(job.submitted_ms).toLocaleString(); } },
-      ],
-    });
-  }
-
-  chooseCell(td, job, chosen) {
-    if (!td.firstChild) {
-      td.append(h('label', {}, h('input', { type: 'checkbox', testid: 'choose', tabindex: -1, onclick: (event) => this.choose(td.job.id, event.shiftKey) })));
-    }
-    td.job = job;
-    const box = td.firstChild.firstChild;
-    box.checked = chosen;
-    box.setAttribute('aria-label', `Choose ${job.name}, job ${job.id}`);
-  }
-
-  priorityCell(td, job) {
-    if (!td.firstChild) td.append(h('button', { type: 'button', class: 'plain number', testid: 'priority', tabindex: -1, onclick: () => isOpen(td.job) && askPriority(td.job) }));
-    td.job = job;
-    setText(td.firstChild, job.priority);
-    td.firstChild.disabled = !isOpen(job);
-    td.firstChild.setAttribute('aria-label', `Priority ${job.priority}${isOpen(job) ? ', change' : ''}`);
-  }
-
   emptiness() {
     if (!farm.info) return h('p', { class: 'soft', text: 'Asking the coordinator…' });
     if (this.loading) return h('p', { class: 'soft', text: 'Looking for ended jobs…' });
     if (this.query.q || this.query.owner) return h('p', { class: 'soft', text: 'No job is like that.' });
-    if (this.query.state === 'open') return farm.jobs.size === 0 ? noJobs() : nothing('Nothing to do', h('p', { text: 'All jobs have ended.' }));
+    if (this.query.state === 'open')
+      return farm.jobs.size === 0 ? noJobs() : nothing('Nothing to do', h('p', { text: 'All jobs have ended.' }));
     return this.query.state === '' ? noJobs() : h('p', { class: 'soft', text: 'No job is in this state.' });
   }
 
   remember() {
     const { key, down } = this.table.sort;
-    replaceQuery({ q: this.query.q, state: this.query.state === 'open' ? '' : this.query.state || 'all', owner: this.query.owner, sort: key === 'id' && down ? '' : key, up: down ? '' : 1 });
+    replaceQuery({
+      q: this.query.q,
+      state: this.query.state === 'open' ? '' : this.query.state || 'all',
+      owner: this.query.owner,
+      sort: key === 'id' && down ? '' : key,
+      up: down ? '' : 1,
+    });
   }
 
   filter() {
@@ -143,11 +147,21 @@ class JobsView {
 
   fits(job) {
     const { state, owner } = this.query;
-    return (state === '' || (state === 'open' ? isOpen(job) : job.state === state)) && (owner === '' || job.owner === owner) && this.hasWords(job);
+    return (
+      (state === '' || (state === 'open' ? isOpen(job) : job.state === state)) &&
+      (owner === '' || job.owner === owner) &&
+      this.hasWords(job)
+    );
   }
 
   hasWords(job) {
-    return this.words.every((word) => job.name.toLowerCase().includes(word) || `#${job.id}`.includes(word) || job.owner.toLowerCase().includes(word) || job.tags.some((tag) => tag.toLowerCase().includes(word)));
+    return this.words.every(
+      (word) =>
+        job.name.toLowerCase().includes(word) ||
+        `#${job.id}`.includes(word) ||
+        job.owner.toLowerCase().includes(word) ||
+        job.tags.some((tag) => tag.toLowerCase().includes(word)),
+    );
   }
 
   draw() {
@@ -172,7 +186,10 @@ class JobsView {
       this.ownerList = owners.join('\n');
       const now = this.query.owner;
       if (now && !owners.includes(now)) owners.push(now);
-      this.owners.replaceChildren(h('option', { value: '', text: 'All owners' }), ...owners.map((text) => h('option', { value: text, text })));
+      this.owners.replaceChildren(
+        h('option', { value: '', text: 'All owners' }),
+        ...owners.map((text) => h('option', { value: text, text })),
+      );
       this.owners.value = now;
     }
     this.drawChosen();
@@ -183,8 +200,23 @@ class JobsView {
   drawMore() {
     this.more.hidden = !this.wantsEnded;
     if (!this.wantsEnded) return;
-    if (past.whole) this.more.replaceChildren(h('p', { class: 'soft', text: this.table.rows.length > 0 ? `${counted(this.table.rows.length, 'job')}. No older ones.` : '' }));
-    else this.more.replaceChildren(h('button', { type: 'button', text: this.loading ? 'Loading…' : 'Older jobs', disabled: Boolean(this.loading), testid: 'older', onclick: () => this.loadMore() }));
+    if (past.whole)
+      this.more.replaceChildren(
+        h('p', {
+          class: 'soft',
+          text: this.table.rows.length > 0 ? `${counted(this.table.rows.length, 'job')}. No older ones.` : '',
+        }),
+      );
+    else
+      this.more.replaceChildren(
+        h('button', {
+          type: 'button',
+          text: this.loading ? 'Loading…' : 'Older jobs',
+          disabled: Boolean(this.loading),
+          testid: 'older',
+          onclick: () => this.loadMore(),
+        }),
+      );
     this.nearEnd();
   }
 
@@ -206,7 +238,9 @@ class JobsView {
       past.before ??= undefined;
       toast(error.message, 'bad');
       // Not at once again: 'Older jobs' asks.
-      setTimeout(() => { this.loading = false; }, 5000);
+      setTimeout(() => {
+        this.loading = false;
+      }, 5000);
     }
   }
 
@@ -259,10 +293,30 @@ class JobsView {
     const buttons = Object.entries(ACTIONS).map(([name, action]) => {
       const count = jobs.filter(action.fits).length;
       const text = count === 0 || count === jobs.length ? action.text : `${action.text} ${count}`;
-      return h('button', { type: 'button', class: action.danger ? 'danger' : '', disabled: count === 0, testid: `chosen-${name}`, onclick: () => this.actOn(name) }, icon(action.icon), text);
+      return h(
+        'button',
+        {
+          type: 'button',
+          class: action.danger ? 'danger' : '',
+          disabled: count === 0,
+          testid: `chosen-${name}`,
+          onclick: () => this.actOn(name),
+        },
+        icon(action.icon),
+        text,
+      );
     });
-    this.actions.replaceChildren(h('b', { text: `${counted(jobs.length, 'job')} chosen` }), h('span', { class: 'buttons' }, buttons),
-      h('button', { type: 'button', class: 'plain', text: 'Choose none', testid: 'choose-none', onclick: () => this.chooseNone() }));
+    this.actions.replaceChildren(
+      h('b', { text: `${counted(jobs.length, 'job')} chosen` }),
+      h('span', { class: 'buttons' }, buttons),
+      h('button', {
+        type: 'button',
+        class: 'plain',
+        text: 'Choose none',
+        testid: 'choose-none',
+        onclick: () => this.chooseNone(),
+      }),
+    );
   }
 
   async actOn(name) {
@@ -271,7 +325,11 @@ class JobsView {
   }
 
   take(route) {
-    return route.view === 'jobs' && parse(location.hash).query.q === this.query.q && (route.query.state ?? 'open') === (this.query.state || 'all');
+    return (
+      route.view === 'jobs' &&
+      parse(location.hash).query.q === this.query.q &&
+      (route.query.state ?? 'open') === (this.query.state || 'all')
+    );
   }
 
   shown() {

@@ -6,8 +6,10 @@ const layers = [];
 let first = '';
 let firstAt = 0;
 
-const typing = (target) => target.isContentEditable || ['INPUT', 'TEXTAREA', 'SELECT'].includes(target.tagName) &&
-  !['checkbox', 'radio', 'range', 'button'].includes(target.type);
+const typing = (target) =>
+  target.isContentEditable ||
+  (['INPUT', 'TEXTAREA', 'SELECT'].includes(target.tagName) &&
+    !['checkbox', 'radio', 'range', 'button'].includes(target.type));
 
 /**
  * Adds shortcuts: [{keys: 'g j', what: 'Jobs', run(event), shown}]. `keys`: KeyboardEvent.key, two of them with a space one after the
@@ -28,7 +30,14 @@ function find(pressed) {
 }
 
 addEventListener('keydown', (event) => {
-  if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || document.querySelector('dialog[open]')) return;
+  if (
+    event.defaultPrevented ||
+    event.ctrlKey ||
+    event.metaKey ||
+    event.altKey ||
+    document.querySelector('dialog[open]')
+  )
+    return;
   if (typing(event.target)) {
     if (event.key === 'Escape') event.target.blur();
     return;
@@ -49,8 +58,27 @@ addEventListener('keydown', (event) => {
 /** The dialog with all shortcuts that work now. */
 export function help() {
   const key = (text) => h('kbd', { text });
-  const body = layers.map(({ title, list }) => h('section', { class: 'help-part' }, h('h3', { text: title }),
-    h('dl', { class: 'keys' }, list.filter(({ what }) => what).map(({ keys, shown, what }) => [
-      h('dt', {}, (shown ?? keys.split('|')[0]).split(' ').map(key)), h('dd', { text: what })]))));
-  return ask({ title: 'Keyboard', body: [h('div', { class: 'help' }, body)], buttons: [{ value: '', text: 'Close' }], testid: 'help' });
+  const body = layers.map(({ title, list }) =>
+    h(
+      'section',
+      { class: 'help-part' },
+      h('h3', { text: title }),
+      h(
+        'dl',
+        { class: 'keys' },
+        list
+          .filter(({ what }) => what)
+          .map(({ keys, shown, what }) => [
+            h('dt', {}, (shown ?? keys.split('|')[0]).split(' ').map(key)),
+            h('dd', { text: what }),
+          ]),
+      ),
+    ),
+  );
+  return ask({
+    title: 'Keyboard',
+    body: [h('div', { class: 'help' }, body)],
+    buttons: [{ value: '', text: 'Close' }],
+    testid: 'help',
+  });
 }

@@ -9,8 +9,21 @@ export const KINDS = { light: 0, grey: 1, heat: 2, signed: 3, noise: 4, places: 
 export const NOISE = 'noise';
 
 const NAMES = {
-  beauty: 'Beauty', alpha: 'Alpha', depth: 'Depth', position: 'Position', normal: 'Normal', albedo: 'Albedo', motion: 'Motion', variance: 'Variance', samples: 'Samples per pixel',
-  noise: 'Noise (relative error)', object_id: 'Object ids', material_id: 'Material ids', denoised: 'Denoised', emission: 'Emission', environment: 'Environment',
+  beauty: 'Beauty',
+  alpha: 'Alpha',
+  depth: 'Depth',
+  position: 'Position',
+  normal: 'Normal',
+  albedo: 'Albedo',
+  motion: 'Motion',
+  variance: 'Variance',
+  samples: 'Samples per pixel',
+  noise: 'Noise (relative error)',
+  object_id: 'Object ids',
+  material_id: 'Material ids',
+  denoised: 'Denoised',
+  emission: 'Emission',
+  environment: 'Environment',
 };
 
 /** What people call a layer. */
@@ -42,7 +55,11 @@ export function grouped(layers) {
     else (kindOf(layer) === 'light' ? light : data).push(layer);
   }
   if (layers.includes('variance')) sampling.unshift(NOISE);
-  return [['Light', light], ['Sampling', sampling], ['Surfaces', data]].filter(([, list]) => list.length > 0);
+  return [
+    ['Light', light],
+    ['Sampling', sampling],
+    ['Surfaces', data],
+  ].filter(([, list]) => list.length > 0);
 }
 
 /** What is to be loaded for a layer: [the picture, one beside it or null]. */
@@ -64,7 +81,11 @@ export function rangeOf(layer, picture, beside) {
     if (!beside || beside.width !== picture.width) return { low: 0, high: 1, middle: 0 };
     const count = beside.width * beside.height;
     const values16 = halfTable();
-    const errors = sorted(picture, (values, i) => relativeError(values, beside.channels.map((_, c) => values16[beside.planes[c * count + i]])));
+    const errors = sorted(picture, (values, i) => {
+      const variance = beside.channels.map((_, c) => values16[beside.planes[c * count + i]]);
+      // Where nothing is known of the noise yet, it does not count.
+      return variance.some((v) => v > 0) ? relativeError(values, variance) : NaN;
+    });
     return { low: 0, high: niceAbove(quantile(errors, 0.98)), middle: quantile(errors, 0.5) };
   }
   if (layer === 'alpha') return { low: 0, high: 1, middle: 0 };
@@ -73,5 +94,9 @@ export function rangeOf(layer, picture, beside) {
   const values = sorted(picture);
   const low = quantile(values, 0);
   const high = quantile(values, kind === 'heat' ? 1 : 0.99);
-  return { low: kind === 'heat' ? 0 : low, high: high > low ? high : Math.max(high, low + 1), middle: quantile(values, 0.5) };
+  return {
+    low: kind === 'heat' ? 0 : low,
+    high: high > low ? high : Math.max(high, low + 1),
+    middle: quantile(values, 0.5),
+  };
 }

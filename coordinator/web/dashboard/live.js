@@ -26,9 +26,9 @@ function setLost(is) {
 }
 
 /**
- * Listens to a stream until the returned function is called, or its event `end` came. `handlers`: functions by the name of
- * the event, which get its data; `refused(error)` where the coordinator answers but not with a stream. `lively`: silence means that the line is dead, and
- * then those of the other streams are too.
+ * Listens to a stream until the returned function is called, or its event `end` or `gone` came. `handlers`: functions by the name of
+ * the event, which get its data; `refused(error)` where the coordinator answers but not with a stream.
+ * `lively`: silence means that the line is dead, and then those of the other streams are too.
  */
 export function listen(path, handlers, { lively = false } = {}) {
   let source = null;
@@ -47,7 +47,7 @@ export function listen(path, handlers, { lively = false } = {}) {
         hear();
         setLost(false);
         handler(JSON.parse(event.data));
-        if (name === 'end') close();
+        if (name === 'end' || name === 'gone') close();
       });
     }
     source.onerror = () => {

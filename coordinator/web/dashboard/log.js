@@ -11,10 +11,37 @@ const MOST = 5000;
 export function logTab(state) {
   const list = h('ol', { class: 'log', 'aria-label': 'Log', tabindex: 0, testid: 'log' });
   const follow = h('input', { type: 'checkbox', checked: true, testid: 'follow' });
-  const search = h('input', { type: 'search', placeholder: 'Text, frame or worker', 'aria-label': 'Search the log', testid: 'log-search', oninput: () => filter() });
-  const levels = h('select', { 'aria-label': 'Level', testid: 'log-level', onchange: () => filter() }, [['', 'All lines'], ['warning', 'Warnings and errors'], ['error', 'Errors']].map(([value, text]) => h('option', { value, text })));
+  const search = h('input', {
+    type: 'search',
+    placeholder: 'Text, frame or worker',
+    'aria-label': 'Search the log',
+    testid: 'log-search',
+    oninput: () => filter(),
+  });
+  const levels = h(
+    'select',
+    { 'aria-label': 'Level', testid: 'log-level', onchange: () => filter() },
+    [
+      ['', 'All lines'],
+      ['warning', 'Warnings and errors'],
+      ['error', 'Errors'],
+    ].map(([value, text]) => h('option', { value, text })),
+  );
   const none = h('p', { class: 'soft pad', text: 'No lines yet.' });
-  const node = h('div', {}, h('div', { class: 'filters pad' }, search, levels, h('span', { class: 'spring' }), h('label', { class: 'check' }, follow, 'Follow')), none, list);
+  const node = h(
+    'div',
+    {},
+    h(
+      'div',
+      { class: 'filters pad' },
+      search,
+      levels,
+      h('span', { class: 'spring' }),
+      h('label', { class: 'check' }, follow, 'Follow'),
+    ),
+    none,
+    list,
+  );
   const stop = new AbortController();
   let after = 0;
   let timer = 0;
@@ -24,16 +51,31 @@ export function logTab(state) {
     if (levels.value === 'error' && line.level !== 'error') return false;
     if (levels.value === 'warning' && !['warning', 'error'].includes(line.level)) return false;
     const word = search.value.toLowerCase();
-    return word === '' || line.text.toLowerCase().includes(word) || line.worker.toLowerCase().includes(word) || (line.frame !== undefined && `frame ${line.frame}`.includes(word));
+    return (
+      word === '' ||
+      line.text.toLowerCase().includes(word) ||
+      line.worker.toLowerCase().includes(word) ||
+      (line.frame !== undefined && `frame ${line.frame}`.includes(word))
+    );
   };
   const filter = () => {
     for (const item of list.children) item.hidden = !fits(item.line);
   };
   const row = (line) => {
     const time = new Date(line.time_ms);
-    const item = h('li', { 'data-level': line.level }, h('time', { datetime: time.toISOString(), title: time.toLocaleString(), text: clock(line.time_ms) }),
-      h('span', { class: 'from', text: line.frame === undefined ? '' : `frame ${line.frame}` }), h('span', { class: 'from', text: line.worker, title: line.worker }),
-      h('span', { class: 'said' }, ['warning', 'error'].includes(line.level) ? h('span', { class: 'unseen', text: `${line.level}: ` }) : null, line.text));
+    const item = h(
+      'li',
+      { 'data-level': line.level },
+      h('time', { datetime: time.toISOString(), title: time.toLocaleString(), text: clock(line.time_ms) }),
+      h('span', { class: 'from', text: line.frame === undefined ? '' : `frame ${line.frame}` }),
+      h('span', { class: 'from', text: line.worker, title: line.worker }),
+      h(
+        'span',
+        { class: 'said' },
+        ['warning', 'error'].includes(line.level) ? h('span', { class: 'unseen', text: `${line.level}: ` }) : null,
+        line.text,
+      ),
+    );
     item.line = line;
     item.hidden = !fits(line);
     return item;
@@ -62,5 +104,11 @@ export function logTab(state) {
   };
   timer = setInterval(ask, EVERY);
   ask();
-  return { node, leave: () => { stop.abort(); clearInterval(timer); } };
+  return {
+    node,
+    leave: () => {
+      stop.abort();
+      clearInterval(timer);
+    },
+  };
 }

@@ -8,20 +8,36 @@ import { nextTheme, setTheme, theme } from './theme.js';
 import { parse, to } from './router.js';
 import { startSession } from './session.js';
 import { counted } from './format.js';
+import { enter, scrollBack } from './place.js';
 import { farmView } from './farm.js';
 import { jobsView } from './jobs.js';
 import { jobView } from './job.js';
 import { frameView } from './viewer.js';
 import { flipbookView } from './flipbook.js';
 import { workersView } from './workers.js';
-import { submitView, offerDrop } from './submit.js';
+import { submitView } from './submit.js';
+import { offerDrop } from './drop.js';
 
 /**
- * A view: a function of the route that gives {node, title, heading, leave(), take(route)}. `title` may be a function, for titles that
- * change (call `retitle`). `take` answers true where it goes on with another route by itself.
+ * A view: a function of the route that gives {node, title, shown(), atPlace(), leave(), take(route), keys}.
+ * `title` may be a function, for titles that change (call `retitle`). `take` answers true where it goes on with another
+ * route by itself, `atPlace` where it has put the focus where the person was before.
  */
-const VIEWS = { farm: farmView, jobs: jobsView, job: jobView, frame: frameView, play: flipbookView, workers: workersView, submit: submitView };
-const PLACES = [['farm', 'Farm', 'f'], ['jobs', 'Jobs', 'j'], ['workers', 'Workers', 'w'], ['submit', 'Submit', 's']];
+const VIEWS = {
+  farm: farmView,
+  jobs: jobsView,
+  job: jobView,
+  frame: frameView,
+  play: flipbookView,
+  workers: workersView,
+  submit: submitView,
+};
+const PLACES = [
+  ['farm', 'Farm', 'f'],
+  ['jobs', 'Jobs', 'j'],
+  ['workers', 'Workers', 'w'],
+  ['submit', 'Submit', 's'],
+];
 const PLACE_OF = { job: 'jobs', frame: 'jobs', play: 'jobs' };
 
 const main = document.getElementById('main');
@@ -29,7 +45,15 @@ let view = null;
 let leaveKeys = () => {};
 
 function lostView() {
-  return { node: h('section', { class: 'nothing' }, h('h1', { text: 'There is no such page' }), h('p', {}, h('a', { href: to('farm'), text: 'To the farm' }))), title: 'Not found' };
+  return {
+    node: h(
+      'section',
+      { class: 'nothing' },
+      h('h1', { text: 'There is no such page' }),
+      h('p', {}, h('a', { href: to('farm'), text: 'To the farm' })),
+    ),
+    title: 'Not found',
+  };
 }
 
 function retitle() {
@@ -40,6 +64,7 @@ function retitle() {
 }
 
 function show(first = false) {
+  const back = enter();
   const route = parse(location.hash);
   for (const link of document.querySelectorAll('[data-place]')) {
     const here = link.dataset.place === (PLACE_OF[route.view] ?? route.view);
@@ -59,7 +84,9 @@ function show(first = false) {
   view.shown?.();
   retitle();
   if (first) return;
-  scrollTo(0, 0);
+  if (back) scrollBack();
+  else scrollTo(0, 0);
+  if (view.atPlace?.()) return;
   const heading = main.querySelector('h1');
   if (heading) {
     heading.tabIndex = -1;
@@ -68,7 +95,15 @@ function show(first = false) {
 }
 
 function themeButton() {
-  const button = h('button', { type: 'button', class: 'plain square', testid: 'theme', onclick: () => { setTheme(nextTheme()); refresh(); } });
+  const button = h('button', {
+    type: 'button',
+    class: 'plain square',
+    testid: 'theme',
+    onclick: () => {
+      setTheme(nextTheme());
+      refresh();
+    },
+  });
   const refresh = () => {
     const label = `Colours: ${theme()}. Change to ${nextTheme()}`;
     button.title = label;
@@ -81,14 +116,42 @@ function themeButton() {
 
 function makeTop() {
   const count = h('span', { class: 'top-count', testid: 'top-count' });
-  const refresh = () => farm.info && setText(count, `${counted(farm.info.workers, 'worker')} · ${counted(farm.info.threads, 'thread')}`);
+  const refresh = () =>
+    farm.info && setText(count, `${counted(farm.info.workers, 'worker')} · ${counted(farm.info.threads, 'thread')}`);
   onFarm(refresh);
   document.getElementById('top').append(
-    h('a', { class: 'brand', href: to('farm'), 'aria-label': 'Hyades, the farm' }, mark(), h('span', { text: 'Hyades' })),
-    h('nav', { 'aria-label': 'Main' }, PLACES.map(([name, text]) =>
-      h('a', { href: to(name), 'data-place': name, testid: `nav-${name}` }, icon(name), h('span', { text })))),
-    h('div', { class: 'top-end' }, count, themeButton(),
-      h('button', { type: 'button', class: 'plain square', 'aria-label': 'Keyboard shortcuts', title: 'Keyboard shortcuts (?)', testid: 'help-button', onclick: help }, icon('help'))));
+    h(
+      'a',
+      { class: 'brand', href: to('farm'), 'aria-label': 'Hyades, the farm' },
+      mark(),
+      h('span', { text: 'Hyades' }),
+    ),
+    h(
+      'nav',
+      { 'aria-label': 'Main' },
+      PLACES.map(([name, text]) =>
+        h('a', { href: to(name), 'data-place': name, testid: `nav-${name}` }, icon(name), h('span', { text })),
+      ),
+    ),
+    h(
+      'div',
+      { class: 'top-end' },
+      count,
+      themeButton(),
+      h(
+        'button',
+        {
+          type: 'button',
+          class: 'plain square',
+          'aria-label': 'Keyboard shortcuts',
+          title: 'Keyboard shortcuts (?)',
+          testid: 'help-button',
+          onclick: help,
+        },
+        icon('help'),
+      ),
+    ),
+  );
 }
 
 function makeBanner() {
@@ -101,14 +164,39 @@ function makeBanner() {
       return;
     }
     // Short gaps are nobody's business.
-    timer = setTimeout(() => banner.replaceChildren(h('p', { class: 'banner', testid: 'banner' }, h('span', { class: 'spinner', 'aria-hidden': 'true' }),
-      'The coordinator does not answer. What is shown is old; it goes on by itself.')), 1500);
+    timer = setTimeout(
+      () =>
+        banner.replaceChildren(
+          h(
+            'p',
+            { class: 'banner', testid: 'banner' },
+            h('span', { class: 'spinner', 'aria-hidden': 'true' }),
+            'The coordinator does not answer. What is shown is old; it goes on by itself.',
+          ),
+        ),
+      1500,
+    );
   });
 }
 
+history.scrollRestoration = 'manual';
 shortcuts('Everywhere', [
-  ...PLACES.map(([name, what, key]) => ({ keys: `g ${key}`, what, run: () => { location.hash = to(name); } })),
-  { keys: '/', what: 'Search', run: () => { const field = main.querySelector('input[type=search]'); if (field) field.focus(); else location.hash = to('jobs'); } },
+  ...PLACES.map(([name, what, key]) => ({
+    keys: `g ${key}`,
+    what,
+    run: () => {
+      location.hash = to(name);
+    },
+  })),
+  {
+    keys: '/',
+    what: 'Search',
+    run: () => {
+      const field = main.querySelector('input[type=search]');
+      if (field) field.focus();
+      else location.hash = to('jobs');
+    },
+  },
   { keys: 't', what: 'Light or dark', run: () => document.querySelector('[data-testid=theme]').click() },
   { keys: '?', what: 'This help', run: help },
 ]);

@@ -28,17 +28,75 @@ function pathCell(state) {
 export function outputsTab(state) {
   const films = h('div', { class: 'films' });
   const summary = h('p', { class: 'soft' });
-  const search = h('input', { type: 'search', placeholder: 'Part of a name', 'aria-label': 'Search files', testid: 'output-search', oninput: () => draw() });
-  const all = h('a', { class: 'button primary', href: archiveAddress(state.id), download: '', testid: 'outputs-archive' }, icon('download'), 'Download all (zip)');
+  const search = h('input', {
+    type: 'search',
+    placeholder: 'Part of a name',
+    'aria-label': 'Search files',
+    testid: 'output-search',
+    oninput: () => draw(),
+  });
+  const all = h(
+    'a',
+    { class: 'button primary', href: archiveAddress(state.id), download: '', testid: 'outputs-archive' },
+    icon('download'),
+    'Download all (zip)',
+  );
   const table = new Table({
-    label: 'Finished files', testid: 'outputs-table', rowKey: ({ id }) => id, sort: { key: 'path', down: false },
-    empty: () => h('p', { class: 'soft', text: list.length > 0 ? 'No file is called like that.' : 'No finished files yet. Each frame writes its files when it is done.' }),
+    label: 'Finished files',
+    testid: 'outputs-table',
+    rowKey: ({ id }) => id,
+    sort: { key: 'path', down: false },
+    empty: () =>
+      h('p', {
+        class: 'soft',
+        text:
+          list.length > 0
+            ? 'No file is called like that.'
+            : 'No finished files yet. Each frame writes its files when it is done.',
+      }),
     columns: [
       { key: 'path', label: 'File', sort: ({ id }) => id, up: true, cell: pathCell(state) },
-      { key: 'frame', label: 'Frame', kind: 'num', sort: ({ frame }) => frame, up: true, cell: (td, { frame }) => setText(td, frame) },
-      { key: 'size', label: 'Size', kind: 'num', sort: ({ size }) => size, cell: (td, { size }) => setText(td, bytes(size)) },
-      { key: 'digest', label: 'SHA-256', drop: 2, cell: (td, { sha256 }) => { td.className = 'mono soft drop2'; setText(td, `${sha256.slice(0, 12)}…`); td.title = sha256; } },
-      { key: 'save', label: '', spoken: 'Download', kind: 'end', cell: (td, { id }) => td.replaceChildren(h('a', { href: outputAddress(state.id, id, true), download: '', text: 'Download', 'aria-label': `Download ${id}`, testid: 'download' })) },
+      {
+        key: 'frame',
+        label: 'Frame',
+        kind: 'num',
+        sort: ({ frame }) => frame,
+        up: true,
+        cell: (td, { frame }) => setText(td, frame),
+      },
+      {
+        key: 'size',
+        label: 'Size',
+        kind: 'num',
+        sort: ({ size }) => size,
+        cell: (td, { size }) => setText(td, bytes(size)),
+      },
+      {
+        key: 'digest',
+        label: 'SHA-256',
+        drop: 2,
+        cell: (td, { sha256 }) => {
+          td.className = 'mono soft drop2';
+          setText(td, `${sha256.slice(0, 12)}…`);
+          td.title = sha256;
+        },
+      },
+      {
+        key: 'save',
+        label: '',
+        spoken: 'Download',
+        kind: 'end',
+        cell: (td, { id }) =>
+          td.replaceChildren(
+            h('a', {
+              href: outputAddress(state.id, id, true),
+              download: '',
+              text: 'Download',
+              'aria-label': `Download ${id}`,
+              testid: 'download',
+            }),
+          ),
+      },
     ],
   });
   const head = h('div', { class: 'outputs-head pad' }, search, summary, h('span', { class: 'spring' }), all);
@@ -51,10 +109,25 @@ export function outputsTab(state) {
   const draw = () => {
     const word = search.value.toLowerCase();
     table.setRows(list.filter(({ id }) => id.toLowerCase().includes(word)));
-    setText(summary, list.length > 0 ? `${counted(list.length, 'file')}, ${bytes(list.reduce((sum, { size }) => sum + size, 0))}` : '');
+    setText(
+      summary,
+      list.length > 0 ? `${counted(list.length, 'file')}, ${bytes(list.reduce((sum, { size }) => sum + size, 0))}` : '',
+    );
     head.hidden = list.length === 0;
-    keyed(films, list.filter(({ id }) => FILM.test(id)), ({ id, sha256 }) => `${id} ${sha256}`, ({ id }) =>
-      h('video', { src: outputAddress(state.id, id), controls: true, preload: 'metadata', loop: true, 'aria-label': `Film ${id}`, testid: 'film' }));
+    keyed(
+      films,
+      list.filter(({ id }) => FILM.test(id)),
+      ({ id, sha256 }) => `${id} ${sha256}`,
+      ({ id }) =>
+        h('video', {
+          src: outputAddress(state.id, id),
+          controls: true,
+          preload: 'metadata',
+          loop: true,
+          'aria-label': `Film ${id}`,
+          testid: 'film',
+        }),
+    );
   };
   const ask = async () => {
     if (busy) return;
@@ -77,5 +150,13 @@ export function outputsTab(state) {
   };
   draw();
   update();
-  return { node, update, shown: draw, leave: () => { stop.abort(); table.leave(); } };
+  return {
+    node,
+    update,
+    shown: draw,
+    leave: () => {
+      stop.abort();
+      table.leave();
+    },
+  };
 }

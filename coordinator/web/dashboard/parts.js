@@ -20,7 +20,12 @@ export function chip(state) {
 export function bar(label) {
   const done = h('i', { class: 'bar-done' });
   const failed = h('i', { class: 'bar-failed' });
-  const node = h('span', { class: 'bar', role: 'progressbar', 'aria-label': label, 'aria-valuemin': 0, 'aria-valuemax': 100 }, done, failed);
+  const node = h(
+    'span',
+    { class: 'bar', role: 'progressbar', 'aria-label': label, 'aria-valuemin': 0, 'aria-valuemax': 100 },
+    done,
+    failed,
+  );
   node.set = (share, { failed: bad = 0, state = 'running' } = {}) => {
     done.style.transform = `scaleX(${share})`;
     failed.style.transform = `scaleX(${bad})`;
@@ -40,12 +45,26 @@ export function figure(name, testid, title) {
 }
 
 /** A message for where there is no data: a title, then nodes. */
-export const nothing = (title, ...body) => h('div', { class: 'nothing' },
-  s('svg', { viewBox: '0 0 120 60', 'aria-hidden': 'true', class: 'nothing-sky' },
-    s('path', { d: 'M18 8 40 22 52 34 72 52 82 36 106 12' }),
-    ...[[18, 8, 2], [40, 22, 1.4], [52, 34, 1.7], [72, 52, 2], [82, 36, 1.7]].map(([cx, cy, r]) => s('circle', { cx, cy, r })),
-    s('circle', { class: 'giant', cx: 106, cy: 12, r: 3 })),
-  h('h2', { text: title }), ...body);
+export const nothing = (title, ...body) =>
+  h(
+    'div',
+    { class: 'nothing' },
+    s(
+      'svg',
+      { viewBox: '0 0 120 60', 'aria-hidden': 'true', class: 'nothing-sky' },
+      s('path', { d: 'M18 8 40 22 52 34 72 52 82 36 106 12' }),
+      ...[
+        [18, 8, 2],
+        [40, 22, 1.4],
+        [52, 34, 1.7],
+        [72, 52, 2],
+        [82, 36, 1.7],
+      ].map(([cx, cy, r]) => s('circle', { cx, cy, r })),
+      s('circle', { class: 'giant', cx: 106, cy: 12, r: 3 }),
+    ),
+    h('h2', { text: title }),
+    ...body,
+  );
 
 /** A command to copy. */
 export function command(text) {

@@ -10,7 +10,14 @@ const LOOK_EVERY = 4000;
 /** The frame to show: the one with the most of those that are rendered, else the last finished one; null: none. */
 export function choose(frames) {
   let best = null;
-  const rank = (frame) => (frame.state === 'rendering' ? 2 + (frame.samples > 0 ? frame.samples_done / frame.samples : 0) : frame.state === 'finishing' ? 1.5 : frame.state === 'done' ? 1 : 0);
+  const rank = (frame) =>
+    frame.state === 'rendering'
+      ? 2 + (frame.samples > 0 ? frame.samples_done / frame.samples : 0)
+      : frame.state === 'finishing'
+        ? 1.5
+        : frame.state === 'done'
+          ? 1
+          : 0;
   for (const frame of frames) {
     if (rank(frame) === 0 || frame.samples_done === 0) continue;
     if (!best || rank(frame) > rank(best) || (rank(frame) === rank(best) && frame.id > best.id)) best = frame;
@@ -38,7 +45,12 @@ export function preview(thumbs, id) {
     lookedAt = now;
     setText(label, job.frames > 1 ? `Frame ${frame.id}` : '');
     // How far this frame is, only its job tells: its picture is asked for by what the job has.
-    thumbs.want(node, { job: id, width: 480, show, frame: { id: frame.id, state: 'rendering', samples_done: job.samples_done, restarts: 0 } });
+    thumbs.want(node, {
+      job: id,
+      width: 480,
+      show,
+      frame: { id: frame.id, state: 'rendering', samples_done: job.samples_done, restarts: 0 },
+    });
   };
   const refresh = async (job) => {
     const now = Date.now();
@@ -46,7 +58,8 @@ export function preview(thumbs, id) {
       askedAt = now;
       try {
         // In order of their numbers, those that are rendered come after those that are done.
-        const after = first !== null && job.frame_order === 'sequential' ? first + Math.max(0, job.frames_done - 40) : undefined;
+        const after =
+          first !== null && job.frame_order === 'sequential' ? first + Math.max(0, job.frames_done - 40) : undefined;
         const page = await askJob(id, { after });
         if (first === null && page.frames.length > 0) {
           first = page.frames[0].id;

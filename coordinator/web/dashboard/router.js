@@ -40,12 +40,14 @@ export function to(view, { job, frame, tab, query } = {}) {
   else if (view === 'frame') path = `#/jobs/${job}/frames/${frame}`;
   else if (view === 'play') path = `#/jobs/${job}/play`;
   else if (view !== 'farm') path = `#/${view}`;
-  const filled = Object.entries(query ?? {}).filter(([, value]) => value !== undefined && value !== null && value !== '');
+  const filled = Object.entries(query ?? {}).filter(
+    ([, value]) => value !== undefined && value !== null && value !== '',
+  );
   return filled.length > 0 ? `${path}?${new URLSearchParams(filled)}` : path;
 }
 
 /** Changes the query of the address in place: no new entry of the history, no new view. */
 export function replaceQuery(query) {
   const route = parse(location.hash);
-  history.replaceState(null, '', to(route.view, { ...route, query }));
+  history.replaceState(history.state, '', to(route.view, { ...route, query }));
 }

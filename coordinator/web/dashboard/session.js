@@ -8,12 +8,26 @@ let asking = false;
 async function askForToken() {
   if (asking) return;
   asking = true;
-  const field = h('input', { type: 'password', name: 'token', autocomplete: 'current-password', required: true, autofocus: true, testid: 'token', 'aria-describedby': 'token-hint' });
+  const field = h('input', {
+    type: 'password',
+    name: 'token',
+    autocomplete: 'current-password',
+    required: true,
+    autofocus: true,
+    testid: 'token',
+    'aria-describedby': 'token-hint',
+  });
   for (;;) {
     const answer = await ask({
-      title: 'Sign in', testid: 'sign-in',
-      body: [h('p', { id: 'token-hint', text: 'This farm has a token: one line of text, in the file that the coordinator was given with --token-file.' }),
-        h('label', { class: 'field' }, 'Token', field)],
+      title: 'Sign in',
+      testid: 'sign-in',
+      body: [
+        h('p', {
+          id: 'token-hint',
+          text: 'This farm has a token: one line of text, in the file that the coordinator was given with --token-file.',
+        }),
+        h('label', { class: 'field' }, 'Token', field),
+      ],
       buttons: [{ value: 'in', text: 'Sign in', kind: 'primary' }],
       check: () => signIn(field.value.trim()),
     });

@@ -16,7 +16,10 @@ function constants() {
     }
     return Number(low & 0xffffffffn);
   };
-  return { rounds: Uint32Array.from(primes, (p) => root(p, 3)), start: Uint32Array.from(primes.slice(0, 8), (p) => root(p, 2)) };
+  return {
+    rounds: Uint32Array.from(primes, (p) => root(p, 3)),
+    start: Uint32Array.from(primes.slice(0, 8), (p) => root(p, 2)),
+  };
 }
 
 const { rounds: K, start: H0 } = constants();
@@ -61,7 +64,8 @@ export class Sha256 {
 
   mix(bytes, at) {
     const w = this.words;
-    for (let t = 0; t < 16; ++t, at += 4) w[t] = (bytes[at] << 24) | (bytes[at + 1] << 16) | (bytes[at + 2] << 8) | bytes[at + 3];
+    for (let t = 0; t < 16; ++t, at += 4)
+      w[t] = (bytes[at] << 24) | (bytes[at + 1] << 16) | (bytes[at + 2] << 8) | bytes[at + 3];
     for (let t = 16; t < 64; ++t) {
       const x = w[t - 15];
       const y = w[t - 2];

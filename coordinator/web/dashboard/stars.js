@@ -5,12 +5,38 @@ import { rateInWords } from './format.js';
 
 /** Right ascension and declination of the brightest members, degrees (J2000; epsilon, theta, delta, gamma Tauri and so on). */
 const MEMBERS = [
-  [67.154, 19.18], [67.166, 15.871], [64.948, 15.628], [65.734, 17.543], [66.372, 17.928], [68.462, 14.844],
-  [69.788, 15.8], [67.209, 13.048], [66.587, 15.618], [67.965, 15.852], [65.151, 15.096], [65.514, 14.077], [65.855, 16.777], [66.024, 17.444],
-  [67.11, 16.36], [67.535, 15.638], [67.656, 15.692], [67.655, 13.724], [64.99, 14.035], [69.539, 12.511], [67.144, 15.962], [69.819, 15.918],
+  [67.154, 19.18],
+  [67.166, 15.871],
+  [64.948, 15.628],
+  [65.734, 17.543],
+  [66.372, 17.928],
+  [68.462, 14.844],
+  [69.788, 15.8],
+  [67.209, 13.048],
+  [66.587, 15.618],
+  [67.965, 15.852],
+  [65.151, 15.096],
+  [65.514, 14.077],
+  [65.855, 16.777],
+  [66.024, 17.444],
+  [67.11, 16.36],
+  [67.535, 15.638],
+  [67.656, 15.692],
+  [67.655, 13.724],
+  [64.99, 14.035],
+  [69.539, 12.511],
+  [67.144, 15.962],
+  [69.819, 15.918],
 ];
 /** The V as it is drawn in atlases: epsilon, delta 3, delta 1, gamma, theta, Aldebaran. */
-const FIGURE = [[67.154, 19.18], [66.372, 17.928], [65.734, 17.543], [64.948, 15.628], [67.15, 15.9], [68.98, 16.509]];
+const FIGURE = [
+  [67.154, 19.18],
+  [66.372, 17.928],
+  [65.734, 17.543],
+  [64.948, 15.628],
+  [67.15, 15.9],
+  [68.98, 16.509],
+];
 const CENTRE = [67, 16.9];
 
 function random(seed) {
@@ -56,10 +82,20 @@ export function starMap(choose) {
     canvas.height = Math.round(height * dense);
     const pen = canvas.getContext('2d');
     pen.scale(dense, dense);
-    palette ??= { active: color('--star'), draining: color('--warm'), quarantined: color('--red'), gone: color('--faint'), line: color('--line'), dust: color('--line-strong') };
+    palette ??= {
+      active: color('--star'),
+      draining: color('--warm'),
+      quarantined: color('--red'),
+      gone: color('--faint'),
+      line: color('--line'),
+      dust: color('--line-strong'),
+    };
     const scale = Math.min(width / 7.5, height / 7.4);
     // East is left, as in the sky.
-    const put = ([ra, dec]) => [width / 2 - (ra - CENTRE[0]) * scale * 1.5, height / 2 - (dec - CENTRE[1] + 0.75) * scale];
+    const put = ([ra, dec]) => [
+      width / 2 - (ra - CENTRE[0]) * scale * 1.5,
+      height / 2 - (dec - CENTRE[1] + 0.75) * scale,
+    ];
     const next = random(5);
     pen.fillStyle = palette.dust;
     for (let i = 0; i < width / 6; ++i) {
@@ -140,18 +176,26 @@ export function starMap(choose) {
     canvas.style.cursor = star ? 'pointer' : '';
     if (!star) return;
     const { worker } = star;
-    setText(tip, `${worker.name} · ${worker.state === 'active' ? rateInWords(speedOf(worker)) : worker.state} · ${worker.threads} threads`);
+    setText(
+      tip,
+      `${worker.name} · ${worker.state === 'active' ? rateInWords(speedOf(worker)) : worker.state} · ${worker.threads} threads`,
+    );
     tip.style.left = `${Math.max(4, Math.min(star.x + 10, canvas.clientWidth - tip.offsetWidth - 4))}px`;
     tip.style.top = `${star.y > 40 ? star.y - 34 : star.y + 12}px`;
   });
-  canvas.addEventListener('pointerleave', () => { tip.hidden = true; });
+  canvas.addEventListener('pointerleave', () => {
+    tip.hidden = true;
+  });
   canvas.addEventListener('click', (event) => {
     const star = nearest(event);
     if (star) choose(star.worker);
   });
   const resized = new ResizeObserver(paint);
   resized.observe(canvas);
-  const leaveTheme = onTheme(() => { palette = null; paint(); });
+  const leaveTheme = onTheme(() => {
+    palette = null;
+    paint();
+  });
 
   return {
     node,
@@ -161,9 +205,13 @@ export function starMap(choose) {
       const at = performance.now();
       for (const worker of workers) {
         const before = lit.get(worker.id);
-        if (!before || before.done !== worker.units_done) lit.set(worker.id, { done: worker.units_done, at: before ? at : -1e9 });
+        if (!before || before.done !== worker.units_done)
+          lit.set(worker.id, { done: worker.units_done, at: before ? at : -1e9 });
       }
-      canvas.setAttribute('aria-label', `Workers as stars: ${workers.filter((w) => w.state === 'active').length} active of ${workers.length}. The table of workers says the same.`);
+      canvas.setAttribute(
+        'aria-label',
+        `Workers as stars: ${workers.filter((w) => w.state === 'active').length} active of ${workers.length}. The table of workers says the same.`,
+      );
       paint();
     },
     leave() {

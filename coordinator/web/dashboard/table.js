@@ -7,7 +7,8 @@ const letters = new Intl.Collator('en', { numeric: true, sensitivity: 'base' });
 /**
  * columns: [{key, label, sort(row), up, cell(td, row), narrow}]: `sort` gives what to sort by (absent: not by this one), `up` that
  * it begins with the smallest, `cell` fills a cell (called again when the row is another object), `drop` 1..3: left out on narrow screens,
- * 3 first, `spoken` a label for those who cannot see that none is needed. rowKey(row). `cards`: on phones rows are cards, which the style lays out. The height of rows is the style's `--row`.
+ * 3 first, `spoken` a label for those who cannot see that none is needed. rowKey(row).
+ * `cards`: on phones rows are cards, which the style lays out. The height of rows is the style's `--row`.
  */
 export class Table {
   constructor({ columns, rowKey, label, sort, testid, onSort, chosen, onChosen, empty, cards = false }) {
@@ -18,20 +19,33 @@ export class Table {
     this.active = null;
     this.top = h('tr', { class: 'room', 'aria-hidden': 'true' }, h('td', { colspan: columns.length }));
     this.bottom = h('tr', { class: 'room', 'aria-hidden': 'true' }, h('td', { colspan: columns.length }));
-    this.body = h('tbody', { role: 'rowgroup', onkeydown: (event) => this.key(event), onclick: (event) => this.click(event) }, this.top, this.bottom);
+    this.body = h(
+      'tbody',
+      { role: 'rowgroup', onkeydown: (event) => this.key(event), onclick: (event) => this.click(event) },
+      this.top,
+      this.bottom,
+    );
     this.heads = columns.map((column) => this.head(column));
     this.nothing = h('div', { class: 'table-empty' });
-    this.table = h('table', { role: 'table', 'aria-label': label, testid, class: cards ? 'cards' : null },
-      h('thead', { role: 'rowgroup' }, h('tr', { role: 'row', 'aria-rowindex': 1 }, this.heads)), this.body);
+    this.table = h(
+      'table',
+      { role: 'table', 'aria-label': label, testid, class: cards ? 'cards' : null },
+      h('thead', { role: 'rowgroup' }, h('tr', { role: 'row', 'aria-rowindex': 1 }, this.heads)),
+      this.body,
+    );
     this.node = h('div', { class: 'table' }, this.table, this.nothing);
     this.draw = oncePerFrame(() => this.layout());
     addEventListener('scroll', this.draw, { passive: true });
     addEventListener('resize', this.draw);
+    // What is above may grow and shrink: then others are on the screen.
+    this.moved = new ResizeObserver(this.draw);
+    this.moved.observe(document.body);
     this.tellSort();
   }
 
   leave() {
     this.draw.cancel();
+    this.moved.disconnect();
     removeEventListener('scroll', this.draw);
     removeEventListener('resize', this.draw);
   }
@@ -39,9 +53,23 @@ export class Table {
   head(column) {
     const classes = `${column.kind ?? ''} ${column.drop ? `drop${column.drop}` : ''} c-${column.key}`;
     if (column.header) return h('th', { role: 'columnheader', scope: 'col', class: classes }, column.header());
-    if (!column.sort) return h('th', { role: 'columnheader', scope: 'col', class: classes }, column.spoken ? h('span', { class: 'unseen', text: column.spoken }) : column.label);
-    return h('th', { role: 'columnheader', scope: 'col', class: classes },
-      h('button', { type: 'button', class: 'sorter', text: column.label, testid: `sort-${column.key}`, onclick: () => this.sortBy(column) }));
+    if (!column.sort)
+      return h(
+        'th',
+        { role: 'columnheader', scope: 'col', class: classes },
+        column.spoken ? h('span', { class: 'unseen', text: column.spoken }) : column.label,
+      );
+    return h(
+      'th',
+      { role: 'columnheader', scope: 'col', class: classes },
+      h('button', {
+        type: 'button',
+        class: 'sorter',
+        text: column.label,
+        testid: `sort-${column.key}`,
+        onclick: () => this.sortBy(column),
+      }),
+    );
   }
 
   sortBy(column) {
@@ -88,7 +116,8 @@ export class Table {
     const until = Math.min(count, Math.max(from, Math.ceil((innerHeight - box.top) / height) + MARGIN_ROWS));
     const wanted = new Set();
     let after = this.top;
-    if (this.active === null || !this.rows.some((row) => this.rowKey(row) === this.active)) this.active = count > 0 ? this.rowKey(this.rows[0]) : null;
+    if (this.active === null || !this.rows.some((row) => this.rowKey(row) === this.active))
+      this.active = count > 0 ? this.rowKey(this.rows[0]) : null;
     for (let i = from; i < until; ++i) {
       const row = this.rows[i];
       const id = this.rowKey(row);
@@ -115,7 +144,13 @@ export class Table {
   }
 
   make(id) {
-    const cells = this.columns.map((column) => h('td', { role: 'cell', class: `${column.kind ?? ''} ${column.drop ? `drop${column.drop}` : ''} c-${column.key}`, 'data-label': column.label }));
+    const cells = this.columns.map((column) =>
+      h('td', {
+        role: 'cell',
+        class: `${column.kind ?? ''} ${column.drop ? `drop${column.drop}` : ''} c-${column.key}`,
+        'data-label': column.label,
+      }),
+    );
     const tr = h('tr', { role: 'row', 'data-key': id, testid: 'row' }, cells);
     return { tr, cells, row: null, chosen: null };
   }
@@ -151,7 +186,14 @@ export class Table {
     if (!tr || event.target.matches('input:not([type=checkbox]), select')) return;
     const at = this.rows.findIndex((row) => String(this.rowKey(row)) === tr.dataset.key);
     const page = Math.max(1, Math.floor(innerHeight / 60));
-    const step = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page, Home: -at, End: this.rows.length - 1 - at }[event.key];
+    const step = {
+      ArrowDown: 1,
+      ArrowUp: -1,
+      PageDown: page,
+      PageUp: -page,
+      Home: -at,
+      End: this.rows.length - 1 - at,
+    }[event.key];
     if (step !== undefined) {
       event.preventDefault();
       this.focusRow(Math.min(this.rows.length - 1, Math.max(0, at + step)));

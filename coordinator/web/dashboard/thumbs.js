@@ -24,6 +24,9 @@ function keep(key, entry) {
   }
 }
 
+/** The stamp of the frame when a picture was made, which may be a little before it was asked for. */
+export const madeAt = (response, asked) => response.headers.get('hyades-stamp') ?? asked;
+
 /** What a picture of a frame depends on: while it stays, so does the picture. */
 export const stampOf = (frame) => `${frame.samples_done}:${frame.state === 'done'}:${frame.restarts}`;
 
@@ -48,7 +51,16 @@ export class Thumbs {
       entry.frame = frame;
     } else {
       const had = kept.get(key);
-      this.shown.set(id, { key, job, frame, width, show, stamp, has: had?.stamp ?? null, asked: Date.now() - PAUSE + SETTLE });
+      this.shown.set(id, {
+        key,
+        job,
+        frame,
+        width,
+        show,
+        stamp,
+        has: had?.stamp ?? null,
+        asked: Date.now() - PAUSE + SETTLE,
+      });
       if (had) {
         kept.delete(key);
         kept.set(key, had);
@@ -59,7 +71,10 @@ export class Thumbs {
     }
     if (!this.soon) {
       this.soon = true;
-      queueMicrotask(() => { this.soon = false; this.pump(); });
+      queueMicrotask(() => {
+        this.soon = false;
+        this.pump();
+      });
     }
   }
 
@@ -104,13 +119,14 @@ export class Thumbs {
     const { stamp } = entry;
     try {
       const response = await picture(entry.job, entry.frame.id, { width: entry.width }, entry.abort.signal);
+      const got = madeAt(response, stamp);
       const url = URL.createObjectURL(await response.blob());
       const image = new Image();
       image.src = url;
       await image.decode();
-      const made = { url, stamp, width: image.naturalWidth, height: image.naturalHeight };
+      const made = { url, stamp: got, width: image.naturalWidth, height: image.naturalHeight };
       keep(entry.key, made);
-      entry.has = stamp;
+      entry.has = got;
       if (this.shown.has(this.idOf(entry))) entry.show(url, made);
     } catch (error) {
       // Nothing there yet, or not any more; another stamp asks again.

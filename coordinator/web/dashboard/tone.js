@@ -13,8 +13,14 @@ export const CURVES = {
 const BRIGHTEST = 65504;
 const DARKEST_STOP = -12.47393;
 const STOPS = 4.026069 - DARKEST_STOP;
-const INSET = [0.842479062253094, 0.0423282422610123, 0.0423756549057051, 0.0784335999999992, 0.878468636469772, 0.0784336, 0.0792237451477643, 0.0791661274605434, 0.879142973793104];
-const OUTSET = [1.19687900512017, -0.0528968517574562, -0.0529716355144438, -0.0980208811401368, 1.15190312990417, -0.0980434501171241, -0.0990297440797205, -0.0989611768448433, 1.15107367264116];
+const INSET = [
+  0.842479062253094, 0.0423282422610123, 0.0423756549057051, 0.0784335999999992, 0.878468636469772, 0.0784336,
+  0.0792237451477643, 0.0791661274605434, 0.879142973793104,
+];
+const OUTSET = [
+  1.19687900512017, -0.0528968517574562, -0.0529716355144438, -0.0980208811401368, 1.15190312990417,
+  -0.0980434501171241, -0.0990297440797205, -0.0989611768448433, 1.15107367264116,
+];
 
 const clamp01 = (x) => Math.min(1, Math.max(0, x));
 const held = (x) => (x > 0 ? Math.min(x, BRIGHTEST) : 0);
@@ -30,11 +36,14 @@ const filmic = (x) => hable(2 * x) / hable(11.2);
 const aces = (x) => (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
 
 /** B. Wrensch, "Minimal AgX Implementation" (2023), of T. Sobotka's AgX (2022): a sigmoid over stops. */
-const agxContrast = (x) => -0.00232 + x * (0.1191 + x * (0.4298 + x * (-6.868 + x * (31.96 + x * (-40.14 + x * 15.5)))));
+const agxContrast = (x) =>
+  -0.00232 + x * (0.1191 + x * (0.4298 + x * (-6.868 + x * (31.96 + x * (-40.14 + x * 15.5)))));
 const by = (m, [r, g, b]) => [0, 1, 2].map((i) => m[i] * r + m[3 + i] * g + m[6 + i] * b);
 
 function agx(color) {
-  const mixed = by(INSET, color).map((x) => agxContrast(clamp01((Math.log2(Math.max(x, 1e-10)) - DARKEST_STOP) / STOPS)));
+  const mixed = by(INSET, color).map((x) =>
+    agxContrast(clamp01((Math.log2(Math.max(x, 1e-10)) - DARKEST_STOP) / STOPS)),
+  );
   return by(OUTSET, mixed).map(clamp01);
 }
 
@@ -64,7 +73,16 @@ export function relativeError([r, g, b], variance) {
 }
 
 /** A scale of heat that goes up evenly in lightness: night, blue, rose, amber, white; display values. */
-export const HEAT = [[0.03, 0.04, 0.09], [0.11, 0.13, 0.36], [0.33, 0.17, 0.55], [0.62, 0.21, 0.53], [0.87, 0.34, 0.38], [0.98, 0.57, 0.25], [1, 0.81, 0.42], [1, 0.98, 0.86]];
+export const HEAT = [
+  [0.03, 0.04, 0.09],
+  [0.11, 0.13, 0.36],
+  [0.33, 0.17, 0.55],
+  [0.62, 0.21, 0.53],
+  [0.87, 0.34, 0.38],
+  [0.98, 0.57, 0.25],
+  [1, 0.81, 0.42],
+  [1, 0.98, 0.86],
+];
 
 /** The colour of 0..1 on it. */
 export function heat(share) {

@@ -51,12 +51,26 @@ function askWorker(worker, file, told, signal) {
   });
 }
 
-const rest = (ms, signal) => new Promise((resolve, reject) => {
-  const timer = setTimeout(resolve, ms);
-  signal.addEventListener('abort', () => { clearTimeout(timer); reject(new DOMException('stopped', 'AbortError')); }, { once: true });
-});
+/** Waits so many milliseconds, or until `signal`: then it throws AbortError. */
+export const rest = (ms, signal) =>
+  new Promise((resolve, reject) => {
+    const timer = setTimeout(resolve, ms);
+    signal.addEventListener(
+      'abort',
+      () => {
+        clearTimeout(timer);
+        reject(new DOMException('stopped', 'AbortError'));
+      },
+      { once: true },
+    );
+  });
 
-const passes = (error) => error.code === 'unreachable' || error.code === 'unavailable' || error.code === 'unauthenticated' || error.code === 'deadline_exceeded' || error.retryAfterMs > 0;
+const passes = (error) =>
+  error.code === 'unreachable' ||
+  error.code === 'unavailable' ||
+  error.code === 'unauthenticated' ||
+  error.code === 'deadline_exceeded' ||
+  error.retryAfterMs > 0;
 
 async function sendFile(entry, offset, told, signal) {
   let piece = 1024 * 1024;
@@ -68,7 +82,8 @@ async function sendFile(entry, offset, told, signal) {
     try {
       answer = await api.putPiece(sha256, file.size, offset, file.slice(offset, end), signal);
     } catch (error) {
-      if (error.name === 'NotReadableError' || error.name === 'NotFoundError') throw new Error(`${entry.path} has changed or is gone: choose the files again.`);
+      if (error.name === 'NotReadableError' || error.name === 'NotFoundError')
+        throw new Error(`${entry.path} has changed or is gone: choose the files again.`);
       throw error;
     }
     offset = answer.offset;
@@ -98,9 +113,13 @@ export async function uploadAll(files, told, signal) {
   let wait = 1000;
   for (;;) {
     try {
-      const { missing } = await api.missing([...bySum].map(([sha256, { file }]) => ({ sha256, size: file.size })), signal);
+      const { missing } = await api.missing(
+        [...bySum].map(([sha256, { file }]) => ({ sha256, size: file.size })),
+        signal,
+      );
       for (const { sha256, offset } of missing) there.set(sha256, offset);
-      for (const sum of there.keys()) if (!missing.some(({ sha256 }) => sha256 === sum)) there.set(sum, bySum.get(sum).file.size);
+      for (const sum of there.keys())
+        if (!missing.some(({ sha256 }) => sha256 === sum)) there.set(sum, bySum.get(sum).file.size);
       state.total = [...there.keys()].reduce((sum, digest) => sum + bySum.get(digest).file.size, 0);
       state.files = there.size;
       if (missing.length === 0) return;
@@ -108,7 +127,15 @@ export async function uploadAll(files, told, signal) {
       const lane = async () => {
         for (let next = queue.shift(); next; next = queue.shift()) {
           const entry = bySum.get(next.sha256);
-          await sendFile(entry, next.offset, (bytes) => { wait = 1000; tell(next.sha256, bytes, entry.path); }, signal);
+          await sendFile(
+            entry,
+            next.offset,
+            (bytes) => {
+              wait = 1000;
+              tell(next.sha256, bytes, entry.path);
+            },
+            signal,
+          );
         }
       };
       const lanes = await Promise.allSettled(Array.from({ length: FILES_AT_ONCE }, lane));

@@ -6,32 +6,82 @@ import { h, setText } from './dom.js';
 import { workerTable } from './worker_table.js';
 
 /** What is shown where nobody renders: how to start a worker. */
-export const noWorkers = () => nothing('No workers yet',
-  h('p', { text: 'Start one on each machine that is to render:' }),
-  command(`hyades worker --coordinator ${location.hostname || 'HOST'}:7700`),
-  h('p', { class: 'soft', text: '7700 is the usual port of a coordinator. Workers may come and go at any time, in mid-frame too.' }));
+export const noWorkers = () =>
+  nothing(
+    'No workers yet',
+    h('p', { text: 'Start one on each machine that is to render:' }),
+    command(`hyades worker --coordinator ${location.hostname || 'HOST'}:7700`),
+    h('p', {
+      class: 'soft',
+      text: '7700 is the usual port of a coordinator. Workers may come and go at any time, in mid-frame too.',
+    }),
+  );
 
 /** The view. */
 export function workersView() {
-  const search = h('input', { type: 'search', placeholder: 'Name, host, class or tag', 'aria-label': 'Search workers', testid: 'worker-search', oninput: () => draw() });
+  const search = h('input', {
+    type: 'search',
+    placeholder: 'Name, host, class or tag',
+    'aria-label': 'Search workers',
+    testid: 'worker-search',
+    oninput: () => draw(),
+  });
   const summary = h('p', { class: 'summary', 'aria-live': 'off' });
-  const states = h('select', { 'aria-label': 'State', testid: 'worker-state', onchange: () => draw() },
-    [['', 'All states'], ['active', 'Active'], ['draining', 'Draining'], ['quarantined', 'Quarantined'], ['gone', 'Gone']].map(([value, text]) => h('option', { value, text })));
-  const table = workerTable(() => (farm.workers.size === 0 ? noWorkers() : h('p', { class: 'soft', text: 'None of them is like that.' })));
+  const states = h(
+    'select',
+    { 'aria-label': 'State', testid: 'worker-state', onchange: () => draw() },
+    [
+      ['', 'All states'],
+      ['active', 'Active'],
+      ['draining', 'Draining'],
+      ['quarantined', 'Quarantined'],
+      ['gone', 'Gone'],
+    ].map(([value, text]) => h('option', { value, text })),
+  );
+  const table = workerTable(() =>
+    farm.workers.size === 0 ? noWorkers() : h('p', { class: 'soft', text: 'None of them is like that.' }),
+  );
   const draw = () => {
     if (!farm.info) return;
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     const all = [...farm.workers.values()];
-    table.setRows(all.filter((worker) => (!states.value || worker.state === states.value) && words.every((word) =>
-      [worker.name, worker.host, worker.worker_class, worker.build, worker.reason, ...worker.tags].some((text) => text.toLowerCase().includes(word)))));
+    table.setRows(
+      all.filter(
+        (worker) =>
+          (!states.value || worker.state === states.value) &&
+          words.every((word) =>
+            [worker.name, worker.host, worker.worker_class, worker.build, worker.reason, ...worker.tags].some((text) =>
+              text.toLowerCase().includes(word),
+            ),
+          ),
+      ),
+    );
     const here = all.filter(({ state }) => state !== 'gone');
-    setText(summary, all.length === 0 ? '' : `${counted(here.length, 'worker')}, ${whole(here.reduce((sum, { threads }) => sum + threads, 0))} threads, ${rateInWords(all.reduce((sum, worker) => sum + speed(worker), 0))}`);
+    setText(
+      summary,
+      all.length === 0
+        ? ''
+        : `${counted(here.length, 'worker')}, ${whole(here.reduce((sum, { threads }) => sum + threads, 0))} threads, ${rateInWords(all.reduce((sum, worker) => sum + speed(worker), 0))}`,
+    );
   };
   const leave = onFarm((what) => what.has('workers') && draw());
   const timer = setInterval(() => table.refresh(), 5000);
-  const node = h('div', { class: 'view' },
+  const node = h(
+    'div',
+    { class: 'view' },
     h('div', { class: 'view-head' }, h('h1', { text: 'Workers' }), summary),
-    h('div', { class: 'filters' }, search, states), table.node);
+    h('div', { class: 'filters' }, search, states),
+    table.node,
+  );
   draw();
-  return { node, title: 'Workers', shown: draw, leave: () => { leave(); clearInterval(timer); table.leave(); } };
+  return {
+    node,
+    title: 'Workers',
+    shown: draw,
+    leave: () => {
+      leave();
+      clearInterval(timer);
+      table.leave();
+    },
+  };
 }

@@ -42,10 +42,27 @@ export function complaints(message) {
 /** The text as a list of lines; `found`: complaints about this file. */
 export function yamlLines(text, found = []) {
   const lines = text.replace(/\r\n?/g, '\n').replace(/\n$/, '').split('\n');
-  return h('ol', { class: 'code', tabindex: 0, 'aria-label': 'Document' }, lines.map((line, i) => {
-    const here = found.filter((complaint) => complaint.line === i + 1);
-    return h('li', { class: here.length > 0 ? 'wrong' : null, id: here.length > 0 ? `line-${i + 1}` : null },
-      h('span', {}, pieces(line).map(([kind, piece]) => (kind ? h('span', { class: kind, text: piece }) : piece))),
-      here.map(({ text: words, column }) => h('span', { class: 'complaint', testid: 'complaint', text: column > 0 ? `column ${column}: ${words}` : words })));
-  }));
+  return h(
+    'ol',
+    { class: 'code', tabindex: 0, 'aria-label': 'Document' },
+    lines.map((line, i) => {
+      const here = found.filter((complaint) => complaint.line === i + 1);
+      return h(
+        'li',
+        { class: here.length > 0 ? 'wrong' : null, id: here.length > 0 ? `line-${i + 1}` : null },
+        h(
+          'span',
+          {},
+          pieces(line).map(([kind, piece]) => (kind ? h('span', { class: kind, text: piece }) : piece)),
+        ),
+        here.map(({ text: words, column }) =>
+          h('span', {
+            class: 'complaint',
+            testid: 'complaint',
+            text: column > 0 ? `column ${column}: ${words}` : words,
+          }),
+        ),
+      );
+    }),
+  );
 }

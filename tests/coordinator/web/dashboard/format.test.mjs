@@ -1,23 +1,78 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { ago, bytes, counted, duration, listed, moment, percent, rate, rateInWords, short, value } from '../../../../coordinator/web/dashboard/format.js';
+import {
+  ago,
+  brief,
+  bytes,
+  counted,
+  duration,
+  listed,
+  moment,
+  percent,
+  rate,
+  rateInWords,
+  short,
+  value,
+} from '../../../../coordinator/web/dashboard/format.js';
 import { roundUp } from '../../../../coordinator/web/dashboard/chart.js';
 
 const all = (f, pairs) => pairs.forEach(([input, text]) => assert.equal(f(input), text, `${input}`));
 
 test('numbers have three digits and a unit', () => {
-  all(short, [[0, '0'], [999, '999'], [1000, '1.00 k'], [12345678, '12.3 M'], [999500, '1.00 M'], [1e15, '1.00 P'], [-4200, '-4.20 k'], [NaN, '–'], [0.5, '0.50']]);
-  all(rate, [[0, '–'], [25e6, '25.0 MS/s'], [640, '640 S/s'], [-1, '–']]);
-  all(rateInWords, [[25e6, '25.0 Msamples/s'], [12, '12 samples/s'], [0, '0 samples/s']]);
-  all(bytes, [[0, '0 B'], [1023, '1023 B'], [1024, '1.00 KiB'], [12345678, '11.8 MiB'], [2 ** 50, '1.00 PiB'], [-1, '–']]);
+  all(short, [
+    [0, '0'],
+    [999, '999'],
+    [1000, '1.00 k'],
+    [12345678, '12.3 M'],
+    [999500, '1.00 M'],
+    [1e15, '1.00 P'],
+    [-4200, '-4.20 k'],
+    [NaN, '–'],
+    [0.5, '0.50'],
+  ]);
+  all(rate, [
+    [0, '–'],
+    [25e6, '25.0 MS/s'],
+    [640, '640 S/s'],
+    [-1, '–'],
+  ]);
+  all(rateInWords, [
+    [25e6, '25.0 Msamples/s'],
+    [12, '12 samples/s'],
+    [0, '0 samples/s'],
+  ]);
+  all(bytes, [
+    [0, '0 B'],
+    [1023, '1023 B'],
+    [1024, '1.00 KiB'],
+    [12345678, '11.8 MiB'],
+    [2 ** 50, '1.00 PiB'],
+    [-1, '–'],
+  ]);
 });
 
 test('a job is at 100 % only when it is done', () => {
-  all(percent, [[0, '0 %'], [0.0001, '< 1 %'], [0.424, '42 %'], [0.9999, '99 %'], [1, '100 %'], [NaN, '0 %']]);
+  all(percent, [
+    [0, '0 %'],
+    [0.0001, '< 1 %'],
+    [0.424, '42 %'],
+    [0.9999, '99 %'],
+    [1, '100 %'],
+    [NaN, '0 %'],
+  ]);
 });
 
 test('times say what matters', () => {
-  all(duration, [[0, '0 s'], [59.4, '59 s'], [60, '1 min 00 s'], [200, '3 min 20 s'], [7500, '2 h 05 min'], [86400 * 3 + 4 * 3600, '3 d 4 h'], [-1, '–'], [Infinity, '–']]);
+  all(duration, [
+    [0, '0 s'],
+    [59.4, '59 s'],
+    [60, '1 min 00 s'],
+    [200, '3 min 20 s'],
+    [7500, '2 h 05 min'],
+    [86400 * 3 + 4 * 3600, '3 d 4 h'],
+    [-1, '–'],
+    [Infinity, '–'],
+  ]);
   const now = new Date(2026, 10, 22, 14, 3, 9).getTime();
   assert.equal(moment(now - 60000, now), '14:02');
   assert.equal(moment(new Date(2026, 10, 3, 9, 5).getTime(), now), '3 Nov 09:05');
@@ -29,10 +84,23 @@ test('times say what matters', () => {
 });
 
 test('pixel values', () => {
-  all(value, [[0, '0'], [1, '1'], [0.5, '0.5'], [0.33333, '0.3333'], [12345, '1.23e+4'], [1e-6, '1.00e-6'], [NaN, 'NaN'], [Infinity, '∞'], [100, '100'], [1234, '1234']]);
+  all(value, [
+    [0, '0'],
+    [1, '1'],
+    [0.5, '0.5'],
+    [0.33333, '0.3333'],
+    [12345, '1.23e+4'],
+    [1e-6, '1.00e-6'],
+    [NaN, 'NaN'],
+    [Infinity, '∞'],
+    [100, '100'],
+    [1234, '1234'],
+  ]);
 });
 
 test('words', () => {
+  assert.equal(brief('cd95d7e72e22abfda802f5525a970004ad8d22c3871dabc62f98340c994bc992'), 'cd95d7e7');
+  assert.equal(brief('x86-64-v3'), 'x86-64-v3');
   assert.equal(counted(1, 'frame'), '1 frame');
   assert.equal(counted(10000, 'frame'), '10,000 frames');
   assert.equal(listed(['a', 'b', 'c']), 'a, b and c');
@@ -40,5 +108,13 @@ test('words', () => {
 });
 
 test('scales end at round numbers', () => {
-  all(roundUp, [[0, 1], [1, 1], [1.01, 1.5], [25.6e6, 3e7], [7, 8], [9.5, 10], [99, 100]]);
+  all(roundUp, [
+    [0, 1],
+    [1, 1],
+    [1.01, 1.5],
+    [25.6e6, 3e7],
+    [7, 8],
+    [9.5, 10],
+    [99, 100],
+  ]);
 });

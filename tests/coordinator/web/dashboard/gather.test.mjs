@@ -1,6 +1,16 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { clearlyFirst, folderOf, framesOf, fromFolder, includesOf, isHidden, isNamed, isYaml, likelyJobs } from '../../../../coordinator/web/dashboard/gather.js';
+import {
+  clearlyFirst,
+  folderOf,
+  framesOf,
+  fromFolder,
+  includesOf,
+  isHidden,
+  isNamed,
+  isYaml,
+  likelyJobs,
+} from '../../../../coordinator/web/dashboard/gather.js';
 import { complaints, pieces } from '../../../../coordinator/web/dashboard/yaml_text.js';
 
 test('files are called as the folder of the job sees them', () => {
@@ -15,7 +25,8 @@ test('files are called as the folder of the job sees them', () => {
 });
 
 test('what tools leave behind is hidden', () => {
-  for (const path of ['.git/config', 'a/.DS_Store', 'Thumbs.db', '__MACOSX/a', 'out/.hyades/log']) assert.ok(isHidden(path), path);
+  for (const path of ['.git/config', 'a/.DS_Store', 'Thumbs.db', '__MACOSX/a', 'out/.hyades/log'])
+    assert.ok(isHidden(path), path);
   for (const path of ['a.b/c', 'job.yaml', 'tex/a..png']) assert.ok(!isHidden(path), path);
   assert.ok(isYaml('a/Job.YML') && !isYaml('yaml') && !isYaml('a.yaml.bak'));
 });
@@ -52,21 +63,48 @@ test('files that no text names are told apart', () => {
 test('frames are read as the command line reads them', () => {
   assert.deepEqual(framesOf(''), []);
   assert.deepEqual(framesOf('7'), [{ first: 7, last: 7, step: 1 }]);
-  assert.deepEqual(framesOf('1-24x2, 30'), [{ first: 1, last: 24, step: 2 }, { first: 30, last: 30, step: 1 }]);
-  for (const bad of ['a', '1-', '5-1', '1-9x0', '1..9', '1-2-3']) assert.throws(() => framesOf(bad), /^Error: Frames/, bad);
+  assert.deepEqual(framesOf('1-24x2, 30'), [
+    { first: 1, last: 24, step: 2 },
+    { first: 30, last: 30, step: 1 },
+  ]);
+  for (const bad of ['a', '1-', '5-1', '1-9x0', '1..9', '1-2-3'])
+    assert.throws(() => framesOf(bad), /^Error: Frames/, bad);
 });
 
 test('complaints are read with file and line', () => {
   assert.deepEqual(complaints("scene.yaml:3:17: shape is 'spher'\nC:/a b/job.yaml:12:1: unknown key: 'x'\n"), [
-    { file: 'scene.yaml', line: 3, column: 17, text: "shape is 'spher'" }, { file: 'C:/a b/job.yaml', line: 12, column: 1, text: "unknown key: 'x'" },
+    { file: 'scene.yaml', line: 3, column: 17, text: "shape is 'spher'" },
+    { file: 'C:/a b/job.yaml', line: 12, column: 1, text: "unknown key: 'x'" },
   ]);
-  assert.deepEqual(complaints('there is no file a.ply'), [{ file: '', line: 0, column: 0, text: 'there is no file a.ply' }]);
+  assert.deepEqual(complaints('there is no file a.ply'), [
+    { file: '', line: 0, column: 0, text: 'there is no file a.ply' },
+  ]);
   assert.equal(complaints('a.yaml:1:2: first\n  and more')[0].text, 'first\nand more');
 });
 
 test('coloured lines are still the lines', () => {
-  const lines = ['a: {b: "x # y", c: [1, 2]}  # remark', "- {file: 'it''s.png'}", '   ', '', 'url: http://x/#frag', 'broken: "no end', '  - - deep: 1'];
-  for (const line of lines) assert.equal(pieces(line).map(([, text]) => text).join(''), line);
-  assert.deepEqual(pieces('a: 1 # b').filter(([kind]) => kind), [['key', 'a'], ['remark', '# b']]);
+  const lines = [
+    'a: {b: "x # y", c: [1, 2]}  # remark',
+    "- {file: 'it''s.png'}",
+    '   ',
+    '',
+    'url: http://x/#frag',
+    'broken: "no end',
+    '  - - deep: 1',
+  ];
+  for (const line of lines)
+    assert.equal(
+      pieces(line)
+        .map(([, text]) => text)
+        .join(''),
+      line,
+    );
+  assert.deepEqual(
+    pieces('a: 1 # b').filter(([kind]) => kind),
+    [
+      ['key', 'a'],
+      ['remark', '# b'],
+    ],
+  );
   assert.ok(!pieces('"x # y"').some(([kind]) => kind === 'remark'));
 });

@@ -1,6 +1,13 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { halfTable, halfToFloat, pixel, quantile, readHalf, sorted } from '../../../../coordinator/web/dashboard/half.js';
+import {
+  halfTable,
+  halfToFloat,
+  pixel,
+  quantile,
+  readHalf,
+  sorted,
+} from '../../../../coordinator/web/dashboard/half.js';
 
 /** An answer as the coordinator gives it. */
 function answer(head, planes) {
@@ -13,7 +20,19 @@ function answer(head, planes) {
 }
 
 test('half floats have the values that IEEE 754 says', () => {
-  const known = [[0x0000, 0], [0x3c00, 1], [0xbc00, -1], [0x4000, 2], [0x3555, 0.333251953125], [0x7bff, 65504], [0x0001, 2 ** -24], [0x03ff, 1023 * 2 ** -24], [0x0400, 2 ** -14], [0x7c00, Infinity], [0xfc00, -Infinity]];
+  const known = [
+    [0x0000, 0],
+    [0x3c00, 1],
+    [0xbc00, -1],
+    [0x4000, 2],
+    [0x3555, 0.333251953125],
+    [0x7bff, 65504],
+    [0x0001, 2 ** -24],
+    [0x03ff, 1023 * 2 ** -24],
+    [0x0400, 2 ** -14],
+    [0x7c00, Infinity],
+    [0xfc00, -Infinity],
+  ];
   for (const [bits, value] of known) assert.equal(halfToFloat(bits), value, bits.toString(16));
   assert.ok(Object.is(halfToFloat(0x8000), -0));
   assert.ok(Number.isNaN(halfToFloat(0x7e00)));
@@ -29,8 +48,12 @@ test('half floats grow with their bits, and the table holds them all', () => {
 
 test('a picture is read plane by plane, row by row, wherever its header ends', () => {
   for (const layer of ['n', 'nn']) {
-    const picture = readHalf(answer({ width: 2, height: 2, channels: ['R', 'G', 'B'], layer, layers: ['beauty'], samples: 4, exact: true },
-      [0x3c00, 0x4000, 0x4200, 0x4400, 0, 0, 0, 0x3800, 0, 0, 0, 0x7c00]));
+    const picture = readHalf(
+      answer(
+        { width: 2, height: 2, channels: ['R', 'G', 'B'], layer, layers: ['beauty'], samples: 4, exact: true },
+        [0x3c00, 0x4000, 0x4200, 0x4400, 0, 0, 0, 0x3800, 0, 0, 0, 0x7c00],
+      ),
+    );
     assert.equal(picture.layer, layer);
     assert.deepEqual(pixel(picture, 0, 0), [1, 0, 0]);
     assert.deepEqual(pixel(picture, 1, 0), [2, 0, 0]);
@@ -48,7 +71,9 @@ test('what is not a picture is refused', () => {
 });
 
 test('sorted values leave out what is no number', () => {
-  const picture = readHalf(answer({ width: 4, height: 1, channels: ['Z'], layer: 'depth', layers: [] }, [0x7c00, 0x4000, 0x3c00, 0x7e00]));
+  const picture = readHalf(
+    answer({ width: 4, height: 1, channels: ['Z'], layer: 'depth', layers: [] }, [0x7c00, 0x4000, 0x3c00, 0x7e00]),
+  );
   const values = sorted(picture);
   assert.deepEqual([...values], [1, 2]);
   assert.equal(quantile(values, 0), 1);

@@ -9,12 +9,19 @@ const expected = (data) => createHash('sha256').update(data).digest('hex');
 test('the digests that FIPS 180 tells', () => {
   const ascii = (text) => new TextEncoder().encode(text);
   assert.equal(new Sha256().hex(), 'e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855');
-  assert.equal(new Sha256().update(ascii('abc')).hex(), 'ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad');
-  assert.equal(new Sha256().update(ascii('abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq')).hex(), '248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1');
+  assert.equal(
+    new Sha256().update(ascii('abc')).hex(),
+    'ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad',
+  );
+  assert.equal(
+    new Sha256().update(ascii('abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq')).hex(),
+    '248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1',
+  );
 });
 
 test('all lengths around a block, and a large one', () => {
-  for (let count = 0; count <= 200; ++count) assert.equal(new Sha256().update(bytes(count)).hex(), expected(bytes(count)), String(count));
+  for (let count = 0; count <= 200; ++count)
+    assert.equal(new Sha256().update(bytes(count)).hex(), expected(bytes(count)), String(count));
   assert.equal(new Sha256().update(bytes(3_000_001)).hex(), expected(bytes(3_000_001)));
 });
 

@@ -1,9 +1,17 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import test from 'node:test';
-import { CURVES, heat, relativeError, srgbEncode, toneMap, TONE_GLSL } from '../../../../coordinator/web/dashboard/tone.js';
+import {
+  CURVES,
+  heat,
+  relativeError,
+  srgbEncode,
+  toneMap,
+  TONE_GLSL,
+} from '../../../../coordinator/web/dashboard/tone.js';
 
-const near = (actual, wanted, by = 1e-3) => actual.forEach((x, i) => assert.ok(Math.abs(x - wanted[i]) <= by, `${actual} instead of ${wanted}`));
+const near = (actual, wanted, by = 1e-3) =>
+  actual.forEach((x, i) => assert.ok(Math.abs(x - wanted[i]) <= by, `${actual} instead of ${wanted}`));
 
 test('sRGB meets its standard', () => {
   near([srgbEncode(0), srgbEncode(0.0031308), srgbEncode(0.18), srgbEncode(1)], [0, 0.04045, 0.46135, 1], 1e-4);
@@ -13,7 +21,12 @@ test('sRGB meets its standard', () => {
 test('every curve keeps to what a display has, and black black', () => {
   for (const curve of Object.keys(CURVES)) {
     near(toneMap([0, 0, 0], curve), [0, 0, 0], curve === 'agx' ? 0.01 : 1e-3);
-    for (const light of [[1e9, 1e9, 1e9], [Infinity, 0, 1], [NaN, 1, -3], [1e-8, 0.2, 40]]) {
+    for (const light of [
+      [1e9, 1e9, 1e9],
+      [Infinity, 0, 1],
+      [NaN, 1, -3],
+      [1e-8, 0.2, 40],
+    ]) {
       for (const x of toneMap(light, curve)) assert.ok(x >= 0 && x <= 1, `${curve} of ${light}: ${x}`);
     }
     const greys = [0.001, 0.01, 0.1, 0.3, 1, 3].map((x) => toneMap([x, x, x], curve)[1]);
@@ -22,7 +35,8 @@ test('every curve keeps to what a display has, and black black', () => {
 });
 
 test('a stop doubles', () => {
-  for (const curve of Object.keys(CURVES)) near(toneMap([0.1, 0.2, 0.05], curve, 1), toneMap([0.2, 0.4, 0.1], curve), 1e-9);
+  for (const curve of Object.keys(CURVES))
+    near(toneMap([0.1, 0.2, 0.05], curve, 1), toneMap([0.2, 0.4, 0.1], curve), 1e-9);
 });
 
 test('known values of the film-like curves', () => {
@@ -40,12 +54,14 @@ test('the curves are those of the renderer', () => {
   const numbers = (text) => text.match(/\d+\.\d{2,}/g).map(Number);
   const here = new Set(numbers(own));
   const agx = source.slice(source.indexOf('agx_contrast(float'), source.indexOf('/// NaN becomes'));
-  for (const number of [...numbers(agx), 2.51, 2.43, 0.59, 0.14]) assert.ok(here.has(number), `${number} is not in tone.js`);
+  for (const number of [...numbers(agx), 2.51, 2.43, 0.59, 0.14])
+    assert.ok(here.has(number), `${number} is not in tone.js`);
   for (const name of Object.keys(CURVES)) assert.ok(source.includes(`"${name}"`), name);
 });
 
 test('the shader has the same numbers', () => {
-  for (const number of ['15.5', '2.51', '0.00232', '1.055', '0.842479062253094']) assert.ok(TONE_GLSL.includes(number), number);
+  for (const number of ['15.5', '2.51', '0.00232', '1.055', '0.842479062253094'])
+    assert.ok(TONE_GLSL.includes(number), number);
   for (const { index } of Object.values(CURVES)) assert.ok(index >= 0 && index <= 4);
 });
 

@@ -2,41 +2,100 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 // Modules that look at the page when they are loaded find one that is empty.
-const nobody = new Proxy(() => nobody, { get: (_, name) => (name === Symbol.toPrimitive ? () => '' : nobody), set: () => true });
-Object.assign(globalThis, { document: nobody, matchMedia: () => nobody, addEventListener: () => {}, localStorage: { getItem: () => null, setItem: () => {}, removeItem: () => {} } });
-const { alertsOf, inOrder } = await import('../../../../coordinator/web/dashboard/farm.js');
-const { byTile, byWorker } = await import('../../../../coordinator/web/dashboard/timeline.js');
+const nobody = new Proxy(() => nobody, {
+  get: (_, name) => (name === Symbol.toPrimitive ? () => '' : nobody),
+  set: () => true,
+});
+Object.assign(globalThis, {
+  document: nobody,
+  matchMedia: () => nobody,
+  addEventListener: () => {},
+  localStorage: { getItem: () => null, setItem: () => {}, removeItem: () => {} },
+});
+const { alertsOf } = await import('../../../../coordinator/web/dashboard/alerts.js');
+const { inOrder } = await import('../../../../coordinator/web/dashboard/farm.js');
+const { byTile, byWorker } = await import('../../../../coordinator/web/dashboard/units.js');
 const { choose } = await import('../../../../coordinator/web/dashboard/preview.js');
 const { grouped, kindOf, nameOf, rangeOf, sourcesOf } = await import('../../../../coordinator/web/dashboard/layers.js');
 const { toneOf } = await import('../../../../coordinator/web/dashboard/viewer.js');
 const { placeOf } = await import('../../../../coordinator/web/dashboard/stars.js');
 
-const job = (id, more) => ({ id, name: `job ${id}`, state: 'running', priority: 0, reason: '', ended_ms: 0, frames_failed: 0, ...more });
+const job = (id, more) => ({
+  id,
+  name: `job ${id}`,
+  state: 'running',
+  priority: 0,
+  reason: '',
+  ended_ms: 0,
+  frames_failed: 0,
+  ...more,
+});
 const worker = (id, more) => ({ id, name: `w${id}`, state: 'active', reason: '', heard_ms: 0, ...more });
 
 test('what needs a person comes with the worst first', () => {
   const now = 1e12;
-  const list = alertsOf({
-    info: { trouble: 'the disk is full' },
-    workers: new Map([[1, worker(1)], [2, worker(2, { state: 'gone', reason: 'not heard of' })], [3, worker(3, { state: 'quarantined', reason: 'odd bits' })]]),
-    jobs: new Map([[1, job(1)], [2, job(2, { state: 'failed', ended_ms: now - 1000, reason: '1 frame failed' })], [3, job(3, { state: 'failed', ended_ms: now - 1e8 })], [4, job(4, { reason: 'no worker has the tag gpu' })], [5, job(5, { frames_failed: 2 })]]),
-  }, now);
-  assert.deepEqual(list.map(({ what }) => what), [undefined, 'w3', 'job 2', 'w2', 'job 4', 'job 5']);
+  const list = alertsOf(
+    {
+      info: { trouble: 'the disk is full' },
+      workers: new Map([
+        [1, worker(1)],
+        [2, worker(2, { state: 'gone', reason: 'not heard of' })],
+        [3, worker(3, { state: 'quarantined', reason: 'odd bits' })],
+      ]),
+      jobs: new Map([
+        [1, job(1)],
+        [2, job(2, { state: 'failed', ended_ms: now - 1000, reason: '1 frame failed' })],
+        [3, job(3, { state: 'failed', ended_ms: now - 1e8 })],
+        [4, job(4, { reason: 'no worker has the tag gpu' })],
+        [5, job(5, { frames_failed: 2 })],
+      ]),
+    },
+    now,
+  );
+  assert.deepEqual(
+    list.map(({ what }) => what),
+    [undefined, 'w3', 'job 2', 'w2', 'job 4', 'job 5'],
+  );
   assert.equal(list[0].text, 'the disk is full');
   assert.match(list[5].text, /2 frames failed/);
 });
 
 test('the queue is in the order in which units go out', () => {
-  const jobs = [job(1), job(2, { priority: 5 }), job(3, { state: 'paused', priority: 90 }), job(4, { state: 'done' }), job(5, { priority: 5 })];
-  assert.deepEqual(inOrder(jobs).map(({ id }) => id), [2, 5, 1, 3]);
+  const jobs = [
+    job(1),
+    job(2, { priority: 5 }),
+    job(3, { state: 'paused', priority: 90 }),
+    job(4, { state: 'done' }),
+    job(5, { priority: 5 }),
+  ];
+  assert.deepEqual(
+    inOrder(jobs).map(({ id }) => id),
+    [2, 5, 1, 3],
+  );
 });
 
 test('units that overlap lie in lanes, and time is not counted twice', () => {
-  const unit = (name, begun, ended) => ({ worker: name, frame: 1, tile: [0, 0, 8, 8], batches: 2, begun_ms: begun, ended_ms: ended });
-  const [a, b] = byWorker([unit('w10', 0, 1000), unit('w9', 0, 1000), unit('w9', 500, 2000), unit('w9', 1000, 1500), unit('w9', 4000, 5000)]);
+  const unit = (name, begun, ended) => ({
+    worker: name,
+    frame: 1,
+    tile: [0, 0, 8, 8],
+    batches: 2,
+    begun_ms: begun,
+    ended_ms: ended,
+  });
+  const [a, b] = byWorker([
+    unit('w10', 0, 1000),
+    unit('w9', 0, 1000),
+    unit('w9', 500, 2000),
+    unit('w9', 1000, 1500),
+    unit('w9', 4000, 5000),
+  ]);
   assert.equal(a.worker, 'w9');
   assert.equal(b.worker, 'w10');
-  assert.deepEqual(a.units.map(({ lane }) => lane), [0, 1, 0, 0]);
+  assert.deepEqual(
+    a.units.map(({ lane }) => lane),
+    [0, 1, 0, 0],
+  );
   assert.equal(a.lanes, 2);
   assert.equal(a.busy, 3);
   assert.equal(a.work, 4);
@@ -45,14 +104,26 @@ test('units that overlap lie in lanes, and time is not counted twice', () => {
 
 test('a job is shown by the frame that is most rendered', () => {
   const frame = (id, state, done) => ({ id, state, samples: 10, samples_done: done });
-  assert.equal(choose([frame(1, 'done', 10), frame(2, 'rendering', 3), frame(3, 'rendering', 6), frame(4, 'waiting', 0)]).id, 3);
+  assert.equal(
+    choose([frame(1, 'done', 10), frame(2, 'rendering', 3), frame(3, 'rendering', 6), frame(4, 'waiting', 0)]).id,
+    3,
+  );
   assert.equal(choose([frame(1, 'done', 10), frame(2, 'done', 10), frame(3, 'rendering', 0)]).id, 2);
   assert.equal(choose([frame(1, 'waiting', 0)]), null);
 });
 
 test('layers are shown as what they are', () => {
-  assert.deepEqual(['beauty', 'diffuse_direct', 'light_group:key', 'normal', 'depth', 'samples', 'object_id', 'noise', 'position'].map(kindOf), ['light', 'light', 'light', 'signed', 'grey', 'heat', 'ids', 'noise', 'places']);
-  assert.deepEqual(grouped(['beauty', 'variance', 'samples', 'normal']), [['Light', ['beauty']], ['Sampling', ['noise', 'variance', 'samples']], ['Surfaces', ['normal']]]);
+  assert.deepEqual(
+    ['beauty', 'diffuse_direct', 'light_group:key', 'normal', 'depth', 'samples', 'object_id', 'noise', 'position'].map(
+      kindOf,
+    ),
+    ['light', 'light', 'light', 'signed', 'grey', 'heat', 'ids', 'noise', 'places'],
+  );
+  assert.deepEqual(grouped(['beauty', 'variance', 'samples', 'normal']), [
+    ['Light', ['beauty']],
+    ['Sampling', ['noise', 'variance', 'samples']],
+    ['Surfaces', ['normal']],
+  ]);
   assert.deepEqual(grouped(['beauty']), [['Light', ['beauty']]]);
   assert.equal(nameOf('light_group:key'), 'Light of key');
   assert.equal(nameOf('volume_indirect'), 'Volume indirect');
@@ -72,7 +143,12 @@ test('the scale of noise covers what most pixels have', () => {
 });
 
 test('the viewer begins with the tone map of the job', () => {
-  assert.deepEqual(toneOf('materials: {a: {exposure: 9}}\noutputs:\n  - {file: a.exr}\n  - {file: a.png, tone_map: filmic, exposure: -0.5}\n  - {file: b.png, tone_map: aces}\n'), { curve: 'filmic', exposure: -0.5 });
+  assert.deepEqual(
+    toneOf(
+      'materials: {a: {exposure: 9}}\noutputs:\n  - {file: a.exr}\n  - {file: a.png, tone_map: filmic, exposure: -0.5}\n  - {file: b.png, tone_map: aces}\n',
+    ),
+    { curve: 'filmic', exposure: -0.5 },
+  );
   assert.deepEqual(toneOf('hyades: 1\n'), { curve: 'srgb', exposure: 0 });
   assert.deepEqual(toneOf('outputs: [{file: a.png, tone_map: odd}]'), { curve: 'srgb', exposure: 0 });
 });

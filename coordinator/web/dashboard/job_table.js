@@ -1,0 +1,155 @@
+// The table of jobs: its columns.
+import { bar, chip } from './parts.js';
+import { counted, duration, moment, percent, rate, whole } from './format.js';
+import { h, setText } from './dom.js';
+import { askPriority } from './job_actions.js';
+import { isOpen } from './farm_state.js';
+import { share } from './job_state.js';
+import { Table } from './table.js';
+import { to } from './router.js';
+
+function nameCell(td, job) {
+  if (!td.firstChild)
+    td.append(
+      h('span', { class: 'two' }, h('a', { class: 'row-link', testid: 'job-link' }), h('span', { class: 'sub' })),
+    );
+  const [link, sub] = td.firstChild.children;
+  setText(link, job.name);
+  link.title = job.name;
+  link.href = to('job', { job: job.id });
+  setText(
+    sub,
+    job.reason ? `#${job.id} · ${job.reason}` : `#${job.id}${job.tags.length ? ` · ${job.tags.join(', ')}` : ''}`,
+  );
+  sub.title = job.reason;
+  sub.classList.toggle('warn', Boolean(job.reason) && job.state !== 'done');
+}
+
+function progressCell(td, job) {
+  if (!td.firstChild)
+    td.append(h('span', { class: 'progress' }, bar('Progress'), h('span', { class: 'progress-text' })));
+  const [gauge, text] = td.firstChild.children;
+  gauge.set(share(job), { failed: job.frames > 0 ? job.frames_failed / job.frames : 0, state: job.state });
+  setText(text, `${percent(share(job))} · ${whole(job.frames_done)}/${whole(job.frames)}`);
+  td.title = `${counted(job.frames, 'frame')}, ${whole(job.frames_done)} done${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`;
+}
+
+const left = (job) => (job.state === 'running' && job.seconds_left >= 0 ? job.seconds_left : Infinity);
+
+const ORDER = { running: 0, paused: 1, failed: 2, cancelled: 3, done: 4 };
+/** Seconds from its submission to its end, or to now. */
+const elapsed = (job, now = Date.now()) => ((job.ended_ms || now) - job.submitted_ms) / 1000;
+
+const chooseCell = (choose) => (td, job, chosen) => {
+  if (!td.firstChild) {
+    td.append(
+      h(
+        'label',
+        {},
+        h('input', {
+          type: 'checkbox',
+          testid: 'choose',
+          tabindex: -1,
+          onclick: (event) => choose(td.job.id, event.shiftKey),
+        }),
+      ),
+    );
+  }
+  td.job = job;
+  const box = td.firstChild.firstChild;
+  box.checked = chosen;
+  box.setAttribute('aria-label', `Choose ${job.name}, job ${job.id}`);
+};
+
+function priorityCell(td, job) {
+  if (!td.firstChild)
+    td.append(
+      h('button', {
+        type: 'button',
+        class: 'plain number',
+        testid: 'priority',
+        tabindex: -1,
+        onclick: () => isOpen(td.job) && askPriority(td.job),
+      }),
+    );
+  td.job = job;
+  setText(td.firstChild, job.priority);
+  td.firstChild.disabled = !isOpen(job);
+  td.firstChild.setAttribute('aria-label', `Priority ${job.priority}${isOpen(job) ? ', change' : ''}`);
+}
+
+const columns = [
+  { key: 'name', label: 'Job', sort: (job) => job.name, up: true, cell: nameCell },
+  {
+    key: 'state',
+    label: 'State',
+    sort: (job) => ORDER[job.state] ?? 9,
+    up: true,
+    cell: (td, job) => (td.firstChild ? td.firstChild.set(job.state) : td.append(chip(job.state))),
+  },
+  { key: 'progress', label: 'Progress', sort: share, cell: progressCell },
+  {
+    key: 'left',
+    label: 'Time left',
+    kind: 'num',
+    sort: left,
+    up: true,
+    cell: (td, job) => setText(td, Number.isFinite(left(job)) ? duration(left(job)) : ''),
+  },
+  {
+    key: 'speed',
+    label: 'Speed',
+    kind: 'num',
+    drop: 2,
+    sort: (job) => (isOpen(job) ? job.samples_per_second : 0),
+    cell: (td, job) => setText(td, isOpen(job) && job.samples_per_second > 0 ? rate(job.samples_per_second) : ''),
+  },
+  {
+    key: 'priority',
+    label: 'Priority',
+    kind: 'num',
+    drop: 1,
+    sort: (job) => job.priority,
+    cell: priorityCell,
+  },
+  {
+    key: 'owner',
+    label: 'Owner',
+    drop: 1,
+    sort: (job) => job.owner,
+    up: true,
+    cell: (td, job) => setText(td, job.owner),
+  },
+  {
+    key: 'took',
+    label: 'Since submit',
+    kind: 'num',
+    drop: 3,
+    always: true,
+    sort: (job) => elapsed(job),
+    cell: (td, job) => setText(td, duration(elapsed(job))),
+  },
+  {
+    key: 'id',
+    label: 'Submitted',
+    kind: 'num',
+    drop: 2,
+    sort: (job) => job.id,
+    cell: (td, job) => {
+      setText(td, moment(job.submitted_ms));
+      td.title = new Date(job.submitted_ms).toLocaleString();
+    },
+  },
+];
+
+/** The table; `all`: the node for choosing all, `choose(id, range)`: one is chosen or not any more, others as for Table. */
+export const jobTable = ({ all, choose, ...options }) =>
+  new Table({
+    label: 'Jobs',
+    testid: 'jobs-table',
+    cards: true,
+    rowKey: (job) => job.id,
+    onChosen: choose,
+    columns: [{ key: 'choose', label: '', header: () => all, cell: chooseCell(choose) }, ...columns],
+    ...options,
+  });
