@@ -20,8 +20,8 @@ CoordinatorProcess::CoordinatorProcess() {
   const std::string data = folder_.file("data");
   pid_ = ::fork();
   if (pid_ == 0) {
-    ::execl(HYADES_COORDINATOR, "hyades-coordinator", "coordinator", "--http", "off", "--data", data.c_str(),
-            "--listen", "127.0.0.1:0", nullptr);
+    ::execl(HYADES_COORDINATOR, "hyades-coordinator", "coordinator", "--http", "off", "--data",
+            data.c_str(), "--listen", "127.0.0.1:0", nullptr);
     ::_exit(127);
   }
   for (int i = 0; i < kLooks && address_.empty(); ++i) {
