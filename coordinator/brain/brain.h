@@ -105,6 +105,7 @@ class Brain {
   /// A frame as it is now, and how its job shows it.
   struct FrameNow {
     v1::Frame frame;
+    std::string tag;  ///< quoted; another one whenever the frame has changed; of open jobs only
     std::string tone_map = "srgb";  ///< of the job's first output for displays; of open jobs only
     float exposure = 0;             ///< stops; the same
   };

@@ -240,6 +240,10 @@ grpc::Status Brain::remove(uint64_t id) {
     removed = store_->remove_job(id);
   }
   if (!removed) return farm::unavailable(removed.error());
+  {
+    const std::lock_guard lock(mutex_);
+    timelines_.forget(id);
+  }
   remove_folders();
   // Its files have been of use until now: they stay for a while, should it come again.
   v1::JobSpec spec;

@@ -187,6 +187,7 @@ grpc::Status Brain::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
       const auto noted = desk->frames.find(frame);
       if (noted == desk->frames.end()) return no_frame(id, frame);
       now.frame = desk->describe_frame(frame, noted->second);
+      now.tag = fmt::format("\"{}.{}.{}\"", started_ms_, incarnation_, noted->second.version);
       for (const core::OutputDesc& output : desk->read.job.outputs) {
         if (output.file.ends_with(".exr")) continue;
         now.tone_map = output.tone_map;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -9,7 +10,7 @@
 
 namespace hyades::coordinator {
 
-/// A unit that was accepted: who rendered it, and when.
+/// A unit whose film came: who rendered it, and when.
 struct TimedUnit {
   std::string worker;  ///< its name
   core::Unit unit;
@@ -34,7 +35,11 @@ class Timelines {
       ++timeline.dropped;
     }
     if (jobs_.size() <= kMostJobs) return;
-    jobs_.erase(jobs_.begin()->first == job ? std::next(jobs_.begin()) : jobs_.begin());
+    // What was rendered longest ago goes.
+    const auto oldest = std::min_element(jobs_.begin(), jobs_.end(), [](auto& a, auto& b) {
+      return a.second.units.back().ended_ms < b.second.units.back().ended_ms;
+    });
+    jobs_.erase(oldest);
   }
   void forget(uint64_t job) { jobs_.erase(job); }
   /// Empty where nothing is known.

@@ -65,6 +65,8 @@ void AssetsApi::add_routes(Router& router) {
 }
 
 WebReply AssetsApi::missing(const std::string& body) {
+  const std::unique_lock alone(large_, std::try_to_lock);
+  if (!alone) return error_reply(crowded());
   const auto json = farm::Json::parse(body, nullptr, false);
   if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) {
     return error_reply(invalid("expected {\"files\": [{\"sha256\": ..., \"size\": ...}, ...]}"));
@@ -93,11 +95,33 @@ WebReply AssetsApi::take(const std::string& name, uint64_t size, uint64_t offset
   if (brain_.assets().contains(name, size)) {
     return json_reply({{"offset", size}, {"complete", true}});
   }
+  if (brain_.disk_is_full()) {
+    // What has come stays for a later upload to go on with.
+    if (const grpc::Status room = brain_.admit(0); !room.ok()) return error_reply(room);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (!busy_.insert(name).second) {
+      return error_reply(farm::retry_later(grpc::StatusCode::ABORTED,
+                                           "another piece of this file is being written",
+                                           std::chrono::milliseconds(500)));
+    }
+  }
   auto writer = take_writer(name, size);
-  if (!writer.ok()) return error_reply(writer.status);
-  WebReply reply = append(*writer.writer, offset, piece);
-  if (writer.writer->offset() < size) put_back(name, std::move(writer.writer));
+  WebReply reply = writer.ok() ? append(*writer.writer, offset, piece) : error_reply(writer.status);
+  if (writer.ok() && writer.writer->offset() < size) put_back(name, std::move(writer.writer));
+  done_with(name);
   return reply;
+}
+
+void AssetsApi::done_with(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  busy_.erase(name);
+}
+
+void AssetsApi::sweep() {
+  const std::lock_guard lock(mutex_);
+  let_go_of_old();
 }
 
 WebReply AssetsApi::append(farm::ContentWriter& writer, uint64_t offset, const std::string& piece) {

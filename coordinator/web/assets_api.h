@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "coordinator/brain/brain.h"
@@ -18,6 +19,8 @@ class AssetsApi {
  public:
   AssetsApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
   void add_routes(Router& router);
+  /// Lets go of files whose pieces do not come any more; now and then.
+  void sweep();
 
  private:
   WebReply missing(const std::string& body);
@@ -37,11 +40,14 @@ class AssetsApi {
   Taken take_writer(const std::string& name, uint64_t size);
   void put_back(const std::string& name, std::unique_ptr<farm::ContentWriter> writer);
   void let_go_of_old();
+  void done_with(const std::string& name);
 
   Brain& brain_;
   Desks& desks_;
   std::mutex mutex_;
   std::map<std::string, Open> open_;  ///< by the file's name
+  std::set<std::string> busy_;        ///< files of which a piece is being written
+  std::mutex large_;                  ///< held while a long list is looked at
 };
 
 }  // namespace hyades::coordinator

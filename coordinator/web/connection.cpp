@@ -1,10 +1,14 @@
 #include "coordinator/web/connection.h"
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/write.hpp>
@@ -13,6 +17,7 @@
 #include <boost/beast/ssl.hpp>
 
 #include "coordinator/web/target.h"
+#include "farm/wire_status.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -31,12 +36,16 @@ constexpr std::chrono::minutes kReceive{5};
 /// What a reader may take for a piece of at most a megabyte.
 constexpr std::chrono::seconds kSend{60};
 constexpr uint32_t kMostHeaderBytes = 16U << 10U;
-/// A job that names as many files as it may; uploads come in pieces of 8 MiB.
-constexpr uint64_t kMostBodyBytes = uint64_t{16} << 20U;
+/// Of the bodies of all requests together.
+constexpr uint64_t kMostBodyBytes = uint64_t{256} << 20U;
+constexpr size_t kPiece = size_t{1} << 20U;
 /// What may wait for a reader of what happens before it is broken off.
 constexpr size_t kMostWaitingBytes = size_t{8} << 20U;
 constexpr std::chrono::seconds kHeartbeat{15};
-constexpr std::chrono::minutes kTlsShutdown{1};
+constexpr std::chrono::seconds kFarewell{10};
+/// Read and thrown away after a refusal, so that the other side reads it before it hears that
+/// nobody listens any more.
+constexpr size_t kMostThrownAway = size_t{32} << 20U;
 
 Plain& tcp(Plain& stream) { return stream; }
 Plain& tcp(Tls& stream) { return beast::get_lowest_layer(stream); }
@@ -83,7 +92,8 @@ class ConnectionOver final : public Connection,
   void read() {
     parser_.emplace();
     parser_->header_limit(kMostHeaderBytes);
-    parser_->body_limit(kMostBodyBytes);
+    // It is set once the header has been looked at. (None at all refuses every body in Boost 1.74.)
+    parser_->body_limit(std::numeric_limits<uint64_t>::max());
     tcp(stream_).expires_after(kIdle);
     http::async_read_header(stream_, buffer_, *parser_,
                             [me = self()](ErrorCode error, size_t) { me->on_header(error); });
@@ -92,16 +102,51 @@ class ConnectionOver final : public Connection,
   void on_header(ErrorCode error) {
     if (error == http::error::end_of_stream) return shut_down();
     if (error) return refuse(error);
-    tcp(stream_).expires_after(kReceive);
-    if (beast::iequals(parser_->get()[http::field::expect], "100-continue")) {
-      static const std::string kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-      asio::async_write(stream_, asio::buffer(kContinue), [me = self()](ErrorCode bad, size_t) {
-        if (bad) return me->close();
-        me->read_body();
-      });
-      return;
+    const auto& header = parser_->get();
+    keep_alive_ = header.keep_alive();
+    version_ = header.version();
+    head_only_ = header.method() == http::verb::head;
+    request_ = {};
+    request_.method = head_only_ ? "GET" : std::string(header.method_string());
+    for (const auto& field : header) {
+      std::string name(field.name_string());
+      for (char& c : name) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+      }
+      request_.headers[name] = std::string(field.value());
     }
-    read_body();
+    known_ = request_.header("if-none-match");
+    auto target = parse_target(std::string(header.target()));
+    if (!target) {
+      return send_away(
+          error_reply({grpc::StatusCode::INVALID_ARGUMENT, "the address makes no sense"}));
+    }
+    request_.path = std::move(target->path);
+    request_.query = std::move(target->query);
+    const ConnectionWorld::Admitted admitted = world_.admit(request_);
+    if (admitted.refusal) return send_away(*admitted.refusal);
+    take_body(admitted.most_bytes);
+  }
+
+  void take_body(uint64_t most_bytes) {
+    const auto length = parser_->content_length();
+    if (length && *length > most_bytes) return refuse(http::error::body_limit);
+    granted_ = length ? *length : parser_->chunked() ? most_bytes : 0;
+    if (world_.body_bytes + granted_ > kMostBodyBytes) {
+      granted_ = 0;
+      return send_away(error_reply(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                                                     "the coordinator takes in as much as it may",
+                                                     std::chrono::seconds(1))));
+    }
+    world_.body_bytes += granted_;
+    parser_->body_limit(most_bytes);
+    tcp(stream_).expires_after(kReceive);
+    if (!beast::iequals(parser_->get()[http::field::expect], "100-continue")) return read_body();
+    static const std::string kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+    asio::async_write(stream_, asio::buffer(kContinue), [me = self()](ErrorCode bad, size_t) {
+      if (bad) return me->close();
+      me->read_body();
+    });
   }
 
   void read_body() {
@@ -117,39 +162,26 @@ class ConnectionOver final : public Connection,
         error == http::error::partial_message) {
       return close();
     }
-    keep_alive_ = false;
     head_only_ = false;
     const bool large = error == http::error::body_limit || error == http::error::header_limit;
     WebReply reply = error_reply(
         {grpc::StatusCode::INVALID_ARGUMENT, large ? "the request is too large" : error.message()});
     if (large) reply.status = error == http::error::body_limit ? 413 : 431;
+    send_away(std::move(reply));
+  }
+
+  /// The rest of the request is not read, so nothing can follow it.
+  void send_away(WebReply reply) {
+    keep_alive_ = false;
+    throw_away_ = true;
     send(std::move(reply));
   }
 
   void on_request() {
-    auto message = parser_->release();
-    keep_alive_ = message.keep_alive();
-    head_only_ = message.method() == http::verb::head;
-    WebRequest request;
-    request.method = head_only_ ? "GET" : std::string(message.method_string());
-    for (const auto& field : message) {
-      std::string name(field.name_string());
-      for (char& c : name) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-      }
-      request.headers[name] = std::string(field.value());
-    }
-    request.body = std::move(message.body());
-    known_ = request.header("if-none-match");
-    auto target = parse_target(std::string(message.target()));
-    if (!target) {
-      return send(error_reply({grpc::StatusCode::INVALID_ARGUMENT, "the address makes no sense"}));
-    }
-    request.path = std::move(target->path);
-    request.query = std::move(target->query);
+    request_.body = std::move(parser_->release().body());
     // However long the answer takes.
     tcp(stream_).expires_never();
-    world_.serve(std::move(request),
+    world_.serve(std::move(request_),
                  [outlet = world_.outlet, weak = weak_from_this_()](WebReply reply) {
                    outlet->post([weak, reply = std::move(reply)]() mutable {
                      if (const auto me = weak.lock()) me->send(std::move(reply));
@@ -166,7 +198,7 @@ class ConnectionOver final : public Connection,
       reply_.text = std::make_shared<const std::string>();
     }
     header_.emplace();
-    header_->version(11);
+    header_->version(version_);
     header_->result(reply_.status);
     header_->set(http::field::server, "Hyades");
     if (!reply_.type.empty()) header_->set(http::field::content_type, reply_.type);
@@ -181,8 +213,10 @@ class ConnectionOver final : public Connection,
       // No body, so no length.
     } else if (sized) {
       header_->set(http::field::content_length, std::to_string(size));
-    } else if (!reply_.topic) {
+    } else if (!reply_.topic && version_ >= 11) {
       header_->chunked(true);
+    } else {
+      keep_alive_ = false;  // the end of the body is that of the connection
     }
     header_->keep_alive(keep_alive_);
     serializer_.emplace(*header_);
@@ -206,11 +240,22 @@ class ConnectionOver final : public Connection,
     if (head_only_) return sent();
     if (reply_.topic) return go_live();
     if (reply_.source) return next_piece();
-    if (!reply_.text || reply_.text->empty()) return sent();
-    asio::async_write(stream_, asio::buffer(*reply_.text), [me = self()](ErrorCode error, size_t) {
-      if (error) return me->close();
-      me->sent();
-    });
+    if (!reply_.text) return sent();
+    send_text(reply_.text, 0, [this] { sent(); });
+  }
+
+  /// In pieces, so that each has its time.
+  void send_text(std::shared_ptr<const std::string> text, size_t from, std::function<void()> then) {
+    if (from >= text->size()) return then();
+    const size_t count = std::min(kPiece, text->size() - from);
+    tcp(stream_).expires_after(kSend);
+    const auto piece = asio::buffer(text->data() + from, count);
+    asio::async_write(
+        stream_, piece,
+        [me = self(), text, from, count, then = std::move(then)](ErrorCode error, size_t) mutable {
+          if (error) return me->close();
+          me->send_text(std::move(text), from + count, std::move(then));
+        });
   }
 
   void next_piece() {
@@ -228,7 +273,7 @@ class ConnectionOver final : public Connection,
   void send_piece(std::optional<std::string> piece) {
     // Half of a body is told from the whole by the connection's end.
     if (!piece) return close();
-    const bool chunked = !reply_.source->size();
+    const bool chunked = header_->chunked();
     const bool last = piece->empty();
     if (last && !chunked) return sent();
     piece_ = std::move(*piece);
@@ -248,6 +293,7 @@ class ConnectionOver final : public Connection,
   }
 
   void sent() {
+    give_back();
     reply_ = {};
     serializer_.reset();
     header_.reset();
@@ -286,24 +332,24 @@ class ConnectionOver final : public Connection,
 
   void enqueue(std::shared_ptr<const std::string> bytes) {
     if (!live_ || ending_) return;
-    waiting_bytes_ += bytes->size();
-    // The first thing told may be as large as it is.
-    if (waiting_bytes_ > kMostWaitingBytes && !waiting_.empty()) return close();
     waiting_.push_back(std::move(bytes));
-    if (waiting_.size() == 1) send_waiting();
+    if (waiting_.size() == 1) return send_waiting();
+    // What is on its way may be as large as it is.
+    waiting_bytes_ += waiting_.back()->size();
+    if (waiting_bytes_ > kMostWaitingBytes) close();
   }
 
   void send_waiting() {
-    tcp(stream_).expires_after(kSend);
-    asio::async_write(stream_, asio::buffer(*waiting_.front()),
-                      [me = self()](ErrorCode error, size_t) {
-                        if (error || !me->live_) return me->close();
-                        me->waiting_bytes_ -= me->waiting_.front()->size();
-                        me->waiting_.pop_front();
-                        if (!me->waiting_.empty()) return me->send_waiting();
-                        tcp(me->stream_).expires_never();
-                        if (me->ending_) me->shut_down();
-                      });
+    send_text(waiting_.front(), 0, [this] {
+      if (!live_) return;
+      waiting_.pop_front();
+      if (!waiting_.empty()) {
+        waiting_bytes_ -= waiting_.front()->size();
+        return send_waiting();
+      }
+      tcp(stream_).expires_never();
+      if (ending_) shut_down();
+    });
   }
 
   void end_live() {
@@ -313,19 +359,40 @@ class ConnectionOver final : public Connection,
 
   void shut_down() {
     live_ = false;
-    heartbeat_.cancel();
+    give_back();
+    heartbeat_.expires_after(kFarewell);
+    heartbeat_.async_wait([weak = weak_from_this_()](ErrorCode error) {
+      const auto me = weak.lock();
+      if (!error && me) me->close();
+    });
     if constexpr (std::is_same_v<Stream, Tls>) {
-      tcp(stream_).expires_after(kTlsShutdown);
       stream_.async_shutdown([me = self()](ErrorCode) { me->close(); });
     } else {
       ErrorCode ignored;
       tcp(stream_).socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-      close();
+      if (!throw_away_) return close();
+      tcp(stream_).expires_after(kFarewell);
+      thrown_away_.resize(kMostHeaderBytes);
+      throw_more_away(0);
     }
+  }
+
+  void throw_more_away(size_t so_far) {
+    stream_.async_read_some(asio::buffer(thrown_away_),
+                            [me = self(), so_far](ErrorCode error, size_t count) {
+                              if (error || so_far > kMostThrownAway) return me->close();
+                              me->throw_more_away(so_far + count);
+                            });
+  }
+
+  void give_back() {
+    world_.body_bytes -= granted_;
+    granted_ = 0;
   }
 
   void close() {
     live_ = false;
+    give_back();
     heartbeat_.cancel();
     ErrorCode ignored;
     tcp(stream_).socket().close(ignored);
@@ -336,6 +403,9 @@ class ConnectionOver final : public Connection,
   Stream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
+  WebRequest request_;
+  uint64_t granted_ = 0;  ///< bytes that its body may have, out of those of all
+  unsigned version_ = 11;
   bool keep_alive_ = false;
   bool head_only_ = false;
   std::string known_;  ///< If-None-Match
@@ -347,6 +417,8 @@ class ConnectionOver final : public Connection,
   bool live_ = false;
   bool ending_ = false;  ///< once all that waits is sent
   char unexpected_ = 0;
+  bool throw_away_ = false;  ///< something of the request was not read
+  std::vector<char> thrown_away_;
   std::deque<std::shared_ptr<const std::string>> waiting_;
   size_t waiting_bytes_ = 0;
 };

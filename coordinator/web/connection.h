@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include <boost/asio/ip/tcp.hpp>
@@ -25,11 +26,19 @@ class Connection : public LiveReader {
 
 /// What all connections share.
 struct ConnectionWorld {
+  /// What is said of a request before its body is read: how many bytes that may have; or, where it
+  /// may not come in at all, the answer.
+  struct Admitted {
+    uint64_t most_bytes = 0;
+    std::optional<WebReply> refusal{};
+  };
+  std::function<Admitted(const WebRequest&)> admit;
   /// Answers a request; called by the network's thread.
   std::function<void(WebRequest, Answer)> serve;
   Clerks& files;  ///< who reads what is sent from the disk
   std::shared_ptr<Outlet> outlet;
-  std::set<std::shared_ptr<Connection>> open;  ///< of the network's thread
+  std::set<std::shared_ptr<Connection>> open{};  ///< of the network's thread
+  uint64_t body_bytes = 0;                       ///< that requests have been granted; likewise
 };
 
 /// `tls`: null for plain text. The world outlives the connection.

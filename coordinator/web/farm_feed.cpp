@@ -31,7 +31,11 @@ void FarmFeed::join(std::weak_ptr<LiveReader> reader) {
 void FarmFeed::tick() {
   if (stepping_.exchange(true)) return;
   const bool taken = desks_.rows.hand([me = shared_from_this()] {
-    me->step();
+    // Without memory for it nothing is told this time.
+    (void)within_memory([&] {
+      me->step();
+      return grpc::Status::OK;
+    });
     me->stepping_ = false;
   });
   if (!taken) stepping_ = false;
@@ -40,7 +44,6 @@ void FarmFeed::tick() {
 void FarmFeed::step() {
   const std::vector<v1::Worker> workers = all_workers(brain_);
   note_throughput(workers);
-  bool fresh = false;
   {
     const std::lock_guard lock(mutex_);
     if (readers_.empty()) {
@@ -51,7 +54,6 @@ void FarmFeed::step() {
       new_value_.reset();
       return;
     }
-    fresh = readers_.has_fresh();
   }
   farm::Json change = farm::Json::object();
   v1::InfoResponse asked;
@@ -87,12 +89,14 @@ void FarmFeed::step() {
 
   const std::lock_guard lock(mutex_);
   if (!change.empty()) readers_.tell("change", change);
-  if (fresh) {
-    readers_.greet({{"info", info_},
-                    {"jobs", values_of(jobs_)},
-                    {"workers", values_of(workers_)},
-                    {"samples_per_second", throughput_}});
-  }
+  LiveReaders::Group fresh = readers_.take_fresh();
+  if (fresh.empty()) return;
+  LiveReaders::tell(fresh, "snapshot",
+                    {{"info", info_},
+                     {"jobs", values_of(jobs_)},
+                     {"workers", values_of(workers_)},
+                     {"samples_per_second", throughput_}});
+  readers_.know(std::move(fresh));
 }
 
 /// The open jobs; and, as JSON, those that were told of as open and have ended.
@@ -108,7 +112,12 @@ farm::Json FarmFeed::tell_jobs(Things& jobs) {
   for (const auto& [id, job] : jobs_) {
     if (jobs.contains(id)) continue;
     v1::GetJobResponse got;
-    if (brain_.get(id, INT32_MAX, got).ok()) ended.push_back(farm::to_json(got.job()));
+    const grpc::Status status = brain_.get(id, INT32_MAX, got);
+    if (status.ok()) {
+      ended.push_back(farm::to_json(got.job()));
+    } else if (status.error_code() != grpc::StatusCode::NOT_FOUND) {
+      jobs[id] = job;  // the store does not answer: what became of it is told later
+    }
   }
   return ended;
 }

@@ -21,7 +21,6 @@ void JobFeed::join(std::weak_ptr<LiveReader> reader) {
 }
 
 bool JobFeed::tick() {
-  if (over_) return false;
   {
     const std::lock_guard lock(mutex_);
     if (readers_.empty()) return false;
@@ -29,7 +28,11 @@ bool JobFeed::tick() {
   if (!*changed_ || stepping_.exchange(true)) return true;
   *changed_ = false;
   const bool taken = desks_.rows.hand([me = shared_from_this()] {
-    me->step();
+    const grpc::Status done = within_memory([&] {
+      me->step();
+      return grpc::Status::OK;
+    });
+    if (!done.ok()) *me->changed_ = true;
     me->stepping_ = false;
   });
   if (!taken) {
@@ -39,47 +42,52 @@ bool JobFeed::tick() {
   return true;
 }
 
-/// By one clerk at a time: what those who know are told comes before what those who are new are,
-/// so that nobody ever sees a frame go back.
+/// By one clerk at a time. Those who know hear of changes before those who have just come are told
+/// everything, so that nobody ever sees a frame go back; what happens in between both hear of
+/// next time, the newer ones perhaps twice.
 void JobFeed::step() {
-  bool fresh = false;
-  bool known = false;
+  LiveReaders::Group fresh;
   {
     const std::lock_guard lock(mutex_);
-    fresh = readers_.has_fresh();
-    known = begun_;
+    fresh = readers_.take_fresh();
   }
   farm::Json change;
   farm::Json snapshot;
   bool ended = false;
-  if (known) {
-    if (!changes(told_, change, ended).ok()) {
-      *changed_ = true;
-      return;
-    }
-  }
-  if (fresh) {
+  bool ended_for_fresh = false;
+  grpc::Status status;
+  if (begun_) status = changes(told_, change, ended);
+  if (status.ok() && !fresh.empty()) {
     Brain::ToldOf all;
-    const grpc::Status status = changes(all, snapshot, ended);
-    if (!status.ok()) {
-      const std::lock_guard lock(mutex_);
-      readers_.greet({{"error", status.error_message()}});
-      readers_.end();
-      over_ = status.error_code() == grpc::StatusCode::NOT_FOUND;
-      *changed_ = true;
-      return;
-    }
-    // Both are told of the same changes from now on.
-    told_ = all;
-    begun_ = true;
+    status = changes(all, snapshot, ended_for_fresh);
+    if (status.ok() && !std::exchange(begun_, true)) told_ = all;
   }
   const std::lock_guard lock(mutex_);
-  if (known) readers_.tell(ended ? "end" : "change", change);
-  if (fresh) readers_.greet(snapshot);
-  if (!ended) return;
-  if (fresh) readers_.tell("end", {{"job", snapshot["job"]}, {"frames", farm::Json::array()}});
-  readers_.end();
-  over_ = true;
+  if (status.error_code() == grpc::StatusCode::NOT_FOUND) {
+    const farm::Json gone = {{"message", status.error_message()}};
+    LiveReaders::tell(fresh, "gone", gone);
+    readers_.tell("gone", gone);
+    LiveReaders::end(fresh);
+    return readers_.end();
+  }
+  if (!status.ok()) {  // the store does not answer: again
+    readers_.put_back(std::move(fresh));
+    *changed_ = true;
+    return;
+  }
+  if (!change.is_null()) readers_.tell(ended ? "end" : "change", change);
+  if (ended) readers_.end();
+  if (fresh.empty()) return;
+  LiveReaders::tell(fresh, "snapshot", snapshot);
+  if (ended_for_fresh) {
+    const farm::Json last = {{"job", snapshot["job"]}, {"frames", farm::Json::array()}};
+    LiveReaders::tell(fresh, "end", last);
+    LiveReaders::end(fresh);
+    // Those who knew before hear of the end with the next step.
+    if (!ended) *changed_ = true;
+  } else {
+    readers_.know(std::move(fresh));
+  }
 }
 
 /// All pages of what has changed, as one.

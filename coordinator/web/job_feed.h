@@ -12,8 +12,7 @@
 
 namespace hyades::coordinator {
 
-/// What happens to one job (openapi.yaml, /jobs/{job}/events). Made again for every round of
-/// readers.
+/// What happens to one job (openapi.yaml, /jobs/{job}/events).
 class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobFeed> {
  public:
   JobFeed(Brain& brain, Desks& desks, uint64_t job) : brain_(brain), desks_(desks), job_(job) {}
@@ -24,10 +23,8 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
   void join(std::weak_ptr<LiveReader> reader) override;
 
   /// Tells what has changed since it was last called, if anything has; for a clock of the network's
-  /// thread. False where nobody reads any more, or the job has ended and all know.
+  /// thread. False where nobody reads any more.
   bool tick();
-  /// Whether it may be joined.
-  bool is_of_use() const { return !over_; }
 
  private:
   void step();
@@ -39,7 +36,6 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
   uint64_t watch_ = 0;
   std::shared_ptr<std::atomic<bool>> changed_ = std::make_shared<std::atomic<bool>>(true);
   std::atomic<bool> stepping_{false};
-  std::atomic<bool> over_{false};
   std::mutex mutex_;  ///< guards readers_
   LiveReaders readers_;
   Brain::ToldOf told_;  ///< to those who know; of the clerk that steps

@@ -97,6 +97,10 @@ void JobsApi::add_questions(Router& router) {
                const auto job = parameter<uint64_t>(request, "job", answer);
                if (!job) return;
                answer_by(desks_.rows, answer, [this, id = *job] {
+                 v1::GetJobResponse got;
+                 if (const grpc::Status known = brain_.get(id, INT32_MAX, got); !known.ok()) {
+                   return error_reply(known);
+                 }
                  const Timelines::OfJob timeline = brain_.timeline(id);
                  farm::Json units = farm::Json::array();
                  for (const TimedUnit& unit : timeline.units) units.push_back(show(unit));
@@ -114,7 +118,12 @@ void JobsApi::add_questions(Router& router) {
 void JobsApi::add_steering(Router& router) {
   router.add("POST", "/api/v1/jobs", [this](const WebRequest& request, const Answer& answer) {
     answer_by(desks_.files, answer, [this, body = request.body] {
-      auto asked = read_submission(body);
+      core::Result<v1::SubmitRequest> asked = core::Error{};
+      {
+        const std::unique_lock alone(large_, std::try_to_lock);
+        if (!alone) return error_reply(crowded());
+        asked = read_submission(body);
+      }
       if (!asked) {
         return error_reply({grpc::StatusCode::INVALID_ARGUMENT, asked.error().message});
       }
@@ -195,7 +204,7 @@ WebReply JobsApi::list(const v1::ListJobsRequest& request) {
 }
 
 WebReply JobsApi::logs(uint64_t job, uint64_t after) {
-  const auto stored = brain_.store().job(job);
+  const auto stored = brain_.store().state(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
   if (!*stored) {
     return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mutex>
+
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/desks.h"
 #include "coordinator/web/router.h"
@@ -21,6 +23,7 @@ class JobsApi {
 
   Brain& brain_;
   Desks& desks_;
+  std::mutex large_;  ///< held while a submission is looked at
 };
 
 }  // namespace hyades::coordinator

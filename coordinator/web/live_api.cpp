@@ -48,7 +48,7 @@ void LiveApi::add_routes(Router& router) {
 
 std::shared_ptr<JobFeed> LiveApi::feed_of(uint64_t job) {
   auto& feed = jobs_[job];
-  if (!feed || !feed->is_of_use()) feed = std::make_shared<JobFeed>(brain_, desks_, job);
+  if (!feed) feed = std::make_shared<JobFeed>(brain_, desks_, job);
   return feed;
 }
 
@@ -57,7 +57,9 @@ void LiveApi::begin() { tick(); }
 void LiveApi::tick() {
   static constexpr int kFarmEvery = 2;  // once a second
   if (++ticks_ % kFarmEvery == 0) farm_->tick();
-  std::erase_if(jobs_, [](const auto& feed) { return !feed.second->tick(); });
+  // A reader that is about to join holds the feed already.
+  std::erase_if(
+      jobs_, [](const auto& feed) { return !feed.second->tick() && feed.second.use_count() == 1; });
   timer_.expires_after(kTick);
   timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error) tick();

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <iterator>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,23 +16,35 @@ namespace hyades::coordinator {
 /// and are told everything first. Not thread-safe.
 class LiveReaders {
  public:
+  using Group = std::vector<std::weak_ptr<LiveReader>>;
+
   void add(std::weak_ptr<LiveReader> reader) { fresh_.push_back(std::move(reader)); }
-  bool has_fresh() const { return !fresh_.empty(); }
+  /// Those who have just come, to be told everything.
+  Group take_fresh() { return std::exchange(fresh_, {}); }
+  /// They could not be.
+  void put_back(Group readers) { append(fresh_, std::move(readers)); }
+  /// They have been: from now on they know.
+  void know(Group readers) { append(known_, std::move(readers)); }
 
   /// An event for those who know.
-  void tell(const char* event, const farm::Json& data) { push(known_, frame(event, data)); }
-  /// Everything, for those who have just come; from now on they know.
-  void greet(const farm::Json& snapshot) {
-    push(fresh_, frame("snapshot", snapshot));
-    for (auto& reader : fresh_) known_.push_back(std::move(reader));
-    fresh_.clear();
+  void tell(const char* event, const farm::Json& data) const { tell(known_, event, data); }
+  /// Nothing more will come for those who know.
+  void end() { end(std::exchange(known_, {})); }
+
+  /// The same bytes for all of a group.
+  static void tell(const Group& readers, const char* event, const farm::Json& data) {
+    if (readers.empty()) return;
+    const auto bytes = std::make_shared<const std::string>(
+        fmt::format("event: {}\ndata: {}\n\n", event,
+                    data.dump(-1, ' ', false, farm::Json::error_handler_t::replace)));
+    for (const auto& weak : readers) {
+      if (const auto reader = weak.lock()) reader->push(bytes);
+    }
   }
-  /// Nothing more will come.
-  void end() {
-    for (const auto& weak : known_) {
+  static void end(const Group& readers) {
+    for (const auto& weak : readers) {
       if (const auto reader = weak.lock()) reader->end();
     }
-    known_.clear();
   }
 
   /// Whether nobody is left.
@@ -41,20 +55,13 @@ class LiveReaders {
   }
 
  private:
-  static std::shared_ptr<const std::string> frame(const char* event, const farm::Json& data) {
-    return std::make_shared<const std::string>(
-        fmt::format("event: {}\ndata: {}\n\n", event,
-                    data.dump(-1, ' ', false, farm::Json::error_handler_t::replace)));
-  }
-  static void push(const std::vector<std::weak_ptr<LiveReader>>& readers,
-                   const std::shared_ptr<const std::string>& bytes) {
-    for (const auto& weak : readers) {
-      if (const auto reader = weak.lock()) reader->push(bytes);
-    }
+  static void append(Group& to, Group readers) {
+    to.insert(to.end(), std::make_move_iterator(readers.begin()),
+              std::make_move_iterator(readers.end()));
   }
 
-  std::vector<std::weak_ptr<LiveReader>> known_;
-  std::vector<std::weak_ptr<LiveReader>> fresh_;
+  Group known_;
+  Group fresh_;
 };
 
 }  // namespace hyades::coordinator

@@ -74,12 +74,12 @@ void OutputsApi::add_routes(Router& router) {
              [this](const WebRequest& request, const Answer& answer) {
                const auto job = parameter<uint64_t>(request, "job", answer);
                if (!job) return;
-               answer_by(
-                   desks_.files, answer,
-                   [this, id = *job, path = request.parameters.at("path"),
-                    range = request.header("range"), download = query_flag(request, "download")] {
-                     return file(id, path, range, download);
-                   });
+               answer_by(desks_.files, answer,
+                         [this, id = *job, path = request.parameters.at("path"),
+                          range = WantedRange{request.header("range"), request.header("if-range")},
+                          download = query_flag(request, "download")] {
+                           return file(id, path, range, download);
+                         });
              });
   router.add("GET", "/api/v1/jobs/{job}/archive.zip",
              [this](const WebRequest& request, const Answer& answer) {
@@ -107,7 +107,7 @@ WebReply OutputsApi::list(uint64_t job) {
   return json_reply({{"outputs", std::move(all)}});
 }
 
-WebReply OutputsApi::file(uint64_t job, const std::string& path, const std::string& range,
+WebReply OutputsApi::file(uint64_t job, const std::string& path, const WantedRange& wanted,
                           bool download) {
   // The path is looked up among the job's outputs and never taken for one of the file system's.
   const auto output = brain_.store().output(job, path);
@@ -125,6 +125,9 @@ WebReply OutputsApi::file(uint64_t job, const std::string& path, const std::stri
   reply.headers.emplace_back(
       "Content-Disposition",
       fmt::format("{}; filename=\"{}\"", download ? "attachment" : "inline", header_name(path)));
+  // The rest of another file would not fit to what the client has.
+  const bool same = wanted.if_tag.empty() || wanted.if_tag == reply.headers[1].second;
+  const std::string range = same ? wanted.range : "";
   ByteRange part{0, size == 0 ? 0 : size - 1};
   const RangeAsked asked = read_range(range, size, part);
   if (asked == RangeAsked::impossible) {

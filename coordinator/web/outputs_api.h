@@ -14,7 +14,12 @@ class OutputsApi {
 
  private:
   WebReply list(uint64_t job);
-  WebReply file(uint64_t job, const std::string& path, const std::string& range, bool download);
+  /// The headers Range and If-Range.
+  struct WantedRange {
+    std::string range;
+    std::string if_tag;
+  };
+  WebReply file(uint64_t job, const std::string& path, const WantedRange& wanted, bool download);
   WebReply archive(uint64_t job);
 
   Brain& brain_;

@@ -6,6 +6,7 @@
 #include "coordinator/web/handing.h"
 #include "coordinator/web/preview.h"
 #include "core/image/read_image.h"
+#include "farm/wire.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -14,6 +15,9 @@ namespace {
 constexpr size_t kMostKeptBytes = size_t{128} << 20U;
 /// A picture of a frame in work is not made more often, however many samples have come.
 constexpr std::chrono::milliseconds kFreshFor{1000};
+/// Copies of films at a time: one of a large frame is a gigabyte.
+constexpr int kMostFilms = 2;
+constexpr size_t kMostFrames = 1000;
 constexpr int kNarrowest = 16;
 constexpr int kWidest = 8192;
 
@@ -29,9 +33,46 @@ int worth_of(const std::string& path, bool half) {
   return 0;
 }
 
+/// What clients compare to know whether there is something newer: as of the picture, not of the
+/// moment in which it is sent.
+std::string stamp_of(const v1::Frame& frame) {
+  return fmt::format("{}:{}:{}", frame.samples_done(), is_over(frame), frame.restarts());
+}
+
+/// The picture that `asked` means.
+WebReply show(const PicturesApi::Asked& asked, const Brain::FrameNow& now, const core::Image& image,
+              bool exact, const std::string& tag) {
+  const auto layer = take_layer(image, asked.layer);
+  if (!layer) return error_reply({grpc::StatusCode::NOT_FOUND, layer.error().message});
+  const core::Image shown = asked.width > 0 ? shrink(*layer, asked.width) : *layer;
+  WebReply reply;
+  if (asked.half) {
+    const HalfFacts facts{asked.layer, layers_of(image), now.frame.samples_done(), exact};
+    reply = text_reply(half_planes(shown, facts), "application/octet-stream");
+  } else {
+    const auto curve = core::find_tone_curve(now.tone_map);
+    const auto png = display_png(shown, curve.value_or(core::ToneCurve::srgb), now.exposure);
+    if (!png) return error_reply({grpc::StatusCode::INVALID_ARGUMENT, png.error().message});
+    reply = text_reply(std::string(png->chars(), png->size()), "image/png");
+  }
+  reply.headers = {
+      {"Cache-Control", "private, no-cache"}, {"ETag", tag}, {"Hyades-Stamp", stamp_of(now.frame)}};
+  return reply;
+}
+
+/// `make`, or that there is no memory for it.
+WebReply in_memory(const std::function<WebReply()>& make) {
+  WebReply reply;
+  const grpc::Status done = within_memory([&] {
+    reply = make();
+    return grpc::Status::OK;
+  });
+  return done.ok() ? reply : error_reply(done);
+}
+
 }  // namespace
 
-PicturesApi::~PicturesApi() {
+void PicturesApi::close() {
   const std::lock_guard lock(gate_->mutex);
   gate_->open = false;
 }
@@ -63,8 +104,7 @@ void PicturesApi::add_routes(Router& router) {
         }
         const auto layer = request.query.find("layer");
         if (layer != request.query.end()) asked.layer = layer->second;
-        const bool taken =
-            desks_.files.hand([this, asked, answer] { answer_picture(asked, answer); });
+        const bool taken = clerks_.hand([this, asked, answer] { answer_picture(asked, answer); });
         if (!taken) answer(error_reply(crowded()));
       });
 }
@@ -73,129 +113,161 @@ void PicturesApi::answer_picture(const Asked& asked, const Answer& answer) {
   Brain::FrameNow now;
   if (const grpc::Status known = brain_.frame_now(asked.job, asked.frame, now); !known.ok()) {
     answer(error_reply(known));
-    return;
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = index_.find(asked);
-    if (found != index_.end() && is_fresh(found->second->second, now)) {
-      kept_.splice(kept_.begin(), kept_, found->second);
-      answer(found->second->second.reply);
-      return;
-    }
-    std::vector<Answer>& others = waiting_[asked];
-    others.push_back(answer);
-    if (others.size() > 1) return;
-  }
-  if (is_over(now.frame)) {
-    make_of_file(asked, now);
+  } else if (is_over(now.frame)) {
+    answer(in_memory([&] { return of_file(asked, now); }));
+  } else if (const auto made = find(asked, now.tag, false)) {
+    answer(*made);
   } else {
-    make_of_film(asked, now);
+    want(asked, answer);
   }
 }
 
-bool PicturesApi::is_fresh(const Made& made, const Brain::FrameNow& now) const {
-  if (made.over != is_over(now.frame)) return false;
-  if (made.samples_done == now.frame.samples_done()) return true;
-  return std::chrono::steady_clock::now() - made.at < kFreshFor;
-}
-
-void PicturesApi::make_of_film(const Asked& asked, const Brain::FrameNow& now) {
-  const grpc::Status status = brain_.film(
-      asked.job, asked.frame,
-      [this, gate = gate_, asked, now](const grpc::Status& found, const core::FilmInfo&,
-                                       std::shared_ptr<const core::Film> film) {
-        const std::lock_guard lock(gate->mutex);
-        if (!gate->open) return;
-        const bool taken = desks_.files.hand([this, asked, now, found, film = std::move(film)] {
-          done(asked, now,
-               found.ok() ? show(asked, now, film->normalised(), true) : error_reply(found));
-        });
-        if (!taken) done(asked, now, error_reply(crowded()));
-      });
-  // Done meanwhile, perhaps.
-  if (status.error_code() == grpc::StatusCode::FAILED_PRECONDITION) {
-    make_of_file(asked, now);
-  } else if (!status.ok()) {
-    done(asked, now, error_reply(status));
-  }
-}
-
-void PicturesApi::make_of_file(const Asked& asked, const Brain::FrameNow& now) {
+WebReply PicturesApi::of_file(const Asked& asked, const Brain::FrameNow& now) {
   const auto outputs = brain_.store().outputs_of(asked.job, asked.frame);
-  if (!outputs) return done(asked, now, error_reply(farm::unavailable(outputs.error())));
+  if (!outputs) return error_reply(farm::unavailable(outputs.error()));
   const StoredOutput* best = nullptr;
   for (const StoredOutput& output : *outputs) {
-    if (worth_of(output.path, asked.half) == 0) continue;
-    const bool better =
-        best == nullptr || worth_of(output.path, asked.half) > worth_of(best->path, asked.half);
-    if (better) best = &output;
+    const int worth = worth_of(output.path, asked.half);
+    if (worth > (best == nullptr ? 0 : worth_of(best->path, asked.half))) best = &output;
   }
   if (best == nullptr) {
-    return done(asked, now,
-                error_reply({grpc::StatusCode::NOT_FOUND,
-                             fmt::format("no picture of frame {} is kept", asked.frame)}));
+    return error_reply(
+        {grpc::StatusCode::NOT_FOUND, fmt::format("no picture of frame {} is kept", asked.frame)});
   }
-  const std::string path = brain_.output_folder(asked.job) + "/" + best->path;
-  const auto image = core::read_image_file(path);
+  const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
+  if (const auto made = find(asked, tag, true)) return *made;
+  const auto image = core::read_image_file(brain_.output_folder(asked.job) + "/" + best->path);
   if (!image) {
-    return done(asked, now,
-                error_reply({grpc::StatusCode::DATA_LOSS,
-                             best->path + " is damaged on the coordinator's disk"}));
+    return error_reply(
+        {grpc::StatusCode::DATA_LOSS, best->path + " is damaged on the coordinator's disk"});
   }
   Brain::FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
-  done(asked, now, show(asked, plain, *image, best->path.ends_with(".exr")));
-}
-
-WebReply PicturesApi::show(const Asked& asked, const Brain::FrameNow& now, const core::Image& image,
-                           bool exact) const {
-  const auto layer = take_layer(image, asked.layer);
-  if (!layer) return error_reply({grpc::StatusCode::NOT_FOUND, layer.error().message});
-  const core::Image shown = asked.width > 0 ? shrink(*layer, asked.width) : *layer;
-  WebReply reply;
-  if (asked.half) {
-    reply = text_reply(
-        half_planes(shown, {asked.layer, layers_of(image), now.frame.samples_done(), exact}),
-        "application/octet-stream");
-  } else {
-    const auto curve = core::find_tone_curve(now.tone_map);
-    const auto png = display_png(shown, curve.value_or(core::ToneCurve::srgb), now.exposure);
-    if (!png) return error_reply({grpc::StatusCode::INVALID_ARGUMENT, png.error().message});
-    reply = text_reply(std::string(png->chars(), png->size()), "image/png");
-  }
-  reply.headers = {{"Cache-Control", "private, no-cache"},
-                   {"ETag", fmt::format("\"{}-{}{}\"", now.frame.samples_done(),
-                                        is_over(now.frame) ? "done" : "", now.frame.restarts())}};
+  WebReply reply = show(asked, plain, *image, best->path.ends_with(".exr"), tag);
+  keep(asked, tag, true, reply);
   return reply;
 }
 
-/// Everybody who waits for the picture gets it.
-void PicturesApi::done(const Asked& asked, const Brain::FrameNow& now, const WebReply& reply) {
-  std::vector<Answer> answers;
+/// Of a film, when its turn comes.
+void PicturesApi::want(const Asked& asked, const Answer& answer) {
+  const FrameId id{asked.job, asked.frame};
   {
     const std::lock_guard lock(mutex_);
-    answers = std::move(waiting_[asked]);
-    waiting_.erase(asked);
-    if (reply.status == 200) {
-      const auto old = index_.find(asked);
-      if (old != index_.end()) {
-        kept_bytes_ -= old->second->second.reply.text->size();
-        kept_.erase(old->second);
-      }
-      kept_.emplace_front(asked, Made{now.frame.samples_done(), is_over(now.frame),
-                                      std::chrono::steady_clock::now(), reply});
-      index_[asked] = kept_.begin();
-      kept_bytes_ += reply.text->size();
-      while (kept_bytes_ > kMostKeptBytes && kept_.size() > 1) {
-        kept_bytes_ -= kept_.back().second.reply.text->size();
-        index_.erase(kept_.back().first);
-        kept_.pop_back();
-      }
+    const auto [frame, first] = frames_.try_emplace(id);
+    if (first && frames_.size() > kMostFrames) {
+      frames_.erase(frame);
+    } else {
+      frame->second.wanted[asked].push_back(answer);
+      if (first) queue_.push_back(id);
     }
+    if (!frames_.contains(id)) return answer(error_reply(crowded()));
   }
-  for (const Answer& answer : answers) answer(reply);
+  begin_some();
+}
+
+void PicturesApi::begin_some() {
+  for (;;) {
+    FrameId id;
+    {
+      const std::lock_guard lock(mutex_);
+      if (queue_.empty() || films_ >= kMostFilms) return;
+      ++films_;
+      id = queue_.front();
+      queue_.pop_front();
+    }
+    take_film(id);
+  }
+}
+
+void PicturesApi::take_film(FrameId id) {
+  // As of before the film, so that the picture never claims more than it shows.
+  Brain::FrameNow now;
+  grpc::Status status = brain_.frame_now(id.first, id.second, now);
+  if (status.ok()) {
+    status = brain_.film(
+        id.first, id.second,
+        [this, gate = gate_, id, now](const grpc::Status& found, const core::FilmInfo&,
+                                      std::shared_ptr<const core::Film> film) {
+          const std::lock_guard lock(gate->mutex);
+          if (!gate->open) return;
+          const bool taken = clerks_.hand([this, id, now, found, film = std::move(film)] {
+            make_all(id, now, found, film.get());
+          });
+          if (!taken) end(id, [](const Asked&) { return error_reply(crowded()); });
+        });
+  }
+  if (status.ok()) return;
+  // Done meanwhile: those who ask again get the finished picture.
+  if (status.error_code() == grpc::StatusCode::FAILED_PRECONDITION) {
+    status = farm::retry_later(grpc::StatusCode::UNAVAILABLE, "the frame is being finished",
+                               std::chrono::milliseconds(500));
+  }
+  end(id, [&](const Asked&) { return error_reply(status); });
+}
+
+void PicturesApi::make_all(FrameId id, const Brain::FrameNow& now, const grpc::Status& found,
+                           const core::Film* film) {
+  core::Image image;
+  const grpc::Status made = !found.ok() ? found : within_memory([&] {
+    image = film->normalised();
+    return grpc::Status::OK;
+  });
+  end(id, [&](const Asked& asked) {
+    if (!made.ok()) return error_reply(made);
+    WebReply reply = in_memory([&] { return show(asked, now, image, true, now.tag); });
+    keep(asked, now.tag, false, reply);
+    return reply;
+  });
+}
+
+/// Everybody who waits for pictures of the frame gets them.
+void PicturesApi::end(FrameId id, const std::function<WebReply(const Asked&)>& reply) {
+  std::map<Asked, std::vector<Answer>> wanted;
+  {
+    const std::lock_guard lock(mutex_);
+    wanted = std::move(frames_[id].wanted);
+    frames_.erase(id);
+  }
+  for (const auto& [asked, answers] : wanted) {
+    const WebReply made = reply(asked);
+    for (const Answer& answer : answers) answer(made);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    --films_;
+  }
+  (void)clerks_.hand([this] { begin_some(); });
+}
+
+std::optional<WebReply> PicturesApi::find(const Asked& asked, const std::string& tag, bool over) {
+  const std::lock_guard lock(mutex_);
+  const auto found = index_.find(asked);
+  if (found == index_.end()) return std::nullopt;
+  const Made& made = found->second->second;
+  const bool fresh = made.tag == tag || (!over && !made.over && Clock::now() - made.at < kFreshFor);
+  if (!fresh) return std::nullopt;
+  kept_.splice(kept_.begin(), kept_, found->second);
+  return made.reply;
+}
+
+void PicturesApi::keep(const Asked& asked, const std::string& tag, bool over,
+                       const WebReply& reply) {
+  if (reply.status != 200) return;
+  const std::lock_guard lock(mutex_);
+  const auto old = index_.find(asked);
+  if (old != index_.end()) {
+    kept_bytes_ -= old->second->second.reply.text->size();
+    kept_.erase(old->second);
+  }
+  kept_.emplace_front(asked, Made{tag, over, Clock::now(), reply});
+  index_[asked] = kept_.begin();
+  kept_bytes_ += reply.text->size();
+  while (kept_bytes_ > kMostKeptBytes && kept_.size() > 1) {
+    kept_bytes_ -= kept_.back().second.reply.text->size();
+    index_.erase(kept_.back().first);
+    kept_.pop_back();
+  }
 }
 
 }  // namespace hyades::coordinator

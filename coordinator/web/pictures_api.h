@@ -1,29 +1,35 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/brain/clerks.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
 
 /// Frames as they are now: of the film in mid-render, of a finished file afterwards. What was made
-/// once is kept for all who ask, and made anew at most once a second.
+/// once is kept for all who ask. A film is copied for all that is asked of its frame together, at
+/// most once a second, and two films at a time, whoever asks for how many.
 class PicturesApi {
  public:
-  PicturesApi(Brain& brain, Desks& desks)
-      : brain_(brain), desks_(desks), gate_(std::make_shared<Gate>()) {}
-  ~PicturesApi();
+  explicit PicturesApi(Brain& brain) : brain_(brain), gate_(std::make_shared<Gate>()) {}
   PicturesApi(const PicturesApi&) = delete;
   PicturesApi& operator=(const PicturesApi&) = delete;
+
   void add_routes(Router& router);
+  /// Films that come later are let go of; before the destructor, which may wait for clerks.
+  void close();
 
   /// What is asked for.
   struct Asked {
@@ -37,14 +43,20 @@ class PicturesApi {
   };
 
  private:
+  using Clock = std::chrono::steady_clock;
   /// A picture as it was made.
   struct Made {
-    uint64_t samples_done = 0;
-    bool over = false;  ///< the frame was done
-    std::chrono::steady_clock::time_point at;
+    std::string tag;  ///< the picture's ETag: the same as long as it would be the same
+    bool over = false;
+    Clock::time_point at;
     WebReply reply;
   };
   using Kept = std::list<std::pair<Asked, Made>>;
+  /// All that is wanted of a frame in work.
+  struct Frame {
+    std::map<Asked, std::vector<Answer>> wanted;
+  };
+  using FrameId = std::pair<uint64_t, int32_t>;
   /// Films come by threads that may outlive this.
   struct Gate {
     std::mutex mutex;
@@ -52,22 +64,26 @@ class PicturesApi {
   };
 
   void answer_picture(const Asked& asked, const Answer& answer);
-  void make(const Asked& asked);
-  void make_of_film(const Asked& asked, const Brain::FrameNow& now);
-  void make_of_file(const Asked& asked, const Brain::FrameNow& now);
-  WebReply show(const Asked& asked, const Brain::FrameNow& now, const core::Image& image,
-                bool exact) const;
-  void done(const Asked& asked, const Brain::FrameNow& now, const WebReply& reply);
-  bool is_fresh(const Made& made, const Brain::FrameNow& now) const;
+  WebReply of_file(const Asked& asked, const Brain::FrameNow& now);
+  void want(const Asked& asked, const Answer& answer);
+  void begin_some();
+  void take_film(FrameId id);
+  void make_all(FrameId id, const Brain::FrameNow& now, const grpc::Status& found,
+                const core::Film* film);
+  void end(FrameId id, const std::function<WebReply(const Asked&)>& reply);
+  std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
+  void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply);
 
   Brain& brain_;
-  Desks& desks_;
   const std::shared_ptr<Gate> gate_;
   std::mutex mutex_;
   Kept kept_;  ///< what was asked for last is in front
   std::map<Asked, Kept::iterator> index_;
   size_t kept_bytes_ = 0;
-  std::map<Asked, std::vector<Answer>> waiting_;  ///< for what is being made
+  std::map<FrameId, Frame> frames_;
+  std::deque<FrameId> queue_;  ///< of frames whose films nobody fetches yet
+  int films_ = 0;              ///< that are being fetched or shown
+  Clerks clerks_{2, 1000};     ///< they end first
 };
 
 }  // namespace hyades::coordinator

@@ -1,11 +1,13 @@
 #include "coordinator/web/submission.h"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
-#include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "farm/json_form.h"
 #include "farm/wire.h"
 
@@ -56,6 +58,15 @@ class Fields {
     return nullptr;
   }
 
+  /// Complains of what nobody has asked for.
+  void finish() {
+    for (const auto& [name, value] : json_.items()) {
+      if (std::find(asked_.begin(), asked_.end(), name) != asked_.end() || error_) continue;
+      error_ = core::Error{
+          fmt::format("{}{}: unknown{}", where_, name, core::did_you_mean(name, asked_))};
+    }
+  }
+
   void wrong(const std::string& name, const std::string& expected) {
     if (!error_) error_ = core::Error{fmt::format("{}{}: expected {}", where_, name, expected)};
   }
@@ -63,6 +74,7 @@ class Fields {
 
  private:
   const Json* find(const char* name, bool needed) {
+    asked_.emplace_back(name);
     const auto found = json_.find(name);
     if (found != json_.end() && !found->is_null()) return &*found;
     if (needed) wrong(name, "one");
@@ -71,6 +83,7 @@ class Fields {
 
   const Json& json_;
   std::string where_;
+  std::vector<std::string> asked_;
   std::optional<core::Error> error_;
 };
 
@@ -88,6 +101,7 @@ core::Status read_files(const Json& files, v1::JobSpec& spec) {
       fields.wrong("sha256", "64 hexadecimal digits");
     }
     file.set_size(fields.number<uint64_t>("size", true).value_or(0));
+    fields.finish();
     if (fields.error()) return *fields.error();
   }
   return {};
@@ -102,6 +116,7 @@ core::Status read_frames(const Json& frames, v1::JobSpec& spec) {
     range.set_first(fields.number<int32_t>("first", true).value_or(0));
     range.set_last(fields.number<int32_t>("last", true).value_or(0));
     range.set_step(fields.number<int32_t>("step", false).value_or(0));
+    fields.finish();
     if (fields.error()) return *fields.error();
   }
   return {};
@@ -147,6 +162,7 @@ core::Result<v1::SubmitRequest> read_submission(const std::string& body) {
   } else if (!order.empty()) {
     fields.wrong("frame_order", "sequential or progressive");
   }
+  fields.finish();
   if (fields.error()) return *fields.error();
   return request;
 }

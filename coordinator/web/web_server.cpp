@@ -1,7 +1,10 @@
 #include "coordinator/web/web_server.h"
 
+#include <fcntl.h>
+
 #include <chrono>
-#include <cstdlib>
+#include <cstdio>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -23,6 +26,7 @@
 #include "coordinator/web/pictures_api.h"
 #include "coordinator/web/router.h"
 #include "farm/tls_files.h"
+#include "farm/wire.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -32,6 +36,7 @@ using asio::ip::tcp;
 
 constexpr size_t kMostConnections = 4000;
 constexpr std::chrono::milliseconds kAcceptAgain{200};
+constexpr std::chrono::seconds kSweep{30};
 
 struct HostAndPort {
   std::string host;
@@ -54,6 +59,25 @@ bool is_open_to_all(const WebRequest& request) {
   return first != "api" && first != "metrics";
 }
 
+/// Of a request's body.
+uint64_t most_bytes(const WebRequest& request) {
+  constexpr uint64_t kSession = 4U << 10U;
+  constexpr uint64_t kUsual = 64U << 10U;
+  constexpr uint64_t kPiece = uint64_t{8} << 20U;
+  const std::vector<std::string>& path = request.path;
+  if (request.method == "GET" || path.size() < 3) return 0;
+  if (path[2] == "session") return kSession;
+  if (request.method == "PUT" && path[2] == "assets") return kPiece;
+  const bool names_files = path.back() == "missing" || (path.size() == 3 && path[2] == "jobs");
+  return names_files ? farm::kMaxMessageBytes : kUsual;
+}
+
+/// Programs that the coordinator starts must not hold its connections open.
+template <class Socket>
+void close_on_exec(Socket& socket) {
+  (void)::fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
+}
+
 }  // namespace
 
 struct WebServer::Parts {
@@ -64,16 +88,16 @@ struct WebServer::Parts {
         jobs(brain, desks),
         assets(brain, desks),
         outputs(brain, desks),
-        pictures(brain, desks),
+        pictures(brain),
         live(brain, desks, network, outlet),
-        world{[this](WebRequest request, Answer answer) {
-                serve(std::move(request), std::move(answer));
+        world{[this](const WebRequest& request) { return admit(request); },
+              [this](WebRequest request, Answer answer) {
+                router.answer(std::move(request), answer);
               },
-              desks.files,
-              outlet,
-              {}},
+              desks.files, outlet},
         acceptor(network),
-        again(network) {
+        again(network),
+        sweep(network) {
     add_dashboard(router);
     add_session(router);
     farm.add_routes(router);
@@ -108,14 +132,13 @@ struct WebServer::Parts {
     });
   }
 
-  void serve(WebRequest request, Answer answer) {
+  ConnectionWorld::Admitted admit(const WebRequest& request) const {
     const grpc::Status allowed = gatekeeper.check(request);
     if (!allowed.ok() &&
         !(allowed.error_code() == grpc::StatusCode::UNAUTHENTICATED && is_open_to_all(request))) {
-      answer(error_reply(allowed));
-      return;
+      return {0, error_reply(allowed)};
     }
-    router.answer(std::move(request), answer);
+    return {most_bytes(request)};
   }
 
   core::Status listen(const std::string& address) {
@@ -127,6 +150,7 @@ struct WebServer::Parts {
     if (!error) {
       const tcp::endpoint endpoint = found.begin()->endpoint();
       acceptor.open(endpoint.protocol(), error);
+      if (!error) close_on_exec(acceptor);
       if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
       if (!error) acceptor.bind(endpoint, error);
       if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
@@ -142,6 +166,7 @@ struct WebServer::Parts {
       if (error == asio::error::operation_aborted) return;
       if (!error && world.open.size() < kMostConnections) {
         boost::system::error_code ignored;
+        close_on_exec(socket);
         socket.set_option(tcp::no_delay(true), ignored);
         make_connection(std::move(socket), tls.get(), world)->begin();
       }
@@ -152,11 +177,31 @@ struct WebServer::Parts {
     });
   }
 
+  void sweep_now_and_then() {
+    sweep.expires_after(kSweep);
+    sweep.async_wait([this](boost::system::error_code error) {
+      if (error) return;
+      (void)desks.files.hand([this] { assets.sweep(); });
+      sweep_now_and_then();
+    });
+  }
+
+  void run() {
+    for (;;) {
+      try {
+        network.run();
+        return;
+      } catch (const std::exception& error) {
+        // One request less, not the farm: without memory, most likely.
+        std::fprintf(stderr, "hyades coordinator: a web request broke off: %s\n", error.what());
+      }
+    }
+  }
+
   // The network is there before all that belongs to it, and ends after it.
   asio::io_context network{1};
   Gatekeeper gatekeeper;
   std::shared_ptr<Outlet> outlet;
-  Desks desks;
   FarmApi farm;
   JobsApi jobs;
   AssetsApi assets;
@@ -168,7 +213,9 @@ struct WebServer::Parts {
   std::unique_ptr<asio::ssl::context> tls;
   tcp::acceptor acceptor;
   asio::steady_timer again;
+  asio::steady_timer sweep;
   std::thread thread;
+  Desks desks;  ///< ends first: its clerks use all of the above
 };
 
 WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -178,6 +225,7 @@ WebServer::~WebServer() {
   parts_->network.stop();
   if (parts_->thread.joinable()) parts_->thread.join();
   parts_->outlet->close();
+  parts_->pictures.close();
   parts_->live.stop();
   parts_->world.open.clear();
 }
@@ -209,6 +257,16 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
     if (!error) {
       parts->tls->use_private_key(asio::buffer(pair->key), asio::ssl::context::pem, error);
     }
+    if (!error && !listen.ca_file.empty()) {
+      // As over gRPC: who comes shows a certificate that this one has signed.
+      const auto ca = farm::read_certificates(listen.ca_file);
+      if (!ca) return ca.error();
+      parts->tls->add_certificate_authority(asio::buffer(*ca), error);
+      if (!error) {
+        parts->tls->set_verify_mode(asio::ssl::verify_peer | asio::ssl::verify_fail_if_no_peer_cert,
+                                    error);
+      }
+    }
     if (error) return core::Error{listen.cert_file + ": " + error.message()};
   }
   if (core::Status bound = parts->listen(listen.address); !bound) return bound.error();
@@ -220,7 +278,8 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
                  listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
   running.accept();
   running.live.begin();
-  running.thread = std::thread([&running] { running.network.run(); });
+  running.sweep_now_and_then();
+  running.thread = std::thread([&running] { running.run(); });
   return server;
 }
 

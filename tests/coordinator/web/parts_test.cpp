@@ -145,6 +145,7 @@ TEST(Submission, FieldsThatAreWrongAreNamed) {
   EXPECT_NE(error(start + R"("frames": [{"first": 1}]})").find("frames[0].last"),
             std::string::npos);
   EXPECT_NE(error(start + R"("frame_order": "backwards"})").find("frame_order"), std::string::npos);
+  EXPECT_NE(error(start + R"("priorty": 1})").find("did you mean 'priority'"), std::string::npos);
   const auto read = read_submission(
       start +
       R"("priority": -3, "frames": [{"first": 1, "last": 9, "step": 2}], "tags": ["big"]})");

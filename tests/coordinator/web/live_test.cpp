@@ -1,0 +1,127 @@
+// Live events: readers that come early, late, together; jobs that are deleted; a server that ends
+// under load.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/coordinator/web/web_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using farm::Json;
+
+/// What a reader knows of frames when the stream has ended.
+std::map<int, std::string> frames_at_end(HttpClient::Events& events, std::string& last) {
+  std::map<int, std::string> frames;
+  for (auto event = events.next(); !event.name.empty(); event = events.next()) {
+    last = event.name;
+    const Json data = Json::parse(event.data);
+    if (!data.contains("frames")) continue;
+    for (const Json& frame : data["frames"]) frames[frame["id"].get<int>()] = frame["state"];
+  }
+  return frames;
+}
+
+TEST(Live, ReadersThatComeAtAnyTimeEndWithTheSame) {
+  WebWorld world;
+  world.farm.options.unit_time = 1ms;
+  world.start();
+  const uint64_t job = world.farm.submit(12);
+  const std::string path = "/api/v1/jobs/" + std::to_string(job) + "/events";
+  ScriptedWorker::Script script = world.farm.script();
+  script.unit_time = 2ms;
+  const ScriptedWorker worker(world.farm.address, script);
+  std::vector<std::thread> readers;
+  std::atomic<int> wrong{0};
+  for (int i = 0; i < 24; ++i) {
+    readers.emplace_back([&, i] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(120 * i));
+      HttpClient::Events events(*world.client, path);
+      std::string last;
+      const auto frames = frames_at_end(events, last);
+      const bool all = frames.size() == 12 && last == "end" &&
+                       std::all_of(frames.begin(), frames.end(),
+                                   [](const auto& frame) { return frame.second == "done"; });
+      if (!all) ++wrong;
+    });
+  }
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(Live, WhoReadsAJobThatIsDeletedIsToldSo) {
+  WebWorld world;
+  world.start();
+  const uint64_t job = world.farm.submit(1);
+  const std::string path = "/api/v1/jobs/" + std::to_string(job);
+  HttpClient::Events events(*world.client, path + "/events");
+  ASSERT_EQ(events.next().name, "snapshot");
+  ASSERT_EQ(world.client->post(path + "/cancel").status, 200);
+  ASSERT_TRUE(eventually([&] { return world.client->send("DELETE", path).status == 204; }));
+  std::string last;
+  frames_at_end(events, last);
+  EXPECT_TRUE(last == "gone" || last == "end") << last;
+}
+
+TEST(Live, AServerThatEndsUnderLoadEndsCleanly) {
+  for (int round = 0; round < 5; ++round) {
+    WebWorld world;
+    world.farm.options.unit_time = 1ms;
+    world.start();
+    const uint64_t job = world.farm.submit(6);
+    ScriptedWorker::Script script = world.farm.script();
+    script.unit_time = 1ms;
+    const ScriptedWorker worker(world.farm.address, script);
+    const std::string path = "/api/v1/jobs/" + std::to_string(job);
+    std::atomic<bool> stop{false};
+    std::vector<std::thread> people;
+    for (int i = 0; i < 6; ++i) {
+      people.emplace_back([&, i] {
+        for (int k = 0; !stop; ++k) {
+          const std::string frame = std::to_string(1 + (i + k) % 6);
+          world.client->get(path + "/frames/" + frame + "/picture?width=" + std::to_string(16 + k));
+          world.client->get(path + "/archive.zip");
+          if (i == 0) HttpClient::Events(*world.client, path + "/events").next();
+        }
+      });
+    }
+    std::this_thread::sleep_for(200ms);
+    world.farm.brain->stop();
+    world.web.reset();
+    stop = true;
+    for (std::thread& person : people) person.join();
+  }
+}
+
+TEST(Live, PicturesOfOneFrameForManyAskCopyItsFilmOnce) {
+  WebWorld world;
+  world.farm.options.unit_time = 1ms;
+  world.start();
+  const uint64_t job = world.farm.submit(1);
+  ScriptedWorker::Script script = world.farm.script();
+  script.unit_time = 40ms;
+  const ScriptedWorker worker(world.farm.address, script);
+  const std::string path = "/api/v1/jobs/" + std::to_string(job) + "/frames/1/picture?width=";
+  ASSERT_TRUE(eventually([&] { return world.client->get(path + "40").status == 200; }));
+  std::set<std::string> stamps;
+  for (int i = 0; i < 20; ++i) {
+    const auto response = world.client->get(path + "40");
+    if (response.status == 200) stamps.insert(response.headers.at("hyades-stamp"));
+  }
+  EXPECT_LE(stamps.size(), 4U) << "at most one a second";
+}
+
+TEST(Live, BodiesAreNotReadWithoutTheRight) {
+  WebWorld world;
+  world.start();
+  const std::string large(300'000, 'a');
+  EXPECT_EQ(world.client->post("/api/v1/jobs/1/cancel", large).status, 413);
+  EXPECT_EQ(world.client->post("/api/v1/session", large).status, 413);
+  EXPECT_EQ(world.client->post("/api/v1/jobs", large, {{"Origin", "https://evil.example"}}).status,
+            403);
+  EXPECT_EQ(world.client->get("/api/v1/info").status, 200);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
