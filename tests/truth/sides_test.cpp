@@ -18,7 +18,7 @@ constexpr const char* kIntegrators[] = {"path", "bdpt", "{type: mlt, large_step:
 constexpr Promise kPromise{
     .significance = 0.01, .tests = 3 * 4 * 6, .relative_error = 0.02, .power = 0.99};
 
-void expect_mean(const std::string& text, const Vec3d& expected, int samples = 400) {
+void expect_mean(const std::string& text, const Vec3d& expected, int samples = 700) {
   for (const char* integrator : kIntegrators) {
     SCOPED_TRACE(integrator);
     const YamlScene scene("hyades: 1\nname: sides\nfilm: {size: [16, 16]}\nsampling: {samples: " +
