@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "coordinator/brain/all_pages.h"
 #include "coordinator/brain/brain.h"
 
 namespace hyades::coordinator {
@@ -65,13 +66,7 @@ void Notifier::run() {
 void Notifier::look() {
   const auto now = Clock::now();
   std::map<uint64_t, v1::Job> jobs;
-  v1::ListJobsRequest request;
-  do {
-    v1::ListJobsResponse response;
-    if (!brain_.list_open(request, response)) return;
-    for (const v1::Job& job : response.jobs()) jobs[job.id()] = job;
-    request.set_before(response.next_before());
-  } while (request.before() != 0);
+  for (const v1::Job& job : all_open_jobs(brain_)) jobs[job.id()] = job;
   for (const auto& [id, job] : jobs) look_at(job, now);
   // What was open and is no more has ended, or was deleted since.
   for (auto seen = open_.begin(); seen != open_.end();) {

@@ -1,5 +1,6 @@
 #include "coordinator/web/farm_api.h"
 
+#include "coordinator/brain/all_pages.h"
 #include "coordinator/web/handing.h"
 #include "coordinator/web/metrics.h"
 
@@ -30,18 +31,6 @@ farm::Json to_json(const v1::InfoResponse& info) {
           {"threads", info.threads()},
           {"jobs", info.jobs()},
           {"trouble", info.trouble()}};
-}
-
-std::vector<v1::Worker> all_workers(Brain& brain) {
-  std::vector<v1::Worker> all;
-  v1::WorkersRequest request;
-  do {
-    v1::WorkersResponse response;
-    brain.workers(request, response);
-    for (v1::Worker& worker : *response.mutable_workers()) all.push_back(std::move(worker));
-    request.set_after(response.next_after());
-  } while (request.after() != 0);
-  return all;
 }
 
 void FarmApi::add_routes(Router& router) {

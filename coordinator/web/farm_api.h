@@ -21,7 +21,4 @@ class FarmApi {
 /// As openapi.yaml's Info.
 farm::Json to_json(const v1::InfoResponse& info);
 
-/// All workers.
-std::vector<v1::Worker> all_workers(Brain& brain);
-
 }  // namespace hyades::coordinator

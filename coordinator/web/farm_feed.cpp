@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/brain/all_pages.h"
 #include "coordinator/web/farm_api.h"
 #include "farm/json_form.h"
 
@@ -101,13 +102,7 @@ void FarmFeed::step() {
 
 /// The open jobs; and, as JSON, those that were told of as open and have ended.
 farm::Json FarmFeed::tell_jobs(Things& jobs) {
-  v1::ListJobsRequest request;
-  do {
-    v1::ListJobsResponse response;
-    if (!brain_.list_open(request, response)) break;
-    for (const v1::Job& job : response.jobs()) jobs[job.id()] = farm::to_json(job);
-    request.set_before(response.next_before());
-  } while (request.before() != 0);
+  for (const v1::Job& job : all_open_jobs(brain_)) jobs[job.id()] = farm::to_json(job);
   farm::Json ended = farm::Json::array();
   for (const auto& [id, job] : jobs_) {
     if (jobs.contains(id)) continue;

@@ -8,8 +8,8 @@
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 
+#include "coordinator/brain/all_pages.h"
 #include "coordinator/brain/brain.h"
-#include "coordinator/web/farm_api.h"
 #include "core/base/version.h"
 #include "farm/json_form.h"
 
@@ -86,18 +86,6 @@ void add_workers(Page& page, const std::vector<v1::Worker>& workers) {
   });
 }
 
-std::vector<v1::Job> open_jobs(Brain& brain) {
-  std::vector<v1::Job> all;
-  v1::ListJobsRequest request;
-  do {
-    v1::ListJobsResponse response;
-    if (!brain.list_open(request, response)) break;
-    for (v1::Job& job : *response.mutable_jobs()) all.push_back(std::move(job));
-    request.set_before(response.next_before());
-  } while (request.before() != 0);
-  return all;
-}
-
 void add_jobs(Page& page, const std::vector<v1::Job>& jobs) {
   std::map<std::string, uint64_t> states{{"running", 0}, {"paused", 0}};
   std::map<std::string, double> waiting{{"", 0}};
@@ -138,7 +126,7 @@ std::string metrics_text(Brain& brain) {
              "1 where something keeps the coordinator from storing what it is given",
              info.trouble().empty() ? 0 : 1);
   page.gauge("hyades_render_threads", "Threads of all connected workers", info.threads());
-  add_jobs(page, open_jobs(brain));
+  add_jobs(page, all_open_jobs(brain));
   add_workers(page, all_workers(brain));
   return page.text();
 }
