@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
+#include "cli/duration_option.h"
 #include "cli/peer_options.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
@@ -89,13 +90,19 @@ int main(int argc, char** argv) {
                  "killed; 0: never")
       ->check(hang_limit_error)
       ->capture_default_str();
+  hyades::cli::add_duration(app, "--exit-when-idle", options.idle_limit,
+                            "end after so long without work, such as 5m; also where no coordinator "
+                            "answers (default: never)",
+                            0.1);
   app.footer(
       "examples:\n"
       "  hyades worker\n"
       "  hyades worker --coordinator farm.example:7700 --tls-ca ca.pem --token-file token\n"
+      "  hyades worker --exit-when-idle 5m\n"
       "Ctrl-C or SIGTERM: what is done is handed over, the rest given back; a second one ends it "
       "at once.\n"
-      "exit status: 0 asked to leave, 1 cannot work here, 2 wrong arguments or refused by the "
+      "exit status: 0 asked to leave or without work, 1 cannot work here, 2 wrong arguments or "
+      "refused by the "
       "coordinator");
   // Where `hyades` has started this program, argv[1] is the word "worker".
   const int skipped = argc > 1 && std::string_view(argv[1]) == "worker" ? 1 : 0;

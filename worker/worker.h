@@ -19,12 +19,14 @@ struct WorkerOptions {
   std::vector<std::string> tags;
   double grace = 2.0;      ///< seconds from SIGTERM to the end
   double hang_limit = 60;  ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
+  double idle_limit = 0;   ///< seconds without work after which it ends; 0: never (IdleWatch)
   std::string renderer;    ///< path of hyades-worker-render
 };
 
-/// Works for a coordinator until `signals` is not 0 or it is drained. Returns the process' exit
-/// status: 0 when it was asked to leave, 1 where it cannot work here, 2 where an option or its file
-/// is wrong, or the coordinator does not want it (token, version).
+/// Works for a coordinator until `signals` is not 0, it is drained, or it was idle for long enough.
+/// Returns the process' exit status: 0 when it was asked to leave or was idle, 1 where it cannot
+/// work here, 2 where an option or its file is wrong, or the coordinator does not want it (token,
+/// version).
 int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals);
 
 }  // namespace hyades::worker

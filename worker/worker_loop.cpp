@@ -13,11 +13,13 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "farm/backoff.h"
 #include "farm/wire.h"
 #include "worker/asset_fetcher.h"
 #include "worker/coordinator_link.h"
 #include "worker/desk.h"
+#include "worker/idle_watch.h"
 #include "worker/renderer_process.h"
 
 namespace hyades::worker {
@@ -37,6 +39,10 @@ constexpr milliseconds kLongestPause{60'000};
 /// How long the end of the stream may take when all is said.
 constexpr milliseconds kGoodbye{200};
 
+Duration seconds(double value) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
+}
+
 /// One loop that everything happens in: other threads only post to it.
 class Worker : private DeskPorts,
                private CoordinatorLink::Owner,
@@ -47,6 +53,7 @@ class Worker : private DeskPorts,
          std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store)
       : options_(options),
         id_(std::move(id)),
+        idle_(seconds(options.idle_limit), Clock::now()),
         desk_(desk_options(options, id_, instance), *this),
         link_(channel, token, *this),
         fetcher_(channel, token, store, *this, kFetchPatience) {}
@@ -57,6 +64,7 @@ class Worker : private DeskPorts,
       run_posted();
       const TimePoint now = Clock::now();
       if (signals > 0) leave(now);
+      if (idle_.over(now, busy()) && !desk_.leaving()) leave_idle(now);
       if (restart_at_ && now >= *restart_at_ && !leave_by_) start_renderer();
       if (connect_at_ && now >= *connect_at_) connect(now);
       desk_.tick(now, link_.flowing());
@@ -71,8 +79,7 @@ class Worker : private DeskPorts,
     DeskOptions desk;
     desk.worker_id = id.text();
     desk.instance = instance;
-    desk.hang_limit =
-        std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.hang_limit));
+    desk.hang_limit = seconds(options.hang_limit);
     desk.name = options.name.empty() ? host_name() : options.name;
     desk.host = host_name();
     desk.threads = static_cast<uint32_t>(options.threads);
@@ -103,10 +110,21 @@ class Worker : private DeskPorts,
   void leave(TimePoint now) {
     if (leave_by_) return;
     note("leaving: batches that are done are handed over");
-    leave_by_ =
-        now + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options_.grace)) -
-        kGoodbye;
+    leave_by_ = now + seconds(options_.grace) - kGoodbye;
     desk_.leave("asked to leave", true);
+  }
+
+  /// Films that nobody takes are no work: a coordinator that has been away for so long may never
+  /// come back, and others render them again.
+  bool busy() const {
+    if (!renderer_ready_) return true;
+    return !desk_.empty() && (desk_.attended() || desk_.in_hand() > desk_.unacknowledged());
+  }
+
+  void leave_idle(TimePoint now) {
+    note(fmt::format("no work for {}: leaving", core::format_duration(options_.idle_limit)));
+    leave_by_ = now;
+    desk_.leave("without work", false);
   }
 
   void try_to_go(TimePoint now) {
@@ -267,6 +285,7 @@ class Worker : private DeskPorts,
 
   // All else belongs to the loop.
   WorkerId id_;
+  IdleWatch idle_;
   Desk desk_;
   farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
   bool streaming_ = false;
