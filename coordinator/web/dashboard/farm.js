@@ -1,15 +1,14 @@
 // The farm at a glance: what is wrong, who is there, how fast, what runs, what waits.
 import * as api from './api.js';
-import { bar, chip, nothing } from './parts.js';
+import { bar, chip, command, nothing } from './parts.js';
 import { counted, duration, moment, percent, rate, rateInWords, whole } from './format.js';
 import { farm, isOpen, learnJobs, onFarm, speed } from './farm_state.js';
 import { h, keyed, setText } from './dom.js';
 import { flowChart } from './chart.js';
 import { Alerts } from './alerts.js';
-import { noJobs } from './jobs.js';
-import { noWorkers } from './workers.js';
+import { noJobs, noWorkers, welcome, workerCommand } from './welcome.js';
 import { preview } from './preview.js';
-import { share } from './job_state.js';
+import { leftOf, share } from './job_state.js';
 import { starMap } from './stars.js';
 import { Thumbs } from './thumbs.js';
 import { to } from './router.js';
@@ -86,7 +85,15 @@ class FarmView {
       this.queueBox,
       this.workersBox,
     );
-    this.node = h('div', { class: 'view' }, h('h1', { class: 'unseen', text: 'Farm' }), this.alerts.node, this.grid);
+    this.fresh = h('div', { hidden: true });
+    this.node = h(
+      'div',
+      { class: 'view' },
+      h('h1', { class: 'unseen', text: 'Farm' }),
+      this.alerts.node,
+      this.fresh,
+      this.grid,
+    );
     this.leaveFarm = onFarm((what) => this.draw(what));
     // Those that have ended lately: what failed at night is seen in the morning.
     api
@@ -112,7 +119,11 @@ class FarmView {
   draw(what) {
     if (!farm.info) return;
     // A farm that has just been set up: what to do first, and nothing else.
-    this.grid.classList.toggle('fresh', this.asked === true && farm.workers.size === 0 && farm.jobs.size === 0);
+    const fresh = this.asked === true && farm.workers.size === 0 && farm.jobs.size === 0;
+    if (fresh && !this.fresh.firstChild) this.fresh.append(welcome());
+    this.fresh.hidden = !fresh;
+    this.grid.hidden = fresh;
+    if (fresh) return;
     const is = (name) => what === null || what.has(name);
     if (is('info') || is('jobs') || is('workers')) this.alerts.draw();
     if (is('series')) {
@@ -141,6 +152,7 @@ class FarmView {
     const open = inOrder(farm.jobs.values());
     const running = open.filter((job) => job.state === 'running' && job.leased > 0).slice(0, MOST_NOW);
     const rest = open.filter((job) => !running.includes(job));
+    this.now.dataset.count = running.length;
     keyed(
       this.now,
       running,
@@ -166,8 +178,9 @@ class FarmView {
                     'Nothing is being rendered',
                     h('p', {
                       class: 'soft',
-                      text: none === 'alone' ? 'Jobs wait for a worker.' : 'The jobs in the queue wait; each says why.',
+                      text: none === 'alone' ? 'Jobs wait for a worker:' : 'The jobs in the queue wait; each says why.',
                     }),
+                    none === 'alone' && command(workerCommand()),
                   ),
             ]),
       );
@@ -252,13 +265,17 @@ class FarmView {
       'a',
       { class: 'now', href: to('job', { job: job.id }), testid: 'now-job' },
       picture.node,
-      h('span', { class: 'now-line' }, name, left),
-      gauge,
-      h('span', { class: 'now-line' }, sub, speedText),
+      h(
+        'span',
+        { class: 'now-text' },
+        h('span', { class: 'now-line' }, name, left),
+        gauge,
+        h('span', { class: 'now-line' }, sub, speedText),
+      ),
     );
     node.refresh = (now) => {
       setText(name, now.name);
-      setText(left, now.seconds_left >= 0 ? `${duration(now.seconds_left)} left` : '');
+      setText(left, Number.isFinite(leftOf(now)) ? `${duration(leftOf(now))} left` : '');
       gauge.set(share(now), { failed: now.frames > 0 ? now.frames_failed / now.frames : 0, state: now.state });
       setText(sub, `${percent(share(now))} · ${whole(now.frames_done)} of ${counted(now.frames, 'frame')}`);
       setText(speedText, rate(now.samples_per_second));

@@ -314,7 +314,7 @@ class Flipbook {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    setText(this.label, `${number}`);
+    setText(this.label, `Frame ${number}`);
     this.scrub.value = this.at;
     this.scrub.setAttribute('aria-valuetext', `Frame ${number}`);
     this.open.href = to('frame', { job: this.id, frame: number });

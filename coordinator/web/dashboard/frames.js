@@ -20,6 +20,9 @@ const FILTERS = [
   ['failed', 'Failed'],
   ['doubtful', 'In doubt'],
 ];
+/** What stands where there is no picture yet, while there are no more frames than FEW. */
+const EMPTY = { waiting: 'waits for a worker', rendering: 'begun', finishing: 'begun', failed: 'failed' };
+const FEW = 4;
 /** Browsers do not know elements that are much taller (Firefox: 17.9 million); beyond it, scrolling is geared. */
 const TALLEST = 8e6;
 
@@ -175,7 +178,7 @@ export class Frames {
     const wish =
       many === 1
         ? Math.min(width, 960, (innerHeight * 0.62) / this.aspect)
-        : many <= 4 && this.size === 'medium'
+        : many <= FEW && this.size === 'medium'
           ? 340
           : Math.min(SIZES[this.size], Math.max(96, (width - GAP) / 2 - GAP));
     const columns = many === 1 ? 1 : Math.max(1, Math.floor((width + GAP) / (wish + GAP)));
@@ -236,6 +239,7 @@ export class Frames {
     const note = h('span', { class: 'frame-note' });
     const mark = chip('waiting');
     const line = h('i', { class: 'frame-line' });
+    const empty = h('span', { class: 'frame-empty', 'aria-hidden': 'true' });
     const link = h(
       'a',
       {
@@ -246,11 +250,11 @@ export class Frames {
           this.roving();
         },
       },
-      h('span', { class: 'frame-picture' }, image, line),
+      h('span', { class: 'frame-picture' }, image, empty, line),
       h('span', { class: 'frame-caption' }, mark, name, note),
     );
     const node = h('div', { class: 'frame-cell', role: 'listitem' }, link);
-    const cell = { node, link, image, name, note, mark, line, frame: null };
+    const cell = { node, link, image, name, note, mark, line, empty, frame: null };
     return cell;
   }
 
@@ -283,6 +287,8 @@ export class Frames {
                 : '',
       );
       cell.line.style.transform = `scaleX(${part})`;
+      // Of few frames, each is told; of many, the mark says it.
+      setText(cell.empty, this.list.length <= FEW ? (EMPTY[frame.state] ?? '') : '');
       cell.link.title =
         frame.reason ||
         (frame.worker_class
@@ -341,6 +347,14 @@ export class Frames {
     const next = at + step;
     if (next < 0 || next >= this.list.length) return;
     this.focusOn(next);
+  }
+
+  /** Moves the focus by so many frames; into the grid where it is elsewhere. */
+  step(by) {
+    const at = Math.max(0, this.list.indexOf(this.active));
+    const inside = this.grid.contains(document.activeElement);
+    const next = inside ? Math.min(this.list.length - 1, Math.max(0, at + by)) : at;
+    if (next < this.list.length) this.focusOn(next);
   }
 
   focusOn(index) {

@@ -4,7 +4,7 @@ import { bar, chip, figure, nothing } from './parts.js';
 import { archiveAddress, explain } from './api.js';
 import { bytes, clock, counted, duration, moment, percent, rateInWords, short, whole } from './format.js';
 import { h, keyed, say, setText } from './dom.js';
-import { share, watchJob } from './job_state.js';
+import { leftOf, lookOf, share, watchJob } from './job_state.js';
 import { TABS, to } from './router.js';
 import { documentTab } from './document.js';
 import { Frames } from './frames.js';
@@ -25,6 +25,7 @@ function framesTab(state) {
     update: (changed) => frames.update(changed),
     shown: () => frames.update(null),
     atPlace: () => frames.atPlace(),
+    step: (by) => frames.step(by),
     leave: () => frames.leave(),
   };
 }
@@ -51,6 +52,8 @@ class JobView {
           location.hash = to('job', { job: this.id, tab: name });
         },
       })),
+      { keys: 'j', what: 'Next frame or file', run: () => this.content.step?.(1) },
+      { keys: 'k', what: 'The one before', run: () => this.content.step?.(-1) },
       {
         keys: 'p',
         what: 'Pause or resume',
@@ -61,6 +64,13 @@ class JobView {
         what: 'Flip-book',
         run: () => {
           location.hash = to('play', { job: this.id });
+        },
+      },
+      {
+        keys: 'Escape',
+        what: 'Back to the jobs',
+        run: () => {
+          location.hash = to('jobs');
         },
       },
     ];
@@ -236,7 +246,7 @@ class JobView {
   drawHead(job) {
     setText(this.name, job.name);
     if (this.was && this.was !== job.state) say(`The job is ${job.state}.`);
-    this.chip.set(job.state);
+    this.chip.set(lookOf(job));
     const meta = [
       `#${job.id}`,
       job.owner && `by ${job.owner}`,
@@ -257,9 +267,12 @@ class JobView {
     figures.frames.set(
       `${whole(job.frames_done)} / ${whole(job.frames)}${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`,
     );
-    figures.left.set(!open ? '–' : job.seconds_left >= 0 ? duration(job.seconds_left) : 'not known');
-    figures.left.title = open && job.seconds_left >= 0 ? `about ${clock(Date.now() + job.seconds_left * 1000)}` : '';
-    figures.speed.set(open && job.samples_per_second > 0 ? rateInWords(job.samples_per_second) : '–');
+    const left = leftOf(job);
+    const told = Number.isFinite(left);
+    figures.left.set(told ? duration(left) : '–');
+    figures.left.title = told ? `until about ${clock(Date.now() + left * 1000)}` : '';
+    const runs = lookOf(job) === 'running' && job.samples_per_second > 0;
+    figures.speed.set(runs ? rateInWords(job.samples_per_second) : '–');
     figures.leased.set(open ? whole(job.leased) : '–');
     setText(figures.took.firstChild, open ? 'Since submit' : 'Took');
     figures.took.set(duration(((job.ended_ms || Date.now()) - job.submitted_ms) / 1000));

@@ -122,6 +122,16 @@ export function watchJob(id, listener) {
 /** How much of a job is rendered, 0..1. */
 export const share = (job) => (job.samples > 0 ? Math.min(1, job.samples_done / job.samples) : 0);
 
+/** What people call its state: a job that runs is 'waiting' while no worker has any of it. */
+export const lookOf = (job) => (job.state === 'running' && job.leased === 0 && share(job) < 1 ? 'waiting' : job.state);
+
+/** Longer is not told: it only says that next to nothing was rendered lately. */
+const LONGEST_LEFT = 400 * 86400;
+
+/** Seconds to its end; Infinity where nobody can tell. */
+export const leftOf = (job) =>
+  lookOf(job) === 'running' && job.seconds_left >= 0 && job.seconds_left < LONGEST_LEFT ? job.seconds_left : Infinity;
+
 /** How much of a frame is rendered, 0..1. */
 export const frameShare = (frame) =>
   frame.state === 'done' ? 1 : frame.samples > 0 ? Math.min(1, frame.samples_done / frame.samples) : 0;

@@ -4,7 +4,7 @@ import { counted, duration, moment, percent, rate, whole } from './format.js';
 import { h, setText } from './dom.js';
 import { askPriority } from './job_actions.js';
 import { isOpen } from './farm_state.js';
-import { share } from './job_state.js';
+import { leftOf, lookOf, share } from './job_state.js';
 import { Table } from './table.js';
 import { to } from './router.js';
 
@@ -34,9 +34,7 @@ function progressCell(td, job) {
   td.title = `${counted(job.frames, 'frame')}, ${whole(job.frames_done)} done${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`;
 }
 
-const left = (job) => (job.state === 'running' && job.seconds_left >= 0 ? job.seconds_left : Infinity);
-
-const ORDER = { running: 0, paused: 1, failed: 2, cancelled: 3, done: 4 };
+const ORDER = { running: 0, waiting: 1, paused: 2, failed: 3, cancelled: 4, done: 5 };
 /** Seconds from its submission to its end, or to now. */
 const elapsed = (job, now = Date.now()) => ((job.ended_ms || now) - job.submitted_ms) / 1000;
 
@@ -83,18 +81,18 @@ const columns = [
   {
     key: 'state',
     label: 'State',
-    sort: (job) => ORDER[job.state] ?? 9,
+    sort: (job) => ORDER[lookOf(job)] ?? 9,
     up: true,
-    cell: (td, job) => (td.firstChild ? td.firstChild.set(job.state) : td.append(chip(job.state))),
+    cell: (td, job) => (td.firstChild ? td.firstChild.set(lookOf(job)) : td.append(chip(lookOf(job)))),
   },
   { key: 'progress', label: 'Progress', sort: share, cell: progressCell },
   {
     key: 'left',
     label: 'Time left',
     kind: 'num',
-    sort: left,
+    sort: leftOf,
     up: true,
-    cell: (td, job) => setText(td, Number.isFinite(left(job)) ? duration(left(job)) : ''),
+    cell: (td, job) => setText(td, Number.isFinite(leftOf(job)) ? duration(leftOf(job)) : ''),
   },
   {
     key: 'speed',
@@ -102,7 +100,8 @@ const columns = [
     kind: 'num',
     drop: 2,
     sort: (job) => (isOpen(job) ? job.samples_per_second : 0),
-    cell: (td, job) => setText(td, isOpen(job) && job.samples_per_second > 0 ? rate(job.samples_per_second) : ''),
+    cell: (td, job) =>
+      setText(td, lookOf(job) === 'running' && job.samples_per_second > 0 ? rate(job.samples_per_second) : ''),
   },
   {
     key: 'priority',

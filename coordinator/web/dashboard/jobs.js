@@ -1,12 +1,14 @@
 // All jobs: open ones live, ended ones brought in page by page.
 import * as api from './api.js';
 import { ACTIONS, act } from './job_actions.js';
+import { noJobs } from './welcome.js';
 import { nothing } from './parts.js';
 import { counted, whole } from './format.js';
 import { farm, isOpen, learnJobs, onFarm } from './farm_state.js';
 import { h, oncePerFrame, setText, toast } from './dom.js';
 import { parse, replaceQuery, to } from './router.js';
 import { icon } from './icons.js';
+import { lookOf } from './job_state.js';
 import { jobTable } from './job_table.js';
 
 const PAGE = 500;
@@ -14,23 +16,17 @@ const STATES = [
   ['open', 'Open'],
   ['', 'All'],
   ['running', 'Running'],
+  ['waiting', 'Waiting'],
   ['paused', 'Paused'],
   ['done', 'Done'],
   ['failed', 'Failed'],
   ['cancelled', 'Cancelled'],
 ];
+/** Of jobs that have not ended: all of these are known. */
+const OPEN_STATES = ['open', 'running', 'waiting', 'paused'];
 
 // How far back the ended ones are known; kept between visits of the view.
 const past = { before: null, whole: false };
-
-/** What is shown where there has never been a job. */
-export const noJobs = () =>
-  nothing(
-    'No jobs yet',
-    h('p', {}, 'Drop a job with its files anywhere on this page, or '),
-    h('p', {}, h('a', { class: 'button primary', href: to('submit'), text: 'Submit a job', testid: 'empty-submit' })),
-    h('p', { class: 'soft' }, 'From a terminal: ', h('code', { text: 'hyades submit job.yaml --watch' })),
-  );
 
 class JobsView {
   constructor(route) {
@@ -106,8 +102,8 @@ class JobsView {
     this.title = 'Jobs';
     this.keysTitle = 'Jobs';
     this.keys = [
-      { keys: 'j', what: 'Next job', run: () => this.step(1) },
-      { keys: 'k', what: 'Job before', run: () => this.step(-1) },
+      { keys: 'j', what: 'Next job', run: () => this.table.step(1) },
+      { keys: 'k', what: 'Job before', run: () => this.table.step(-1) },
       { keys: 'x', what: 'Choose the job', run: () => this.table.active !== null && this.choose(this.table.active) },
       { keys: 'Escape', what: 'Choose none', run: () => this.chooseNone() },
     ];
@@ -142,13 +138,13 @@ class JobsView {
   }
 
   get wantsEnded() {
-    return !['open', 'running', 'paused'].includes(this.query.state);
+    return !OPEN_STATES.includes(this.query.state);
   }
 
   fits(job) {
     const { state, owner } = this.query;
     return (
-      (state === '' || (state === 'open' ? isOpen(job) : job.state === state)) &&
+      (state === '' || (state === 'open' ? isOpen(job) : lookOf(job) === state)) &&
       (owner === '' || job.owner === owner) &&
       this.hasWords(job)
     );
@@ -172,13 +168,14 @@ class JobsView {
     this.table.setRows(all.filter((job) => this.fits(job)));
     const counts = { open: 0, '': all.length };
     for (const job of all) {
-      counts[job.state] = (counts[job.state] ?? 0) + 1;
+      const look = lookOf(job);
+      counts[look] = (counts[look] ?? 0) + 1;
       if (isOpen(job)) ++counts.open;
     }
     for (const pill of this.states.children) {
       const { state } = pill.dataset;
       pill.setAttribute('aria-pressed', state === this.query.state);
-      const known = ['open', 'running', 'paused'].includes(state) || past.whole;
+      const known = OPEN_STATES.includes(state) || past.whole;
       setText(pill.lastChild, known ? whole(counts[state] ?? 0) : '');
     }
     const owners = [...new Set(all.map((job) => job.owner).filter(Boolean))].sort();
@@ -242,12 +239,6 @@ class JobsView {
         this.loading = false;
       }, 5000);
     }
-  }
-
-  step(by) {
-    const at = this.table.rows.findIndex((job) => job.id === this.table.active);
-    const inside = this.table.body.contains(document.activeElement);
-    this.table.focusRow(inside ? Math.min(this.table.rows.length - 1, Math.max(0, at + by)) : Math.max(0, at));
   }
 
   choose(id, range = false) {

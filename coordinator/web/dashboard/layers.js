@@ -18,7 +18,7 @@ const NAMES = {
   motion: 'Motion',
   variance: 'Variance',
   samples: 'Samples per pixel',
-  noise: 'Noise (relative error)',
+  noise: 'Noise',
   object_id: 'Object ids',
   material_id: 'Material ids',
   denoised: 'Denoised',

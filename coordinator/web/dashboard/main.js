@@ -115,9 +115,14 @@ function themeButton() {
 }
 
 function makeTop() {
-  const count = h('span', { class: 'top-count', testid: 'top-count' });
-  const refresh = () =>
-    farm.info && setText(count, `${counted(farm.info.workers, 'worker')} · ${counted(farm.info.threads, 'thread')}`);
+  const workers = h('span', {});
+  const threads = h('span', { class: 'wide' });
+  const count = h('span', { class: 'top-count', testid: 'top-count' }, workers, threads);
+  const refresh = () => {
+    if (!farm.info) return;
+    setText(workers, counted(farm.info.workers, 'worker'));
+    setText(threads, ` · ${counted(farm.info.threads, 'thread')}`);
+  };
   onFarm(refresh);
   document.getElementById('top').append(
     h(

@@ -60,6 +60,7 @@ export function outputsTab(state) {
         key: 'frame',
         label: 'Frame',
         kind: 'num',
+        drop: 1,
         sort: ({ frame }) => frame,
         up: true,
         cell: (td, { frame }) => setText(td, frame),
@@ -154,6 +155,7 @@ export function outputsTab(state) {
     node,
     update,
     shown: draw,
+    step: (by) => table.step(by),
     leave: () => {
       stop.abort();
       table.leave();

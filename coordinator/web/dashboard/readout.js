@@ -60,7 +60,7 @@ export class Readout {
 }
 
 const ABOUT = {
-  noise: (middle) => `standard error over luminance; median ${middle}`,
+  noise: (middle) => `relative error; median ${middle}`,
   grey: () => 'nearest to farthest',
   heat: (middle) => `samples per pixel; median ${middle}`,
 };

@@ -1,64 +1,109 @@
 // The workers as stars of the Hyades: size by threads, light by speed, colour by state. Shows at a glance what the table says.
-import { calm, color, onTheme } from './theme.js';
+import { FIGURE, GIANT, placeOf, random, skyMap, unclaimed } from './star_places.js';
 import { h, oncePerFrame, setText } from './dom.js';
-import { rateInWords } from './format.js';
+import { calm } from './theme.js';
+import { counted, rateInWords } from './format.js';
 
-/** Right ascension and declination of the brightest members, degrees (J2000; epsilon, theta, delta, gamma Tauri and so on). */
-const MEMBERS = [
-  [67.154, 19.18],
-  [67.166, 15.871],
-  [64.948, 15.628],
-  [65.734, 17.543],
-  [66.372, 17.928],
-  [68.462, 14.844],
-  [69.788, 15.8],
-  [67.209, 13.048],
-  [66.587, 15.618],
-  [67.965, 15.852],
-  [65.151, 15.096],
-  [65.514, 14.077],
-  [65.855, 16.777],
-  [66.024, 17.444],
-  [67.11, 16.36],
-  [67.535, 15.638],
-  [67.656, 15.692],
-  [67.655, 13.724],
-  [64.99, 14.035],
-  [69.539, 12.511],
-  [67.144, 15.962],
-  [69.819, 15.918],
-];
-/** The V as it is drawn in atlases: epsilon, delta 3, delta 1, gamma, theta, Aldebaran. */
-const FIGURE = [
-  [67.154, 19.18],
-  [66.372, 17.928],
-  [65.734, 17.543],
-  [64.948, 15.628],
-  [67.15, 15.9],
-  [68.98, 16.509],
-];
-const CENTRE = [67, 16.9];
+/** It is night on this map in light themes too. */
+const PALETTE = {
+  active: '#cfdcff',
+  draining: '#ffb65c',
+  quarantined: '#ff7d87',
+  gone: '#7c88a2',
+  line: '#33405f',
+  dust: '#8f9dbd',
+  giant: '#ffa94d',
+  name: '#b6c2dc',
+};
+/** With more workers their names would be a thicket. */
+const MOST_NAMED = 24;
+const FLASH_MS = 900;
 
-function random(seed) {
-  let state = (seed * 2654435761) >>> 0;
-  return () => {
-    state = (state + 0x6d2b79f5) >>> 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
+const disc = (pen, x, y, r) => {
+  pen.beginPath();
+  pen.arc(x, y, r, 0, 7);
+};
+
+function halo(pen, x, y, r, colour, strength) {
+  const glow = pen.createRadialGradient(x, y, 0, x, y, r);
+  glow.addColorStop(0, colour);
+  glow.addColorStop(0.35, `${colour}66`);
+  glow.addColorStop(1, `${colour}00`);
+  pen.globalAlpha = strength;
+  pen.fillStyle = glow;
+  disc(pen, x, y, r);
+  pen.fill();
+  pen.globalAlpha = 1;
 }
 
-// The same colour, seen through: canvases mix 'transparent' as black.
-const clear = (css) => (css.startsWith('#') ? `${css.slice(0, 7)}00` : css.replace(/rgba?\(([^)]+)\)/, 'rgba($1, 0)'));
+function drawDust(pen, width, height) {
+  const next = random(5);
+  pen.fillStyle = PALETTE.dust;
+  for (let i = 0; i < (width * height) / 700; ++i) {
+    pen.globalAlpha = 0.08 + 0.34 * next() ** 3;
+    disc(pen, next() * width, next() * height, 0.3 + 0.6 * next());
+    pen.fill();
+  }
+  pen.globalAlpha = 1;
+}
 
-/** Where the star of worker `index` stands, degrees; those after the members scatter around the cluster's centre. */
-export function placeOf(index) {
-  if (index < MEMBERS.length) return MEMBERS[index];
-  const next = random(index + 7);
-  const far = 1.1 + 3.6 * Math.sqrt(-Math.log(1 - 0.95 * next()));
-  const angle = next() * 2 * Math.PI;
-  return [CENTRE[0] + far * Math.cos(angle) * 1.15, CENTRE[1] + far * Math.sin(angle) * 0.55];
+function drawFigure(pen, put, count) {
+  pen.strokeStyle = PALETTE.line;
+  pen.lineWidth = 1.2;
+  pen.beginPath();
+  FIGURE.forEach((place, i) => pen[i === 0 ? 'moveTo' : 'lineTo'](...put(place)));
+  pen.stroke();
+  pen.fillStyle = PALETTE.dust;
+  for (const place of unclaimed(count)) {
+    disc(pen, ...put(place), 1.2);
+    pen.fill();
+  }
+  const [x, y] = put(GIANT);
+  halo(pen, x, y, 16, PALETTE.giant, 0.4);
+  pen.fillStyle = PALETTE.giant;
+  disc(pen, x, y, 3.4);
+  pen.fill();
+}
+
+/** `light` 0..1, `flash` 1..0 after it has delivered. */
+function drawStar(pen, { x, y, r, worker }, light, flash) {
+  const colour = PALETTE[worker.state] ?? PALETTE.gone;
+  if (worker.state === 'active' || worker.state === 'draining') {
+    halo(pen, x, y, r * (4 + 2 * flash), colour, 0.35 + 0.4 * light + 0.25 * flash);
+    pen.fillStyle = colour;
+    pen.globalAlpha = 0.6 + 0.4 * light;
+    disc(pen, x, y, r);
+    pen.fill();
+    pen.globalAlpha = 1;
+    return;
+  }
+  pen.strokeStyle = colour;
+  pen.lineWidth = 1.5;
+  disc(pen, x, y, r);
+  if (worker.state === 'quarantined') {
+    pen.moveTo(x - r * 0.6, y - r * 0.6);
+    pen.lineTo(x + r * 0.6, y + r * 0.6);
+  }
+  pen.stroke();
+}
+
+// Beside their stars, where there is room: a name that would lie over another one is left to the pointer.
+function drawNames(pen, stars, width) {
+  const taken = stars.map(({ x, y, r }) => [x - r, y - r, x + r, y + r]);
+  const free = (box) =>
+    taken.every((other) => box[0] > other[2] || box[2] < other[0] || box[1] > other[3] || box[3] < other[1]);
+  pen.font = '12px system-ui, sans-serif';
+  pen.fillStyle = PALETTE.name;
+  pen.textBaseline = 'middle';
+  for (const { x, y, r, worker } of stars) {
+    const long = pen.measureText(worker.name).width;
+    const left = [x + r + 7, x - r - 7 - long].find(
+      (at) => at > 4 && at + long < width - 4 && free([at, y - 7, at + long, y + 7]),
+    );
+    if (left === undefined) continue;
+    taken.push([left, y - 7, left + long, y + 7]);
+    pen.fillText(worker.name, left, y);
+  }
 }
 
 /** The map; `draw(workers, speedOf)`; `choose(worker)` when one is clicked. */
@@ -69,93 +114,35 @@ export function starMap(choose) {
   let workers = [];
   let speedOf = () => 0;
   let stars = [];
-  let palette = null;
   const lit = new Map();
   let timer = 0;
 
   const paint = oncePerFrame(() => {
-    const width = canvas.clientWidth;
-    const height = canvas.clientHeight;
+    const { clientWidth: width, clientHeight: height } = canvas;
     if (width === 0) return;
     const dense = devicePixelRatio;
-    canvas.width = Math.round(width * dense);
-    canvas.height = Math.round(height * dense);
+    Object.assign(canvas, { width: Math.round(width * dense), height: Math.round(height * dense) });
     const pen = canvas.getContext('2d');
     pen.scale(dense, dense);
-    palette ??= {
-      active: color('--star'),
-      draining: color('--warm'),
-      quarantined: color('--red'),
-      gone: color('--faint'),
-      line: color('--line'),
-      dust: color('--line-strong'),
-    };
-    const scale = Math.min(width / 7.5, height / 7.4);
-    // East is left, as in the sky.
-    const put = ([ra, dec]) => [
-      width / 2 - (ra - CENTRE[0]) * scale * 1.5,
-      height / 2 - (dec - CENTRE[1] + 0.75) * scale,
-    ];
-    const next = random(5);
-    pen.fillStyle = palette.dust;
-    for (let i = 0; i < width / 6; ++i) {
-      pen.globalAlpha = 0.1 + 0.3 * next();
-      const r = 0.4 + 0.5 * next();
-      pen.fillRect(next() * width, next() * height, r, r);
-    }
-    // Members that no worker has taken yet.
-    for (const member of MEMBERS.slice(workers.length)) {
-      pen.globalAlpha = 0.5;
-      pen.beginPath();
-      pen.arc(...put(member), 1.1, 0, 7);
-      pen.fill();
-    }
-    pen.globalAlpha = 1;
-    pen.strokeStyle = palette.line;
-    pen.lineWidth = 1.2;
-    pen.beginPath();
-    FIGURE.forEach((point, i) => pen[i === 0 ? 'moveTo' : 'lineTo'](...put(point)));
-    pen.stroke();
+    const put = skyMap(workers.length, width, height);
+    drawDust(pen, width, height);
+    drawFigure(pen, put, workers.length);
     const fastest = Math.max(1, ...workers.map(speedOf));
     const now = performance.now();
-    let again = false;
+    const size = workers.length > 60 ? 0.7 : 1;
     stars = workers.map((worker, i) => {
       const [x, y] = put(placeOf(i));
-      const working = worker.state === 'active' || worker.state === 'draining';
-      const r = 1.8 + 0.55 * Math.log2(1 + worker.threads);
-      pen.fillStyle = pen.strokeStyle = palette[worker.state] ?? palette.gone;
-      if (working) {
-        // A star that has just delivered is brighter for a moment.
-        const since = (now - (lit.get(worker.id)?.at ?? -1e9)) / 900;
-        const flash = since < 1 && !calm() ? 1 - since : 0;
-        again ||= flash > 0;
-        const light = 0.25 + 0.75 * (speedOf(worker) / fastest);
-        const glow = pen.createRadialGradient(x, y, 0, x, y, r * (3 + 1.4 * flash));
-        glow.addColorStop(0, pen.fillStyle);
-        glow.addColorStop(1, clear(pen.fillStyle));
-        pen.globalAlpha = 0.34 * light + 0.25 * flash;
-        pen.fillStyle = glow;
-        pen.beginPath();
-        pen.arc(x, y, r * (3 + 1.4 * flash), 0, 7);
-        pen.fill();
-        pen.globalAlpha = 0.45 + 0.55 * light;
-        pen.fillStyle = palette[worker.state];
-        pen.beginPath();
-        pen.arc(x, y, r, 0, 7);
-        pen.fill();
-      } else {
-        pen.lineWidth = 1.5;
-        pen.beginPath();
-        pen.arc(x, y, r, 0, 7);
-        if (worker.state === 'quarantined') {
-          pen.moveTo(x - r * 0.6, y - r * 0.6);
-          pen.lineTo(x + r * 0.6, y + r * 0.6);
-        }
-        pen.stroke();
-      }
-      pen.globalAlpha = 1;
-      return { worker, x, y, r };
+      return { worker, x, y, r: size * (2.4 + 0.6 * Math.log2(1 + worker.threads)) };
     });
+    let again = false;
+    for (const star of stars) {
+      // A star that has just delivered is brighter for a moment.
+      const since = (now - (lit.get(star.worker.id)?.at ?? -1e9)) / FLASH_MS;
+      const flash = since < 1 && !calm() ? 1 - since : 0;
+      again ||= flash > 0;
+      drawStar(pen, star, speedOf(star.worker) / fastest, flash);
+    }
+    if (workers.length <= MOST_NAMED) drawNames(pen, stars, width);
     clearTimeout(timer);
     if (again) timer = setTimeout(paint, 60);
   });
@@ -176,10 +163,8 @@ export function starMap(choose) {
     canvas.style.cursor = star ? 'pointer' : '';
     if (!star) return;
     const { worker } = star;
-    setText(
-      tip,
-      `${worker.name} · ${worker.state === 'active' ? rateInWords(speedOf(worker)) : worker.state} · ${worker.threads} threads`,
-    );
+    const does = worker.state === 'active' ? rateInWords(speedOf(worker)) : worker.state;
+    setText(tip, `${worker.name} · ${does} · ${counted(worker.threads, 'thread')}`);
     tip.style.left = `${Math.max(4, Math.min(star.x + 10, canvas.clientWidth - tip.offsetWidth - 4))}px`;
     tip.style.top = `${star.y > 40 ? star.y - 34 : star.y + 12}px`;
   });
@@ -192,10 +177,6 @@ export function starMap(choose) {
   });
   const resized = new ResizeObserver(paint);
   resized.observe(canvas);
-  const leaveTheme = onTheme(() => {
-    palette = null;
-    paint();
-  });
 
   return {
     node,
@@ -218,7 +199,6 @@ export function starMap(choose) {
       clearTimeout(timer);
       paint.cancel();
       resized.disconnect();
-      leaveTheme();
     },
   };
 }

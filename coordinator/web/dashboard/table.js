@@ -203,6 +203,13 @@ export class Table {
     }
   }
 
+  /** Moves the focus by so many rows; into the table where it is elsewhere. */
+  step(by) {
+    const at = this.rows.findIndex((row) => this.rowKey(row) === this.active);
+    const inside = this.body.contains(document.activeElement);
+    this.focusRow(inside ? Math.min(this.rows.length - 1, Math.max(0, at + by)) : Math.max(0, at));
+  }
+
   focusRow(index) {
     const row = this.rows[index];
     if (!row) return;

@@ -143,8 +143,8 @@ class FrameView {
       { keys: 'l', what: 'Next layer', run: () => this.setLayer(after(menu(), this.layer)) },
       { keys: 'n', what: 'Noise, and back', run: () => this.setLayer(this.layer === NOISE ? 'beauty' : NOISE) },
       { keys: 'c', what: 'Compare', run: () => this.compare.toggle() },
-      { keys: ',|PageUp', what: 'Frame before', run: () => follow(bar.previous) },
-      { keys: '.|PageDown', what: 'Next frame', run: () => follow(bar.next) },
+      { keys: ',|k|PageUp', what: 'Frame before', run: () => follow(bar.previous) },
+      { keys: '.|j|PageDown', what: 'Next frame', run: () => follow(bar.next) },
       { keys: 'f', what: 'Fill the screen', run: () => this.fill() },
       { keys: 'Escape', what: 'Back to the job', run: back },
     ];

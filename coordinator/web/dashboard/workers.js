@@ -1,21 +1,9 @@
 // All workers.
-import { command, nothing } from './parts.js';
 import { counted, rateInWords, whole } from './format.js';
 import { farm, onFarm, speed } from './farm_state.js';
 import { h, setText } from './dom.js';
+import { noWorkers } from './welcome.js';
 import { workerTable } from './worker_table.js';
-
-/** What is shown where nobody renders: how to start a worker. */
-export const noWorkers = () =>
-  nothing(
-    'No workers yet',
-    h('p', { text: 'Start one on each machine that is to render:' }),
-    command(`hyades worker --coordinator ${location.hostname || 'HOST'}:7700`),
-    h('p', {
-      class: 'soft',
-      text: '7700 is the usual port of a coordinator. Workers may come and go at any time, in mid-frame too.',
-    }),
-  );
 
 /** The view. */
 export function workersView() {
@@ -77,6 +65,11 @@ export function workersView() {
   return {
     node,
     title: 'Workers',
+    keysTitle: 'Workers',
+    keys: [
+      { keys: 'j', what: 'Next worker', run: () => table.step(1) },
+      { keys: 'k', what: 'Worker before', run: () => table.step(-1) },
+    ],
     shown: draw,
     leave: () => {
       leave();

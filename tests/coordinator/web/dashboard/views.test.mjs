@@ -18,7 +18,7 @@ const { byTile, byWorker } = await import('../../../../coordinator/web/dashboard
 const { choose } = await import('../../../../coordinator/web/dashboard/preview.js');
 const { grouped, kindOf, nameOf, rangeOf, sourcesOf } = await import('../../../../coordinator/web/dashboard/layers.js');
 const { toneOf } = await import('../../../../coordinator/web/dashboard/viewer.js');
-const { placeOf } = await import('../../../../coordinator/web/dashboard/stars.js');
+const { placeOf } = await import('../../../../coordinator/web/dashboard/star_places.js');
 
 const job = (id, more) => ({
   id,
