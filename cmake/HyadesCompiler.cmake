@@ -28,6 +28,9 @@ if(HYADES_WERROR)
   add_compile_options(-Werror)
 endif()
 
+if(HYADES_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
 if(HYADES_SANITIZE)
   add_compile_options(-fsanitize=${HYADES_SANITIZE} -fno-omit-frame-pointer
                       -fno-sanitize-recover=all)
