@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cli/command_line.h"
+#include "cli/display/shown_films.h"
 #include "cli/film_room.h"
 #include "cli/frame_range.h"
 #include "cli/interrupt.h"
@@ -177,7 +178,13 @@ int render_command(int argc, char** argv) {
   }
   // What is durable is safe however the process ends.
   watch_for_interrupts();
-  coordinator::LocalRun run(plan, log, frames, frames);
+  std::optional<Viewer> viewer;
+  std::optional<ShownFilms> shown;
+  if (!options.display.empty()) {
+    viewer.emplace(options.display);
+    shown.emplace(*viewer, job.name, job.frames.first != job.frames.last);
+  }
+  coordinator::LocalRun run(plan, log, frames, frames, shown ? &*shown : nullptr);
   if (auto started = run.start(); !started) {
     std::fprintf(stderr, "%s\n", started.error().message.c_str());
     return 1;
@@ -193,15 +200,23 @@ int render_command(int argc, char** argv) {
   for (const std::string& problem : run.log_problems())
     std::fprintf(stderr, "%s\n", problem.c_str());
   ProgressDisplay display(job.name, options.quiet);
+  const auto tell_of_viewer = [&] {
+    const auto notice = viewer ? viewer->take_notice() : std::nullopt;
+    if (!notice) return;
+    display.clear();
+    std::fprintf(stderr, "%s\n", notice->c_str());
+  };
   bool stopping = false;
   while (!run.wait_for(std::chrono::milliseconds(50))) {
     if (interrupted() && !stopping) {
       stopping = true;
       run.stop();
     }
+    tell_of_viewer();
     display.update(run.progress());
   }
   display.clear();
+  tell_of_viewer();
   const coordinator::LocalOutcome outcome = run.outcome();
   int status = report(options, frames, *numbers, outcome, run.progress());
   const bool all_frames = core::are_all_frames(job, *numbers);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/address_option.h"
 #include "cli/command_line.h"
 #include "cli/frame_range.h"
 #include "cli/preview.h"
@@ -41,6 +42,10 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
          "most memory for the pixels of textures, such as 2G; others lie in files of TMPDIR "
          "(default: a quarter of what is here)")
       ->transform(CLI::AsSizeValue(false));
+  app.add_option("--display", options.display,
+                 "HOST:PORT of the viewer tev: shows the picture there while it is rendered, with "
+                 "all its layers (tev listens on 127.0.0.1:14158)")
+      ->check(address_error);
   app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
   app.add_flag("--film", options.film,
                "also write each frame's film (NAME.film.exr), for 'hyades merge', as keep_films in "
@@ -52,6 +57,7 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       "  hyades render jobs/quickstart/job.yaml\n"
       "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
       "  hyades render jobs/atlas/job.yaml --preview\n"
+      "  hyades render jobs/cornell/job.yaml --display 127.0.0.1:14158\n"
       "  hyades render robot.glb --samples 64\n"
       "  hyades render bottles.obj --media media.json\n"
       "Ctrl-C stops; --resume continues, also after a crash.\n"

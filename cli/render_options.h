@@ -23,7 +23,8 @@ struct RenderOptions {
   uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
   uint64_t texture_memory = core::TexelStore::default_budget();  ///< bytes
   std::vector<int> crop;
-  int preview = 0;  ///< width in pixels; 0: the job as it is
+  std::string display;  ///< HOST:PORT of a viewer; empty: none
+  int preview = 0;      ///< width in pixels; 0: the job as it is
   bool resume = false;
   bool quiet = false;
   bool film = false;

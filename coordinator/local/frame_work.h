@@ -49,4 +49,19 @@ class FrameSink {
   virtual bool outputs_exist(int32_t frame) = 0;
 };
 
+/// Who looks at films while they grow. Both functions are called by threads that others wait for:
+/// they return soon, and keep nothing of the film.
+class FilmAudience {
+ public:
+  virtual ~FilmAudience() = default;
+
+  /// A unit of `tile` has been merged into the frame's film. What an earlier run left in a film is
+  /// in it at the first call.
+  virtual void grown(int32_t frame, const core::Film& film, const core::PixelRect& tile) = 0;
+
+  /// Nothing more comes to the frame's film. Called again where its outputs could not be written
+  /// at first.
+  virtual void complete(int32_t frame, const core::Film& film) = 0;
+};
+
 }  // namespace hyades::coordinator

@@ -28,20 +28,27 @@ void LocalRun::act(const Merge& merge) {
   if (const core::Status merged = keeper_.merge(merge.record); !merged) {
     const std::lock_guard lock(mutex_);
     end_locked("a film cannot be merged: " + merged.error().message);
-  } else {
-    note_film(merge.unit.frame, *keeper_.film(merge.unit.frame));
+    return;
   }
+  const core::Film& film = *keeper_.film(merge.unit.frame);
+  note_film(merge.unit.frame, film);
+  if (audience_ != nullptr) audience_->grown(merge.unit.frame, film, merge.unit.tile);
 }
 
 void LocalRun::act(const FinishFrame& finish) {
-  const std::lock_guard lock(mutex_);
-  works_.erase(finish.frame);
-  in_flight_.insert(finish.frame);
-  // The keeper's films are its thread's; a second attempt comes from the finishing thread.
-  auto& film = complete_[finish.frame];
-  if (!film) film = keeper_.film(finish.frame);
-  to_finish_.push_back({finish.frame, film});
-  finish_wake_.notify_one();
+  std::shared_ptr<const core::Film> film;
+  {
+    const std::lock_guard lock(mutex_);
+    works_.erase(finish.frame);
+    in_flight_.insert(finish.frame);
+    // The keeper's films are its thread's; a second attempt comes from the finishing thread.
+    auto& complete = complete_[finish.frame];
+    if (!complete) complete = keeper_.film(finish.frame);
+    film = complete;
+    to_finish_.push_back({finish.frame, film});
+    finish_wake_.notify_one();
+  }
+  if (audience_ != nullptr) audience_->complete(finish.frame, *film);
 }
 
 void LocalRun::act(const FrameDone& done) {

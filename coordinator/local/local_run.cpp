@@ -28,11 +28,13 @@ double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
 
 }  // namespace
 
-LocalRun::LocalRun(LocalPlan plan, LocalLog log, FrameSource& source, FrameSink& sink)
+LocalRun::LocalRun(LocalPlan plan, LocalLog log, FrameSource& source, FrameSink& sink,
+                   FilmAudience* audience)
     : plan_(std::move(plan)),
       log_(std::move(log)),
       source_(source),
       sink_(sink),
+      audience_(audience),
       scheduler_(scheduler_options(plan_)),
       keeper_(plan_, log_, *this) {
   plan_.threads = std::max(plan_.threads, 1);

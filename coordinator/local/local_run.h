@@ -28,8 +28,9 @@ namespace hyades::coordinator {
 /// tile size, and how often the run was stopped, killed and resumed.
 class LocalRun : private FilmKeeper::Owner {
  public:
-  /// `source` and `sink` outlive the run.
-  LocalRun(LocalPlan plan, LocalLog log, FrameSource& source, FrameSink& sink);
+  /// `source`, `sink` and `audience`, which may be null, outlive the run.
+  LocalRun(LocalPlan plan, LocalLog log, FrameSource& source, FrameSink& sink,
+           FilmAudience* audience = nullptr);
   /// Stops, and waits for all threads, also for a frame that is being loaded or finished.
   ~LocalRun() override;
 
@@ -113,6 +114,7 @@ class LocalRun : private FilmKeeper::Owner {
   const LocalLog log_;
   FrameSource& source_;
   FrameSink& sink_;
+  FilmAudience* const audience_;
   std::vector<std::string> log_problems_;
   std::atomic<bool> stop_{false};  ///< seen by whoever renders or loads
 

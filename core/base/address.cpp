@@ -1,4 +1,4 @@
-#include "farm/address.h"
+#include "core/base/address.h"
 
 #include <arpa/inet.h>
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace hyades::farm {
+namespace hyades::core {
 namespace {
 
 constexpr std::string_view kHostCharacters =
@@ -32,14 +32,23 @@ bool is_port(std::string_view text) {
 
 }  // namespace
 
-core::Status check_address(const std::string& text) {
+Status check_address(const std::string& text) {
   const size_t colon = text.rfind(':');
   if (colon != std::string::npos && is_host(text.substr(0, colon)) &&
       is_port(std::string_view(text).substr(colon + 1))) {
     return {};
   }
-  return core::Error{"expected HOST:PORT (an IPv6 address in brackets, a port up to 65535), not '" +
-                     text + "'"};
+  return Error{"expected HOST:PORT (an IPv6 address in brackets, a port up to 65535), not '" +
+               text + "'"};
 }
 
-}  // namespace hyades::farm
+Address split_address(const std::string& text) {
+  const size_t colon = text.rfind(':');
+  Address address{text.substr(0, colon), text.substr(colon + 1)};
+  if (address.host.starts_with('[')) {
+    address.host = address.host.substr(1, address.host.size() - 2);
+  }
+  return address;
+}
+
+}  // namespace hyades::core
