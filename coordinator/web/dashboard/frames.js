@@ -235,7 +235,8 @@ export class Frames {
 
   make() {
     const image = h('img', { alt: '', decoding: 'async', draggable: 'false' });
-    const name = h('span', { class: 'frame-name' });
+    const name = h('span', {});
+    const spoken = h('span', { class: 'frame-name' }, h('span', { class: 'unseen', text: 'Frame ' }), name);
     const note = h('span', { class: 'frame-note' });
     const mark = chip('waiting');
     const line = h('i', { class: 'frame-line' });
@@ -251,7 +252,7 @@ export class Frames {
         },
       },
       h('span', { class: 'frame-picture' }, image, empty, line),
-      h('span', { class: 'frame-caption' }, mark, name, note),
+      h('span', { class: 'frame-caption' }, spoken, mark, note),
     );
     const node = h('div', { class: 'frame-cell', role: 'listitem' }, link);
     const cell = { node, link, image, name, note, mark, line, empty, frame: null };
@@ -288,25 +289,12 @@ export class Frames {
       );
       cell.line.style.transform = `scaleX(${part})`;
       // Of few frames, each is told; of many, the mark says it.
-      setText(cell.empty, this.list.length <= FEW ? (EMPTY[frame.state] ?? '') : '');
+      setAttribute(cell.empty, 'data-text', this.list.length <= FEW ? (EMPTY[frame.state] ?? '') : '');
       cell.link.title =
         frame.reason ||
         (frame.worker_class
           ? `${frame.state}, class ${brief(frame.worker_class)}${frame.restarts ? `, begun anew ${counted(frame.restarts, 'time')}` : ''}`
           : '');
-      setAttribute(
-        cell.link,
-        'aria-label',
-        [
-          `Frame ${frame.id}`,
-          frame.doubtful && 'in doubt',
-          frame.state,
-          frame.state === 'rendering' && percent(part),
-          frame.reason,
-        ]
-          .filter(Boolean)
-          .join(', '),
-      );
     }
     this.thumbs.want(cell, { job: this.state.id, frame, width, show: (url, picture) => this.show(cell, url, picture) });
   }

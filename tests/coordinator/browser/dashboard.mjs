@@ -3,10 +3,9 @@ import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { at, finish, give, jobNow, page, pixelsOf, shot, step, until, url } from './page.mjs';
 
-const { HYADES_URL: url, HYADES_CHROMIUM: chromium, HYADES_MODULES: modules, HYADES_VICTIM: victim, HYADES_RENDER: render, HYADES_SCRATCH: scratch, HYADES_SHOTS: shots } = process.env;
-const playwright = createRequire(`${modules}/playwright-core/package.json`)('playwright-core');
+const { HYADES_VICTIM: victim, HYADES_RENDER: render, HYADES_SCRATCH: scratch } = process.env;
 
 const job = (name, frames, samples) => `hyades: 1
 name: ${name}
@@ -24,51 +23,7 @@ objects:
 outputs: [{file: ${name}.####.exr, layers: [beauty, normal, variance, samples]}, {file: ${name}.####.png, tone_map: filmic}]
 `;
 
-const browser = await playwright.chromium.launch({ executablePath: chromium, args: ['--no-sandbox', '--disable-dev-shm-usage', '--disable-gpu'] });
-const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true });
-context.setDefaultTimeout(60_000);
-const page = await context.newPage();
-const wrong = [];
-page.on('pageerror', (error) => wrong.push(`error in the page: ${error.message}`));
-page.on('console', (message) => {
-  if (message.type() === 'error' && !/status of (404|503|400|409)/.test(message.text())) wrong.push(`console: ${message.text()}`);
-});
-page.on('request', (request) => {
-  if (!request.url().startsWith(url) && !/^(blob|data):/.test(request.url())) wrong.push(`the page asked for ${request.url()}`);
-});
-
-const at = (id) => page.getByTestId(id);
-const shot = async (name) => {
-  if (!shots) return;
-  mkdirSync(shots, { recursive: true });
-  for (const scheme of ['light', 'dark']) {
-    await page.emulateMedia({ colorScheme: scheme });
-    await page.waitForTimeout(150);
-    await page.screenshot({ path: `${shots}/${name}-${scheme}.png` });
-  }
-};
-const step = async (what, does) => {
-  const begun = Date.now();
-  try {
-    await does();
-  } catch (error) {
-    console.error(`FAILED: ${what}\n${error.stack}\n${wrong.join('\n')}`);
-    if (shots) await page.screenshot({ path: `${shots}/failed.png` });
-    await browser.close();
-    process.exit(1);
-  }
-  console.log(`${what}: ${((Date.now() - begun) / 1000).toFixed(1)} s`);
-};
-const until = async (what, holds) => {
-  for (let i = 0; i < 600; ++i) {
-    if (await holds()) return;
-    await page.waitForTimeout(100);
-  }
-  assert.fail(what);
-};
-const give = (files) => at('pick-files').setInputFiles(files.map(([name, text]) => ({ name, mimeType: 'text/yaml', buffer: Buffer.from(text) })));
 const state = async () => (await at('job-state').textContent()).trim();
-const jobNow = async (id) => (await (await fetch(`${url}/api/v1/jobs/${id}`)).json()).job;
 
 let first = 0;
 let second = 0;
@@ -91,11 +46,14 @@ await step('a job with a mistake is refused with its line', async () => {
 });
 
 await step('a job is dropped on the page and taken', async () => {
-  const data = await page.evaluateHandle((text) => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File([text], 'endless.yaml', { type: 'text/yaml' }));
-    return transfer;
-  }, job('endless', 500, 65536));
+  const data = await page.evaluateHandle(
+    (text) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([text], 'endless.yaml', { type: 'text/yaml' }));
+      return transfer;
+    },
+    job('endless', 500, 65536),
+  );
   for (const type of ['dragenter', 'dragover', 'drop']) await page.dispatchEvent('body', type, { dataTransfer: data });
   await until('the dropped file is listed', async () => (await at('file-list').textContent()).includes('endless.yaml'));
   await shot('submit');
@@ -105,11 +63,47 @@ await step('a job is dropped on the page and taken', async () => {
   await until('its name is shown', async () => (await at('job-name').textContent()).trim() === 'endless');
 });
 
+await step('a whole folder is dropped: what is in it is found, and what systems leave there is not', async () => {
+  const folder = `${scratch}/dropped`;
+  mkdirSync(`${folder}/parts/deep`, { recursive: true });
+  writeFileSync(
+    `${folder}/job.yaml`,
+    job('foldered', 1, 16)
+      .replace('camera:', 'include: parts/light.yaml\ncamera:')
+      .replace(/^environment.*\n/m, ''),
+  );
+  writeFileSync(`${folder}/parts/light.yaml`, 'environment: {color: [0.2, 0.3, 0.4]}\n');
+  writeFileSync(`${folder}/parts/deep/notes.txt`, 'nothing that a job needs');
+  writeFileSync(`${folder}/.DS_Store`, 'left by a file manager');
+  await at('nav-submit').click();
+  await at('pick').waitFor();
+  const driver = await page.context().newCDPSession(page);
+  const { x, y, width, height } = await at('pick').boundingBox();
+  const data = { items: [], files: [folder], dragOperationsMask: 1 };
+  for (const type of ['dragEnter', 'dragOver', 'drop'])
+    await driver.send('Input.dispatchDragEvent', { type, x: x + width / 2, y: y + height / 2, data });
+  await until('the folder is read', async () =>
+    (
+      await at('file-list')
+        .textContent()
+        .catch(() => '')
+    ).includes('light.yaml'),
+  );
+  const listed = await at('file-list').textContent();
+  assert.ok(!listed.includes('.DS_Store'), listed);
+  await at('send').click();
+  await page.waitForURL((address) => /#\/jobs\/\d+$/.test(address.href) && !address.href.endsWith(`/${first}`));
+  await until('its name is shown', async () => (await at('job-name').textContent()).trim() === 'foldered');
+  await page.goto(`${url}/#/jobs/${first}`);
+});
+
 await step('the picture refines', async () => {
+  const image = page.locator('[data-testid=frame] img').first();
+  await image.waitFor();
   const pictures = new Set();
-  await until('a frame shows three pictures', async () => {
-    const source = await page.locator('[data-testid=frame] img').first().getAttribute('src').catch(() => null);
-    if (source) pictures.add(source);
+  await until('a frame shows three pictures whose pixels differ', async () => {
+    const pixels = await pixelsOf(image);
+    if (pixels !== null) pictures.add(pixels);
     return pictures.size >= 3;
   });
   await shot('job');
@@ -179,7 +173,12 @@ await step('a second job ends and its files are downloaded whole', async () => {
   const digest = createHash('sha256').update(bytes).digest('hex');
   assert.equal(digest, told.outputs.find(({ id }) => id === 'balls.0001.exr').sha256);
   const [archive] = await Promise.all([page.waitForEvent('download'), at('outputs-archive').click()]);
-  assert.equal(readFileSync(await archive.path()).subarray(0, 2).toString(), 'PK');
+  assert.equal(
+    readFileSync(await archive.path())
+      .subarray(0, 2)
+      .toString(),
+    'PK',
+  );
   // The farm's bits are those of one machine, whoever died.
   writeFileSync(`${scratch}/balls.yaml`, job('balls', 6, 64));
   execFileSync(render, ['render', `${scratch}/balls.yaml`, '--frames', '1', '--quiet', '--output', `${scratch}/truth`]);
@@ -201,8 +200,4 @@ await step('the other views are there', async () => {
   await shot('farm');
 });
 
-await browser.close();
-if (wrong.length > 0) {
-  console.error(wrong.join('\n'));
-  process.exit(1);
-}
+await finish();
