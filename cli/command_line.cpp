@@ -9,9 +9,7 @@
 #include "core/base/text.h"
 
 namespace hyades::cli {
-namespace {
 
-/// What is wrong with a command line, in our words; CLI11's where it has others than these.
 std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = error.what();
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
@@ -57,8 +55,6 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
   }
   return text;
 }
-
-}  // namespace
 
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv, int wrong) {
   try {

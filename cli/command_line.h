@@ -1,10 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
 namespace hyades::cli {
+
+/// What is wrong with a command line, in our words; CLI11's where it has others than these.
+std::string in_our_words(const CLI::App& app, const CLI::ParseError& error);
 
 /// Reads the command line into what `app` was told. The exit status where it ends the command: 0
 /// after --help, or `wrong` after one line on standard error, "hyades COMMAND: what is wrong".

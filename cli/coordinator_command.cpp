@@ -15,6 +15,7 @@
 
 #include "cli/address_option.h"
 #include "cli/command_line.h"
+#include "cli/config_file.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/notify/notifier.h"
 #include "coordinator/services/server.h"
@@ -235,6 +236,7 @@ int main(int argc, char** argv) {
                  "seconds that files which no job needs any more stay after their last use")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
+  hyades::cli::add_config_option(app);
   app.footer(
       "examples:\n"
       "  hyades coordinator --data /var/lib/hyades\n"

@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
+#include "cli/config_file.h"
 #include "cli/duration_option.h"
 #include "cli/peer_options.h"
 #include "core/base/machine.h"
@@ -94,6 +95,7 @@ int main(int argc, char** argv) {
                             "end after so long without work, such as 5m; also where no coordinator "
                             "answers (default: never)",
                             0.1);
+  hyades::cli::add_config_option(app);
   app.footer(
       "examples:\n"
       "  hyades worker\n"
