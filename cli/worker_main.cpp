@@ -91,6 +91,12 @@ int main(int argc, char** argv) {
                  "killed; 0: never")
       ->check(hang_limit_error)
       ->capture_default_str();
+  app.add_option(
+         "--sandbox", options.sandbox,
+         "of the process that renders: auto (as far as this machine can), require (else the "
+         "worker ends) or off")
+      ->check(CLI::IsMember({"auto", "require", "off"}))
+      ->capture_default_str();
   hyades::cli::add_duration(app, "--exit-when-idle", options.idle_limit,
                             "end after so long without work, such as 5m; also where no coordinator "
                             "answers (default: never)",

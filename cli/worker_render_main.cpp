@@ -19,6 +19,7 @@
 #include "worker/pipe/render_pipe.pb.h"
 #include "worker/render/process_memory.h"
 #include "worker/render/render_server.h"
+#include "worker/render/sandbox.h"
 #include "worker/render/scene_shelf.h"
 
 namespace {
@@ -47,17 +48,23 @@ int main(int argc, char** argv) {
   std::string cache;
   app.add_option("--threads", threads)->check(CLI::Range(1, 4096));
   app.add_option("--memory", memory);
+  std::string sandbox = "auto";
   app.add_option("--cache", cache)->required();
+  app.add_option("--sandbox", sandbox);
   CLI11_PARSE(app, argc, argv);
   // The worker decides when this process ends: a Ctrl-C reaches both.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   core::ignore_file_size_signal();
+  pipe::MessagePipe parent(kPipe);
+  const auto mode = worker::read_sandbox_mode(sandbox);
+  if (!mode) return refuse(parent, mode.error().message);
+  const auto lacking = worker::enter_sandbox(*mode, cache, kPipe + 1);
+  if (!lacking) return refuse(parent, lacking.error().message);
   // Scenes are built by as many threads as the machine has.
   const auto all_threads = static_cast<uint64_t>(threads + core::hardware_threads());
   worker::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);
 
-  pipe::MessagePipe parent(kPipe);
   const auto measured = core::this_class();
   if (!measured) return refuse(parent, measured.error().message);
   auto store = farm::ContentStore::open({cache, 0});
@@ -67,6 +74,7 @@ int main(int argc, char** argv) {
   ready.mutable_ready()->set_build(fmt::format("hyades {}, renderer {}, build {}", core::kVersion,
                                                core::kRendererRevision,
                                                core::build_id().substr(0, 12)));
+  ready.mutable_ready()->set_sandbox_lacks(*lacking);
   if (!parent.send(ready)) return 1;
 
   worker::SceneShelf shelf(**store, memory);

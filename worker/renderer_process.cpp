@@ -46,7 +46,9 @@ core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
                                     "--memory",
                                     std::to_string(options.memory),
                                     "--cache",
-                                    options.cache};
+                                    options.cache,
+                                    "--sandbox",
+                                    options.sandbox};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);

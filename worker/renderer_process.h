@@ -22,6 +22,7 @@ struct RendererOptions {
   std::string cache;    ///< folder of the content store
   int threads = 1;
   uint64_t memory = 0;  ///< bytes; 0: no limit
+  std::string sandbox = "auto";  ///< worker/render/sandbox.h
 };
 
 /// The child that renders: a process of its own, so that what a scene does to it (a crash, too much

@@ -20,6 +20,7 @@ struct WorkerOptions {
   double grace = 2.0;      ///< seconds from SIGTERM to the end
   double hang_limit = 60;  ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
   double idle_limit = 0;   ///< seconds without work after which it ends; 0: never (IdleWatch)
+  std::string sandbox = "auto";  ///< of the rendering child: auto, require or off
   std::string renderer;    ///< path of hyades-worker-render
 };
 

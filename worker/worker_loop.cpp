@@ -1,5 +1,7 @@
 #include "worker/worker_loop.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -41,6 +43,15 @@ constexpr milliseconds kGoodbye{200};
 
 Duration seconds(double value) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
+}
+
+/// What tells a folder from another of the same name; zeros where there is none.
+using FolderIdentity = std::pair<dev_t, ino_t>;
+
+FolderIdentity folder_identity(const std::string& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return {};
+  return {info.st_dev, info.st_ino};
 }
 
 /// One loop that everything happens in: other threads only post to it.
@@ -147,8 +158,10 @@ class Worker : private DeskPorts,
     renderer_.reset();
     renderer_started_ = Clock::now();
     renderer_ready_ = false;
+    cache_identity_ = folder_identity(options_.cache);
     auto started = RendererProcess::start(
-        {options_.renderer, options_.cache, options_.threads, options_.memory}, *this);
+        {options_.renderer, options_.cache, options_.threads, options_.memory, options_.sandbox},
+        *this);
     if (!started) {
       note(started.error().message);
       exit_status_ = 1;
@@ -163,6 +176,7 @@ class Worker : private DeskPorts,
       if (message.has_ready()) {
         renderer_ready_ = true;
         stillbirths_ = 0;
+        tell_sandbox(message.ready().sandbox_lacks());
         desk_.renderer_ready(message.ready());
         if (!ever_connected_) connect(Clock::now());
       } else if (message.has_not_ready()) {
@@ -190,7 +204,19 @@ class Worker : private DeskPorts,
     });
   }
 
+  /// Once: how far the rendering child is held.
+  void tell_sandbox(const std::string& lacking) {
+    if (lacking.empty() || sandbox_told_) return;
+    sandbox_told_ = true;
+    note("the process that renders is not wholly sandboxed: " + lacking);
+  }
+
   void tell_renderer(pipe::ToRenderer message) override {
+    // A sandbox opens the folder that was there when the child began, whatever its name means
+    // later.
+    if (renderer_ && message.has_job() && folder_identity(options_.cache) != cache_identity_) {
+      renderer_->kill("began with another folder as its cache");
+    }
     if (renderer_) renderer_->send(std::move(message));
   }
 
@@ -293,6 +319,8 @@ class Worker : private DeskPorts,
   bool renderer_ready_ = false;
   int stillbirths_ = 0;
   TimePoint renderer_started_;
+  FolderIdentity cache_identity_{};  ///< when the rendering child began
+  bool sandbox_told_ = false;
   std::string told_trouble_;
   std::optional<TimePoint> connect_at_;
   std::optional<TimePoint> restart_at_;

@@ -1,0 +1,65 @@
+// `hyades worker --sandbox`: the whole worker renders in it.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "tests/support/temp_folder.h"
+#include "tests/worker/process/process_testing.h"
+
+namespace hyades::worker {
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(WorkerSandbox, TheSameBitsInAWholeOne) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  WorkerProcess worker(coordinator.address(), folder.path().string(), {"--sandbox", "require"});
+  const bool all = coordinator.wait_for_all();
+  if (has(worker.log(), "has no whole sandbox")) GTEST_SKIP() << worker.log();
+  ASSERT_TRUE(all) << worker.log();
+  expect_whole(coordinator, made);
+  const std::string status = read_file("/proc/" + std::to_string(worker.renderer()) + "/status");
+  EXPECT_TRUE(has(status, "NoNewPrivs:\t1")) << status;
+  EXPECT_TRUE(has(status, "Seccomp:\t2")) << status;
+}
+
+TEST(WorkerSandbox, OffItSaysSo) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  WorkerProcess worker(coordinator.address(), folder.path().string(), {"--sandbox", "off"});
+  ASSERT_TRUE(coordinator.wait_for_all()) << worker.log();
+  expect_whole(coordinator, made);
+  EXPECT_TRUE(has(worker.log(), "is not wholly sandboxed: switched off")) << worker.log();
+}
+
+/// A sandbox holds on to the folder that was there when it was entered.
+TEST(WorkerSandbox, ACacheThatBecomesAnotherFolderIsReadAllTheSame) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  coordinator.stop();
+  WorkerProcess worker(coordinator.address(), folder.path().string());
+  const std::filesystem::path cache = folder.path() / "cache";
+  // Its renderer is ready by then.
+  for (int i = 0; i < 600 && !has(worker.log(), "no connection"); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  std::filesystem::rename(cache, folder.path() / "elsewhere");
+  std::filesystem::copy(folder.path() / "elsewhere", cache,
+                        std::filesystem::copy_options::recursive);
+  coordinator.start();
+  ASSERT_TRUE(coordinator.wait_for_all()) << worker.log();
+  expect_whole(coordinator, made);
+  EXPECT_EQ(coordinator.seen().failures.size(), 0U);
+}
+
+}  // namespace
+}  // namespace hyades::worker

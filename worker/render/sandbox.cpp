@@ -1,0 +1,46 @@
+#include "worker/render/sandbox.h"
+
+#include <linux/close_range.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstring>
+
+#include "worker/render/sandbox_calls.h"
+#include "worker/render/sandbox_files.h"
+
+namespace hyades::worker {
+
+core::Result<SandboxMode> read_sandbox_mode(const std::string& word) {
+  if (word == "auto") return SandboxMode::automatic;
+  if (word == "require") return SandboxMode::required;
+  if (word == "off") return SandboxMode::off;
+  return core::Error{"'" + word + "': expected auto, require or off"};
+}
+
+core::Result<std::string> enter_sandbox(SandboxMode mode, const std::string& cache,
+                                        unsigned first_closed) {
+  if (mode == SandboxMode::off) return std::string("switched off");
+  std::string lacking;
+  const auto try_to = [&](const core::Status& status) {
+    if (!status) lacking += (lacking.empty() ? "" : "; ") + status.error().message;
+  };
+  if (::syscall(SYS_close_range, first_closed, UINT_MAX, 0) != 0) {
+    try_to(core::Error{std::string("close_range: ") + std::strerror(errno)});
+  }
+  // Without privileges a process may restrict itself only where it can gain none.
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
+    try_to(core::Error{std::string("no_new_privs: ") + std::strerror(errno)});
+  }
+  try_to(restrict_files(cache));
+  try_to(restrict_calls());
+  if (!lacking.empty() && mode == SandboxMode::required) {
+    return core::Error{"this machine has no whole sandbox (" + lacking + ")"};
+  }
+  return lacking;
+}
+
+}  // namespace hyades::worker
