@@ -22,6 +22,18 @@ install(CODE "
     file(INSTALL \"\${manuals}/completions/_hyades\" DESTINATION \"\${share}/zsh/vendor-completions\")
     file(INSTALL \"\${manuals}/completions/hyades.fish\" DESTINATION \"\${share}/fish/vendor_completions.d\")
   endif()")
+# Services and their options: of a system (prefix /usr), where their users and folders come with the package.
+if(HYADES_FARM)
+  install(CODE "
+    if(CMAKE_INSTALL_PREFIX MATCHES \"/usr$\")
+      file(INSTALL \"${CMAKE_SOURCE_DIR}/deploy/systemd/\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/lib/systemd/system\"
+           FILES_MATCHING PATTERN \"*.service\")
+      get_filename_component(system \"\${CMAKE_INSTALL_PREFIX}\" DIRECTORY)
+      string(REGEX REPLACE \"/$\" \"\" system \"\${system}\")
+      file(INSTALL \"${CMAKE_SOURCE_DIR}/deploy/systemd/\" DESTINATION \"\${system}/etc/hyades\"
+           FILES_MATCHING PATTERN \"*.yaml\")
+    endif()")
+endif()
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
@@ -39,4 +51,15 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # exact dependencies, read off the progr
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ffmpeg)  # for videos
 set(CPACK_STRIP_FILES ON)
+if(HYADES_FARM)
+  # preinst knows which stores these programs can read: one version for each step of the schema.
+  file(READ ${CMAKE_SOURCE_DIR}/coordinator/state/schema.cpp schema)
+  set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/coordinator/state/schema.cpp)
+  string(REGEX MATCHALL "R\"\\(" steps "${schema}")
+  list(LENGTH steps HYADES_SCHEMA_VERSION)
+  set(control ${CMAKE_SOURCE_DIR}/deploy/debian)
+  configure_file(${control}/preinst.in ${CMAKE_BINARY_DIR}/debian/preinst @ONLY)
+  set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/debian/preinst ${control}/postinst ${control}/prerm ${control}/postrm
+      ${control}/conffiles)
+endif()
 include(CPack)
