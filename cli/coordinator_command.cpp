@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -35,6 +37,7 @@ using hyades::coordinator::Server;
 using hyades::coordinator::WebServer;
 
 constexpr int kBadArguments = 2;
+constexpr double kDearest = 1e9;  // whatever the currency
 constexpr const char* kHttp = "127.0.0.1:8080";
 
 Duration seconds(double value) {
@@ -109,6 +112,24 @@ void note_address(const std::string& path, const std::string& address) {
 std::string hook_error(const std::string& url) {
   const auto right = Hook::check(url);
   return right ? std::string() : right.error().message;
+}
+
+/// PER_CORE_HOUR[:CURRENCY]; what is wrong with it, or an empty text.
+std::string read_price(const std::string& text, hyades::coordinator::Price& price) {
+  const size_t colon = std::min(text.find(':'), text.size());
+  const char* end = text.data() + colon;
+  const auto [read, error] = std::from_chars(text.data(), end, price.per_core_hour);
+  const bool number = error == std::errc() && read == end && price.per_core_hour >= 0 &&
+                      price.per_core_hour <= kDearest;
+  price.currency = colon < text.size() ? text.substr(colon + 1) : "";
+  const bool code =
+      colon == text.size() ||
+      (price.currency.size() == 3 && std::all_of(price.currency.begin(), price.currency.end(),
+                                                 [](char c) { return c >= 'A' && c <= 'Z'; }));
+  if (number && code) return {};
+  return "'" + text +
+         "': expected what an hour of a thread costs, with or without the three "
+         "letters of the currency, such as 0.04:EUR";
 }
 
 int serve(const Arguments& arguments) {
@@ -232,6 +253,16 @@ int main(int argc, char** argv) {
                  "most bytes that films of frames in work may take in memory; jobs of which one "
                  "takes more are refused (default: half of the machine's memory)")
       ->transform(CLI::AsSizeValue(false));
+  app.add_option_function<std::string>(
+         "--price",
+         [&](const std::string& text) {
+           if (const auto wrong = read_price(text, arguments.brain.price); !wrong.empty()) {
+             throw CLI::ValidationError("--price", wrong);
+           }
+         },
+         "what an hour of one rendering thread costs, and in which currency: jobs tell what they "
+         "have cost")
+      ->type_name("PER_CORE_HOUR[:CURRENCY]");
   app.add_option("--asset-grace", arguments.asset_grace,
                  "seconds that files which no job needs any more stay after their last use")
       ->check(CLI::Range(0.0, 1e9))
@@ -242,6 +273,7 @@ int main(int argc, char** argv) {
       "  hyades coordinator --data /var/lib/hyades\n"
       "  hyades coordinator --data farm --listen 0.0.0.0:7700 --tls-cert c.pem --tls-key k.pem "
       "--token-file token\n"
+      "  hyades coordinator --data farm --price 0.04:EUR\n"
       "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
       "wrong arguments (or a token, certificate or key that is none)");
   // argv[1] is the word "coordinator".

@@ -116,6 +116,14 @@ std::vector<std::string> ContentStore::names() const {
   return names;
 }
 
+uint64_t ContentStore::used() const {
+  std::vector<StoredFile> files;
+  list_files(options_.folder, files);
+  uint64_t bytes = 0;
+  for (const StoredFile& file : files) bytes += file.size;
+  return bytes;
+}
+
 bool ContentStore::remove_unused(const std::string& name, std::chrono::nanoseconds age) {
   if (!is_content_name(name)) return false;
   struct stat info {};

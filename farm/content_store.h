@@ -76,6 +76,8 @@ class ContentStore {
 
   /// The names of all complete files.
   std::vector<std::string> names() const;
+  /// Bytes of all complete files; looks at each of them.
+  uint64_t used() const;
   /// How many files this process has completed so far.
   uint64_t commits() const { return commits_; }
   /// Bytes that this process' writers have still to write.

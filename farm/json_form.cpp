@@ -26,27 +26,31 @@ std::string state_name(v1::WorkerState state) {
 std::string level_name(v1::LogLevel level) { return word(v1::LogLevel_Name(level), "LOG_LEVEL_"); }
 
 Json to_json(const v1::Job& job) {
-  return {{"id", job.id()},
-          {"name", job.name()},
-          {"owner", job.owner()},
-          {"priority", job.priority()},
-          {"state", state_name(job.state())},
-          {"frames", job.frames()},
-          {"frames_done", job.frames_done()},
-          {"frames_failed", job.frames_failed()},
-          {"samples", job.samples()},
-          {"samples_done", job.samples_done()},
-          {"leased", job.leased()},
-          {"samples_per_second", job.samples_per_second()},
-          {"seconds_left", job.seconds_left()},
-          {"submitted_ms", job.submitted_ms()},
-          {"ended_ms", job.ended_ms()},
-          {"reason", job.reason()},
-          {"max_workers", job.max_workers()},
-          {"tags", std::vector<std::string>(job.tags().begin(), job.tags().end())},
-          {"memory_bytes", job.memory_bytes()},
-          {"max_attempts", job.max_attempts()},
-          {"frame_order", word(v1::FrameOrder_Name(job.frame_order()), "FRAME_ORDER_")}};
+  Json json = {{"id", job.id()},
+               {"name", job.name()},
+               {"owner", job.owner()},
+               {"priority", job.priority()},
+               {"state", state_name(job.state())},
+               {"frames", job.frames()},
+               {"frames_done", job.frames_done()},
+               {"frames_failed", job.frames_failed()},
+               {"samples", job.samples()},
+               {"samples_done", job.samples_done()},
+               {"leased", job.leased()},
+               {"samples_per_second", job.samples_per_second()},
+               {"seconds_left", job.seconds_left()},
+               {"submitted_ms", job.submitted_ms()},
+               {"ended_ms", job.ended_ms()},
+               {"reason", job.reason()},
+               {"max_workers", job.max_workers()},
+               {"tags", std::vector<std::string>(job.tags().begin(), job.tags().end())},
+               {"memory_bytes", job.memory_bytes()},
+               {"max_attempts", job.max_attempts()},
+               {"frame_order", word(v1::FrameOrder_Name(job.frame_order()), "FRAME_ORDER_")},
+               {"core_seconds", job.core_seconds()},
+               {"cost", job.cost()}};
+  if (job.has_preview_frame()) json["preview_frame"] = job.preview_frame();
+  return json;
 }
 
 Json to_json(const v1::Frame& frame) {
@@ -57,6 +61,10 @@ Json to_json(const v1::Frame& frame) {
 }
 
 Json to_json(const v1::Worker& worker) {
+  Json work = Json::array();
+  for (const v1::WorkInHand& one : worker.work()) {
+    work.push_back({{"job", one.job()}, {"frame", one.frame()}, {"units", one.units()}});
+  }
   return {{"id", worker.id()},
           {"name", worker.name()},
           {"host", worker.host()},
@@ -73,7 +81,32 @@ Json to_json(const v1::Worker& worker) {
           {"heard_ms", worker.heard_ms()},
           {"memory_bytes", worker.memory_bytes()},
           {"memory_limit_bytes", worker.memory_limit_bytes()},
-          {"tags", std::vector<std::string>(worker.tags().begin(), worker.tags().end())}};
+          {"tags", std::vector<std::string>(worker.tags().begin(), worker.tags().end())},
+          {"work", std::move(work)},
+          {"cache_bytes", worker.cache_bytes()},
+          {"cache_limit_bytes", worker.cache_limit_bytes()},
+          {"cache_hits", worker.cache_hits()},
+          {"cache_misses", worker.cache_misses()},
+          {"samples_per_second", worker.samples_per_second()}};
+}
+
+Json to_json(const v1::TimelineStep& step) {
+  Json json = {{"id", step.number()},
+               {"kind", word(v1::TimelineStep::Kind_Name(step.kind()), "KIND_")},
+               {"worker", step.worker()},
+               {"thread", step.thread()}};
+  const bool of_frame = step.kind() != v1::TimelineStep::KIND_VIDEO;
+  const bool of_unit = of_frame && step.kind() != v1::TimelineStep::KIND_FINISH;
+  if (of_frame) json["frame"] = step.unit().frame();
+  if (of_unit) {
+    const v1::PixelRect& tile = step.unit().tile();
+    json["tile"] = {tile.x0(), tile.y0(), tile.x1(), tile.y1()};
+    json["first_batch"] = step.unit().first_batch();
+    json["batches"] = step.unit().batches();
+  }
+  json["begun_ms"] = 1e-3 * static_cast<double>(step.begun_us());
+  json["ended_ms"] = 1e-3 * static_cast<double>(step.ended_us());
+  return json;
 }
 
 Json to_json(const v1::LogLine& line) {

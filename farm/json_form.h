@@ -23,6 +23,8 @@ std::string level_name(v1::LogLevel level);
 Json to_json(const v1::Job& job);
 Json to_json(const v1::Frame& frame);
 Json to_json(const v1::Worker& worker);
+/// Its kind as a word; a tile only where it is of a unit; times in milliseconds, with parts.
+Json to_json(const v1::TimelineStep& step);
 Json to_json(const v1::LogLine& line);
 
 }  // namespace hyades::farm

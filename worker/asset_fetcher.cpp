@@ -68,7 +68,8 @@ AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string t
       token_(std::move(token)),
       store_(store),
       owner_(owner),
-      patience_(patience) {
+      patience_(patience),
+      cache_bytes_(store.used()) {
   for (int i = 0; i < kThreads; ++i) threads_.emplace_back([this] { loop(); });
 }
 
@@ -118,6 +119,7 @@ void AssetFetcher::loop() {
       in_work_.push_back(wanted);
     }
     const Outcome failed = fetch_all(*wanted);
+    cache_bytes_ = store_.used();
     {
       const std::lock_guard lock(mutex_);
       if (stop_) return;
@@ -159,7 +161,11 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
 /// Nothing to do where the file is there.
 AssetFetcher::Outcome AssetFetcher::fetch_file(Wanted& wanted, const v1::JobFile& file) {
   const std::string name = name_of(file);
-  if (store_.contains(name, file.size())) return std::nullopt;
+  if (store_.contains(name, file.size())) {
+    ++hits_;
+    return std::nullopt;
+  }
+  ++misses_;
   const Turn turn(*this, wanted, name);
   if (!turn.is_mine()) return Failure{"no longer wanted"};
   if (store_.contains(name, file.size())) return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -53,6 +54,12 @@ class AssetFetcher {
   /// The job's files are no longer wanted: what is under way is broken off and not reported.
   void release(uint64_t job);
 
+  /// Bytes of the store's files, as of the last time that a job's files were fetched.
+  uint64_t cache_bytes() const { return cache_bytes_; }
+  /// Files of jobs so far that were there when they were needed, and those that had to be fetched.
+  uint64_t hits() const { return hits_; }
+  uint64_t misses() const { return misses_; }
+
  private:
   /// The files of a job. What changes is guarded by mutex_.
   struct Wanted {
@@ -95,6 +102,10 @@ class AssetFetcher {
   std::set<std::string> turns_;                   ///< files that are being fetched
   std::map<uint64_t, std::vector<farm::ContentPin>> pins_;
   bool stop_ = false;
+
+  std::atomic<uint64_t> cache_bytes_;
+  std::atomic<uint64_t> hits_{0};
+  std::atomic<uint64_t> misses_{0};
 
   std::vector<std::thread> threads_;
 };

@@ -35,6 +35,7 @@ void Desk::keep_film(Items::iterator found, const pipe::UnitFilm& film) {
   result.set_film(film.film());
   result.set_digest(film.digest());
   result.set_render_ns(film.render_ns());
+  result.set_thread(film.thread());
   result.set_samples(film.samples());
   result.set_rays(film.rays());
   result.set_bad_samples(film.bad_samples());

@@ -40,6 +40,14 @@ class DeskPorts {
   virtual void note(const std::string& text) = 0;
 };
 
+/// The cache of assets on the disk; see Heartbeat.
+struct CacheFacts {
+  uint64_t bytes = 0;
+  uint64_t limit_bytes = 0;  ///< 0: none
+  uint64_t hits = 0;
+  uint64_t misses = 0;
+};
+
 /// What this worker is; see Hello.
 struct DeskOptions {
   std::string worker_id;
@@ -95,6 +103,9 @@ class Desk {
   /// then they have failed. Otherwise no more work is asked for during a rest, which grows with
   /// each failure until the files of a job are there again.
   void files_failed(uint64_t job, const std::string& reason, bool final, TimePoint now);
+
+  /// What heartbeats tell of the cache from now on.
+  void cache_is(const CacheFacts& cache) { cache_ = cache; }
 
   /// Heartbeats, leases that ran out, films to be sent again. To be called at least every 100 ms.
   /// `flowing`: what was sent before has left, so that a heartbeat reaches the coordinator.
@@ -175,6 +186,7 @@ class Desk {
   bool renderer_up_ = false;
   RenderWatch watch_;
   uint64_t renderer_memory_ = 0;
+  CacheFacts cache_;
 
   // Files cannot be had.
   farm::Backoff rests_;

@@ -60,6 +60,10 @@ void Desk::heartbeat(TimePoint now) {
   }
   for (auto& [id, progress] : leases) *beat.add_leases() = std::move(progress);
   beat.set_memory_bytes(renderer_memory_);
+  beat.set_cache_bytes(cache_.bytes);
+  beat.set_cache_limit_bytes(cache_.limit_bytes);
+  beat.set_cache_hits(cache_.hits);
+  beat.set_cache_misses(cache_.misses);
   ports_.send(std::move(message));
 }
 

@@ -78,6 +78,8 @@ class Worker : private DeskPorts,
       if (idle_.over(now, busy()) && !desk_.leaving()) leave_idle(now);
       if (restart_at_ && now >= *restart_at_ && !leave_by_) start_renderer();
       if (connect_at_ && now >= *connect_at_) connect(now);
+      desk_.cache_is(
+          {fetcher_.cache_bytes(), options_.cache_size, fetcher_.hits(), fetcher_.misses()});
       desk_.tick(now, link_.flowing());
       if (desk_.leaving()) try_to_go(now);
     }

@@ -51,6 +51,12 @@ int64_t wall_ms() {
       .count();
 }
 
+int64_t wall_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
 std::vector<Action> Brain::tell(const Event& event, Delivery* delivery) {
   std::vector<Action> later;
   const std::vector<Action> actions = scheduler_.handle(event, std::chrono::steady_clock::now());
@@ -115,6 +121,7 @@ void Brain::persist(const Persist& persist, Delivery* delivery) {
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
   if (const auto* unit = std::get_if<UnitRecord>(&persist.record)) {
+    desk->films_under_way[persist.id] = std::move(delivery->rendered);
     keeper_of(*desk).keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
                                     std::move(delivery->record));
   } else if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {

@@ -82,8 +82,11 @@ class Brain {
   bool list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
   /// The job, and its frames above `after` as far as they fit. May wait for the store; get_open()
   /// answers for jobs that have not ended, and says no for others.
-  grpc::Status get(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response);
-  bool get_open(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response);
+  /// Only frames in state `only`, where one is given.
+  grpc::Status get(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response,
+                   v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED);
+  bool get_open(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response,
+                v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED);
   /// The same of why it does or does not get on.
   grpc::Status explain(uint64_t job, v1::ExplainResponse& response);
   bool explain_open(uint64_t job, v1::ExplainResponse& response);
@@ -111,8 +114,9 @@ class Brain {
   };
   /// May wait for the store.
   grpc::Status frame_now(uint64_t job, int32_t frame, FrameNow& now);
-  /// Which units of the job were rendered where and when, as far as it is kept in memory.
-  Timelines::OfJob timeline(uint64_t job) const;
+  /// What was done for the job where and when, as far as it is kept in memory. May wait for the
+  /// store.
+  grpc::Status timeline(const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response);
   /// Whether a file is there only until the open job's video is made of it.
   bool is_for_video(uint64_t job, const std::string& path) const;
   /// How far somebody has been told of a job's changes; at first of nothing.
@@ -141,6 +145,8 @@ class Brain {
   // Farm (brain_farm.cpp).
 
   void info(v1::InfoResponse& response);
+  /// What info() tells as the address of gRPC.
+  void listens_at(const std::string& address);
   /// As many as fit.
   void workers(const v1::WorkersRequest& request, v1::WorkersResponse& response);
   grpc::Status drain_worker(const v1::WorkerRequest& request, v1::Worker& now);
@@ -179,6 +185,11 @@ class Brain {
     uint64_t units_failed = 0;
     uint64_t samples_done = 0;
     uint64_t memory = 0;
+    uint64_t cache = 0;
+    uint64_t cache_limit = 0;
+    uint64_t cache_hits = 0;
+    uint64_t cache_misses = 0;
+    Speed speed;
     int64_t joined_ms = 0;
     int64_t heard_ms = 0;
   };
@@ -205,6 +216,7 @@ class Brain {
     core::Film film;
     std::vector<std::byte> record;
     AcceptedUnit unit;
+    FilmUnderWay rendered;
   };
   class KeeperOwner;
 
@@ -332,7 +344,11 @@ class Brain {
   void note(JobDesk& desk, v1::LogLevel level, std::optional<int32_t> frame,
             const std::string& worker, const std::string& text);
   v1::Job describe(const JobDesk& desk) const;
+  v1::Job describe(const StoredJob& job) const;
+  void count_cost(v1::Job& job) const;
+  void count_film(JobDesk& desk, const Merge& merge, int64_t begun_us);
   v1::Worker describe(const Seat& seat) const;
+  std::vector<v1::WorkInHand> work_of(WorkerId worker) const;
   std::string unmet_needs(const StoredJob& job) const;
   std::vector<std::string> barred_workers() const;
   std::vector<std::string> where_units_are(JobId job) const;
@@ -374,6 +390,7 @@ class Brain {
   bool storing_trust_ = false;
   std::map<uint64_t, Watch> watches_;
   uint64_t next_watch_ = 1;
+  std::string grpc_address_;
 
   DiskRoom disk_;
   uint64_t disk_free_ = UINT64_MAX;  ///< bytes, when it was last measured
@@ -407,5 +424,7 @@ class Brain {
 
 /// Milliseconds since 1970, UTC.
 int64_t wall_ms();
+/// Microseconds since then.
+int64_t wall_us();
 
 }  // namespace hyades::coordinator

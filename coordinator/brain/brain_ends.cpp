@@ -62,6 +62,7 @@ bool Brain::store_row_now(uint64_t id) {
       desk->touch();
       return false;
     }
+    desk->core_ns_stored = job.core_ns;
     if (!desk->row_trouble.empty()) desk->touch();
     desk->row_trouble.clear();
     now = describe(*desk);
@@ -179,7 +180,7 @@ bool Brain::store_end(uint64_t id) {
       if (watch.job == id) tell_watcher(watch.poke);
     }
   }
-  for (const Waiter& waiter : told) waiter.then(grpc::Status::OK, coordinator::describe(job));
+  for (const Waiter& waiter : told) waiter.then(grpc::Status::OK, describe(job));
   over.reset();  // waits for the keeper's thread
   // Films of frames that failed stay, should they be taken up again.
   std::error_code ignored;

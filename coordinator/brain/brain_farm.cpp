@@ -13,6 +13,7 @@ namespace {
 
 /// Of an answer: twenty thousand workers with long names and many tags would make forty megabytes.
 constexpr size_t kMostWorkerBytes = size_t{1} << 20U;
+constexpr size_t kMostWorkTold = 16;
 constexpr uint64_t kWorkersChores = 0;  // no job has this number
 
 }  // namespace
@@ -30,11 +31,36 @@ void Brain::info(v1::InfoResponse& response) {
     response.set_threads(response.threads() + seat.hello.threads());
   }
   response.set_jobs(static_cast<uint32_t>(desks_.size()));
+  response.set_grpc_address(grpc_address_);
+  response.set_price_per_core_hour(options_.price.per_core_hour);
+  response.set_currency(options_.price.currency);
   response.set_trouble(disk_.reason());
   for (const auto& [id, desk] : desks_) {
     if (!desk->row_trouble.empty()) response.set_trouble(desk->row_trouble);
     if (!desk->trouble.empty()) response.set_trouble(desk->trouble);
   }
+}
+
+void Brain::listens_at(const std::string& address) {
+  const std::lock_guard lock(mutex_);
+  grpc_address_ = address;
+}
+
+/// What the units that are out with the worker belong to, the most first; with the lock.
+std::vector<v1::WorkInHand> Brain::work_of(WorkerId worker) const {
+  std::map<std::pair<JobId, int32_t>, uint32_t> counts;
+  for (const UnitInHand& held : scheduler_.units_of(worker)) ++counts[{held.job, held.unit.frame}];
+  std::vector<v1::WorkInHand> work;
+  for (const auto& [what, units] : counts) {
+    v1::WorkInHand& one = work.emplace_back();
+    one.set_job(static_cast<uint64_t>(what.first));
+    one.set_frame(what.second);
+    one.set_units(units);
+  }
+  std::stable_sort(work.begin(), work.end(),
+                   [](const auto& a, const auto& b) { return a.units() > b.units(); });
+  if (work.size() > kMostWorkTold) work.resize(kMostWorkTold);
+  return work;
 }
 
 v1::Worker Brain::describe(const Seat& seat) const {
@@ -56,6 +82,12 @@ v1::Worker Brain::describe(const Seat& seat) const {
   wire.set_memory_bytes(seat.memory);
   wire.set_memory_limit_bytes(seat.hello.memory_bytes());
   *wire.mutable_tags() = seat.hello.tags();
+  for (v1::WorkInHand& work : work_of(seat.id)) *wire.add_work() = std::move(work);
+  wire.set_cache_bytes(seat.cache);
+  wire.set_cache_limit_bytes(seat.cache_limit);
+  wire.set_cache_hits(seat.cache_hits);
+  wire.set_cache_misses(seat.cache_misses);
+  if (seat.joined) wire.set_samples_per_second(seat.speed.per_second());
   return wire;
 }
 

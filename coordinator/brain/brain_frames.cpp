@@ -17,6 +17,7 @@ void Brain::merged(JobId job, const Merge& merge) {
     if (JobDesk* desk = desk_of(job)) keeper = desk->keeper.get();
   }
   if (keeper == nullptr) return;
+  const int64_t begun_us = wall_us();
   const core::Status status = keeper->merge(merge.record);
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(job);
@@ -30,6 +31,7 @@ void Brain::merged(JobId job, const Merge& merge) {
   const uint64_t samples = samples_of(*desk, merge.unit.tile, merge.unit.batches);
   desk->touch(merge.unit.frame).samples_done += samples;
   desk->samples_done += samples;
+  count_film(*desk, merge, begun_us);
 }
 
 uint64_t Brain::samples_of(const JobDesk& desk, const core::PixelRect& tile,
@@ -90,6 +92,8 @@ void Brain::frame_done(JobId job, int32_t frame) {
   desk->keeper->forget(frame, true);
   desk->complete.erase(frame);
   desk->touch(frame).state = v1::FRAME_STATE_DONE;
+  desk->in_work.erase(frame);
+  desk->stored.preview = frame;
   ++desk->stored.frames_done;
   note(*desk, v1::LOG_LEVEL_INFO, frame, {}, "done");
 }
@@ -102,6 +106,7 @@ void Brain::frame_failed(JobId job, int32_t frame, const std::string& reason) {
   desk->complete.erase(frame);
   FrameNote& noted = desk->touch(frame);
   noted.state = v1::FRAME_STATE_FAILED;
+  desk->in_work.erase(frame);
   noted.reason = farm::wire_text(reason);
   desk->samples_done -= std::exchange(noted.samples_done, 0);
   ++desk->stored.frames_failed;
@@ -117,6 +122,7 @@ void Brain::frame_restarted(JobId job, int32_t frame) {
   if (noted.state == v1::FRAME_STATE_DONE) --desk->stored.frames_done;
   desk->complete.erase(frame);
   noted.state = v1::FRAME_STATE_WAITING;
+  desk->in_work.erase(frame);
   noted.reason.clear();
   noted.worker_class.clear();
   ++noted.restarts;
@@ -142,6 +148,7 @@ void Brain::not_persisted(JobId job, RecordId record, const std::string& reason)
   {
     const std::lock_guard lock(mutex_);
     if (JobDesk* desk = desk_of(job)) {
+      desk->films_under_way.erase(record);
       desk->trouble = "films cannot be stored: " + reason;
       desk->touch();
     }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "coordinator/brain/not_there.h"
 #include "core/base/failpoint.h"
 #include "farm/tags.h"
 #include "farm/wire.h"
@@ -173,7 +174,7 @@ grpc::Status Brain::retry(uint64_t id, v1::Job& now) {
   if (const grpc::Status away = wait_until_away(id); !away.ok()) return away;
   auto stored = store_->job(id);
   if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  if (!*stored) return no_job(id);
   StoredJob& job = **stored;
   if (!has_ended(job.state)) return not_open(id);
   const auto doubtful = store_->doubtful(id, 1);
@@ -227,7 +228,7 @@ grpc::Status Brain::remove(uint64_t id) {
   if (const grpc::Status away = wait_until_away(id); !away.ok()) return away;
   const auto stored = store_->job(id);
   if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  if (!*stored) return no_job(id);
   const auto remove_folders = [&] {
     std::error_code ignored;  // what stays is found after the next start
     std::filesystem::remove_all(films_folder(id), ignored);

@@ -11,6 +11,12 @@
 
 namespace hyades::coordinator {
 
+/// What rendering costs.
+struct Price {
+  double per_core_hour = 0;  ///< of one thread; 0: nobody has said
+  std::string currency;      ///< three capital letters (ISO 4217), or empty
+};
+
 struct BrainOptions {
   std::string folder;                            ///< where all state lies; made if it is missing
   std::string finisher;                          ///< the program hyades-film
@@ -38,6 +44,7 @@ struct BrainOptions {
   uint64_t film_memory = core::half_of_memory();
   /// A job's film log is rewritten when it has grown by this much.
   uint64_t compact_bytes = LocalLog{}.compact_bytes;
+  Price price;
 };
 
 }  // namespace hyades::coordinator

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "coordinator/brain/not_there.h"
 #include "core/film/film_exr.h"
 #include "farm/wire_status.h"
 
@@ -16,14 +17,6 @@ constexpr uint32_t kMostListed = 1000;
 /// Answers to those who read slowly, or never, lie in memory: they are kept short.
 constexpr size_t kMostFrameBytes = size_t{64} << 10U;
 constexpr uint32_t kMostFramesAtOnce = 2000;
-
-grpc::Status no_job(uint64_t id) {
-  return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
-}
-
-grpc::Status no_frame(uint64_t id, int32_t frame) {
-  return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no frame {}", id, frame)};
-}
 
 v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
   v1::Frame wire;
@@ -54,6 +47,10 @@ class FramePage {
   size_t bytes_ = 0;
 };
 
+bool is_wanted(v1::FrameState state, v1::FrameState only) {
+  return only == v1::FRAME_STATE_UNSPECIFIED || state == only;
+}
+
 uint32_t most_listed(const v1::ListJobsRequest& request) {
   return request.limit() == 0 ? kMostListed : std::min(request.limit(), kMostListed);
 }
@@ -70,7 +67,18 @@ v1::Job Brain::describe(const JobDesk& desk) const {
   // Until its end is stored, it has not ended for anybody.
   if (desk.ending) job.set_state(v1::JOB_STATE_RUNNING);
   if (job.reason().empty()) job.set_reason(disk_.reason());
+  count_cost(job);
   return job;
+}
+
+v1::Job Brain::describe(const StoredJob& stored) const {
+  v1::Job job = coordinator::describe(stored);
+  count_cost(job);
+  return job;
+}
+
+void Brain::count_cost(v1::Job& job) const {
+  job.set_cost(job.core_seconds() / 3600 * options_.price.per_core_hour);
 }
 
 bool Brain::list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
@@ -89,7 +97,7 @@ bool Brain::list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& 
     if (!request.owner().empty() && stored.owner != request.owner()) continue;
     // One that waits is open already, for an instant, while it is taken up.
     if (!taken_up && desks_.contains(JobId{stored.id})) continue;
-    *response.add_jobs() = taken_up ? describe(*desk->second) : coordinator::describe(stored);
+    *response.add_jobs() = taken_up ? describe(*desk->second) : describe(stored);
     if (response.jobs_size() < limit) continue;
     response.set_next_before(stored.id);
     break;
@@ -104,19 +112,21 @@ grpc::Status Brain::list(const v1::ListJobsRequest& request, v1::ListJobsRespons
   const std::lock_guard lock(mutex_);
   for (const StoredJob& job : *jobs) {
     const JobDesk* desk = desk_of(job.id);
-    *response.add_jobs() = desk != nullptr ? describe(*desk) : coordinator::describe(job);
+    *response.add_jobs() = desk != nullptr ? describe(*desk) : describe(job);
   }
   if (jobs->size() == limit) response.set_next_before(jobs->back().id);
   return grpc::Status::OK;
 }
 
-bool Brain::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response) {
+bool Brain::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response,
+                     v1::FrameState only) {
   const std::lock_guard lock(mutex_);
   const JobDesk* desk = desk_of(id);
   if (desk == nullptr) return false;
   FramePage page(*response.mutable_frames());
   *response.mutable_job() = describe(*desk);
   for (auto it = above(desk->frames, after); it != desk->frames.end(); ++it) {
+    if (!is_wanted(it->second.state, only)) continue;
     response.set_more(page.full());
     if (page.full()) break;
     page.add(desk->describe_frame(it->first, it->second));
@@ -124,24 +134,32 @@ bool Brain::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobRespon
   return true;
 }
 
-grpc::Status Brain::get(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response) {
-  if (get_open(id, after, response)) return grpc::Status::OK;
+grpc::Status Brain::get(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response,
+                        v1::FrameState only) {
+  if (get_open(id, after, response, only)) return grpc::Status::OK;
   FramePage page(*response.mutable_frames());
   const auto stored = store_->job(id);
   if (!stored) return farm::unavailable(stored.error());
   if (!*stored) return no_job(id);
-  *response.mutable_job() = coordinator::describe(**stored);
-  const auto frames = store_->frames(id, after, kMostFramesAtOnce);
-  if (!frames) return farm::unavailable(frames.error());
-  response.set_more(frames->size() == kMostFramesAtOnce);
-  for (const StoredFrame& frame : *frames) {
-    if (page.full()) {
-      response.set_more(true);
-      break;
+  *response.mutable_job() = describe(**stored);
+  for (;;) {
+    const auto frames = store_->frames(id, after, kMostFramesAtOnce);
+    if (!frames) return farm::unavailable(frames.error());
+    for (const StoredFrame& row : *frames) {
+      const v1::Frame frame = describe_over(row, **stored);
+      after = row.frame;
+      if (!is_wanted(frame.state(), only)) continue;
+      if (page.full()) {
+        response.set_more(true);
+        return grpc::Status::OK;
+      }
+      page.add(frame);
     }
-    page.add(describe_over(frame, **stored));
+    const bool last = frames->size() < kMostFramesAtOnce;
+    // Of some states there may be few: then it is looked for more of them.
+    response.set_more(!last);
+    if (last || only == v1::FRAME_STATE_UNSPECIFIED) return grpc::Status::OK;
   }
-  return grpc::Status::OK;
 }
 
 bool Brain::changes_of_open(uint64_t id, ToldOf& told, v1::WatchEvent& event) {
@@ -206,11 +224,6 @@ grpc::Status Brain::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
   if (frames->empty() || frames->front().frame != frame) return no_frame(id, frame);
   now.frame = describe_over(frames->front(), **stored);
   return grpc::Status::OK;
-}
-
-Timelines::OfJob Brain::timeline(uint64_t job) const {
-  const std::lock_guard lock(mutex_);
-  return timelines_.of(job);
 }
 
 uint64_t Brain::watch(uint64_t job, std::function<void()> poke) {

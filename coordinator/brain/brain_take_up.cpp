@@ -131,6 +131,7 @@ core::Status Brain::take_up(uint64_t id) {
   if (!frames) return frames.error();
   const auto repeated = frames_to_repeat(**desk, *frames);
   if (!repeated) return repeated.error();
+  (*desk)->stored.preview.reset();  // it may be rendered again
   for (const StoredFrame& frame : *frames) {
     FrameNote& note = (*desk)->frames[frame.frame];
     if (repeated->contains(frame.frame)) {
@@ -148,6 +149,7 @@ core::Status Brain::take_up(uint64_t id) {
     note.restarts = frame.restarts;
     if (frame.done) {
       restored.finished.push_back(frame.frame);
+      (*desk)->stored.preview = frame.frame;
       note.state = v1::FRAME_STATE_DONE;
       note.samples_done = (*desk)->samples_per_frame;
       (*desk)->samples_done += note.samples_done;
@@ -157,6 +159,7 @@ core::Status Brain::take_up(uint64_t id) {
       note.reason = frame.reason;
     }
   }
+  (*desk)->core_ns_stored = (*desk)->stored.core_ns;
   (*desk)->stored.frames_done = static_cast<uint32_t>(restored.finished.size());
   (*desk)->stored.frames_failed = static_cast<uint32_t>(restored.failed.size());
   return start(std::move(*desk), std::move(restored));
@@ -234,6 +237,7 @@ void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJo
       continue;
     }
     frame.state = v1::FRAME_STATE_RENDERING;
+    desk.in_work.insert(number);
     frame.worker_class = units.front().worker_class;
     for (const AcceptedUnit& unit : units) {
       frame.samples_done +=

@@ -18,6 +18,8 @@ constexpr Duration kClock = std::chrono::milliseconds(50);
 constexpr Duration kPokeEvery = std::chrono::milliseconds(200);
 constexpr Duration kFinishAgain = std::chrono::seconds(1);
 constexpr Duration kLinesAgain = std::chrono::seconds(1);
+/// How far the account of a job may lag behind in the store.
+constexpr Duration kStoreCoreEvery = std::chrono::seconds(10);
 
 }  // namespace
 
@@ -60,6 +62,7 @@ void Brain::finish_loop() {
     if (task.color) assets = desk->read.assets;
     const StoredFrame over{completed.frame, true,     {}, note.worker_class, note.restarts,
                            completed.parts, ++moment_};
+    const int64_t begun_us = wall_us();
     lock.unlock();
 
     const std::string scratch = fmt::format("{}/tmp/{}-{}", options_.folder, id, completed.frame);
@@ -98,6 +101,11 @@ void Brain::finish_loop() {
     if (!done) {
       finish_wake_.wait_for(lock, kFinishAgain, [&] { return stop_.load(); });
       if (stop_) return;
+    }
+    if (done) {
+      core::Unit all;
+      all.frame = completed.frame;
+      timelines_.note(id, {v1::TimelineStep::KIND_FINISH, {}, 0, all, begun_us, wall_us()});
     }
     const std::vector<Action> later =
         done ? tell(FinishDone{completed.job, completed.frame})
@@ -163,10 +171,18 @@ std::vector<Action> Brain::mind_workers(TimePoint now) {
 void Brain::mind_jobs(TimePoint now) {
   for (auto& [id, desk] : desks_) {
     desk->speed.note(desk->samples_done, now);
+    if (desk->stored.core_ns != desk->core_ns_stored && !desk->ending && !disk_full_ &&
+        now - desk->core_stored >= kStoreCoreEvery) {
+      desk->core_stored = now;
+      store_row(*desk);
+    }
     if (desk->lines.empty() || desk->storing_lines || desk->ending || disk_full_) continue;
     if (now < desk->lines_again) continue;
     desk->storing_lines = true;
     chores_.add(desk->stored.id, [this, id = desk->id] { return store_lines(id); });
+  }
+  for (auto& [id, seat] : seats_) {
+    if (seat.joined) seat.speed.note(seat.samples_done, now);
   }
   for (auto& [number, watch] : watches_) {
     const JobDesk* desk = desk_of(watch.job);

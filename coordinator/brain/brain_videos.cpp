@@ -106,6 +106,7 @@ core::Status Brain::make_videos(uint64_t id, const std::vector<core::VideoDesc>&
 
 core::Status Brain::make_video(uint64_t id, const core::VideoDesc& video,
                                const core::VideoFrames& frames) {
+  const int64_t begun_us = wall_us();
   const auto files =
       run_video_maker(options_.finisher, fmt::format("{}/tmp/{}-video", options_.folder, id),
                       {video, frames}, film_stop_);
@@ -119,6 +120,8 @@ core::Status Brain::make_video(uint64_t id, const core::VideoDesc& video,
   core::failpoint("video-made");
   core::Status stored = store_->change_outputs(id, {core::video_folder(video)}, made);
   core::failpoint("video-stored");
+  const std::lock_guard lock(mutex_);
+  timelines_.note(id, {v1::TimelineStep::KIND_VIDEO, {}, 0, {}, begun_us, wall_us()});
   return stored;
 }
 

@@ -19,6 +19,8 @@ constexpr uint32_t kCrowdedRetryMs = 500;
 constexpr uint32_t kFullRetryMs = 2000;
 /// Of a decoded film, besides its pixels.
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
+/// What a unit can have taken: no worker makes a job more expensive than that.
+constexpr uint64_t kLongestRendering = 7ULL * 24 * 3600 * 1'000'000'000;  // ns
 
 }  // namespace
 
@@ -61,6 +63,10 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
       want(*seat, message.request().units(), later);
     } else if (message.has_heartbeat()) {
       seat->memory = message.heartbeat().memory_bytes();
+      seat->cache = message.heartbeat().cache_bytes();
+      seat->cache_limit = message.heartbeat().cache_limit_bytes();
+      seat->cache_hits = message.heartbeat().cache_hits();
+      seat->cache_misses = message.heartbeat().cache_misses();
       for (const Event& event : feel_pulses(*seat, message.heartbeat())) say(event);
       v1::CoordinatorMessage echo;
       echo.mutable_echo()->set_number(message.heartbeat().number());
@@ -202,13 +208,8 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
     } else if (desk != nullptr && desk->keeper && desk->keeper->crowded()) {
       verdict = Verdict::crowded;
     } else {
-      ++seat->units_done;
-      seat->samples_done += result.samples();
-      const int64_t now = wall_ms();
-      const auto took_ms = static_cast<int64_t>(result.render_ns() / 1'000'000);
-      if (desk != nullptr) {
-        timelines_.note(result.job(), {seat->hello.name(), *unit, now - took_ms, now});
-      }
+      delivery.rendered = {seat->id, seat->hello.name(), result.thread(),
+                           std::min(result.render_ns(), kLongestRendering), wall_us()};
       for (int i = 0; desk != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
         note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
              farm::wire_text(result.notes(i)));

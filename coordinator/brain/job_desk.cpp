@@ -102,6 +102,7 @@ void Speed::note(uint64_t done, TimePoint now) {
 FrameNote& JobDesk::touch(int32_t frame) {
   FrameNote& note = frames[frame];
   note.version = ++version;
+  in_work.insert(frame);
   return note;
 }
 
@@ -155,6 +156,8 @@ v1::Job describe(const StoredJob& job) {
   wire.set_submitted_ms(job.submitted_ms);
   wire.set_ended_ms(job.ended_ms);
   wire.set_reason(farm::wire_text(job.reason));
+  wire.set_core_seconds(1e-9 * static_cast<double>(job.core_ns));
+  if (job.preview) wire.set_preview_frame(*job.preview);
   return wire;
 }
 
@@ -163,10 +166,21 @@ const std::vector<core::VideoDesc>& JobDesk::videos() const {
   return core::are_all_frames(read.job, numbers) ? read.job.videos : none;
 }
 
+std::optional<int32_t> JobDesk::preview_frame() const {
+  for (const int32_t frame : in_work) {
+    const auto noted = frames.find(frame);
+    if (noted == frames.end() || noted->second.samples_done == 0) continue;
+    const v1::FrameState state = noted->second.state;
+    if (state == v1::FRAME_STATE_RENDERING || state == v1::FRAME_STATE_FINISHING) return frame;
+  }
+  return stored.preview;
+}
+
 v1::Job JobDesk::describe(uint32_t leased) const {
   v1::Job wire = coordinator::describe(stored);
   wire.set_samples_done(samples_done);
   wire.set_leased(leased);
+  if (const auto shown = preview_frame()) wire.set_preview_frame(*shown);
   wire.set_samples_per_second(speed.per_second());
   if (speed.per_second() > 0) {
     wire.set_seconds_left(

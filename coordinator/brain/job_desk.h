@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,6 +28,15 @@ struct FrameNote {
   uint32_t restarts = 0;
   uint64_t begun = 0;  ///< StoredFrame::moment of the last frame that was finished then; 0: unknown
   uint64_t version = 0;  ///< of the job when this last changed
+};
+
+/// A film that is being made durable: who rendered it, and what that took.
+struct FilmUnderWay {
+  WorkerId worker{};
+  std::string name;  ///< of the worker
+  uint32_t thread = 0;
+  uint64_t render_ns = 0;
+  int64_t came_us = 0;  ///< since 1970, UTC
 };
 
 /// How fast samples become durable, smoothed over some ten seconds.
@@ -72,10 +82,14 @@ struct JobDesk {
   std::vector<StoredLine> lines;  ///< not stored yet
   uint64_t lines_dropped = 0;     ///< since lines were last taken: too many at once
   bool storing_lines = false;
-  TimePoint lines_again;         ///< not before: storing them has failed
-  bool storing_row = false;      ///< a chore will store what has changed in `stored`
-  std::string trouble;           ///< why its films cannot be stored
-  std::string row_trouble;       ///< why `stored` cannot be stored
+  TimePoint lines_again;     ///< not before: storing them has failed
+  bool storing_row = false;  ///< a chore will store what has changed in `stored`
+  std::string trouble;       ///< why its films cannot be stored
+  std::string row_trouble;   ///< why `stored` cannot be stored
+  std::map<RecordId, FilmUnderWay> films_under_way;
+  std::set<int32_t> in_work;     ///< frames that may be, for preview_frame()
+  uint64_t core_ns_stored = 0;   ///< of `stored`, as the store has it
+  TimePoint core_stored;         ///< when that was looked at
   std::set<WorkerId> gave_back;  ///< whose reason for giving units back is in the log
   bool filming = false;  ///< all frames are done, and the scheduler has let go of it; its videos
                          ///< are being made, or wait for their turn
@@ -93,6 +107,9 @@ struct JobDesk {
   /// The videos that are made when all frames are done: none where the spec asks for some frames
   /// only.
   const std::vector<core::VideoDesc>& videos() const;
+  /// The frame that stands for the job in a list: the first in work of which something is there,
+  /// else the last that was finished.
+  std::optional<int32_t> preview_frame() const;
   v1::Job describe(uint32_t leased) const;
   v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
   core::FilmInfo film_info(int32_t frame) const;

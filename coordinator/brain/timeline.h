@@ -1,55 +1,79 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/film/unit.h"
+#include "hyades/v1/jobs.pb.h"
 
 namespace hyades::coordinator {
 
-/// A unit whose film came: who rendered it, and when.
-struct TimedUnit {
-  std::string worker;  ///< its name
+/// Something that was done for a job: who did it, and when (v1::TimelineStep says what counts of
+/// which kind).
+struct TimedStep {
+  v1::TimelineStep::Kind kind = v1::TimelineStep::KIND_UNSPECIFIED;
+  std::string worker;  ///< its name; empty: the coordinator
+  uint32_t thread = 0;
   core::Unit unit;
-  int64_t begun_ms = 0;  ///< since 1970, UTC: the end less what its thread took for it
-  int64_t ended_ms = 0;
+  int64_t begun_us = 0;  ///< since 1970, UTC
+  int64_t ended_us = 0;
+  uint64_t number = 0;  ///< given by Timelines
 };
 
-/// What was rendered where and when, of the jobs that last had something rendered: in memory only,
-/// for those who look for what takes long. Not thread-safe.
+/// What was done where and when, for the jobs that last had something done: in memory only, for
+/// those who look for what takes long. Not thread-safe.
 class Timelines {
  public:
-  struct OfJob {
-    std::deque<TimedUnit> units;  ///< in the order in which they came
-    uint64_t dropped = 0;         ///< older ones
-  };
-
-  void note(uint64_t job, TimedUnit unit) {
+  void note(uint64_t job, TimedStep step) {
     OfJob& timeline = jobs_[job];
-    timeline.units.push_back(std::move(unit));
-    if (timeline.units.size() > kMostUnits) {
-      timeline.units.pop_front();
+    // Greater than any before, of an earlier run of the coordinator too.
+    const auto now = static_cast<uint64_t>(std::max<int64_t>(step.ended_us, 1));
+    step.number = timeline.steps.empty() ? now : std::max(now, timeline.steps.back().number + 1);
+    timeline.steps.push_back(std::move(step));
+    if (timeline.steps.size() > kMostSteps) {
+      timeline.steps.pop_front();
       ++timeline.dropped;
     }
     if (jobs_.size() <= kMostJobs) return;
-    // What was rendered longest ago goes.
+    // What was worked on longest ago goes.
     const auto oldest = std::min_element(jobs_.begin(), jobs_.end(), [](auto& a, auto& b) {
-      return a.second.units.back().ended_ms < b.second.units.back().ended_ms;
+      return a.second.steps.back().number < b.second.steps.back().number;
     });
     jobs_.erase(oldest);
   }
   void forget(uint64_t job) { jobs_.erase(job); }
-  /// Empty where nothing is known.
-  OfJob of(uint64_t job) const {
+
+  struct Page {
+    std::vector<TimedStep> steps;
+    bool more = false;
+    uint64_t dropped = 0;  ///< older ones that are not kept
+  };
+  /// Steps above number `after`, at most `limit`; none where nothing is known.
+  Page page(uint64_t job, uint64_t after, size_t limit) const {
     const auto found = jobs_.find(job);
-    return found == jobs_.end() ? OfJob{} : found->second;
+    if (found == jobs_.end()) return {};
+    const auto& steps = found->second.steps;
+    const auto first =
+        std::upper_bound(steps.begin(), steps.end(), after,
+                         [](uint64_t number, const TimedStep& s) { return number < s.number; });
+    const auto left = static_cast<size_t>(steps.end() - first);
+    const size_t count = std::min(limit, left);
+    return {
+        {first, first + static_cast<std::ptrdiff_t>(count)}, left > count, found->second.dropped};
   }
 
  private:
-  static constexpr size_t kMostUnits = 20'000;
+  struct OfJob {
+    std::deque<TimedStep> steps;
+    uint64_t dropped = 0;
+  };
+  static constexpr size_t kMostSteps = 40'000;
   static constexpr size_t kMostJobs = 32;
   std::map<uint64_t, OfJob> jobs_;
 };

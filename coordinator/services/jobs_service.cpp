@@ -37,10 +37,10 @@ grpc::ServerUnaryReactor* JobsService::Get(Context* context, const Bytes* asked,
   return answer_or_by<v1::GetJobRequest, v1::GetJobResponse>(
       desks_.rows, {admission_, context, asked, said},
       [this](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
-        return brain_.get_open(request.job(), after(request), response);
+        return brain_.get_open(request.job(), after(request), response, request.state());
       },
       [this](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
-        return brain_.get(request.job(), after(request), response);
+        return brain_.get(request.job(), after(request), response, request.state());
       });
 }
 
@@ -52,6 +52,15 @@ grpc::ServerUnaryReactor* JobsService::Explain(Context* context, const Bytes* as
       },
       [this](const v1::JobRequest& request, v1::ExplainResponse& response) {
         return brain_.explain(request.job(), response);
+      });
+}
+
+grpc::ServerUnaryReactor* JobsService::ListTimeline(Context* context, const Bytes* asked,
+                                                    Bytes* said) {
+  return answer_by<v1::ListTimelineRequest, v1::ListTimelineResponse>(
+      desks_.rows, {admission_, context, asked, said},
+      [this](const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response) {
+        return brain_.timeline(request, response);
       });
 }
 

@@ -17,7 +17,9 @@ using RawJobs = v1::Jobs::WithRawCallbackMethod_Submit<v1::Jobs::WithRawCallback
                 v1::Jobs::WithRawCallbackMethod_Delete<v1::Jobs::WithRawCallbackMethod_Explain<
                     v1::Jobs::WithRawCallbackMethod_Watch<v1::Jobs::WithRawCallbackMethod_Outputs<
                         v1::Jobs::WithRawCallbackMethod_Fetch<v1::Jobs::WithRawCallbackMethod_Film<
-                            v1::Jobs::WithRawCallbackMethod_Logs<v1::Jobs::Service>>>>>>>>>>>>>>>;
+                            v1::Jobs::WithRawCallbackMethod_Logs<
+                                v1::Jobs::WithRawCallbackMethod_ListTimeline<
+                                    v1::Jobs::Service>>>>>>>>>>>>>>>>;
 
 /// What clients ask about jobs (jobs_service.cpp, jobs_streams.cpp).
 class JobsService final : public RawJobs {
@@ -37,6 +39,8 @@ class JobsService final : public RawJobs {
   grpc::ServerUnaryReactor* SetPriority(Context* context, const Bytes* asked, Bytes* said) override;
   grpc::ServerUnaryReactor* Delete(Context* context, const Bytes* asked, Bytes* said) override;
   grpc::ServerUnaryReactor* Explain(Context* context, const Bytes* asked, Bytes* said) override;
+  grpc::ServerUnaryReactor* ListTimeline(Context* context, const Bytes* asked,
+                                         Bytes* said) override;
   grpc::ServerWriteReactor<Bytes>* Watch(Context* context, const Bytes* asked) override;
   grpc::ServerWriteReactor<Bytes>* Outputs(Context* context, const Bytes* asked) override;
   grpc::ServerWriteReactor<Bytes>* Fetch(Context* context, const Bytes* asked) override;

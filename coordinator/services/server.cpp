@@ -83,6 +83,7 @@ core::Result<std::unique_ptr<Server>> Server::start(farm::Door door, Brain& brai
   }
   std::unique_ptr<Server> server(new Server(std::move(parts)));
   server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
+  brain.listens_at(server->address_);
   return server;
 }
 

@@ -36,6 +36,8 @@ struct StoredJob {
   int64_t submitted_ms = 0;
   int64_t ended_ms = 0;
   std::string reason;
+  uint64_t core_ns = 0;            ///< that threads took for the results which counted
+  std::optional<int32_t> preview;  ///< the frame that stands for the job in a list
 };
 
 /// A job's spec alone.

@@ -77,6 +77,11 @@ CREATE TABLE parts (  -- of finished frames: who had one
   PRIMARY KEY (job, frame)) WITHOUT ROWID;
 CREATE TABLE trusted (worker TEXT PRIMARY KEY, moment INTEGER NOT NULL) WITHOUT ROWID;
 )",
+    R"(
+ALTER TABLE jobs ADD COLUMN core_ns INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN preview INTEGER;
+CREATE INDEX outputs_of_frame ON outputs (job, frame);
+)",
 };
 
 }  // namespace

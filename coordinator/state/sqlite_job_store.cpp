@@ -14,7 +14,9 @@ namespace {
 
 constexpr std::string_view kJobColumns =
     "id, key, name, owner, priority, max_workers, state, frames, frames_done, frames_failed, "
-    "samples, submitted_ms, ended_ms, reason, tags, memory, max_attempts, frame_order";
+    "samples, submitted_ms, ended_ms, reason, tags, memory, max_attempts, frame_order, core_ns, "
+    "preview";
+constexpr int kSpecColumn = 20;  ///< where it is asked for: behind all others
 
 /// A few times what the largest transaction that frees room needs in the WAL.
 constexpr uint64_t kReserve = uint64_t{1} << 20U;
@@ -55,6 +57,8 @@ StoredJob read_job(const Query& row) {
   job.memory = static_cast<uint64_t>(row.integer(15));
   job.max_attempts = static_cast<uint32_t>(row.integer(16));
   job.frame_order = static_cast<int>(row.integer(17));
+  job.core_ns = static_cast<uint64_t>(row.integer(18));
+  if (!row.is_null(19)) job.preview = static_cast<int32_t>(row.integer(19));
   return job;
 }
 
@@ -95,9 +99,9 @@ class SqliteJobStore final : public JobStore {
     }
     Query insert(db_.get(),
                  "INSERT INTO jobs (key, spec, name, owner, priority, max_workers, state, frames, "
-                 "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason, tags, "
-                 "memory, max_attempts, frame_order) "
-                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                 "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason, core_ns, "
+                 "preview, tags, memory, max_attempts, frame_order) "
+                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     if (job.key.empty()) {
       insert.bind_null();
     } else {
@@ -123,7 +127,7 @@ class SqliteJobStore final : public JobStore {
     Query update(db_.get(),
                  "UPDATE jobs SET priority = ?, max_workers = ?, state = ?, frames = ?, "
                  "frames_done = ?, frames_failed = ?, samples = ?, submitted_ms = ?, "
-                 "ended_ms = ?, reason = ? WHERE id = ?");
+                 "ended_ms = ?, reason = ?, core_ns = ?, preview = ? WHERE id = ?");
     bind_changing(update, job);
     return update.bind(number(job.id)).run();
   }
@@ -154,7 +158,7 @@ class SqliteJobStore final : public JobStore {
       return std::optional<StoredJob>();
     }
     StoredJob job = read_job(row);
-    job.spec = row.bytes(18);
+    job.spec = row.bytes(kSpecColumn);
     return std::optional(std::move(job));
   }
 
@@ -432,7 +436,13 @@ class SqliteJobStore final : public JobStore {
         .bind(number(job.samples))
         .bind(job.submitted_ms)
         .bind(job.ended_ms)
-        .bind(job.reason);
+        .bind(job.reason)
+        .bind(number(job.core_ns));
+    if (job.preview) {
+      query.bind(int64_t{*job.preview});
+    } else {
+      query.bind_null();
+    }
   }
 
   /// Within insert_lines' transaction. Jobs' lines are counted once, and kept count of from there

@@ -30,7 +30,10 @@ farm::Json to_json(const v1::InfoResponse& info) {
           {"workers", info.workers()},
           {"threads", info.threads()},
           {"jobs", info.jobs()},
-          {"trouble", info.trouble()}};
+          {"trouble", info.trouble()},
+          {"grpc_address", info.grpc_address()},
+          {"price_per_core_hour", info.price_per_core_hour()},
+          {"currency", info.currency()}};
 }
 
 void FarmApi::add_routes(Router& router) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "coordinator/brain/not_there.h"
 #include "coordinator/web/handing.h"
 #include "coordinator/web/submission.h"
 #include "farm/wire.h"
@@ -18,21 +19,26 @@ WebReply reply_with(const grpc::Status& status, const Response& response, Show s
   return status.ok() ? json_reply(show(response)) : error_reply(status);
 }
 
+/// Which frames of a job are asked for.
+struct FramesAsked {
+  uint64_t job = 0;
+  std::optional<int32_t> after;
+  v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED;
+};
+
 farm::Json job_with_frames(const v1::GetJobResponse& got) {
   farm::Json frames = farm::Json::array();
   for (const v1::Frame& frame : got.frames()) frames.push_back(farm::to_json(frame));
   return {{"job", farm::to_json(got.job())}, {"frames", std::move(frames)}, {"more", got.more()}};
 }
 
-farm::Json show(const TimedUnit& timed) {
-  const core::PixelRect& tile = timed.unit.tile;
-  return {{"worker", timed.worker},
-          {"frame", timed.unit.frame},
-          {"tile", {tile.x0, tile.y0, tile.x1, tile.y1}},
-          {"first_batch", timed.unit.batches.first},
-          {"batches", timed.unit.batches.count},
-          {"begun_ms", timed.begun_ms},
-          {"ended_ms", timed.ended_ms}};
+/// The state that is called `name`.
+std::optional<v1::FrameState> frame_state_of(const std::string& name) {
+  for (int state = v1::FrameState_MIN; state <= v1::FrameState_MAX; ++state) {
+    const auto known = static_cast<v1::FrameState>(state);
+    if (known != v1::FRAME_STATE_UNSPECIFIED && farm::state_name(known) == name) return known;
+  }
+  return std::nullopt;
 }
 
 farm::Json reasons(const v1::ExplainResponse& why) {
@@ -92,20 +98,48 @@ void JobsApi::add_questions(Router& router) {
         if (!after) return;
         answer_by(desks_.rows, answer, [this, id = *job, from = *after] { return logs(id, from); });
       });
+  router.add(
+      "GET", "/api/v1/jobs/{job}/frames", [this](const WebRequest& request, const Answer& answer) {
+        const auto job = parameter<uint64_t>(request, "job", answer);
+        if (!job) return;
+        FramesAsked asked;
+        asked.job = *job;
+        if (request.query.contains("after")) {
+          asked.after = query_number<int32_t>(request, "after", 0, answer);
+          if (!asked.after) return;
+        }
+        if (const auto state = request.query.find("state"); state != request.query.end()) {
+          const auto known = frame_state_of(state->second);
+          if (!known) {
+            answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
+                                "state: expected waiting, rendering, finishing, done or failed"}));
+            return;
+          }
+          asked.only = *known;
+        }
+        answer_by(desks_.rows, answer, [this, asked] {
+          v1::GetJobResponse got;
+          return reply_with(brain_.get(asked.job, asked.after, got, asked.only), got,
+                            [](const v1::GetJobResponse& response) {
+                              farm::Json all = job_with_frames(response);
+                              all.erase("job");
+                              return all;
+                            });
+        });
+      });
   router.add("GET", "/api/v1/jobs/{job}/timeline",
              [this](const WebRequest& request, const Answer& answer) {
                const auto job = parameter<uint64_t>(request, "job", answer);
                if (!job) return;
-               answer_by(desks_.rows, answer, [this, id = *job] {
-                 v1::GetJobResponse got;
-                 if (const grpc::Status known = brain_.get(id, INT32_MAX, got); !known.ok()) {
-                   return error_reply(known);
-                 }
-                 const Timelines::OfJob timeline = brain_.timeline(id);
-                 farm::Json units = farm::Json::array();
-                 for (const TimedUnit& unit : timeline.units) units.push_back(show(unit));
-                 return json_reply({{"units", std::move(units)}, {"dropped", timeline.dropped}});
-               });
+               const auto after = query_number<uint64_t>(request, "after", 0, answer);
+               if (!after) return;
+               const auto limit = query_number<uint32_t>(request, "limit", 0, answer);
+               if (!limit) return;
+               v1::ListTimelineRequest asked;
+               asked.set_job(*job);
+               asked.set_after(*after);
+               asked.set_limit(*limit);
+               answer_by(desks_.rows, answer, [this, asked] { return timeline(asked); });
              });
   router.add("GET", "/api/v1/jobs/{job}/document",
              [this](const WebRequest& request, const Answer& answer) {
@@ -203,11 +237,37 @@ WebReply JobsApi::list(const v1::ListJobsRequest& request) {
   return json_reply({{"jobs", std::move(jobs)}, {"next_before", response.next_before()}});
 }
 
+/// As many as are asked for, page by page; where nothing is said, all that there are.
+WebReply JobsApi::timeline(v1::ListTimelineRequest asked) {
+  farm::Json units = farm::Json::array();
+  farm::Json steps = farm::Json::array();
+  v1::ListTimelineResponse page;
+  const uint32_t wanted = asked.limit() == 0 ? UINT32_MAX : asked.limit();
+  for (uint32_t left = wanted;;) {
+    asked.set_limit(left);
+    page.Clear();
+    const grpc::Status known = brain_.timeline(asked, page);
+    if (!known.ok()) return error_reply(known);
+    for (const v1::TimelineStep& step : page.steps()) {
+      const bool unit = step.kind() == v1::TimelineStep::KIND_RENDER;
+      (unit ? units : steps).push_back(farm::to_json(step));
+      asked.set_after(step.number());
+    }
+    left -= static_cast<uint32_t>(page.steps_size());
+    if (!page.more() || left == 0) break;
+  }
+  return json_reply({{"units", std::move(units)},
+                     {"steps", std::move(steps)},
+                     {"after", asked.after()},
+                     {"more", page.more()},
+                     {"dropped", page.dropped()}});
+}
+
 WebReply JobsApi::logs(uint64_t job, uint64_t after) {
   const auto stored = brain_.store().state(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
   if (!*stored) {
-    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+    return error_reply(no_job(job));
   }
   const auto lines = brain_.store().lines(job, after, kLinesAtOnce);
   if (!lines) return error_reply(farm::unavailable(lines.error()));
@@ -228,7 +288,7 @@ WebReply JobsApi::document(uint64_t job) {
   const auto stored = brain_.store().job(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
   if (!*stored) {
-    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+    return error_reply(no_job(job));
   }
   v1::JobSpec spec;
   spec.ParseFromString((*stored)->spec);

@@ -18,6 +18,7 @@ class JobsApi {
   void add_questions(Router& router);
   void add_steering(Router& router);
   WebReply list(const v1::ListJobsRequest& request);
+  WebReply timeline(v1::ListTimelineRequest asked);
   WebReply logs(uint64_t job, uint64_t after);
   WebReply document(uint64_t job);
 

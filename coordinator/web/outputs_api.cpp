@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "coordinator/brain/not_there.h"
 #include "coordinator/web/byte_range.h"
 #include "coordinator/web/file_source.h"
 #include "coordinator/web/handing.h"
@@ -93,7 +94,7 @@ WebReply OutputsApi::list(uint64_t job) {
   const auto state = brain_.store().state(job);
   if (!state) return error_reply(farm::unavailable(state.error()));
   if (!*state) {
-    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+    return error_reply(no_job(job));
   }
   const auto outputs = finished_files(brain_, job);
   if (!outputs) return error_reply(farm::unavailable(outputs.error()));
@@ -150,7 +151,7 @@ WebReply OutputsApi::archive(uint64_t job) {
   const auto stored = brain_.store().job(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
   if (!*stored) {
-    return error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", job)});
+    return error_reply(no_job(job));
   }
   const auto outputs = finished_files(brain_, job);
   if (!outputs) return error_reply(farm::unavailable(outputs.error()));

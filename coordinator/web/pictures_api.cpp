@@ -39,15 +39,25 @@ std::string stamp_of(const v1::Frame& frame) {
   return fmt::format("{}:{}:{}", frame.samples_done(), is_over(frame), frame.restarts());
 }
 
+/// What a picture is made of.
+struct Shot {
+  core::Image image;
+  SampledMask sampled;
+  bool exact = true;  ///< linear, and not cut to 8 bits
+};
+
 /// The picture that `asked` means.
-WebReply show(const PicturesApi::Asked& asked, const Brain::FrameNow& now, const core::Image& image,
-              bool exact, const std::string& tag) {
+WebReply show(const PicturesApi::Asked& asked, const Brain::FrameNow& now, const Shot& shot,
+              const std::string& tag) {
+  const core::Image& image = shot.image;
   const auto layer = take_layer(image, asked.layer);
   if (!layer) return error_reply({grpc::StatusCode::NOT_FOUND, layer.error().message});
-  const core::Image shown = asked.width > 0 ? shrink(*layer, asked.width) : *layer;
+  SampledMask sampled = shot.sampled;
+  const core::Image shown = asked.width > 0 ? shrink(*layer, asked.width, sampled) : *layer;
   WebReply reply;
   if (asked.half) {
-    const HalfFacts facts{asked.layer, layers_of(image), now.frame.samples_done(), exact};
+    const HalfFacts facts{asked.layer, layers_of(image), now.frame.samples_done(),       shot.exact,
+                          image.width, image.height,     asked.mask ? &sampled : nullptr};
     reply = text_reply(half_planes(shown, facts), "application/octet-stream");
   } else {
     const auto curve = core::find_tone_curve(now.tone_map);
@@ -87,7 +97,7 @@ void PicturesApi::add_routes(Router& router) {
         if (!frame) return;
         const auto width = query_number<int>(request, "width", 0, answer);
         if (!width) return;
-        Asked asked{*job, *frame, false, *width, "beauty"};
+        Asked asked{*job, *frame, false, query_flag(request, "mask"), *width, "beauty"};
         if (*width != 0 && (*width < kNarrowest || *width > kWidest)) {
           answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
                               fmt::format("width: expected {} to {}", kNarrowest, kWidest)}));
@@ -136,7 +146,7 @@ WebReply PicturesApi::of_file(const Asked& asked, const Brain::FrameNow& now) {
   }
   const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
   if (const auto made = find(asked, tag, true)) return *made;
-  const auto image = core::read_image_file(brain_.output_folder(asked.job) + "/" + best->path);
+  auto image = core::read_image_file(brain_.output_folder(asked.job) + "/" + best->path);
   if (!image) {
     return error_reply(
         {grpc::StatusCode::DATA_LOSS, best->path + " is damaged on the coordinator's disk"});
@@ -144,7 +154,7 @@ WebReply PicturesApi::of_file(const Asked& asked, const Brain::FrameNow& now) {
   Brain::FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
-  WebReply reply = show(asked, plain, *image, best->path.ends_with(".exr"), tag);
+  WebReply reply = show(asked, plain, {std::move(*image), {}, best->path.ends_with(".exr")}, tag);
   keep(asked, tag, true, reply);
   return reply;
 }
@@ -208,14 +218,15 @@ void PicturesApi::take_film(FrameId id) {
 
 void PicturesApi::make_all(FrameId id, const Brain::FrameNow& now, const grpc::Status& found,
                            const core::Film* film) {
-  core::Image image;
+  Shot shot;
   const grpc::Status made = !found.ok() ? found : within_memory([&] {
-    image = film->normalised();
+    shot.image = film->normalised();
+    shot.sampled = sampled_pixels(*film);
     return grpc::Status::OK;
   });
   end(id, [&](const Asked& asked) {
     if (!made.ok()) return error_reply(made);
-    WebReply reply = in_memory([&] { return show(asked, now, image, true, now.tag); });
+    WebReply reply = in_memory([&] { return show(asked, now, shot, now.tag); });
     keep(asked, now.tag, false, reply);
     return reply;
   });

@@ -36,7 +36,8 @@ class PicturesApi {
     uint64_t job = 0;
     int32_t frame = 0;
     bool half = false;
-    int width = 0;  ///< 0: as large as it is
+    bool mask = false;  ///< of the pixels that have samples, with `half`
+    int width = 0;      ///< 0: as large as it is
     std::string layer = "beauty";
 
     auto operator<=>(const Asked&) const = default;

@@ -66,6 +66,20 @@ TEST(Desk, AsksForNothingWhileTooManyFilmsWait) {
   EXPECT_EQ(first(world.take_sent(), &Message::has_request).request().units(), 1U);
 }
 
+TEST(Desk, HeartbeatsTellOfTheCache) {
+  DeskWorld world;
+  world.begin();
+  world.take_sent();
+  world.desk->cache_is({100, 1000, 7, 3});
+  world.now += std::chrono::seconds(2);
+  world.desk->tick(world.now, true);
+  const v1::Heartbeat beat = first(world.take_sent(), &Message::has_heartbeat).heartbeat();
+  EXPECT_EQ(beat.cache_bytes(), 100U);
+  EXPECT_EQ(beat.cache_limit_bytes(), 1000U);
+  EXPECT_EQ(beat.cache_hits(), 7U);
+  EXPECT_EQ(beat.cache_misses(), 3U);
+}
+
 TEST(Desk, FilmsSurviveALostStreamAndAreSentAgain) {
   DeskWorld world;
   world.begin();

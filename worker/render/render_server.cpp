@@ -43,7 +43,7 @@ core::Status check(const core::Unit& unit, const ShelvedFrame& frame) {
 
 RenderServer::RenderServer(pipe::MessagePipe& parent, SceneShelf& shelf, int threads)
     : parent_(parent), shelf_(shelf) {
-  for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { render_loop(); });
+  for (int i = 1; i <= threads; ++i) threads_.emplace_back([this, i] { render_loop(i); });
   threads_.emplace_back([this] { load_loop(); });
   threads_.emplace_back([this] { progress_loop(); });
 }
@@ -117,20 +117,20 @@ RenderServer::TaskPtr RenderServer::next_ready() {
   }
 }
 
-void RenderServer::render_loop() {
+void RenderServer::render_loop(int thread) {
   const core::FpMode mode;
   for (;;) {
     const TaskPtr task = next_ready();
     pipe::FromRenderer started;
     started.mutable_started()->set_token(task->token);
     send(started);
-    render(*task);
+    render(*task, thread);
     const std::lock_guard lock(mutex_);
     tasks_.erase(task->token);
   }
 }
 
-void RenderServer::render(Task& task) {
+void RenderServer::render(Task& task, int thread) {
   const auto begin = std::chrono::steady_clock::now();
   pipe::FromRenderer message;
   const core::Status done = guarded([&]() -> core::Status {
@@ -156,6 +156,7 @@ void RenderServer::render(Task& task) {
     if (!digest) return digest.error();
     film.set_digest(farm::to_wire(*digest));
     film.set_render_ns(static_cast<uint64_t>((std::chrono::steady_clock::now() - begin).count()));
+    film.set_thread(static_cast<uint32_t>(thread));
     film.set_samples(unit.counters.samples);
     film.set_rays(unit.counters.rays);
     film.set_bad_samples(unit.counters.bad_samples);

@@ -44,10 +44,10 @@ class RenderServer {
 
   void add(const pipe::UnitToRender& message);
   void stop(uint64_t token, bool keep_batches);
-  void render_loop();
+  void render_loop(int thread);
   void load_loop();
   void progress_loop();
-  void render(Task& task);
+  void render(Task& task, int thread);
   TaskPtr next_ready();
   void send(const pipe::FromRenderer& message);
   void say_failed(uint64_t token, const std::string& reason);

@@ -43,6 +43,9 @@ class ScriptedWorker {
     core::FilmLayout layout;
     uint32_t samples = 0;
     std::chrono::milliseconds unit_time{0};
+    uint64_t render_ns = 1'000'000;  ///< that it says a unit took
+    uint32_t thread = 0;             ///< ... and which thread had it
+    uint64_t cache_bytes = 0;        ///< that heartbeats tell of, with other numbers of the cache
     /// What happens to a unit; true: it is delivered as usual.
     std::function<bool(ScriptedWorker&, const v1::LeasedUnit&)> meddle;
     /// Changes a film before it is delivered.
@@ -116,7 +119,8 @@ class ScriptedWorker {
     const std::vector<std::byte> bytes = core::encode_film(film);
     result.set_film(bytes.data(), bytes.size());
     result.set_digest(farm::to_wire(*farm::digest_from_hex(film.digest())));
-    result.set_render_ns(1'000'000);
+    result.set_render_ns(script_.render_ns);
+    result.set_thread(script_.thread);
     result.set_want(1);
     {
       const std::lock_guard lock(mutex_);
@@ -201,7 +205,12 @@ class ScriptedWorker {
     if (script_.beat_every.count() == 0) return;
     for (uint64_t number = 1; !ended; ++number) {
       v1::WorkerMessage message;
-      message.mutable_heartbeat()->set_number(number);
+      v1::Heartbeat& heartbeat = *message.mutable_heartbeat();
+      heartbeat.set_number(number);
+      heartbeat.set_cache_bytes(script_.cache_bytes);
+      heartbeat.set_cache_limit_bytes(1000);
+      heartbeat.set_cache_hits(7);
+      heartbeat.set_cache_misses(3);
       {
         const std::lock_guard lock(mutex_);
         for (const auto& [name, result] : kept_) {

@@ -265,7 +265,9 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(db,
                          "DROP INDEX doubtful_frames; ALTER TABLE frames DROP COLUMN doubtful; "
-                         "DROP TABLE parts; DROP TABLE trusted; PRAGMA user_version=3",
+                         "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
+                         "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
+                         "preview; PRAGMA user_version=3",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
   sqlite3_close(db);
@@ -273,6 +275,8 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   const auto frames = store->frames(1);
   ASSERT_EQ(frames->size(), 1U);
   EXPECT_FALSE(frames->at(0).doubtful);
+  EXPECT_EQ((*store->job(1))->core_ns, 0U);
+  EXPECT_FALSE((*store->job(1))->preview);
   EXPECT_TRUE(store->found_odd({"worker", "odd"}, 0, {})->empty())
       << "whose films an older program finished is not known";
 }

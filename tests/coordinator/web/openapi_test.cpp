@@ -127,6 +127,16 @@ TEST_F(OpenApi, AnswersHaveTheFormThatItGives) {
   expect_as_told("GET", "/api/v1/jobs/{job}/outputs", one + "/outputs");
   expect_as_told("GET", "/api/v1/jobs/{job}/explain", one + "/explain");
   expect_as_told("GET", "/api/v1/jobs/{job}/timeline", one + "/timeline");
+  expect_as_told("GET", "/api/v1/jobs/{job}/frames", one + "/frames?state=done");
+  EXPECT_EQ(world.json(one + "/frames?state=done")["frames"].size(), 2U);
+  EXPECT_EQ(world.json(one + "/frames?state=failed")["frames"].size(), 0U);
+  EXPECT_EQ(world.client->get(one + "/frames?state=asleep").status, 400);
+  const Json timeline = world.json(one + "/timeline");
+  EXPECT_FALSE(timeline["steps"].empty());
+  EXPECT_TRUE(world.json(one + "/timeline?after=" + timeline["after"].dump())["units"].empty());
+  const Json first = world.json(one + "/timeline?limit=1");
+  EXPECT_EQ(first["units"].size() + first["steps"].size(), 1U);
+  EXPECT_EQ(first["more"], true);
   expect_as_told("GET", "/api/v1/workers", "/api/v1/workers");
   const Json workers = world.json("/api/v1/workers")["workers"];
   ASSERT_FALSE(workers.empty());

@@ -83,7 +83,9 @@ TEST(Preview, ShrinkingKeepsTheMean) {
     image.data[i] = static_cast<float>((i * 37) % 11);
     sum += static_cast<double>(image.data[i]);
   }
-  const core::Image small = shrink(image, 3);
+  SampledMask all;
+  const core::Image small = shrink(image, 3, all);
+  EXPECT_TRUE(all.empty());
   EXPECT_EQ(small.width, 3);
   EXPECT_EQ(small.height, 2);
   double after = 0;
@@ -95,9 +97,37 @@ TEST(Preview, ShrinkingKeepsTheMean) {
 TEST(Preview, WhatIsNotFiniteDoesNotSpread) {
   core::Image depth = core::make_image(4, 1, {"depth.Z"});
   depth.data = {1, std::numeric_limits<float>::infinity(), 3, 3};
-  const core::Image small = shrink(depth, 2);
+  SampledMask all;
+  const core::Image small = shrink(depth, 2, all);
   EXPECT_EQ(small.data[0], 1);
   EXPECT_EQ(small.data[1], 3);
+}
+
+TEST(Preview, PixelsWithoutSamplesDoNotDarkenSmallPictures) {
+  core::Film film(core::make_film_layout({}), {0, 0, 4, 2});
+  const core::PixelRect half{0, 0, 3, 2};
+  const auto channels = static_cast<size_t>(film.layout().deposited);
+  film.deposit(half, 0, core::kBatchSamples, std::vector<float>(6 * channels, 16.0F));
+  SampledMask mask = sampled_pixels(film);
+  EXPECT_EQ(mask, (SampledMask{255, 255, 255, 0, 255, 255, 255, 0}));
+  core::Image image = core::make_image(4, 2, {"R"});
+  image.data = {8, 8, 8, 0, 8, 8, 8, 0};
+  const core::Image small = shrink(image, 2, mask);
+  EXPECT_EQ(small.data, (std::vector<float>{8, 8}));
+  EXPECT_EQ(mask, (SampledMask{255, 128}));
+  const std::string bytes = half_planes(small, {"beauty", {"beauty"}, 16, true, 4, 2, &mask});
+  const auto header = farm::Json::parse(bytes.substr(0, bytes.find('\n')));
+  EXPECT_EQ(header["full_width"], 4);
+  EXPECT_EQ(header["mask"], true);
+  EXPECT_EQ(bytes.size() - bytes.find('\n') - 1, 2U * 2 + 2);
+  EXPECT_EQ(static_cast<unsigned char>(bytes.back()), 128);
+}
+
+TEST(Preview, AFilmThatIsCoveredHasNoMask) {
+  core::Film film(core::make_film_layout({}), {5, 6, 7, 8});
+  const auto channels = static_cast<size_t>(film.layout().deposited);
+  film.deposit({5, 6, 7, 8}, 0, core::kBatchSamples, std::vector<float>(4 * channels, 1.0F));
+  EXPECT_TRUE(sampled_pixels(film).empty());
 }
 
 TEST(Preview, LayersAreTakenByName) {
@@ -115,7 +145,7 @@ TEST(Preview, LayersAreTakenByName) {
 TEST(Preview, HalfPlanesLieOneAfterTheOther) {
   core::Image image = core::make_image(2, 1, {"R", "G"});
   image.data = {1, 2, 1e9F, -0.5F};
-  const std::string bytes = half_planes(image, {"beauty", {"beauty"}, 16, true});
+  const std::string bytes = half_planes(image, {"beauty", {"beauty"}, 16, true, 2, 1, nullptr});
   const std::string planes = bytes.substr(bytes.find('\n') + 1);
   const unsigned char expected[] = {0x00, 0x3C, 0xFF, 0x7B, 0x00, 0x40, 0x00, 0xB8};
   ASSERT_EQ(planes.size(), sizeof expected);

@@ -1,0 +1,65 @@
+// What rendering took: for the jobs' accounts, and for those who look for what takes long.
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/brain/brain.h"
+#include "coordinator/brain/not_there.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kMostSteps = 2000;
+
+v1::TimelineStep to_wire(const TimedStep& step) {
+  v1::TimelineStep wire;
+  wire.set_number(step.number);
+  wire.set_kind(step.kind);
+  wire.set_worker(step.worker);
+  wire.set_thread(step.thread);
+  *wire.mutable_unit() = farm::to_wire(step.unit);
+  wire.set_begun_us(step.begun_us);
+  wire.set_ended_us(step.ended_us);
+  return wire;
+}
+
+}  // namespace
+
+/// A film has been merged, since `begun_us`: what it took counts now. With the lock.
+void Brain::count_film(JobDesk& desk, const Merge& merge, int64_t begun_us) {
+  const auto id = static_cast<uint64_t>(desk.id);
+  const auto found = desk.films_under_way.find(merge.record);
+  if (found != desk.films_under_way.end()) {
+    const FilmUnderWay film = std::move(found->second);
+    desk.films_under_way.erase(found);
+    desk.stored.core_ns += film.render_ns;
+    if (const auto seat = seats_.find(film.worker); seat != seats_.end()) {
+      ++seat->second.units_done;
+      seat->second.samples_done += samples_of(desk, merge.unit.tile, merge.unit.batches);
+    }
+    const auto took_us = static_cast<int64_t>(film.render_ns / 1000);
+    timelines_.note(id, {v1::TimelineStep::KIND_RENDER, film.name, film.thread, merge.unit,
+                         film.came_us - took_us, film.came_us});
+  }
+  timelines_.note(id, {v1::TimelineStep::KIND_MERGE, {}, 0, merge.unit, begun_us, wall_us()});
+}
+
+grpc::Status Brain::timeline(const v1::ListTimelineRequest& request,
+                             v1::ListTimelineResponse& response) {
+  const auto known = store_->state(request.job());
+  if (!known) return farm::unavailable(known.error());
+  if (!*known) return no_job(request.job());
+  const uint32_t limit = request.limit() == 0 ? kMostSteps : std::min(request.limit(), kMostSteps);
+  Timelines::Page page;
+  {
+    const std::lock_guard lock(mutex_);
+    page = timelines_.page(request.job(), request.after(), limit);
+  }
+  for (const TimedStep& step : page.steps) *response.add_steps() = to_wire(step);
+  response.set_more(page.more);
+  response.set_dropped(page.dropped);
+  return grpc::Status::OK;
+}
+
+}  // namespace hyades::coordinator
