@@ -2,7 +2,9 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +20,7 @@
 
 namespace {
 
+using hyades::worker::Cloud;
 using hyades::worker::WorkerOptions;
 
 volatile std::sig_atomic_t g_signals = 0;
@@ -45,6 +48,28 @@ std::string memory_error(const std::string& text) {
   if (CLI::detail::lexical_cast(text, bytes) && (bytes == 0 || bytes >= uint64_t{16} << 20U))
     return {};
   return text + " bytes: expected at least 16M (8G, 512M), or 0 for no limit";
+}
+
+std::string endpoint_error(const std::string& text) {
+  constexpr std::string_view kScheme = "http://";
+  const bool right = text.starts_with(kScheme) && text.size() > kScheme.size() &&
+                     text.find_first_of("/?# ", kScheme.size()) == std::string::npos;
+  return right ? std::string() : text + ": expected http://HOST:PORT";
+}
+
+/// What --preemption says; "auto" reads what the firmware says and asks nobody.
+std::optional<Cloud> chosen_cloud(const std::string& word) {
+  for (const Cloud cloud : {Cloud::aws, Cloud::gcp, Cloud::azure}) {
+    if (word == hyades::worker::name_of(cloud)) return cloud;
+  }
+  if (word != "auto") return std::nullopt;
+  auto found = hyades::worker::find_cloud();
+  if (!found) {
+    std::fprintf(stderr,
+                 "hyades worker: this is no machine of aws, gcp or azure: no notices of "
+                 "pre-emption are watched for\n");
+  }
+  return found;
 }
 
 std::string default_cache() {
@@ -101,12 +126,23 @@ int main(int argc, char** argv) {
                             "end after so long without work, such as 5m; also where no coordinator "
                             "answers (default: never)",
                             0.1);
+  std::string preemption = "off";
+  auto* cloud = app.add_option("--preemption", preemption,
+                               "hand over what is done when this cloud says that it takes the "
+                               "machine away: aws, gcp, azure, auto (which the firmware names) or "
+                               "off")
+                    ->check(CLI::IsMember({"aws", "gcp", "azure", "auto", "off"}))
+                    ->capture_default_str();
+  app.add_option("--preemption-endpoint", options.cloud_endpoint,
+                 "http://HOST:PORT to ask instead of the cloud's own metadata service")
+      ->needs(cloud)
+      ->check(endpoint_error);
   hyades::cli::add_config_option(app);
   app.footer(
       "examples:\n"
       "  hyades worker\n"
       "  hyades worker --coordinator farm.example:7700 --tls-ca ca.pem --token-file token\n"
-      "  hyades worker --exit-when-idle 5m\n"
+      "  hyades worker --exit-when-idle 5m --preemption auto\n"
       "Ctrl-C or SIGTERM: what is done is handed over, the rest given back; a second one ends it "
       "at once.\n"
       "exit status: 0 asked to leave or without work, 1 cannot work here, 2 wrong arguments or "
@@ -117,6 +153,7 @@ int main(int argc, char** argv) {
   if (const auto status = hyades::cli::parse_command_line(app, argc - skipped, argv + skipped)) {
     return *status;
   }
+  options.cloud = chosen_cloud(preemption);
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);

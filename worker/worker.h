@@ -2,10 +2,12 @@
 
 #include <csignal>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "farm/channel.h"
+#include "worker/clouds/cloud.h"
 
 namespace hyades::worker {
 
@@ -21,7 +23,9 @@ struct WorkerOptions {
   double hang_limit = 60;  ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
   double idle_limit = 0;   ///< seconds without work after which it ends; 0: never (IdleWatch)
   std::string sandbox = "auto";  ///< of the rendering child: auto, require or off
-  std::string renderer;    ///< path of hyades-worker-render
+  std::optional<Cloud> cloud;    ///< whose notices of pre-emption to watch for
+  std::string cloud_endpoint;    ///< instead of the cloud's own metadata service; empty: that one
+  std::string renderer;          ///< path of hyades-worker-render
 };
 
 /// Works for a coordinator until `signals` is not 0, it is drained, or it was idle for long enough.

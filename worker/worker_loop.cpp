@@ -19,6 +19,7 @@
 #include "farm/backoff.h"
 #include "farm/wire.h"
 #include "worker/asset_fetcher.h"
+#include "worker/clouds/preemption_watch.h"
 #include "worker/coordinator_link.h"
 #include "worker/desk.h"
 #include "worker/idle_watch.h"
@@ -40,6 +41,10 @@ constexpr milliseconds kFetchPatience{60'000};
 constexpr milliseconds kLongestPause{60'000};
 /// How long the end of the stream may take when all is said.
 constexpr milliseconds kGoodbye{200};
+/// What is left of a cloud's notice, in seconds, when the worker is gone.
+constexpr double kLastSeconds = 3;
+/// However long a cloud's notice is, in seconds.
+constexpr double kLongestLeave = 120;
 
 Duration seconds(double value) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
@@ -58,7 +63,8 @@ FolderIdentity folder_identity(const std::string& path) {
 class Worker : private DeskPorts,
                private CoordinatorLink::Owner,
                private RendererProcess::Owner,
-               private AssetFetcher::Owner {
+               private AssetFetcher::Owner,
+               private PreemptionWatch::Owner {
  public:
   Worker(const WorkerOptions& options, WorkerId id, const std::string& instance,
          std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store)
@@ -71,10 +77,11 @@ class Worker : private DeskPorts,
 
   int run(const volatile std::sig_atomic_t& signals) {
     start_renderer();
+    watch_for_preemption();
     while (!exit_status_) {
       run_posted();
       const TimePoint now = Clock::now();
-      if (signals > 0) leave(now);
+      if (signals > 0) asked_to_leave(now);
       if (idle_.over(now, busy()) && !desk_.leaving()) leave_idle(now);
       if (restart_at_ && now >= *restart_at_ && !leave_by_) start_renderer();
       if (connect_at_ && now >= *connect_at_) connect(now);
@@ -120,11 +127,21 @@ class Worker : private DeskPorts,
     for (const auto& event : events) event();
   }
 
-  void leave(TimePoint now) {
-    if (leave_by_) return;
-    note("leaving: batches that are done are handed over");
-    leave_by_ = now + seconds(options_.grace) - kGoodbye;
-    desk_.leave("asked to leave", true);
+  /// Hands over what is done and gives the rest back, within `time`; asked again, it is hastened.
+  void leave(TimePoint now, const std::string& reason, Duration time) {
+    const TimePoint by = now + std::max(time - kGoodbye, Duration(0));
+    if (!leave_by_) {
+      note(reason + ": batches that are done are handed over");
+      leave_reason_ = reason;
+      desk_.leave(reason, true);
+    }
+    leave_by_ = leave_by_ ? std::min(*leave_by_, by) : by;
+  }
+
+  void asked_to_leave(TimePoint now) {
+    if (!std::exchange(asked_to_leave_, true)) {
+      leave(now, "asked to leave", seconds(options_.grace));
+    }
   }
 
   /// Films that nobody takes are no work: a coordinator that has been away for so long may never
@@ -137,13 +154,14 @@ class Worker : private DeskPorts,
   void leave_idle(TimePoint now) {
     note(fmt::format("no work for {}: leaving", core::format_duration(options_.idle_limit)));
     leave_by_ = now;
-    desk_.leave("without work", false);
+    leave_reason_ = "without work";
+    desk_.leave(leave_reason_, false);
   }
 
   void try_to_go(TimePoint now) {
     const bool late = leave_by_ && now >= *leave_by_;
     if (!goodbye_by_ && (desk_.empty() || late)) {
-      desk_.give_back_rest("asked to leave");
+      desk_.give_back_rest(leave_reason_);
       if (desk_.unacknowledged() > 0) {
         note(fmt::format("{} films were not acknowledged in time", desk_.unacknowledged()));
       }
@@ -151,6 +169,31 @@ class Worker : private DeskPorts,
       goodbye_by_ = now + kGoodbye;
     }
     if (goodbye_by_ && (now >= *goodbye_by_ || !streaming_)) exit_status_ = 0;
+  }
+
+  // ---- the cloud ----
+
+  void watch_for_preemption() {
+    if (!options_.cloud) return;
+    note(fmt::format("watches for notices of pre-emption by {}", name_of(*options_.cloud)));
+    preemption_.emplace(*options_.cloud, options_.cloud_endpoint,
+                        static_cast<PreemptionWatch::Owner&>(*this));
+  }
+
+  void preempted(const Notice& notice) override {
+    post([this, notice] {
+      const double time = std::max(notice.seconds_left - kLastSeconds, options_.grace);
+      leave(Clock::now(),
+            fmt::format("pre-empted by {} at {}", name_of(*options_.cloud), notice.at),
+            seconds(std::min(time, kLongestLeave)));
+    });
+  }
+
+  void watch_trouble(const std::string& reason) override {
+    post([this, reason] {
+      note(fmt::format("no notice of pre-emption by {} can be had ({}); trying again",
+                       name_of(*options_.cloud), reason));
+    });
   }
 
   // ---- the rendering child ----
@@ -327,6 +370,8 @@ class Worker : private DeskPorts,
   std::optional<TimePoint> connect_at_;
   std::optional<TimePoint> restart_at_;
   std::optional<TimePoint> leave_by_;
+  std::string leave_reason_ = "drained";
+  bool asked_to_leave_ = false;
   std::optional<TimePoint> goodbye_by_;
   std::optional<int> exit_status_;
 
@@ -334,6 +379,7 @@ class Worker : private DeskPorts,
   std::unique_ptr<RendererProcess> renderer_;
   CoordinatorLink link_;
   AssetFetcher fetcher_;
+  std::optional<PreemptionWatch> preemption_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // What workers say: wishes, films, failures.
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -95,9 +96,18 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
         say(UnitReturned{worker, lease_from_wire(returned.lease()), JobId{returned.job()}, *unit});
       }
     } else if (message.has_leaving()) {
-      seat->leaving = true;
       seat->held_wish = 0;
       seat->reason = farm::wire_text(message.leaving().reason());
+      if (!std::exchange(seat->leaving, true)) {
+        // In the logs of the jobs that it has units of; whether they go to others is told later.
+        std::set<JobId> jobs;
+        for (const UnitInHand& held : scheduler_.units_of(seat->id)) jobs.insert(held.job);
+        for (const JobId job : jobs) {
+          if (JobDesk* desk = desk_of(job)) {
+            note(*desk, v1::LOG_LEVEL_INFO, {}, seat->hello.name(), "is leaving: " + seat->reason);
+          }
+        }
+      }
       if (seat->state == v1::WORKER_STATE_ACTIVE) seat->state = v1::WORKER_STATE_DRAINING;
       say(WorkerBarred{worker, true});
     }
