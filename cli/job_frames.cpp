@@ -66,8 +66,9 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
 
 core::Status JobFrames::check_film_names() const {
   if (!options_.write_films) return {};
+  const std::string film =
+      options_.film_file.empty() ? core::film_file(loaded_.job) : options_.film_file;
   for (const core::OutputDesc& output : loaded_.job.outputs) {
-    const std::string film = core::film_file(loaded_.job);
     if (!core::same_output_path(output.file, film) &&
         !core::nested_output_paths(output.file, film)) {
       continue;
@@ -79,7 +80,7 @@ core::Status JobFrames::check_film_names() const {
   return {};
 }
 
-core::Status JobFrames::load_files() {
+core::Status JobFrames::load_display() {
   if (const auto& color = loaded_.job.color) {
     const auto folder = std::filesystem::path(loaded_.job.file).parent_path();
     auto display = core::open_display_transform((folder / color->config).string(), *color);
@@ -87,6 +88,11 @@ core::Status JobFrames::load_files() {
       return core::Error{core::Diagnostic{color->where, display.error().message}.to_string()};
     display_ = std::move(*display);
   }
+  return {};
+}
+
+core::Status JobFrames::load_files() {
+  if (auto display = load_display(); !display) return display;
   if (auto loaded = core::load_files(loaded_.job, std::nullopt, cache_); !loaded) {
     return loaded.error();
   }
@@ -113,11 +119,37 @@ core::Result<std::shared_ptr<const coordinator::FrameWork>> JobFrames::prepare(i
 
 core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
   const core::FilmInfo info = film_info(frame);
+  if (auto written = write_pictures(info, film); !written) return written;
+  if (!options_.write_films) return {};
+  return core::write_film_exr(film_path(frame), {info, film});
+}
+
+core::Status JobFrames::write_outputs_of(const core::FilmFile& file) {
+  const int32_t frame = file.info.frame;
+  if (core::render_key(loaded_.job, frame, assets_) != file.info.render_key) {
+    return core::Error{fmt::format(
+        "frame {}: its films are of another picture: what decides the pixels of {} is not what "
+        "it was (or another version of Hyades rendered them)",
+        frame, loaded_.job.file)};
+  }
+  if (auto written = write_pictures(file.info, file.film); !written) return written;
+  if (!options_.write_films) return {};
+  return core::write_film_exr(film_path(frame), file);
+}
+
+/// The job's outputs, and the folders that they and the film lie in.
+core::Status JobFrames::write_pictures(const core::FilmInfo& info, const core::Film& film) {
+  if (options_.write_films) {
+    const auto folder = std::filesystem::path(film_path(info.frame)).parent_path();
+    std::error_code failed;
+    if (!folder.empty()) std::filesystem::create_directories(folder, failed);
+    if (failed) return core::Error{folder.string() + ": cannot be made: " + failed.message()};
+  }
+  if (options_.only_films) return {};
   const auto written =
       core::write_outputs(loaded_.job.outputs, options_.folder, info, film, display_.get());
   if (!written) return written.error();
-  if (!options_.write_films) return {};
-  return core::write_film_exr(film_path(frame), {info, film});
+  return {};
 }
 
 bool JobFrames::outputs_exist(int32_t frame) {
@@ -134,7 +166,7 @@ std::vector<std::string> JobFrames::output_paths(int32_t frame, bool for_videos)
     const bool for_video = std::any_of(videos.begin(), videos.end(), [&](const auto& video) {
       return video.pictures == output.file;
     });
-    if (for_video && !for_videos) continue;
+    if (options_.only_films || (for_video && !for_videos)) continue;
     paths.push_back(core::output_path(output, options_.folder, frame));
   }
   if (options_.write_films) paths.push_back(film_path(frame));
@@ -187,6 +219,10 @@ void JobFrames::remove_leftovers(const std::vector<int32_t>& frames,
 }
 
 std::string JobFrames::film_path(int32_t frame) const {
+  if (!options_.film_file.empty()) {
+    const std::string file = core::output_path(options_.film_file, frame);
+    return (std::filesystem::path(options_.folder) / file).string();
+  }
   core::OutputDesc film;
   film.file = core::film_file(loaded_.job);
   return core::output_path(film, options_.folder, frame);

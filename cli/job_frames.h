@@ -10,6 +10,7 @@
 #include "cli/load_job.h"
 #include "coordinator/local/frame_work.h"
 #include "coordinator/local/local_plan.h"
+#include "core/film/film_exr.h"
 #include "core/film/film_info.h"
 #include "core/finish/display_transform.h"
 #include "core/render/frame_renderer.h"
@@ -33,6 +34,8 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   struct Options {
     std::string folder;        ///< where outputs go
     bool write_films = false;  ///< also NAME.####.film.exr
+    std::string film_file;     ///< instead of that name, #### for the frame; empty: that one
+    bool only_films = false;   ///< no outputs: what is rendered is a part
     core::PixelRect window;    ///< what is rendered of each frame
     bool trust_outputs =
         false;  ///< whether output files that are there were made with the job's settings
@@ -43,6 +46,9 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
 
   /// An error where the frames' films and an output of the job would be the same file.
   core::Status check_film_names() const;
+
+  /// Opens the colour configuration, which write_outputs() needs.
+  core::Status load_display();
 
   /// Loads the files that all frames share, and the colour configuration. The error names every one
   /// that is broken.
@@ -55,6 +61,10 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   core::Result<std::shared_ptr<const coordinator::FrameWork>> prepare(int32_t frame) override;
   core::Status finish(int32_t frame, const core::Film& film) override;
   bool outputs_exist(int32_t frame) override;
+
+  /// Writes the outputs (and the film) of a frame of a film that others may have rendered. An error
+  /// where the film is not of this job as it is.
+  core::Status write_outputs_of(const core::FilmFile& file);
 
   /// Everything that `frame` writes, in the job's order; with or without what is there for videos
   /// only.
@@ -72,6 +82,7 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
 
  private:
   class Work;
+  core::Status write_pictures(const core::FilmInfo& info, const core::Film& film);
   core::FilmInfo film_info(int32_t frame) const;
   std::string film_path(int32_t frame) const;
   std::vector<std::filesystem::path> video_paths() const;

@@ -42,6 +42,7 @@ constexpr Command kCommands[] = {
 #endif
     {"video", "hyades-render", "make a job's videos of the pictures that its frames have left"},
     {"merge", "hyades-film", "join films of the same frame"},
+    {"finish", "hyades-render", "write a job's pictures out of films that others have rendered"},
     {"contact-sheet", "hyades-film", "put many pictures on one sheet"},
     {"denoise", "hyades-film", "take the noise out of a picture"},
     {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},

@@ -33,18 +33,18 @@ namespace {
 
 /// Says so where what the job's chains bring to the crop is right only when the rest is merged.
 void note_cut_chains(const RenderOptions& options, const core::Job& job) {
-  if (options.crop.empty() || options.quiet || job.integrator.type != "mlt") return;
+  const bool cut = !options.crop.empty() || options.tile;
+  if (!cut || options.quiet || job.integrator.type != "mlt") return;
   const core::PixelRect crop = window_of(options, job);
   const auto pixels = static_cast<double>(crop.area());
   const auto stood_for =
       static_cast<double>(core::pixels_of_chains(crop, core::render_window(job.film)));
   if (stood_for == pixels) return;
-  std::fprintf(
-      stderr,
-      "--crop: chains of mlt stand for %d x %d pixels each, and this crop cuts some: until it "
-      "is merged with the rest its light is %.3g times what it should be; edges at "
-      "multiples of %d cut none\n",
-      core::kChainShare, core::kChainShare, stood_for / pixels, core::kChainShare);
+  std::fprintf(stderr,
+               "chains of mlt stand for %d x %d pixels each, and this part cuts some: until it "
+               "is merged with the rest its light is %.3g times what it should be; edges at "
+               "multiples of %d cut none\n",
+               core::kChainShare, core::kChainShare, stood_for / pixels, core::kChainShare);
 }
 
 void print_bad_samples(const RunTotals& totals, const std::string& path) {
@@ -123,10 +123,17 @@ int render_command(int argc, char** argv) {
     std::fprintf(stderr, "%s: %s\n", options.path.c_str(), fits.error().message.c_str());
     return kBadInput;
   }
-  const std::string kept = options.folder + "/.hyades/" + job.name;
+  const std::string film_file = film_file_of(options, job);
+  if (numbers->size() > 1 && !film_file.empty() && film_file.find('#') == std::string::npos) {
+    std::fprintf(stderr, "--film %s: expected #### in the name, for the frame: there are %zu\n",
+                 film_file.c_str(), numbers->size());
+    return kBadInput;
+  }
+  const std::string kept = options.folder + "/.hyades/" + kept_name(options, job);
   const OutputNote note(kept + ".outputs", *loaded);
-  JobFrames frames(*loaded, {options.folder, options.film || job.keep_films, window,
-                             note.still_true(), options.texture_memory});
+  JobFrames frames(*loaded,
+                   {options.folder, options.film || job.keep_films || options.is_part(), film_file,
+                    options.is_part(), window, note.still_true(), options.texture_memory});
   if (const auto names = frames.check_film_names(); !names) {
     std::fprintf(stderr, "%s\n", names.error().message.c_str());
     return kBadInput;
@@ -164,6 +171,7 @@ int render_command(int argc, char** argv) {
   plan.frames = *numbers;
   plan.region = window;
   plan.samples = job.sampling.samples;
+  plan.batches = batches_of(options, job);
   plan.threads = options.threads;
   if (core::makes_splats(job.integrator)) plan.tile_size = coordinator::kSplatTile;
   plan.frames_in_flight = room.frames_in_flight();
@@ -172,7 +180,8 @@ int render_command(int argc, char** argv) {
   log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
   log.resume = options.resume;
 
-  if (!job.videos.empty() && !core::have_ffmpeg()) {
+  const bool videos = !job.videos.empty() && !options.is_part();
+  if (videos && !core::have_ffmpeg()) {
     std::fprintf(stderr, "warning: %s; until then frames' pictures are kept for its videos\n",
                  core::kNoFfmpeg);
   }
@@ -221,7 +230,7 @@ int render_command(int argc, char** argv) {
   int status = report(options, frames, *numbers, outcome, run.progress());
   const bool all_frames = core::are_all_frames(job, *numbers);
   bool complete = outcome.complete && outcome.failures.empty();
-  if (complete && !job.videos.empty()) {
+  if (complete && videos) {
     if (!all_frames) {
       if (!options.quiet) note_no_videos(job, options.folder, options.path);
     } else if (!make_videos(job, options.folder, *numbers, options.quiet)) {
@@ -235,13 +244,14 @@ int render_command(int argc, char** argv) {
   }
   // Everything is written: the films are of no more use. After --frames the log may hold work on
   // other frames.
-  if (complete && all_frames) {
+  if (complete && (all_frames || options.is_part())) {
     std::filesystem::remove_all(log.folder, failed);
     std::filesystem::remove(kept + ".outputs", failed);
     std::filesystem::remove(options.folder + "/.hyades",
                             failed);  // only where no other job is in it
     // Before that a resumed run would have missed them.
     for (const core::VideoDesc& video : job.videos) {
+      if (!videos) break;
       core::remove_video_pictures(video, core::video_frames(job, options.folder, *numbers));
     }
   }

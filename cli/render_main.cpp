@@ -4,6 +4,7 @@
 namespace hyades::cli {
 int bench_command(int argc, char** argv);
 int check_command(int argc, char** argv);
+int finish_job_command(int argc, char** argv);
 int import_command(int argc, char** argv);
 int media_command(int argc, char** argv);
 int render_command(int argc, char** argv);
@@ -18,7 +19,7 @@ int main(int argc, char** argv) {
   constexpr ProgramCommand kCommands[] = {
       {"render", render_command},         {"check", check_command}, {"replay", replay_command},
       {"import", import_command},         {"media", media_command}, {"bench", bench_command},
-      {"strategies", strategies_command}, {"video", video_command},
+      {"strategies", strategies_command}, {"video", video_command}, {"finish", finish_job_command},
   };
   return run_program(kCommands, argc, argv);
 }

@@ -1,15 +1,59 @@
 #include "cli/render_options.h"
 
 #include <cstdio>
+#include <string_view>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/address_option.h"
 #include "cli/command_line.h"
 #include "cli/frame_range.h"
 #include "cli/preview.h"
+#include "core/job/film_file.h"
+#include "core/job/output_path.h"
 
 namespace hyades::cli {
+namespace {
+
+/// A check for options of CLI11 out of what parses their text.
+template <auto Parse>
+std::string is_right(const std::string& text) {
+  const auto parsed = Parse(text);
+  return parsed ? std::string() : parsed.error().message;
+}
+
+/// The words of the command line, with "--film" and a file .exr behind it as one: the file may be
+/// left out, and the job may follow.
+std::vector<std::string> joined_film(int argc, char** argv) {
+  std::vector<std::string> words(argv, argv + argc);
+  for (size_t i = 1; i + 1 < words.size(); ++i) {
+    if (words[i] != "--film" || core::file_extension(words[i + 1]) != ".exr") continue;
+    words[i] += "=" + words[i + 1];
+    words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+  }
+  return words;
+}
+
+core::PixelRect crop_of(const RenderOptions& options, const core::Job& job) {
+  const core::PixelRect whole = core::render_window(job.film);
+  if (options.crop.empty()) return whole;
+  return intersection(whole, {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
+}
+
+/// ".tile-2-of-3.samples-0-31"
+std::string part_text(const RenderOptions& options) {
+  std::string text;
+  if (options.tile) {
+    text += fmt::format(".tile-{}-of-{}", options.tile->index, options.tile->count);
+  }
+  if (const auto& range = options.samples.range) {
+    text += fmt::format(".samples-{}-{}", range->first, range->last);
+  }
+  return text;
+}
+
+}  // namespace
 
 std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& options) {
   CLI::App app("Renders a job, or a scene or mesh of another tool, on this machine.",
@@ -21,8 +65,14 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
       ->check(no_frames_error);
-  app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
-      ->check(CLI::Range(1U, 1U << 24U));
+  std::string samples;
+  std::string tile;
+  app.add_option("--samples", samples,
+                 "samples per pixel (default: the job's); 0-31, or 0-31/256: only these of them, "
+                 "whole batches of 16, which writes only films")
+      ->check(is_right<parse_samples>);
+  app.add_option("--tile", tile, "2/3: only this part of each frame, which writes only films")
+      ->check(is_right<parse_tile>);
   app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
       ->delimiter(',')
       ->expected(4);
@@ -47,9 +97,15 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
                  "all its layers (tev listens on 127.0.0.1:14158)")
       ->check(address_error);
   app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
-  app.add_flag("--film", options.film,
-               "also write each frame's film (NAME.film.exr), for 'hyades merge', as keep_films in "
-               "the job does");
+  app.add_flag("--film{*}", options.film_file,
+               "also write each frame's film, for 'hyades merge' and 'hyades finish': to "
+               "NAME.film.exr below --output, as keep_films in the job does, or to --film FILE.exr "
+               "(#### for the frame)")
+      ->check([](const std::string& file) {
+        return file == "*" || core::file_extension(file) == ".exr"
+                   ? std::string()
+                   : file + ": expected a file .exr";
+      });
   app.add_flag("--resume", options.resume, "continue a run that was interrupted, to the same bits");
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.footer(
@@ -60,10 +116,22 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       "  hyades render jobs/cornell/job.yaml --display 127.0.0.1:14158\n"
       "  hyades render robot.glb --samples 64\n"
       "  hyades render bottles.obj --media media.json\n"
+      "  hyades render job.yaml --frames 7 --tile 2/3 --samples 0-127 --film part.exr\n"
       "Ctrl-C stops; --resume continues, also after a crash.\n"
       "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
       "interrupted");
-  return parse_command_line(app, argc, argv, kBadInput);
+  auto words = joined_film(argc, argv);
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  if (const auto status =
+          parse_command_line(app, static_cast<int>(pointers.size()), pointers.data(), kBadInput)) {
+    return status;
+  }
+  if (!samples.empty()) options.samples = *parse_samples(samples);
+  if (!tile.empty()) options.tile = *parse_tile(tile);
+  options.film = !options.film_file.empty();
+  if (options.film_file == "*") options.film_file.clear();
+  return std::nullopt;
 }
 
 std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
@@ -71,7 +139,7 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
   if (options.preview > 0) make_preview(job, options.preview);
-  if (options.samples > 0) job.sampling.samples = options.samples;
+  if (options.samples.of > 0) job.sampling.samples = options.samples.of;
   if (!options.crop.empty()) {
     const core::PixelRect crop{options.crop[0], options.crop[1], options.crop[2], options.crop[3]};
     const core::PixelRect whole = core::render_window(job.film);
@@ -82,13 +150,46 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
       return std::nullopt;
     }
   }
+  const auto complain = [](const std::string& message) {
+    std::fprintf(stderr, "%s\n", message.c_str());
+    return std::nullopt;
+  };
+  if (options.is_part() && options.preview > 0) {
+    return complain("--preview: expected no --tile and no --samples of a range beside it");
+  }
+  if (options.tile) {
+    if (const auto tile = tile_of(crop_of(options, job), *options.tile); !tile) {
+      return complain(tile.error().message);
+    }
+  }
+  if (options.samples.range) {
+    const auto batches = batches_of(*options.samples.range, job.sampling.samples);
+    if (!batches) return complain(batches.error().message);
+  }
   return loaded;
 }
 
 core::PixelRect window_of(const RenderOptions& options, const core::Job& job) {
-  const core::PixelRect whole = core::render_window(job.film);
-  if (options.crop.empty()) return whole;
-  return intersection(whole, {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
+  const core::PixelRect crop = crop_of(options, job);
+  return options.tile ? tile_of(crop, *options.tile).value() : crop;
+}
+
+core::BatchRange batches_of(const RenderOptions& options, const core::Job& job) {
+  if (!options.samples.range) return {};
+  return batches_of(*options.samples.range, job.sampling.samples).value();
+}
+
+std::string film_file_of(const RenderOptions& options, const core::Job& job) {
+  if (!options.film_file.empty() || !options.is_part()) return options.film_file;
+  constexpr std::string_view kEnd = ".film.exr";
+  std::string file = core::film_file(job);
+  return file.insert(file.size() - kEnd.size(), part_text(options));
+}
+
+std::string kept_name(const RenderOptions& options, const core::Job& job) {
+  if (!options.is_part()) return job.name;
+  return job.name + ".frames-" + (options.frames.empty() ? "all" : options.frames) +
+         part_text(options);
 }
 
 }  // namespace hyades::cli

@@ -368,8 +368,7 @@ void FilmKeeper::forget(int32_t frame, bool finished) {
   const auto it = films_.find(frame);
   if (it == films_.end()) return;
   if (finished) classes_.erase(frame);
-  const uint64_t all =
-      static_cast<uint64_t>(plan_.region.area()) * core::batch_count(plan_.samples);
+  const uint64_t all = static_cast<uint64_t>(plan_.region.area()) * batches_of(plan_).count;
   if (!finished && log_ && it->second->coverage().volume() == all &&
       unfinished_.size() < kUnfinishedFilms) {
     unfinished_.insert(*it);

@@ -66,7 +66,7 @@ void LocalRun::act(const FrameFailed& failed) {
   works_.erase(failed.frame);
   in_flight_.erase(failed.frame);
   complete_.erase(failed.frame);
-  progress_.samples -= static_cast<uint64_t>(plan_.region.area()) * plan_.samples;
+  progress_.samples -= samples_per_frame();
   progress_.samples_done -= frame_samples_[failed.frame];
   frame_samples_.erase(failed.frame);
   ++progress_.frames_failed;
@@ -86,7 +86,16 @@ void LocalRun::act(const JobEnded& /*ended*/) {
 }
 
 uint64_t LocalRun::samples_of(const core::Unit& unit) const {
-  return core::samples_in(unit.tile, unit.batches, plan_.samples);
+  return core::samples_in(unit.tile, to_render(unit).batches, plan_.samples);
+}
+
+uint64_t LocalRun::samples_per_frame() const {
+  return core::samples_in(plan_.region, batches_of(plan_), plan_.samples);
+}
+
+core::Unit LocalRun::to_render(core::Unit unit) const {
+  unit.batches.first += batches_of(plan_).first;
+  return unit;
 }
 
 void LocalRun::count_locked(const core::Unit& unit, bool done) {

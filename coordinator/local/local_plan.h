@@ -9,15 +9,17 @@
 #include "coordinator/store/log_files.h"
 #include "core/base/hash.h"
 #include "core/base/rect.h"
+#include "core/film/unit.h"
 
 namespace hyades::coordinator {
 
-/// What a run on this machine renders. No field but `frames`, `region` and `samples` can change a
-/// bit of a film.
+/// What a run on this machine renders. No field but `frames`, `region`, `samples` and `batches` can
+/// change a bit of a film.
 struct LocalPlan {
   std::vector<int32_t> frames;  ///< in this order; no number twice
   core::PixelRect region;       ///< of every frame
-  uint32_t samples = 1;         ///< per pixel
+  uint32_t samples = 1;         ///< per pixel, of the whole job
+  core::BatchRange batches;     ///< which of these are rendered; none: all of them
   int threads = 1;
   int32_t tile_size = 32;  ///< pixels; a resumed run keeps what it began with
   uint64_t shuffle = 0;    ///< not 0: take tiles in a random order (tests)
@@ -27,6 +29,12 @@ struct LocalPlan {
   /// Films that may wait for the disk before the threads wait too.
   uint64_t max_waiting_bytes = uint64_t{512} << 20U;
 };
+
+/// The batches that the plan renders.
+inline core::BatchRange batches_of(const LocalPlan& plan) {
+  return plan.batches.count > 0 ? plan.batches
+                                : core::BatchRange{0, core::batch_count(plan.samples)};
+}
 
 using FrameKey = core::Sha256;
 

@@ -50,6 +50,9 @@ core::Status LocalRun::start() {
   if (plan_.region.empty() || plan_.samples == 0 || plan_.tile_size < 1) {
     return core::Error{"there is nothing to render"};
   }
+  if (batches_of(plan_).end() > core::batch_count(plan_.samples)) {
+    return core::Error{"there are not so many batches"};
+  }
   auto contents = keeper_.open();
   if (!contents) return contents.error();
   log_problems_ = contents->problems;
@@ -60,11 +63,9 @@ core::Status LocalRun::start() {
   job.plan.frames = plan_.frames;
   job.plan.region = plan_.region;
   job.plan.tile_size = plan_.tile_size;
-  job.plan.batches = core::batch_count(plan_.samples);
+  job.plan.batches = batches_of(plan_).count;
   job.plan.shuffle = plan_.shuffle;
   job.plan.frames_in_flight = plan_.frames_in_flight;
-  const uint64_t samples_per_frame =
-      static_cast<uint64_t>(plan_.region.area()) * uint64_t{plan_.samples};
   for (const int32_t frame : plan_.frames) {
     if (contents->finished.contains(frame)) {
       if (!sink_.outputs_exist(frame)) {
@@ -72,9 +73,10 @@ core::Status LocalRun::start() {
         continue;
       }
       job.restored.finished.push_back(frame);
-      progress_.samples_done += samples_per_frame;
+      progress_.samples_done += samples_per_frame();
     } else if (const auto film = contents->films.find(frame); film != contents->films.end()) {
-      for (const core::Unit& unit : units_of(frame, *film->second, plan_.region, plan_.tile_size)) {
+      for (core::Unit unit : units_of(frame, *film->second, plan_.region, plan_.tile_size)) {
+        unit.batches.first -= batches_of(plan_).first;
         job.restored.accepted.push_back({unit, Digest{}, {}});
         frame_samples_[frame] += samples_of(unit);
       }
@@ -83,7 +85,7 @@ core::Status LocalRun::start() {
   }
   progress_.frames = static_cast<uint32_t>(plan_.frames.size());
   progress_.frames_done = static_cast<uint32_t>(job.restored.finished.size());
-  progress_.samples = samples_per_frame * plan_.frames.size();
+  progress_.samples = samples_per_frame() * plan_.frames.size();
   samples_before_ = progress_.samples_done;
   started_ = std::chrono::steady_clock::now();
 

@@ -99,7 +99,11 @@ class LocalRun : private FilmKeeper::Owner {
   void act(const FrameReopened&) {}
   void act(const FrameRestarted&) {}
   void end_locked(const std::string& error);
+  /// The scheduler counts batches from the first that is rendered; renderer, films and log from the
+  /// job's first.
+  core::Unit to_render(core::Unit unit) const;
   uint64_t samples_of(const core::Unit& unit) const;
+  uint64_t samples_per_frame() const;
   void count_locked(const core::Unit& unit, bool done);
   void note_film(int32_t frame, const core::Film& film);
 

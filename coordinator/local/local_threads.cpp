@@ -42,14 +42,14 @@ void LocalRun::render_loop(int thread) {
   const core::FpMode mode;
   while (const std::optional<Task> task = next_task(thread)) {
     const TimePoint begin = std::chrono::steady_clock::now();
-    auto film = render_unit(*task->work, task->unit, stop_);
+    const core::Unit unit = to_render(task->unit);
+    auto film = render_unit(*task->work, unit, stop_);
     if (stop_) break;
     if (film) {
       deliver(thread, *task, std::move(*film), std::chrono::steady_clock::now() - begin);
     } else {
-      carry_out(
-          tell(UnitFailed{WorkerId{static_cast<uint64_t>(thread)}, task->lease, kJob, task->unit,
-                          film.error().message + " (" + describe(task->unit) + ")"}));
+      carry_out(tell(UnitFailed{WorkerId{static_cast<uint64_t>(thread)}, task->lease, kJob,
+                                task->unit, film.error().message + " (" + describe(unit) + ")"}));
     }
   }
   const std::lock_guard lock(mutex_);

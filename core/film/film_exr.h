@@ -30,6 +30,9 @@ Result<FilmFile> read_film_exr(const std::string& path);
 /// The same for a file's bytes; `name` is used in errors only.
 Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name);
 
+/// What a film file belongs to, without its pixels, which are not looked at.
+Result<FilmInfo> read_film_info(const std::string& path);
+
 /// Joins `from` into `into`. Refused with a reason where render key, frame, size, crop, samples or
 /// class differ or batches overlap; nothing is changed then.
 Status merge_film_files(FilmFile& into, const FilmFile& from);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -59,29 +60,52 @@ Result<std::vector<WordChannel>> present_words(const Imf::ChannelList& channels,
   return words;
 }
 
-Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
+/// An opened film file and what it says of itself.
+struct Opened {
+  std::unique_ptr<MemoryIStream> stream;
+  std::unique_ptr<Imf::MultiPartInputFile> in;
+  int part = 0;
+  std::string facts;
+  std::string digest;
+  FilmHeader header;
+};
+
+Result<Opened> open_parts(std::span<const std::byte> bytes) {
   prepare_openexr();
   uint32_t magic = 0;
   if (bytes.size() >= sizeof magic) std::memcpy(&magic, bytes.data(), sizeof magic);
   if (magic != kExrMagic) return Error{"it is no OpenEXR file"};
   if (const Status header = check_exr_header(bytes, kLimits); !header) return header.error();
-  MemoryIStream stream(bytes);
-  Imf::MultiPartInputFile in(stream, 0, false);
-  int index = 0;
-  while (index < in.parts() &&
-         (!in.header(index).hasName() || in.header(index).name() != kSumsPart)) {
-    ++index;
+  Opened opened;
+  opened.stream = std::make_unique<MemoryIStream>(bytes);
+  opened.in = std::make_unique<Imf::MultiPartInputFile>(*opened.stream, 0, false);
+  const Imf::MultiPartInputFile& in = *opened.in;
+  while (opened.part < in.parts() &&
+         (!in.header(opened.part).hasName() || in.header(opened.part).name() != kSumsPart)) {
+    ++opened.part;
   }
-  if (index == in.parts()) return kNoFilm;
-  const Imf::Header& part_header = in.header(index);
+  if (opened.part == in.parts()) return kNoFilm;
+  const Imf::Header& part_header = in.header(opened.part);
   const std::optional<std::string> facts = text_attribute(part_header, kFilmAttribute);
   const std::optional<std::string> digest = text_attribute(part_header, kDigestAttribute);
   if (!facts || !digest || !part_header.hasType() || part_header.type() != Imf::SCANLINEIMAGE) {
     return kNoFilm;
   }
-
   Result<FilmHeader> header = parse_film_header(*facts);
   if (!header) return header.error();
+  opened.facts = *facts;
+  opened.digest = *digest;
+  opened.header = std::move(*header);
+  return opened;
+}
+
+Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
+  Result<Opened> opened = open_parts(bytes);
+  if (!opened) return opened.error();
+  Imf::MultiPartInputFile& in = *opened->in;
+  const int index = opened->part;
+  const Imf::Header& part_header = in.header(index);
+  FilmHeader* const header = &opened->header;
   const PixelRect& window = header->window;
   if (part_header.dataWindow() !=
       Imath::Box2i({window.x0, window.y0}, {window.x1 - 1, window.y1 - 1})) {
@@ -119,7 +143,7 @@ Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
 
   file.film.mutable_coverage() = std::move(header->coverage);
   if (const Status agrees = file.film.check(); !agrees) return agrees.error();
-  if (film_file_digest(*facts, file.film) != *digest) {
+  if (film_file_digest(opened->facts, file.film) != opened->digest) {
     return Error{"it is damaged: its digest does not match"};
   }
   return file;
@@ -127,12 +151,16 @@ Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name) {
+namespace {
+
+/// What `read` returns or throws, in words that name the file.
+template <class Read>
+auto in_words(const std::string& name, const Read& read) -> decltype(read()) {
   const std::string context = "cannot read " + name;
   try {
-    Result<FilmFile> file = read_parts(bytes.span());
-    if (!file) return file.error().in(context);
-    return file;
+    auto result = read();
+    if (!result) return result.error().in(context);
+    return result;
   } catch (const std::bad_alloc&) {
     return Error{context + ": there is not enough memory for it"};
   } catch (const std::exception& e) {
@@ -140,10 +168,26 @@ Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name) {
   }
 }
 
+}  // namespace
+
+Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name) {
+  return in_words(name, [&] { return read_parts(bytes.span()); });
+}
+
 Result<FilmFile> read_film_exr(const std::string& path) {
   const Result<Bytes> bytes = map_file(path);
   if (!bytes) return bytes.error().in("cannot read " + path);
   return read_film_exr(*bytes, path);
+}
+
+Result<FilmInfo> read_film_info(const std::string& path) {
+  const Result<Bytes> bytes = map_file(path);
+  if (!bytes) return bytes.error().in("cannot read " + path);
+  return in_words(path, [&]() -> Result<FilmInfo> {
+    Result<Opened> opened = open_parts(bytes->span());
+    if (!opened) return opened.error();
+    return std::move(opened->header.info);
+  });
 }
 
 }  // namespace hyades::core

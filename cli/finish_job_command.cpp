@@ -1,0 +1,127 @@
+// `hyades finish job.yaml FILM...`: the pictures of frames whose films others have rendered.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command_line.h"
+#include "cli/interrupt.h"
+#include "cli/job_frames.h"
+#include "cli/join_films.h"
+#include "cli/load_job.h"
+#include "cli/videos.h"
+#include "core/base/fp_mode.h"
+
+namespace hyades::cli {
+namespace {
+
+struct Options {
+  std::string job;
+  std::vector<std::string> films;
+  std::string folder = ".";
+  SceneOptions scene;
+  bool film = false;
+  bool quiet = false;
+};
+
+std::optional<int> parse(int argc, char** argv, Options& options) {
+  CLI::App app(
+      "Writes a job's pictures out of films, whole or in parts, that others have rendered.",
+      "hyades finish");
+  app.add_option("job", options.job, "the job, as it was rendered")->required();
+  app.add_option("films", options.films, "film EXRs of its frames, in any order")->required();
+  declare_scene_options(app, options.scene);
+  app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
+  app.add_flag("--film", options.film, "also write each frame's whole film (NAME.film.exr)");
+  app.add_flag("--quiet", options.quiet, "say nothing where all goes well");
+  app.footer(
+      "example: three machines render a third of a frame each, one finishes it:\n"
+      "  hyades render job.yaml --frames 7 --tile 1/3 --film 1.exr     (and 2/3, 3/3)\n"
+      "  hyades finish job.yaml 1.exr 2.exr 3.exr --output out\n"
+      "What is written is what 'hyades render' writes, byte for byte. Videos are made when all "
+      "frames are there.\n"
+      "exit status: 0 done, 1 something is missing or failed, 2 the job, the arguments or a film "
+      "are wrong, 130 interrupted");
+  return parse_command_line(app, argc, argv, kBadInput);
+}
+
+int fail(const std::string& message) {
+  std::fprintf(stderr, "%s\n", message.c_str());
+  return kBadInput;
+}
+
+/// Joins the films of one frame and writes what is made of it.
+int finish_frame(const Options& options, const std::vector<std::string>& films, core::Job& job,
+                 JobFrames& frames) {
+  const auto whole = join_films(films);
+  if (!whole) return fail(whole.error().message);
+  const int32_t frame = whole->info.frame;
+  if (const std::string missing = what_is_missing(*whole); !missing.empty()) {
+    std::fprintf(stderr, "frame %d: %s are there; missing: %s\n", frame, share_held(*whole).c_str(),
+                 missing.c_str());
+    return 1;
+  }
+  // Where a machine was told to render more or fewer, the film knows.
+  job.sampling.samples = whole->info.samples;
+  if (const auto written = frames.write_outputs_of(*whole); !written) {
+    return fail(written.error().message);
+  }
+  if (options.quiet) return 0;
+  for (const std::string& path : frames.output_paths(frame, false)) {
+    std::fprintf(stderr, "wrote %s\n", path.c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int finish_job_command(int argc, char** argv) {
+  Options options;
+  if (const auto status = parse(argc, argv, options)) return *status;
+  auto loaded = load_job(options.job, options.scene);
+  if (!loaded) return kBadInput;
+  core::Job& job = loaded->job;
+
+  std::map<int32_t, std::vector<std::string>> films;
+  for (const std::string& path : options.films) {
+    const auto info = core::read_film_info(path);
+    if (!info) return fail(info.error().message);
+    if (info->frame < job.frames.first || info->frame > job.frames.last) {
+      return fail(path + ": a film of frame " + std::to_string(info->frame) +
+                  ", which the job does not have");
+    }
+    films[info->frame].push_back(path);
+  }
+  JobFrames frames(*loaded, {options.folder, options.film || job.keep_films, "", false,
+                             core::render_window(job.film), false});
+  if (const auto names = frames.check_film_names(); !names) return fail(names.error().message);
+  if (const auto display = frames.load_display(); !display) return fail(display.error().message);
+
+  watch_for_interrupts();
+  const core::FpMode mode;
+  int worst = 0;
+  for (const auto& [frame, paths] : films) {
+    if (interrupted()) return kInterrupted;
+    worst = std::max(worst, finish_frame(options, paths, job, frames));
+  }
+  if (worst != 0 || job.videos.empty()) return worst;
+  std::vector<int32_t> numbers;
+  for (const auto& [frame, paths] : films) numbers.push_back(frame);
+  if (!core::are_all_frames(job, numbers)) {
+    if (!options.quiet) note_no_videos(job, options.folder, options.job);
+    return 0;
+  }
+  if (!make_videos(job, options.folder, numbers, options.quiet)) {
+    return interrupted() ? kInterrupted : 1;
+  }
+  for (const core::VideoDesc& video : job.videos) {
+    core::remove_video_pictures(video, core::video_frames(job, options.folder, numbers));
+  }
+  return 0;
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/film/film_exr.h"
+
+namespace hyades::cli {
+
+/// Reads film EXRs and joins them into one; `paths` is not empty. The error names the film that
+/// cannot be read, or the two that do not fit each other and why.
+core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths);
+
+/// "62.5 % of 256 samples per pixel"; only a whole film has 100 %.
+std::string share_held(const core::FilmFile& file);
+
+/// What is missing of a film, in words; empty where it is whole.
+std::string what_is_missing(const core::FilmFile& file);
+
+}  // namespace hyades::cli
