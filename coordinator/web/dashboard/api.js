@@ -89,7 +89,7 @@ export const explain = (id, signal) => json('GET', `api/v1/jobs/${id}/explain`, 
 export const documentOf = async (id, signal) => (await call('GET', `api/v1/jobs/${id}/document`, { signal })).text();
 export const logs = (id, after, signal) => json('GET', `api/v1/jobs/${id}/logs`, { query: { after }, signal });
 export const outputs = (id, signal) => json('GET', `api/v1/jobs/${id}/outputs`, { signal });
-export const timeline = (id, signal) => json('GET', `api/v1/jobs/${id}/timeline`, { signal });
+export const timeline = (id, after, signal) => json('GET', `api/v1/jobs/${id}/timeline`, { query: { after }, signal });
 export const missing = (files, signal) => json('POST', 'api/v1/assets/missing', { body: { files }, signal });
 export const putPiece = (sha256, size, offset, piece, signal) =>
   json('PUT', `api/v1/assets/${sha256}`, { query: { size, offset }, body: piece, signal });

@@ -255,7 +255,7 @@ class FarmView {
   }
 
   card(job) {
-    const picture = preview(this.thumbs, job.id);
+    const picture = preview(this.thumbs);
     const name = h('span', { class: 'now-name' });
     const left = h('span', { class: 'sub' });
     const gauge = bar('Progress');

@@ -56,6 +56,7 @@ function note(worker, now) {
 
 /** Samples per second of a worker lately; 0 where nothing is known yet. */
 export function speed(worker, now = Date.now()) {
+  if (worker.samples_per_second !== undefined) return worker.state === 'gone' ? 0 : worker.samples_per_second;
   const history = histories.get(worker.id);
   if (!history || history.length < 2 || worker.state === 'gone') return 0;
   const first = history[0];

@@ -63,6 +63,8 @@ export function flatStage(canvas) {
       const pack = ([r, g, b]) =>
         0xff000000 | (Math.round(b * 255) << 16) | (Math.round(g * 255) << 8) | Math.round(r * 255);
       const ground = pack(scene.ground);
+      // Where no sample is yet (half.js).
+      const hatch = [0.1, 0.22].map((share) => pack(scene.ground.map((c) => c + (0.5 - c) * share)));
       for (let y = 0; y < height; ++y) {
         const v = (((y + 0.5) * coarse) / scene.dense - scene.offset[1]) / (scene.scale * scene.logical[1]);
         for (let x = 0; x < width; ++x) {
@@ -75,8 +77,12 @@ export function flatStage(canvas) {
           const side = scene.mode === 1 && place >= scene.split ? 'B' : 'A';
           const value = look(pictures[`pic${side}`], u, v);
           const beside = scene.kind === 'noise' ? look(pictures[`beside${side}`], u, v) : null;
-          const color =
-            scene.mode === 2 ? gapColor(scene, value, look(pictures.picB, u, v)) : colorOf(scene, value, beside);
+          const other = scene.mode === 2 ? look(pictures.picB, u, v) : null;
+          if (value[0] === -Infinity || other?.[0] === -Infinity) {
+            out[y * width + x] = hatch[Math.floor((x + height - y) / 6) % 2];
+            continue;
+          }
+          const color = other ? gapColor(scene, value, other) : colorOf(scene, value, beside);
           out[y * width + x] = pack(color);
         }
       }

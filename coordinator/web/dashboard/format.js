@@ -62,6 +62,23 @@ export function duration(seconds) {
   return `${Math.floor(total / 86400)} d ${Math.floor((total % 86400) / 3600)} h`;
 }
 
+/** Seconds of cores -> core-hours: '12.3', '< 0.01'; '–' where nothing was rendered. */
+export function coreHours(seconds) {
+  if (!(seconds > 0)) return '–';
+  const hours = seconds / 3600;
+  if (hours < 0.01) return '< 0.01';
+  return hours < 999.5 ? three(hours) : whole(hours);
+}
+
+/** 12.3, 'EUR' -> '12.30 EUR'. */
+export function money(amount, currency) {
+  const text =
+    amount > 0 && amount < 0.01
+      ? '< 0.01'
+      : amount.toLocaleString('en-GB', { minimumFractionDigits: 2, maximumFractionDigits: 2 });
+  return currency ? `${text} ${currency}` : text;
+}
+
 /** A share 0..1 -> '42 %'; '100 %' only when whole, '0 %' only when nothing. */
 export function percent(share) {
   if (!(share > 0)) return '0 %';

@@ -55,7 +55,7 @@ export class FrameSource {
     this.tellBusy(true);
     let got = stamp;
     const ask = async (name, width) => {
-      const response = await picture(job, frame.id, { format: 'half', layer: name, width }, abort.signal);
+      const response = await picture(job, frame.id, { format: 'half', layer: name, width, mask: true }, abort.signal);
       got = madeAt(response, stamp);
       return readHalf(await response.arrayBuffer());
     };

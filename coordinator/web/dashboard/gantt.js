@@ -13,6 +13,20 @@ const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800
 /** Neighbouring frames in colours that differ. */
 const colorOf = (frame, dark) => `hsl(${(frame * 137.508) % 360} ${dark ? '52% 62%' : '55% 48%'})`;
 
+const STEP_WORDS = { merge: 'merged', finish: 'finished', video: 'film written' };
+
+/** What a unit or step of the coordinator was. */
+function nameOf({ kind, frame, tile, first_batch: first, batches }) {
+  const parts = [
+    frame !== undefined && `frame ${frame}`,
+    tile && `tile ${tile[0]},${tile[1]} to ${tile[2]},${tile[3]}`,
+    batches > 0 && (batches > 1 ? `batches ${first}–${first + batches - 1}` : `batch ${first}`),
+    STEP_WORDS[kind],
+  ];
+  const text = parts.filter(Boolean).join(', ');
+  return text[0].toUpperCase() + text.slice(1);
+}
+
 /** `take(rows, begin, end)`: rows as byWorker (units.js) gives them, times in milliseconds. */
 export class Gantt {
   constructor() {
@@ -121,10 +135,8 @@ export class Gantt {
       row?.units.find(({ unit, lane: own }) => own === lane && unit.begun_ms <= at && unit.ended_ms >= at);
     this.tip.hidden = !hit;
     if (!hit) return;
-    const { frame, tile, first_batch: first, batches, begun_ms: begun, ended_ms: ended } = hit.unit;
-    const where = `Frame ${frame}, tile ${tile[0]},${tile[1]} to ${tile[2]},${tile[3]}`;
-    const when = `${((ended - begun) / 1000).toFixed(2)} s from ${clock(begun)}`;
-    setText(this.tip, `${where}, batches ${first}–${first + batches - 1} · ${when}`);
+    const { begun_ms: begun, ended_ms: ended } = hit.unit;
+    setText(this.tip, `${nameOf(hit.unit)} · ${((ended - begun) / 1000).toFixed(2)} s from ${clock(begun)}`);
     this.tip.style.left = `${Math.max(4, Math.min(x + 12, box.width - this.tip.offsetWidth - 4))}px`;
     this.tip.style.top = `${y + 16}px`;
   }

@@ -18,6 +18,12 @@ uniform vec3 ground;
 out vec4 result;
 ${TONE_GLSL}
 bool bad(float x) { return isnan(x); }
+// Where no sample is yet (half.js).
+bool absent(float x) { return isinf(x) && x < 0.0; }
+vec3 hatch() {
+  float stripe = step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / (12.0 * dense)));
+  return mix(ground, vec3(0.5), 0.1 + 0.12 * stripe);
+}
 vec3 texel(sampler2DArray t, ivec3 size, ivec2 p) {
   p = clamp(p, ivec2(0), size.xy - 1);
   float r = texelFetch(t, ivec3(p, 0), 0).r;
@@ -34,14 +40,17 @@ vec3 area(sampler2DArray t, ivec3 size, vec2 at, float reach) {
   if (n == 1 || kind == ${KINDS.ids}) return texel(t, size, ivec2(floor(centre)));
   vec3 sum = vec3(0.0);
   float count = 0.0;
+  bool seen = false;
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
       vec3 v = texel(t, size, ivec2(floor(centre + span * ((vec2(x, y) + 0.5) / float(n) - 0.5))));
+      if (absent(v.r)) continue;
+      seen = true;
       if (kind == ${KINDS.grey} && isinf(v.r)) continue;
       sum += v;
       count += 1.0;
     }
-  return count > 0.0 ? sum / count : vec3(1.0 / 0.0);
+  return count > 0.0 ? sum / count : vec3(seen ? 1.0 / 0.0 : -1.0 / 0.0);
 }
 vec3 hashed(float x) {
   vec3 p = fract(vec3(x * 12.9898, x * 78.233, x * 37.719) * 0.1031);
@@ -49,6 +58,7 @@ vec3 hashed(float x) {
   return 0.25 + 0.75 * fract((p.xxy + p.yzz) * p.zyx);
 }
 vec3 show(vec3 v, vec3 beside) {
+  if (absent(v.r)) return hatch();
   if (kind == ${KINDS.light} && (bad(v.r) || bad(v.g) || bad(v.b))) return vec3(1.0, 0.0, 1.0);
   if (kind == ${KINDS.light}) return toneMap(v * gain, curve);
   if (kind == ${KINDS.grey}) {
@@ -70,8 +80,11 @@ void main() {
   if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(1.0)))) { result = vec4(ground, 1.0); return; }
   bool right = mode == 1 && place.x >= split;
   if (mode == 2) {
-    vec3 gap = abs(area(picA, sizeA, at, reach) - area(picB, sizeB, at, reach));
-    result = vec4(kind == ${KINDS.light} ? toneMap(gap * gain, curve) : heat(gap.r / (high - low)), 1.0);
+    vec3 a = area(picA, sizeA, at, reach);
+    vec3 b = area(picB, sizeB, at, reach);
+    vec3 gap = abs(a - b);
+    if (absent(a.r) || absent(b.r)) result = vec4(hatch(), 1.0);
+    else result = vec4(kind == ${KINDS.light} ? toneMap(gap * gain, curve) : heat(gap.r / (high - low)), 1.0);
   } else if (right) {
     result = vec4(show(area(picB, sizeB, at, reach), kind == ${KINDS.noise} ? area(besideB, sizeBesideB, at, reach) : vec3(0.0)), 1.0);
   } else {

@@ -18,12 +18,22 @@ export function halfTable() {
   return table;
 }
 
+/** What stands in all channels of a pixel that has no samples yet: minus infinity, which no light is. */
+export const UNSAMPLED = 0xfc00;
+
 /** Machines that keep the high byte first have to turn the picture's bytes. */
 const BIG_ENDIAN = new Uint8Array(new Uint16Array([1]).buffer)[0] === 0;
 
+function leaveOut(planes, mask) {
+  for (let i = 0; i < mask.length; ++i) {
+    if (mask[i] !== 0) continue;
+    for (let at = i; at < planes.length; at += mask.length) planes[at] = UNSAMPLED;
+  }
+}
+
 /**
  * Reads an answer: {width, height, channels, layer, layers, samples, exact, planes} with `planes` the bits, one plane after the
- * other, row by row from the top. Throws an Error where it is not what it says.
+ * other, row by row from the top; pixels that its mask leaves out are UNSAMPLED. Throws an Error where it is not what it says.
  */
 export function readHalf(buffer) {
   const bytes = new Uint8Array(buffer);
@@ -33,14 +43,17 @@ export function readHalf(buffer) {
   const { width, height, channels } = head;
   const count = width * height * channels.length;
   if (!(width > 0 && height > 0 && channels.length > 0)) throw new Error('the picture is empty');
-  if (bytes.length - end - 1 !== count * 2)
-    throw new Error(`the picture has ${bytes.length - end - 1} bytes instead of ${count * 2}`);
-  const body = buffer.slice(end + 1);
+  const most = count * 2 + (head.mask ? width * height : 0);
+  if (bytes.length - end - 1 !== most)
+    throw new Error(`the picture has ${bytes.length - end - 1} bytes instead of ${most}`);
+  const body = buffer.slice(end + 1, end + 1 + count * 2);
   if (BIG_ENDIAN) {
     const view = new DataView(body);
     for (let i = 0; i < count; ++i) new Uint16Array(body)[i] = view.getUint16(2 * i, true);
   }
-  return { ...head, layers: head.layers ?? [], planes: new Uint16Array(body) };
+  const planes = new Uint16Array(body);
+  if (head.mask) leaveOut(planes, bytes.subarray(end + 1 + count * 2));
+  return { ...head, layers: head.layers ?? [], planes };
 }
 
 /** The values of a pixel, one for each channel; null outside. */

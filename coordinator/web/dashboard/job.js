@@ -2,14 +2,26 @@
 import { ACTIONS, act, askPriority } from './job_actions.js';
 import { bar, chip, figure, nothing } from './parts.js';
 import { archiveAddress, explain } from './api.js';
-import { bytes, clock, counted, duration, moment, percent, rateInWords, short, whole } from './format.js';
+import {
+  bytes,
+  clock,
+  coreHours,
+  counted,
+  duration,
+  moment,
+  money,
+  percent,
+  rateInWords,
+  short,
+  whole,
+} from './format.js';
 import { h, keyed, say, setText } from './dom.js';
 import { leftOf, lookOf, share, watchJob } from './job_state.js';
 import { TABS, to } from './router.js';
 import { documentTab } from './document.js';
 import { Frames } from './frames.js';
 import { icon } from './icons.js';
-import { isOpen } from './farm_state.js';
+import { farm, isOpen } from './farm_state.js';
 import { logTab } from './log.js';
 import { outputsTab } from './outputs.js';
 import { timelineTab } from './timeline.js';
@@ -94,6 +106,8 @@ class JobView {
       speed: figure('Speed', 'job-speed', 'Samples per second, lately'),
       leased: figure('Units out', 'job-leased', 'Units that are with workers'),
       took: figure('Since submit', 'job-took'),
+      hours: figure('Core-hours', 'job-hours', 'What threads took for the results that counted'),
+      cost: figure('Cost', 'job-cost'),
       priority: figure('Priority', 'job-priority'),
     };
     const priority = h(
@@ -276,6 +290,11 @@ class JobView {
     figures.leased.set(open ? whole(job.leased) : '–');
     setText(figures.took.firstChild, open ? 'Since submit' : 'Took');
     figures.took.set(duration(((job.ended_ms || Date.now()) - job.submitted_ms) / 1000));
+    figures.hours.set(coreHours(job.core_seconds));
+    const price = farm.info?.price_per_core_hour ?? 0;
+    figures.cost.hidden = price <= 0;
+    figures.cost.set(money(job.cost, farm.info?.currency));
+    figures.cost.title = `${money(price, farm.info?.currency)} for a core-hour`;
     figures.priority.set(job.priority);
     this.priorityButton.hidden = !open;
     setText(this.trouble, job.reason);

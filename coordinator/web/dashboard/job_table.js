@@ -1,19 +1,27 @@
 // The table of jobs: its columns.
 import { bar, chip } from './parts.js';
-import { counted, duration, moment, percent, rate, whole } from './format.js';
+import { coreHours, counted, duration, moment, money, percent, rate, whole } from './format.js';
 import { h, setText } from './dom.js';
 import { askPriority } from './job_actions.js';
-import { isOpen } from './farm_state.js';
+import { farm, isOpen } from './farm_state.js';
 import { leftOf, lookOf, share } from './job_state.js';
+import { stamp } from './preview.js';
 import { Table } from './table.js';
 import { to } from './router.js';
 
-function nameCell(td, job) {
+const nameCell = (thumbs) => (td, job) => {
   if (!td.firstChild)
     td.append(
-      h('span', { class: 'two' }, h('a', { class: 'row-link', testid: 'job-link' }), h('span', { class: 'sub' })),
+      h(
+        'span',
+        { class: 'pictured' },
+        stamp(thumbs),
+        h('span', { class: 'two' }, h('a', { class: 'row-link', testid: 'job-link' }), h('span', { class: 'sub' })),
+      ),
     );
-  const [link, sub] = td.firstChild.children;
+  const [picture, two] = td.firstChild.children;
+  const [link, sub] = two.children;
+  picture.refresh(job);
   setText(link, job.name);
   link.title = job.name;
   link.href = to('job', { job: job.id });
@@ -23,7 +31,7 @@ function nameCell(td, job) {
   );
   sub.title = job.reason;
   sub.classList.toggle('warn', Boolean(job.reason) && job.state !== 'done');
-}
+};
 
 function progressCell(td, job) {
   if (!td.firstChild)
@@ -37,6 +45,14 @@ function progressCell(td, job) {
 const ORDER = { running: 0, waiting: 1, paused: 2, failed: 3, cancelled: 4, done: 5 };
 /** Seconds from its submission to its end, or to now. */
 const elapsed = (job, now = Date.now()) => ((job.ended_ms || now) - job.submitted_ms) / 1000;
+
+function costCell(td, job) {
+  if (!td.firstChild) td.append(h('span', { class: 'two' }, h('span', {}), h('span', { class: 'sub' })));
+  const [time, price] = td.firstChild.children;
+  setText(time, coreHours(job.core_seconds));
+  const priced = farm.info?.price_per_core_hour > 0 && job.core_seconds > 0;
+  setText(price, priced ? money(job.cost, farm.info.currency) : '');
+}
 
 const chooseCell = (choose) => (td, job, chosen) => {
   if (!td.firstChild) {
@@ -76,8 +92,8 @@ function priorityCell(td, job) {
   td.firstChild.setAttribute('aria-label', `Priority ${job.priority}${isOpen(job) ? ', change' : ''}`);
 }
 
-const columns = [
-  { key: 'name', label: 'Job', sort: (job) => job.name, up: true, cell: nameCell },
+const columnsWith = (thumbs) => [
+  { key: 'name', label: 'Job', sort: (job) => job.name, up: true, cell: nameCell(thumbs) },
   {
     key: 'state',
     label: 'State',
@@ -102,6 +118,14 @@ const columns = [
     sort: (job) => (isOpen(job) ? job.samples_per_second : 0),
     cell: (td, job) =>
       setText(td, lookOf(job) === 'running' && job.samples_per_second > 0 ? rate(job.samples_per_second) : ''),
+  },
+  {
+    key: 'cost',
+    label: 'Core-hours',
+    kind: 'num',
+    drop: 3,
+    sort: (job) => job.core_seconds,
+    cell: costCell,
   },
   {
     key: 'priority',
@@ -141,14 +165,18 @@ const columns = [
   },
 ];
 
-/** The table; `all`: the node for choosing all, `choose(id, range)`: one is chosen or not any more, others as for Table. */
-export const jobTable = ({ all, choose, ...options }) =>
+/**
+ * The table; `all`: the node for choosing all, `choose(id, range)`: one is chosen or not any more, `thumbs`: who loads pictures
+ * (thumbs.js), others as for Table.
+ */
+export const jobTable = ({ all, choose, thumbs, ...options }) =>
   new Table({
     label: 'Jobs',
     testid: 'jobs-table',
     cards: true,
     rowKey: (job) => job.id,
     onChosen: choose,
-    columns: [{ key: 'choose', label: '', header: () => all, cell: chooseCell(choose) }, ...columns],
+    columns: [{ key: 'choose', label: '', header: () => all, cell: chooseCell(choose) }, ...columnsWith(thumbs)],
+    onGone: (tr) => tr.querySelector('.row-picture')?.drop(),
     ...options,
   });

@@ -9,6 +9,7 @@ import { h, oncePerFrame, setText, toast } from './dom.js';
 import { parse, replaceQuery, to } from './router.js';
 import { icon } from './icons.js';
 import { lookOf } from './job_state.js';
+import { Thumbs } from './thumbs.js';
 import { jobTable } from './job_table.js';
 
 const PAGE = 500;
@@ -70,7 +71,9 @@ class JobsView {
       testid: 'choose-all',
       onchange: () => this.chooseAll(this.all.checked),
     });
+    this.thumbs = new Thumbs();
     this.table = jobTable({
+      thumbs: this.thumbs,
       all: this.all,
       sort: { key: sort, down: up === undefined },
       chosen: this.chosen,
@@ -333,6 +336,7 @@ class JobsView {
     clearInterval(this.timer);
     removeEventListener('scroll', this.onScroll);
     this.table.leave();
+    this.thumbs.leave();
   }
 }
 

@@ -30,6 +30,11 @@ export class Readout {
       setText(this.pixel, '');
       return;
     }
+    if (values[0] === -Infinity) {
+      this.swatch.hidden = true;
+      setText(this.pixel, `${String(place[0]).padStart(4)}, ${String(place[1]).padEnd(4)}   no samples yet`);
+      return;
+    }
     const names = main.channels.map((name) => name.slice(name.lastIndexOf('.') + 1));
     const parts = [`${String(place[0]).padStart(4)}, ${String(place[1]).padEnd(4)}`];
     const variance = shown.layer === NOISE && shown.beside && pixel(shown.beside, ...at);

@@ -60,7 +60,7 @@ class SubmitView {
   choose(path) {
     this.bundle.job = path || null;
     this.bundle.found = [];
-    if (this.bundle.job) this.options.setName(this.bundle.title());
+    if (this.bundle.job) this.options.settled();
     this.draw();
   }
 
@@ -89,6 +89,7 @@ class SubmitView {
     const { bundle } = this;
     const body = {
       ...options,
+      name: bundle.title(),
       document: bundle.nameOf(bundle.job),
       files: files.map(({ path, file, sha256 }) => ({ path: bundle.nameOf(path), sha256, size: file.size })),
     };

@@ -11,7 +11,6 @@ export class Options {
     const number = (testid, placeholder, min = 0) => h('input', { type: 'number', step: 1, min, placeholder, testid });
     this.fields = {
       document: h('select', { testid: 'document-choice', onchange: () => choose(this.fields.document.value) }),
-      name: h('input', { type: 'text', maxlength: 100, required: true, testid: 'name' }),
       owner: h('input', {
         type: 'text',
         maxlength: 100,
@@ -50,7 +49,6 @@ export class Options {
         'div',
         { class: 'option-grid' },
         h('div', { class: 'wide' }, this.asks, field('Job document', f.document)),
-        h('div', { class: 'wide' }, field('Name', f.name)),
         field('Owner', f.owner),
         field('Priority', f.priority, 'higher goes first'),
         field('Frames', f.frames, 'such as 1-24x2, 30'),
@@ -82,8 +80,8 @@ export class Options {
     this.asks.hidden = job !== null;
   }
 
-  setName(name) {
-    this.fields.name.value = name;
+  /** Which document it is, is known now. */
+  settled() {
     this.asks.hidden = true;
   }
 
@@ -97,7 +95,6 @@ export class Options {
     remember('owner', owner);
     // What is undefined is not sent.
     return {
-      name: f.name.value.trim(),
       owner: owner || undefined,
       priority: number(f.priority) ?? 0,
       frames: ranges.length > 0 ? ranges : undefined,

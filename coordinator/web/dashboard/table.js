@@ -8,11 +8,11 @@ const letters = new Intl.Collator('en', { numeric: true, sensitivity: 'base' });
  * columns: [{key, label, sort(row), up, cell(td, row), narrow}]: `sort` gives what to sort by (absent: not by this one), `up` that
  * it begins with the smallest, `cell` fills a cell (called again when the row is another object), `drop` 1..3: left out on narrow screens,
  * 3 first, `spoken` a label for those who cannot see that none is needed. rowKey(row).
- * `cards`: on phones rows are cards, which the style lays out. The height of rows is the style's `--row`.
+ * `onGone(tr)` is called when a row leaves the screen. `cards`: on phones rows are cards, which the style lays out. The height of rows is the style's `--row`.
  */
 export class Table {
-  constructor({ columns, rowKey, label, sort, testid, onSort, chosen, onChosen, empty, cards = false }) {
-    Object.assign(this, { columns, rowKey, chosen, onChosen, onSort, empty });
+  constructor({ columns, rowKey, label, sort, testid, onSort, chosen, onChosen, onGone, empty, cards = false }) {
+    Object.assign(this, { columns, rowKey, chosen, onChosen, onSort, onGone, empty });
     this.sort = sort;
     this.rows = [];
     this.shown = new Map();
@@ -136,6 +136,7 @@ export class Table {
         this.bottom.after(tr);
         continue;
       }
+      this.onGone?.(tr);
       tr.remove();
       this.shown.delete(id);
     }

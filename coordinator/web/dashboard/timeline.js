@@ -6,11 +6,11 @@ import { Gantt } from './gantt.js';
 import { isOpen } from './farm_state.js';
 import { Table } from './table.js';
 import { TileMap } from './tile_map.js';
-import { timeline } from './api.js';
+import { Timed } from './timed.js';
 
 const EVERY = 4000;
-/** Many units are many bytes: for each so many milliseconds more between questions. */
-const EACH = 1.5;
+/** Many units take long to draw: for each so many milliseconds more between questions. */
+const EACH = 0.5;
 
 function workerCell(td, { worker }) {
   if (!td.firstChild) td.append(h('span', { class: 'row-link', tabindex: -1 }));
@@ -57,7 +57,7 @@ class Timeline {
   constructor(state) {
     this.state = state;
     this.stop = new AbortController();
-    this.count = 0;
+    this.timed = new Timed(state.id);
     this.gantt = new Gantt();
     this.tiles = new TileMap();
     this.table = workTable(() => this.span);
@@ -84,18 +84,18 @@ class Timeline {
     const open = !this.state.job || isOpen(this.state.job);
     if (!document.hidden && (open || !this.complete)) {
       try {
-        const { units, dropped } = await timeline(this.state.id, this.stop.signal);
+        const news = await this.timed.more(this.stop.signal);
         this.complete = !open;
-        this.take(units, dropped);
+        if (news) this.take(this.timed);
       } catch {
         // Asked again soon.
       }
     }
-    if (!this.stop.signal.aborted) this.timer = setTimeout(() => this.ask(), Math.max(EVERY, this.count * EACH));
+    if (!this.stop.signal.aborted)
+      this.timer = setTimeout(() => this.ask(), Math.max(EVERY, this.timed.units.length * EACH));
   }
 
-  take(units, dropped) {
-    this.count = units.length;
+  take({ units, steps, dropped }) {
     this.none.hidden = units.length > 0;
     this.box.hidden = units.length === 0;
     if (units.length === 0) return;
@@ -108,7 +108,11 @@ class Timeline {
     const lost = dropped > 0 ? `; ${counted(dropped, 'older unit')} not kept` : '';
     setText(this.summary, `${by}; ${duration(work)} of their time${lost}`);
     this.table.setRows(rows);
-    this.gantt.take(rows, begin, end);
+    this.gantt.take(
+      [...rows, ...byWorker(steps)],
+      begin,
+      Math.max(end, ...steps.slice(-1).map((step) => step.ended_ms)),
+    );
     this.tiles.take(units);
   }
 

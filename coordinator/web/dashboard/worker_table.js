@@ -1,11 +1,12 @@
 // Workers as a table, and what can be done with them.
-import { ago, brief, bytes, counted, moment, rate, short, whole } from './format.js';
+import { ago, brief, bytes, counted, moment, percent, rate, short, whole } from './format.js';
 import { ask } from './dialog.js';
 import { bar, chip } from './parts.js';
 import { h, setText, toast } from './dom.js';
-import { learnWorker, speed } from './farm_state.js';
+import { farm, learnWorker, speed } from './farm_state.js';
 import { steerWorker } from './api.js';
 import { Table } from './table.js';
+import { to } from './router.js';
 
 const ORDER = { quarantined: 0, draining: 1, active: 2, gone: 3, unknown: 4 };
 const ACTIONS = {
@@ -78,14 +79,46 @@ function actionsCell(td, worker) {
   );
 }
 
-function memoryCell(td, worker) {
-  if (!td.firstChild) td.append(h('span', { class: 'with-bar' }, h('span', {}), bar('Memory')));
+// So much of what there may be, with a bar; `full` says from where on that is much.
+function fillCell(td, name, some, most, full) {
+  if (!td.firstChild) td.append(h('span', { class: 'with-bar' }, h('span', {}), bar(name)));
   const [text, gauge] = td.firstChild.children;
-  setText(text, worker.memory_bytes > 0 ? bytes(worker.memory_bytes) : '–');
-  const share = worker.memory_limit_bytes > 0 ? Math.min(1, worker.memory_bytes / worker.memory_limit_bytes) : 0;
+  setText(text, some > 0 ? bytes(some) : '–');
+  const share = most > 0 ? Math.min(1, some / most) : 0;
   gauge.hidden = share === 0;
-  gauge.set(share, { state: share > 0.92 ? 'failed' : 'plain' });
-  td.title = worker.memory_limit_bytes > 0 ? `of ${bytes(worker.memory_limit_bytes)}` : '';
+  gauge.set(share, { state: share > full ? 'failed' : 'plain' });
+  td.title = most > 0 ? `of ${bytes(most)}` : '';
+}
+
+const memoryCell = (td, worker) => fillCell(td, 'Memory', worker.memory_bytes, worker.memory_limit_bytes, 0.92);
+
+function cacheCell(td, worker) {
+  // A full cache is as it should be.
+  fillCell(td, 'Cache', worker.cache_bytes, worker.cache_limit_bytes, 1);
+  const files = worker.cache_hits + worker.cache_misses;
+  if (files > 0) td.title += `\n${percent(worker.cache_hits / files)} of ${counted(files, 'file')} were there already`;
+}
+
+// How many units it has, and below of what: the frame with the most of them.
+function workCell(td, worker) {
+  if (!td.firstChild)
+    td.append(h('span', { class: 'two' }, h('span', {}), h('span', { class: 'sub' }, h('a', {}), h('span', {}))));
+  const [count, of] = td.firstChild.children;
+  const [link, more] = of.children;
+  setText(count, worker.leased > 0 ? counted(worker.leased, 'unit') : '–');
+  const [first, ...others] = worker.work ?? [];
+  link.hidden = !first;
+  setText(more, others.length > 0 ? ` and ${whole(others.length)} more` : '');
+  if (!first) return;
+  const name = farm.jobs.get(first.job)?.name ?? `job ${first.job}`;
+  setText(link, `${name} ${first.frame}`);
+  link.href = to('frame', { job: first.job, frame: first.frame });
+  td.title = worker.work
+    .map(
+      ({ job, frame, units }) =>
+        `${counted(units, 'unit')} of frame ${frame}, ${farm.jobs.get(job)?.name ?? `job ${job}`}`,
+    )
+    .join('\n');
 }
 
 const columns = [
@@ -107,11 +140,10 @@ const columns = [
   },
   {
     key: 'leased',
-    label: 'Units',
-    kind: 'num',
+    label: 'In hand',
     sort: (w) => w.leased,
     drop: 1,
-    cell: (td, w) => setText(td, w.leased),
+    cell: workCell,
   },
   {
     key: 'threads',
@@ -131,6 +163,14 @@ const columns = [
       setText(td, brief(w.worker_class));
       td.title = `${w.worker_class}\n${w.build}`;
     },
+  },
+  {
+    key: 'cache',
+    label: 'Cache',
+    kind: 'num',
+    sort: (w) => w.cache_bytes,
+    drop: 3,
+    cell: cacheCell,
   },
   { key: 'memory', label: 'Memory', kind: 'num', sort: (w) => w.memory_bytes, drop: 2, cell: memoryCell },
   {

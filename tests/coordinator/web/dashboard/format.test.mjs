@@ -4,10 +4,12 @@ import {
   ago,
   brief,
   bytes,
+  coreHours,
   counted,
   duration,
   listed,
   moment,
+  money,
   percent,
   rate,
   rateInWords,
@@ -117,4 +119,16 @@ test('scales end at round numbers', () => {
     [9.5, 10],
     [99, 100],
   ]);
+});
+
+test('core-hours and money are short', () => {
+  assert.equal(coreHours(0), '–');
+  assert.equal(coreHours(undefined), '–');
+  assert.equal(coreHours(20), '< 0.01');
+  assert.equal(coreHours(3600), '1.00');
+  assert.equal(coreHours(45000), '12.5');
+  assert.equal(coreHours(36e6), '10,000');
+  assert.equal(money(12.3, 'EUR'), '12.30 EUR');
+  assert.equal(money(0.001, 'EUR'), '< 0.01 EUR');
+  assert.equal(money(1234.5, ''), '1,234.50');
 });

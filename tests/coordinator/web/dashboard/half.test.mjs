@@ -7,6 +7,7 @@ import {
   quantile,
   readHalf,
   sorted,
+  UNSAMPLED,
 } from '../../../../coordinator/web/dashboard/half.js';
 
 /** An answer as the coordinator gives it. */
@@ -79,4 +80,18 @@ test('sorted values leave out what is no number', () => {
   assert.equal(quantile(values, 0), 1);
   assert.equal(quantile(values, 1), 2);
   assert.equal(quantile([], 0.5), 0);
+});
+
+test('pixels that the mask leaves out have no value in any channel', () => {
+  const one = 0x3c00;
+  const head = { width: 3, height: 1, channels: ['R', 'G'], layer: 'beauty', mask: true };
+  const plain = new Uint8Array(answer(head, [one, one, one, one, one, one]));
+  const masked = new Uint8Array(plain.length + 3);
+  masked.set(plain);
+  masked.set([255, 0, 1], plain.length);
+  const picture = readHalf(masked.buffer);
+  assert.deepEqual([...picture.planes], [one, UNSAMPLED, one, one, UNSAMPLED, one]);
+  assert.deepEqual(pixel(picture, 1, 0), [-Infinity, -Infinity]);
+  assert.deepEqual([...sorted(picture)], [1, 1], 'they do not count for the scale');
+  assert.throws(() => readHalf(plain.buffer), /instead of/, 'a mask that was promised and did not come');
 });

@@ -15,7 +15,6 @@ Object.assign(globalThis, {
 const { alertsOf } = await import('../../../../coordinator/web/dashboard/alerts.js');
 const { inOrder } = await import('../../../../coordinator/web/dashboard/farm.js');
 const { byTile, byWorker } = await import('../../../../coordinator/web/dashboard/units.js');
-const { choose } = await import('../../../../coordinator/web/dashboard/preview.js');
 const { grouped, kindOf, nameOf, rangeOf, sourcesOf } = await import('../../../../coordinator/web/dashboard/layers.js');
 const { toneOf } = await import('../../../../coordinator/web/dashboard/viewer.js');
 const { placeOf } = await import('../../../../coordinator/web/dashboard/star_places.js');
@@ -100,16 +99,6 @@ test('units that overlap lie in lanes, and time is not counted twice', () => {
   assert.equal(a.busy, 3);
   assert.equal(a.work, 4);
   assert.deepEqual(byTile([unit('a', 0, 1000), unit('b', 0, 500)]), [{ tile: [0, 0, 8, 8], seconds: 1.5, batches: 4 }]);
-});
-
-test('a job is shown by the frame that is most rendered', () => {
-  const frame = (id, state, done) => ({ id, state, samples: 10, samples_done: done });
-  assert.equal(
-    choose([frame(1, 'done', 10), frame(2, 'rendering', 3), frame(3, 'rendering', 6), frame(4, 'waiting', 0)]).id,
-    3,
-  );
-  assert.equal(choose([frame(1, 'done', 10), frame(2, 'done', 10), frame(3, 'rendering', 0)]).id, 2);
-  assert.equal(choose([frame(1, 'waiting', 0)]), null);
 });
 
 test('layers are shown as what they are', () => {
