@@ -34,10 +34,13 @@ bool shines(const YamlNode& objects) {
 bool has_light(const YamlNode& scene) {
   if (scene.find("environment") != nullptr || scene.find("lights") != nullptr) return true;
   const YamlNode& materials = section(scene, "materials");
+  const auto any_has = [](const YamlNode& things, const char* key) {
+    return std::any_of(things.map.begin(), things.map.end(), [&](const YamlEntry& entry) {
+      return entry.value->kind == Kind::map && entry.value->find(key) != nullptr;
+    });
+  };
   const bool glowing =
-      std::any_of(materials.map.begin(), materials.map.end(), [](const YamlEntry& entry) {
-        return entry.value->kind == Kind::map && entry.value->find("emission_strength") != nullptr;
-      });
+      any_has(materials, "emission_strength") || any_has(section(scene, "media"), "emission");
   if (glowing || shines(section(scene, "objects"))) return true;
   const YamlNode& groups = section(scene, "groups");
   return std::any_of(groups.map.begin(), groups.map.end(), [](const YamlEntry& entry) {

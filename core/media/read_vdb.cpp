@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "core/base/text.h"
+#include "core/media/read_nanovdb.h"
+#include "core/media/vdb_bricks.h"
 #include "core/media/vdb_cursor.h"
 #include "core/media/vdb_tree.h"
 
@@ -51,7 +53,7 @@ struct Header {
 Header read_header(VdbCursor& cursor) {
   Header header;
   if (cursor.read<int64_t>() != 0x56444220) {
-    cursor.fail("is no OpenVDB file");
+    cursor.fail("is neither a file of OpenVDB nor one of NanoVDB");
     return header;
   }
   const auto version = cursor.read<uint32_t>();
@@ -161,40 +163,6 @@ void skip_grid(VdbCursor& cursor, const Entry& entry) {
   }
 }
 
-template <class T>
-Result<std::shared_ptr<const VdbGrid<T>>> finish(const Grid<T>& grid) {
-  const VdbTree<T>& tree = grid.tree;
-  if (tree.block_count() == 0 || tree.lower().x > tree.upper().x) {
-    return Error{"has no active voxels"};
-  }
-  const Vec3i size = tree.upper() - tree.lower() + 1;
-  const double bricks = (size.x / 8.0 + 1) * (size.y / 8.0 + 1) * (size.z / 8.0 + 1);
-  if (bricks * sizeof(int32_t) > 0.25 * static_cast<double>(kMostVdbBytes)) {
-    return Error{
-        fmt::format("spans {} x {} x {} voxels, more than can be read", size.x, size.y, size.z)};
-  }
-  Vec3i last(0);
-  const typename VdbTree<T>::Block* block = tree.block(last);
-  const auto value = [&](const Vec3i& p) {
-    if ((p >> 3) != (last >> 3)) block = tree.block(p);
-    last = p;
-    return block != nullptr ? block->values[VdbTree<T>::place(p)] : T(0.0F);
-  };
-  const auto matters = [&](const Vec3i& lower, const Vec3i& upper) {
-    Vec3i at;
-    for (at.z = lower.z & ~7; at.z <= upper.z; at.z += 8) {
-      for (at.y = lower.y & ~7; at.y <= upper.y; at.y += 8) {
-        for (at.x = lower.x & ~7; at.x <= upper.x; at.x += 8) {
-          if (tree.block(at) != nullptr) return true;
-        }
-      }
-    }
-    return false;
-  };
-  return std::make_shared<const VdbGrid<T>>(
-      VdbGrid<T>{BrickGrid<T>(tree.lower(), tree.upper(), value, matters), grid.to_file});
-}
-
 /// The grid called `name`, whose type is to be one of `types`.
 template <class T>
 Result<std::shared_ptr<const VdbGrid<T>>> read(const Bytes& bytes, const std::string& name,
@@ -222,7 +190,7 @@ Result<std::shared_ptr<const VdbGrid<T>>> read(const Bytes& bytes, const std::st
     const Grid<T> grid = read_grid<T>(cursor, entry);
     if (!cursor.ok()) return in_grid(cursor.error());
     if (grid.is_level_set) return in_grid("is a level set, expected a fog volume");
-    auto finished = finish(grid);
+    auto finished = bricks_of(grid.tree, grid.to_file);
     if (!finished) return in_grid(finished.error().message);
     return *finished;
   }
@@ -235,12 +203,14 @@ Result<std::shared_ptr<const VdbGrid<T>>> read(const Bytes& bytes, const std::st
 
 Result<std::shared_ptr<const VdbGrid<float>>> read_vdb_numbers(const Bytes& bytes,
                                                                const std::string& name) {
+  if (is_nanovdb(bytes)) return read_nanovdb_numbers(bytes, name);
   return read<float>(bytes, name, "numbers (Tree_float_5_4_3, Tree_double_5_4_3)",
                      {kFloats, kDoubles});
 }
 
 Result<std::shared_ptr<const VdbGrid<Rgb>>> read_vdb_colors(const Bytes& bytes,
                                                             const std::string& name) {
+  if (is_nanovdb(bytes)) return read_nanovdb_colors(bytes, name);
   return read<Rgb>(bytes, name, "colours (Tree_vec3s_5_4_3)", {kVectors});
 }
 

@@ -9,13 +9,15 @@
 
 namespace hyades::core {
 
-/// Reads a .vdb's bytes (little-endian) one after the other. What lies beyond the end reads as
-/// zeros; the first failure stays.
+/// Reads the bytes of a .vdb or .nvdb (little-endian) one after the other. What lies beyond the end
+/// reads as zeros; the first failure stays.
 class VdbCursor {
  public:
   explicit VdbCursor(const Bytes& bytes) : bytes_(bytes.span()) {}
+  explicit VdbCursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
   bool ok() const { return error_.empty(); }
+  bool at_end() const { return at_ == bytes_.size(); }
   const std::string& error() const { return error_; }
   void fail(const std::string& error) {
     if (ok()) error_ = error;

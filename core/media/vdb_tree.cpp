@@ -123,25 +123,15 @@ class VdbTreeReader {
 
   /// A region of one value.
   void fill(const Vec3i& origin, int side, const T& value) {
-    for (int x = 0; x < side; x += 8) {
-      for (int y = 0; y < side; y += 8) {
-        for (int z = 0; z < side; z += 8) {
-          auto* block = new_block(origin + Vec3i(x, y, z));
-          if (block == nullptr) return;
-          block->values.fill(value);
-          block->active.fill(~uint64_t{0});
-        }
-      }
-    }
-    include(origin, origin + side - 1);
+    if (!tree_.fill(origin, side, value, most_blocks_)) too_many();
   }
 
   void read_leaf(const Vec3i& origin) {
     const Mask active(cursor_, 512);
     const VdbValues values = read_vdb_values(cursor_, encoding_, 512, active.count());
     if (!cursor_.ok() || active.count() == 0) return;
-    auto* block = new_block(origin);
-    if (block == nullptr) return;
+    auto* block = tree_.new_block(origin, most_blocks_);
+    if (block == nullptr) return too_many();
     std::copy(active.words().begin(), active.words().end(), block->active.begin());
     size_t next = 0;
     for (size_t i = 0; i < 512; ++i) {
@@ -149,22 +139,11 @@ class VdbTreeReader {
       block->values[i] = next_value(values, i, next);
       const auto n = static_cast<int>(i);
       const Vec3i p = origin + Vec3i(n >> 6, (n >> 3) & 7, n & 7);
-      include(p, p);
+      tree_.include(p, p);
     }
   }
 
-  typename VdbTree<T>::Block* new_block(const Vec3i& origin) {
-    if (tree_.blocks_.size() >= most_blocks_) {
-      cursor_.fail("has more active voxels than can be read");
-      return nullptr;
-    }
-    return &tree_.blocks_[VdbTree<T>::key(origin)];
-  }
-
-  void include(const Vec3i& lower, const Vec3i& upper) {
-    tree_.lower_ = glm::min(tree_.lower_, lower);
-    tree_.upper_ = glm::max(tree_.upper_, upper);
-  }
+  void too_many() { cursor_.fail("has more active voxels than can be read"); }
 
   VdbCursor& cursor_;
   VdbEncoding encoding_;
@@ -176,6 +155,22 @@ class VdbTreeReader {
 template <class T>
 VdbTree<T> VdbTree<T>::read(VdbCursor& cursor, const VdbEncoding& encoding, size_t most_blocks) {
   return VdbTreeReader<T>(cursor, encoding, most_blocks).read();
+}
+
+template <class T>
+bool VdbTree<T>::fill(const Vec3i& origin, int side, const T& value, size_t most_blocks) {
+  for (int x = 0; x < side; x += 8) {
+    for (int y = 0; y < side; y += 8) {
+      for (int z = 0; z < side; z += 8) {
+        auto* block = new_block(origin + Vec3i(x, y, z), most_blocks);
+        if (block == nullptr) return false;
+        block->values.fill(value);
+        block->active.fill(~uint64_t{0});
+      }
+    }
+  }
+  include(origin, origin + side - 1);
+  return true;
 }
 
 template class VdbTree<float>;

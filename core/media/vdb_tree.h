@@ -18,7 +18,7 @@ struct VdbEncoding {
 };
 
 /// The active voxels of a tree of the usual shape (5, 4, 3), by blocks of 8 x 8 x 8. T: float or
-/// Rgb. Values below 0 count as 0.
+/// Rgb. Values below 0 count as 0. Trees of .nvdb files have the same shape.
 template <class T>
 class VdbTree {
  public:
@@ -40,15 +40,25 @@ class VdbTree {
     return static_cast<size_t>(((p.x & 7) << 6) | ((p.y & 7) << 3) | (p.z & 7));
   }
 
+  /// The block of origin `origin`, to be filled; null where there are `most_blocks` already.
+  Block* new_block(const Vec3i& origin, size_t most_blocks) {
+    return blocks_.size() < most_blocks ? &blocks_[key(origin)] : nullptr;
+  }
+  /// Makes a region of `side`^3 voxels (a multiple of 8) active, with one value; false where that
+  /// takes more than `most_blocks`.
+  bool fill(const Vec3i& origin, int side, const T& value, size_t most_blocks);
+  /// Tells that voxels from `lower` to `upper` are active.
+  void include(const Vec3i& lower, const Vec3i& upper) {
+    lower_ = glm::min(lower_, lower);
+    upper_ = glm::max(upper_, upper);
+  }
+
   size_t block_count() const { return blocks_.size(); }
   /// The active voxels lie in lower..upper, both included; lower > upper where there are none.
   const Vec3i& lower() const { return lower_; }
   const Vec3i& upper() const { return upper_; }
 
  private:
-  template <class>
-  friend class VdbTreeReader;
-
   /// 21 bits per axis: files reach as far as 2^23 voxels from the origin, which is enough.
   static uint64_t key(const Vec3i& p) {
     const auto part = [](int x) { return static_cast<uint64_t>(x >> 3) & 0x1FFFFFU; };

@@ -102,6 +102,14 @@ class BoxWriter {
       out_.put_text("string");
       out_.put_text(value);
     }
+    if (box_.map) {
+      // Row by row, of a matrix that vectors stand left of.
+      out_.put_text("AffineMap");
+      for (int i = 0; i < 4; ++i) {
+        for (int j = 0; j < 4; ++j) out_.put(static_cast<double>((*box_.map)[i][j]));
+      }
+      return;
+    }
     out_.put_text("ScaleTranslateMap");
     const auto put_three = [&](const Vec3d& v) {
       for (int a = 0; a < 3; ++a) out_.put(v[a]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct VdbBox {
   Vec3i size{0};              ///< points along each axis
   Vec3d voxel{1.0};           ///< from one point to the next in the file's space
   Vec3d origin{0.0};          ///< where point 0, 0, 0 is in the file's space
+  std::optional<Mat4> map;    ///< from points to the file's space, in place of these two
   std::vector<float> values;  ///< x runs fastest; 3 for each point where the grid is of colours
   bool colors = false;
 };

@@ -20,7 +20,10 @@ YamlPtr emission_of(Context& context, ParameterReader& reader, const MediumGrids
   YamlMap out;
   Rgb color(0.0F);
   if (has("temperature")) {
+    // Of a uniform grid this is a grid, too.
+    const bool is_number = reader.text("type") == "nanovdb";
     color = c.absorption * scale * context.exposure;
+    if (is_number) color *= std::max(reader.number("Lescale", 1.0F), 0.0F);
     out.put("temperature", yaml_word("temperature"));
   } else if (reader.find("rgb", "Le") != nullptr && has("tint")) {
     color = grids.glow * scale * reader.number("Lescale", 1.0F) * context.exposure;
@@ -39,7 +42,7 @@ YamlPtr emission_of(Context& context, ParameterReader& reader, const MediumGrids
 }  // namespace
 
 bool is_grid_medium(const std::string& type) {
-  return type == "uniformgrid" || type == "rgbgrid" || type == "cloud";
+  return type == "uniformgrid" || type == "rgbgrid" || type == "cloud" || type == "nanovdb";
 }
 
 YamlPtr grid_medium_node(Context& context, size_t index, const Mat4d& body) {
@@ -54,9 +57,12 @@ YamlPtr grid_medium_node(Context& context, size_t index, const Mat4d& body) {
   const float scale = std::max(reader.number("scale", 1.0F), 0.0F);
   Coefficients c{Rgb(1.0F), Rgb(1.0F)};
   YamlMap out;
-  YamlMap density{
-      {"vdb", yaml_text(context.request.made + "media/" + std::to_string(index) + ".vdb")},
-      {"place", yaml_word("native")}};
+  std::string file = context.request.made + "media/" + std::to_string(index) + ".vdb";
+  if (!grids->file.empty()) file = context.beside(grids->file, medium.place);
+  YamlMap density{{"vdb", yaml_text(file)}, {"place", yaml_word("native")}};
+  if (!grids->file.empty() && grids->grid != "density") {
+    density.put("grid", yaml_text(grids->grid));
+  }
   if (type == "rgbgrid") {
     // The tint says what is scattered and what absorbed.
     c = {Rgb(0.0F), Rgb(1.0F)};

@@ -9,8 +9,8 @@ namespace hyades::core::pbrt {
 bool is_grid_medium(const std::string& type);
 
 /// The medium of number `index` of the scene in the job language, in a body whose space is brought
-/// to that of the scene by `body`; its grids are the file "media/INDEX.vdb". Null, and an error of
-/// the report, where it cannot be made.
+/// to that of the scene by `body`; its grids are the file "media/INDEX.vdb", or a file of the
+/// scene. Null, and an error of the report, where it cannot be made.
 YamlPtr grid_medium_node(Context& context, size_t index, const Mat4d& body);
 
 /// The bytes of "media/INDEX.vdb".

@@ -85,10 +85,6 @@ std::string Media::named(const std::string& name, const Mat4d& body, const Place
     reader.note_unused();
   } else if (is_grid_medium(type)) {
     made = grid_medium_node(context_, found->second, body);
-  } else if (type == "nanovdb") {
-    context_.report.note(entity.place,
-                         "files of NanoVDB are not read: '" + name +
-                             "' is left out (a job's medium reads the .vdb that it was made from)");
   } else {
     context_.report.error(entity.place, "there is no medium of type '" + type + "'");
   }

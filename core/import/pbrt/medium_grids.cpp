@@ -7,11 +7,12 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/import/pbrt/classic_noise.h"
+#include "core/import/pbrt/hot_spot.h"
+#include "core/import/pbrt/nanovdb_media.h"
 
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr uint64_t kMostVoxels = uint64_t{1} << 28;
 constexpr double kCloudSide = 128.0;  ///< points along the longest side
 
 /// The box that grids fill in the medium's space.
@@ -52,25 +53,6 @@ Result<Vec3i> size_of(ParameterReader& reader, size_t values) {
   return size;
 }
 
-/// The luminance of a black body whose spectrum is brought to a peak of 1, as pbrt's is: the
-/// integral with the observer's y. Planck's law and the fit of Wyman et al. 2013.
-double luminance_of_peak_one(double kelvin) {
-  if (!(kelvin >= 1.0)) return 0.0;
-  const auto planck = [&](double nm) {
-    const double x = 1.4387769e7 / (nm * kelvin);
-    return x > 700.0 ? 0.0 : 1.0 / (std::pow(nm, 5.0) * std::expm1(x));
-  };
-  const double peak = planck(2.8977721e6 / kelvin);
-  double sum = 0.0;
-  for (double nm = 360.0; nm <= 830.0; nm += 5.0) {
-    const double a = (nm - 568.8) * (nm < 568.8 ? 0.0213 : 0.0247);
-    const double b = (nm - 530.9) * (nm < 530.9 ? 0.0613 : 0.0322);
-    const double y = 0.821 * std::exp(-0.5 * a * a) + 0.286 * std::exp(-0.5 * b * b);
-    sum += 5.0 * y * planck(nm) / peak;
-  }
-  return sum;
-}
-
 Result<MediumGrids> uniform_grid(const NamedEntity& medium, ParameterReader& reader,
                                  bool check_only) {
   const auto density = reader.numbers("float", "density");
@@ -100,13 +82,9 @@ Result<MediumGrids> uniform_grid(const NamedEntity& medium, ParameterReader& rea
   for (size_t i = 0; i < density.size(); ++i) {
     float factor = std::max(density[i], 0.0F) * (has_glow ? std::max(glow[i], 0.0F) : 1.0F);
     if (!temperature.empty()) {
-      const float kelvin = std::max((temperature[i] - offset) * scale, 0.0F);
-      const float hot = kelvin > 100.0F ? kelvin : 0.0F;
-      out.boxes[2].values.push_back(hot);
-      // Jobs brighten black bodies by the fourth power of the temperature over 1500 K.
-      const double share = static_cast<double>(hot) / 1500.0;
-      factor *=
-          hot > 0.0F ? static_cast<float>(luminance_of_peak_one(hot) / std::pow(share, 4.0)) : 0.0F;
+      const HotSpot hot = hot_spot((temperature[i] - offset) * scale);
+      out.boxes[2].values.push_back(hot.kelvin);
+      factor *= hot.factor;
     }
     out.boxes[1].values.push_back(factor);
   }
@@ -220,6 +198,7 @@ Result<MediumGrids> cloud(const NamedEntity& medium, ParameterReader& reader, bo
 Result<MediumGrids> medium_grids(Context& context, const NamedEntity& medium, bool check_only) {
   ParameterReader reader = read(context, medium);
   const std::string type = reader.text("type");
+  if (type == "nanovdb") return nanovdb_grids(context, medium, check_only);
   const Extent extent = extent_of(reader);
   if (!(extent.low.x < extent.high.x && extent.low.y < extent.high.y &&
         extent.low.z < extent.high.z)) {

@@ -32,6 +32,7 @@ class Loader {
     for (const NamedEntity& texture : scene.float_textures) {
       if (texture.type == "imagemap") add_file(texture);
     }
+    for (const NamedEntity& medium : scene.media) add_file(medium);
     for (const LightEntity& light : scene.lights) {
       add(light);
       if (light.type == "infinite") add_file(light);

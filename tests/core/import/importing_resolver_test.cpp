@@ -157,5 +157,21 @@ TEST_F(Importing, IsWrittenAsAJobToBeEdited) {
   EXPECT_TRUE(write_scene_job(request));
 }
 
+// A fire is light enough: no lamp and no sky are put beside it.
+TEST_F(Importing, MediaThatGlowAreLight) {
+  const auto text_with = [&](const std::string& le) {
+    write(
+        "fire.pbrt",
+        "Camera \"perspective\" WorldBegin MakeNamedMedium \"m\" \"string type\" \"homogeneous\" " +
+            le + " Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\"");
+    const auto files = JobFiles::open(path("fire.pbrt"));
+    return files ? text_of((*files)->files(), (*files)->document()) : files.error().message;
+  };
+  EXPECT_THAT(text_with(""), HasSubstr("environment: {"));
+  const std::string glowing = text_with("\"rgb Le\" [3 2 1]");
+  EXPECT_THAT(glowing, HasSubstr("emission: "));
+  EXPECT_THAT(glowing, testing::Not(HasSubstr("environment")));
+}
+
 }  // namespace
 }  // namespace hyades::core

@@ -95,14 +95,6 @@ TEST(PbrtMedia, GridsThatAreWrong) {
   EXPECT_THAT(error("\"string type\" \"cloud\" \"point3 p1\" [0 1 1]"), HasSubstr("is empty"));
 }
 
-TEST(PbrtMedia, NanoVdbIsLeftOutAndTold) {
-  const PbrtJob job = pbrt_job(body("\"string type\" \"nanovdb\" \"string filename\" \"a.nvdb\""));
-  EXPECT_EQ(job.error, "");
-  EXPECT_THAT(job.text, ::testing::Not(HasSubstr("interior")));
-  ASSERT_FALSE(job.notes.empty());
-  EXPECT_THAT(job.notes[0], HasSubstr("scene.pbrt:5:1: files of NanoVDB are not read"));
-}
-
 TEST(PbrtMedia, AMeasuredMediumIsPerMillimetre) {
   const PbrtJob job =
       pbrt_job(body("\"string type\" \"homogeneous\" \"string preset\" \"Skimmilk\""));
