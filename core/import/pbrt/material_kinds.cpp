@@ -209,7 +209,7 @@ void MaterialKinds::put_metal(YamlMap& out, const std::string& prefix, float aro
       const auto measured = find_metal(std::string(metal->metal));
       if (measured) return metal->is_k ? Rgb(measured->k) : Rgb(measured->eta);
     }
-    if (metal) return metal->is_k ? Rgb(0.0F) : metal->eta;
+    if (metal) return metal->is_k ? metal->k : metal->eta;
     const Parameter* p = reader_.find((prefix + what).c_str());
     if (p == nullptr) return Rgb(1.0F);
     if (p->type == "texture") {

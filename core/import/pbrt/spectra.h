@@ -49,8 +49,9 @@ std::optional<float> named_glass(std::string_view name);
 /// "metal-Cu-eta" and "metal-Cu-k".
 struct NamedMetal {
   std::string_view formula;  ///< "Cu"
-  std::string_view metal;    ///< the job language's name; empty where it has none
-  Rgb eta{0.0F};             ///< where it has none
+  std::string_view metal;    ///< the job language's name; empty where it has none or means another
+  Rgb eta{0.0F};             ///< where it has none, or another one
+  Rgb k{0.0F};               ///< likewise
   bool is_k = false;
 };
 std::optional<NamedMetal> named_metal(std::string_view name);

@@ -65,6 +65,19 @@ TEST(PbrtColors, NamedSpectra) {
   EXPECT_FALSE(is_named_spectrum("light.spd"));
 }
 
+// Mirrors of pbrt under a white sky, by its own pictures.
+TEST(PbrtColors, MetalsReflectWhatThoseOfPbrtDo) {
+  const auto reflectance = [](const std::string& formula) {
+    const Rgb eta = named_metal("metal-" + formula + "-eta")->eta;
+    const Rgb k = named_metal("metal-" + formula + "-k")->k;
+    return ((eta - 1.0F) * (eta - 1.0F) + k * k) / ((eta + 1.0F) * (eta + 1.0F) + k * k);
+  };
+  expect_near(reflectance("Ag"), Rgb(0.9719F, 0.9598F, 0.9155F), 1e-3F);
+  expect_near(reflectance("Au"), Rgb(0.995F, 0.7824F, 0.3438F), 1e-3F);
+  expect_near(reflectance("Cu"), Rgb(0.9556F, 0.6374F, 0.5383F), 1e-3F);
+  expect_near(reflectance("CuZn"), Rgb(0.9098F, 0.778F, 0.4233F), 1e-3F);
+}
+
 TEST(PbrtColors, SpectraFromFiles) {
   PbrtFiles files(pbrt_world("LightSource \"infinite\" \"spectrum L\" \"a.spd\""));
   files.add("a.spd", "# a lamp\n400 1\n500 2 # more\n700 1");
@@ -80,9 +93,11 @@ TEST(PbrtColors, MetalsAndTheirReflectance) {
     return pbrt_job(pbrt_world(std::string("Material \"conductor\" ") + text + " Shape \"sphere\""))
         .text;
   };
-  EXPECT_THAT(material(""), HasSubstr("metal: copper"));
+  EXPECT_THAT(material(""), HasSubstr("eta: [0.39, 0.958, 1.166], k: [5.7"));
+  EXPECT_THAT(material("\"spectrum eta\" \"metal-Al-eta\" \"spectrum k\" \"metal-Al-k\""),
+              HasSubstr("metal: aluminium"));
   EXPECT_THAT(material("\"spectrum eta\" \"metal-Ag-eta\" \"spectrum k\" \"metal-Ag-k\""),
-              HasSubstr("metal: silver"));
+              HasSubstr("eta: [0.15, 0.13, 0.14], k: [4.4"));
   // k = 2 sqrt(r / (1 - r))
   EXPECT_THAT(material("\"rgb reflectance\" [.5 .5 .5]"), HasSubstr("eta: 1, k: 2"));
 }
