@@ -135,7 +135,11 @@ Result<YamlPtr> fill_with_media(const YamlNode& sections, const MediaFile& media
     }
   }
   YamlMap result;
-  result.put("media", YamlMap{{"file", yaml_text(media.in_job)}});
+  YamlMap all_media{{"file", yaml_text(media.in_job)}};
+  for (const YamlEntry& own : section(sections, "media").map) {
+    if (!known->contains(own.key)) all_media.put(own.key, own.value);
+  }
+  result.put("media", all_media);
   for (const YamlEntry& section : sections.map) {
     if (section.key == "objects") {
       result.put("objects", filled);
