@@ -38,6 +38,10 @@ std::string Context::beside(const std::string& reference, const Place& place) {
     report.error(place, path.error().message);
     return {};
   }
+  if (const auto why = loaded.missing.find(reference); why != loaded.missing.end()) {
+    report.error(place, why->second);
+    return {};
+  }
   files.push_back(*path);
   return request.beside + *path;
 }

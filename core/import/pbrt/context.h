@@ -39,7 +39,7 @@ struct Context {
   YamlMap textures, materials, media, lights;
 
   /// "beside" put before the reference of a file that the scene names; its path is checked. Empty,
-  /// and an error of the report, where it is none.
+  /// and an error of the report, where it is none or there is no such file.
   std::string beside(const std::string& reference, const Place& place);
   std::vector<std::string> files;  ///< SceneSections::files
 };

@@ -40,6 +40,7 @@ class Loader {
     if (scene.camera.type == "realistic") add_file(scene.camera, "lensfile");
     add_reversed(scene.shapes);
     for (const ObjectDefinition& object : scene.objects) add_reversed(object.shapes);
+    look_for_files();
     return status_;
   }
 
@@ -80,6 +81,33 @@ class Loader {
   void add_reversed(const std::vector<ShapeEntity>& shapes) {
     for (const ShapeEntity& shape : shapes) {
       if (shape.reversed && shape.type == "plymesh") add_file(shape);
+    }
+  }
+
+  /// Of files that jobs are to open, so that those that are missing are told with their places.
+  void look_for_files() {
+    const Scene& scene = loaded_.scene;
+    const auto look = [&](const auto& entities) {
+      for (const Entity& entity : entities) look_for(entity);
+    };
+    look(scene.materials);
+    look(scene.named_materials);
+    look(scene.area_lights);
+    look(scene.float_textures);
+    look(scene.spectrum_textures);
+    look(scene.shapes);
+    for (const ObjectDefinition& object : scene.objects) look(object.shapes);
+  }
+
+  void look_for(const Entity& entity) {
+    for (const ParameterPtr& p : entity.parameters) {
+      if (p->type != "string" || (p->name != "filename" && p->name != "normalmap")) continue;
+      for (const std::string& file : p->texts) {
+        if (loaded_.files.contains(file) || files_.exists(file)) continue;
+        // Something may stand in for it.
+        const auto bytes = files_.open(file);
+        if (!bytes) loaded_.missing.emplace(file, bytes.error().message);
+      }
     }
   }
 

@@ -173,5 +173,29 @@ TEST_F(Importing, MediaThatGlowAreLight) {
   EXPECT_THAT(glowing, testing::Not(HasSubstr("environment")));
 }
 
+// A picture that is missing may be stood in for, a mesh may not.
+TEST_F(Importing, AFileThatAPbrtLacksIsToldWithItsPlace) {
+  const auto error = [&](const std::string& world, MissingTextures missing) {
+    write("s.pbrt", "Camera \"perspective\" WorldBegin\n" + world);
+    JobFileOptions options;
+    options.missing = missing;
+    const auto files = JobFiles::open(path("s.pbrt"), options);
+    if (!files) return files.error().message;
+    const std::string text = text_of((*files)->files(), (*files)->document());
+    return text.starts_with("ERROR ") ? text : std::string("none");
+  };
+  const std::string mesh = "\n  Shape \"plymesh\" \"string filename\" \"gone.ply\"";
+  const std::string picture =
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"gone.png\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"";
+  for (const auto missing : {MissingTextures::refused, MissingTextures::magenta}) {
+    EXPECT_THAT(error(mesh, missing), HasSubstr("s.pbrt:3:3: gone.ply: no such file"));
+  }
+  EXPECT_THAT(error(picture, MissingTextures::refused),
+              testing::AllOf(HasSubstr("s.pbrt:2:1: gone.png: no such file"),
+                             HasSubstr("; --missing-textures lets magenta")));
+  EXPECT_EQ(error(picture, MissingTextures::magenta), "none");
+}
+
 }  // namespace
 }  // namespace hyades::core

@@ -160,7 +160,8 @@ TEST(PbrtScene, FloatsOfPicturesAreTheirAlphaOrMean) {
                    " Material \"diffuse\" \"texture displacement\" \"t\" "
                    "Shape \"sphere\""));
     if (!picture.empty()) files.add("t.tga", picture);
-    return read_pbrt_job(files).text;
+    const PbrtJob made = read_pbrt_job(files);
+    return made.error.empty() ? made.text : made.error;
   };
   const std::string color("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0\1\2\3", 21);
   const std::string grey("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\0\2\2\2", 21);
@@ -169,7 +170,7 @@ TEST(PbrtScene, FloatsOfPicturesAreTheirAlphaOrMean) {
   EXPECT_THAT(job(grey), HasSubstr("channel: luminance"));
   EXPECT_THAT(job(opaque), HasSubstr("channel: luminance"));
   EXPECT_THAT(job(clear), HasSubstr("channel: alpha"));
-  EXPECT_THAT(job(""), HasSubstr("channel: luminance"));
+  EXPECT_THAT(job(""), HasSubstr("scene.pbrt:5:1: cannot open 't.tga'"));
   const std::string mean = job(color, "\"string encoding\" \"gamma 2\"");
   EXPECT_THAT(mean, HasSubstr("channel: red"));
   EXPECT_THAT(mean, HasSubstr("channel: green"));

@@ -127,10 +127,12 @@ TEST(PbrtShapes, CurvesAreTubesAndRibbons) {
 }
 
 TEST(PbrtShapes, AlphaIsOpacity) {
-  const PbrtJob job = pbrt_job(pbrt_world(
+  PbrtFiles files(pbrt_world(
       "Texture \"leaf\" \"float\" \"imagemap\" \"string filename\" \"leaf.png\"\n"
       "Shape \"sphere\" \"texture alpha\" \"leaf\"\nShape \"disk\" \"texture alpha\" \"leaf\"\n"
       "Shape \"sphere\" \"float alpha\" .25\nShape \"sphere\" \"float alpha\" 1"));
+  files.add("leaf.png", "damaged");
+  const PbrtJob job = read_pbrt_job(files);
   EXPECT_THAT(job.text, HasSubstr("cutout: {like: diffuse, opacity: leaf}"));
   EXPECT_THAT(job.text, HasSubstr("cutout-2: {like: diffuse, opacity: 0.25}"));
   EXPECT_THAT(job.text, Not(HasSubstr("cutout-3")));
