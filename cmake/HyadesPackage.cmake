@@ -2,7 +2,7 @@
 # libexec, where `hyades` finds its fellows; bin/ holds a link to it.
 install(TARGETS hyades hyades-render hyades-film RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
 if(HYADES_FARM)
-  install(TARGETS hyades-client hyades-coordinator hyades-worker hyades-worker-render RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
+  install(TARGETS hyades-backup hyades-client hyades-coordinator hyades-worker hyades-worker-render RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/hyades)
 endif()
 install(CODE "
   set(bin \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_BINDIR}\")

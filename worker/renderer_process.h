@@ -21,7 +21,7 @@ struct RendererOptions {
   std::string program;  ///< path of hyades-worker-render
   std::string cache;    ///< folder of the content store
   int threads = 1;
-  uint64_t memory = 0;  ///< bytes; 0: no limit
+  uint64_t memory = 0;           ///< bytes; 0: no limit
   std::string sandbox = "auto";  ///< worker/render/sandbox.h
 };
 
