@@ -39,6 +39,8 @@ constexpr Command kCommands[] = {
     {"coordinator", "hyades-coordinator",
      "own jobs, lease their units to workers, merge the films"},
     {"worker", "hyades-worker", "render for a coordinator"},
+    {"backup", "hyades-backup", "write what a coordinator keeps into one file, while it runs"},
+    {"restore", "hyades-backup", "make a coordinator's folder out of a backup"},
 #endif
     {"video", "hyades-render", "make a job's videos of the pictures that its frames have left"},
     {"merge", "hyades-film", "join films of the same frame"},

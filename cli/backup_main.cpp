@@ -1,0 +1,72 @@
+// `hyades backup` and `hyades restore`: what a coordinator keeps, as one file and back.
+#include <cstdio>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/command_line.h"
+#include "cli/program.h"
+#include "coordinator/backup/backup.h"
+#include "core/base/machine.h"
+#include "core/base/text.h"
+
+namespace {
+
+using hyades::coordinator::BackupCount;
+
+constexpr int kBadArguments = 2;
+
+/// Exit status, after a line that says what came of it.
+int tell(const char* command, const hyades::core::Result<BackupCount>& done,
+         const std::string& what) {
+  if (!done) {
+    std::fprintf(stderr, "%s: %s\n", command, done.error().message.c_str());
+    return 1;
+  }
+  std::printf("%s: %s files, %s\n", what.c_str(), hyades::core::format_count(done->files).c_str(),
+              hyades::core::format_bytes(done->bytes).c_str());
+  return 0;
+}
+
+int backup_command(int argc, char** argv) {
+  CLI::App app("Writes what a coordinator keeps into one file; the coordinator may be running.",
+               "hyades backup");
+  std::string data;
+  std::string to;
+  app.add_option("--data", data, "the coordinator's folder")->required();
+  app.add_option("-o,--output", to, "the tar file")->required();
+  app.footer(
+      "example:\n  hyades backup --data /var/lib/hyades -o /backup/hyades.tar\n"
+      "Run it as the coordinator's user. The file appears when it is whole.\n"
+      "exit status: 0 done, 1 it could not be written, 2 wrong arguments");
+  if (const auto status = hyades::cli::parse_command_line(app, argc, argv, kBadArguments)) {
+    return *status;
+  }
+  return tell("hyades backup", hyades::coordinator::write_backup(data, to), to);
+}
+
+int restore_command(int argc, char** argv) {
+  CLI::App app("Makes a coordinator's folder out of a backup.", "hyades restore");
+  std::string from;
+  std::string data;
+  app.add_option("backup", from, "the tar file that 'hyades backup' has written")->required();
+  app.add_option("--data", data, "the new folder: not there yet, or empty")->required();
+  app.footer(
+      "example:\n  hyades restore /backup/hyades.tar --data /var/lib/hyades\n"
+      "Every file is checked against its digest; the folder appears when it is whole.\n"
+      "exit status: 0 done, 1 the backup is torn or damaged, or could not be read, 2 wrong "
+      "arguments");
+  if (const auto status = hyades::cli::parse_command_line(app, argc, argv, kBadArguments)) {
+    return *status;
+  }
+  return tell("hyades restore", hyades::coordinator::restore_backup(from, data), data);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hyades::core::ignore_file_size_signal();
+  constexpr hyades::cli::ProgramCommand kCommands[] = {{"backup", backup_command},
+                                                       {"restore", restore_command}};
+  return hyades::cli::run_program(kCommands, argc, argv);
+}

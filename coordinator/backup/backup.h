@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/result.h"
+
+namespace hyades::coordinator {
+
+/// What was written or read.
+struct BackupCount {
+  uint64_t files = 0;
+  uint64_t bytes = 0;
+};
+
+/// Writes a tar file `to` of what the coordinator of the folder `data` keeps, while it may be
+/// running: films first, then the job store, then outputs and assets, so that whatever the store
+/// says is there. What is lost between them is rendered again. `to` is whole or absent.
+core::Result<BackupCount> write_backup(const std::string& data, const std::string& to);
+
+/// Makes the folder `data`, which must not be there or be empty, out of a backup. It appears only
+/// when every file was there and had its digest; a backup that is torn or damaged is refused. The
+/// folder's starts are counted on by a thousand, so that what workers hold of the coordinator that
+/// was lost is not taken for this one's.
+core::Result<BackupCount> restore_backup(const std::string& from, const std::string& data);
+
+}  // namespace hyades::coordinator
