@@ -11,7 +11,6 @@ namespace hyades::cli {
 namespace {
 
 constexpr auto kPlainEvery = std::chrono::seconds(10);
-constexpr int kBarWidth = 24;
 
 double fraction(const coordinator::Progress& p) {
   return p.samples > 0 ? static_cast<double>(p.samples_done) / static_cast<double>(p.samples) : 0.0;
@@ -30,11 +29,7 @@ ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
 std::string ProgressDisplay::line(const coordinator::Progress& p) const {
   const double done = fraction(p);
   std::string text = name_ + "  ";
-  if (status_.redraws()) {
-    const int filled = static_cast<int>(done * kBarWidth);
-    for (int i = 0; i < kBarWidth; ++i) text += i < filled ? "█" : "░";
-    text += "  ";
-  }
+  if (status_.redraws()) text += progress_bar(done) + "  ";
   text += fmt::format("{:3.0f} %", 100.0 * done);
   if (p.frames > 1)
     text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);

@@ -10,6 +10,7 @@ namespace hyades::cli {
 namespace {
 
 constexpr auto kRedraw = std::chrono::milliseconds(150);
+constexpr int kBarWidth = 24;
 
 bool is_terminal() {
   const char* term = std::getenv("TERM");
@@ -22,6 +23,13 @@ int terminal_width() {
 }
 
 }  // namespace
+
+std::string progress_bar(double share) {
+  const int filled = static_cast<int>(share * kBarWidth);
+  std::string bar;
+  for (int i = 0; i < kBarWidth; ++i) bar += i < filled ? "█" : "░";
+  return bar;
+}
 
 StatusLine::StatusLine() : terminal_(is_terminal()) {}
 

@@ -5,6 +5,9 @@
 
 namespace hyades::cli {
 
+/// A bar of blocks, filled by `share` (0 to 1).
+std::string progress_bar(double share);
+
 /// One line of standard error that is drawn again and again, where that is a terminal.
 class StatusLine {
  public:

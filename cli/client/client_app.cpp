@@ -16,6 +16,16 @@ ClientApp::ClientApp(const char* command, const std::string& description)
       ->group(group);
 }
 
+void ClientApp::give_examples(const std::vector<std::string>& examples, const std::string& more) {
+  std::string text = "examples:\n";
+  for (const std::string& example : examples) text += "  " + example + "\n";
+  if (!more.empty()) text += more + "\n";
+  app_.footer(text +
+              "exit status: 0 done, 1 it could not be done, 2 wrong arguments, 3 no coordinator "
+              "answers, 4 no\n"
+              "token or the wrong one, 5 there is no such thing; docs/client.md tells more");
+}
+
 std::optional<int> ClientApp::parse(int argc, char** argv) {
   return parse_command_line(app_, argc, argv, kBadArguments);
 }
@@ -25,6 +35,14 @@ std::unique_ptr<FarmClient> ClientApp::connect() const {
   if (client) return std::move(*client);
   report({kBadArguments, client.error().message});
   return nullptr;
+}
+
+std::unique_ptr<FarmClient> ClientApp::connect_impatiently() const {
+  ClientOptions options = options_;
+  options.first_patience = 0;
+  options.later_patience = 0;
+  auto client = FarmClient::open(options);
+  return client ? std::move(*client) : nullptr;
 }
 
 }  // namespace hyades::cli

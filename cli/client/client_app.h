@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -22,11 +23,18 @@ class ClientApp {
   /// HOST:PORT of the coordinator.
   const std::string& address() const { return options_.peer.address; }
 
+  /// What --help ends with: `examples`, one a line, and the exit statuses that most commands have;
+  /// `more` is said between them.
+  void give_examples(const std::vector<std::string>& examples, const std::string& more = {});
+
   /// Exit status where the arguments end the command (they are wrong, or --help).
   std::optional<int> parse(int argc, char** argv);
 
   /// The coordinator; nothing, and a message, where certificates or tokens cannot be read.
   std::unique_ptr<FarmClient> connect() const;
+
+  /// Another connection after that one, whose calls are tried once.
+  std::unique_ptr<FarmClient> connect_impatiently() const;
 
   int report(const Failure& failure) const { return cli::report(command_, failure); }
 

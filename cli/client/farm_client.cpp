@@ -308,7 +308,8 @@ Outcome FarmClient::fetch(v1::FetchRequest request, uint64_t size,
       on_chunk, stopped);
 }
 
-Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes) {
+Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes,
+                         const std::function<void(uint64_t)>& on_progress) {
   v1::FilmRequest request;
   request.set_job(job);
   request.set_frame(frame);
@@ -326,6 +327,7 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
         } else if (part.chunk().offset() == bytes.size() &&
                    part.chunk().data().size() <= header.size() - bytes.size()) {
           bytes += part.chunk().data();
+          if (on_progress) on_progress(part.chunk().data().size());
         } else {
           stopped = Failure{kFailed, "the coordinator sends a film in pieces that do not fit"};
         }

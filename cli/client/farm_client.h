@@ -56,7 +56,9 @@ class FarmClient {
                 const std::function<Outcome(const std::string&)>& on_bytes);
 
   /// The merged film of a frame as it is now: what it belongs to, and its bytes (film_codec.h).
-  Outcome film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes);
+  /// `on_progress` hears how many more have come.
+  Outcome film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes,
+               const std::function<void(uint64_t)>& on_progress = {});
 
   Outcome logs(v1::LogsRequest request, const std::function<void(const v1::LogLine&)>& on_line);
 

@@ -12,7 +12,7 @@
 #include "cli/client/fetch.h"
 #include "cli/client/find_job.h"
 #include "cli/client/show.h"
-#include "cli/status_line.h"
+#include "cli/transfer_display.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
 #include "core/film/film_codec.h"
@@ -47,6 +47,10 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json, "print the files as JSON (field id: the path)");
   app.footer(
+      "examples:\n"
+      "  hyades fetch perlin-sphere --output out\n"
+      "  hyades fetch 12 --frame 7,8 --follow\n"
+      "  hyades fetch 12 --film 7\n"
       "Goes on where an earlier run stopped; every file is checked against its SHA-256 before it "
       "gets its\n"
       "name, and those that are there already are left alone.\n"
@@ -69,7 +73,13 @@ Json to_json(const v1::OutputFile& file) {
 Outcome fetch_film(FarmClient& client, uint64_t id, const Options& options) {
   v1::FilmHeader header;
   std::string bytes;
-  if (auto failure = client.film(id, *options.film, header, bytes)) return failure;
+  TransferDisplay display("fetching", options.quiet);
+  const auto on_bytes = [&](uint64_t more) {
+    if (display.transfer().total == 0) display.expect(header.size());
+    display.moved(more);
+  };
+  if (auto failure = client.film(id, *options.film, header, bytes, on_bytes)) return failure;
+  display.clear();
   auto info = farm::from_wire(header);
   if (!info) return Failure{kFailed, info.error().in("the film that came").message};
   auto film = core::decode_film(std::as_bytes(std::span(bytes)));
@@ -159,7 +169,10 @@ Outcome what_is_missing(const v1::GetJobResponse& response, const std::vector<in
 class FetchRun {
  public:
   FetchRun(FarmClient& client, const Options& options, uint64_t id)
-      : client_(client), options_(options), id_(id) {}
+      : client_(client),
+        options_(options),
+        id_(id),
+        display_("fetching", options.quiet || options.list) {}
 
   Outcome run() {
     v1::OutputsRequest request;
@@ -170,12 +183,22 @@ class FetchRun {
       range.set_first(frame);
       range.set_last(frame);
     }
-    if (auto failure = client_.outputs(request, [&](const auto& file) { return take(file); })) {
-      line_.clear();
-      return failure;
+    // Which files there are is heard first, so that it is known how much is to come; those that are
+    // waited for come one by one.
+    std::vector<v1::OutputFile> files;
+    Outcome failure = client_.outputs(request, [&](const v1::OutputFile& file) -> Outcome {
+      if (options_.follow) return take(file);
+      files.push_back(file);
+      return std::nullopt;
+    });
+    for (const v1::OutputFile& file : files) {
+      if (failure) break;
+      if (!options_.list && is_new(file)) display_.expect(file.size());
     }
-    line_.clear();
-    return std::nullopt;
+    seen_.clear();
+    for (size_t i = 0; i < files.size() && !failure; ++i) failure = take(files[i]);
+    display_.clear();
+    return failure;
   }
 
   void print() const {
@@ -192,9 +215,13 @@ class FetchRun {
   bool found_nothing() const { return seen_.empty(); }
 
  private:
+  /// After a break the stream begins again.
+  bool is_new(const v1::OutputFile& file) {
+    return seen_.insert(file.path() + file.sha256()).second;
+  }
+
   Outcome take(const v1::OutputFile& file) {
-    // After a break the stream begins again.
-    if (!seen_.insert(file.path() + file.sha256()).second) return std::nullopt;
+    if (!is_new(file)) return std::nullopt;
     if (options_.json) told_.push_back(to_json(file));
     if (options_.list) {
       if (!options_.json) {
@@ -203,22 +230,24 @@ class FetchRun {
       }
       return std::nullopt;
     }
-    uint64_t here = 0;
-    return fetch_file(
+    if (options_.follow) display_.expect(file.size());
+    display_.begin_file(printable(file.path()));
+    uint64_t came = 0;
+    const Outcome failure = fetch_file(
         client_, id_, file, options_.folder,
         [&](uint64_t bytes) {
-          here += bytes;
-          if (options_.quiet || !line_.is_due()) return;
-          line_.show(fmt::format("{}  {} of {}", printable(file.path()), core::format_bytes(here),
-                                 core::format_bytes(file.size())));
+          came += bytes;
+          display_.moved(bytes);
         },
         totals_);
+    display_.spare(file.size() - std::min(came, file.size()));
+    return failure;
   }
 
   FarmClient& client_;
   const Options& options_;
   uint64_t id_;
-  StatusLine line_;
+  TransferDisplay display_;
   std::set<std::string> seen_;
   Fetched totals_;
   Json told_ = Json::array();

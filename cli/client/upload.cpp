@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "cli/status_line.h"
+#include "cli/transfer_display.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
 #include "farm/wire.h"
@@ -54,47 +54,13 @@ Outcome ask(FarmClient& client, const std::vector<AssetRecord>& files,
   return std::nullopt;
 }
 
-/// Shows how much has gone.
-class UploadDisplay {
- public:
-  UploadDisplay(bool quiet, const std::vector<Missing>& missing)
-      : quiet_(quiet), files_(missing.size()) {
-    for (const Missing& one : missing) total_ += one.file.size - one.offset;
-  }
-
-  void begin_file() { ++file_; }
-
-  void sent(uint64_t bytes) {
-    sent_ += bytes;
-    if (quiet_ || !line_.is_due()) return;
-    line_.show(fmt::format("uploading file {} of {}: {} of {}", file_, files_,
-                           core::format_bytes(std::min(sent_, total_)),
-                           core::format_bytes(total_)));
-  }
-
-  void end() {
-    line_.clear();
-    if (!quiet_ && files_ > 0) {
-      std::fprintf(stderr, "uploaded %zu file%s, %s\n", files_, files_ == 1 ? "" : "s",
-                   core::format_bytes(total_).c_str());
-    }
-  }
-
- private:
-  bool quiet_;
-  StatusLine line_;
-  size_t files_;
-  size_t file_ = 0;
-  uint64_t total_ = 0;
-  uint64_t sent_ = 0;
-};
-
-Outcome upload_file(FarmClient& client, Missing one, core::JobFiles& from, UploadDisplay& display) {
+Outcome upload_file(FarmClient& client, Missing one, core::JobFiles& from,
+                    TransferDisplay& display) {
   int restarts = 0;
   while (true) {
     const auto input = from.stream(one.file.reference);
     const Outcome failure =
-        client.upload(one.file, *input, one.offset, [&](uint64_t bytes) { display.sent(bytes); });
+        client.upload(one.file, *input, one.offset, [&](uint64_t bytes) { display.moved(bytes); });
     if (!failure) return std::nullopt;
     if (failure->from_start) {
       one.offset = 0;
@@ -120,12 +86,18 @@ Outcome upload_missing(FarmClient& client, const farm::JobPackage& package, core
   }
   std::vector<Missing> missing;
   if (auto failure = ask(client, files, missing)) return failure;
-  UploadDisplay display(quiet, missing);
-  for (const Missing& one : missing) {
-    display.begin_file();
-    if (auto failure = upload_file(client, one, from, display)) return failure;
+  TransferDisplay display("uploading", quiet);
+  for (const Missing& one : missing) display.expect(one.file.size - one.offset);
+  const uint64_t total = display.transfer().total;
+  for (size_t i = 0; i < missing.size(); ++i) {
+    display.begin_file(fmt::format("{} of {}", i + 1, missing.size()));
+    if (auto failure = upload_file(client, missing[i], from, display)) return failure;
   }
-  display.end();
+  display.clear();
+  if (!quiet && !missing.empty()) {
+    std::fprintf(stderr, "uploaded %zu file%s, %s\n", missing.size(),
+                 missing.size() == 1 ? "" : "s", core::format_bytes(total).c_str());
+  }
   return std::nullopt;
 }
 

@@ -122,18 +122,24 @@ class Watcher {
 
 }  // namespace
 
-Outcome watch_job(FarmClient& client, uint64_t id, bool quiet, v1::Job* last) {
+Outcome watch_job(FarmClient& client, uint64_t id, bool quiet, v1::Job* last, FilmDisplay* films,
+                  Viewer* viewer) {
   leave_job_running_on_interrupt(id);
   Watcher watcher(quiet);
-  client.on_notice([&](const std::string& text) {
+  const auto tell = [&](const std::string& text) {
     watcher.clear();
     std::fprintf(stderr, "%s\n", text.c_str());
-  });
+  };
+  client.on_notice(tell);
   Outcome outcome;
   while (!outcome && !watcher.ended()) {
     outcome = client.watch(id, [&](const v1::WatchEvent& event) {
       watcher.take(event);
       if (last != nullptr) *last = event.job();
+      if (films != nullptr) films->take(event);
+      if (const auto notice = viewer != nullptr ? viewer->take_notice() : std::nullopt) {
+        tell(*notice);
+      }
       return !watcher.ended();
     });
     // A coordinator that ends the stream in order before the job has ended is about to stop.

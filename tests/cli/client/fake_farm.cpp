@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "core/base/hash.h"
+#include "core/film/film_codec.h"
 #include "farm/channel.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -78,14 +79,36 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
 
   Status Watch(ServerContext* context, const v1::WatchRequest* request,
                grpc::ServerWriter<v1::WatchEvent>* writer) override {
-    const std::lock_guard lock(farm.mutex_);
+    std::unique_lock lock(farm.mutex_);
     if (Status s = farm.enter(*context); !s.ok()) return s;
     v1::Job* job = nullptr;
     if (Status s = farm.find(request->job(), job); !s.ok()) return s;
-    for (const v1::WatchEvent& event : farm.events) {
+    for (size_t i = 0; i < farm.events.size(); ++i) {
+      const v1::WatchEvent event = farm.events[i];
+      lock.unlock();
+      if (farm.before_event) farm.before_event(i);
       writer->Write(event);
+      lock.lock();
       if (breaks()) return {StatusCode::UNAVAILABLE, "broken"};
     }
+    return Status::OK;
+  }
+
+  Status Film(ServerContext* context, const v1::FilmRequest* request,
+              grpc::ServerWriter<v1::FilmPart>* writer) override {
+    const std::lock_guard lock(farm.mutex_);
+    if (Status s = farm.enter(*context); !s.ok()) return s;
+    const auto found = farm.films.find(request->frame());
+    if (found == farm.films.end()) {
+      return {StatusCode::FAILED_PRECONDITION, "the film is kept no more"};
+    }
+    const std::vector<std::byte> bytes = core::encode_film(found->second);
+    v1::FilmPart part;
+    part.mutable_header()->set_frame(request->frame());
+    part.mutable_header()->set_size(bytes.size());
+    writer->Write(part);
+    part.mutable_chunk()->set_data(bytes.data(), bytes.size());
+    writer->Write(part);
     return Status::OK;
   }
 
@@ -145,6 +168,7 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
     for (const auto& [path, bytes] : farm.outputs) {
       v1::OutputFile file;
       file.set_path(path);
+      file.set_frame(farm.frame_of_outputs);
       file.set_size(bytes.size());
       file.set_sha256(farm::to_wire(core::sha256(std::string_view(bytes))));
       writer->Write(file);

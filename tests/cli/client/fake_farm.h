@@ -3,12 +3,14 @@
 #include <grpcpp/server.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "core/film/film.h"
 #include "hyades/v1/assets.grpc.pb.h"
 #include "hyades/v1/farm.grpc.pb.h"
 #include "hyades/v1/jobs.grpc.pb.h"
@@ -31,7 +33,10 @@ class FakeFarm {
   std::vector<v1::Job> jobs;                   ///< oldest first
   std::vector<v1::Frame> frames;               ///< of every job
   std::vector<v1::WatchEvent> events;          ///< of Watch
+  std::function<void(size_t)> before_event;    ///< called before each, with its number
+  std::map<int32_t, core::Film> films;         ///< of frames, of every job
   std::map<std::string, std::string> outputs;  ///< by path
+  int32_t frame_of_outputs = 0;
   std::vector<v1::SubmitRequest> submitted;
   std::vector<v1::Worker> workers;
 
