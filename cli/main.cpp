@@ -55,6 +55,7 @@ constexpr Command kCommands[] = {
     {"watch", "hyades-client", "show how a job gets on, until it has ended"},
     {"fetch", "hyades-client", "bring a job's finished pictures here"},
     {"logs", "hyades-client", "what has happened to a job"},
+    {"trace", "hyades-client", "write what was done for a job when, for ui.perfetto.dev"},
     {"explain", "hyades-client", "why a job does or does not get on"},
     {"pause", "hyades-client", "lease no more units of a job"},
     {"resume", "hyades-client", "let a paused job go on"},
@@ -75,7 +76,7 @@ void print_help() {
   std::printf(
       "hyades %s: a path-tracing render farm\n\nusage: hyades COMMAND [ARGUMENTS]\n\ncommands:\n",
       hyades::core::kVersion);
-  for (const Command& command : kCommands) std::printf("  %-11s %s\n", command.name, command.help);
+  for (const Command& command : kCommands) std::printf("  %-13s %s\n", command.name, command.help);
   std::printf(
       "\nexamples:\n"
       "  hyades render jobs/quickstart/job.yaml\n"

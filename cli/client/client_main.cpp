@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
       {"delete", delete_command},   {"workers", workers_command},
       {"drain", drain_command},     {"quarantine", quarantine_command},
       {"release", release_command}, {"top", top_command},
+      {"trace", trace_command},
   };
   hyades::core::ignore_file_size_signal();
   return run_program(kCommands, argc, argv);

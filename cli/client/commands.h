@@ -13,6 +13,7 @@ int jobs_command(int argc, char** argv);
 int status_command(int argc, char** argv);
 int explain_command(int argc, char** argv);
 int logs_command(int argc, char** argv);
+int trace_command(int argc, char** argv);
 
 int pause_command(int argc, char** argv);
 int resume_command(int argc, char** argv);

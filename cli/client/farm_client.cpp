@@ -349,6 +349,11 @@ Outcome FarmClient::logs(v1::LogsRequest request,
       std::nullopt);
 }
 
+Outcome FarmClient::timeline(const v1::ListTimelineRequest& request,
+                             v1::ListTimelineResponse& response) {
+  return state_->call(*state_->jobs, &v1::Jobs::Stub::ListTimeline, request, response);
+}
+
 Outcome FarmClient::find_missing(const v1::FindMissingRequest& request,
                                  v1::FindMissingResponse& response) {
   return state_->call(*state_->assets, &v1::Assets::Stub::FindMissing, request, response);

@@ -60,6 +60,9 @@ class FarmClient {
   Outcome film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes,
                const std::function<void(uint64_t)>& on_progress = {});
 
+  /// A page of what was done for a job.
+  Outcome timeline(const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response);
+
   Outcome logs(v1::LogsRequest request, const std::function<void(const v1::LogLine&)>& on_line);
 
   Outcome find_missing(const v1::FindMissingRequest& request, v1::FindMissingResponse& response);

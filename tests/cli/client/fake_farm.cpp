@@ -195,6 +195,21 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
     return Status::OK;
   }
 
+  Status ListTimeline(ServerContext* context, const v1::ListTimelineRequest* request,
+                      v1::ListTimelineResponse* response) override {
+    const std::lock_guard lock(farm.mutex_);
+    if (Status s = farm.enter(*context); !s.ok()) return s;
+    constexpr int kPage = 700;
+    for (const v1::TimelineStep& step : farm.steps) {
+      if (step.number() <= request->after()) continue;
+      response->set_more(response->steps_size() == kPage);
+      if (response->more()) break;
+      *response->add_steps() = step;
+    }
+    response->set_dropped(farm.dropped_steps);
+    return Status::OK;
+  }
+
   Status Logs(ServerContext* context, const v1::LogsRequest* request,
               grpc::ServerWriter<v1::LogLine>* writer) override {
     const std::lock_guard lock(farm.mutex_);

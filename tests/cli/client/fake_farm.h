@@ -36,6 +36,8 @@ class FakeFarm {
   std::function<void(size_t)> before_event;    ///< called before each, with its number
   std::map<int32_t, core::Film> films;         ///< of frames, of every job
   std::map<std::string, std::string> outputs;  ///< by path
+  std::vector<v1::TimelineStep> steps;         ///< of every job
+  uint64_t dropped_steps = 0;
   int32_t frame_of_outputs = 0;
   std::vector<v1::SubmitRequest> submitted;
   std::vector<v1::Worker> workers;

@@ -1,0 +1,113 @@
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/find_job.h"
+#include "cli/client/show.h"
+#include "cli/client/trace_writer.h"
+#include "cli/status_line.h"
+#include "core/base/io_reason.h"
+
+namespace hyades::cli {
+namespace {
+
+constexpr auto kLook = std::chrono::seconds(1);
+
+/// A job without its frames.
+Outcome get_job(FarmClient& client, uint64_t id, v1::Job& job) {
+  v1::ListJobsRequest request;
+  request.set_ended(true);
+  request.set_limit(1);
+  request.set_before(id + 1);
+  v1::ListJobsResponse response;
+  if (auto failure = client.list(request, response)) return failure;
+  if (response.jobs().empty() || response.jobs(0).id() != id) {
+    return Failure{kUnknown, fmt::format("there is no job {} any more", id)};
+  }
+  job = response.jobs(0);
+  return std::nullopt;
+}
+
+/// All that is known of the job, and with `follow` what comes until it has ended.
+Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& out,
+                    TraceWriter& writer, v1::Job& job) {
+  StatusLine line;
+  v1::ListTimelineRequest request;
+  request.set_job(id);
+  for (bool begins = true;; begins = false) {
+    // Asked for first: what came until the job ended is then in the steps that follow.
+    if (auto failure = get_job(client, id, job)) return failure;
+    v1::ListTimelineResponse page;
+    do {
+      if (auto failure = client.timeline(request, page)) return failure;
+      if (std::exchange(begins, false) && page.dropped() > 0) {
+        std::fprintf(stderr,
+                     "%lu older steps are not kept by the coordinator: the trace begins later\n",
+                     page.dropped());
+      }
+      for (const v1::TimelineStep& step : page.steps()) {
+        writer.take(step);
+        request.set_after(step.number());
+      }
+      if (line.is_due()) line.show(fmt::format("{} units", writer.units()));
+    } while (page.more() && page.steps_size() > 0 && out.good());
+    if (!follow || has_ended(job) || !out.good()) break;
+    std::this_thread::sleep_for(kLook);
+  }
+  v1::LogsRequest logs;
+  logs.set_job(id);
+  return client.logs(logs, [&](const v1::LogLine& one) { writer.take(one); });
+}
+
+}  // namespace
+
+int trace_command(int argc, char** argv) {
+  ClientApp app("trace",
+                "Writes what workers and coordinator did for a job, and when, as a trace that "
+                "ui.perfetto.dev shows.");
+  std::string name;
+  std::string file;
+  bool follow = false;
+  bool quiet = false;
+  app.app().add_option("job", name, "its id, or its name (of several: the newest)")->required();
+  app.app().add_option("-o,--output", file, "the JSON file to write")->required();
+  app.app().add_flag("--follow", follow,
+                     "stay until the job has ended: the coordinator keeps the last 40,000 steps");
+  app.app().add_flag("--quiet", quiet, "say nothing where all goes well");
+  app.give_examples(
+      {"hyades trace perlin-sphere -o trace.json", "hyades trace 12 --follow -o trace.json"},
+      "Open the file at ui.perfetto.dev or chrome://tracing.");
+  if (const auto status = app.parse(argc, argv)) return *status;
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  uint64_t id = 0;
+  if (auto failure = find_job(*client, name, Namesakes::newest, id)) return app.report(*failure);
+  v1::Job job;
+  if (auto failure = get_job(*client, id, job)) return app.report(*failure);
+  errno = 0;
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  const auto cannot_write = [&] {
+    return app.report({kFailed, "cannot write " + file + ": " + core::io_reason(errno)});
+  };
+  if (!out) return cannot_write();
+  TraceWriter writer(out, job);
+  const Outcome failure = write_trace(*client, id, follow, out, writer, job);
+  // What has come is a whole document also where the coordinator went away.
+  writer.end(job);
+  out.flush();
+  if (!out) return cannot_write();
+  if (failure) return app.report(*failure);
+  if (!quiet) {
+    std::fprintf(stderr, "wrote %s: %lu units of job %lu\n", printable(file).c_str(),
+                 writer.units(), id);
+  }
+  return kDone;
+}
+
+}  // namespace hyades::cli
