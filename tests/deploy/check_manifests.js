@@ -1,0 +1,94 @@
+// Checks Kubernetes manifests offline: each by the schema of its kind, and together: selectors choose pods that exist,
+// services and policies name ports that containers have, secrets are those that docs/operate.md makes, and no
+// container may do more than it needs. usage: check_manifests.js FILE.yaml
+const fs = require('fs');
+const path = require('path');
+const yaml = require('js-yaml');
+
+const file = process.argv[2];
+const objects = yaml.loadAll(fs.readFileSync(file, 'utf8')).filter(Boolean);
+const guide = fs.readFileSync(path.join(__dirname, '../../docs/operate.md'), 'utf8');
+const complaints = [];
+const name = (o) => `${o.kind} ${o.metadata.name}`;
+
+for (const o of objects) {
+  try {
+    const Kind = require('kubernetes-models/' + o.apiVersion)[o.kind];
+    new Kind(o).validate();
+  } catch (error) {
+    complaints.push(`${name(o)}: ${error.message}`);
+  }
+}
+
+const templates = objects.filter((o) => o.spec && o.spec.template).map((o) => ({owner: o, ...o.spec.template}));
+const matches = (selector, labels) =>
+  Object.entries(selector.matchLabels || {}).every(([k, v]) => labels[k] === v) &&
+  (selector.matchExpressions || []).every((e) => e.operator === 'In' && e.values.includes(labels[e.key]));
+const chosen = (selector) => templates.filter((t) => matches(selector, t.metadata.labels || {}));
+const ports = (t) => t.spec.containers.flatMap((c) => c.ports || []);
+const has_port = (pods, port) => pods.some((t) => ports(t).some((p) => p.name === port || p.containerPort === port));
+
+for (const o of objects) {
+  if (o.kind === 'Service') {
+    const pods = chosen({matchLabels: o.spec.selector});
+    for (const p of o.spec.ports) {
+      if (!has_port(pods, p.targetPort)) complaints.push(`${name(o)}: nobody listens on ${p.targetPort}`);
+    }
+  }
+  if (o.kind === 'PodDisruptionBudget' && !chosen(o.spec.selector).length) complaints.push(`${name(o)}: chooses no pods`);
+  if (o.kind === 'NetworkPolicy' && !chosen(o.spec.podSelector).length) complaints.push(`${name(o)}: is for no pods`);
+  if (o.kind === 'NetworkPolicy') {
+    for (const rule of o.spec.ingress || []) {
+      for (const p of rule.ports || []) {
+        if (!has_port(chosen(o.spec.podSelector), p.port)) complaints.push(`${name(o)}: nobody listens on ${p.port}`);
+      }
+    }
+    for (const rule of o.spec.egress || []) {
+      for (const to of rule.to.filter((t) => t.podSelector && !t.namespaceSelector)) {
+        for (const p of rule.ports) {
+          if (!has_port(chosen(to.podSelector), p.port)) complaints.push(`${name(o)}: nobody listens on ${p.port}`);
+        }
+      }
+    }
+  }
+  if (o.kind === 'HorizontalPodAutoscaler') {
+    const target = o.spec.scaleTargetRef;
+    if (!objects.some((t) => t.kind === target.kind && t.metadata.name === target.name)) complaints.push(`${name(o)}: scales nothing`);
+  }
+}
+
+for (const t of templates) {
+  const spec = t.spec;
+  const selector = t.owner.spec.selector;
+  if (selector && !matches(selector, t.metadata.labels)) complaints.push(`${name(t.owner)}: does not choose its own pods`);
+  if (!spec.securityContext.runAsNonRoot) complaints.push(`${name(t.owner)}: may run as root`);
+  if (spec.automountServiceAccountToken !== false) complaints.push(`${name(t.owner)}: holds a token of the cluster`);
+  const prepared = (kind, one) => guide.includes(`${kind} ${one} `);
+  for (const v of spec.volumes || []) {
+    if (v.secret && !prepared('secret generic', v.secret.secretName) && !prepared('secret tls', v.secret.secretName)) {
+      complaints.push(`${name(t.owner)}: docs/operate.md makes no secret ${v.secret.secretName}`);
+    }
+    if (v.configMap && !prepared('configmap', v.configMap.name)) complaints.push(`${name(t.owner)}: docs/operate.md makes no configmap ${v.configMap.name}`);
+  }
+  for (const c of spec.containers) {
+    const s = c.securityContext || {};
+    if (s.allowPrivilegeEscalation !== false || s.readOnlyRootFilesystem !== true || !((s.capabilities || {}).drop || []).includes('ALL')) {
+      complaints.push(`${name(t.owner)}: ${c.name} may do more than it needs`);
+    }
+    for (const m of c.volumeMounts || []) {
+      const claims = (t.owner.spec.volumeClaimTemplates || []).map((v) => v.metadata.name);
+      if (!(spec.volumes || []).some((v) => v.name === m.name) && !claims.includes(m.name)) {
+        complaints.push(`${name(t.owner)}: there is no volume ${m.name}`);
+      }
+    }
+    // SIGTERM to SIGKILL is longer than the worker takes to leave.
+    const grace = (c.args || []).map((a) => /^--grace=(\d+)$/.exec(a)).find(Boolean);
+    if (grace && Number(grace[1]) >= spec.terminationGracePeriodSeconds) complaints.push(`${name(t.owner)}: is killed before its grace is over`);
+  }
+}
+
+if (complaints.length) {
+  console.log(`${file}:\n${complaints.join('\n')}`);
+  process.exit(1);
+}
+console.log(`${path.basename(file)}: ${objects.length} objects are as they should be`);
