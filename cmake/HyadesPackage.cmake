@@ -28,6 +28,7 @@ if(HYADES_FARM)
     if(CMAKE_INSTALL_PREFIX MATCHES \"/usr$\")
       file(INSTALL \"${CMAKE_SOURCE_DIR}/deploy/systemd/\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/lib/systemd/system\"
            FILES_MATCHING PATTERN \"*.service\")
+      file(INSTALL \"${CMAKE_SOURCE_DIR}/deploy/systemd/80-hyades.preset\" DESTINATION \"\${CMAKE_INSTALL_PREFIX}/lib/systemd/system-preset\")
       get_filename_component(system \"\${CMAKE_INSTALL_PREFIX}\" DIRECTORY)
       string(REGEX REPLACE \"/$\" \"\" system \"\${system}\")
       file(INSTALL \"${CMAKE_SOURCE_DIR}/deploy/systemd/\" DESTINATION \"\${system}/etc/hyades\"
