@@ -45,6 +45,9 @@ class Query {
   std::string error_;
 };
 
+/// As the database keeps it.
+inline int64_t number(uint64_t value) { return static_cast<int64_t>(value); }
+
 /// Commits with commit(), rolls back otherwise.
 class Transaction {
  public:

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <mutex>
 
 #include "coordinator/state/database.h"
 #include "coordinator/state/incarnation_file.h"
 #include "coordinator/state/job_store.h"
+#include "coordinator/state/lines.h"
+#include "coordinator/state/outputs.h"
 #include "coordinator/state/parts.h"
 #include "coordinator/state/reserve_file.h"
 
@@ -61,13 +62,6 @@ StoredJob read_job(const Query& row) {
   if (!row.is_null(19)) job.preview = static_cast<int32_t>(row.integer(19));
   return job;
 }
-
-StoredOutput read_output(const Query& row) {
-  return {row.bytes(0), static_cast<int32_t>(row.integer(1)), static_cast<uint64_t>(row.integer(2)),
-          row.bytes(3), static_cast<uint64_t>(row.integer(4))};
-}
-
-int64_t number(uint64_t value) { return static_cast<int64_t>(value); }
 
 class SqliteJobStore final : public JobStore {
  public:
@@ -135,7 +129,7 @@ class SqliteJobStore final : public JobStore {
   core::Status remove_job(uint64_t id) override {
     return with_reserve([&] {
       const std::lock_guard lock(mutex_);
-      line_counts_.erase(id);
+      lines_.forget(id);
       return query("DELETE FROM jobs WHERE id = ?").bind(number(id)).run();
     });
   }
@@ -214,7 +208,7 @@ class SqliteJobStore final : public JobStore {
                             .bind(int64_t{frame.restarts})
                             .run();
     if (done) done = store_parts(db_.get(), job, frame);
-    if (done) done = put_outputs(job, outputs);
+    if (done) done = put_outputs(db_.get(), job, outputs);
     if (done) done = transaction.commit();
     if (done) reserve_.keep();
     return done;
@@ -225,18 +219,8 @@ class SqliteJobStore final : public JobStore {
     const std::lock_guard lock(mutex_);
     Transaction transaction(db_.get());
     if (core::Status begun = transaction.status(); !begun) return begun;
-    for (const std::string& path : gone) {
-      const core::Status done = query(
-                                    "DELETE FROM outputs WHERE job = ? AND "
-                                    "(path = ? OR substr(path, 1, length(?)) = ?)")
-                                    .bind(number(job))
-                                    .bind(path)
-                                    .bind(path + "/")
-                                    .bind(path + "/")
-                                    .run();
-      if (!done) return done;
-    }
-    if (core::Status done = put_outputs(job, made); !done) return done;
+    if (core::Status done = delete_outputs(db_.get(), job, gone); !done) return done;
+    if (core::Status done = put_outputs(db_.get(), job, made); !done) return done;
     return transaction.commit();
   }
 
@@ -272,36 +256,17 @@ class SqliteJobStore final : public JobStore {
   core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t after,
                                                   uint32_t limit) override {
     const std::lock_guard lock(mutex_);
-    Query rows(db_.get(),
-               "SELECT path, frame, size, sha256, number FROM outputs "
-               "WHERE job = ? AND number > ? ORDER BY number LIMIT ?");
-    rows.bind(number(job)).bind(number(after)).bind(int64_t{limit});
-    std::vector<StoredOutput> outputs;
-    while (rows.next()) outputs.push_back(read_output(rows));
-    if (core::Status status = rows.status(); !status) return status.error();
-    return outputs;
+    return read_outputs(db_.get(), job, after, limit);
   }
 
   core::Result<std::vector<StoredOutput>> outputs_of(uint64_t job, int32_t frame) override {
     const std::lock_guard lock(mutex_);
-    Query rows(db_.get(),
-               "SELECT path, frame, size, sha256, number FROM outputs "
-               "WHERE job = ? AND frame = ? ORDER BY path");
-    rows.bind(number(job)).bind(int64_t{frame});
-    std::vector<StoredOutput> outputs;
-    while (rows.next()) outputs.push_back(read_output(rows));
-    if (core::Status status = rows.status(); !status) return status.error();
-    return outputs;
+    return read_outputs_of(db_.get(), job, frame);
   }
 
   core::Result<std::optional<StoredOutput>> output(uint64_t job, const std::string& path) override {
     const std::lock_guard lock(mutex_);
-    Query row(db_.get(),
-              "SELECT path, frame, size, sha256, number FROM outputs WHERE job = ? AND path = ?");
-    row.bind(number(job)).bind(path);
-    if (row.next()) return std::optional(read_output(row));
-    if (core::Status status = row.status(); !status) return status.error();
-    return std::optional<StoredOutput>();
+    return read_output(db_.get(), job, path);
   }
 
   core::Status quarantine(const StoredQuarantine& worker) override {
@@ -344,7 +309,7 @@ class SqliteJobStore final : public JobStore {
     for (const JobFrames& job : *jobs) {
       StoredLine told = line;
       told.text += tell_frames(job.frames);
-      if (core::Status added = insert_lines(job.job, {told}); !added) return added.error();
+      if (core::Status added = lines_.add(db_.get(), job.job, {told}); !added) return added.error();
     }
     if (core::Status done = transaction.commit(); !done) return done.error();
     return jobs;
@@ -364,50 +329,17 @@ class SqliteJobStore final : public JobStore {
   core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
     const std::lock_guard lock(mutex_);
     Transaction transaction(db_.get());
-    if (core::Status added = insert_lines(job, lines); !added) return added;
+    if (core::Status added = lines_.add(db_.get(), job, lines); !added) return added;
     return transaction.commit();
   }
 
   core::Result<std::vector<StoredLine>> lines(uint64_t job, uint64_t after,
                                               uint32_t limit) override {
     const std::lock_guard lock(mutex_);
-    Query rows(db_.get(),
-               "SELECT time_ms, level, frame, worker, text, number FROM lines "
-               "WHERE job = ? AND number > ? ORDER BY number LIMIT ?");
-    rows.bind(number(job)).bind(number(after)).bind(int64_t{limit});
-    std::vector<StoredLine> lines;
-    while (rows.next()) {
-      StoredLine line;
-      line.time_ms = rows.integer(0);
-      line.level = static_cast<int>(rows.integer(1));
-      if (!rows.is_null(2)) line.frame = static_cast<int32_t>(rows.integer(2));
-      line.worker = rows.bytes(3);
-      line.text = rows.bytes(4);
-      line.number = static_cast<uint64_t>(rows.integer(5));
-      lines.push_back(std::move(line));
-    }
-    if (core::Status status = rows.status(); !status) return status.error();
-    return lines;
+    return read_lines(db_.get(), job, after, limit);
   }
 
  private:
-  /// Within a transaction.
-  core::Status insert_lines(uint64_t job, const std::vector<StoredLine>& lines) {
-    for (const StoredLine& line : lines) {
-      Query insert(db_.get(),
-                   "INSERT INTO lines (job, time_ms, level, frame, worker, text) "
-                   "VALUES (?, ?, ?, ?, ?, ?)");
-      insert.bind(number(job)).bind(line.time_ms).bind(int64_t{line.level});
-      if (line.frame) {
-        insert.bind(int64_t{*line.frame});
-      } else {
-        insert.bind_null();
-      }
-      if (core::Status done = insert.bind(line.worker).bind(line.text).run(); !done) return done;
-    }
-    return drop_old_lines(job, lines.size());
-  }
-
   core::Status put_quarantine(const StoredQuarantine& worker) {
     return query("INSERT OR REPLACE INTO quarantines (worker, reason) VALUES (?, ?)")
         .bind(worker.worker)
@@ -445,54 +377,6 @@ class SqliteJobStore final : public JobStore {
     }
   }
 
-  /// Within insert_lines' transaction. Jobs' lines are counted once, and kept count of from there
-  /// on.
-  core::Status drop_old_lines(uint64_t job, uint64_t added) {
-    const auto [counted, fresh] = line_counts_.try_emplace(job, 0);
-    if (fresh) {
-      Query count = query("SELECT COUNT(*) FROM lines WHERE job = ?");
-      count.bind(number(job));
-      if (count.next()) counted->second = static_cast<uint64_t>(count.integer(0));
-    } else {
-      counted->second += added;
-    }
-    if (counted->second <= kMostLines) return {};
-    // A transaction that is rolled back leaves a wrong count: it is taken again.
-    line_counts_.erase(counted);
-    if (core::Status done =
-            query("DELETE FROM lines WHERE job = ?1 AND number < (SELECT number FROM lines "
-                  "WHERE job = ?1 ORDER BY number DESC LIMIT 1 OFFSET ?2)")
-                .bind(number(job))
-                .bind(number(kMostLines - kLinesDropped - 1))
-                .run();
-        !done) {
-      return done;
-    }
-    return query(
-               "UPDATE lines SET level = 2, frame = NULL, worker = '', text = ?2 "
-               "WHERE number = (SELECT MIN(number) FROM lines WHERE job = ?1)")
-        .bind(number(job))
-        .bind("older lines were dropped: a job's log keeps the newest " +
-              std::to_string(kMostLines))
-        .run();
-  }
-
-  core::Status put_outputs(uint64_t job, const std::vector<StoredOutput>& outputs) {
-    for (const StoredOutput& output : outputs) {
-      const core::Status done = query(
-                                    "INSERT OR REPLACE INTO outputs (job, path, frame, size, "
-                                    "sha256) VALUES (?, ?, ?, ?, ?)")
-                                    .bind(number(job))
-                                    .bind(output.path)
-                                    .bind(int64_t{output.frame})
-                                    .bind(number(output.size))
-                                    .bind_blob(output.sha256)
-                                    .run();
-      if (!done) return done;
-    }
-    return {};
-  }
-
   core::Status delete_frame(uint64_t job, int32_t frame) {
     for (const char* sql : {"DELETE FROM frames WHERE job = ? AND frame = ?",
                             "DELETE FROM parts WHERE job = ? AND frame = ?",
@@ -508,7 +392,7 @@ class SqliteJobStore final : public JobStore {
   Database db_;
   const std::string starts_;
   ReserveFile reserve_;
-  std::map<uint64_t, uint64_t> line_counts_;  ///< of jobs that had lines lately
+  LineTable lines_;
 };
 
 }  // namespace
