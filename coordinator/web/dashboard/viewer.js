@@ -185,10 +185,10 @@ class FrameView {
 
   take(route) {
     if (route.view !== 'frame' || route.job !== this.id) return false;
-    if (route.frame !== this.frame) {
-      this.frame = route.frame;
-      this.update();
-    }
+    // A link that asks for something else of this frame (another look, a comparison) is a view of its own.
+    if (route.frame === this.frame) return false;
+    this.frame = route.frame;
+    this.update();
     return true;
   }
 

@@ -89,10 +89,14 @@ for (const painter of ['the graphics card', 'a plain canvas']) {
     ]);
     await at('compare').click();
     await shows('frame 2 again', lightOf(2));
+    await page.goto(`${url}/#/jobs/${id}/frames/2?with=5${flat.replace('?', '&')}`);
+    await shows('the comparison that a link asks for', lightOf(5), [[0.6, 0.5]]);
   });
 }
 
 await step('the pixel under the pointer is told in numbers', async () => {
+  await page.goto(`${url}/#/jobs/${id}/frames/2`);
+  await shows('frame 2 alone', lightOf(2), [[0.6, 0.5]]);
   const box = await stage.boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   let text = '';
