@@ -64,6 +64,7 @@ constexpr Command kCommands[] = {
     {"priority", "hyades-client", "change a job's priority"},
     {"delete", "hyades-client", "forget a job that has ended"},
     {"top", "hyades-client", "show jobs and workers as they change"},
+    {"autoscale", "hyades-client", "have a command start and end workers as the queue needs them"},
     {"workers", "hyades-client", "list the farm's workers"},
     {"drain", "hyades-client", "let a worker finish and leave"},
     {"quarantine", "hyades-client", "give a worker no more work"},

@@ -23,6 +23,7 @@ int delete_command(int argc, char** argv);
 int priority_command(int argc, char** argv);
 
 int top_command(int argc, char** argv);
+int autoscale_command(int argc, char** argv);
 int workers_command(int argc, char** argv);
 int drain_command(int argc, char** argv);
 int quarantine_command(int argc, char** argv);
