@@ -19,11 +19,12 @@ struct VdbGrid {
 /// The most that a grid may take up in memory.
 inline constexpr size_t kMostVdbBytes = size_t{8} << 30U;
 
-/// The grid of numbers (float or double) called `name` of the file `bytes`: OpenVDB (format versions
-/// 222 to 224), or NanoVDB, see read_nanovdb.h. Values below 0 count as 0. Read here and not by OpenVDB, which believes whatever
-/// sizes a file states: damaged files made it write beyond its memory. Errors: no such file format,
-/// no such grid (tells which there are), a grid of another type or a level set, nothing active,
-/// values that are not finite, a perspective transform, a grid larger than kMostVdbBytes.
+/// The grid of numbers (float or double) called `name` of the file `bytes`: OpenVDB (format
+/// versions 222 to 224), or NanoVDB, see read_nanovdb.h. Values below 0 count as 0. Read here and
+/// not by OpenVDB, which believes whatever sizes a file states: damaged files made it write beyond
+/// its memory. Errors: no such file format, no such grid (tells which there are), a grid of another
+/// type or a level set, nothing active, values that are not finite, a perspective transform, a grid
+/// larger than kMostVdbBytes.
 Result<std::shared_ptr<const VdbGrid<float>>> read_vdb_numbers(const Bytes& bytes,
                                                                const std::string& name);
 

@@ -117,7 +117,8 @@ TEST(ReadVdb, SaysWhatIsWrong) {
   EXPECT_EQ(complaint(good, "smoke"), "has no grid 'smoke', expected density or Cd");
   EXPECT_THAT(complaint(good, "Cd"),
               HasSubstr("grid 'Cd': is of type Tree_vec3s_5_4_3, expected numbers"));
-  EXPECT_THAT(complaint("not a vdb", "density"), HasSubstr("is neither a file of OpenVDB nor one of NanoVDB"));
+  EXPECT_THAT(complaint("not a vdb", "density"),
+              HasSubstr("is neither a file of OpenVDB nor one of NanoVDB"));
   EXPECT_EQ(complaint("", "density"), "ends too early");
   auto level_set = ramp();
   level_set->setGridClass(openvdb::GRID_LEVEL_SET);
