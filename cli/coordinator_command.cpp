@@ -18,6 +18,7 @@
 #include "cli/address_option.h"
 #include "cli/command_line.h"
 #include "cli/config_file.h"
+#include "coordinator/access/authority.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/notify/notifier.h"
 #include "coordinator/services/server.h"
@@ -25,9 +26,11 @@
 #include "core/base/atomic_file.h"
 #include "core/base/machine.h"
 #include "farm/last_words.h"
+#include "farm/small_file.h"
 
 namespace {
 
+using hyades::coordinator::Authority;
 using hyades::coordinator::Brain;
 using hyades::coordinator::BrainOptions;
 using hyades::coordinator::Duration;
@@ -61,12 +64,12 @@ struct Arguments {
 
 /// The dashboard and the HTTP API; null where there is to be none. Where nobody has asked for the
 /// address, somebody else may have it.
-hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& arguments,
-                                                           Brain& brain) {
+hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& arguments, Brain& brain,
+                                                           Authority& authority) {
   if (arguments.http == "off") return std::unique_ptr<WebServer>();
   hyades::farm::Listen listen = arguments.listen;
   listen.address = arguments.http;
-  auto server = WebServer::start(listen, brain);
+  auto server = WebServer::start(listen, brain, authority);
   if (server || arguments.http_asked) return server;
   std::fprintf(stderr, "hyades coordinator: no dashboard: %s; choose another place with --http\n",
                server.error().message.c_str());
@@ -132,6 +135,45 @@ std::string read_price(const std::string& text, hyades::coordinator::Price& pric
          "letters of the currency, such as 0.04:EUR";
 }
 
+bool is_beyond(const Arguments& arguments) {
+  const bool http = arguments.http != "off" && !hyades::farm::is_loopback(arguments.http);
+  return http || !hyades::farm::is_loopback(arguments.listen.address);
+}
+
+/// Who may come in. A farm that can be reached from elsewhere has tokens: where none was made yet
+/// the first one, an admin's, is put into the folder for whoever runs the farm.
+hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments& arguments,
+                                                                const std::string& shared_token,
+                                                                Brain& brain) {
+  Authority::Options options;
+  options.shared_token = shared_token;
+  options.beyond = is_beyond(arguments);
+  options.audit_folder = arguments.brain.folder;
+  options.plain = arguments.listen.cert_file.empty();
+  options.tell_unguarded = [&brain](const std::string& how) {
+    brain.set_unguarded(how);
+    if (!how.empty()) {
+      std::fprintf(stderr, "hyades coordinator: WARNING: %s\n", how.c_str());
+    }
+  };
+  auto authority = Authority::open(brain.store(), options);
+  if (!authority || !options.beyond || arguments.listen.insecure || (*authority)->guarded()) {
+    return authority;
+  }
+  std::string text;
+  hyades::coordinator::StoredToken row;
+  const std::string file = arguments.brain.folder + "/admin-token";
+  const grpc::Status made = (*authority)->create("admin", hyades::v1::ROLE_ADMIN, 0, text, row);
+  if (!made.ok()) return hyades::core::Error{made.error_message()};
+  if (auto written = hyades::farm::write_secret(file, text + "\n"); !written) {
+    (void)(*authority)->revoke(row.id, row);
+    return written.error();
+  }
+  std::fprintf(stderr, "hyades coordinator: the first admin's token (%s) is in %s\n",
+               row.id.c_str(), file.c_str());
+  return authority;
+}
+
 int serve(const Arguments& arguments) {
   // Before the folder is touched.
   auto door = hyades::farm::open_door(arguments.listen);
@@ -155,7 +197,12 @@ int serve(const Arguments& arguments) {
     return 1;
   }
   {
-    auto server = Server::start(std::move(*door), **brain);
+    auto authority = open_authority(arguments, door->token, **brain);
+    if (!authority) {
+      std::fprintf(stderr, "hyades coordinator: %s\n", authority.error().message.c_str());
+      return 1;
+    }
+    auto server = Server::start(*door, **brain, **authority);
     if (!server) {
       std::fprintf(stderr, "hyades coordinator: %s\n", server.error().message.c_str());
       return 1;
@@ -165,7 +212,7 @@ int serve(const Arguments& arguments) {
     if (const grpc::Status room = (*brain)->admit(0); !room.ok()) {
       std::fprintf(stderr, "hyades coordinator: %s\n", room.error_message().c_str());
     }
-    auto http = open_http(arguments, **brain);
+    auto http = open_http(arguments, **brain, **authority);
     if (!http) {
       std::fprintf(stderr, "hyades coordinator: %s\n", http.error().message.c_str());
       return 1;
@@ -207,10 +254,11 @@ int main(int argc, char** argv) {
   app.add_option("--tls-key", arguments.listen.key_file, "its private key (PEM)");
   app.add_option("--tls-ca", arguments.listen.ca_file,
                  "callers must show a certificate signed by this one (PEM)");
-  app.add_option("--token-file", arguments.listen.token_file,
-                 "file with the token that every call has to carry");
+  app.add_option(
+      "--token-file", arguments.listen.token_file,
+      "file with one token for all roles, beside those of 'hyades token' (docs/safety.md)");
   app.add_flag("--insecure", arguments.listen.insecure,
-               "plaintext, or no token, also beyond this machine");
+               "plaintext, and no token where none was made, also beyond this machine");
   app.add_option("--notify", arguments.news.hooks,
                  "URL that hears, as JSON, of jobs that are done, failed or stand still; again for "
                  "others")
@@ -283,6 +331,7 @@ int main(int argc, char** argv) {
     return *status;
   }
   arguments.http_asked = http->count() > 0;
+  arguments.listen.asks_tokens = true;  // open_authority sees to it
   arguments.brain.finisher = hyades::core::program_folder() + "hyades-film";
   arguments.brain.unit_time = seconds(arguments.unit_seconds);
   arguments.brain.lease_time = seconds(arguments.lease_seconds);

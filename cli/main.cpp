@@ -69,6 +69,10 @@ constexpr Command kCommands[] = {
     {"drain", "hyades-client", "let a worker finish and leave"},
     {"quarantine", "hyades-client", "give a worker no more work"},
     {"release", "hyades-client", "end a worker's quarantine"},
+    {"audit", "hyades-client", "who did what on the farm"},
+    {"certs", "hyades-client",
+     "make certificates: an authority of the farm's own, and what it signs"},
+    {"token", "hyades-client", "make, list and revoke the tokens that open the farm"},
 #endif
     {"completion", nullptr, "print a script that completes commands in bash, zsh or fish"},
 };

@@ -111,7 +111,7 @@ core::Result<Door> open_door(const Listen& listen) {
     door.credentials = grpc::InsecureServerCredentials();
     return door;
   }
-  if (open && listen.token_file.empty()) {
+  if (open && listen.token_file.empty() && !listen.asks_tokens) {
     return core::Error{listen.address +
                        " is not this machine: give a token file, or --insecure to let anybody in"};
   }

@@ -31,8 +31,9 @@ struct Listen {
   std::string cert_file;                   ///< PEM, with key_file: TLS
   std::string key_file;
   std::string ca_file;     ///< PEM: clients must show a certificate that it signed; empty: need not
-  std::string token_file;  ///< every call must carry its token; empty: none
-  bool insecure = false;   ///< plaintext or no token also beyond this machine
+  std::string token_file;  ///< holds one token for all; empty: none
+  bool asks_tokens = false;  ///< every call must carry a token, whether there is a file or not
+  bool insecure = false;     ///< plaintext or no token also beyond this machine
 };
 
 /// A line of at least 16 printable characters; an empty file name gives an empty token. Errors name
@@ -64,7 +65,7 @@ void prepare(grpc::ClientContext& context, const std::string& token,
 struct Door {
   std::string address;
   std::shared_ptr<grpc::ServerCredentials> credentials;
-  std::string token;  ///< that every call must carry; empty: none
+  std::string token;  ///< one for all; empty: none
 };
 
 /// An error, which names the file if it is one's fault, where `listen` does not hold together, or

@@ -24,6 +24,13 @@ std::string state_name(v1::WorkerState state) {
   return word(v1::WorkerState_Name(state), "WORKER_STATE_");
 }
 std::string level_name(v1::LogLevel level) { return word(v1::LogLevel_Name(level), "LOG_LEVEL_"); }
+std::string role_name(v1::Role role) { return word(v1::Role_Name(role), "ROLE_"); }
+std::optional<v1::Role> role_of(const std::string& name) {
+  for (int role = v1::ROLE_VIEWER; role <= v1::ROLE_ADMIN; ++role) {
+    if (name == role_name(static_cast<v1::Role>(role))) return static_cast<v1::Role>(role);
+  }
+  return std::nullopt;
+}
 
 Json to_json(const v1::Job& job) {
   Json json = {{"id", job.id()},
@@ -114,6 +121,26 @@ Json to_json(const v1::LogLine& line) {
   if (line.of_frame()) json["frame"] = line.frame();
   json["worker"] = line.worker();
   json["text"] = line.text();
+  return json;
+}
+
+Json to_json(const v1::Token& token) {
+  return {{"id", token.id()},
+          {"name", token.name()},
+          {"role", role_name(token.role())},
+          {"created_ms", token.created_ms()},
+          {"expires_ms", token.expires_ms()},
+          {"used_ms", token.used_ms()},
+          {"revoked_ms", token.revoked_ms()}};
+}
+
+Json to_json(const v1::AuditEntry& entry) {
+  Json json = {{"time_ms", entry.time_ms()}, {"token_id", entry.token_id()},
+               {"name", entry.name()},       {"role", role_name(entry.role())},
+               {"address", entry.address()}, {"deed", entry.deed()},
+               {"target", entry.target()},   {"result", entry.result()},
+               {"detail", entry.detail()}};
+  if (entry.times() > 1) json["times"] = entry.times();
   return json;
 }
 

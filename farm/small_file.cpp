@@ -38,4 +38,26 @@ core::Result<std::string> read_small_file(const std::string& path) {
   return core::Error{path + ": has more than 4 MiB: not what is expected here"};
 }
 
+core::Status write_secret(const std::string& path, const std::string& text) {
+  constexpr mode_t kOwnerOnly = 0600;
+  const core::Descriptor file(
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kOwnerOnly));
+  if (!file.valid()) {
+    return core::Error{path + (errno == EEXIST
+                                   ? ": is there already: name another, or remove it first"
+                                   : ": cannot be made: " + core::io_reason(errno))};
+  }
+  size_t written = 0;
+  while (written < text.size()) {
+    const ssize_t count = ::write(file.get(), text.data() + written, text.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) break;
+    written += static_cast<size_t>(count);
+  }
+  if (written == text.size() && ::fsync(file.get()) == 0) return {};
+  const int why = errno;
+  (void)::unlink(path.c_str());
+  return core::Error{path + ": cannot be written: " + core::io_reason(why)};
+}
+
 }  // namespace hyades::farm

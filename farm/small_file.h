@@ -10,4 +10,8 @@ namespace hyades::farm {
 /// where it cannot be read or has more than 4 MiB.
 core::Result<std::string> read_small_file(const std::string& path);
 
+/// Makes a file that only its owner may read (0600): a token, a key. An error that names it where
+/// it is there already or cannot be written; then nothing of it stays.
+core::Status write_secret(const std::string& path, const std::string& text);
+
 }  // namespace hyades::farm

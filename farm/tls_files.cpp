@@ -10,22 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "farm/openssl_objects.h"
 #include "farm/small_file.h"
 
 namespace hyades::farm {
 namespace {
-
-/// With its OpenSSL function that frees one.
-template <auto release>
-struct Release {
-  template <class T>
-  void operator()(T* object) const {
-    release(object);
-  }
-};
-using Bio = std::unique_ptr<BIO, Release<BIO_free>>;
-using Certificate = std::unique_ptr<X509, Release<X509_free>>;
-using Key = std::unique_ptr<EVP_PKEY, Release<EVP_PKEY_free>>;
 
 Bio open_text(const std::string& text) {
   return Bio(BIO_new_mem_buf(text.data(), static_cast<int>(text.size())));

@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
       {"drain", drain_command},         {"quarantine", quarantine_command},
       {"release", release_command},     {"top", top_command},
       {"autoscale", autoscale_command}, {"trace", trace_command},
+      {"token", token_command},         {"certs", certs_command},
+      {"audit", audit_command},
   };
   hyades::core::ignore_file_size_signal();
   return run_program(kCommands, argc, argv);

@@ -22,6 +22,10 @@ int retry_command(int argc, char** argv);
 int delete_command(int argc, char** argv);
 int priority_command(int argc, char** argv);
 
+int token_command(int argc, char** argv);
+int certs_command(int argc, char** argv);
+int audit_command(int argc, char** argv);
+
 int top_command(int argc, char** argv);
 int autoscale_command(int argc, char** argv);
 int workers_command(int argc, char** argv);

@@ -15,6 +15,7 @@
 #include "core/base/text.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
+#include "hyades/v1/admin.grpc.pb.h"
 #include "hyades/v1/assets.grpc.pb.h"
 #include "hyades/v1/farm.grpc.pb.h"
 #include "hyades/v1/jobs.grpc.pb.h"
@@ -51,6 +52,7 @@ struct FarmClient::State {
   std::unique_ptr<v1::Jobs::Stub> jobs;
   std::unique_ptr<v1::Assets::Stub> assets;
   std::unique_ptr<v1::Farm::Stub> farm;
+  std::unique_ptr<v1::Admin::Stub> admin;
   Patience patience{0, 0};
   std::function<void(const std::string&)> tell;
   bool told = false;    ///< that the coordinator is gone
@@ -198,6 +200,7 @@ Result<std::unique_ptr<FarmClient>> FarmClient::open(const ClientOptions& option
   state->jobs = v1::Jobs::NewStub(*channel);
   state->assets = v1::Assets::NewStub(*channel);
   state->farm = v1::Farm::NewStub(*channel);
+  state->admin = v1::Admin::NewStub(*channel);
   state->patience = Patience(options.first_patience, options.later_patience);
   state->room = Patience(options.later_patience, options.later_patience);
   return std::unique_ptr<FarmClient>(new FarmClient(std::move(state)));
@@ -404,6 +407,47 @@ Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, u
   out.from_start = status.error_code() == grpc::StatusCode::OUT_OF_RANGE && offset > 0;
   out.again = state_->wait_after(status);
   return out;
+}
+
+Outcome FarmClient::whoami(v1::WhoAmIResponse& response) {
+  return state_->call(*state_->admin, &v1::Admin::Stub::WhoAmI, v1::WhoAmIRequest(), response);
+}
+
+Outcome FarmClient::create_token(const v1::CreateTokenRequest& request,
+                                 v1::CreateTokenResponse& response) {
+  // A call of no effect first: a coordinator that has just gone is waited for.
+  v1::WhoAmIResponse me;
+  if (Outcome failed = whoami(me)) return failed;
+  grpc::ClientContext context;
+  farm::prepare(context, state_->token, kShortCall);
+  const grpc::Status status = state_->admin->CreateToken(&context, request, &response);
+  return status.ok() ? Outcome() : state_->failure(status);
+}
+
+Outcome FarmClient::tokens(v1::ListTokensResponse& response) {
+  return state_->call(*state_->admin, &v1::Admin::Stub::ListTokens, v1::ListTokensRequest(),
+                      response);
+}
+
+Outcome FarmClient::revoke_token(const std::string& id, v1::RevokeTokenResponse& response) {
+  v1::RevokeTokenRequest request;
+  request.set_id(id);
+  return state_->call(*state_->admin, &v1::Admin::Stub::RevokeToken, request, response);
+}
+
+Outcome FarmClient::audit(int64_t since_ms,
+                          const std::function<void(const v1::AuditEntry&)>& on_entry) {
+  v1::AuditRequest request;
+  request.set_since_ms(since_ms);
+  return state_->stream<v1::AuditEntry>(
+      transfer_time(farm::kMaxResultBytes),
+      [&](grpc::ClientContext& c) { return state_->admin->Audit(&c, request); },
+      [&](const v1::AuditEntry& entry) {
+        on_entry(entry);
+        request.set_since_ms(entry.time_ms() + 1);
+        return true;
+      },
+      std::nullopt);
 }
 
 Outcome FarmClient::workers(v1::WorkersResponse& response) {

@@ -10,6 +10,7 @@
 #include "core/base/assets.h"
 #include "core/base/result.h"
 #include "farm/channel.h"
+#include "hyades/v1/admin.pb.h"
 #include "hyades/v1/assets.pb.h"
 #include "hyades/v1/farm.pb.h"
 #include "hyades/v1/jobs.pb.h"
@@ -71,6 +72,14 @@ class FarmClient {
   /// more bytes have gone.
   Outcome upload(const core::AssetRecord& file, std::istream& input, uint64_t offset,
                  const std::function<void(uint64_t)>& on_progress);
+
+  Outcome whoami(v1::WhoAmIResponse& response);
+  /// Not tried again: a second one would be another token.
+  Outcome create_token(const v1::CreateTokenRequest& request, v1::CreateTokenResponse& response);
+  Outcome tokens(v1::ListTokensResponse& response);
+  Outcome revoke_token(const std::string& id, v1::RevokeTokenResponse& response);
+  /// The oldest first; after a break from the last one's time on.
+  Outcome audit(int64_t since_ms, const std::function<void(const v1::AuditEntry&)>& on_entry);
 
   Outcome workers(v1::WorkersResponse& response);
   enum class WorkerAction { drain, quarantine, release };

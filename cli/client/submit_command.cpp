@@ -52,7 +52,8 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--priority", options.priority, "higher goes first")
       ->check(CLI::Range(-1'000'000, 1'000'000))
       ->capture_default_str();
-  app.add_option("--owner", options.owner, "whose job it is; owners share the farm (default: you)");
+  app.add_option("--owner", options.owner,
+                 "whose job it is; owners share the farm (default: the token's name, or you)");
   app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)")
       ->check(no_frames_error);
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
@@ -113,7 +114,8 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Op
     frames.set_last(range->last);
     frames.set_step(range->step);
   }
-  request.set_owner(options.owner.empty() ? user_name() : options.owner);
+  request.set_owner(options.owner);
+  request.set_login(user_name());
   request.set_priority(options.priority);
   request.set_max_workers(options.max_workers);
   const auto tags = farm::check_tags(options.tags);

@@ -147,6 +147,8 @@ class Brain {
   void info(v1::InfoResponse& response);
   /// What info() tells as the address of gRPC.
   void listens_at(const std::string& address);
+  /// How strangers may listen or act, for info(); empty: they may not.
+  void set_unguarded(const std::string& how);
   /// As many as fit.
   void workers(const v1::WorkersRequest& request, v1::WorkersResponse& response);
   grpc::Status drain_worker(const v1::WorkerRequest& request, v1::Worker& now);
@@ -391,6 +393,8 @@ class Brain {
   std::map<uint64_t, Watch> watches_;
   uint64_t next_watch_ = 1;
   std::string grpc_address_;
+
+  std::string unguarded_;
 
   DiskRoom disk_;
   uint64_t disk_free_ = UINT64_MAX;  ///< bytes, when it was last measured

@@ -34,6 +34,7 @@ void Brain::info(v1::InfoResponse& response) {
   response.set_grpc_address(grpc_address_);
   response.set_price_per_core_hour(options_.price.per_core_hour);
   response.set_currency(options_.price.currency);
+  response.set_unguarded(unguarded_);
   response.set_trouble(disk_.reason());
   for (const auto& [id, desk] : desks_) {
     if (!desk->row_trouble.empty()) response.set_trouble(desk->row_trouble);
@@ -61,6 +62,11 @@ std::vector<v1::WorkInHand> Brain::work_of(WorkerId worker) const {
                    [](const auto& a, const auto& b) { return a.units() > b.units(); });
   if (work.size() > kMostWorkTold) work.resize(kMostWorkTold);
   return work;
+}
+
+void Brain::set_unguarded(const std::string& how) {
+  const std::lock_guard lock(mutex_);
+  unguarded_ = how;
 }
 
 v1::Worker Brain::describe(const Seat& seat) const {

@@ -3,28 +3,33 @@
 #include <charconv>
 
 #include <fmt/format.h>
-#include <openssl/crypto.h>
 
 #include "farm/channel.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
 
-grpc::Status Admission::check(const grpc::CallbackServerContext& context) const {
-  const auto& metadata = context.client_metadata();
-  if (!token_.empty()) {
-    const auto shown = metadata.find(farm::kTokenKey);
-    const std::string expected = "Bearer " + token_;
-    // In a time that does not depend on how much of the token is right.
-    const bool right = shown != metadata.end() && shown->second.size() == expected.size() &&
-                       CRYPTO_memcmp(shown->second.data(), expected.data(), expected.size()) == 0;
-    if (!right) {
-      return {grpc::StatusCode::UNAUTHENTICATED,
-              shown == metadata.end()
-                  ? "this coordinator wants its token with every call (--token-file)"
-                  : "this is not the coordinator's token"};
-    }
+grpc::Status Admission::check(const grpc::CallbackServerContext& context, const Rule& rule,
+                              Caller& caller) const {
+  grpc::Status admitted = admit(context, rule, caller);
+  const bool refused = admitted.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
+                       admitted.error_code() == grpc::StatusCode::PERMISSION_DENIED;
+  if (AuditLog* log = authority_.audit(); log != nullptr && refused) {
+    log->refuse(caller, rule.deed, admitted);
   }
+  return admitted;
+}
+
+grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const Rule& rule,
+                              Caller& caller) const {
+  caller.address = context.peer();
+  const auto& metadata = context.client_metadata();
+  const auto shown = metadata.find(farm::kTokenKey);
+  const grpc::Status known = authority_.admit(
+      shown == metadata.end() ? std::string_view()
+                              : std::string_view(shown->second.data(), shown->second.size()),
+      caller);
+  if (!known.ok()) return known;
   uint32_t protocol = 0;
   const auto spoken = metadata.find(farm::kProtocolKey);
   if (spoken != metadata.end()) {
@@ -35,7 +40,7 @@ grpc::Status Admission::check(const grpc::CallbackServerContext& context) const 
             fmt::format("the caller speaks protocol {}, this coordinator {} to {}", protocol,
                         farm::kOldestProtocol, farm::kProtocol)};
   }
-  return grpc::Status::OK;
+  return allow(caller, rule);
 }
 
 }  // namespace hyades::coordinator

@@ -1,21 +1,42 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <mutex>
-#include <string>
 
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/status.h>
 
+#include "coordinator/access/authority.h"
+#include "coordinator/access/rules.h"
+
 namespace hyades::coordinator {
 
-/// Whether a call may come in: it speaks a version that is understood, and shows the token.
+/// Whether a call may come in: it speaks a version that is understood, shows a token, and that
+/// token's role may do what it asks for.
 class Admission {
  public:
-  /// An empty token lets everybody in.
-  explicit Admission(std::string token) : token_(std::move(token)) {}
+  /// `authority` outlives it.
+  explicit Admission(Authority& authority) : authority_(authority) {}
 
-  /// FAILED_PRECONDITION or UNAUTHENTICATED, with the reason, or OK.
-  grpc::Status check(const grpc::CallbackServerContext& context) const;
+  /// OK and who calls; or UNAUTHENTICATED, FAILED_PRECONDITION or PERMISSION_DENIED with the
+  /// reason.
+  grpc::Status check(const grpc::CallbackServerContext& context, const Rule& rule,
+                     Caller& caller) const;
+
+  /// Registers who stays (Authority::visit).
+  std::unique_ptr<Visit> visit(const Caller& caller,
+                               std::function<void(const grpc::Status&)> leave) const {
+    return authority_.visit(caller, std::move(leave));
+  }
+
+  /// Notes what somebody who was admitted did, or tried to (docs/safety.md).
+  void note(const Caller& caller, const Rule& rule, const std::string& target,
+            const grpc::Status& result, const std::string& detail) const {
+    if (AuditLog* log = authority_.audit(); log != nullptr && rule.audited) {
+      log->note(caller, rule.deed, target, result, detail);
+    }
+  }
 
   /// To be held while a large request is parsed and answered, so that many of them do not fill the
   /// memory; not held where another one is.
@@ -24,8 +45,11 @@ class Admission {
   }
 
  private:
+  grpc::Status admit(const grpc::CallbackServerContext& context, const Rule& rule,
+                     Caller& caller) const;
+
   mutable std::mutex large_;
-  std::string token_;
+  Authority& authority_;
 };
 
 }  // namespace hyades::coordinator

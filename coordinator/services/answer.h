@@ -3,12 +3,14 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <type_traits>
 #include <utility>
 
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
 #include "coordinator/services/admission.h"
+#include "coordinator/services/audit_target.h"
 #include "coordinator/services/desks.h"
 #include "coordinator/services/part_count.h"
 #include "coordinator/services/raw.h"
@@ -22,19 +24,33 @@ inline constexpr uint64_t kMostParts = 200'000;
 /// A call on its way: who may come in, what was asked, and where the answer goes. Small; copies
 /// mean the same call, which is answered once.
 struct Call {
-  Call(const Admission& admission_, grpc::CallbackServerContext* context_,
+  /// `method`: as the table of rules has it.
+  Call(const Admission& admission_, const char* method, grpc::CallbackServerContext* context_,
        const grpc::ByteBuffer* asked_, grpc::ByteBuffer* said_)
       : admission(admission_),
+        rule(rule_of_method(method)),
         context(context_),
         asked(asked_),
         said(said_),
         reactor(context->DefaultReactor()) {}
 
+  /// Whether the caller may do this; who he is.
+  grpc::Status admit() { return admission.check(*context, rule, caller); }
+
   const Admission& admission;
+  const Rule& rule;
+  Caller caller;  ///< once admitted
   grpc::CallbackServerContext* context;
   const grpc::ByteBuffer* asked;
   grpc::ByteBuffer* said;
   grpc::ServerUnaryReactor* reactor;  ///< every DefaultReactor() makes it anew
+
+  /// Before finish(), of what changes something.
+  void note(const grpc::Status& status, const google::protobuf::Message& request,
+            const google::protobuf::Message& response) const {
+    if (!rule.audited) return;
+    admission.note(caller, rule, audit_target(request, response), status, audit_detail(request));
+  }
 
   template <class Response>
   void finish(const grpc::Status& status, const Response& response) const {
@@ -42,8 +58,9 @@ struct Call {
   }
 };
 
-/// Answers with what `what(request, response)` makes of the request, or its status. A request has
-/// at most `limit` bytes; of those larger than usual one at a time is looked at.
+/// Answers with what `what(request, response)`, or `what(request, response, caller)`, makes of the
+/// request, or its status. A request has at most `limit` bytes; of those larger than usual one at a
+/// time is looked at.
 template <class Request, class Response, class What>
 void answer_here(const Call& call, What& what, uint64_t limit) {
   Response response;
@@ -64,7 +81,14 @@ void answer_here(const Call& call, What& what, uint64_t limit) {
     }
     Request request;
     if (const grpc::Status read = parse(*call.asked, limit, request); !read.ok()) return read;
-    return what(request, response);
+    grpc::Status done;
+    if constexpr (std::is_invocable_v<What&, Request&, Response&, const Caller&>) {
+      done = what(request, response, call.caller);
+    } else {
+      done = what(request, response);
+    }
+    call.note(done, request, response);
+    return done;
   };
   const grpc::Status status = work();
   call.finish(status, response);
@@ -72,8 +96,8 @@ void answer_here(const Call& call, What& what, uint64_t limit) {
 
 /// An admitted call is answered on gRPC's own thread: for what never waits.
 template <class Request, class Response, class What>
-grpc::ServerUnaryReactor* answer(const Call& call, What what) {
-  if (const grpc::Status admitted = call.admission.check(*call.context); !admitted.ok()) {
+grpc::ServerUnaryReactor* answer(Call call, What what) {
+  if (const grpc::Status admitted = call.admit(); !admitted.ok()) {
     call.reactor->Finish(admitted);
   } else {
     answer_here<Request, Response>(call, what, farm::kMaxRequestBytes);
@@ -83,9 +107,9 @@ grpc::ServerUnaryReactor* answer(const Call& call, What what) {
 
 /// An admitted call is answered by one of `clerks`: for what may wait.
 template <class Request, class Response, class What>
-grpc::ServerUnaryReactor* answer_by(Clerks& clerks, const Call& call, What what,
+grpc::ServerUnaryReactor* answer_by(Clerks& clerks, Call call, What what,
                                     uint64_t limit = farm::kMaxRequestBytes) {
-  if (const grpc::Status admitted = call.admission.check(*call.context); !admitted.ok()) {
+  if (const grpc::Status admitted = call.admit(); !admitted.ok()) {
     call.reactor->Finish(admitted);
   } else if (!clerks.hand([call, what, limit]() mutable {
                answer_here<Request, Response>(call, what, limit);
@@ -98,10 +122,10 @@ grpc::ServerUnaryReactor* answer_by(Clerks& clerks, const Call& call, What what,
 /// An admitted call is answered at once where `known(request, response)` says yes, and otherwise by
 /// one of `clerks`, with what `what` makes of it.
 template <class Request, class Response, class Known, class What>
-grpc::ServerUnaryReactor* answer_or_by(Clerks& clerks, const Call& call, Known known, What what) {
+grpc::ServerUnaryReactor* answer_or_by(Clerks& clerks, Call call, Known known, What what) {
   Request request;
   Response response;
-  grpc::Status status = call.admission.check(*call.context);
+  grpc::Status status = call.admit();
   if (status.ok()) status = parse(*call.asked, farm::kMaxRequestBytes, request);
   if (!status.ok()) {
     call.reactor->Finish(status);

@@ -1,6 +1,7 @@
 #include "coordinator/services/assets_service.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -25,9 +26,13 @@ grpc::Status invalid(const std::string& message) {
 /// Takes one file in. Writes as it reads, so that a client is never faster than the disk.
 class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
-  Uploading(Brain& brain, Clerks& clerks, const grpc::Status& admitted)
+  /// `caller` has been admitted, or not.
+  Uploading(Brain& brain, Clerks& clerks, const Admission& admission,
+            grpc::CallbackServerContext& context, const Caller& caller,
+            const grpc::Status& admitted)
       : brain_(brain), clerks_(clerks), store_(brain.assets()) {
     if (admitted.ok()) {
+      visit_ = admission.visit(caller, [&context](const grpc::Status&) { context.TryCancel(); });
       StartRead(&bytes_);
     } else {
       Finish(admitted);
@@ -132,6 +137,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   Brain& brain_;
   Clerks& clerks_;
   farm::ContentStore& store_;
+  std::unique_ptr<Visit> visit_;
   grpc::ByteBuffer bytes_;
   std::optional<farm::ContentWriter> writer_;
   uint64_t received_ = 0;  ///< on this stream
@@ -158,18 +164,23 @@ grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context, const Byt
     return grpc::Status::OK;
   };
   return answer_by<v1::FindMissingRequest, v1::FindMissingResponse>(
-      desks_.files, {admission_, context, asked, said}, find, farm::kMaxMessageBytes);
+      desks_.files, {admission_, "Assets/FindMissing", context, asked, said}, find,
+      farm::kMaxMessageBytes);
 }
 
 grpc::ServerReadReactor<grpc::ByteBuffer>* AssetsService::Upload(Context* context, Bytes* said) {
   (void)serialise(v1::UploadResponse(), *said);
-  return new Uploading(brain_, desks_.files, admission_.check(*context));
+  Caller caller;
+  const grpc::Status admitted = admission_.check(*context, rule_of_method("Assets/Upload"), caller);
+  return new Uploading(brain_, desks_.files, admission_, *context, caller, admitted);
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* context,
                                                                     const Bytes* asked) {
   const auto refuse = [](const grpc::Status& status) { return new Refusal(status); };
-  const grpc::Status admitted = admission_.check(*context);
+  Caller caller;
+  const grpc::Status admitted =
+      admission_.check(*context, rule_of_method("Assets/Download"), caller);
   if (!admitted.ok()) return refuse(admitted);
   v1::DownloadRequest request;
   if (const grpc::Status read = parse(*asked, farm::kMaxRequestBytes, request); !read.ok()) {
@@ -183,7 +194,9 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* con
     file = std::move(*bytes);
     return grpc::Status::OK;
   };
-  return new FileStream(*context, desks_.files, open, request.offset());
+  auto* stream = new FileStream(*context, desks_.files, open, request.offset());
+  stream->guard(admission_, caller);
+  return stream;
 }
 
 }  // namespace hyades::coordinator

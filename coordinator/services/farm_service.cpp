@@ -6,7 +6,7 @@ namespace hyades::coordinator {
 
 grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked, Bytes* said) {
   return answer<v1::InfoRequest, v1::InfoResponse>(
-      {admission_, context, asked, said},
+      {admission_, "Farm/Info", context, asked, said},
       [this](const v1::InfoRequest&, v1::InfoResponse& response) {
         brain_.info(response);
         return grpc::Status::OK;
@@ -15,7 +15,7 @@ grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked
 
 grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* asked, Bytes* said) {
   return answer<v1::WorkersRequest, v1::WorkersResponse>(
-      {admission_, context, asked, said},
+      {admission_, "Farm/Workers", context, asked, said},
       [this](const v1::WorkersRequest& request, v1::WorkersResponse& response) {
         brain_.workers(request, response);
         return grpc::Status::OK;
@@ -25,7 +25,7 @@ grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* as
 grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context, const Bytes* asked,
                                                    Bytes* said) {
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
-      {admission_, context, asked, said},
+      {admission_, "Farm/DrainWorker", context, asked, said},
       [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
         return brain_.drain_worker(request, *response.mutable_worker());
       });
@@ -34,7 +34,7 @@ grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context, const Bytes
 grpc::ServerUnaryReactor* FarmService::QuarantineWorker(Context* context, const Bytes* asked,
                                                         Bytes* said) {
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
-      {admission_, context, asked, said},
+      {admission_, "Farm/QuarantineWorker", context, asked, said},
       [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
         return brain_.quarantine_worker(request, *response.mutable_worker());
       });
@@ -43,7 +43,7 @@ grpc::ServerUnaryReactor* FarmService::QuarantineWorker(Context* context, const 
 grpc::ServerUnaryReactor* FarmService::ReleaseWorker(Context* context, const Bytes* asked,
                                                      Bytes* said) {
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
-      {admission_, context, asked, said},
+      {admission_, "Farm/ReleaseWorker", context, asked, said},
       [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
         return brain_.release_worker(request, *response.mutable_worker());
       });

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "coordinator/services/answer.h"
+#include "coordinator/services/ownership.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -15,16 +16,17 @@ std::optional<int32_t> after(const v1::GetJobRequest& request) {
 
 grpc::ServerUnaryReactor* JobsService::Submit(Context* context, const Bytes* asked, Bytes* said) {
   return answer_by<v1::SubmitRequest, v1::SubmitResponse>(
-      desks_.files, {admission_, context, asked, said},
-      [this](const v1::SubmitRequest& request, v1::SubmitResponse& response) {
-        return brain_.submit(request, response);
+      desks_.files, {admission_, "Jobs/Submit", context, asked, said},
+      [this](v1::SubmitRequest& request, v1::SubmitResponse& response, const Caller& caller) {
+        const grpc::Status owned = name_owner(caller, request);
+        return owned.ok() ? brain_.submit(request, response) : owned;
       },
       farm::kMaxMessageBytes);
 }
 
 grpc::ServerUnaryReactor* JobsService::List(Context* context, const Bytes* asked, Bytes* said) {
   return answer_or_by<v1::ListJobsRequest, v1::ListJobsResponse>(
-      desks_.rows, {admission_, context, asked, said},
+      desks_.rows, {admission_, "Jobs/List", context, asked, said},
       [this](const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
         return brain_.list_open(request, response);
       },
@@ -35,7 +37,7 @@ grpc::ServerUnaryReactor* JobsService::List(Context* context, const Bytes* asked
 
 grpc::ServerUnaryReactor* JobsService::Get(Context* context, const Bytes* asked, Bytes* said) {
   return answer_or_by<v1::GetJobRequest, v1::GetJobResponse>(
-      desks_.rows, {admission_, context, asked, said},
+      desks_.rows, {admission_, "Jobs/Get", context, asked, said},
       [this](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
         return brain_.get_open(request.job(), after(request), response, request.state());
       },
@@ -46,7 +48,7 @@ grpc::ServerUnaryReactor* JobsService::Get(Context* context, const Bytes* asked,
 
 grpc::ServerUnaryReactor* JobsService::Explain(Context* context, const Bytes* asked, Bytes* said) {
   return answer_or_by<v1::JobRequest, v1::ExplainResponse>(
-      desks_.rows, {admission_, context, asked, said},
+      desks_.rows, {admission_, "Jobs/Explain", context, asked, said},
       [this](const v1::JobRequest& request, v1::ExplainResponse& response) {
         return brain_.explain_open(request.job(), response);
       },
@@ -58,27 +60,29 @@ grpc::ServerUnaryReactor* JobsService::Explain(Context* context, const Bytes* as
 grpc::ServerUnaryReactor* JobsService::ListTimeline(Context* context, const Bytes* asked,
                                                     Bytes* said) {
   return answer_by<v1::ListTimelineRequest, v1::ListTimelineResponse>(
-      desks_.rows, {admission_, context, asked, said},
+      desks_.rows, {admission_, "Jobs/ListTimeline", context, asked, said},
       [this](const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response) {
         return brain_.timeline(request, response);
       });
 }
 
 template <class Request>
-grpc::ServerUnaryReactor* JobsService::steer(Context* context, const Bytes* asked, Bytes* said,
+grpc::ServerUnaryReactor* JobsService::steer(Call call,
                                              void (*what)(Brain&, const Request&, Brain::Told)) {
-  const Call call{admission_, context, asked, said};
   Request request;
-  grpc::Status status = admission_.check(*context);
-  if (status.ok()) status = parse(*asked, farm::kMaxRequestBytes, request);
+  grpc::Status status = call.admit();
+  if (status.ok()) status = parse(*call.asked, farm::kMaxRequestBytes, request);
   if (!status.ok()) {
     call.reactor->Finish(status);
   } else if (!desks_.rows.hand([this, call, what, request = std::move(request)] {
-               what(brain_, request, [call](const grpc::Status& done, const v1::Job& now) {
+               const auto told = [call, request](const grpc::Status& done, const v1::Job& now) {
                  v1::JobResponse response;
                  *response.mutable_job() = now;
+                 call.note(done, request, response);
                  call.finish(done, response);
-               });
+               };
+               const grpc::Status his = may_steer(brain_, call.caller, request.job());
+               his.ok() ? what(brain_, request, told) : told(his, {});
              })) {
     call.reactor->Finish(crowded());
   }
@@ -86,21 +90,21 @@ grpc::ServerUnaryReactor* JobsService::steer(Context* context, const Bytes* aske
 }
 
 grpc::ServerUnaryReactor* JobsService::Pause(Context* context, const Bytes* asked, Bytes* said) {
-  return steer<v1::JobRequest>(context, asked, said,
+  return steer<v1::JobRequest>({admission_, "Jobs/Pause", context, asked, said},
                                [](Brain& brain, const v1::JobRequest& request, Brain::Told then) {
                                  brain.pause(request.job(), std::move(then));
                                });
 }
 
 grpc::ServerUnaryReactor* JobsService::Resume(Context* context, const Bytes* asked, Bytes* said) {
-  return steer<v1::JobRequest>(context, asked, said,
+  return steer<v1::JobRequest>({admission_, "Jobs/Resume", context, asked, said},
                                [](Brain& brain, const v1::JobRequest& request, Brain::Told then) {
                                  brain.resume(request.job(), std::move(then));
                                });
 }
 
 grpc::ServerUnaryReactor* JobsService::Cancel(Context* context, const Bytes* asked, Bytes* said) {
-  return steer<v1::JobRequest>(context, asked, said,
+  return steer<v1::JobRequest>({admission_, "Jobs/Cancel", context, asked, said},
                                [](Brain& brain, const v1::JobRequest& request, Brain::Told then) {
                                  brain.cancel(request.job(), std::move(then));
                                });
@@ -109,7 +113,7 @@ grpc::ServerUnaryReactor* JobsService::Cancel(Context* context, const Bytes* ask
 grpc::ServerUnaryReactor* JobsService::SetPriority(Context* context, const Bytes* asked,
                                                    Bytes* said) {
   return steer<v1::SetPriorityRequest>(
-      context, asked, said,
+      {admission_, "Jobs/SetPriority", context, asked, said},
       [](Brain& brain, const v1::SetPriorityRequest& request, Brain::Told then) {
         brain.set_priority(request.job(), request.priority(), std::move(then));
       });
@@ -117,17 +121,19 @@ grpc::ServerUnaryReactor* JobsService::SetPriority(Context* context, const Bytes
 
 grpc::ServerUnaryReactor* JobsService::Retry(Context* context, const Bytes* asked, Bytes* said) {
   return answer_by<v1::JobRequest, v1::JobResponse>(
-      desks_.files, {admission_, context, asked, said},
-      [this](const v1::JobRequest& request, v1::JobResponse& response) {
-        return brain_.retry(request.job(), *response.mutable_job());
+      desks_.files, {admission_, "Jobs/Retry", context, asked, said},
+      [this](const v1::JobRequest& request, v1::JobResponse& response, const Caller& caller) {
+        const grpc::Status his = may_steer(brain_, caller, request.job());
+        return his.ok() ? brain_.retry(request.job(), *response.mutable_job()) : his;
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::Delete(Context* context, const Bytes* asked, Bytes* said) {
   return answer_by<v1::JobRequest, v1::DeleteJobResponse>(
-      desks_.files, {admission_, context, asked, said},
-      [this](const v1::JobRequest& request, v1::DeleteJobResponse&) {
-        return brain_.remove(request.job());
+      desks_.files, {admission_, "Jobs/Delete", context, asked, said},
+      [this](const v1::JobRequest& request, v1::DeleteJobResponse&, const Caller& caller) {
+        const grpc::Status his = may_steer(brain_, caller, request.job());
+        return his.ok() ? brain_.remove(request.job()) : his;
       });
 }
 

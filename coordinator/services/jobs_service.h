@@ -3,7 +3,7 @@
 #include <atomic>
 
 #include "coordinator/brain/brain.h"
-#include "coordinator/services/admission.h"
+#include "coordinator/services/answer.h"
 #include "coordinator/services/desks.h"
 #include "hyades/v1/jobs.grpc.pb.h"
 
@@ -50,8 +50,7 @@ class JobsService final : public RawJobs {
  private:
   /// What a method does that takes a job and answers with how it is now.
   template <class Request>
-  grpc::ServerUnaryReactor* steer(Context* context, const Bytes* asked, Bytes* said,
-                                  void (*what)(Brain&, const Request&, Brain::Told));
+  grpc::ServerUnaryReactor* steer(Call call, void (*what)(Brain&, const Request&, Brain::Told));
 
   Brain& brain_;
   const Admission& admission_;

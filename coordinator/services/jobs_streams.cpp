@@ -32,9 +32,10 @@ grpc::Status too_many(const char* what) {
 
 /// A request of a caller that is admitted.
 template <class Request>
-grpc::Status take_in(const Admission& admission, const grpc::CallbackServerContext& context,
-                     const grpc::ByteBuffer& bytes, Request& request) {
-  const grpc::Status admitted = admission.check(context);
+grpc::Status take_in(const Admission& admission, const char* method,
+                     const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes,
+                     Request& request, Caller& caller) {
+  const grpc::Status admitted = admission.check(context, rule_of_method(method), caller);
   return admitted.ok() ? parse(bytes, farm::kMaxRequestBytes, request) : admitted;
 }
 
@@ -280,9 +281,11 @@ class FilmStream final : public Producer<v1::FilmPart> {
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Watch(Context* context,
                                                                const Bytes* asked) {
   v1::WatchRequest request;
-  const grpc::Status taken = take_in(admission_, *context, *asked, request);
+  Caller caller;
+  const grpc::Status taken = take_in(admission_, "Jobs/Watch", *context, *asked, request, caller);
   if (!taken.ok()) return new Refusal(taken);
   auto* stream = new Watching(*context, desks_.rows, brain_, request.job());
+  stream->guard(admission_, caller);
   stream->begin();
   return stream;
 }
@@ -290,10 +293,12 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Watch(Context* context,
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Outputs(Context* context,
                                                                  const Bytes* asked) {
   v1::OutputsRequest request;
-  grpc::Status taken = take_in(admission_, *context, *asked, request);
+  Caller caller;
+  grpc::Status taken = take_in(admission_, "Jobs/Outputs", *context, *asked, request, caller);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("ranges of frames");
   if (!taken.ok()) return new Refusal(taken);
   auto* stream = new OutputList(*context, desks_.rows, brain_, request);
+  stream->guard(admission_, caller);
   stream->begin();
   return stream;
 }
@@ -301,10 +306,12 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Outputs(Context* contex
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
                                                               const Bytes* asked) {
   v1::LogsRequest request;
-  grpc::Status taken = take_in(admission_, *context, *asked, request);
+  Caller caller;
+  grpc::Status taken = take_in(admission_, "Jobs/Logs", *context, *asked, request, caller);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("frames");
   if (!taken.ok()) return new Refusal(taken);
   auto* stream = new LogLines(*context, desks_.rows, brain_, request);
+  stream->guard(admission_, caller);
   stream->begin();
   return stream;
 }
@@ -312,7 +319,8 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
                                                                const Bytes* asked) {
   v1::FetchRequest request;
-  const grpc::Status taken = take_in(admission_, *context, *asked, request);
+  Caller caller;
+  const grpc::Status taken = take_in(admission_, "Jobs/Fetch", *context, *asked, request, caller);
   if (!taken.ok()) return new Refusal(taken);
   const uint64_t offset = request.offset();
   const auto open = [this, request = std::move(request)](core::Bytes& file) -> grpc::Status {
@@ -335,20 +343,25 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
     file = std::move(*bytes);
     return grpc::Status::OK;
   };
-  return new FileStream(*context, desks_.files, open, offset);
+  auto* stream = new FileStream(*context, desks_.files, open, offset);
+  stream->guard(admission_, caller);
+  return stream;
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
                                                               const Bytes* asked) {
   v1::FilmRequest request;
-  const grpc::Status taken = take_in(admission_, *context, *asked, request);
+  Caller caller;
+  const grpc::Status taken = take_in(admission_, "Jobs/Film", *context, *asked, request, caller);
   if (!taken.ok()) return new Refusal(taken);
   if (films_ >= kMostFilms) {
     return new Refusal(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                          "enough films are on their way to others",
                                          std::chrono::seconds(2)));
   }
-  return new FilmStream(*context, desks_.files, brain_, request, films_);
+  auto* stream = new FilmStream(*context, desks_.files, brain_, request, films_);
+  stream->guard(admission_, caller);
+  return stream;
 }
 
 }  // namespace hyades::coordinator

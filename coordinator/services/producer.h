@@ -9,6 +9,7 @@
 #include <grpcpp/support/server_callback.h>
 #include <grpcpp/support/status.h>
 
+#include "coordinator/services/admission.h"
 #include "coordinator/services/desks.h"
 #include "coordinator/services/raw.h"
 
@@ -36,6 +37,12 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   /// To be called once, by the service's method or the last constructor: when everything is set up.
   /// gRPC reports nothing, so the end neither, before the method has returned.
   void begin() { advance(false); }
+
+  /// To be called once, by the service's method: ends the stream when its caller's token does.
+  void guard(const Admission& admission, const Caller& caller) {
+    visit_ = admission.visit(
+        caller, [handle = handle_](const grpc::Status& why) { handle->send_away(why); });
+  }
 
   void OnWriteDone(bool ok) override {
     too_slow_.reset();
@@ -82,6 +89,10 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
       const std::lock_guard lock(mutex_);
       if (producer_ != nullptr) producer_->poke();
     }
+    void send_away(const grpc::Status& why) {
+      const std::lock_guard lock(mutex_);
+      if (producer_ != nullptr) producer_->send_away(why);
+    }
     void break_off() {
       const std::lock_guard lock(mutex_);
       if (producer_ != nullptr) producer_->context_.TryCancel();
@@ -95,6 +106,14 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
     std::mutex mutex_;
     Producer* producer_;
   };
+
+  void send_away(const grpc::Status& why) {
+    {
+      const std::lock_guard lock(mutex_);
+      farewell_ = why;
+    }
+    poke();
+  }
 
   void poke() {
     {
@@ -114,12 +133,13 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
         const std::lock_guard lock(mutex_);
         poked_ = false;
         cancelled = cancelled_;
+        status = farewell_;
       }
       Step step = Step::end;
       message_.Clear();
       if (cancelled) {
         status = {grpc::StatusCode::CANCELLED, "the client is gone"};
-      } else {
+      } else if (status.ok()) {
         status = within_memory([&] {
           grpc::Status end;
           step = next(message_, end, may_wait);
@@ -162,6 +182,8 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   bool busy_ = true;    ///< not begun, next() or a write is going on, or all is over
   bool poked_ = false;  ///< since next() was last called
   bool cancelled_ = false;
+  grpc::Status farewell_;         ///< not OK: the caller may stay no longer
+  std::unique_ptr<Visit> visit_;  ///< of who reads
 };
 
 }  // namespace hyades::coordinator

@@ -7,6 +7,7 @@
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 
+#include "coordinator/services/admin_service.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/assets_service.h"
 #include "coordinator/services/farm_service.h"
@@ -30,12 +31,13 @@ constexpr int kMostCalls = 100;
 }  // namespace
 
 struct Server::Parts {
-  Parts(Brain& brain, std::string token)
-      : admission(std::move(token)),
+  Parts(Brain& brain, Authority& authority)
+      : admission(authority),
         work(brain, admission),
         jobs(brain, admission, desks),
         assets(brain, admission, desks),
-        farm(brain, admission) {}
+        farm(brain, admission),
+        admin(authority, admission, desks) {}
 
   Admission admission;
   Desks desks;
@@ -43,6 +45,7 @@ struct Server::Parts {
   JobsService jobs;
   AssetsService assets;
   FarmService farm;
+  AdminService admin;
   std::unique_ptr<grpc::Server> server;
 };
 
@@ -53,8 +56,9 @@ Server::~Server() {
   parts_->server->Wait();
 }
 
-core::Result<std::unique_ptr<Server>> Server::start(farm::Door door, Brain& brain) {
-  auto parts = std::make_unique<Parts>(brain, std::move(door.token));
+core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brain& brain,
+                                                    Authority& authority) {
+  auto parts = std::make_unique<Parts>(brain, authority);
   grpc::ServerBuilder builder;
   int port = 0;
   builder.AddListeningPort(door.address, door.credentials, &port);
@@ -62,6 +66,7 @@ core::Result<std::unique_ptr<Server>> Server::start(farm::Door door, Brain& brai
   builder.RegisterService(&parts->jobs);
   builder.RegisterService(&parts->assets);
   builder.RegisterService(&parts->farm);
+  builder.RegisterService(&parts->admin);
   builder.SetMaxReceiveMessageSize(static_cast<int>(farm::kMaxResultBytes));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);

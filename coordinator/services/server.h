@@ -8,14 +8,16 @@
 
 namespace hyades::coordinator {
 
+class Authority;
 class Brain;
 
 /// The coordinator's gRPC server: services over a brain.
 class Server {
  public:
-  /// Listens; an error where the address is taken or not this machine's. `brain` outlives the
-  /// server.
-  static core::Result<std::unique_ptr<Server>> start(farm::Door door, Brain& brain);
+  /// Listens; an error where the address is taken or not this machine's. `brain` and `authority`,
+  /// which says who may come in, outlive the server.
+  static core::Result<std::unique_ptr<Server>> start(const farm::Door& door, Brain& brain,
+                                                     Authority& authority);
 
   /// Ends all calls and stops listening.
   ~Server();

@@ -1,5 +1,6 @@
 #include "coordinator/services/work_service.h"
 
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -65,6 +66,18 @@ class Link final : public WorkerLink {
     if (wire_ != nullptr) proceed();
   }
 
+  /// Ends the stream without regard to what waits to be sent.
+  void cut(const grpc::Status& status) {
+    const std::lock_guard lock(mutex_);
+    if (wire_ == nullptr || finished_) return;
+    queue_.clear();
+    waiting_ = 0;
+    if (writing_) wire_->cancel();  // a worker that does not read
+    closed_ = true;
+    status_ = status;
+    proceed();
+  }
+
   /// The call is over: nothing more is written.
   void detach() {
     const std::lock_guard lock(mutex_);
@@ -112,9 +125,15 @@ class Link final : public WorkerLink {
 class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
                          public Link::Wire {
  public:
-  Attendance(Brain& brain, grpc::CallbackServerContext& context, const grpc::Status& admitted)
+  /// `caller` has been admitted, or not.
+  Attendance(Brain& brain, grpc::CallbackServerContext& context, const Admission& admission,
+             const Caller& caller, const grpc::Status& admitted)
       : brain_(brain), context_(context), link_(std::make_shared<Link>(*this)) {
     if (admitted.ok()) {
+      visit_ = admission.visit(caller, [this](const grpc::Status& why) {
+        sent_away_ = true;
+        link_->cut(why);
+      });
       StartRead(&bytes_);
     } else {
       link_->close(admitted);
@@ -122,6 +141,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   }
 
   void OnReadDone(bool ok) override {
+    if (sent_away_) return;  // what it still says is not heard
     if (!ok) {
       // The worker has said all, or is gone.
       link_->close(grpc::Status::OK);
@@ -149,6 +169,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   void OnWriteDone(bool ok) override { link_->written(ok); }
 
   void OnDone() override {
+    visit_.reset();
     link_->detach();
     if (attached_) brain_.detach(worker_, link_.get());
     delete this;
@@ -178,6 +199,8 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   Brain& brain_;
   grpc::CallbackServerContext& context_;
   const std::shared_ptr<Link> link_;
+  std::unique_ptr<Visit> visit_;
+  std::atomic<bool> sent_away_{false};  ///< its token is of no use any more
   grpc::ByteBuffer bytes_;
   WorkerId worker_{};
   bool attached_ = false;
@@ -187,7 +210,9 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
 
 grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* WorkService::Attend(
     grpc::CallbackServerContext* context) {
-  return new Attendance(brain_, *context, admission_.check(*context));
+  Caller caller;
+  const grpc::Status admitted = admission_.check(*context, rule_of_method("Work/Attend"), caller);
+  return new Attendance(brain_, *context, admission_, caller, admitted);
 }
 
 }  // namespace hyades::coordinator

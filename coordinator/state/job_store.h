@@ -102,6 +102,24 @@ struct StoredQuarantine {
   std::string reason;
 };
 
+/// What is known of a token: never the token itself.
+struct StoredToken {
+  std::string id;    ///< its public part
+  std::string name;  ///< whose it is
+  int role = 0;      ///< v1::Role
+  std::string hash;  ///< SHA-256 of the token: 32 bytes
+  int64_t created_ms = 0;
+  int64_t expires_ms = 0;  ///< 0: never
+  int64_t used_ms = 0;     ///< 0: never; may lag behind
+  int64_t revoked_ms = 0;  ///< 0: it has not been
+};
+
+/// A token's last use.
+struct TokenUse {
+  std::string id;
+  int64_t used_ms = 0;
+};
+
 /// The most lines that are kept of a job; the oldest go first, in groups of kLinesDropped.
 inline constexpr uint64_t kMostLines = 50'000;
 inline constexpr uint64_t kLinesDropped = 5'000;
@@ -179,6 +197,15 @@ class JobStore {
                                                          const StoredLine& line) = 0;
   /// Frames of the job that are doubtful, in order, at most `limit`.
   virtual core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) = 0;
+
+  /// All tokens, also those that are of no use any more, the oldest first.
+  virtual core::Result<std::vector<StoredToken>> tokens() = 0;
+  /// An error where its id is there already.
+  virtual core::Status add_token(const StoredToken& token) = 0;
+  /// It keeps its row, which tells who it was.
+  virtual core::Status revoke_token(const std::string& id, int64_t revoked_ms) = 0;
+  virtual core::Status forget_token(const std::string& id) = 0;
+  virtual core::Status note_uses(const std::vector<TokenUse>& uses) = 0;
 
   /// Where the oldest lines had to go, the first that is left says so.
   virtual core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) = 0;

@@ -82,6 +82,17 @@ ALTER TABLE jobs ADD COLUMN core_ns INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE jobs ADD COLUMN preview INTEGER;
 CREATE INDEX outputs_of_frame ON outputs (job, frame);
 )",
+    R"(
+CREATE TABLE tokens (  -- who may come in; see token_rows.h
+  id TEXT PRIMARY KEY,
+  name TEXT NOT NULL,
+  role INTEGER NOT NULL,
+  hash BLOB NOT NULL,
+  created_ms INTEGER NOT NULL,
+  expires_ms INTEGER NOT NULL,
+  used_ms INTEGER NOT NULL,
+  revoked_ms INTEGER NOT NULL) WITHOUT ROWID;
+)",
 };
 
 }  // namespace

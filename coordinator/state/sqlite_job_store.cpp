@@ -9,6 +9,7 @@
 #include "coordinator/state/outputs.h"
 #include "coordinator/state/parts.h"
 #include "coordinator/state/reserve_file.h"
+#include "coordinator/state/token_rows.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -337,6 +338,31 @@ class SqliteJobStore final : public JobStore {
                                               uint32_t limit) override {
     const std::lock_guard lock(mutex_);
     return read_lines(db_.get(), job, after, limit);
+  }
+
+  core::Result<std::vector<StoredToken>> tokens() override {
+    const std::lock_guard lock(mutex_);
+    return read_tokens(db_.get());
+  }
+  core::Status add_token(const StoredToken& token) override {
+    return with_reserve([&] {
+      const std::lock_guard lock(mutex_);
+      return insert_token(db_.get(), token);
+    });
+  }
+  core::Status revoke_token(const std::string& id, int64_t revoked_ms) override {
+    return with_reserve([&] {
+      const std::lock_guard lock(mutex_);
+      return mark_revoked(db_.get(), id, revoked_ms);
+    });
+  }
+  core::Status forget_token(const std::string& id) override {
+    const std::lock_guard lock(mutex_);
+    return query("DELETE FROM tokens WHERE id = ?").bind(id).run();
+  }
+  core::Status note_uses(const std::vector<TokenUse>& uses) override {
+    const std::lock_guard lock(mutex_);
+    return update_uses(db_.get(), uses);
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -62,6 +63,9 @@ class ConnectionOver final : public Connection,
 
   void begin() override {
     world_.open.insert(self());
+    ErrorCode unknown;
+    const auto from = tcp(stream_).socket().remote_endpoint(unknown);
+    if (!unknown) address_ = from.address().to_string() + ":" + std::to_string(from.port());
     if constexpr (std::is_same_v<Stream, Tls>) {
       tcp(stream_).expires_after(kIdle);
       stream_.async_handshake(asio::ssl::stream_base::server, [me = self()](ErrorCode error) {
@@ -123,8 +127,10 @@ class ConnectionOver final : public Connection,
     }
     request_.path = std::move(target->path);
     request_.query = std::move(target->query);
+    request_.address = address_;
     const ConnectionWorld::Admitted admitted = world_.admit(request_);
     if (admitted.refusal) return send_away(*admitted.refusal);
+    caller_ = request_.caller;
     take_body(admitted.most_bytes);
   }
 
@@ -204,6 +210,15 @@ class ConnectionOver final : public Connection,
     if (!reply_.type.empty()) header_->set(http::field::content_type, reply_.type);
     header_->set("X-Content-Type-Options", "nosniff");
     for (const auto& [name, value] : reply_.headers) header_->set(name, value);
+    if (reply_.topic || reply_.source) {
+      // Its token may be revoked meanwhile.
+      visit_ = world_.visit(
+          caller_, [outlet = world_.outlet, weak = weak_from_this_()](const grpc::Status&) {
+            outlet->post([weak] {
+              if (const auto me = weak.lock()) me->close();
+            });
+          });
+    }
     const bool sized = reply_.text || (reply_.source && reply_.source->size());
     const uint64_t size = reply_.source ? reply_.source->size().value_or(0)
                           : reply_.text ? reply_.text->size()
@@ -294,6 +309,7 @@ class ConnectionOver final : public Connection,
 
   void sent() {
     give_back();
+    visit_.reset();
     reply_ = {};
     serializer_.reset();
     header_.reset();
@@ -393,6 +409,7 @@ class ConnectionOver final : public Connection,
   void close() {
     live_ = false;
     give_back();
+    visit_.reset();
     heartbeat_.cancel();
     ErrorCode ignored;
     tcp(stream_).socket().close(ignored);
@@ -404,6 +421,9 @@ class ConnectionOver final : public Connection,
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   WebRequest request_;
+  std::string address_;  ///< of the other side
+  Caller caller_;        ///< of the request in work
+  std::unique_ptr<Visit> visit_;
   uint64_t granted_ = 0;  ///< bytes that its body may have, out of those of all
   unsigned version_ = 11;
   bool keep_alive_ = false;

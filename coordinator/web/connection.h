@@ -7,6 +7,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 
+#include "coordinator/access/authority.h"
 #include "coordinator/brain/clerks.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/outlet.h"
@@ -32,7 +33,11 @@ struct ConnectionWorld {
     uint64_t most_bytes = 0;
     std::optional<WebReply> refusal{};
   };
-  std::function<Admitted(const WebRequest&)> admit;
+  /// Puts in who asks.
+  std::function<Admitted(WebRequest&)> admit;
+  /// Registers one whose answer takes its time (Authority::visit).
+  std::function<std::unique_ptr<Visit>(const Caller&, std::function<void(const grpc::Status&)>)>
+      visit;
   /// Answers a request; called by the network's thread.
   std::function<void(WebRequest, Answer)> serve;
   Clerks& files;  ///< who reads what is sent from the disk

@@ -11,6 +11,7 @@
 
 #include <grpcpp/support/status.h>
 
+#include "coordinator/access/caller.h"
 #include "farm/json_form.h"
 
 namespace hyades::coordinator {
@@ -23,6 +24,8 @@ struct WebRequest {
   std::map<std::string, std::string> parameters;  ///< what the route's {names} stand for
   std::map<std::string, std::string> headers;     ///< names in small letters
   std::string body;
+  std::string address;  ///< where it comes from
+  Caller caller;        ///< who asks, once that is known
 
   /// The header, or an empty text.
   const std::string& header(const std::string& name) const;
@@ -76,6 +79,8 @@ WebReply json_reply(const farm::Json& json);
 WebReply text_reply(std::string text, const char* type);
 /// No body: 204, or 304.
 WebReply empty_reply(unsigned status);
+/// The error that such a form tells of.
+grpc::Status status_of(const std::string& code, const std::string& message);
 /// What went wrong, in the form that openapi.yaml gives it.
 WebReply error_reply(const grpc::Status& status);
 

@@ -33,7 +33,8 @@ farm::Json to_json(const v1::InfoResponse& info) {
           {"trouble", info.trouble()},
           {"grpc_address", info.grpc_address()},
           {"price_per_core_hour", info.price_per_core_hour()},
-          {"currency", info.currency()}};
+          {"currency", info.currency()},
+          {"unguarded", info.unguarded()}};
 }
 
 void FarmApi::add_routes(Router& router) {

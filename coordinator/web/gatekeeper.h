@@ -4,35 +4,37 @@
 #include <optional>
 #include <string>
 
+#include "coordinator/access/authority.h"
 #include "coordinator/web/exchange.h"
 
 namespace hyades::coordinator {
 
-/// Who may come in over HTTP. The same token as over gRPC opens everything; besides, no page of
-/// another site may act in the name of a person whose browser reaches the coordinator.
+/// Who comes in over HTTP. The same tokens as over gRPC; besides, no page of another site may act
+/// in the name of a person whose browser reaches the coordinator.
 class Gatekeeper {
  public:
-  /// An empty token lets everybody in that is on this machine or was let on the network with
-  /// --insecure. `loopback`: listens on this machine only. `secure`: TLS.
-  Gatekeeper(std::string token, bool loopback, bool secure)
-      : token_(std::move(token)), loopback_(loopback), secure_(secure) {}
+  /// `shared_token`: that of --token-file, or empty. `loopback`: listens on this machine only.
+  /// `secure`: TLS. `authority` outlives it.
+  Gatekeeper(Authority& authority, std::string shared_token, bool loopback, bool secure);
 
-  /// OK, UNAUTHENTICATED, or PERMISSION_DENIED for requests that another site's page has made, or
-  /// that came by a name which is not this machine's (DNS rebinding; only where nothing else
-  /// guards).
-  grpc::Status check(const WebRequest& request) const;
+  /// OK and who asks; UNAUTHENTICATED; or PERMISSION_DENIED for requests that another site's page
+  /// has made, or that came by a name which is not this machine's (DNS rebinding; only where
+  /// nothing else guards).
+  grpc::Status check(const WebRequest& request, Caller& caller) const;
 
-  /// The header Set-Cookie of a session for who shows the right token.
-  std::optional<std::string> open_session(const std::string& token) const;
+  /// The header Set-Cookie of a session for who shows this token; or why there is none.
+  std::optional<std::string> open_session(const std::string& token, grpc::Status& why) const;
   /// The header that ends it.
   std::string end_session() const;
 
  private:
-  bool is_session(const std::string& cookies) const;
-  std::string sign(const std::string& text) const;
+  grpc::Status admit_session(std::string_view session, Caller& caller) const;
+  std::string sign(const std::string& id, const std::string& until) const;
   grpc::Status check_site(const WebRequest& request) const;
 
-  std::string token_;
+  Authority& authority_;
+  std::string shared_token_;
+  std::string key_;  ///< that signs sessions of all other tokens: of this process alone
   bool loopback_;
   bool secure_;
 };

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "coordinator/brain/not_there.h"
+#include "coordinator/services/ownership.h"
 #include "coordinator/web/handing.h"
 #include "coordinator/web/submission.h"
 #include "farm/wire.h"
@@ -151,7 +152,7 @@ void JobsApi::add_questions(Router& router) {
 
 void JobsApi::add_steering(Router& router) {
   router.add("POST", "/api/v1/jobs", [this](const WebRequest& request, const Answer& answer) {
-    answer_by(desks_.files, answer, [this, body = request.body] {
+    answer_by(desks_.files, answer, [this, body = request.body, caller = request.caller] {
       core::Result<v1::SubmitRequest> asked = core::Error{};
       {
         const std::unique_lock alone(large_, std::try_to_lock);
@@ -162,7 +163,8 @@ void JobsApi::add_steering(Router& router) {
         return error_reply({grpc::StatusCode::INVALID_ARGUMENT, asked.error().message});
       }
       v1::SubmitResponse response;
-      const grpc::Status done = brain_.submit(*asked, response);
+      grpc::Status done = name_owner(caller, *asked);
+      if (done.ok()) done = brain_.submit(*asked, response);
       if (!done.ok()) return error_reply(done);
       WebReply reply =
           json_reply({{"job", farm::to_json(response.job())}, {"existed", response.existed()}});
@@ -184,7 +186,10 @@ void JobsApi::add_steering(Router& router) {
                  const auto job = parameter<uint64_t>(request, "job", answer);
                  if (!job) return;
                  const bool taken = desks_.rows.hand(
-                     [this, told, steer, answer, id = *job] { (brain_.*steer)(id, told(answer)); });
+                     [this, told, steer, answer, id = *job, caller = request.caller] {
+                       const grpc::Status his = may_steer(brain_, caller, id);
+                       his.ok() ? (brain_.*steer)(id, told(answer)) : told(answer)(his, {});
+                     });
                  if (!taken) answer(error_reply(crowded()));
                });
   }
@@ -201,18 +206,22 @@ void JobsApi::add_steering(Router& router) {
                                      "expected {\"priority\": a whole number}"}));
                  return;
                }
-               const bool taken = desks_.rows.hand([this, told, answer, id = *job, priority] {
-                 brain_.set_priority(id, static_cast<int>(priority), told(answer));
-               });
+               const bool taken = desks_.rows.hand(
+                   [this, told, answer, id = *job, priority, caller = request.caller] {
+                     const grpc::Status his = may_steer(brain_, caller, id);
+                     if (!his.ok()) return told(answer)(his, {});
+                     brain_.set_priority(id, static_cast<int>(priority), told(answer));
+                   });
                if (!taken) answer(error_reply(crowded()));
              });
   router.add("POST", "/api/v1/jobs/{job}/retry",
              [this](const WebRequest& request, const Answer& answer) {
                const auto job = parameter<uint64_t>(request, "job", answer);
                if (!job) return;
-               answer_by(desks_.files, answer, [this, id = *job] {
+               answer_by(desks_.files, answer, [this, id = *job, caller = request.caller] {
                  v1::Job now;
-                 const grpc::Status done = brain_.retry(id, now);
+                 grpc::Status done = may_steer(brain_, caller, id);
+                 if (done.ok()) done = brain_.retry(id, now);
                  return reply_with(done, now, [](const v1::Job& j) { return farm::to_json(j); });
                });
              });
@@ -220,8 +229,9 @@ void JobsApi::add_steering(Router& router) {
              [this](const WebRequest& request, const Answer& answer) {
                const auto job = parameter<uint64_t>(request, "job", answer);
                if (!job) return;
-               answer_by(desks_.files, answer, [this, id = *job] {
-                 const grpc::Status done = brain_.remove(id);
+               answer_by(desks_.files, answer, [this, id = *job, caller = request.caller] {
+                 grpc::Status done = may_steer(brain_, caller, id);
+                 if (done.ok()) done = brain_.remove(id);
                  return done.ok() ? empty_reply(204) : error_reply(done);
                });
              });

@@ -38,7 +38,15 @@ std::optional<std::map<std::string, std::string>> match(const std::vector<std::s
 }  // namespace
 
 void Router::add(const std::string& method, const std::string& pattern, Handler handler) {
-  routes_.push_back({method, pattern, parse_target(pattern)->path, std::move(handler)});
+  routes_.push_back({method, pattern, parse_target(pattern)->path, std::move(handler),
+                     &rule_of_route(method + " " + pattern)});
+}
+
+const Router::Route* Router::find(const WebRequest& request) const {
+  for (const Route& route : routes_) {
+    if (route.method == request.method && match(route.parts, request.path)) return &route;
+  }
+  return nullptr;
 }
 
 void Router::answer(WebRequest request, const Answer& answer) const {
@@ -51,7 +59,17 @@ void Router::answer(WebRequest request, const Answer& answer) const {
       continue;
     }
     request.parameters = std::move(*found);
-    route.handler(request, answer);
+    if (!note_ || !route.rule->audited) return route.handler(request, answer);
+    std::string target;
+    for (const char* name : {"job", "worker"}) {
+      const auto named = request.parameters.find(name);
+      if (named != request.parameters.end()) target = named->second;
+    }
+    route.handler(request, [this, answer, target, caller = request.caller,
+                            rule = route.rule](WebReply reply) {
+      note_(caller, *rule, target, reply);
+      answer(std::move(reply));
+    });
     return;
   }
   std::string path;

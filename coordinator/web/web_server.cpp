@@ -13,6 +13,8 @@
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "coordinator/access/authority.h"
+#include "coordinator/access/rules.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/desks.h"
 #include "coordinator/web/assets_api.h"
@@ -50,15 +52,6 @@ HostAndPort split(const std::string& address) {
   return {host, address.substr(colon + 1)};
 }
 
-/// What needs no token: whether it is alive, and what a sign-in needs.
-bool is_open_to_all(const WebRequest& request) {
-  if (request.path.empty()) return true;
-  const std::string& first = request.path.front();
-  if (first == "healthz" || first == "readyz") return true;
-  if (request.path == std::vector<std::string>{"api", "v1", "session"}) return true;
-  return first != "api" && first != "metrics";
-}
-
 /// Of a request's body.
 uint64_t most_bytes(const WebRequest& request) {
   constexpr uint64_t kSession = 4U << 10U;
@@ -72,6 +65,22 @@ uint64_t most_bytes(const WebRequest& request) {
   return names_files ? farm::kMaxMessageBytes : kUsual;
 }
 
+/// What became of something that was asked for over HTTP, for the audit log.
+void note_reply(AuditLog& log, const Caller& caller, const Rule& rule, std::string target,
+                const WebReply& reply) {
+  const farm::Json said =
+      reply.text ? farm::Json::parse(*reply.text, nullptr, false) : farm::Json();
+  grpc::Status result;
+  if (reply.status >= 400) {
+    const bool told = said.is_object() && said.contains("error");
+    result = told ? status_of(said["error"].value("code", ""), said["error"].value("message", ""))
+                  : grpc::Status(grpc::StatusCode::UNKNOWN, std::to_string(reply.status));
+  } else if (target.empty() && said.is_object() && said.contains("job")) {
+    target = std::to_string(said["job"].value("id", uint64_t{0}));
+  }
+  log.note(caller, rule.deed, target, result, "over HTTP");
+}
+
 /// Programs that the coordinator starts must not hold its connections open.
 template <class Socket>
 void close_on_exec(Socket& socket) {
@@ -81,8 +90,9 @@ void close_on_exec(Socket& socket) {
 }  // namespace
 
 struct WebServer::Parts {
-  Parts(Brain& brain, Gatekeeper keeper)
-      : gatekeeper(std::move(keeper)),
+  Parts(Brain& brain, Authority& known, Gatekeeper keeper)
+      : authority(known),
+        gatekeeper(std::move(keeper)),
         outlet(std::make_shared<Outlet>(network)),
         farm(brain, desks),
         jobs(brain, desks),
@@ -90,7 +100,10 @@ struct WebServer::Parts {
         outputs(brain, desks),
         pictures(brain),
         live(brain, desks, network, outlet),
-        world{[this](const WebRequest& request) { return admit(request); },
+        world{[this](WebRequest& request) { return admit(request); },
+              [this](const Caller& caller, std::function<void(const grpc::Status&)> leave) {
+                return authority.visit(caller, std::move(leave));
+              },
               [this](WebRequest request, Answer answer) {
                 router.answer(std::move(request), answer);
               },
@@ -98,6 +111,11 @@ struct WebServer::Parts {
         acceptor(network),
         again(network),
         sweep(network) {
+    if (AuditLog* log = authority.audit()) {
+      router.set_note(
+          [log](const Caller& caller, const Rule& rule, const std::string& target,
+                const WebReply& reply) { note_reply(*log, caller, rule, target, reply); });
+    }
     add_dashboard(router);
     add_session(router);
     farm.add_routes(router);
@@ -115,15 +133,22 @@ struct WebServer::Parts {
           json.is_object() && json.contains("token") && json["token"].is_string()
               ? json["token"].get<std::string>()
               : std::string();
-      const auto cookie = gatekeeper.open_session(token);
+      grpc::Status why;
+      const auto cookie = gatekeeper.open_session(token, why);
       if (!cookie) {
-        answer(error_reply(
-            {grpc::StatusCode::UNAUTHENTICATED, "this is not the coordinator's token"}));
+        answer(error_reply(why));
         return;
       }
       WebReply reply = empty_reply(204);
       reply.headers.emplace_back("Set-Cookie", *cookie);
       answer(std::move(reply));
+    });
+    to.add("GET", "/api/v1/session", [this](const WebRequest& request, const Answer& answer) {
+      const Caller& caller = request.caller;
+      answer(json_reply({{"guarded", authority.guarded()},
+                         {"role", role_name(caller.role)},
+                         {"name", caller.name},
+                         {"token_id", caller.token_id}}));
     });
     to.add("DELETE", "/api/v1/session", [this](const WebRequest&, const Answer& answer) {
       WebReply reply = empty_reply(204);
@@ -132,10 +157,18 @@ struct WebServer::Parts {
     });
   }
 
-  ConnectionWorld::Admitted admit(const WebRequest& request) const {
-    const grpc::Status allowed = gatekeeper.check(request);
-    if (!allowed.ok() &&
-        !(allowed.error_code() == grpc::StatusCode::UNAUTHENTICATED && is_open_to_all(request))) {
+  ConnectionWorld::Admitted admit(WebRequest& request) const {
+    grpc::Status allowed = gatekeeper.check(request, request.caller);
+    // What is not here at all is told to nobody who may not come in.
+    const Router::Route* route = router.find(request);
+    const Rule& rule = route != nullptr ? *route->rule : rule_of_method("Farm/Info");
+    const bool for_all = rule.least == v1::ROLE_UNSPECIFIED;
+    if (for_all && allowed.error_code() == grpc::StatusCode::UNAUTHENTICATED) {
+      allowed = grpc::Status::OK;
+    }
+    if (allowed.ok()) allowed = allow(request.caller, rule);
+    if (!allowed.ok()) {
+      if (AuditLog* log = authority.audit()) log->refuse(request.caller, rule.deed, allowed);
       return {0, error_reply(allowed)};
     }
     return {most_bytes(request)};
@@ -200,6 +233,7 @@ struct WebServer::Parts {
 
   // The network is there before all that belongs to it, and ends after it.
   asio::io_context network{1};
+  Authority& authority;
   Gatekeeper gatekeeper;
   std::shared_ptr<Outlet> outlet;
   FarmApi farm;
@@ -238,13 +272,14 @@ std::vector<std::string> WebServer::routes() const {
   return all;
 }
 
-core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& listen,
-                                                          Brain& brain) {
+core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& listen, Brain& brain,
+                                                          Authority& authority) {
   auto door = farm::open_door(listen);  // its rules are ours
   if (!door) return door.error();
   const bool secure = !listen.cert_file.empty();
   auto parts = std::make_unique<Parts>(
-      brain, Gatekeeper(door->token, farm::is_loopback(listen.address), secure));
+      brain, authority,
+      Gatekeeper(authority, door->token, farm::is_loopback(listen.address), secure));
   if (secure) {
     const auto pair = farm::read_key_pair(listen.cert_file, listen.key_file);
     if (!pair) return pair.error();

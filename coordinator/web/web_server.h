@@ -9,6 +9,7 @@
 
 namespace hyades::coordinator {
 
+class Authority;
 class Brain;
 
 /// The coordinator's HTTP server: the dashboard and the API of openapi.yaml over a brain.
@@ -19,8 +20,9 @@ class WebServer {
  public:
   /// Listens at listen.address, with its certificate and token (farm::open_door has the rules). An
   /// error where they do not hold together, or the address is taken or not this machine's. `brain`
-  /// outlives the server.
-  static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen, Brain& brain);
+  /// and `authority`, which says who may come in, outlive the server.
+  static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen, Brain& brain,
+                                                        Authority& authority);
 
   /// Breaks off all connections and stops listening.
   ~WebServer();

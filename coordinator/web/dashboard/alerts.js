@@ -14,6 +14,7 @@ const FRESH = 12 * 3600e3;
 /** What needs a person: [{key, text, bad, href, what}], the worst first. */
 export function alertsOf({ info, jobs, workers }, now = Date.now()) {
   const list = [];
+  if (info?.unguarded) list.push({ key: `unguarded ${info.unguarded}`, bad: true, text: info.unguarded });
   if (info?.trouble) list.push({ key: `trouble ${info.trouble}`, bad: true, text: info.trouble });
   for (const worker of workers.values()) {
     if (worker.state === 'quarantined')

@@ -78,6 +78,8 @@ const json = async (method, path, options) => (await call(method, path, options)
 
 export const info = () => json('GET', 'api/v1/info');
 export const signIn = (token) => call('POST', 'api/v1/session', { body: { token } });
+/** Who is signed in. */
+export const session = () => json('GET', 'api/v1/session');
 export const signOut = () => call('DELETE', 'api/v1/session');
 export const jobs = (query) => json('GET', 'api/v1/jobs', { query });
 export const submit = (submission) => json('POST', 'api/v1/jobs', { body: submission });

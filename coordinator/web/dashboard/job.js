@@ -16,6 +16,7 @@ import {
   whole,
 } from './format.js';
 import { h, keyed, say, setText } from './dom.js';
+import { whyNotJob } from './me.js';
 import { leftOf, lookOf, share, watchJob } from './job_state.js';
 import { TABS, to } from './router.js';
 import { documentTab } from './document.js';
@@ -219,6 +220,10 @@ class JobView {
   async act(name) {
     const { job } = this.state;
     if (!job || !ACTIONS[name].fits(this.withDoubts(job))) return;
+    if (whyNotJob(job)) {
+      say(whyNotJob(job));
+      return;
+    }
     const results = await act(name, [this.withDoubts(job)]);
     if (!results) return;
     if (name === 'delete') {
@@ -296,7 +301,7 @@ class JobView {
     figures.cost.set(money(job.cost, farm.info?.currency));
     figures.cost.title = `${money(price, farm.info?.currency)} for a core-hour`;
     figures.priority.set(job.priority);
-    this.priorityButton.hidden = !open;
+    this.priorityButton.hidden = !open || Boolean(whyNotJob(job));
     setText(this.trouble, job.reason);
     this.trouble.hidden = !job.reason;
     this.trouble.dataset.state = job.state;
@@ -332,7 +337,8 @@ class JobView {
   drawButtons(job) {
     const with_ = this.withDoubts(job);
     const names = Object.keys(ACTIONS).filter((name) => ACTIONS[name].fits(with_));
-    const key = `${names.join()} ${job.frames_done > 0} ${job.frames > 1}`;
+    const whyNot = whyNotJob(job);
+    const key = `${names.join()} ${job.frames_done > 0} ${job.frames > 1} ${whyNot}`;
     if (this.buttons.key === key) return;
     this.buttons.key = key;
     this.buttons.replaceChildren(
@@ -363,6 +369,8 @@ class JobView {
             type: 'button',
             class: ACTIONS[name].danger ? 'danger' : '',
             testid: `job-${name}`,
+            disabled: Boolean(whyNot),
+            title: whyNot,
             onclick: () => this.act(name),
           },
           icon(ACTIONS[name].icon),

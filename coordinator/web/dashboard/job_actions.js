@@ -4,6 +4,7 @@ import { ask, confirm } from './dialog.js';
 import { counted, listed, whole } from './format.js';
 import { dropJob, isOpen, learnJobs } from './farm_state.js';
 import { h, say, toast } from './dom.js';
+import { whyNotJob } from './me.js';
 
 /** name -> {text, icon, fits(job), done, what(jobs): what will happen, danger}. */
 export const ACTIONS = {
@@ -70,7 +71,7 @@ function question(name, jobs) {
  */
 export async function act(name, jobs) {
   const action = ACTIONS[name];
-  const fitting = jobs.filter(action.fits);
+  const fitting = jobs.filter((job) => action.fits(job) && !whyNotJob(job));
   if (fitting.length === 0) return null;
   if ((action.danger || fitting.length > 1) && !(await question(name, fitting))) return null;
   const results = [];

@@ -4,6 +4,7 @@ import { coreHours, counted, duration, moment, money, percent, rate, whole } fro
 import { h, setText } from './dom.js';
 import { askPriority } from './job_actions.js';
 import { farm, isOpen } from './farm_state.js';
+import { whyNotJob } from './me.js';
 import { leftOf, lookOf, share } from './job_state.js';
 import { stamp } from './preview.js';
 import { Table } from './table.js';
@@ -88,7 +89,8 @@ function priorityCell(td, job) {
     );
   td.job = job;
   setText(td.firstChild, job.priority);
-  td.firstChild.disabled = !isOpen(job);
+  td.firstChild.disabled = !isOpen(job) || Boolean(whyNotJob(job));
+  td.firstChild.title = whyNotJob(job);
   td.firstChild.setAttribute('aria-label', `Priority ${job.priority}${isOpen(job) ? ', change' : ''}`);
 }
 

@@ -11,6 +11,7 @@ import { icon } from './icons.js';
 import { lookOf } from './job_state.js';
 import { Thumbs } from './thumbs.js';
 import { jobTable } from './job_table.js';
+import { whyNotJob } from './me.js';
 
 const PAGE = 500;
 const STATES = [
@@ -285,7 +286,8 @@ class JobsView {
     if (this.actions.key === key && this.actions.firstChild) return;
     this.actions.key = key;
     const buttons = Object.entries(ACTIONS).map(([name, action]) => {
-      const count = jobs.filter(action.fits).length;
+      const count = jobs.filter((job) => action.fits(job) && !whyNotJob(job)).length;
+      const whyNot = count === 0 ? (jobs.filter(action.fits).map(whyNotJob)[0] ?? '') : '';
       const text = count === 0 || count === jobs.length ? action.text : `${action.text} ${count}`;
       return h(
         'button',
@@ -293,6 +295,7 @@ class JobsView {
           type: 'button',
           class: action.danger ? 'danger' : '',
           disabled: count === 0,
+          title: whyNot,
           testid: `chosen-${name}`,
           onclick: () => this.actOn(name),
         },

@@ -6,6 +6,7 @@ import { icon, mark } from './icons.js';
 import { lost, onConnection } from './live.js';
 import { nextTheme, setTheme, theme } from './theme.js';
 import { parse, to } from './router.js';
+import { onMe, whoAmI } from './me.js';
 import { startSession } from './session.js';
 import { counted } from './format.js';
 import { enter, scrollBack } from './place.js';
@@ -118,6 +119,8 @@ function makeTop() {
   const workers = h('span', {});
   const threads = h('span', { class: 'wide' });
   const count = h('span', { class: 'top-count', testid: 'top-count' }, workers, threads);
+  const who = h('span', { class: 'top-count', testid: 'who' });
+  onMe(() => setText(who, whoAmI()));
   const refresh = () => {
     if (!farm.info) return;
     setText(workers, counted(farm.info.workers, 'worker'));
@@ -142,6 +145,7 @@ function makeTop() {
       'div',
       { class: 'top-end' },
       count,
+      who,
       themeButton(),
       h(
         'button',
@@ -208,6 +212,7 @@ shortcuts('Everywhere', [
 makeTop();
 makeBanner();
 startSession();
+onMe(() => view && show(true)); // buttons depend on it
 startFarm();
 offerDrop();
 addEventListener('hashchange', () => show());

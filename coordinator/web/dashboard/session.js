@@ -2,6 +2,7 @@
 import { ask } from './dialog.js';
 import { onSignedOut, signIn } from './api.js';
 import { h } from './dom.js';
+import { learnMe } from './me.js';
 
 let asking = false;
 
@@ -24,7 +25,7 @@ async function askForToken() {
       body: [
         h('p', {
           id: 'token-hint',
-          text: 'This farm has a token: one line of text, in the file that the coordinator was given with --token-file.',
+          text: 'This farm asks for a token: one line of text, which an admin makes (hyades token create).',
         }),
         h('label', { class: 'field' }, 'Token', field),
       ],
@@ -34,8 +35,12 @@ async function askForToken() {
     if (answer === 'in') break;
   }
   asking = false;
+  await learnMe();
   dispatchEvent(new Event('hyades-signed-in'));
 }
 
 /** From now on whoever is told to sign in is asked for the token. */
-export const startSession = () => onSignedOut(askForToken);
+export function startSession() {
+  onSignedOut(askForToken);
+  return learnMe();
+}

@@ -10,6 +10,7 @@ import { Options } from './submit_options.js';
 import { pickBox } from './pick_box.js';
 import { Review } from './review.js';
 import { takeDrops } from './drop.js';
+import { whyNotSubmit } from './me.js';
 import { to } from './router.js';
 
 const randomKey = () =>
@@ -27,6 +28,8 @@ class SubmitView {
       form: 'options',
       class: 'primary large',
       testid: 'send',
+      disabled: Boolean(whyNotSubmit()),
+      title: whyNotSubmit(),
       text: 'Submit',
     });
     this.sum = h('p', { class: 'send-sum', testid: 'send-sum' });
@@ -67,7 +70,7 @@ class SubmitView {
   draw() {
     this.review.draw();
     this.tellSum();
-    this.send.disabled = !this.bundle.job;
+    this.send.disabled = !this.bundle.job || Boolean(whyNotSubmit());
   }
 
   tellSum() {

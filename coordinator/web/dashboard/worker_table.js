@@ -7,6 +7,7 @@ import { farm, learnWorker, speed } from './farm_state.js';
 import { steerWorker } from './api.js';
 import { Table } from './table.js';
 import { to } from './router.js';
+import { whyNotWorkers } from './me.js';
 
 const ORDER = { quarantined: 0, draining: 1, active: 2, gone: 3, unknown: 4 };
 const ACTIONS = {
@@ -72,6 +73,8 @@ function actionsCell(td, worker) {
           text: ACTIONS[name].text,
           'aria-label': `${ACTIONS[name].text} ${worker.name}`,
           testid: `worker-${name}`,
+          disabled: Boolean(whyNotWorkers()),
+          title: whyNotWorkers(),
           onclick: () => steer(td.worker, name),
         }),
       ),

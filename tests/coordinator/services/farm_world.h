@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "coordinator/access/authority.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/server.h"
 #include "core/base/hash.h"
@@ -69,7 +70,11 @@ class FarmWorld {
     listen.address = address.empty() ? "127.0.0.1:0" : address;
     auto door = farm::open_door(listen);
     ASSERT_TRUE(door.ok()) << (door ? "" : door.error().message);
-    auto listening = Server::start(std::move(*door), *brain);
+    auto known = Authority::open(brain->store(),
+                                 {.shared_token = door->token, .audit_folder = options.folder});
+    ASSERT_TRUE(known.ok()) << (known ? "" : known.error().message);
+    authority = std::move(*known);
+    auto listening = Server::start(*door, *brain, *authority);
     ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
     server = std::move(*listening);
     connect(server->address());
@@ -90,6 +95,7 @@ class FarmWorld {
   void stop() {
     if (brain) brain->stop();
     server.reset();
+    authority.reset();
     brain.reset();
   }
 
@@ -232,6 +238,7 @@ class FarmWorld {
   std::string token;
   std::string address;
   std::unique_ptr<Brain> brain;
+  std::unique_ptr<Authority> authority;
   std::unique_ptr<Server> server;
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::Jobs::Stub> jobs;

@@ -133,6 +133,19 @@ class TroubledStore final : public JobStore {
   core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
     return read([&] { return store_->doubtful(job, limit); });
   }
+  core::Result<std::vector<StoredToken>> tokens() override { return store_->tokens(); }
+  core::Status add_token(const StoredToken& token) override {
+    return written([&] { return store_->add_token(token); });
+  }
+  core::Status revoke_token(const std::string& id, int64_t revoked_ms) override {
+    return written([&] { return store_->revoke_token(id, revoked_ms); });
+  }
+  core::Status forget_token(const std::string& id) override {
+    return written([&] { return store_->forget_token(id); });
+  }
+  core::Status note_uses(const std::vector<TokenUse>& uses) override {
+    return written([&] { return store_->note_uses(uses); });
+  }
   core::Status add_lines(uint64_t job, const std::vector<StoredLine>& lines) override {
     return written([&] { return store_->add_lines(job, lines); });
   }

@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "coordinator/access/rules.h"
 #include "tests/coordinator/web/web_world.h"
 
 namespace hyades::coordinator {
@@ -57,6 +58,97 @@ TEST_F(Guarded, ASessionOpensWhatTheTokenOpens) {
   EXPECT_EQ(world.client->post("/api/v1/session", "[").status, 401);
 }
 
+/// With an admin's token, and others as tests want them.
+class WithRoles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    world.start();
+    world.farm.token = make(v1::ROLE_ADMIN, "root");
+  }
+  std::string make(v1::Role role, const std::string& name) {
+    std::string text;
+    StoredToken row;
+    const grpc::Status made = world.farm.authority->create(name, role, 0, text, row);
+    EXPECT_TRUE(made.ok()) << made.error_message();
+    id = row.id;
+    return text;
+  }
+  static HttpClient::Headers with(const std::string& token) {
+    return {{"Authorization", "Bearer " + token}};
+  }
+  WebWorld world;
+  std::string id;  ///< of the last token
+};
+
+TEST_F(WithRoles, EachRoleIsRefusedWhatIsAboveIt) {
+  const uint64_t job = world.farm.submit(1);
+  const std::string one = "/api/v1/jobs/" + std::to_string(job);
+  const std::pair<v1::Role, std::string> tokens[] = {
+      {v1::ROLE_VIEWER, make(v1::ROLE_VIEWER, "vera")},
+      {v1::ROLE_SUBMITTER, make(v1::ROLE_SUBMITTER, "sam")},
+      {v1::ROLE_OPERATOR, make(v1::ROLE_OPERATOR, "olga")},
+      {v1::ROLE_WORKER, make(v1::ROLE_WORKER, "node")}};
+  for (const std::string& route : world.web->routes()) {
+    const size_t space = route.find(' ');
+    const Rule& rule = rule_of_route(route);
+    if (route.ends_with("events")) continue;  // they do not end
+    std::string target = route.substr(space + 1);
+    for (const auto& [name, value] : {std::pair("{job}", "999"),
+                                      {"{frame}", "1"},
+                                      {"{worker}", "9"},
+                                      {"{sha256}", "00"},
+                                      {"{path...}", "a"}}) {
+      if (const size_t at = target.find(name); at != std::string::npos) {
+        target.replace(at, std::string(name).size(), value);
+      }
+    }
+    for (const auto& [role, token] : tokens) {
+      const auto response = world.client->send(route.substr(0, space), target, {}, with(token));
+      EXPECT_EQ(response.status == 403, !may(role, rule))
+          << route << " " << role_name(role) << " " << response.status << " " << response.body;
+    }
+    if (rule.least != v1::ROLE_UNSPECIFIED) {
+      EXPECT_EQ(world.client->send(route.substr(0, space), target).status, 401) << route;
+    }
+  }
+  EXPECT_EQ(world.client->post(one + "/cancel", {}, with(tokens[1].second)).status, 403)
+      << "another's job";
+  EXPECT_EQ(world.client->send("DELETE", one, {}, with(tokens[1].second)).status, 403);
+  EXPECT_EQ(world.client->post(one + "/cancel", {}, with(tokens[2].second)).status, 200);
+}
+
+TEST_F(WithRoles, WhoIsSignedInIsToldAndHisSessionEndsWithHisToken) {
+  const std::string text = make(v1::ROLE_SUBMITTER, "alice");
+  const auto signed_in = world.client->post("/api/v1/session", Json({{"token", text}}).dump());
+  ASSERT_EQ(signed_in.status, 204) << signed_in.body;
+  const std::string set = signed_in.headers.at("set-cookie");
+  EXPECT_EQ(set.find(text.substr(16)), std::string::npos);
+  const std::string cookie = set.substr(0, set.find(';'));
+  const auto me = world.client->get("/api/v1/session", {{"Cookie", cookie}});
+  ASSERT_EQ(me.status, 200) << me.body;
+  EXPECT_EQ(Json::parse(me.body),
+            Json({{"guarded", true}, {"role", "submitter"}, {"name", "alice"}, {"token_id", id}}));
+  // Another's id under the same signature.
+  std::string forged = cookie;
+  forged.replace(forged.find(id), id.size(), world.farm.token.substr(7, 8));
+  EXPECT_EQ(world.client->get("/api/v1/session", {{"Cookie", forged}}).status, 401);
+  StoredToken row;
+  ASSERT_TRUE(world.farm.authority->revoke(id, row).ok());
+  EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", cookie}}).status, 401);
+}
+
+TEST_F(WithRoles, LiveReadersAreSentAwayWithTheirToken) {
+  const std::string viewer = make(v1::ROLE_VIEWER, "vera");
+  HttpClient::Events events(*world.client, "/api/v1/events", with(viewer));
+  ASSERT_EQ(events.next().name, "snapshot");
+  StoredToken row;
+  ASSERT_TRUE(world.farm.authority->revoke(id, row).ok());
+  for (auto event = events.next(); !event.name.empty(); event = events.next()) {
+  }
+  HttpClient::Events again(*world.client, "/api/v1/events", with(viewer));
+  EXPECT_EQ(again.status(), 401);
+}
+
 TEST(Gatekeeper, PagesOfOtherSitesMayNotSteer) {
   WebWorld world;
   world.start();
@@ -87,7 +179,7 @@ TEST(Gatekeeper, BeyondThisMachineOnlyWithTlsAndToken) {
   farm.start();
   farm::Listen listen;
   listen.address = "0.0.0.0:0";
-  EXPECT_FALSE(WebServer::start(listen, *farm.brain).ok());
+  EXPECT_FALSE(WebServer::start(listen, *farm.brain, *farm.authority).ok());
 }
 
 TEST(WebServer, AnAddressThatIsTakenIsTold) {
@@ -95,7 +187,7 @@ TEST(WebServer, AnAddressThatIsTakenIsTold) {
   world.start();
   farm::Listen listen;
   listen.address = world.web->url().substr(7);
-  const auto second = WebServer::start(listen, *world.farm.brain);
+  const auto second = WebServer::start(listen, *world.farm.brain, *world.farm.authority);
   ASSERT_FALSE(second.ok());
   EXPECT_NE(second.error().message.find(listen.address), std::string::npos);
 }

@@ -120,9 +120,12 @@ HttpClient::Response HttpClient::send(const std::string& method, const std::stri
   return read_response(exchange(request + "\r\n" + body));
 }
 
-HttpClient::Events::Events(const HttpClient& client, const std::string& target)
+HttpClient::Events::Events(const HttpClient& client, const std::string& target,
+                           const Headers& headers)
     : socket_(client.connect()) {
-  send_all(socket_, "GET " + target + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  std::string request = "GET " + target + " HTTP/1.1\r\nHost: localhost\r\n";
+  for (const auto& [name, value] : headers) request += name + ": " + value + "\r\n";
+  send_all(socket_, request + "\r\n");
   size_t end = std::string::npos;
   while ((end = waiting_.find("\r\n\r\n")) == std::string::npos && more()) {
   }

@@ -36,7 +36,7 @@ class HttpClient {
   /// A stream of events, for 20 seconds at most a wait.
   class Events {
    public:
-    Events(const HttpClient& client, const std::string& target);
+    Events(const HttpClient& client, const std::string& target, const Headers& headers = {});
     ~Events();
     Events(const Events&) = delete;
     Events& operator=(const Events&) = delete;

@@ -121,6 +121,7 @@ TEST_F(OpenApi, AnswersHaveTheFormThatItGives) {
   ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
   const std::string one = "/api/v1/jobs/" + std::to_string(job);
   expect_as_told("GET", "/api/v1/info", "/api/v1/info");
+  expect_as_told("GET", "/api/v1/session", "/api/v1/session");
   expect_as_told("GET", "/api/v1/jobs", "/api/v1/jobs?ended=true");
   expect_as_told("GET", "/api/v1/jobs/{job}", one);
   expect_as_told("GET", "/api/v1/jobs/{job}/logs", one + "/logs");

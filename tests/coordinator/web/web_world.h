@@ -21,7 +21,7 @@ class WebWorld {
     farm.start();
     farm::Listen listen = farm.how;
     listen.address = "127.0.0.1:0";
-    auto started = WebServer::start(listen, *farm.brain);
+    auto started = WebServer::start(listen, *farm.brain, *farm.authority);
     ASSERT_TRUE(started.ok()) << (started ? "" : started.error().message);
     web = std::move(*started);
     client = std::make_unique<HttpClient>(web->url());

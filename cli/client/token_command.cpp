@@ -1,0 +1,290 @@
+// `hyades token`: who may come in. Asked of the coordinator, or, with --data, of its folder while
+// it does not run: that is how the first admin comes by a token.
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cli/client/client_app.h"
+#include "cli/client/commands.h"
+#include "cli/client/show.h"
+#include "coordinator/access/token.h"
+#include "core/base/duration.h"
+#include "farm/small_file.h"
+
+namespace hyades::cli {
+namespace {
+
+struct Options {
+  std::string data;  ///< the coordinator's folder; empty: ask the coordinator
+  std::string name;
+  std::string role;
+  std::string expires = "365d";  ///< or never
+  std::string output;
+  std::string id;
+  bool json = false;
+};
+
+/// Where tokens are kept, whichever way they are reached.
+class Book {
+ public:
+  virtual ~Book() = default;
+  virtual Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
+                         std::string& secret) = 0;
+  virtual Outcome list(v1::ListTokensResponse& tokens) = 0;
+  virtual Outcome revoke(const std::string& id, v1::Token& token) = 0;
+};
+
+class FarBook final : public Book {
+ public:
+  explicit FarBook(std::unique_ptr<FarmClient> client) : client_(std::move(client)) {}
+  Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
+                 std::string& secret) override {
+    v1::CreateTokenResponse response;
+    Outcome failed = client_->create_token(request, response);
+    token = response.token();
+    secret = response.secret();
+    return failed;
+  }
+  Outcome list(v1::ListTokensResponse& tokens) override { return client_->tokens(tokens); }
+  Outcome revoke(const std::string& id, v1::Token& token) override {
+    v1::RevokeTokenResponse response;
+    Outcome failed = client_->revoke_token(id, response);
+    token = response.token();
+    return failed;
+  }
+
+ private:
+  const std::unique_ptr<FarmClient> client_;
+};
+
+class NearBook final : public Book {
+ public:
+  explicit NearBook(std::unique_ptr<coordinator::JobStore> store) : store_(std::move(store)) {}
+  Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
+                 std::string& secret) override {
+    const auto fresh = coordinator::make_token(
+        request.name(), request.role(), request.lifetime_ms(), coordinator::token_clock_ms());
+    if (!fresh) return Failure{kBadArguments, fresh.error().message};
+    if (const auto added = store_->add_token(fresh->row); !added) {
+      return Failure{kFailed, added.error().message};
+    }
+    token = coordinator::to_wire(fresh->row);
+    secret = fresh->text;
+    return std::nullopt;
+  }
+  Outcome list(v1::ListTokensResponse& tokens) override {
+    const auto rows = store_->tokens();
+    if (!rows) return Failure{kFailed, rows.error().message};
+    for (const auto& row : *rows) *tokens.add_tokens() = coordinator::to_wire(row);
+    return std::nullopt;
+  }
+  Outcome revoke(const std::string& id, v1::Token& token) override {
+    const auto done = store_->revoke_token(id, coordinator::token_clock_ms());
+    if (!done) return Failure{kFailed, done.error().message};
+    v1::ListTokensResponse all;
+    if (Outcome failed = list(all)) return failed;
+    for (const v1::Token& one : all.tokens()) {
+      if (one.id() == id) token = one;
+    }
+    if (token.id() == id) return std::nullopt;
+    return Failure{kUnknown, fmt::format("there is no token '{}'", id)};
+  }
+
+ private:
+  const std::unique_ptr<coordinator::JobStore> store_;
+};
+
+std::unique_ptr<Book> open_book(const ClientApp& app, const Options& options) {
+  if (options.data.empty()) {
+    auto client = app.connect();
+    return client ? std::make_unique<FarBook>(std::move(client)) : nullptr;
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(options.data, failed);
+  auto store = coordinator::open_sqlite_job_store(options.data + "/state.db");
+  if (store) return std::make_unique<NearBook>(std::move(*store));
+  app.report({kBadArguments, store.error().message + " (--data is for a coordinator that does not "
+                                                     "run; without it the running one is asked)"});
+  return nullptr;
+}
+
+std::string expiry_error(const std::string& text) {
+  if (text == "never") return {};
+  const auto seconds = core::parse_duration(text);
+  if (!seconds) return seconds.error().message + ", or never";
+  return *seconds >= 1 ? std::string() : text + ": expected at least a second, or never";
+}
+
+std::string moment(int64_t ms, const char* none) { return ms == 0 ? none : format_time(ms); }
+
+std::string state_of(const v1::Token& token) {
+  if (token.revoked_ms() != 0) return "revoked";
+  const bool over = token.expires_ms() != 0 && token.expires_ms() <= coordinator::token_clock_ms();
+  return over ? "expired" : "in use";
+}
+
+/// The token itself goes to standard output or into a file, what is said of it to standard error.
+int hand_out(const ClientApp& app, const Options& options, const v1::Token& token,
+             const std::string& secret) {
+  if (!options.output.empty()) {
+    if (const auto written = farm::write_secret(options.output, secret + "\n"); !written) {
+      return app.report({kFailed, fmt::format("{} (the token {} is made: revoke it)",
+                                              written.error().message, token.id())});
+    }
+  }
+  if (options.json) {
+    Json json = to_json(token);
+    if (options.output.empty()) json["secret"] = secret;
+    print_json(json);
+    return kDone;
+  }
+  if (options.output.empty()) std::printf("%s\n", secret.c_str());
+  std::fprintf(
+      stderr, "token %s of %s, %s, expires: %s%s\n", token.id().c_str(),
+      printable(token.name()).c_str(), farm::role_name(token.role()).c_str(),
+      moment(token.expires_ms(), "never").c_str(),
+      options.output.empty() ? "; it is shown only now" : (", is in " + options.output).c_str());
+  return kDone;
+}
+
+int create(const ClientApp& app, const Options& options, Book& book) {
+  v1::CreateTokenRequest request;
+  request.set_name(options.name);
+  request.set_role(farm::role_of(options.role).value_or(v1::ROLE_UNSPECIFIED));
+  if (options.expires != "never") {
+    // What is no time is told by the option's check.
+    request.set_lifetime_ms(static_cast<int64_t>(1e3 * *core::parse_duration(options.expires)));
+  }
+  v1::Token token;
+  std::string secret;
+  if (auto failure = book.create(request, token, secret)) return app.report(*failure);
+  return hand_out(app, options, token, secret);
+}
+
+int list(const ClientApp& app, const Options& options, Book& book) {
+  v1::ListTokensResponse response;
+  if (auto failure = book.list(response)) return app.report(*failure);
+  if (options.json) {
+    Json all = Json::array();
+    for (const v1::Token& token : response.tokens()) all.push_back(to_json(token));
+    print_json(all);
+    return kDone;
+  }
+  if (response.tokens().empty()) {
+    std::printf("no tokens: make an admin's with 'hyades token create --role admin --name NAME'\n");
+    return kDone;
+  }
+  std::vector<std::vector<std::string>> rows = {
+      {"id", "role", "name", "state", "made", "expires", "last used"}};
+  for (const v1::Token& token : response.tokens()) {
+    rows.push_back({token.id(), farm::role_name(token.role()), printable(token.name()),
+                    state_of(token), format_time(token.created_ms()),
+                    moment(token.expires_ms(), "never"), moment(token.used_ms(), "never")});
+  }
+  print_table(rows);
+  return kDone;
+}
+
+int revoke(const ClientApp& app, const Options& options, Book& book) {
+  v1::Token token;
+  if (auto failure = book.revoke(options.id, token)) return app.report(*failure);
+  if (options.json) {
+    print_json(to_json(token));
+  } else {
+    std::printf("token %s (%s, %s) is revoked\n", token.id().c_str(),
+                farm::role_name(token.role()).c_str(), printable(token.name()).c_str());
+  }
+  return kDone;
+}
+
+/// Another token of the same name and role; then the old one goes.
+int rotate(const ClientApp& app, Options options, Book& book) {
+  v1::ListTokensResponse all;
+  if (auto failure = book.list(all)) return app.report(*failure);
+  for (const v1::Token& old : all.tokens()) {
+    if (old.id() != options.id) continue;
+    options.name = old.name();
+    options.role = farm::role_name(old.role());
+    if (const int status = create(app, options, book); status != kDone) return status;
+    v1::Token gone;
+    if (auto failure = book.revoke(options.id, gone)) return app.report(*failure);
+    return kDone;
+  }
+  return app.report({kUnknown, fmt::format("there is no token '{}'", options.id)});
+}
+
+int whoami(const ClientApp& app, const Options& options) {
+  const auto client = app.connect();
+  if (!client) return kBadArguments;
+  v1::WhoAmIResponse me;
+  if (auto failure = client->whoami(me)) return app.report(*failure);
+  if (options.json) {
+    print_json({{"guarded", me.guarded()},
+                {"role", farm::role_name(me.role())},
+                {"name", me.name()},
+                {"token_id", me.token_id()}});
+  } else if (!me.guarded()) {
+    std::printf("the farm asks for no token: everybody may do everything\n");
+  } else {
+    std::printf("%s, %s (token %s)\n",
+                me.name().empty() ? "nobody in particular" : me.name().c_str(),
+                farm::role_name(me.role()).c_str(), me.token_id().c_str());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int token_command(int argc, char** argv) {
+  ClientApp client("token", "Makes, lists and revokes the tokens that open the farm.");
+  CLI::App& app = client.app();
+  Options options;
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.add_option("--data", options.data,
+                 "folder of a coordinator that does not run: its tokens, without asking it");
+  app.add_flag("--json", options.json, "print JSON");
+  const auto fresh = [&](CLI::App& verb) {
+    verb.add_option("--expires", options.expires, "after a time such as 12h or 30d; or never")
+        ->check(expiry_error)
+        ->capture_default_str();
+    verb.add_option("--output", options.output,
+                    "file to put it in, which nobody else may read (default: it is printed)");
+  };
+  CLI::App* made = app.add_subcommand("create", "make a token");
+  made->add_option("--role", options.role, "viewer, submitter, operator, worker or admin")
+      ->check(CLI::IsMember({"viewer", "submitter", "operator", "worker", "admin"}))
+      ->required();
+  made->add_option("--name", options.name, "whose it is: jobs submitted with it are this owner's")
+      ->required();
+  fresh(*made);
+  const CLI::App* listed = app.add_subcommand("list", "all tokens, and when they were last used");
+  CLI::App* revoked =
+      app.add_subcommand("revoke", "a token is of no use from now on, for open streams too");
+  revoked->add_option("id", options.id, "its id, as list has it")->required();
+  CLI::App* rotated =
+      app.add_subcommand("rotate", "make another of the same name and role, and revoke this one");
+  rotated->add_option("id", options.id, "its id, as list has it")->required();
+  fresh(*rotated);
+  const CLI::App* me = app.add_subcommand("whoami", "what one's own token is");
+  app.footer(
+      "examples:\n"
+      "  hyades token create --data /var/lib/hyades --role admin --name ada --output admin-token\n"
+      "  hyades token create --role submitter --name alice --expires 30d --output alice-token\n"
+      "  hyades token revoke 9f3a01c2\n"
+      "docs/safety.md tells what each role may do");
+  if (const auto status = client.parse(argc, argv)) return *status;
+  if (me->parsed()) return whoami(client, options);
+  const auto book = open_book(client, options);
+  if (!book) return kBadArguments;
+  if (made->parsed()) return create(client, options, *book);
+  if (listed->parsed()) return list(client, options, *book);
+  return revoked->parsed() ? revoke(client, options, *book) : rotate(client, options, *book);
+}
+
+}  // namespace hyades::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "hyades/v1/admin.pb.h"
+
+namespace hyades::coordinator {
+
+/// Caller::token_id of the token that --token-file gives, which is one for all.
+inline constexpr const char* kSharedToken = "file";
+
+/// Who calls.
+struct Caller {
+  std::string token_id;  ///< empty: the farm asks for none
+  std::string name;      ///< of the token; empty: nobody in particular
+  v1::Role role = v1::ROLE_UNSPECIFIED;
+  std::string address;  ///< where the call comes from, for people
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,97 @@
+#include "coordinator/access/token.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/base/hash.h"
+#include "core/base/random_id.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr std::string_view kPrefix = "hyades-";
+constexpr size_t kIdDigits = 8;
+constexpr size_t kSecretDigits = 64;
+constexpr size_t kLongestName = 64;
+constexpr int64_t kLongestLifetimeMs = int64_t{100} * 366 * 24 * 3600 * 1000;
+
+bool is_name(const std::string& text) {
+  return !text.empty() && text.size() <= kLongestName &&
+         std::all_of(text.begin(), text.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  std::string_view("-_.@").find(c) != std::string_view::npos;
+         });
+}
+
+}  // namespace
+
+core::Status check_token(const std::string& name, v1::Role role, int64_t lifetime_ms) {
+  if (!is_name(name)) {
+    return core::Error{
+        "name: expected 1 to 64 letters, digits, '-', '_', '.' or '@' (whose token it is)"};
+  }
+  if (role < v1::ROLE_VIEWER || role > v1::ROLE_ADMIN) {
+    return core::Error{"role: expected viewer, submitter, operator, worker or admin"};
+  }
+  if (lifetime_ms < 0 || lifetime_ms > kLongestLifetimeMs) {
+    return core::Error{"expires: expected a time of at most a hundred years, or never"};
+  }
+  return {};
+}
+
+core::Result<FreshToken> make_token(const std::string& name, v1::Role role, int64_t lifetime_ms,
+                                    int64_t now_ms) {
+  if (core::Status sane = check_token(name, role, lifetime_ms); !sane) return sane.error();
+  std::string digits;
+  while (digits.size() < kIdDigits + kSecretDigits) {
+    const auto more = core::random_id();
+    if (!more) return more.error();
+    digits += *more;
+  }
+  FreshToken token;
+  token.row.id = digits.substr(0, kIdDigits);
+  token.text = std::string(kPrefix) + token.row.id + "-" + digits.substr(kIdDigits, kSecretDigits);
+  token.row.name = name;
+  token.row.role = role;
+  token.row.hash = token_hash(token.text);
+  token.row.created_ms = now_ms;
+  token.row.expires_ms = lifetime_ms == 0 ? 0 : now_ms + lifetime_ms;
+  return token;
+}
+
+std::optional<std::string> token_id(std::string_view text) {
+  if (text.size() != kPrefix.size() + kIdDigits + 1 + kSecretDigits || !text.starts_with(kPrefix) ||
+      text[kPrefix.size() + kIdDigits] != '-') {
+    return std::nullopt;
+  }
+  return std::string(text.substr(kPrefix.size(), kIdDigits));
+}
+
+std::string token_hash(std::string_view text) {
+  const core::Sha256 digest = core::sha256(text);
+  return {digest.begin(), digest.end()};
+}
+
+bool is_live(const StoredToken& token, int64_t now_ms) {
+  return token.revoked_ms == 0 && (token.expires_ms == 0 || now_ms < token.expires_ms);
+}
+
+v1::Token to_wire(const StoredToken& token) {
+  v1::Token wire;
+  wire.set_id(token.id);
+  wire.set_name(token.name);
+  wire.set_role(static_cast<v1::Role>(token.role));
+  wire.set_created_ms(token.created_ms);
+  wire.set_expires_ms(token.expires_ms);
+  wire.set_used_ms(token.used_ms);
+  wire.set_revoked_ms(token.revoked_ms);
+  return wire;
+}
+
+int64_t token_clock_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace hyades::coordinator

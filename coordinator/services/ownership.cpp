@@ -1,0 +1,37 @@
+#include "coordinator/services/ownership.h"
+
+#include <climits>
+
+#include <fmt/format.h>
+
+#include "coordinator/access/rules.h"
+
+namespace hyades::coordinator {
+namespace {
+
+bool steers_all(const Caller& caller) {
+  return caller.role == v1::ROLE_OPERATOR || caller.role == v1::ROLE_ADMIN;
+}
+
+}  // namespace
+
+grpc::Status may_steer(Brain& brain, const Caller& caller, uint64_t job) {
+  if (steers_all(caller)) return grpc::Status::OK;
+  v1::GetJobResponse got;
+  if (const grpc::Status known = brain.get(job, INT32_MAX, got); !known.ok()) return known;
+  return allow_steering(caller, job, got.job().owner());
+}
+
+grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request) {
+  if (request.owner().empty()) {
+    request.set_owner(caller.name.empty() ? request.login() : caller.name);
+  } else if (request.owner() != caller.name && !steers_all(caller)) {
+    return {grpc::StatusCode::PERMISSION_DENIED,
+            fmt::format("this token ({}) is that of {}: only an operator submits for others, {} "
+                        "here (leave out the owner)",
+                        caller.token_id, caller.name, request.owner())};
+  }
+  return grpc::Status::OK;
+}
+
+}  // namespace hyades::coordinator

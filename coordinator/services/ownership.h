@@ -1,0 +1,18 @@
+#pragma once
+
+#include <grpcpp/support/status.h>
+
+#include "coordinator/access/caller.h"
+#include "coordinator/brain/brain.h"
+
+namespace hyades::coordinator {
+
+/// Whether the caller may steer that job: its owner may, and operators. NOT_FOUND, or
+/// PERMISSION_DENIED. May wait for the store.
+grpc::Status may_steer(Brain& brain, const Caller& caller, uint64_t job);
+
+/// Puts in whose job it will be: the token's name, or, where that is none, the login. Another owner
+/// is for operators: PERMISSION_DENIED.
+grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request);
+
+}  // namespace hyades::coordinator

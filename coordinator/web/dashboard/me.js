@@ -1,0 +1,43 @@
+// Who is signed in, and what his role lets him do. The coordinator decides; buttons that it would refuse say so before.
+import * as api from './api.js';
+
+/** As GET api/v1/session has it. Until that is known everything may be tried. */
+export const me = { guarded: false, role: 'admin', name: '', token_id: '' };
+
+const RANKS = { viewer: 1, submitter: 2, operator: 3, admin: 4 };
+const listeners = new Set();
+const rank = () => RANKS[me.role] ?? 0;
+
+/** Calls `listener` when somebody else is signed in. */
+export function onMe(listener) {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+/** Asks who is signed in. Where nobody is, the page is told to sign in by its other calls. */
+export async function learnMe() {
+  const before = `${me.role} ${me.name} ${me.guarded}`;
+  try {
+    Object.assign(me, await api.session());
+  } catch {
+    return;
+  }
+  if (before === `${me.role} ${me.name} ${me.guarded}`) return;
+  for (const listener of listeners) listener();
+}
+
+/** Why the person may not submit jobs; empty: he may. */
+export const whyNotSubmit = () => (rank() >= RANKS.submitter ? '' : `Needs the role submitter: yours is ${me.role}.`);
+
+/** Why he may not steer workers. */
+export const whyNotWorkers = () => (rank() >= RANKS.operator ? '' : `Needs the role operator: yours is ${me.role}.`);
+
+/** Why he may not steer this job. */
+export function whyNotJob(job) {
+  if (rank() >= RANKS.operator) return '';
+  if (rank() < RANKS.submitter) return whyNotSubmit();
+  return job.owner === me.name ? '' : `It belongs to ${job.owner || 'nobody in particular'}: its owner and operators may.`;
+}
+
+/** "alice, submitter"; empty where the farm asks for no token. */
+export const whoAmI = () => (me.guarded ? [me.name, me.role].filter(Boolean).join(', ') : '');

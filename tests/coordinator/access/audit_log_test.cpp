@@ -1,0 +1,120 @@
+// Who did what: lines that are only added to.
+#include "coordinator/access/audit_log.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "tests/support/temp_folder.h"
+
+namespace hyades::coordinator {
+namespace {
+
+const Caller kAlice = {"9f3a01c2", "alice", v1::ROLE_SUBMITTER, "ipv4:10.0.0.7:4312"};
+
+class Audit : public ::testing::Test {
+ protected:
+  void SetUp() override { open({.folder = folder.path().string()}); }
+  void open(const AuditOptions& options) {
+    log.reset();
+    auto opened = AuditLog::open(options);
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+    log = std::move(*opened);
+  }
+  std::vector<v1::AuditEntry> entries() {
+    log->flush();
+    std::vector<v1::AuditEntry> all;
+    auto reader = log->read();
+    while (auto entry = reader.next()) all.push_back(std::move(*entry));
+    return all;
+  }
+  test::TempFolder folder;
+  std::unique_ptr<AuditLog> log;
+};
+
+TEST_F(Audit, WhatIsNotedIsReadAgain) {
+  log->note(kAlice, "job.cancel", "7", grpc::Status::OK, "job: 7");
+  log->note(kAlice, "job.delete", "8", {grpc::StatusCode::NOT_FOUND, "there is no job 8\n"}, "");
+  open({.folder = folder.path().string()});
+  const auto all = entries();
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].name(), "alice");
+  EXPECT_EQ(all[0].token_id(), "9f3a01c2");
+  EXPECT_EQ(all[0].role(), v1::ROLE_SUBMITTER);
+  EXPECT_EQ(all[0].address(), "ipv4:10.0.0.7:4312");
+  EXPECT_EQ(all[0].deed(), "job.cancel");
+  EXPECT_EQ(all[0].target(), "7");
+  EXPECT_EQ(all[0].result(), "ok");
+  EXPECT_EQ(all[0].detail(), "job: 7");
+  EXPECT_GT(all[0].time_ms(), 0);
+  EXPECT_EQ(all[1].result(), "not_found");
+  EXPECT_EQ(all[1].detail(), "there is no job 8\n") << "a line is a line";
+  const auto mode = std::filesystem::status(folder.file("audit.jsonl")).permissions();
+  EXPECT_EQ(mode, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+TEST_F(Audit, FilesAreRotatedAndTheOldestGoes) {
+  open({.folder = folder.path().string(), .most_bytes = 2000, .most_files = 3});
+  for (int i = 0; i < 60; ++i) {
+    log->note(kAlice, "job.cancel", std::to_string(i), grpc::Status::OK, {});
+    log->flush();
+  }
+  const auto all = entries();
+  ASSERT_FALSE(all.empty());
+  EXPECT_LT(all.size(), 60U);
+  for (size_t i = 1; i < all.size(); ++i) {
+    EXPECT_EQ(std::stoi(all[i].target()), std::stoi(all[i - 1].target()) + 1);
+  }
+  EXPECT_EQ(all.back().target(), "59");
+  EXPECT_TRUE(std::filesystem::exists(folder.file("audit.2.jsonl")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("audit.3.jsonl")));
+  for (const char* name : {"audit.jsonl", "audit.1.jsonl", "audit.2.jsonl"}) {
+    EXPECT_LE(std::filesystem::file_size(folder.file(name)), 2000U) << name;
+  }
+}
+
+TEST_F(Audit, ACutOrForeignLineSpoilsNoOther) {
+  log->note(kAlice, "job.pause", "1", grpc::Status::OK, {});
+  log.reset();
+  std::ofstream(folder.file("audit.jsonl"), std::ios::app)
+      << "garbage\n[1]\n{\"time_ms\": \"x\", \"deed\": 5}\n"
+      << std::string(100'000, 'x') << "\n"
+      << "{\"time_ms\": 12, \"deed\": \"job.re";
+  open({.folder = folder.path().string()});
+  log->note(kAlice, "job.resume", "1", grpc::Status::OK, {});
+  const auto all = entries();
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].deed(), "job.pause");
+  EXPECT_EQ(all[1].deed(), "job.resume");
+}
+
+TEST_F(Audit, RefusalsThatComeThickAndFastAreCounted) {
+  const grpc::Status why = {grpc::StatusCode::UNAUTHENTICATED, "no token"};
+  const Caller stranger = {{}, {}, v1::ROLE_UNSPECIFIED, "ipv4:10.0.0.9:1"};
+  for (int i = 0; i < 1000; ++i) log->refuse(stranger, "job.list", why);
+  log->refuse({{}, {}, v1::ROLE_UNSPECIFIED, "ipv4:10.0.0.8:1"}, "job.list", why);
+  open({.folder = folder.path().string()});
+  uint64_t times = 0;
+  const auto all = entries();
+  for (const v1::AuditEntry& entry : all) times += std::max<uint64_t>(entry.times(), 1);
+  EXPECT_EQ(times, 1001U) << "none is forgotten";
+  EXPECT_LT(all.size(), 20U);
+}
+
+TEST_F(Audit, AFileThatCannotBePutAsideGrows) {
+  open({.folder = folder.path().string(), .most_bytes = 400, .most_files = 2});
+  log->note(kAlice, "job.cancel", "1", grpc::Status::OK, {});
+  log->flush();
+  std::filesystem::create_directories(folder.file("audit.1.jsonl/in the way"));
+  for (int i = 0; i < 30; ++i) log->note(kAlice, "job.cancel", "2", grpc::Status::OK, {});
+  EXPECT_EQ(entries().size(), 31U);
+}
+
+TEST(AuditLog, AFolderThatIsNotThereIsTold) {
+  EXPECT_FALSE(AuditLog::open({.folder = "/nonexistent/here"}).ok());
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

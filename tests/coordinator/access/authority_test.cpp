@@ -1,0 +1,188 @@
+// Tokens: what is kept of them, and when they open the farm.
+#include "coordinator/access/authority.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <iterator>
+#include <thread>
+
+#include "coordinator/access/token.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Tokens : public ::testing::Test {
+ protected:
+  void SetUp() override { open(); }
+  void open(const std::string& shared = {}) {
+    close();
+    auto opened = open_sqlite_job_store(folder.file("state.db"));
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+    store = std::move(*opened);
+    auto known = Authority::open(*store, {.shared_token = shared});
+    ASSERT_TRUE(known.ok()) << known.error().message;
+    authority = std::move(*known);
+  }
+  void close() {
+    authority.reset();
+    store.reset();
+  }
+  /// Its text; its id is in `id`.
+  std::string make(v1::Role role, const std::string& name, int64_t lifetime_ms = 0) {
+    std::string text;
+    StoredToken row;
+    const grpc::Status made = authority->create(name, role, lifetime_ms, text, row);
+    EXPECT_TRUE(made.ok()) << made.error_message();
+    id = row.id;
+    return text;
+  }
+  grpc::Status show(const std::string& text) {
+    caller = {};
+    return authority->admit(text.empty() ? text : "Bearer " + text, caller);
+  }
+
+  test::TempFolder folder;
+  std::unique_ptr<JobStore> store;
+  std::unique_ptr<Authority> authority;
+  std::string id;
+  Caller caller;
+};
+
+TEST_F(Tokens, WithoutAnyTheFarmIsOpen) {
+  EXPECT_FALSE(authority->guarded());
+  EXPECT_TRUE(show("").ok());
+  EXPECT_EQ(caller.role, v1::ROLE_ADMIN);
+  EXPECT_TRUE(show("a-token-of-another-farm").ok());
+}
+
+TEST_F(Tokens, OfThemOnlyAHashIsKept) {
+  const std::string text = make(v1::ROLE_ADMIN, "ada");
+  EXPECT_EQ(text.size(), 80U);
+  const std::string secret = text.substr(16);
+  close();
+  for (const char* part : {"state.db", "state.db-wal"}) {
+    std::ifstream file(folder.file(part), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_EQ(bytes.find(secret.substr(0, 20)), std::string::npos) << part;
+  }
+  open();
+  ASSERT_EQ(authority->tokens().size(), 1U);
+  EXPECT_EQ(authority->tokens()[0].hash, token_hash(text));
+}
+
+TEST_F(Tokens, TellWhoCalls) {
+  const std::string ada = make(v1::ROLE_ADMIN, "ada");
+  const std::string bob = make(v1::ROLE_SUBMITTER, "bob");
+  EXPECT_TRUE(show(bob).ok());
+  EXPECT_EQ(caller.name, "bob");
+  EXPECT_EQ(caller.role, v1::ROLE_SUBMITTER);
+  EXPECT_EQ(caller.token_id, id);
+  std::string forged = bob;
+  forged.back() = forged.back() == '0' ? '1' : '0';
+  for (const std::string& wrong :
+       {std::string(), forged, bob.substr(1), bob + " ", ada.substr(0, 16) + bob.substr(16),
+        std::string("hyades-00000000-") + std::string(64, '0')}) {
+    EXPECT_EQ(show(wrong).error_code(), grpc::StatusCode::UNAUTHENTICATED) << wrong;
+  }
+  EXPECT_EQ(authority->admit("Basic " + bob, caller).error_code(),
+            grpc::StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(Tokens, RevokedOrExpiredTheyOpenNothingMore) {
+  make(v1::ROLE_ADMIN, "ada");
+  const std::string short_lived = make(v1::ROLE_VIEWER, "eve", 150);
+  EXPECT_TRUE(show(short_lived).ok());
+  const std::string text = make(v1::ROLE_VIEWER, "bob");
+  StoredToken row;
+  ASSERT_TRUE(authority->revoke(id, row).ok());
+  EXPECT_NE(show(text).error_message().find("revoked"), std::string::npos);
+  std::this_thread::sleep_for(200ms);
+  EXPECT_NE(show(short_lived).error_message().find("expired"), std::string::npos);
+  open();
+  EXPECT_EQ(show(text).error_code(), grpc::StatusCode::UNAUTHENTICATED) << "after a restart, too";
+  EXPECT_EQ(show(short_lived).error_code(), grpc::StatusCode::UNAUTHENTICATED);
+  EXPECT_EQ(authority->revoke("00000000", row).error_code(), grpc::StatusCode::NOT_FOUND);
+}
+
+TEST_F(Tokens, WhoStaysIsSentAwayAtOnce) {
+  make(v1::ROLE_ADMIN, "ada");
+  Caller eve;
+  Caller bob;
+  ASSERT_TRUE(authority->admit("Bearer " + make(v1::ROLE_VIEWER, "eve", 200), eve).ok());
+  ASSERT_TRUE(authority->admit("Bearer " + make(v1::ROLE_VIEWER, "bob"), bob).ok());
+  std::atomic<int> eves{0};
+  std::atomic<int> bobs{0};
+  const auto first = authority->visit(eve, [&](const grpc::Status&) { ++eves; });
+  const auto second = authority->visit(bob, [&](const grpc::Status&) { ++bobs; });
+  auto third = authority->visit(bob, [&](const grpc::Status&) { ++bobs; });
+  third.reset();
+  for (int i = 0; i < 2000 && eves == 0; ++i) std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(eves, 1) << "nobody asks for anything while it expires";
+  EXPECT_EQ(bobs, 0);
+  StoredToken row;
+  ASSERT_TRUE(authority->revoke(id, row).ok());
+  EXPECT_EQ(bobs, 1);
+  const auto late = authority->visit(bob, [&](const grpc::Status& why) {
+    EXPECT_EQ(why.error_code(), grpc::StatusCode::UNAUTHENTICATED);
+    ++bobs;
+  });
+  EXPECT_EQ(bobs, 2) << "who comes between is told at once";
+}
+
+TEST_F(Tokens, TheFirstIsAnAdminsAndShutsOthersOut) {
+  Caller nobody;
+  ASSERT_TRUE(authority->admit("", nobody).ok());
+  bool gone = false;
+  const auto visit = authority->visit(nobody, [&](const grpc::Status&) { gone = true; });
+  std::string text;
+  StoredToken row;
+  EXPECT_EQ(authority->create("bob", v1::ROLE_SUBMITTER, 0, text, row).error_code(),
+            grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_FALSE(gone);
+  make(v1::ROLE_ADMIN, "ada");
+  EXPECT_TRUE(gone);
+  EXPECT_EQ(show("").error_code(), grpc::StatusCode::UNAUTHENTICATED);
+  ASSERT_TRUE(authority->revoke(id, row).ok());
+  EXPECT_TRUE(authority->guarded()) << "to revoke the last one opens nothing";
+}
+
+TEST_F(Tokens, OneForAllIsAnAdmins) {
+  open("one-token-for-all-of-us");
+  EXPECT_TRUE(authority->guarded());
+  EXPECT_TRUE(show("one-token-for-all-of-us").ok());
+  EXPECT_EQ(caller.role, v1::ROLE_ADMIN);
+  EXPECT_EQ(caller.token_id, kSharedToken);
+  EXPECT_FALSE(show("one-token-for-all-of-u").ok());
+  const std::string bob = make(v1::ROLE_SUBMITTER, "bob");
+  EXPECT_TRUE(show(bob).ok());
+  EXPECT_EQ(caller.name, "bob");
+}
+
+TEST_F(Tokens, NonsenseIsNoToken) {
+  std::string text;
+  StoredToken row;
+  for (const std::string& name :
+       {std::string(), std::string("a b"), std::string(65, 'a'), std::string("a\nb")}) {
+    EXPECT_EQ(authority->create(name, v1::ROLE_ADMIN, 0, text, row).error_code(),
+              grpc::StatusCode::INVALID_ARGUMENT);
+  }
+  EXPECT_FALSE(authority->create("a", v1::ROLE_UNSPECIFIED, 0, text, row).ok());
+  EXPECT_FALSE(authority->create("a", static_cast<v1::Role>(9), 0, text, row).ok());
+  EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, -1, text, row).ok());
+  EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, INT64_MAX, text, row).ok());
+}
+
+TEST_F(Tokens, WhenTheyWereUsedIsKept) {
+  const std::string text = make(v1::ROLE_ADMIN, "ada");
+  ASSERT_TRUE(show(text).ok());
+  open();
+  EXPECT_GT(authority->tokens()[0].used_ms, 0);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

@@ -1,0 +1,129 @@
+// One table says who may do what; nothing that the coordinator answers is missing in it.
+#include "coordinator/access/rules.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include <google/protobuf/descriptor.h>
+#include <yaml-cpp/yaml.h>
+
+#include "hyades/v1/admin.pb.h"
+#include "hyades/v1/assets.pb.h"
+#include "hyades/v1/farm.pb.h"
+#include "hyades/v1/jobs.pb.h"
+#include "hyades/v1/work.pb.h"
+
+namespace hyades::coordinator {
+namespace {
+
+TEST(Rules, EveryMethodOfTheWireHasOne) {
+  std::set<std::string> known;
+  for (const Rule& rule : all_rules()) {
+    if (*rule.method != '\0') {
+      EXPECT_TRUE(known.insert(rule.method).second) << rule.method << " stands twice";
+    }
+  }
+  std::set<std::string> methods;
+  for (const auto* file : {v1::Token::descriptor()->file(), v1::UploadPart::descriptor()->file(),
+                           v1::Worker::descriptor()->file(), v1::Job::descriptor()->file(),
+                           v1::Hello::descriptor()->file()}) {
+    ASSERT_GT(file->service_count(), 0) << file->name();
+    for (int s = 0; s < file->service_count(); ++s) {
+      for (int m = 0; m < file->service(s)->method_count(); ++m) {
+        methods.insert(file->service(s)->name() + "/" + file->service(s)->method(m)->name());
+      }
+    }
+  }
+  EXPECT_EQ(known, methods);
+}
+
+TEST(Rules, EveryPathOfOpenApiHasOne) {
+  const YAML::Node api = YAML::LoadFile("coordinator/web/api/openapi.yaml");
+  int count = 0;
+  for (const auto& path : api["paths"]) {
+    std::string pattern = path.first.as<std::string>();
+    std::vector<std::string> patterns = {pattern};
+    const size_t action = pattern.find("{action}");
+    if (action != std::string::npos) {
+      patterns.clear();
+      for (const YAML::Node& parameter : path.second["parameters"]) {
+        if (!parameter["schema"] || !parameter["schema"]["enum"]) continue;
+        for (const YAML::Node& one : parameter["schema"]["enum"]) {
+          patterns.push_back(pattern.substr(0, action) + one.as<std::string>());
+        }
+      }
+    }
+    for (std::string one : patterns) {
+      if (one.ends_with("{path}")) one.insert(one.size() - 1, "...");
+      for (const auto& method : path.second) {
+        auto name = method.first.as<std::string>();
+        if (name == "parameters") continue;
+        std::transform(name.begin(), name.end(), name.begin(), ::toupper);
+        EXPECT_STRNE(rule_of_route(name + " " + one).deed, "unknown") << name << " " << one;
+        ++count;
+      }
+    }
+  }
+  EXPECT_GT(count, 25);
+}
+
+TEST(Rules, WhatHasNoneIsForAdmins) {
+  for (const Rule* rule :
+       {&rule_of_method("Jobs/Explode"), &rule_of_route("GET /api/v1/secrets")}) {
+    EXPECT_FALSE(may(v1::ROLE_OPERATOR, *rule));
+    EXPECT_FALSE(may(v1::ROLE_WORKER, *rule));
+    EXPECT_FALSE(may(v1::ROLE_UNSPECIFIED, *rule));
+    EXPECT_TRUE(may(v1::ROLE_ADMIN, *rule));
+  }
+}
+
+TEST(Rules, EachRoleMayWhatThoseBelowMay) {
+  for (const Rule& rule : all_rules()) {
+    EXPECT_LE(may(v1::ROLE_VIEWER, rule), may(v1::ROLE_SUBMITTER, rule)) << rule.deed;
+    EXPECT_LE(may(v1::ROLE_SUBMITTER, rule), may(v1::ROLE_OPERATOR, rule)) << rule.deed;
+    EXPECT_LE(may(v1::ROLE_OPERATOR, rule), may(v1::ROLE_ADMIN, rule)) << rule.deed;
+  }
+  const auto allowed = [](v1::Role role, const char* method) {
+    return may(role, rule_of_method(method));
+  };
+  EXPECT_TRUE(allowed(v1::ROLE_VIEWER, "Jobs/Watch"));
+  EXPECT_FALSE(allowed(v1::ROLE_VIEWER, "Jobs/Cancel"));
+  EXPECT_FALSE(allowed(v1::ROLE_VIEWER, "Assets/Upload"));
+  EXPECT_TRUE(allowed(v1::ROLE_SUBMITTER, "Jobs/Submit"));
+  EXPECT_FALSE(allowed(v1::ROLE_SUBMITTER, "Farm/DrainWorker"));
+  EXPECT_FALSE(allowed(v1::ROLE_OPERATOR, "Admin/CreateToken"));
+  EXPECT_FALSE(allowed(v1::ROLE_OPERATOR, "Work/Attend"));
+  EXPECT_TRUE(allowed(v1::ROLE_WORKER, "Work/Attend"));
+  EXPECT_TRUE(allowed(v1::ROLE_WORKER, "Assets/Download"));
+  for (const char* method : {"Jobs/List", "Jobs/Fetch", "Jobs/Submit", "Farm/Workers",
+                             "Assets/Upload", "Admin/ListTokens"}) {
+    EXPECT_FALSE(allowed(v1::ROLE_WORKER, method)) << method;
+  }
+}
+
+TEST(Rules, ARefusalSaysWhatIsNeeded) {
+  const Caller caller = {"9f3a01c2", "alice", v1::ROLE_VIEWER, "here"};
+  const grpc::Status refused = allow(caller, rule_of_method("Jobs/Cancel"));
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  for (const char* part : {"job.cancel", "submitter", "9f3a01c2", "alice", "viewer",
+                           "hyades token create --role submitter"}) {
+    EXPECT_NE(refused.error_message().find(part), std::string::npos) << refused.error_message();
+  }
+  const Caller operates = {"9f3a01c2", "bob", v1::ROLE_OPERATOR, "here"};
+  EXPECT_NE(allow(operates, rule_of_method("Work/Attend")).error_message().find("role worker"),
+            std::string::npos);
+}
+
+TEST(Rules, JobsAreSteeredByTheirOwners) {
+  const Caller alice = {"1", "alice", v1::ROLE_SUBMITTER, {}};
+  EXPECT_TRUE(allow_steering(alice, 1, "alice").ok());
+  EXPECT_EQ(allow_steering(alice, 1, "bob").error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_FALSE(allow_steering(alice, 1, "").ok());
+  EXPECT_TRUE(allow_steering({"2", "carol", v1::ROLE_OPERATOR, {}}, 1, "bob").ok());
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
