@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include "tests/core/job/complaints_testing.h"
+
+// Complaints about how a job is rendered, and what is written.
+namespace hyades::core {
+namespace {
+
+TEST(Complaints, OneOutputIsNoFolderOfAnother) {
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: ./a.exr/b.exr}\n"),
+            "job.yaml:4:12: file is './a.exr/b.exr', which cannot stand beside 'a.exr' of line 3: "
+            "one would be the other's folder\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr/b.exr}\n  - {file: a.exr}\n"),
+            "job.yaml:4:12: file is 'a.exr', which cannot stand beside 'a.exr/b.exr' of line 3: "
+            "one would be the other's folder\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: a.exr.png}\n  - {file: b/a.exr}\n"),
+            "");
+}
+
+TEST(Complaints, StrategiesThatCannotBe) {
+  EXPECT_EQ(
+      complaints("integrator: {type: bdpt, max_depth: 2, strategy: [3, 2]}\n"),
+      "job.yaml:2:50: strategy is [3, 2], which is 3 events, expected no more than max_depth, "
+      "2\n");
+  for (const char* strategy : {"[1, 1]", "[0, 1]", "[3, 0]"}) {
+    const std::string text = std::string("integrator: {type: bdpt, strategy: ") + strategy + "}\n";
+    EXPECT_EQ(complaints(text),
+              std::string("job.yaml:2:36: strategy is ") + strategy +
+                  ", expected [s, t]: how many vertices come from the light and from the camera, "
+                  "such as [0, 2], [1, 2] or [2, 1]\n");
+  }
+}
+
+TEST(Complaints, StrategiesAllUnweighted) {
+  EXPECT_EQ(
+      complaints("integrator: {type: bdpt, mis: false}\n"),
+      "job.yaml:2:31: mis is false without a strategy, expected [s, t] in strategy too: all of "
+      "them unweighted would add up to several times the picture\n");
+}
+
+TEST(Complaints, Videos) {
+  EXPECT_EQ(complaints("outputs: [{file: a.avi}]\n"),
+            "job.yaml:2:18: file is 'a.avi', expected the ending .exr, .png, .tif, .tiff, .jpg, "
+            ".jpeg, .mp4, .mov or .webm\n");
+  EXPECT_EQ(complaints("frames: {range: 1-5}\noutputs: [{file: a.####.mp4}]\n"),
+            "job.yaml:3:18: file is 'a.####.mp4', expected no #: a video holds all frames\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4, quality: 0}]\n"),
+            "job.yaml:2:34: quality is '0', expected a whole number from 1 to 51\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4, layers: [beauty]}]\n"),
+            "job.yaml:2:25: unknown key 'layers' in output 1; it belongs to exr\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4}, {file: ./a.mp4}]\n"),
+            "job.yaml:2:33: file is './a.mp4', which line 2 writes already\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4}, {file: a.mp4.frames/####.png}]\n"),
+            "job.yaml:2:33: file is 'a.mp4.frames/####.png', which line 2 writes already\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.mp4.frames}, {file: a.mp4}]\n").substr(0, 14),
+            "job.yaml:2:18:");
+}
+
+TEST(Complaints, Outputs) {
+  EXPECT_EQ(complaints("frames: 1-2\noutputs: [{file: a.exr}]\n"),
+            "job.yaml:3:18: file is 'a.exr', but the job has several frames: expected #### where "
+            "the frame number goes\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: ../a.exr}\n"),
+            "job.yaml:3:12: file is '../a.exr', expected a path below the output folder (no '..', "
+            "not absolute); --output chooses the folder\n");
+  EXPECT_EQ(complaints("outputs:\n  - {file: a.exr}\n  - {file: .//./a.exr}\n"),
+            "job.yaml:4:12: file is './/./a.exr', which line 3 writes already\n");
+  EXPECT_EQ(
+      complaints("outputs: [{file: a.gif}]\n"),
+      "job.yaml:2:18: file is 'a.gif', expected the ending .exr, .png, .tif, .tiff, .jpg, .jpeg, "
+      ".mp4, .mov or .webm\n");
+  EXPECT_EQ(complaints("outputs: [{file: a.exr, layers: [beauty, normals, beauty]}]\n"),
+            "job.yaml:2:42: layer is 'normals', expected beauty, alpha, depth, position, normal, "
+            "albedo, motion, variance, samples, components, diffuse_direct, diffuse_indirect, "
+            "glossy_direct, glossy_indirect, transmission_direct, transmission_indirect, "
+            "volume_direct, volume_indirect, emission, environment, light_groups, object_id, "
+            "material_id, crypto_object or crypto_material, did you mean 'normal'?\n"
+            "job.yaml:2:51: layer 'beauty' is listed twice\n");
+  EXPECT_EQ(complaints("name: b\nkeep_films: true\noutputs: [{file: ./b.film.exr}]\n"),
+            "job.yaml:4:18: file is './b.film.exr', where keep_films puts the film, expected "
+            "another name\n");
+  EXPECT_EQ(complaints("name: b\noutputs: [{file: ./b.film.exr}]\n"), "");
+}
+
+TEST(Complaints, AFilterThatHasNoRoomForSplats) {
+  for (const std::string type : {"bdpt", "mlt"}) {
+    EXPECT_EQ(complaints("film: {filter: center}\nintegrator: {type: " + type + "}\n"),
+              "job.yaml:3:13: the integrator is " + type +
+                  ", whose light paths may end anywhere on the film, but film.filter is center; "
+                  "expected a filter with a radius\n");
+  }
+  EXPECT_EQ(complaints("film: {filter: center}\nintegrator: path\n"), "");
+  EXPECT_EQ(complaints("film: {filter: box}\nintegrator: bdpt\n"), "");
+}
+
+}  // namespace
+}  // namespace hyades::core
