@@ -108,7 +108,7 @@ int check_command(int argc, char** argv) {
                  "objects.NAME.at, objects.NAME.transform[0].rotate_y, materials.NAME.color, ...");
   app.add_flag("--no-probe", no_probe, "do not render a few pixels to estimate the time");
   app.footer(
-      "example:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
+      "examples:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
   SceneOptions how;
   declare_scene_options(app, how);
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;

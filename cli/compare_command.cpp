@@ -67,7 +67,10 @@ void declare(CLI::App& app, Options& options) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.footer(
-      "Exit status: 0 fine, 1 a tolerance is exceeded (or a pixel is not finite while one is "
+      "examples:\n"
+      "  hyades compare out/shot.0007.exr reference/shot.0007.exr\n"
+      "  hyades compare a.png b.png --perceptual 2 --error-image where.png\n"
+      "exit status: 0 fine, 1 a tolerance is exceeded (or a pixel is not finite while one is "
       "given), 2 wrong arguments or pictures that cannot be read or compared.");
 }
 

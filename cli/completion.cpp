@@ -13,7 +13,7 @@ constexpr std::string_view kBash = R"sh(_hyades() {
   local word=${COMP_WORDS[COMP_CWORD]} program=${COMP_WORDS[0]}
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
-    COMPREPLY=($(compgen -W "$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z]+) .*/\1/p')" -- "$word"))
+    COMPREPLY=($(compgen -W "$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
   elif [[ $word == -* ]]; then
     COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u)" -- "$word"))
   elif [ "${COMP_WORDS[1]}" = completion ]; then
@@ -28,7 +28,7 @@ _hyades() {
   local program=${words[1]}
   if (( CURRENT == 2 )); then
     local -a commands
-    commands=(${(f)"$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z]+) +(.*)/\1:\2/p')"})
+    commands=(${(f)"$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z-]+) +(.*)/\1:\2/p')"})
     _describe command commands
   elif [[ ${words[CURRENT]} == -* ]]; then
     local -a options
@@ -44,7 +44,7 @@ compdef _hyades hyades
 )sh";
 
 constexpr std::string_view kFish = R"sh(function __hyades_commands
-  hyades --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z]+) +(.*)/\1\t\2/p'
+  hyades --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z-]+) +(.*)/\1\t\2/p'
 end
 function __hyades_options
   set -l words (commandline -opc)
@@ -68,7 +68,10 @@ int completion_command(int argc, char** argv) {
     std::fprintf(help ? stdout : stderr,
                  "usage: hyades completion bash|zsh|fish\n"
                  "prints a script for that shell; in bash: source <(hyades completion bash)\n"
-                 "'hyades completion --help' says this\n");
+                 "examples:\n"
+                 "  hyades completion bash\n"
+                 "  hyades completion fish\n"
+                 "exit status: 0 printed, 2 there is no such shell\n");
     return help ? 0 : 2;
   }
   std::fwrite(script.data(), 1, script.size(), stdout);

@@ -62,7 +62,10 @@ int contact_sheet_command(int argc, char** argv) {
   app.add_option("--width", options.width, "of a picture, in pixels")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
-  app.footer("Exit status: 0 fine, 2 wrong arguments, or pictures that cannot be read or written.");
+  app.footer(
+      "examples:\n"
+      "  hyades contact-sheet out/one.png out/two.png -o sheet.png --columns 4\n"
+      "exit status: 0 fine, 2 wrong arguments, or pictures that cannot be read or written.");
   if (const auto status = parse_command_line(app, argc, argv, kRefused)) return *status;
   return run(options);
 }

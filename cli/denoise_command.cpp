@@ -50,9 +50,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--threads", options.threads, "how many; 0: as many as the machine has")
       ->capture_default_str();
   app.footer(
-      "Example: hyades denoise shot.0007.exr -o shot.0007.png --tone-map filmic\n\n"
-      "A job does it by itself with 'denoise: true'.\n\n"
-      "Exit status: 0 fine, 2 wrong arguments, or a picture that cannot be read or written.");
+      "examples:\n  hyades denoise shot.0007.exr -o shot.0007.png --tone-map filmic\n"
+      "A job does it by itself with 'denoise: true'.\n"
+      "exit status: 0 fine, 2 wrong arguments, or a picture that cannot be read or written.");
 }
 
 int fail(const std::string& message) {

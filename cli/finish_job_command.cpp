@@ -39,9 +39,10 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   app.add_flag("--film", options.film, "also write each frame's whole film (NAME.film.exr)");
   app.add_flag("--quiet", options.quiet, "say nothing where all goes well");
   app.footer(
-      "example: three machines render a third of a frame each, one finishes it:\n"
-      "  hyades render job.yaml --frames 7 --tile 1/3 --film 1.exr     (and 2/3, 3/3)\n"
+      "examples:\n"
+      "  hyades render job.yaml --frames 7 --tile 1/3 --film 1.exr\n"
       "  hyades finish job.yaml 1.exr 2.exr 3.exr --output out\n"
+      "Three machines render a third of a frame each, one finishes it.\n"
       "What is written is what 'hyades render' writes, byte for byte. Videos are made when all "
       "frames are there.\n"
       "exit status: 0 done, 1 something is missing or failed, 2 the job, the arguments or a film "

@@ -38,7 +38,7 @@ int import_command(int argc, char** argv) {
   app.add_flag("--follow-links", request.follow_links,
                "follow links that lead out of the scene's folder: only of scenes that you trust");
   app.footer(
-      "example:\n  hyades import robot.glb -o robot.yaml && hyades render robot.yaml\n"
+      "examples:\n  hyades import robot.glb -o robot.yaml && hyades render robot.yaml\n"
       "exit status: 0 written, 2 not");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {

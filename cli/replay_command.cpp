@@ -29,7 +29,9 @@ int replay_command(int argc, char** argv) {
       ->delimiter(',')
       ->expected(2);
   app.add_option("--sample", sample, "index of the sample within the pixel")->default_val(0);
-  app.footer("example:\n  hyades replay jobs/cornell/job.yaml --pixel 120,80 --sample 3");
+  app.footer(
+      "examples:\n  hyades replay jobs/cornell/job.yaml --pixel 120,80 --sample 3\n"
+      "exit status: 0 told, 2 the job or the arguments are wrong");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   auto loaded = load_job(path);
   if (!loaded) return kBadInput;

@@ -81,7 +81,10 @@ int strategies_command(int argc, char** argv) {
   app.add_option("--threads", wish.threads, "rendering threads")->check(CLI::Range(1, 1024));
   app.add_option("--output", wish.output, "folder for the pictures")->capture_default_str();
   app.footer(
-      "example:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output parts");
+      "examples:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output "
+      "parts\n"
+      "exit status: 0 written, 1 a picture could not be written, 2 the job or the arguments are "
+      "wrong");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   auto loaded = load_job(path);
   if (!loaded) return kBadInput;

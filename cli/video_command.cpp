@@ -47,6 +47,8 @@ int video_command(int argc, char** argv) {
   app.add_option("--output", folder, "folder of the render's outputs")->capture_default_str();
   app.add_flag("--quiet", quiet, "say nothing but what is wrong");
   app.footer(
+      "examples:\n"
+      "  hyades video jobs/perlin-sphere/job.yaml --output out\n"
       "For after a render that could not make them (ffmpeg was not there), and for some of a job's "
       "frames.\n"
       "The pictures go when videos of all frames are made, and stay otherwise.\n"

@@ -59,6 +59,8 @@ int for_each_job(ClientApp& app, Namesakes namesakes, int argc, char** argv, con
                       : "their ids, or names that only one job has")
       ->required();
   app.app().add_flag("--json", json, "print the jobs as JSON (field id)");
+  const std::string words = std::string("hyades ") + app.command();
+  app.give_examples({words + " perlin-sphere", words + " 12 13 --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
   return for_each_job(app, names, namesakes, json, deed);
 }
@@ -117,6 +119,7 @@ int priority_command(int argc, char** argv) {
       ->check(CLI::Range(-1'000'000, 1'000'000))
       ->required();
   app.app().add_flag("--json", json, "print the job as JSON (field id)");
+  app.give_examples({"hyades priority perlin-sphere 10", "hyades priority 12 -- -5"});
   if (const auto status = app.parse(argc, argv)) return *status;
   return for_each_job(app, {name}, Namesakes::open, json,
                       [&](FarmClient& client, uint64_t id, v1::Job& after) {

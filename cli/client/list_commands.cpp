@@ -110,6 +110,7 @@ int jobs_command(int argc, char** argv) {
   app.app().add_flag("--all", all, "also those that have ended");
   app.app().add_option("--owner", owner, "only the jobs of this owner");
   app.app().add_flag("--json", json, "print them as JSON (field id)");
+  app.give_examples({"hyades jobs", "hyades jobs --all --owner ann", "hyades jobs --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
@@ -135,6 +136,7 @@ int status_command(int argc, char** argv) {
   app.app().add_option("job", job, "its id, or its name (of several: the newest)")->required();
   app.app().add_flag("--frames", all, "tell of every frame");
   app.app().add_flag("--json", json, "print the job as JSON (fields id and frame_list)");
+  app.give_examples({"hyades status perlin-sphere", "hyades status 12 --frames"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
@@ -159,6 +161,7 @@ int explain_command(int argc, char** argv) {
   bool json = false;
   app.app().add_option("job", job, "its id, or the name of the only one (open)")->required();
   app.app().add_flag("--json", json, "print JSON (fields id and reasons)");
+  app.give_examples({"hyades explain perlin-sphere"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
@@ -187,6 +190,7 @@ int logs_command(int argc, char** argv) {
   app.app().add_option("--frame", frames, "only these frames")->delimiter(',');
   app.app().add_flag("--follow", follow, "stay until the job has ended");
   app.app().add_flag("--json", json, "print one JSON object a line (field id: its number)");
+  app.give_examples({"hyades logs perlin-sphere --follow", "hyades logs 12 --frame 7,8 --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
@@ -197,11 +201,9 @@ int logs_command(int argc, char** argv) {
   request.set_job(id);
   request.set_follow(follow);
   request.mutable_frames()->Add(frames.begin(), frames.end());
-  uint64_t number = 0;
   const auto failure = client->logs(request, [&](const v1::LogLine& line) {
-    ++number;
     if (json) {
-      Json out = {{"id", number}};
+      Json out = {{"id", line.number()}};
       out.update(to_json(line));
       print_json(out);
     } else {

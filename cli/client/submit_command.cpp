@@ -79,8 +79,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_flag("--json", options.json,
                "print the job as JSON (field id); with --watch as it is at the end");
   app.footer(
-      "example:\n  hyades submit jobs/perlin-sphere/job.yaml --watch && hyades fetch perlin-sphere "
-      "--output out\n"
+      "examples:\n  hyades submit jobs/perlin-sphere/job.yaml --watch && hyades fetch "
+      "perlin-sphere "
+      "--output out\n  hyades submit shot.yaml --frames 1-24 --priority 10 --tags fast\n"
       "exit status: 0 taken in (with --watch: the job is done), 1 failed, 2 the job or the "
       "arguments are\n"
       "wrong, 3 no coordinator answers; others: docs/client.md");

@@ -134,10 +134,9 @@ int top_command(int argc, char** argv) {
       ->check(CLI::Range(kLeastInterval, 3600.0))
       ->capture_default_str();
   app.app().add_flag("--once", once, "print it once and end");
-  app.app().footer(
-      "q ends it. NO_COLOR in the environment turns colours off.\n"
-      "examples:\n  hyades top\n  hyades top --coordinator farm:7700 --interval 5\n  hyades top "
-      "--once | head");
+  app.give_examples(
+      {"hyades top", "hyades top --coordinator farm:7700 --interval 5", "hyades top --once | head"},
+      "q ends it. NO_COLOR in the environment turns colours off.");
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;

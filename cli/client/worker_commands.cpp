@@ -45,6 +45,8 @@ int act(const char* command, const char* description, FarmClient::WorkerAction a
   app.app().add_option("workers", names, "their ids, or names that only one has")->required();
   app.app().add_option("--reason", reason, "why, for people; kept");
   app.app().add_flag("--json", json, "print the workers as JSON (field id)");
+  const std::string words = std::string("hyades ") + command;
+  app.give_examples({words + " north-3", words + " 4 5 --reason 'a new kernel'"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
@@ -79,6 +81,7 @@ int workers_command(int argc, char** argv) {
   ClientApp app("workers", "Lists the farm's workers.");
   bool json = false;
   app.app().add_flag("--json", json, "print them as JSON (field id)");
+  app.give_examples({"hyades workers", "hyades workers --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
