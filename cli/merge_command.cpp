@@ -26,12 +26,9 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("-o,--output", options.output, "where to write the joined film")->required();
   app.add_flag("-q,--quiet", options.quiet, "say nothing where all goes well");
   app.footer(
-      "examples:
-      "
-      "  hyades merge north.0007.exr south.0007.exr -o film.0007.exr
-      "
-      "'hyades finish job.yaml' joins the films of all frames and writes the job's pictures.
-      "
+      "examples:\n"
+      "  hyades merge north.0007.exr south.0007.exr -o film.0007.exr\n"
+      "'hyades finish job.yaml' joins the films of all frames and writes the job's pictures.\n"
       "Films that were merged in any order, or by way of other films, are the same to the last "
       "bit. Refused are films of different render keys, frames, sizes, crops, sample counts or "
       "classes of machines, and films that hold the same samples.\n"
