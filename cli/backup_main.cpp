@@ -36,7 +36,7 @@ int backup_command(int argc, char** argv) {
   app.add_option("--data", data, "the coordinator's folder")->required();
   app.add_option("-o,--output", to, "the tar file")->required();
   app.footer(
-      "example:\n  hyades backup --data /var/lib/hyades -o /backup/hyades.tar\n"
+      "examples:\n  hyades backup --data /var/lib/hyades -o /backup/hyades.tar\n"
       "Run it as the coordinator's user. The file appears when it is whole.\n"
       "exit status: 0 done, 1 it could not be written, 2 wrong arguments");
   if (const auto status = hyades::cli::parse_command_line(app, argc, argv, kBadArguments)) {
@@ -52,7 +52,7 @@ int restore_command(int argc, char** argv) {
   app.add_option("backup", from, "the tar file that 'hyades backup' has written")->required();
   app.add_option("--data", data, "the new folder: not there yet, or empty")->required();
   app.footer(
-      "example:\n  hyades restore /backup/hyades.tar --data /var/lib/hyades\n"
+      "examples:\n  hyades restore /backup/hyades.tar --data /var/lib/hyades\n"
       "Every file is checked against its digest; the folder appears when it is whole.\n"
       "exit status: 0 done, 1 the backup is torn or damaged, or could not be read, 2 wrong "
       "arguments");

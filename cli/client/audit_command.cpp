@@ -39,7 +39,9 @@ int audit_command(int argc, char** argv) {
   app.app().add_flag("--json", json, "print an object a line");
   app.app().footer(
       "examples:\n  hyades audit --since 2h\n  hyades audit --json | grep job.cancel\n"
-      "docs/safety.md tells what is kept");
+      "docs/safety.md tells what is kept\n"
+      "exit status: 0 done, 2 wrong arguments, 3 no coordinator answers, 4 no token, or not an "
+      "admin's");
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;

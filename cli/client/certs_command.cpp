@@ -46,7 +46,8 @@ int certs_command(int argc, char** argv) {
       "  hyades certs issue --dir certs --name node-17 --client\n"
       "Nothing is written over. ca.key signs whatever is wanted: keep it off the machines that "
       "need "
-      "only ca.pem. docs/safety.md tells more.");
+      "only ca.pem. docs/safety.md tells more.\n"
+      "exit status: 0 written, 1 not, 2 wrong arguments");
   if (const auto status = parse_command_line(app, argc, argv, kBadArguments)) return *status;
   const bool first = init->parsed();
   const core::Status made = first ? farm::make_authority(folder, authority, authority_days)
