@@ -37,9 +37,21 @@ constexpr uint64_t kAbi1 = (uint64_t{LANDLOCK_ACCESS_FS_MAKE_SYM} << 1U) - 1;
 constexpr uint64_t kRefer = uint64_t{1} << 13U;
 constexpr uint64_t kTruncate = uint64_t{1} << 14U;
 
-/// What there is of these may be read. Not /etc and not /home: there are keys and tokens.
-constexpr std::array<const char*, 8> kSystem = {"/usr",  "/lib", "/lib64",    "/etc/ld.so.cache",
-                                                "/proc", "/sys", "/dev/null", "/dev/urandom"};
+/// What there is of these may be read. Not /etc, not /home and not what /proc tells of
+/// others: there are keys and tokens.
+constexpr std::array kSystem = {"/usr",
+                                "/lib",
+                                "/lib64",
+                                "/etc/ld.so.cache",
+                                "/proc/self",
+                                "/proc/cpuinfo",
+                                "/proc/meminfo",
+                                "/proc/stat",
+                                "/proc/sys/vm/overcommit_memory",
+                                "/sys/devices/system",
+                                "/sys/fs/cgroup",
+                                "/dev/null",
+                                "/dev/urandom"};
 
 Error failure(const std::string& what) {
   return Error{"Landlock: " + what + ": " + std::strerror(errno)};

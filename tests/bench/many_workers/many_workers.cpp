@@ -77,6 +77,7 @@ int main(int count, char** arguments) {
         crowd, connection(address, count > 6 ? arguments[6] : ""), *token, i));
   }
   uint64_t before = 0;
+  double worst_p99 = 0;  // of the second half: at first all come at once
   for (double at = 0; at < seconds; at += 5) {
     std::this_thread::sleep_for(std::chrono::seconds(5));
     const uint64_t units = crowd.acknowledged;
@@ -84,12 +85,17 @@ int main(int count, char** arguments) {
                 static_cast<unsigned long long>(crowd.welcomed - crowd.ended),
                 static_cast<double>(units - before) / 5);
     before = units;
-    print("leases", crowd.lease.take());
+    const auto leases = crowd.lease.take();
+    if (2 * at >= seconds) worst_p99 = std::max(worst_p99, leases.p99);
+    print("leases", leases);
     print("acknowledged", crowd.acknowledgement.take());
     std::printf("  rejected %llu\n", static_cast<unsigned long long>(crowd.rejected.load()));
     std::fflush(stdout);
   }
   std::string trouble;
+  if (crowd.welcomed - crowd.ended != static_cast<uint64_t>(workers)) trouble = "not all connected";
+  if (crowd.rejected > 0) trouble = "films were rejected";
+  if (worst_p99 >= 100) trouble = "leases took longer than 100 ms";
   for (const auto& worker : all) {
     if (trouble.empty()) trouble = worker->trouble();
   }

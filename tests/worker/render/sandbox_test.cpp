@@ -7,7 +7,9 @@
 #include <sched.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ioctl.h>
 #include <sys/ptrace.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -78,6 +80,9 @@ TEST_F(Sandbox, OpensNoOtherFile) {
 TEST_F(Sandbox, WritesNothing) {
   expect([&] { return !opens(cache_ + "/asset", O_WRONLY) && errno == EACCES; });
   expect([&] { return !opens(cache_ + "/new", O_WRONLY | O_CREAT) && errno == EACCES; });
+  expect([&] { return refused(::truncate((cache_ + "/asset").c_str(), 0)); });
+  expect([&] { return !opens(cache_ + "/asset", O_RDONLY | O_TRUNC) && errno == EACCES; });
+  expect([&] { return refused(::truncate(folder_.file("secret").c_str(), 0)); });
   expect([&] { return refused(::symlink("/etc/passwd", (cache_ + "/link").c_str())); });
   expect([&] { return refused(::mkdir((cache_ + "/folder").c_str(), 0700)); });
   expect([&] { return refused(::chmod((cache_ + "/asset").c_str(), 0777)); });
@@ -127,8 +132,30 @@ TEST_F(Sandbox, HoldsThreadsThatItStarts) {
   });
 }
 
+TEST_F(Sandbox, TypesIntoNoTerminal) {
+  expect([] {
+    char letter = 'x';
+    return ::ioctl(STDIN_FILENO, TIOCSTI, &letter) < 0 && errno == EPERM;
+  });
+}
+
+TEST_F(Sandbox, ItsOwnSignalsAndLimitsStay) {
+  expect([] {
+    ::signal(SIGUSR1, SIG_IGN);
+    rlimit cores{};
+    return ::raise(SIGUSR1) == 0 && ::getrlimit(RLIMIT_CORE, &cores) == 0;
+  });
+}
+
 TEST_F(Sandbox, TouchesNoOtherProcess) {
   expect([] { return refused(::kill(::getppid(), 0)); });
+  const pid_t runner = ::getpid();  // the child's parent
+  expect([&] { return refused(::syscall(SYS_tkill, runner, 0)); });
+  expect([&] { return refused(::syscall(SYS_tgkill, runner, runner, 0)); });
+  expect([&] { return refused(::syscall(SYS_prlimit64, runner, RLIMIT_CORE, nullptr, nullptr)); });
+  expect([&] {
+    return !opens("/proc/" + std::to_string(runner) + "/cmdline", O_RDONLY) && errno == EACCES;
+  });
   expect([] { return refused(::ptrace(PTRACE_ATTACH, ::getppid(), nullptr, nullptr)); });
   expect([] { return refused(::unshare(CLONE_NEWUSER)); });
   expect([] { return refused(::syscall(SYS_bpf, 0, nullptr, 0)); });
