@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "cli/command_line.h"
@@ -24,6 +25,7 @@ struct Options {
   std::vector<std::string> films;
   std::string folder = ".";
   SceneOptions scene;
+  uint32_t samples = 0;  ///< of the films, where not the job's; 0: the job's
   bool film = false;
   bool quiet = false;
 };
@@ -36,6 +38,9 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   app.add_option("films", options.films, "film EXRs of its frames, in any order")->required();
   declare_scene_options(app, options.scene);
   app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
+  app.add_option("--samples", options.samples,
+                 "samples per pixel that the films were rendered with (default: the job's)")
+      ->check(CLI::Range(1U, 1U << 24U));
   app.add_flag("--film", options.film, "also write each frame's whole film (NAME.film.exr)");
   app.add_flag("--quiet", options.quiet, "say nothing where all goes well");
   app.footer(
@@ -55,9 +60,23 @@ int fail(const std::string& message) {
   return kBadInput;
 }
 
+/// Why films are not those of the job as it stands here; empty: they are.
+std::string another_picture(const core::FilmInfo& info, const core::Job& job) {
+  if (info.crop != core::render_window(job.film)) {
+    return "its films are of another part of the frame (--crop) than the job renders";
+  }
+  if (info.samples != job.sampling.samples) {
+    return fmt::format(
+        "its films are of {} samples per pixel, the job has {}; --samples {} takes them all the "
+        "same",
+        info.samples, job.sampling.samples, info.samples);
+  }
+  return {};
+}
+
 /// Joins the films of one frame and writes what is made of it.
-int finish_frame(const Options& options, const std::vector<std::string>& films, core::Job& job,
-                 JobFrames& frames) {
+int finish_frame(const Options& options, const std::vector<std::string>& films,
+                 const core::Job& job, JobFrames& frames) {
   const auto whole = join_films(films);
   if (!whole) return fail(whole.error().message);
   const int32_t frame = whole->info.frame;
@@ -66,8 +85,9 @@ int finish_frame(const Options& options, const std::vector<std::string>& films, 
                  missing.c_str());
     return 1;
   }
-  // Where a machine was told to render more or fewer, the film knows.
-  job.sampling.samples = whole->info.samples;
+  if (const std::string other = another_picture(whole->info, job); !other.empty()) {
+    return fail("frame " + std::to_string(frame) + ": " + other);
+  }
   if (const auto written = frames.write_outputs_of(*whole); !written) {
     return fail(written.error().message);
   }
@@ -86,6 +106,7 @@ int finish_job_command(int argc, char** argv) {
   auto loaded = load_job(options.job, options.scene);
   if (!loaded) return kBadInput;
   core::Job& job = loaded->job;
+  if (options.samples != 0) job.sampling.samples = options.samples;
 
   std::map<int32_t, std::vector<std::string>> films;
   for (const std::string& path : options.films) {

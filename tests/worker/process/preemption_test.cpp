@@ -70,8 +70,7 @@ TEST(WorkerPreemption, ASilentServiceDisturbsNothing) {
 
 TEST(WorkerPreemption, IsOffWithoutBeingAskedFor) {
   const test::TempFolder folder;
-  WorkerProcess worker("127.0.0.1:1", folder.path().string(),
-                       {"--exit-when-idle", "0.5s", "--preemption", "off"});
+  WorkerProcess worker("127.0.0.1:1", folder.path().string(), {"--exit-when-idle", "0.5s"});
   EXPECT_EQ(worker.wait(seconds(60)), 0) << worker.log();
   EXPECT_EQ(worker.log().find("pre-emption"), std::string::npos) << worker.log();
 }
