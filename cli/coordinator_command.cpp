@@ -1,6 +1,7 @@
 // `hyades coordinator`: owns jobs, leases units, merges films. It links no renderer.
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -140,8 +141,9 @@ bool is_beyond(const Arguments& arguments) {
   return http || !hyades::farm::is_loopback(arguments.listen.address);
 }
 
-/// Who may come in. A farm that can be reached from elsewhere has tokens: where none was made yet
-/// the first one, an admin's, is put into the folder for whoever runs the farm.
+/// Who may come in. A farm that can be reached from elsewhere has tokens: where there is none of an
+/// admin (none was made yet, they have expired, it could not be written) one is put into the folder
+/// for whoever runs the farm.
 hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments& arguments,
                                                                 const std::string& shared_token,
                                                                 Brain& brain) {
@@ -157,20 +159,22 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
     }
   };
   auto authority = Authority::open(brain.store(), options);
-  if (!authority || !options.beyond || arguments.listen.insecure || (*authority)->guarded()) {
+  if (!authority || !options.beyond || arguments.listen.insecure || (*authority)->has_admin()) {
     return authority;
   }
   std::string text;
   hyades::coordinator::StoredToken row;
   const std::string file = arguments.brain.folder + "/admin-token";
+  // One that lies there is of no use: no admin's token is.
+  (void)::unlink(file.c_str());
   const grpc::Status made = (*authority)->create("admin", hyades::v1::ROLE_ADMIN, 0, text, row);
   if (!made.ok()) return hyades::core::Error{made.error_message()};
   if (auto written = hyades::farm::write_secret(file, text + "\n"); !written) {
     (void)(*authority)->revoke(row.id, row);
     return written.error();
   }
-  std::fprintf(stderr, "hyades coordinator: the first admin's token (%s) is in %s\n",
-               row.id.c_str(), file.c_str());
+  std::fprintf(stderr, "hyades coordinator: an admin's token (%s) is in %s\n", row.id.c_str(),
+               file.c_str());
   return authority;
 }
 

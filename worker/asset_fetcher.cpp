@@ -65,12 +65,17 @@ class AssetFetcher::Turn {
 AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string token,
                            farm::ContentStore& store, Owner& owner, milliseconds patience)
     : channel_(std::move(channel)),
-      token_(std::move(token)),
       store_(store),
       owner_(owner),
       patience_(patience),
+      token_(std::move(token)),
       cache_bytes_(store.used()) {
   for (int i = 0; i < kThreads; ++i) threads_.emplace_back([this] { loop(); });
+}
+
+void AssetFetcher::set_token(std::string token) {
+  const std::lock_guard lock(mutex_);
+  token_ = std::move(token);
 }
 
 AssetFetcher::~AssetFetcher() {
@@ -204,9 +209,10 @@ AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& 
   if (!writer) return local_trouble(writer.error().in(file.path()));
   const auto stub = v1::Assets::NewStub(channel_);
   grpc::ClientContext context;
-  farm::prepare(context, token_, std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
   {
     const std::lock_guard lock(mutex_);
+    farm::prepare(context, token_,
+                  std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
     if (unwanted(wanted)) return Failure{"no longer wanted"};
     wanted.call = &context;
   }

@@ -49,6 +49,9 @@ class AssetFetcher {
   AssetFetcher(const AssetFetcher&) = delete;
   AssetFetcher& operator=(const AssetFetcher&) = delete;
 
+  /// Of downloads that begin from now on.
+  void set_token(std::string token);
+
   /// All files of the job, which are then kept from eviction until release().
   void fetch(uint64_t job, const v1::JobSpec& spec);
   /// The job's files are no longer wanted: what is under way is broken off and not reported.
@@ -89,7 +92,6 @@ class AssetFetcher {
   bool unwanted(const Wanted& wanted) const { return stop_ || wanted.dropped; }
 
   const std::shared_ptr<grpc::Channel> channel_;
-  const std::string token_;
   farm::ContentStore& store_;
   Owner& owner_;
   const std::chrono::milliseconds patience_;
@@ -97,6 +99,7 @@ class AssetFetcher {
   std::mutex mutex_;
   std::condition_variable wake_;
   // Guarded by mutex_.
+  std::string token_;
   std::deque<std::shared_ptr<Wanted>> wanted_;    ///< those that nobody has begun with
   std::vector<std::shared_ptr<Wanted>> in_work_;  ///< one for each busy thread
   std::set<std::string> turns_;                   ///< files that are being fetched

@@ -18,6 +18,7 @@ namespace {
 StreamEnd meaning_of(grpc::StatusCode code) {
   switch (code) {
     case grpc::StatusCode::UNAUTHENTICATED:
+      return StreamEnd::unknown;
     case grpc::StatusCode::PERMISSION_DENIED:
     case grpc::StatusCode::FAILED_PRECONDITION:
     case grpc::StatusCode::UNIMPLEMENTED:
@@ -34,11 +35,11 @@ StreamEnd meaning_of(grpc::StatusCode code) {
 struct CoordinatorLink::State {
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::Work::Stub> stub;
-  std::string token;
   Owner* owner = nullptr;
   std::mutex mutex;
   std::condition_variable closed;
   // Guarded by mutex.
+  std::string token;
   std::shared_ptr<Stream> stream;  ///< the one that is open
   int live = 0;                    ///< streams whose end the owner has not heard of
 };
@@ -48,6 +49,7 @@ class CoordinatorLink::Stream
     : public grpc::ClientBidiReactor<v1::WorkerMessage, v1::CoordinatorMessage> {
  public:
   explicit Stream(std::shared_ptr<State> state) : state_(std::move(state)) {
+    const std::lock_guard lock(state_->mutex);
     farm::prepare(context_, state_->token, std::chrono::milliseconds(0));
   }
 
@@ -156,6 +158,11 @@ CoordinatorLink::~CoordinatorLink() {
   std::unique_lock lock(state_->mutex);
   if (state_->stream) state_->stream->cancel();
   state_->closed.wait(lock, [this] { return state_->live == 0; });
+}
+
+void CoordinatorLink::set_token(std::string token) {
+  const std::lock_guard lock(state_->mutex);
+  state_->token = std::move(token);
 }
 
 void CoordinatorLink::open() {

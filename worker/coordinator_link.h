@@ -17,7 +17,8 @@ namespace hyades::worker {
 /// What the end of a stream means for the next one.
 enum class StreamEnd : uint8_t {
   broken,   ///< another one is worth a try
-  refused,  ///< another one would end the same way (wrong token, version)
+  unknown,  ///< the coordinator does not know the token
+  refused,  ///< another one would end the same way (a token of another role, version)
   id_taken  ///< another process works under this worker's id: it needs a new one
 };
 
@@ -40,6 +41,9 @@ class CoordinatorLink {
   ~CoordinatorLink();
   CoordinatorLink(const CoordinatorLink&) = delete;
   CoordinatorLink& operator=(const CoordinatorLink&) = delete;
+
+  /// Of streams that begin from now on.
+  void set_token(std::string token);
 
   /// Begins a stream; what is sent from now on waits until it is connected. Not while one is open.
   void open();

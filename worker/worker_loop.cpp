@@ -37,6 +37,8 @@ constexpr std::chrono::seconds kHealthyLife{5};
 /// Deaths in a row before a first Ready that make the worker give up.
 constexpr int kMostStillbirths = 3;
 constexpr milliseconds kFetchPatience{60'000};
+/// How long a worker whose token is unknown all at once looks for another in its file.
+constexpr std::chrono::minutes kTokenPatience{5};
 /// However long a coordinator asks not to be called.
 constexpr milliseconds kLongestPause{60'000};
 /// How long the end of the stream may take when all is said.
@@ -72,8 +74,9 @@ class Worker : private DeskPorts,
         id_(std::move(id)),
         idle_(seconds(options.idle_limit), Clock::now()),
         desk_(desk_options(options, id_, instance), *this),
-        link_(channel, token, *this),
-        fetcher_(channel, token, store, *this, kFetchPatience) {}
+        token_(std::move(token)),
+        link_(channel, token_, *this),
+        fetcher_(channel, token_, store, *this, kFetchPatience) {}
 
   int run(const volatile std::sig_atomic_t& signals) {
     start_renderer();
@@ -292,6 +295,8 @@ class Worker : private DeskPorts,
         }
         backoff_.reset();
         told_trouble_.clear();
+        welcomed_ = true;
+        unknown_since_.reset();
         note(fmt::format("working for {} as {}", options_.coordinator.address,
                          message.welcome().name()));
       }
@@ -310,13 +315,36 @@ class Worker : private DeskPorts,
     note("another worker has this one's id (a copied cache, or machine): it takes a new one");
   }
 
+  /// Whether the token's file holds another one than was shown: tokens are changed under workers
+  /// that run.
+  bool take_new_token() {
+    auto token = farm::read_token(options_.coordinator.token_file);
+    if (!token || *token == token_) return false;
+    token_ = std::move(*token);
+    link_.set_token(token_);
+    fetcher_.set_token(token_);
+    note("shows the coordinator the token that " + options_.coordinator.token_file + " holds now");
+    return true;
+  }
+
+  /// Who was known once waits for his new token a while, with the films in his hand.
+  bool may_hope() {
+    if (!welcomed_) return false;
+    if (!unknown_since_) unknown_since_ = Clock::now();
+    return Clock::now() - *unknown_since_ < kTokenPatience;
+  }
+
   void stream_ended(StreamEnd end, const std::string& reason,
                     std::chrono::milliseconds retry_after) override {
     post([this, end, reason, retry_after] {
       streaming_ = false;
       desk_.stream_closed();
       if (exit_status_) return;
-      if (end == StreamEnd::refused) {
+      if (end == StreamEnd::unknown && take_new_token()) {
+        connect_at_ = Clock::now();
+        return;
+      }
+      if (end == StreamEnd::refused || (end == StreamEnd::unknown && !may_hope())) {
         note("the coordinator refuses this worker: " + reason);
         exit_status_ = 2;
         return;
@@ -366,6 +394,9 @@ class Worker : private DeskPorts,
   TimePoint renderer_started_;
   FolderIdentity cache_identity_{};  ///< when the rendering child began
   bool sandbox_told_ = false;
+  std::string token_;
+  bool welcomed_ = false;
+  std::optional<TimePoint> unknown_since_;  ///< the coordinator does not know the token any more
   std::string told_trouble_;
   std::optional<TimePoint> connect_at_;
   std::optional<TimePoint> restart_at_;

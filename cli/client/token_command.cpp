@@ -1,6 +1,12 @@
 // `hyades token`: who may come in. Asked of the coordinator, or, with --data, of its folder while
 // it does not run: that is how the first admin comes by a token.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -19,13 +25,16 @@
 namespace hyades::cli {
 namespace {
 
+constexpr const char* kLifetime = "365d";
+
 struct Options {
   std::string data;  ///< the coordinator's folder; empty: ask the coordinator
   std::string name;
   std::string role;
-  std::string expires = "365d";  ///< or never
+  std::string expires;  ///< a time or never; empty: the command's default
   std::string output;
   std::string id;
+  bool of_existing = false;  ///< what is asked needs a store that is there
   bool json = false;
 };
 
@@ -99,15 +108,41 @@ class NearBook final : public Book {
   const std::unique_ptr<coordinator::JobStore> store_;
 };
 
+/// What root has just made belongs to whom the folder belongs to: the coordinator's user.
+void give_to_owner_of(const std::string& folder, const std::string& file) {
+  struct stat info {};
+  if (::geteuid() != 0 || ::stat(folder.c_str(), &info) != 0 || info.st_uid == 0) return;
+  for (const char* end : {"", "-wal", "-shm", "-journal"}) {
+    const std::string path = file + end;
+    if (::lchown(path.c_str(), info.st_uid, info.st_gid) != 0 && errno != ENOENT) {
+      std::fprintf(stderr, "%s: cannot be given to the owner of %s: %s\n", path.c_str(),
+                   folder.c_str(), std::strerror(errno));
+    }
+  }
+}
+
 std::unique_ptr<Book> open_book(const ClientApp& app, const Options& options) {
   if (options.data.empty()) {
     auto client = app.connect();
     return client ? std::make_unique<FarBook>(std::move(client)) : nullptr;
   }
-  std::error_code failed;
-  std::filesystem::create_directories(options.data, failed);
-  auto store = coordinator::open_sqlite_job_store(options.data + "/state.db");
-  if (store) return std::make_unique<NearBook>(std::move(*store));
+  const std::string file = options.data + "/state.db";
+  if (!std::filesystem::is_directory(options.data)) {
+    app.report({kBadArguments, options.data +
+                                   ": is no folder: make it first, for the user that the "
+                                   "coordinator runs as"});
+    return nullptr;
+  }
+  if (options.of_existing && !std::filesystem::exists(file)) {
+    app.report({kBadArguments,
+                file + ": is not there: no coordinator has kept its data in " + options.data});
+    return nullptr;
+  }
+  auto store = coordinator::open_sqlite_job_store(file);
+  if (store) {
+    give_to_owner_of(options.data, file);
+    return std::make_unique<NearBook>(std::move(*store));
+  }
   app.report({kBadArguments, store.error().message + " (--data is for a coordinator that does not "
                                                      "run; without it the running one is asked)"});
   return nullptr;
@@ -202,14 +237,27 @@ int revoke(const ClientApp& app, const Options& options, Book& book) {
   return kDone;
 }
 
-/// Another token of the same name and role; then the old one goes.
+/// For how long a token was made, as --expires takes it.
+std::string as_long_as(const v1::Token& token) {
+  if (token.expires_ms() == 0) return "never";
+  return std::to_string(std::max<int64_t>(1, (token.expires_ms() - token.created_ms()) / 1000)) +
+         "s";
+}
+
+/// Another token of the same name, role and lifetime; then the old one goes.
 int rotate(const ClientApp& app, Options options, Book& book) {
   v1::ListTokensResponse all;
   if (auto failure = book.list(all)) return app.report(*failure);
   for (const v1::Token& old : all.tokens()) {
     if (old.id() != options.id) continue;
+    if (state_of(old) != "in use") {
+      return app.report({kFailed, fmt::format("token {} is {}: make a new one with 'hyades token "
+                                              "create'",
+                                              old.id(), state_of(old))});
+    }
     options.name = old.name();
     options.role = farm::role_name(old.role());
+    if (options.expires.empty()) options.expires = as_long_as(old);
     if (const int status = create(app, options, book); status != kDone) return status;
     v1::Token gone;
     if (auto failure = book.revoke(options.id, gone)) return app.report(*failure);
@@ -249,10 +297,10 @@ int token_command(int argc, char** argv) {
   app.add_option("--data", options.data,
                  "folder of a coordinator that does not run: its tokens, without asking it");
   app.add_flag("--json", options.json, "print JSON");
-  const auto fresh = [&](CLI::App& verb) {
-    verb.add_option("--expires", options.expires, "after a time such as 12h or 30d; or never")
-        ->check(expiry_error)
-        ->capture_default_str();
+  const auto fresh = [&](CLI::App& verb, const std::string& by_default) {
+    verb.add_option("--expires", options.expires,
+                    "after a time such as 12h or 30d; or never (default: " + by_default + ")")
+        ->check(expiry_error);
     verb.add_option("--output", options.output,
                     "file to put it in, which nobody else may read (default: it is printed)");
   };
@@ -262,15 +310,15 @@ int token_command(int argc, char** argv) {
       ->required();
   made->add_option("--name", options.name, "whose it is: jobs submitted with it are this owner's")
       ->required();
-  fresh(*made);
+  fresh(*made, kLifetime);
   const CLI::App* listed = app.add_subcommand("list", "all tokens, and when they were last used");
   CLI::App* revoked =
       app.add_subcommand("revoke", "a token is of no use from now on, for open streams too");
   revoked->add_option("id", options.id, "its id, as list has it")->required();
-  CLI::App* rotated =
-      app.add_subcommand("rotate", "make another of the same name and role, and revoke this one");
+  CLI::App* rotated = app.add_subcommand(
+      "rotate", "make another of the same name, role and lifetime, and revoke this one");
   rotated->add_option("id", options.id, "its id, as list has it")->required();
-  fresh(*rotated);
+  fresh(*rotated, "as long as the old one was made for");
   const CLI::App* me = app.add_subcommand("whoami", "what one's own token is");
   app.footer(
       "examples:\n"
@@ -282,6 +330,8 @@ int token_command(int argc, char** argv) {
       "no token, or not one that may");
   if (const auto status = client.parse(argc, argv)) return *status;
   if (me->parsed()) return whoami(client, options);
+  if (made->parsed() && options.expires.empty()) options.expires = kLifetime;
+  options.of_existing = !made->parsed();
   const auto book = open_book(client, options);
   if (!book) return kBadArguments;
   if (made->parsed()) return create(client, options, *book);

@@ -77,6 +77,15 @@ bool Authority::guarded() const {
   return !options_.shared_token.empty() || !tokens_.empty();
 }
 
+bool Authority::has_admin() const {
+  const std::lock_guard lock(mutex_);
+  if (!options_.shared_token.empty()) return true;
+  const int64_t now = token_clock_ms();
+  return std::any_of(tokens_.begin(), tokens_.end(), [&](const auto& token) {
+    return token.second.row.role == v1::ROLE_ADMIN && is_live(token.second.row, now);
+  });
+}
+
 std::string Authority::unguarded() const {
   if (!options_.beyond) return {};
   const bool tokens = guarded();

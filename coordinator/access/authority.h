@@ -56,6 +56,8 @@ class Authority {
 
   /// Whether callers need a token: there is one, or has been.
   bool guarded() const;
+  /// Whether anybody may come in as an admin: the shared token, or one that is in use.
+  bool has_admin() const;
   /// How strangers may listen or act; empty: they may not.
   std::string unguarded() const;
 

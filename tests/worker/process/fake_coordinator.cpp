@@ -9,6 +9,7 @@
 
 #include "core/base/hash.h"
 #include "core/film/film_codec.h"
+#include "farm/channel.h"
 #include "farm/wire.h"
 #include "hyades/v1/assets.grpc.pb.h"
 #include "hyades/v1/work.grpc.pb.h"
@@ -72,7 +73,13 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
   explicit WorkService(Books& books) : books_(books) {}
 
   using Stream = grpc::ServerReaderWriter<v1::CoordinatorMessage, v1::WorkerMessage>;
-  grpc::Status Attend(grpc::ServerContext* /*context*/, Stream* stream) override {
+  grpc::Status Attend(grpc::ServerContext* context, Stream* stream) override {
+    const std::string& token = books_.owner->token;
+    const auto shown = context->client_metadata().find(farm::kTokenKey);
+    if (!token.empty() && (shown == context->client_metadata().end() ||
+                           shown->second != grpc::string_ref("Bearer " + token))) {
+      return {grpc::StatusCode::UNAUTHENTICATED, "this is not a token of this coordinator"};
+    }
     v1::WorkerMessage message;
     uint32_t want = 0;
     while (stream->Read(&message)) {

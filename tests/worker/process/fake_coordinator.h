@@ -47,6 +47,7 @@ class FakeCoordinator {
   uint32_t protocol = farm::kProtocol;
   size_t twins = 0;  ///< so many Hellos more are told that another process has their id
   bool acknowledge = true;
+  std::string token;  ///< that workers have to show; empty: none. To be changed while it is stopped
   bool answer_failures = true;  ///< a failed unit is leased again
 
   /// "127.0.0.1:PORT"; the same port after a restart.
