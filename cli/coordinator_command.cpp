@@ -258,6 +258,8 @@ int main(int argc, char** argv) {
   app.add_option("--tls-key", arguments.listen.key_file, "its private key (PEM)");
   app.add_option("--tls-ca", arguments.listen.ca_file,
                  "callers must show a certificate signed by this one (PEM)");
+  app.add_option("--worker-ca", arguments.listen.worker_ca_file,
+                 "workers must show a certificate signed by this one (PEM); others need none");
   app.add_option(
       "--token-file", arguments.listen.token_file,
       "file with one token for all roles, beside those of 'hyades token' (docs/safety.md)");

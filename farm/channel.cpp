@@ -7,6 +7,8 @@
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
 #include <grpcpp/security/server_credentials.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
 
 #include "farm/grpc_log.h"
 #include "farm/small_file.h"
@@ -16,9 +18,21 @@
 namespace hyades::farm {
 namespace {
 
+namespace tls = grpc::experimental;
+
 constexpr size_t kShortestToken = 16;
+/// How soon certificates that have changed are noticed.
+constexpr unsigned kReadAgainSeconds = 2;
 constexpr int kKeepaliveMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
+
+/// Reads the files again and again; empty names are none.
+std::shared_ptr<tls::CertificateProviderInterface> watch(const std::string& ca_file,
+                                                         const std::string& cert_file,
+                                                         const std::string& key_file) {
+  return std::make_shared<tls::FileWatcherCertificateProvider>(key_file, cert_file, ca_file,
+                                                               kReadAgainSeconds);
+}
 
 core::Error plaintext_error(const std::string& address) {
   return {address +
@@ -47,6 +61,13 @@ bool is_loopback(const std::string& address) {
          (host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string::npos);
 }
 
+std::string plaintext_warning(const Peer& peer) {
+  if (!peer.ca_file.empty() || !peer.insecure || is_loopback(peer.address)) return {};
+  return "WARNING: plain text to " + peer.address +
+         " (--insecure): whoever listens may read everything" +
+         (peer.token_file.empty() ? "" : ", the token too");
+}
+
 core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer) {
   quiet_grpc();
   std::shared_ptr<grpc::ChannelCredentials> credentials;
@@ -59,15 +80,15 @@ core::Result<std::shared_ptr<grpc::Channel>> connect(const Peer& peer) {
   if (!peer.ca_file.empty()) {
     const auto ca = read_certificates(peer.ca_file);
     if (!ca) return ca.error();
-    grpc::SslCredentialsOptions options;
-    options.pem_root_certs = *ca;
     if (!peer.cert_file.empty()) {
       const auto pair = read_key_pair(peer.cert_file, peer.key_file);
       if (!pair) return pair.error();
-      options.pem_cert_chain = pair->cert;
-      options.pem_private_key = pair->key;
     }
-    credentials = grpc::SslCredentials(options);
+    tls::TlsChannelCredentialsOptions options;
+    options.set_certificate_provider(watch(peer.ca_file, peer.cert_file, peer.key_file));
+    options.watch_root_certs();
+    if (!peer.cert_file.empty()) options.watch_identity_key_cert_pairs();
+    credentials = tls::TlsCredentials(options);
   } else if (is_loopback(peer.address) || peer.insecure) {
     credentials = grpc::InsecureChannelCredentials();
   } else {
@@ -104,7 +125,7 @@ core::Result<Door> open_door(const Listen& listen) {
   if (!token) return token.error();
   door.token = std::move(*token);
   if (listen.cert_file.empty()) {
-    if (!listen.ca_file.empty()) {
+    if (!listen.ca_file.empty() || !listen.worker_ca_file.empty()) {
       return core::Error{"clients' certificates need TLS: give a certificate and its key"};
     }
     if (open) return plaintext_error(listen.address);
@@ -117,16 +138,23 @@ core::Result<Door> open_door(const Listen& listen) {
   }
   auto pair = read_key_pair(listen.cert_file, listen.key_file);
   if (!pair) return pair.error();
-  grpc::SslServerCredentialsOptions options(
-      listen.ca_file.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
-                             : GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
-  if (!listen.ca_file.empty()) {
-    const auto ca = read_certificates(listen.ca_file);
-    if (!ca) return ca.error();
-    options.pem_root_certs = *ca;
+  if (!listen.ca_file.empty() && !listen.worker_ca_file.empty()) {
+    return core::Error{
+        "--tls-ca asks everybody for a certificate, workers too: leave out --worker-ca"};
   }
-  options.pem_key_cert_pairs.push_back({pair->key, pair->cert});
-  door.credentials = grpc::SslServerCredentials(options);
+  const std::string& ca_file = listen.ca_file.empty() ? listen.worker_ca_file : listen.ca_file;
+  if (!ca_file.empty()) {
+    if (const auto ca = read_certificates(ca_file); !ca) return ca.error();
+  }
+  tls::TlsServerCredentialsOptions options(watch(ca_file, listen.cert_file, listen.key_file));
+  options.watch_identity_key_cert_pairs();
+  if (!ca_file.empty()) options.watch_root_certs();
+  options.set_cert_request_type(ca_file.empty() ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
+                                : !listen.ca_file.empty()
+                                    ? GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY
+                                    : GRPC_SSL_REQUEST_CLIENT_CERTIFICATE_AND_VERIFY);
+  door.workers_show = !listen.worker_ca_file.empty();
+  door.credentials = tls::TlsServerCredentials(options);
   return door;
 }
 

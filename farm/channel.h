@@ -30,10 +30,11 @@ struct Listen {
   std::string address = "127.0.0.1:7700";  ///< HOST:PORT; port 0: one that is free
   std::string cert_file;                   ///< PEM, with key_file: TLS
   std::string key_file;
-  std::string ca_file;     ///< PEM: clients must show a certificate that it signed; empty: need not
-  std::string token_file;  ///< holds one token for all; empty: none
-  bool asks_tokens = false;  ///< every call must carry a token, whether there is a file or not
-  bool insecure = false;     ///< plaintext or no token also beyond this machine
+  std::string ca_file;  ///< PEM: clients must show a certificate that it signed; empty: need not
+  std::string worker_ca_file;  ///< PEM: the same of workers alone
+  std::string token_file;      ///< holds one token for all; empty: none
+  bool asks_tokens = false;    ///< every call must carry a token, whether there is a file or not
+  bool insecure = false;       ///< plaintext or no token also beyond this machine
 };
 
 /// A line of at least 16 printable characters; an empty file name gives an empty token. Errors name
@@ -43,7 +44,12 @@ core::Result<std::string> read_token(const std::string& file);
 /// Whether HOST:PORT stays on this machine: 127.x.y.z, [::1], localhost.
 bool is_loopback(const std::string& address);
 
-/// A connection that reconnects by itself; the files of `peer` have been read. Keepalive pings
+/// Whether all that is said to `peer`, tokens too, can be read by whoever listens: plain text that
+/// leaves this machine. What to tell people then; empty: it cannot.
+std::string plaintext_warning(const Peer& peer);
+
+/// A connection that reconnects by itself; the files of `peer` have been read, and certificates are
+/// read again when they change. Keepalive pings
 /// notice a dead peer within 30 s, also between calls. Thread-safe; nothing is contacted yet. An
 /// error where a file is not what it should be, or plaintext would leave this machine without
 /// `insecure`.
@@ -61,11 +67,13 @@ std::string connection_trouble(const std::string& message, const Peer& peer);
 void prepare(grpc::ClientContext& context, const std::string& token,
              std::chrono::milliseconds timeout);
 
-/// What a coordinator needs in order to listen; the files of its `Listen` have been read.
+/// What a coordinator needs in order to listen; the files of its `Listen` have been read, and
+/// certificates are read again when they change.
 struct Door {
   std::string address;
   std::shared_ptr<grpc::ServerCredentials> credentials;
-  std::string token;  ///< one for all; empty: none
+  std::string token;          ///< one for all; empty: none
+  bool workers_show = false;  ///< workers must have shown a certificate
 };
 
 /// An error, which names the file if it is one's fault, where `listen` does not hold together, or

@@ -30,6 +30,9 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   if (!token) return refuse(token.error(), kWrongInput);
   auto channel = farm::connect(options.coordinator);
   if (!channel) return refuse(channel.error(), kWrongInput);
+  if (const std::string warning = farm::plaintext_warning(options.coordinator); !warning.empty()) {
+    std::fprintf(stderr, "hyades worker: %s\n", warning.c_str());
+  }
   auto tags = farm::check_tags(options.tags);
   if (!tags) return refuse(tags.error(), kWrongInput);
   std::error_code failed;

@@ -1,8 +1,10 @@
 #include "coordinator/services/admission.h"
 
 #include <charconv>
+#include <string_view>
 
 #include <fmt/format.h>
+#include <grpcpp/security/auth_context.h>
 
 #include "farm/channel.h"
 #include "farm/wire.h"
@@ -40,7 +42,15 @@ grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const 
             fmt::format("the caller speaks protocol {}, this coordinator {} to {}", protocol,
                         farm::kOldestProtocol, farm::kProtocol)};
   }
-  return allow(caller, rule);
+  if (const grpc::Status allowed = allow(caller, rule); !allowed.ok()) return allowed;
+  const bool works =
+      caller.role == v1::ROLE_WORKER || rule.deed == std::string_view("worker.attend");
+  if (works && workers_show_ && !context.auth_context()->IsPeerAuthenticated()) {
+    return {grpc::StatusCode::UNAUTHENTICATED,
+            "workers show a certificate here: --tls-cert FILE --tls-key FILE ('hyades certs issue "
+            "--client' makes one)"};
+  }
+  return grpc::Status::OK;
 }
 
 }  // namespace hyades::coordinator

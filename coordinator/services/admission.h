@@ -16,8 +16,9 @@ namespace hyades::coordinator {
 /// token's role may do what it asks for.
 class Admission {
  public:
-  /// `authority` outlives it.
-  explicit Admission(Authority& authority) : authority_(authority) {}
+  /// `workers_show`: workers must have shown a certificate. `authority` outlives it.
+  Admission(Authority& authority, bool workers_show)
+      : authority_(authority), workers_show_(workers_show) {}
 
   /// OK and who calls; or UNAUTHENTICATED, FAILED_PRECONDITION or PERMISSION_DENIED with the
   /// reason.
@@ -50,6 +51,7 @@ class Admission {
 
   mutable std::mutex large_;
   Authority& authority_;
+  const bool workers_show_;
 };
 
 }  // namespace hyades::coordinator

@@ -31,8 +31,8 @@ constexpr int kMostCalls = 100;
 }  // namespace
 
 struct Server::Parts {
-  Parts(Brain& brain, Authority& authority)
-      : admission(authority),
+  Parts(Brain& brain, Authority& authority, bool workers_show)
+      : admission(authority, workers_show),
         work(brain, admission),
         jobs(brain, admission, desks),
         assets(brain, admission, desks),
@@ -58,7 +58,7 @@ Server::~Server() {
 
 core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brain& brain,
                                                     Authority& authority) {
-  auto parts = std::make_unique<Parts>(brain, authority);
+  auto parts = std::make_unique<Parts>(brain, authority, door.workers_show);
   grpc::ServerBuilder builder;
   int port = 0;
   builder.AddListeningPort(door.address, door.credentials, &port);

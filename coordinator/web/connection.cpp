@@ -56,8 +56,10 @@ class ConnectionOver final : public Connection,
                              public std::enable_shared_from_this<ConnectionOver<Stream>> {
  public:
   template <class... Arguments>
-  explicit ConnectionOver(ConnectionWorld& world, Arguments&&... stream)
+  ConnectionOver(ConnectionWorld& world, std::shared_ptr<asio::ssl::context> tls,
+                 Arguments&&... stream)
       : world_(world),
+        tls_(std::move(tls)),
         stream_(std::forward<Arguments>(stream)...),
         heartbeat_(stream_.get_executor()) {}
 
@@ -417,6 +419,7 @@ class ConnectionOver final : public Connection,
   }
 
   ConnectionWorld& world_;
+  const std::shared_ptr<asio::ssl::context> tls_;  ///< outlives the stream
   Stream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
@@ -445,12 +448,13 @@ class ConnectionOver final : public Connection,
 
 }  // namespace
 
-std::shared_ptr<Connection> make_connection(asio::ip::tcp::socket socket, asio::ssl::context* tls,
+std::shared_ptr<Connection> make_connection(asio::ip::tcp::socket socket,
+                                            const std::shared_ptr<asio::ssl::context>& tls,
                                             ConnectionWorld& world) {
-  if (tls != nullptr) {
-    return std::make_shared<ConnectionOver<Tls>>(world, std::move(socket), *tls);
+  if (tls) {
+    return std::make_shared<ConnectionOver<Tls>>(world, tls, std::move(socket), *tls);
   }
-  return std::make_shared<ConnectionOver<Plain>>(world, std::move(socket));
+  return std::make_shared<ConnectionOver<Plain>>(world, tls, std::move(socket));
 }
 
 }  // namespace hyades::coordinator

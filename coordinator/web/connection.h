@@ -48,6 +48,7 @@ struct ConnectionWorld {
 
 /// `tls`: null for plain text. The world outlives the connection.
 std::shared_ptr<Connection> make_connection(boost::asio::ip::tcp::socket socket,
-                                            boost::asio::ssl::context* tls, ConnectionWorld& world);
+                                            const std::shared_ptr<boost::asio::ssl::context>& tls,
+                                            ConnectionWorld& world);
 
 }  // namespace hyades::coordinator

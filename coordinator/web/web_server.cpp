@@ -5,12 +5,12 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
 #include "coordinator/access/authority.h"
@@ -27,7 +27,8 @@
 #include "coordinator/web/outputs_api.h"
 #include "coordinator/web/pictures_api.h"
 #include "coordinator/web/router.h"
-#include "farm/tls_files.h"
+#include "coordinator/web/tls_context.h"
+#include "farm/log.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -39,6 +40,8 @@ using asio::ip::tcp;
 constexpr size_t kMostConnections = 4000;
 constexpr std::chrono::milliseconds kAcceptAgain{200};
 constexpr std::chrono::seconds kSweep{30};
+/// How soon certificates that have changed are noticed.
+constexpr std::chrono::seconds kLook{2};
 
 struct HostAndPort {
   std::string host;
@@ -110,7 +113,8 @@ struct WebServer::Parts {
               desks.files, outlet},
         acceptor(network),
         again(network),
-        sweep(network) {
+        sweep(network),
+        look(network) {
     if (AuditLog* log = authority.audit()) {
       router.set_note(
           [log](const Caller& caller, const Rule& rule, const std::string& target,
@@ -201,7 +205,7 @@ struct WebServer::Parts {
         boost::system::error_code ignored;
         close_on_exec(socket);
         socket.set_option(tcp::no_delay(true), ignored);
-        make_connection(std::move(socket), tls.get(), world)->begin();
+        make_connection(std::move(socket), tls, world)->begin();
       }
       if (!error) return accept();
       // No descriptors left, say.
@@ -216,6 +220,27 @@ struct WebServer::Parts {
       if (error) return;
       (void)desks.files.hand([this] { assets.sweep(); });
       sweep_now_and_then();
+    });
+  }
+
+  /// Certificates that were renewed are taken up; where they are none the last ones go on.
+  void look_at_certificates() {
+    if (!certificates) return;
+    look.expires_after(kLook);
+    look.async_wait([this](boost::system::error_code error) {
+      if (error) return;
+      if (certificates->changed()) {
+        (void)desks.files.hand([this] {
+          auto fresh = certificates->load();
+          if (!fresh) {
+            farm::log(farm::LogLevel::warning,
+                      fresh.error().message + ": HTTP goes on with the last certificate");
+            return;
+          }
+          outlet->post([this, context = std::move(*fresh)] { tls = context; });
+        });
+      }
+      look_at_certificates();
     });
   }
 
@@ -244,10 +269,12 @@ struct WebServer::Parts {
   LiveApi live;
   Router router;
   ConnectionWorld world;
-  std::unique_ptr<asio::ssl::context> tls;
+  std::optional<TlsContext> certificates;  ///< none: plain text
+  TlsContext::Context tls;                 ///< of those who come from now on
   tcp::acceptor acceptor;
   asio::steady_timer again;
   asio::steady_timer sweep;
+  asio::steady_timer look;
   std::thread thread;
   Desks desks;  ///< ends first: its clerks use all of the above
 };
@@ -281,28 +308,11 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
       brain, authority,
       Gatekeeper(authority, door->token, farm::is_loopback(listen.address), secure));
   if (secure) {
-    const auto pair = farm::read_key_pair(listen.cert_file, listen.key_file);
-    if (!pair) return pair.error();
-    parts->tls = std::make_unique<asio::ssl::context>(asio::ssl::context::tls_server);
-    boost::system::error_code error;
-    parts->tls->set_options(asio::ssl::context::default_workarounds | asio::ssl::context::no_tlsv1 |
-                                asio::ssl::context::no_tlsv1_1,
-                            error);
-    if (!error) parts->tls->use_certificate_chain(asio::buffer(pair->cert), error);
-    if (!error) {
-      parts->tls->use_private_key(asio::buffer(pair->key), asio::ssl::context::pem, error);
-    }
-    if (!error && !listen.ca_file.empty()) {
-      // As over gRPC: who comes shows a certificate that this one has signed.
-      const auto ca = farm::read_certificates(listen.ca_file);
-      if (!ca) return ca.error();
-      parts->tls->add_certificate_authority(asio::buffer(*ca), error);
-      if (!error) {
-        parts->tls->set_verify_mode(asio::ssl::verify_peer | asio::ssl::verify_fail_if_no_peer_cert,
-                                    error);
-      }
-    }
-    if (error) return core::Error{listen.cert_file + ": " + error.message()};
+    parts->certificates.emplace(listen);
+    (void)parts->certificates->changed();
+    auto tls = parts->certificates->load();
+    if (!tls) return tls.error();
+    parts->tls = std::move(*tls);
   }
   if (core::Status bound = parts->listen(listen.address); !bound) return bound.error();
   std::unique_ptr<WebServer> server(new WebServer(std::move(parts)));
@@ -314,6 +324,7 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   running.accept();
   running.live.begin();
   running.sweep_now_and_then();
+  running.look_at_certificates();
   running.thread = std::thread([&running] { running.run(); });
   return server;
 }
