@@ -2,17 +2,25 @@
 import { command, nothing } from './parts.js';
 import { farm } from './farm_state.js';
 import { h } from './dom.js';
+import { joining } from './joining.js';
+import { me } from './me.js';
 import { to } from './router.js';
 
+const join = () =>
+  joining(
+    farm.info?.grpc_address,
+    { hostname: location.hostname, secure: location.protocol === 'https:' },
+    me.guarded,
+  );
+
 /** The command that starts a worker of this farm. */
-export const workerCommand = () =>
-  `hyades worker --coordinator ${farm.info?.grpc_address || `${location.hostname || 'HOST'}:7700`}`;
+export const workerCommand = () => join().command;
 
 /** What is shown where nobody renders. */
 export const noWorkers = () =>
   nothing(
     'No workers yet',
-    h('p', { text: 'Start one on each machine that is to render:' }),
+    h('p', { text: join().where }),
     command(workerCommand()),
     h('p', { class: 'soft', text: 'Workers may come and go at any time, in mid-frame too.' }),
   );
@@ -45,7 +53,7 @@ export function welcome() {
       step(
         '1',
         'Start a worker',
-        h('p', { text: 'On each machine that is to render, this one too:' }),
+        h('p', { text: join().where }),
         command(workerCommand()),
         h('p', { class: 'soft', text: 'Workers may come and go at any time, in mid-frame too.' }),
       ),
