@@ -195,7 +195,7 @@ class FetchRun {
       if (failure) break;
       if (!options_.list && is_new(file)) display_.expect(file.size());
     }
-    seen_.clear();
+    if (!options_.follow) seen_.clear();  // they were counted, not fetched
     for (size_t i = 0; i < files.size() && !failure; ++i) failure = take(files[i]);
     display_.clear();
     return failure;
