@@ -118,7 +118,7 @@ TEST_F(CompareCommand, WrongArgumentsAreStatusTwo) {
   EXPECT_EQ(run({a, a, "--layer", "albedo"}), 2);
   EXPECT_EQ(run({a, a, "--tolerance", "-1"}), 2);
   EXPECT_EQ(run({"--help"}), 0);
-  EXPECT_NE(out_.find("Exit status"), std::string::npos);
+  EXPECT_NE(out_.find("exit status"), std::string::npos);
 }
 
 }  // namespace

@@ -266,6 +266,7 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   ASSERT_EQ(sqlite3_exec(db,
                          "DROP INDEX doubtful_frames; ALTER TABLE frames DROP COLUMN doubtful; "
                          "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
+                         "DROP TABLE tokens; "
                          "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
                          "preview; PRAGMA user_version=3",
                          nullptr, nullptr, nullptr),
