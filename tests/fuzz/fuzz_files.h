@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -11,16 +9,11 @@
 #include <string_view>
 
 #include "core/base/assets.h"
+#include "tests/support/exact_bytes.h"
 
 namespace hyades::fuzz {
 
-/// `input` in a heap block of exactly its size, so that a sanitizer sees every read past its end.
-inline core::Bytes exact_bytes(std::string_view input) {
-  std::shared_ptr<char[]> copy(new char[input.size()]);
-  std::copy(input.begin(), input.end(), copy.get());
-  const auto* first = reinterpret_cast<const std::byte*>(copy.get());
-  return {copy, {first, input.size()}};
-}
+using test::exact_bytes;
 
 /// Files in memory, for readers that open others.
 class Files : public core::AssetResolver {

@@ -5,21 +5,13 @@
 
 #include "core/import/scene_source.h"
 #include "core/job/yaml_writer.h"
+#include "tests/support/made_files.h"
 
 namespace hyades::fuzz {
 
 /// Opens every file that objects name: their meshes and places.
 inline void make_files_of(const core::SceneSource& source, const core::YamlNode& objects) {
-  for (const core::YamlEntry& object : objects.map) {
-    for (const char* key : {"mesh", "places"}) {
-      const core::YamlEntry* file = object.value->find(key);
-      if (file == nullptr) continue;
-      std::string name = file->value->scalar;
-      const size_t at = name.find("####");
-      if (at != std::string::npos) name.replace(at, 4, "0002");
-      (void)source.made_file(name);
-    }
-  }
+  for (const std::string& name : test::made_files_of(objects)) (void)source.made_file(name);
 }
 
 /// Reads the scene `reference` of `files`, says it as a job and makes its files; whether it is one.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/import/gltf_builder.h"
+#include "tests/support/made_files.h"
 #include "tests/support/random.h"
 
 namespace hyades::test {
@@ -19,16 +20,9 @@ GltfBuilder one_square() {
 
 /// What is wrong with the meshes and places that objects name; empty: nothing.
 std::string trouble_of(const core::SceneSource& source, const core::YamlNode& objects) {
-  for (const core::YamlEntry& object : objects.map) {
-    for (const char* key : {"mesh", "places"}) {
-      const core::YamlEntry* file = object.value->find(key);
-      if (file == nullptr) continue;
-      std::string name = file->value->scalar;
-      const size_t at = name.find("####");
-      if (at != std::string::npos) name.replace(at, 4, "0002");
-      const auto made = source.made_file(name);
-      if (!made) return made.error().message;
-    }
+  for (const std::string& name : made_files_of(objects)) {
+    const auto made = source.made_file(name);
+    if (!made) return made.error().message;
   }
   return {};
 }
