@@ -116,6 +116,9 @@ int main(int argc, char** argv) {
                  "killed; 0: never")
       ->check(hang_limit_error)
       ->capture_default_str();
+  hyades::cli::add_duration(app, "--unit-time-limit", options.unit_limit,
+                            "most time for one unit, such as 30m, after which it has failed; 0: "
+                            "no limit (default: 1h)");
   app.add_option(
          "--sandbox", options.sandbox,
          "of the process that renders: auto (as far as this machine can), require (else the "
@@ -143,6 +146,7 @@ int main(int argc, char** argv) {
       "  hyades worker\n"
       "  hyades worker --coordinator farm.example:7700 --tls-ca ca.pem --token-file token\n"
       "  hyades worker --exit-when-idle 5m --preemption auto\n"
+      "  hyades worker --memory 8G --unit-time-limit 30m --sandbox require\n"
       "Ctrl-C or SIGTERM: what is done is handed over, the rest given back; a second one ends it "
       "at once.\n"
       "exit status: 0 asked to leave or without work, 1 cannot work here, 2 wrong arguments or "

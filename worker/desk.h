@@ -14,6 +14,7 @@
 #include "hyades/v1/work.pb.h"
 #include "worker/pipe/render_pipe.pb.h"
 #include "worker/render_watch.h"
+#include "worker/unit_limit.h"
 
 namespace hyades::worker {
 
@@ -61,6 +62,7 @@ struct DeskOptions {
   /// Films that may wait for their acknowledgement before no more work is asked for.
   uint64_t max_kept_bytes = uint64_t{1} << 30U;
   Duration hang_limit{0};  ///< see RenderWatch
+  Duration unit_limit{0};  ///< see UnitLimit
 };
 
 /// The worker's books: which units it has under which leases, who renders what, which films are not
@@ -72,13 +74,15 @@ struct DeskOptions {
 ///
 /// When the rendering child dies, every unit that it had begun is a suspect. Suspects are rendered
 /// again one at a time, with nothing beside them: the one that kills the child alone has failed. A
-/// child that hangs is killed, and then only the units that it hung in are suspects.
+/// child that hangs is killed, and then only the units that it hung in are suspects. A unit that
+/// takes longer than it may has failed, whoever is to blame.
 class Desk {
  public:
   Desk(DeskOptions options, DeskPorts& ports)
       : options_(std::move(options)),
         ports_(ports),
         watch_(options_.hang_limit),
+        unit_limit_(options_.unit_limit),
         rests_(kFirstRest, kLongestRest,
                static_cast<uint32_t>(std::hash<std::string>{}(options_.worker_id))) {}
 
@@ -153,6 +157,7 @@ class Desk {
   static v1::LeaseProgress::Stage stage_of(const Item& item);
   void lose_renderer(const std::string& reason, const std::set<uint64_t>* hung);
   void watch(TimePoint now);
+  void end_overdue(TimePoint now);
   void take(const v1::Lease& lease);
   void take_unit(const v1::LeasedUnit& leased, bool adopted);
   void dispatch();
@@ -185,6 +190,7 @@ class Desk {
   std::string build_;
   bool renderer_up_ = false;
   RenderWatch watch_;
+  UnitLimit unit_limit_;
   uint64_t renderer_memory_ = 0;
   CacheFacts cache_;
 

@@ -28,6 +28,10 @@ void Desk::renderer_says(pipe::FromRenderer message, TimePoint /*now*/) {
     }
     return;
   }
+  const auto answered = [&](uint64_t token) {
+    watch_.answered(token);
+    unit_limit_.answered(token);
+  };
   const auto named = [&](uint64_t token) {
     const auto item = items_.find(token);
     // The child may answer late about a unit that was given up.
@@ -39,23 +43,24 @@ void Desk::renderer_says(pipe::FromRenderer message, TimePoint /*now*/) {
       item->second.begun = true;
       item->second.loading = message.started().loading();
     }
+    unit_limit_.begun(message.started().token(), message.started().loading());
     if (message.started().loading()) {
       watch_.loading(message.started().token());
     } else {
       watch_.rendering(message.started().token());
     }
   } else if (message.has_film()) {
-    watch_.answered(message.film().token());
+    answered(message.film().token());
     if (const auto item = named(message.film().token()); item != items_.end()) {
       keep_film(item, message.film());
     }
   } else if (message.has_failed()) {
-    watch_.answered(message.failed().token());
+    answered(message.failed().token());
     if (const auto item = named(message.failed().token()); item != items_.end()) {
       fail(item, message.failed().reason());
     }
   } else if (message.has_returned()) {
-    watch_.answered(message.returned().token());
+    answered(message.returned().token());
     // Stopped by hand_over before its first batch was done.
     if (const auto item = named(message.returned().token()); item != items_.end()) {
       item->second.state = Item::State::waiting;
@@ -74,6 +79,7 @@ void Desk::renderer_died(const std::string& reason) { lose_renderer(reason, null
 void Desk::lose_renderer(const std::string& reason, const std::set<uint64_t>* hung) {
   renderer_up_ = false;
   watch_.child_gone();
+  unit_limit_.child_gone();
   for (auto& [id, job] : jobs_) job.told = false;
   std::vector<uint64_t> guilty;
   std::vector<uint64_t> accused;
@@ -102,6 +108,26 @@ void Desk::watch(TimePoint now) {
   if (!hang) return;
   ports_.kill_renderer(hang->reason);
   lose_renderer(hang->reason, &hang->tokens);
+}
+
+/// Units that have had their time have failed. The child goes on with the others, unless it does
+/// not stop.
+void Desk::end_overdue(TimePoint now) {
+  const UnitLimit::Overdue overdue = unit_limit_.tick(now);
+  for (const uint64_t token : overdue.tokens) {
+    const auto item = items_.find(token);
+    if (item == items_.end() || item->second.state != Item::State::rendering) continue;
+    stop_rendering(item);
+    fail(item, unit_limit_.reason());
+  }
+  if (overdue.stuck) {
+    const std::string reason = "did not stop a unit that " + unit_limit_.reason();
+    const std::set<uint64_t> nobody;
+    ports_.kill_renderer(reason);
+    lose_renderer(reason, &nobody);
+  } else if (!overdue.tokens.empty()) {
+    dispatch();
+  }
 }
 
 /// Gives the child what it can work on.

@@ -12,6 +12,7 @@ namespace hyades::worker {
 
 void Desk::tick(TimePoint now, bool flowing) {
   fence(now);
+  end_overdue(now);
   watch(now);
   if (rests_until_ && now >= *rests_until_) rests_until_.reset();
   if (!welcomed_) return;

@@ -7,7 +7,6 @@
 namespace hyades::worker {
 namespace {
 
-constexpr RenderWatch::Duration kLongestTick = std::chrono::seconds(1);
 /// Jobs whose pace is remembered.
 constexpr size_t kMostSteps = 1000;
 
@@ -20,7 +19,7 @@ double in_seconds(RenderWatch::Duration time) {
 void RenderWatch::child_started() {
   child_gone();
   awaited_ = true;
-  heard_ = time_;
+  heard_ = clock_.passed();
 }
 
 void RenderWatch::child_gone() {
@@ -30,12 +29,12 @@ void RenderWatch::child_gone() {
 
 void RenderWatch::heard() {
   awaited_ = false;
-  heard_ = time_;
+  heard_ = clock_.passed();
 }
 
 void RenderWatch::told(uint64_t token, uint64_t job) {
-  if (tasks_.empty()) heard_ = time_;  // an idle child is silent
-  tasks_[token] = {job, Phase::queued, 0, time_};
+  if (tasks_.empty()) heard_ = clock_.passed();  // an idle child is silent
+  tasks_[token] = {job, Phase::queued, 0, clock_.passed()};
 }
 
 void RenderWatch::loading(uint64_t token) { begin(token, Phase::loading); }
@@ -45,7 +44,7 @@ void RenderWatch::begin(uint64_t token, Phase phase) {
   const auto task = tasks_.find(token);
   if (task == tasks_.end()) return;
   task->second.phase = phase;
-  task->second.moved = time_;
+  task->second.moved = clock_.passed();
 }
 
 void RenderWatch::progress(uint64_t token, uint64_t samples) {
@@ -54,9 +53,9 @@ void RenderWatch::progress(uint64_t token, uint64_t samples) {
   Task& task = found->second;
   if (steps_.size() >= kMostSteps && !steps_.contains(task.job)) steps_.erase(steps_.begin());
   Duration& longest = steps_[task.job];
-  longest = std::max(longest, time_ - task.moved);
+  longest = std::max(longest, clock_.passed() - task.moved);
   task.samples = samples;
-  task.moved = time_;
+  task.moved = clock_.passed();
 }
 
 void RenderWatch::answered(uint64_t token) { tasks_.erase(token); }
@@ -68,35 +67,33 @@ RenderWatch::Duration RenderWatch::patience_with(const Task& task) const {
 }
 
 std::optional<RenderWatch::Hang> RenderWatch::tick(TimePoint now) {
-  if (ticked_) time_ += std::clamp<Duration>(now - *ticked_, Duration(0), kLongestTick);
-  ticked_ = now;
+  const Duration time = clock_.tick(now);
   if (limit_ <= Duration(0)) return std::nullopt;
   Hang hang;
   bool only_loads = true;
   bool busy = tasks_.empty();
   Duration longest{0};
   for (const auto& [token, task] : tasks_) {
-    const Duration still = time_ - task.moved;
+    const Duration still = time - task.moved;
     busy = busy || task.phase != Phase::queued;
     if (task.phase == Phase::queued || still < patience_with(task)) continue;
     hang.tokens.insert(token);
     longest = std::max(longest, still);
     only_loads = only_loads && task.phase == Phase::loading;
   }
-  if (busy) busy_ = time_;
+  if (busy) busy_ = time;
   if (!hang.tokens.empty()) {
     hang.reason = fmt::format("{} {:.3g} s and was killed",
                               only_loads ? "was loading a scene for" : "had no sample done in",
                               in_seconds(longest));
-  } else if ((awaited_ || !tasks_.empty()) && time_ - heard_ >= limit_) {
+  } else if ((awaited_ || !tasks_.empty()) && time - heard_ >= limit_) {
     for (const auto& [token, task] : tasks_) {
       if (task.phase != Phase::queued) hang.tokens.insert(token);
     }
     hang.reason =
-        fmt::format("gave no sign of life for {:.3g} s and was killed", in_seconds(time_ - heard_));
-  } else if (time_ - busy_ >= kLoading * limit_) {
-    hang.reason =
-        fmt::format("began nothing in {:.3g} s and was killed", in_seconds(time_ - busy_));
+        fmt::format("gave no sign of life for {:.3g} s and was killed", in_seconds(time - heard_));
+  } else if (time - busy_ >= kLoading * limit_) {
+    hang.reason = fmt::format("began nothing in {:.3g} s and was killed", in_seconds(time - busy_));
   } else {
     return std::nullopt;
   }

@@ -7,18 +7,18 @@
 #include <set>
 #include <string>
 
+#include "worker/running_time.h"
+
 namespace hyades::worker {
 
 /// Notices a rendering child that hangs without dying: a unit of which no sample gets done, a scene
 /// whose loading does not end, a child that says nothing at all (it was stopped, or never gets
-/// ready) or begins nothing. No clock of its own: it knows what time it is from tick().
-///
-/// Time in which this process did not run either (the machine slept, the person pressed Ctrl-Z)
-/// does not count: two ticks are never taken for more than a second apart.
+/// ready) or begins nothing. No clock of its own: it knows what time it is from tick(), and
+/// counts it as RunningTime has it.
 class RenderWatch {
  public:
-  using TimePoint = std::chrono::steady_clock::time_point;
-  using Duration = std::chrono::steady_clock::duration;
+  using TimePoint = RunningTime::TimePoint;
+  using Duration = RunningTime::Duration;
 
   /// What is wrong with the child, which has to be killed.
   struct Hang {
@@ -59,15 +59,14 @@ class RenderWatch {
     uint64_t job = 0;
     Phase phase = Phase::queued;
     uint64_t samples = 0;
-    Duration moved{0};  ///< when it last got further, by time_
+    Duration moved{0};  ///< when it last got further, by clock_
   };
 
   void begin(uint64_t token, Phase phase);
   Duration patience_with(const Task& task) const;
 
   const Duration limit_;
-  Duration time_{0};  ///< that has passed while somebody ticked
-  std::optional<TimePoint> ticked_;
+  RunningTime clock_;
   bool awaited_ = false;  ///< a child was started that is not ready yet
   Duration heard_{0};
   Duration busy_{0};                    ///< when it last was in a unit, or had none

@@ -19,9 +19,10 @@ struct WorkerOptions {
   uint64_t cache_size = 0;  ///< bytes; 0: no limit
   std::string name;         ///< for people
   std::vector<std::string> tags;
-  double grace = 2.0;      ///< seconds from SIGTERM to the end
-  double hang_limit = 60;  ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
-  double idle_limit = 0;   ///< seconds without work after which it ends; 0: never (IdleWatch)
+  double grace = 2.0;        ///< seconds from SIGTERM to the end
+  double hang_limit = 60;    ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
+  double unit_limit = 3600;  ///< seconds for one unit; 0: no limit (UnitLimit)
+  double idle_limit = 0;     ///< seconds without work after which it ends; 0: never (IdleWatch)
   std::string sandbox = "auto";  ///< of the rendering child: auto, require or off
   std::optional<Cloud> cloud;    ///< whose notices of pre-emption to watch for
   std::string cloud_endpoint;    ///< instead of the cloud's own metadata service; empty: that one

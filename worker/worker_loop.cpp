@@ -103,6 +103,7 @@ class Worker : private DeskPorts,
     desk.worker_id = id.text();
     desk.instance = instance;
     desk.hang_limit = seconds(options.hang_limit);
+    desk.unit_limit = seconds(options.unit_limit);
     desk.name = options.name.empty() ? host_name() : options.name;
     desk.host = host_name();
     desk.threads = static_cast<uint32_t>(options.threads);

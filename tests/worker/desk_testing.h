@@ -40,6 +40,7 @@ class DeskWorld {
     options.ahead = ahead;
     options.max_kept_bytes = 1000;
     options.hang_limit = std::chrono::seconds(60);
+    options.unit_limit = std::chrono::minutes(30);
     desk.emplace(options, ports);
   }
 

@@ -121,6 +121,61 @@ TEST(WorkerProcess, AHungRenderingChildIsKilledAndItsUnitsAreRenderedAgain) {
   EXPECT_EQ(coordinator.seen().hellos.size(), 1U) << "the worker itself never left";
 }
 
+/// A job of short units, and first of one that takes minutes.
+Made make_job_with_a_long_unit() {
+  Made made = make_job();
+  std::string yaml = kYaml;
+  yaml.replace(yaml.find("samples: 256"), 12, "samples: 65536");
+  made.job.files["job.yaml"] = yaml;
+  made.job.units.resize(8);
+  made.job.units.push_front({1, {0, 0, 96, 64}, {0, 4096}});
+  return made;
+}
+
+TEST(WorkerProcess, AUnitThatTakesTooLongFailsAloneAndItsProcessGoesOn) {
+  const test::TempFolder folder;
+  const Made made = make_job_with_a_long_unit();
+  FakeCoordinator coordinator(made.job);
+  coordinator.answer_failures = false;
+  WorkerProcess worker(coordinator.address(), folder.path().string(), {"--unit-time-limit", "8s"});
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 1; }))
+      << worker.log();
+  const pid_t renderer = worker.renderer();
+  ASSERT_TRUE(coordinator.wait_until(
+      [&](const auto& s) { return !s.failures.empty() && s.accepted == made.job.units.size() - 1; },
+      seconds(120)))
+      << worker.log();
+  const auto seen = coordinator.seen();
+  ASSERT_EQ(seen.failures.size(), 1U) << worker.log();
+  EXPECT_EQ(seen.failures[0].unit().unit().batches(), 4096U);
+  EXPECT_EQ(seen.failures[0].reason(), "took longer than 8.00 s (--unit-time-limit of the worker)");
+  EXPECT_EQ(worker.renderer(), renderer) << "the same process goes on";
+  EXPECT_EQ(seen.hellos.size(), 1U);
+}
+
+TEST(WorkerProcess, AProcessThatDoesNotStopAUnitThatTookTooLongIsKilled) {
+  const test::TempFolder folder;
+  const Made made = make_job_with_a_long_unit();
+  FakeCoordinator coordinator(made.job);
+  coordinator.answer_failures = false;
+  WorkerProcess worker(coordinator.address(), folder.path().string(),
+                       {"--unit-time-limit", "8s", "--hang-limit", "0"});
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 1; }))
+      << worker.log();
+  const pid_t stopped = worker.renderer();
+  ASSERT_GT(stopped, 0);
+  ::kill(stopped, SIGSTOP);
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return !s.failures.empty(); }))
+      << worker.log();
+  const auto before = coordinator.seen().accepted;
+  ASSERT_TRUE(coordinator.wait_until([&](const auto& s) { return s.accepted > before; }))
+      << worker.log();
+  EXPECT_NE(worker.renderer(), stopped);
+  EXPECT_NE(worker.log().find("did not stop a unit that took longer than"), std::string::npos)
+      << worker.log();
+  EXPECT_EQ(coordinator.seen().hellos.size(), 1U) << "the worker itself never left";
+}
+
 TEST(WorkerProcess, WhoseIdAnotherHasTakesANewOneAndKeepsIt) {
   const test::TempFolder folder;
   const Made made = make_job();
