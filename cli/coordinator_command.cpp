@@ -19,6 +19,7 @@
 #include "cli/address_option.h"
 #include "cli/command_line.h"
 #include "cli/config_file.h"
+#include "cli/log_options.h"
 #include "coordinator/access/authority.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/notify/notifier.h"
@@ -27,6 +28,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/machine.h"
 #include "farm/last_words.h"
+#include "farm/log.h"
 #include "farm/small_file.h"
 
 namespace {
@@ -39,6 +41,7 @@ using hyades::coordinator::Hook;
 using hyades::coordinator::Notifier;
 using hyades::coordinator::Server;
 using hyades::coordinator::WebServer;
+using hyades::farm::LogLevel;
 
 constexpr int kBadArguments = 2;
 constexpr double kDearest = 1e9;  // whatever the currency
@@ -51,6 +54,7 @@ Duration seconds(double value) {
 struct Arguments {
   BrainOptions brain;
   hyades::farm::Listen listen;
+  hyades::farm::LogOptions log;
   std::string http = kHttp;
   bool http_asked = false;
   Notifier::Options news;
@@ -72,8 +76,8 @@ hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& argu
   listen.address = arguments.http;
   auto server = WebServer::start(listen, brain, authority);
   if (server || arguments.http_asked) return server;
-  std::fprintf(stderr, "hyades coordinator: no dashboard: %s; choose another place with --http\n",
-               server.error().message.c_str());
+  hyades::farm::log(LogLevel::warning, "no dashboard: " + server.error().message +
+                                           "; choose another place with --http");
   return std::unique_ptr<WebServer>();
 }
 
@@ -93,9 +97,7 @@ std::unique_ptr<Notifier> open_notifier(const Arguments& arguments, Brain& brain
   if (options.hooks.empty() && options.chats.empty()) return nullptr;
   if (options.dashboard.empty() && http != nullptr) options.dashboard = http->url();
   options.stall = std::chrono::duration_cast<std::chrono::milliseconds>(arguments.brain.stall_time);
-  options.hook.tell = [](const std::string& line) {
-    std::fprintf(stderr, "hyades coordinator: %s\n", line.c_str());
-  };
+  options.hook.tell = [](const std::string& line) { hyades::farm::log(LogLevel::warning, line); };
   return std::make_unique<Notifier>(brain, std::move(options));
 }
 
@@ -110,7 +112,7 @@ void note_address(const std::string& path, const std::string& address) {
   if (!noted && std::remove(path.c_str()) == 0) {  // what it said is not true any more
     noted = hyades::core::write_file(path, std::as_bytes(std::span(address)));
   }
-  if (!noted) std::fprintf(stderr, "hyades coordinator: %s\n", noted.error().message.c_str());
+  if (!noted) hyades::farm::log(LogLevel::error, noted.error().message);
 }
 
 std::string hook_error(const std::string& url) {
@@ -155,7 +157,7 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
   options.tell_unguarded = [&brain](const std::string& how) {
     brain.set_unguarded(how);
     if (!how.empty()) {
-      std::fprintf(stderr, "hyades coordinator: WARNING: %s\n", how.c_str());
+      hyades::farm::log(LogLevel::warning, how);
     }
   };
   auto authority = Authority::open(brain.store(), options);
@@ -173,16 +175,30 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
     (void)(*authority)->revoke(row.id, row);
     return written.error();
   }
-  std::fprintf(stderr, "hyades coordinator: an admin's token (%s) is in %s\n", row.id.c_str(),
-               file.c_str());
+  hyades::farm::log(LogLevel::info, "an admin's token (" + row.id + ") is in " + file);
   return authority;
 }
 
+/// Where it listens, for people and scripts on standard output; logs in JSON have it in a line.
+void tell_where(const std::string& address, const WebServer* http) {
+  const auto tell = [](const std::string& line) {
+    if (hyades::farm::log_format() == hyades::farm::LogFormat::json) {
+      hyades::farm::log(LogLevel::info, line);
+    } else {
+      std::printf("%s\n", line.c_str());
+    }
+  };
+  tell("listening on " + address);
+  if (http != nullptr) tell("dashboard at " + http->url());
+  std::fflush(stdout);
+}
+
 int serve(const Arguments& arguments) {
+  hyades::farm::set_log("hyades coordinator", arguments.log);
   // Before the folder is touched.
   auto door = hyades::farm::open_door(arguments.listen);
   if (!door) {
-    std::fprintf(stderr, "hyades coordinator: %s\n", door.error().message.c_str());
+    hyades::farm::log(LogLevel::error, door.error().message);
     return kBadArguments;
   }
   open_many_files();
@@ -197,35 +213,32 @@ int serve(const Arguments& arguments) {
 
   auto brain = Brain::open(arguments.brain);
   if (!brain) {
-    std::fprintf(stderr, "hyades coordinator: %s\n", brain.error().message.c_str());
+    hyades::farm::log(LogLevel::error, brain.error().message);
     return 1;
   }
   {
     auto authority = open_authority(arguments, door->token, **brain);
     if (!authority) {
-      std::fprintf(stderr, "hyades coordinator: %s\n", authority.error().message.c_str());
+      hyades::farm::log(LogLevel::error, authority.error().message);
       return 1;
     }
     auto server = Server::start(*door, **brain, **authority);
     if (!server) {
-      std::fprintf(stderr, "hyades coordinator: %s\n", server.error().message.c_str());
+      hyades::farm::log(LogLevel::error, server.error().message);
       return 1;
     }
-    const std::string address = (*server)->address() + "\n";
-    note_address(arguments.brain.folder + "/address", address);
+    note_address(arguments.brain.folder + "/address", (*server)->address() + "\n");
     if (const grpc::Status room = (*brain)->admit(0); !room.ok()) {
-      std::fprintf(stderr, "hyades coordinator: %s\n", room.error_message().c_str());
+      hyades::farm::log(LogLevel::error, room.error_message());
     }
     auto http = open_http(arguments, **brain, **authority);
     if (!http) {
-      std::fprintf(stderr, "hyades coordinator: %s\n", http.error().message.c_str());
+      hyades::farm::log(LogLevel::error, http.error().message);
       return 1;
     }
     const auto notifier = open_notifier(arguments, **brain, http->get());
     note_address(arguments.brain.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
-    std::printf("listening on %s", address.c_str());
-    if (*http) std::printf("dashboard at %s\n", (*http)->url().c_str());
-    std::fflush(stdout);
+    tell_where((*server)->address(), http->get());
     int signal = 0;
     sigwait(&signals, &signal);
     (*brain)->stop();
@@ -274,6 +287,7 @@ int main(int argc, char** argv) {
       ->check(hook_error);
   app.add_option("--dashboard-url", arguments.news.dashboard,
                  "the dashboard as people reach it, for links (default: as --http has it)");
+  hyades::cli::add_log_options(app, arguments.log);
   app.add_option("--unit-seconds", arguments.unit_seconds, "what one thread shall take for a unit")
       ->check(CLI::Range(0.01, 3600.0))
       ->capture_default_str();
@@ -327,7 +341,7 @@ int main(int argc, char** argv) {
       "  hyades coordinator --data /var/lib/hyades\n"
       "  hyades coordinator --data farm --listen 0.0.0.0:7700 --tls-cert c.pem --tls-key k.pem "
       "--token-file token\n"
-      "  hyades coordinator --data farm --price 0.04:EUR\n"
+      "  hyades coordinator --data farm --price 0.04:EUR --log-format json\n"
       "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
       "wrong arguments (or a token, certificate or key that is none)");
   // argv[1] is the word "coordinator".

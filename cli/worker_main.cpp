@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "cli/command_line.h"
 #include "cli/config_file.h"
 #include "cli/duration_option.h"
+#include "cli/log_options.h"
 #include "cli/peer_options.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
@@ -65,9 +65,9 @@ std::optional<Cloud> chosen_cloud(const std::string& word) {
   if (word != "auto") return std::nullopt;
   auto found = hyades::worker::find_cloud();
   if (!found) {
-    std::fprintf(stderr,
-                 "hyades worker: this is no machine of aws, gcp or azure: no notices of "
-                 "pre-emption are watched for\n");
+    hyades::farm::log(hyades::farm::LogLevel::warning,
+                      "this is no machine of aws, gcp or azure: no notices of pre-emption are "
+                      "watched for");
   }
   return found;
 }
@@ -140,12 +140,14 @@ int main(int argc, char** argv) {
                  "http://HOST:PORT to ask instead of the cloud's own metadata service")
       ->needs(cloud)
       ->check(endpoint_error);
+  hyades::farm::LogOptions log;
+  hyades::cli::add_log_options(app, log);
   hyades::cli::add_config_option(app);
   app.footer(
       "examples:\n"
       "  hyades worker\n"
       "  hyades worker --coordinator farm.example:7700 --tls-ca ca.pem --token-file token\n"
-      "  hyades worker --exit-when-idle 5m --preemption auto\n"
+      "  hyades worker --exit-when-idle 5m --preemption auto --log-format json\n"
       "  hyades worker --memory 8G --unit-time-limit 30m --sandbox require\n"
       "Ctrl-C or SIGTERM: what is done is handed over, the rest given back; a second one ends it "
       "at once.\n"
@@ -157,6 +159,7 @@ int main(int argc, char** argv) {
   if (const auto status = hyades::cli::parse_command_line(app, argc - skipped, argv + skipped)) {
     return *status;
   }
+  hyades::farm::set_log("hyades worker", log);
   options.cloud = chosen_cloud(preemption);
   struct sigaction action {};
   action.sa_handler = on_signal;

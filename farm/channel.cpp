@@ -63,8 +63,7 @@ bool is_loopback(const std::string& address) {
 
 std::string plaintext_warning(const Peer& peer) {
   if (!peer.ca_file.empty() || !peer.insecure || is_loopback(peer.address)) return {};
-  return "WARNING: plain text to " + peer.address +
-         " (--insecure): whoever listens may read everything" +
+  return "plain text to " + peer.address + " (--insecure): whoever listens may read everything" +
          (peer.token_file.empty() ? "" : ", the token too");
 }
 

@@ -1,10 +1,12 @@
 #include "farm/grpc_log.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 
+#include <fmt/format.h>
 #include <grpc/support/log.h>
+
+#include "farm/log.h"
 
 namespace hyades::farm {
 namespace {
@@ -12,7 +14,7 @@ namespace {
 /// A failed assertion ends the process: that has to be seen.
 void say_last_words(gpr_log_func_args* line) {
   if (std::string_view(line->message).find("ASSERTION FAILED") == std::string_view::npos) return;
-  std::fprintf(stderr, "%s:%d: %s\n", line->file, line->line, line->message);
+  log(LogLevel::error, fmt::format("{}:{}: {}", line->file, line->line, line->message));
 }
 
 }  // namespace

@@ -4,7 +4,12 @@
 
 #include <array>
 #include <chrono>
+#include <condition_variable>
+#include <cstdlib>
 #include <ctime>
+#include <deque>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,8 +24,8 @@ struct Log {
 };
 
 Log& the_log() {
-  static Log log;
-  return log;
+  static auto* log = new Log;  // there for whoever writes while the process ends
+  return *log;
 }
 
 constexpr std::array<std::pair<LogLevel, const char*>, 4> kLevels = {
@@ -36,6 +41,87 @@ const char* name_of(LogLevel level) {
   return "error";
 }
 
+int64_t now_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+void write_line(int64_t time_ms, LogLevel level, std::string_view text, const LogFields& fields) {
+  const Log& log = the_log();
+  const std::string line =
+      log_line(log.program, log.options.format, time_ms, level, text, fields) + "\n";
+  // One call, so that lines of several threads do not mix. Where nobody reads there is nobody to
+  // tell.
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+}
+
+/// Writes lines for those who may not wait.
+class Scribe {
+ public:
+  /// Of the process. Never destroyed: its thread may hang in a write for ever.
+  static Scribe& get() {
+    static auto* scribe = new Scribe;
+    return *scribe;
+  }
+
+  void say(LogLevel level, std::string text, LogFields fields) {
+    const std::lock_guard lock(mutex_);
+    if (lines_.size() >= kMostWaiting) {
+      ++left_out_;
+      return;
+    }
+    lines_.push_back({level, now_ms(), std::move(text), std::move(fields)});
+    wake_.notify_one();
+  }
+
+ private:
+  struct Line {
+    LogLevel level;
+    int64_t time_ms;
+    std::string text;
+    LogFields fields;
+  };
+  static constexpr size_t kMostWaiting = 10'000;
+  static constexpr std::chrono::seconds kGoodbye{1};
+
+  Scribe() {
+    std::thread([this] { write(); }).detach();
+    (void)std::atexit([] { get().flush(); });
+  }
+
+  void flush() {
+    std::unique_lock lock(mutex_);
+    written_.wait_for(lock, kGoodbye, [this] { return lines_.empty() && !writing_; });
+  }
+
+  void write() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      writing_ = false;
+      if (lines_.empty()) written_.notify_all();
+      wake_.wait(lock, [this] { return !lines_.empty(); });
+      writing_ = true;
+      const Line line = std::move(lines_.front());
+      lines_.pop_front();
+      const uint64_t left_out = lines_.empty() ? std::exchange(left_out_, 0) : 0;
+      lock.unlock();
+      write_line(line.time_ms, line.level, line.text, line.fields);
+      if (left_out > 0) {
+        log(LogLevel::warning, fmt::format("{} lines were left out: nobody read them", left_out));
+      }
+      lock.lock();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::condition_variable written_;
+  std::deque<Line> lines_;
+  uint64_t left_out_ = 0;
+  bool writing_ = false;
+};
+
 /// 2026-01-31T12:00:00.123Z
 std::string utc(int64_t time_ms) {
   const std::time_t seconds = time_ms / 1000;
@@ -49,9 +135,8 @@ std::string utc(int64_t time_ms) {
 std::string text_line(std::string_view program, LogLevel level, std::string_view text,
                       const LogFields& fields) {
   std::string line = fmt::format("{}: ", program);
-  if (level == LogLevel::warning || level == LogLevel::debug) {
-    line += fmt::format("{}: ", name_of(level));
-  }
+  if (level == LogLevel::warning) line += "WARNING: ";
+  if (level == LogLevel::debug) line += "debug: ";
   line += text;
   std::string about;
   const auto add = [&](const char* name, const auto& value) {
@@ -85,19 +170,23 @@ void set_log(std::string_view program, const LogOptions& options) {
   the_log() = {std::string(program), options};
 }
 
+std::string unit_field(const core::Unit& unit) {
+  return fmt::format("{},{} batches {}-{}", unit.tile.x0, unit.tile.y0, unit.batches.first,
+                     int64_t{unit.batches.end()} - 1);
+}
+
+LogFormat log_format() { return the_log().options.format; }
+
 bool logs(LogLevel level) { return level >= the_log().options.level; }
 
 void log(LogLevel level, std::string_view text, const LogFields& fields) {
   if (!logs(level)) return;
-  const int64_t now = std::chrono::duration_cast<std::chrono::milliseconds>(
-                          std::chrono::system_clock::now().time_since_epoch())
-                          .count();
-  const Log& log = the_log();
-  const std::string line =
-      log_line(log.program, log.options.format, now, level, text, fields) + "\n";
-  // One call, so that lines of several threads do not mix. Where nobody reads there is nobody to
-  // tell.
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+  write_line(now_ms(), level, text, fields);
+}
+
+void log_later(LogLevel level, std::string text, LogFields fields) {
+  if (!logs(level)) return;
+  Scribe::get().say(level, std::move(text), std::move(fields));
 }
 
 std::string log_line(std::string_view program, LogFormat format, int64_t time_ms, LogLevel level,

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "core/base/result.h"
+#include "core/film/unit.h"
 
 namespace hyades::farm {
 
@@ -23,13 +24,19 @@ struct LogOptions {
 struct LogFields {
   std::optional<uint64_t> job;
   std::optional<int32_t> frame;
-  std::string unit;    ///< its tile and batches: "64,32 batches 0-3"
+  std::string unit;    ///< its tile and batches, as unit_field has them
   std::string worker;  ///< its name
 };
+
+/// "64,32 batches 0-3": the first corner of the unit's tile, and its batches.
+std::string unit_field(const core::Unit& unit);
 
 /// For the whole process; before it has threads. `program` ("hyades worker") stands before each
 /// line of text, and in JSON as a field.
 void set_log(std::string_view program, const LogOptions& options = {});
+
+/// As set_log has it.
+LogFormat log_format();
 
 /// Whether lines of this level are written: for those that cost something to make.
 bool logs(LogLevel level);
@@ -37,6 +44,11 @@ bool logs(LogLevel level);
 /// Writes one line, whole, whatever other threads write. What is not printable, or not UTF-8, is
 /// replaced.
 void log(LogLevel level, std::string_view text, const LogFields& fields = {});
+
+/// The same, written soon by a thread of its own, in the order in which they were said: for those
+/// who may not wait for whoever reads. Of lines that nobody reads ten thousand wait; how many more
+/// there were is told afterwards. What waits at the process' end has a second to be read.
+void log_later(LogLevel level, std::string text, LogFields fields = {});
 
 /// The line without its end, as of `time_ms` since 1970, UTC (text has no time: journals add it).
 std::string log_line(std::string_view program, LogFormat format, int64_t time_ms, LogLevel level,

@@ -19,6 +19,11 @@ auto key_of(const v1::LeasedUnit& u) {
 
 }  // namespace
 
+farm::LogFields Desk::about(const v1::LeasedUnit& leased) {
+  const auto unit = farm::from_wire(leased.unit());
+  return {leased.job(), leased.unit().frame(), unit ? farm::unit_field(*unit) : std::string(), {}};
+}
+
 Desk::Items::iterator Desk::find(const v1::LeasedUnit& leased) {
   const auto key = key_of(leased);
   return std::find_if(items_.begin(), items_.end(),
@@ -51,6 +56,9 @@ void Desk::keep_film(Items::iterator found, const pipe::UnitFilm& film) {
   ++kept_;
   kept_bytes_ += result.film().size();
   forget_idle_job(item.leased.job());
+  ports_.note(farm::LogLevel::debug,
+              fmt::format("rendered in {:.3g} s", static_cast<double>(film.render_ns()) * 1e-9),
+              about(item.leased));
   if (!welcomed_) return;
   v1::WorkerMessage message;
   *message.mutable_result() = result;
@@ -59,8 +67,7 @@ void Desk::keep_film(Items::iterator found, const pipe::UnitFilm& film) {
 }
 
 void Desk::fail(Items::iterator item, const std::string& reason) {
-  ports_.note(fmt::format("a unit of frame {} of job {} failed: {}",
-                          item->second.leased.unit().frame(), item->second.leased.job(), reason));
+  ports_.note(farm::LogLevel::warning, "a unit failed: " + reason, about(item->second.leased));
   v1::WorkerMessage message;
   *message.mutable_failure()->mutable_unit() = item->second.leased;
   message.mutable_failure()->set_reason(farm::wire_text(reason));
@@ -150,7 +157,9 @@ void Desk::files_failed(uint64_t id, const std::string& reason, bool final, Time
   if (!final) {
     // They would only come back at once.
     rests_until_ = now + rests_.next();
-    if (files_trouble_ != reason) ports_.note("units go back: " + reason);
+    if (files_trouble_ != reason) {
+      ports_.note(farm::LogLevel::warning, "units go back: " + reason, {id, {}, {}, {}});
+    }
     files_trouble_ = reason;
     if (!waiting.empty() && welcomed_) ports_.send(std::move(message));
   }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "farm/backoff.h"
+#include "farm/log.h"
 #include "hyades/v1/work.pb.h"
 #include "worker/pipe/render_pipe.pb.h"
 #include "worker/render_watch.h"
@@ -38,7 +39,8 @@ class DeskPorts {
   /// No unit of the job is left: its files may be evicted. What was being fetched may go on.
   virtual void release(uint64_t job) = 0;
   /// For people.
-  virtual void note(const std::string& text) = 0;
+  virtual void note(farm::LogLevel level, const std::string& text,
+                    const farm::LogFields& about) = 0;
 };
 
 /// The cache of assets on the disk; see Heartbeat.
@@ -154,6 +156,7 @@ class Desk {
   static constexpr std::chrono::seconds kFirstRest{10};
   static constexpr std::chrono::seconds kLongestRest{120};
 
+  static farm::LogFields about(const v1::LeasedUnit& leased);
   static v1::LeaseProgress::Stage stage_of(const Item& item);
   void lose_renderer(const std::string& reason, const std::set<uint64_t>* hung);
   void watch(TimePoint now);

@@ -76,7 +76,10 @@ void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
     take(message.lease());
   } else if (message.has_acknowledge()) {
     const auto item = find(message.acknowledge().unit());
-    if (item != items_.end() && item->second.state == Item::State::kept) drop(item);
+    if (item != items_.end() && item->second.state == Item::State::kept) {
+      ports_.note(farm::LogLevel::debug, "its film is kept", about(item->second.leased));
+      drop(item);
+    }
   } else if (message.has_rejected()) {
     rejected(message.rejected(), now);
   } else if (message.has_stop()) {
@@ -87,7 +90,9 @@ void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
     }
   } else if (message.has_drain()) {
     const std::string& why = message.drain().reason();
-    if (!leaving_) ports_.note("drained: what is leased is finished");
+    if (!leaving_) {
+      ports_.note(farm::LogLevel::info, "drained: what is leased is finished", {});
+    }
     leave(why.empty() ? "drained" : "drained: " + why, false);
   } else if (message.has_echo()) {
     echoed(message.echo().number());
@@ -149,6 +154,7 @@ void Desk::take_unit(const v1::LeasedUnit& leased, bool adopted) {
   items_.emplace(next_token_++, std::move(item));
   if (!job->second.has_files && !job->second.fetching) {
     job->second.fetching = true;
+    ports_.note(farm::LogLevel::debug, "fetches its files", {leased.job(), {}, {}, {}});
     ports_.fetch(leased.job(), job->second.spec);
   }
 }
@@ -160,10 +166,11 @@ void Desk::rejected(const v1::Rejected& message, TimePoint now) {
     item->second.send_again = now + std::max(milliseconds(message.retry_after_ms()), kResendAfter);
     return;
   }
-  ports_.note(fmt::format(
-      "a film of frame {} of job {} was refused: {}", message.unit().unit().frame(),
-      message.unit().job(),
-      message.text().empty() ? v1::Rejected::Reason_Name(message.reason()) : message.text()));
+  ports_.note(
+      farm::LogLevel::warning,
+      "a film was refused: " +
+          (message.text().empty() ? v1::Rejected::Reason_Name(message.reason()) : message.text()),
+      about(message.unit()));
   stop_rendering(item);
   drop(item);
 }

@@ -42,7 +42,9 @@ void Desk::fence(TimePoint now) {
   }
   renewed_.reset();
   if (dropped > 0) {
-    ports_.note(fmt::format("out of contact for longer than a lease: {} units given up", dropped));
+    ports_.note(farm::LogLevel::warning,
+                fmt::format("out of contact for longer than a lease: {} units given up", dropped),
+                {});
   }
 }
 

@@ -3,12 +3,12 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "core/base/random_id.h"
 #include "farm/content_store.h"
+#include "farm/log.h"
 #include "farm/tags.h"
 #include "worker/worker_id.h"
 #include "worker/worker_loop.h"
@@ -22,7 +22,7 @@ std::string host_name() {
 
 int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals) {
   const auto refuse = [](const core::Error& error, int status = 1) {
-    std::fprintf(stderr, "hyades worker: %s\n", error.message.c_str());
+    farm::log(farm::LogLevel::error, error.message);
     return status;
   };
   constexpr int kWrongInput = 2;
@@ -31,7 +31,7 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   auto channel = farm::connect(options.coordinator);
   if (!channel) return refuse(channel.error(), kWrongInput);
   if (const std::string warning = farm::plaintext_warning(options.coordinator); !warning.empty()) {
-    std::fprintf(stderr, "hyades worker: %s\n", warning.c_str());
+    farm::log(farm::LogLevel::warning, warning);
   }
   auto tags = farm::check_tags(options.tags);
   if (!tags) return refuse(tags.error(), kWrongInput);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <cstdio>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -17,6 +16,7 @@
 
 #include "core/base/text.h"
 #include "farm/backoff.h"
+#include "farm/log.h"
 #include "farm/wire.h"
 #include "worker/asset_fetcher.h"
 #include "worker/clouds/preemption_watch.h"
@@ -29,6 +29,7 @@ namespace hyades::worker {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using farm::LogLevel;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTick{50};
@@ -72,6 +73,7 @@ class Worker : private DeskPorts,
          std::shared_ptr<grpc::Channel> channel, std::string token, farm::ContentStore& store)
       : options_(options),
         id_(std::move(id)),
+        name_(options.name.empty() ? host_name() : options.name),
         idle_(seconds(options.idle_limit), Clock::now()),
         desk_(desk_options(options, id_, instance), *this),
         token_(std::move(token)),
@@ -135,7 +137,7 @@ class Worker : private DeskPorts,
   void leave(TimePoint now, const std::string& reason, Duration time) {
     const TimePoint by = now + std::max(time - kGoodbye, Duration(0));
     if (!leave_by_) {
-      note(reason + ": batches that are done are handed over");
+      note(LogLevel::info, reason + ": batches that are done are handed over");
       leave_reason_ = reason;
       desk_.leave(reason, true);
     }
@@ -156,7 +158,8 @@ class Worker : private DeskPorts,
   }
 
   void leave_idle(TimePoint now) {
-    note(fmt::format("no work for {}: leaving", core::format_duration(options_.idle_limit)));
+    note(LogLevel::info,
+         fmt::format("no work for {}: leaving", core::format_duration(options_.idle_limit)));
     leave_by_ = now;
     leave_reason_ = "without work";
     desk_.leave(leave_reason_, false);
@@ -167,7 +170,8 @@ class Worker : private DeskPorts,
     if (!goodbye_by_ && (desk_.empty() || late)) {
       desk_.give_back_rest(leave_reason_);
       if (desk_.unacknowledged() > 0) {
-        note(fmt::format("{} films were not acknowledged in time", desk_.unacknowledged()));
+        note(LogLevel::warning,
+             fmt::format("{} films were not acknowledged in time", desk_.unacknowledged()));
       }
       link_.finish();
       goodbye_by_ = now + kGoodbye;
@@ -179,7 +183,8 @@ class Worker : private DeskPorts,
 
   void watch_for_preemption() {
     if (!options_.cloud) return;
-    note(fmt::format("watches for notices of pre-emption by {}", name_of(*options_.cloud)));
+    note(LogLevel::info,
+         fmt::format("watches for notices of pre-emption by {}", name_of(*options_.cloud)));
     preemption_.emplace(*options_.cloud, options_.cloud_endpoint,
                         static_cast<PreemptionWatch::Owner&>(*this));
   }
@@ -195,7 +200,8 @@ class Worker : private DeskPorts,
 
   void watch_trouble(const std::string& reason) override {
     post([this, reason] {
-      note(fmt::format("no notice of pre-emption by {} can be had ({}); trying again",
+      note(LogLevel::warning,
+           fmt::format("no notice of pre-emption by {} can be had ({}); trying again",
                        name_of(*options_.cloud), reason));
     });
   }
@@ -212,7 +218,7 @@ class Worker : private DeskPorts,
         {options_.renderer, options_.cache, options_.threads, options_.memory, options_.sandbox},
         *this);
     if (!started) {
-      note(started.error().message);
+      note(LogLevel::error, started.error().message);
       exit_status_ = 1;
       return;
     }
@@ -229,7 +235,7 @@ class Worker : private DeskPorts,
         desk_.renderer_ready(message.ready());
         if (!ever_connected_) connect(Clock::now());
       } else if (message.has_not_ready()) {
-        note("this machine cannot render: " + message.not_ready().reason());
+        note(LogLevel::error, "this machine cannot render: " + message.not_ready().reason());
         exit_status_ = 1;
       } else {
         desk_.renderer_says(std::move(message), Clock::now());
@@ -239,7 +245,7 @@ class Worker : private DeskPorts,
 
   void renderer_ended(const std::string& reason) override {
     post([this, reason] {
-      note("the rendering process " + reason);
+      note(LogLevel::warning, "the rendering process " + reason);
       desk_.renderer_died(reason);
       const TimePoint now = Clock::now();
       if (!renderer_ready_ && ++stillbirths_ >= kMostStillbirths) {
@@ -257,7 +263,7 @@ class Worker : private DeskPorts,
   void tell_sandbox(const std::string& lacking) {
     if (lacking.empty() || sandbox_told_) return;
     sandbox_told_ = true;
-    note("the process that renders is not wholly sandboxed: " + lacking);
+    note(LogLevel::warning, "the process that renders is not wholly sandboxed: " + lacking);
   }
 
   void tell_renderer(pipe::ToRenderer message) override {
@@ -289,7 +295,8 @@ class Worker : private DeskPorts,
     post([this, message = std::move(message)]() mutable {
       if (message.has_welcome()) {
         if (const uint32_t spoken = message.welcome().protocol(); spoken < farm::kOldestProtocol) {
-          note(fmt::format("the coordinator speaks protocol {}, this worker {} to {}: update it",
+          note(LogLevel::error,
+               fmt::format("the coordinator speaks protocol {}, this worker {} to {}: update it",
                            spoken, farm::kOldestProtocol, farm::kProtocol));
           exit_status_ = 2;
           return;
@@ -298,8 +305,9 @@ class Worker : private DeskPorts,
         told_trouble_.clear();
         welcomed_ = true;
         unknown_since_.reset();
-        note(fmt::format("working for {} as {}", options_.coordinator.address,
-                         message.welcome().name()));
+        name_ = message.welcome().name();
+        note(LogLevel::info, fmt::format("working for {} as {}", options_.coordinator.address,
+                                         message.welcome().name()));
       }
       desk_.coordinator_says(std::move(message), Clock::now());
     });
@@ -308,12 +316,13 @@ class Worker : private DeskPorts,
   /// There are two with one id, and the other was first.
   void rename() {
     if (auto renewed = id_.renew(); !renewed) {
-      note(renewed.error().message);
+      note(LogLevel::error, renewed.error().message);
       exit_status_ = 1;
       return;
     }
     desk_.rename(id_.text());
-    note("another worker has this one's id (a copied cache, or machine): it takes a new one");
+    note(LogLevel::warning,
+         "another worker has this one's id (a copied cache, or machine): it takes a new one");
   }
 
   /// Whether the token's file holds another one than was shown: tokens are changed under workers
@@ -324,7 +333,8 @@ class Worker : private DeskPorts,
     token_ = std::move(*token);
     link_.set_token(token_);
     fetcher_.set_token(token_);
-    note("shows the coordinator the token that " + options_.coordinator.token_file + " holds now");
+    note(LogLevel::info,
+         "shows the coordinator the token that " + options_.coordinator.token_file + " holds now");
     return true;
   }
 
@@ -346,7 +356,7 @@ class Worker : private DeskPorts,
         return;
       }
       if (end == StreamEnd::refused || (end == StreamEnd::unknown && !may_hope())) {
-        note("the coordinator refuses this worker: " + reason);
+        note(LogLevel::error, "the coordinator refuses this worker: " + reason);
         exit_status_ = 2;
         return;
       }
@@ -355,9 +365,11 @@ class Worker : private DeskPorts,
       connect_at_ = Clock::now() + pause;
       std::string trouble = farm::connection_trouble(reason, options_.coordinator);
       if (goodbye_by_ || trouble == told_trouble_) return;
-      note(fmt::format(
-          "no connection to {} ({}); {} units in hand, {} films not acknowledged; trying again",
-          options_.coordinator.address, trouble, desk_.in_hand(), desk_.unacknowledged()));
+      note(
+          LogLevel::warning,
+          fmt::format(
+              "no connection to {} ({}); {} units in hand, {} films not acknowledged; trying again",
+              options_.coordinator.address, trouble, desk_.in_hand(), desk_.unacknowledged()));
       told_trouble_ = std::move(trouble);
     });
   }
@@ -373,9 +385,12 @@ class Worker : private DeskPorts,
     post([this, job, reason, final] { desk_.files_failed(job, reason, final, Clock::now()); });
   }
 
-  void note(const std::string& text) override {
-    std::fprintf(stderr, "hyades worker: %s\n", text.c_str());
-    std::fflush(stderr);
+  void note(LogLevel level, const std::string& text) { note(level, text, {}); }
+  void note(LogLevel level, const std::string& text, const farm::LogFields& about) override {
+    farm::LogFields fields = about;
+    // People know whose log they read; what collects those of many workers does not.
+    if (farm::log_format() == farm::LogFormat::json) fields.worker = name_;
+    farm::log(level, text, fields);
   }
 
   const WorkerOptions options_;
@@ -385,6 +400,7 @@ class Worker : private DeskPorts,
 
   // All else belongs to the loop.
   WorkerId id_;
+  std::string name_;  ///< as the coordinator has it, once it has said so
   IdleWatch idle_;
   Desk desk_;
   farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};

@@ -35,7 +35,7 @@ std::optional<int> ClientApp::parse(int argc, char** argv) {
 std::unique_ptr<FarmClient> ClientApp::connect() const {
   auto client = FarmClient::open(options_);
   if (const std::string warning = farm::plaintext_warning(options_.peer); !warning.empty()) {
-    std::fprintf(stderr, "hyades %s: %s\n", command_, warning.c_str());
+    std::fprintf(stderr, "hyades %s: WARNING: %s\n", command_, warning.c_str());
   }
   if (client) return std::move(*client);
   report({kBadArguments, client.error().message});

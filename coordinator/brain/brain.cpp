@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "farm/log.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -91,7 +92,8 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
                        static_cast<uint64_t>(conflict->first),
                        static_cast<uint64_t>(conflict->second), conflict->unit.tile.x0,
                        conflict->unit.tile.y0, conflict->unit.batches.first,
-                       conflict->unit.batches.end() - 1));
+                       conflict->unit.batches.end() - 1),
+           &conflict->unit);
     }
   } else if (const auto* odd = std::get_if<Quarantine>(&action)) {
     if (const auto seat = seats_.find(odd->worker); seat != seats_.end()) {
@@ -222,8 +224,17 @@ JobDesk* Brain::desk_of(JobId job) {
 }
 
 void Brain::note(JobDesk& desk, v1::LogLevel level, std::optional<int32_t> frame,
-                 const std::string& worker, const std::string& text) {
+                 const std::string& worker, const std::string& text, const core::Unit* unit) {
   desk.note({wall_ms(), level, frame, worker, farm::wire_text(text)});
+  // Of frames there are many: that they begin and end is for those who look for something.
+  const farm::LogLevel said = level == v1::LOG_LEVEL_ERROR     ? farm::LogLevel::error
+                              : level == v1::LOG_LEVEL_WARNING ? farm::LogLevel::warning
+                              : frame                          ? farm::LogLevel::debug
+                                                               : farm::LogLevel::info;
+  if (!farm::logs(said)) return;
+  farm::log_later(said, farm::wire_text(text),
+                  {static_cast<uint64_t>(desk.id), frame,
+                   unit == nullptr ? std::string() : farm::unit_field(*unit), worker});
 }
 
 }  // namespace hyades::coordinator

@@ -344,7 +344,7 @@ class Brain {
   JobDesk* desk_of(JobId job);
   JobDesk* desk_of(uint64_t job) { return desk_of(JobId{job}); }
   void note(JobDesk& desk, v1::LogLevel level, std::optional<int32_t> frame,
-            const std::string& worker, const std::string& text);
+            const std::string& worker, const std::string& text, const core::Unit* unit = nullptr);
   v1::Job describe(const JobDesk& desk) const;
   v1::Job describe(const StoredJob& job) const;
   void count_cost(v1::Job& job) const;

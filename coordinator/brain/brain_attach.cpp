@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "coordinator/brain/counted.h"
 #include "coordinator/brain/wire_ids.h"
 #include "core/base/version.h"
+#include "farm/log.h"
 #include "farm/tags.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -155,6 +157,10 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
       note_losses(seat, scheduler_.units_of(worker), "has been started again");
     }
     seat.joined = true;
+    farm::log_later(farm::LogLevel::info,
+                    fmt::format("attends: {} on {}", counted(hello.threads(), "thread"),
+                                farm::wire_text(hello.host())),
+                    {{}, {}, {}, farm::wire_text(hello.name())});
     for (Action& action : tell(joined)) later.push_back(std::move(action));
     if (seat.state == v1::WORKER_STATE_QUARANTINED) {
       for (Action& action : tell(WorkerBarred{worker, true})) later.push_back(std::move(action));
@@ -179,6 +185,10 @@ void Brain::detach(WorkerId worker, const WorkerLink* link) {
   const std::lock_guard lock(mutex_);
   Seat* seat = seat_of(worker, link);
   if (seat == nullptr) return;
+  farm::log_later(
+      farm::LogLevel::info,
+      seat->reason.empty() ? "its stream has ended" : "its stream has ended: " + seat->reason,
+      {{}, {}, {}, seat->hello.name()});
   seat->link.reset();
   seat->lost_at = std::chrono::steady_clock::now();
 }

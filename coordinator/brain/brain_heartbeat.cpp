@@ -75,7 +75,8 @@ std::vector<Event> Brain::take_back(Seat& seat, const LeaseId& lease, const Puls
       note(*desk, v1::LOG_LEVEL_WARNING, held.unit.frame, seat.hello.name(),
            fmt::format("tile {},{} batches {}-{} is taken back: {}", held.unit.tile.x0,
                        held.unit.tile.y0, held.unit.batches.first, held.unit.batches.end() - 1,
-                       reason));
+                       reason),
+           &held.unit);
     }
     v1::CoordinatorMessage stop;
     v1::LeasedUnit& unit = *stop.mutable_stop()->mutable_unit();

@@ -6,6 +6,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/counted.h"
+#include "farm/log.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -61,6 +62,9 @@ void Brain::note_expired(const std::vector<Action>& actions) {
 
 /// In the logs of the jobs that it has worked for since it came; with the lock.
 void Brain::note_quarantine(const Seat& seat) {
+  farm::log_later(farm::LogLevel::warning,
+                  seat.reason.empty() ? "is in quarantine" : "is in quarantine: " + seat.reason,
+                  {{}, {}, {}, seat.hello.name()});
   for (const JobId job : seat.briefed) {
     if (JobDesk* desk = desk_of(job)) {
       note(*desk, v1::LOG_LEVEL_WARNING, std::nullopt, seat.hello.name(),

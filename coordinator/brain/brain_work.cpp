@@ -82,7 +82,8 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
           note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
                fmt::format("tile {},{} batches {}-{} failed: {}", unit->tile.x0, unit->tile.y0,
                            unit->batches.first, unit->batches.end() - 1,
-                           farm::wire_text(failure.reason())));
+                           farm::wire_text(failure.reason())),
+               &*unit);
         }
         say(UnitFailed{worker, lease_from_wire(failure.unit().lease()), job, *unit,
                        farm::wire_text(failure.reason())});
@@ -132,11 +133,12 @@ void Brain::reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult
     rejected.set_retry_after_ms(retry_after_ms);
     seat->link->send(std::move(message));
     if (reason != v1::Rejected::REASON_NOT_NOW) {
+      const auto unit = farm::from_wire(result.unit());
       if (JobDesk* desk = desk_of(result.job())) {
         note(*desk, v1::LOG_LEVEL_WARNING, result.unit().frame(), seat->hello.name(),
-             "a film was refused: " + text);
+             "a film was refused: " + text, unit ? &*unit : nullptr);
       }
-      if (const auto unit = farm::from_wire(result.unit())) {
+      if (unit) {
         later =
             tell(UnitReturned{worker, lease_from_wire(result.lease()), JobId{result.job()}, *unit});
       }
@@ -222,7 +224,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
                            std::min(result.render_ns(), kLongestRendering), wall_us()};
       for (int i = 0; desk != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
         note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
-             farm::wire_text(result.notes(i)));
+             farm::wire_text(result.notes(i)), &*unit);
       }
       const Duration took{static_cast<int64_t>(std::min<uint64_t>(result.render_ns(), INT64_MAX))};
       later =

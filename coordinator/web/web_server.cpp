@@ -3,7 +3,6 @@
 #include <fcntl.h>
 
 #include <chrono>
-#include <cstdio>
 #include <exception>
 #include <optional>
 #include <thread>
@@ -251,7 +250,7 @@ struct WebServer::Parts {
         return;
       } catch (const std::exception& error) {
         // One request less, not the farm: without memory, most likely.
-        std::fprintf(stderr, "hyades coordinator: a web request broke off: %s\n", error.what());
+        farm::log(farm::LogLevel::error, std::string("a web request broke off: ") + error.what());
       }
     }
   }

@@ -19,7 +19,7 @@ TEST(Log, TextIsForPeople) {
             "hyades worker: working");
   EXPECT_EQ(log_line("p", LogFormat::text, 0, LogLevel::warning, "a unit failed",
                      {7, -3, "0,32 batches 0-3", "host/1"}),
-            "p: warning: a unit failed (job 7, frame -3, unit 0,32 batches 0-3, worker host/1)");
+            "p: WARNING: a unit failed (job 7, frame -3, unit 0,32 batches 0-3, worker host/1)");
 }
 
 TEST(Log, JsonHasTheIdsAsFields) {
@@ -66,26 +66,27 @@ TEST(Log, LinesOfManyThreadsDoNotMix) {
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([] {
-      for (int i = 0; i < 50; ++i) {
+      for (int i = 0; i < 30; ++i) {
         log(LogLevel::debug, "is not told");
         log(LogLevel::info, "twelve words, to make the line somewhat longer than a few bytes");
+        log_later(LogLevel::info, "said by another thread", {1, 2, {}, "w"});
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
+  FILE* read = ::fdopen(ends[0], "r");
+  char line[1000];
+  // What is said later comes when it comes; all of it fits into the pipe.
+  constexpr int kLines = 4 * 30 * 2;
+  for (int i = 0; i < kLines && std::fgets(line, sizeof line, read) != nullptr; ++i) {
+    EXPECT_TRUE(json::accept(std::string(line))) << line;
+  }
   ::dup2(standard_error, STDERR_FILENO);
   ::close(standard_error);
   ::close(ends[1]);
   set_log("p");
-  FILE* read = ::fdopen(ends[0], "r");
-  char line[1000];
-  int lines = 0;
-  while (std::fgets(line, sizeof line, read) != nullptr) {
-    EXPECT_TRUE(json::accept(std::string(line))) << line;
-    ++lines;
-  }
+  EXPECT_EQ(std::fgets(line, sizeof line, read), nullptr) << line;
   std::fclose(read);
-  EXPECT_EQ(lines, 200);
 }
 
 }  // namespace

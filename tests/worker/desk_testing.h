@@ -18,14 +18,19 @@ class FakePorts : public DeskPorts {
   void kill_renderer(const std::string& reason) override { kills.push_back(reason); }
   void fetch(uint64_t job, const v1::JobSpec& /*spec*/) override { fetched.push_back(job); }
   void release(uint64_t job) override { released.push_back(job); }
-  void note(const std::string& text) override { notes.push_back(text); }
+  void note(farm::LogLevel level, const std::string& text, const farm::LogFields& about) override {
+    if (level == farm::LogLevel::debug) return;
+    notes.push_back(text);
+    noted.push_back(about);
+  }
 
   std::vector<v1::WorkerMessage> sent;
   std::vector<pipe::ToRenderer> told;
   std::vector<std::string> kills;
   std::vector<uint64_t> fetched;
   std::vector<uint64_t> released;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes;      ///< but for those of level debug
+  std::vector<farm::LogFields> noted;  ///< what they were about
 };
 
 /// A desk with a clock, and short ways to say what happens to it.
