@@ -1,6 +1,6 @@
 // Checks Kubernetes manifests offline: each by the schema of its kind, and together: selectors choose pods that exist,
 // services and policies name ports that containers have, secrets are those that docs/operate.md makes, and no
-// container may do more than it needs. usage: check_manifests.js FILE.yaml
+// container or account may do more than it needs. usage: check_manifests.js FILE.yaml
 const fs = require('fs');
 const path = require('path');
 const yaml = require('js-yaml');
@@ -44,7 +44,7 @@ for (const o of objects) {
       }
     }
     for (const rule of o.spec.egress || []) {
-      for (const to of rule.to.filter((t) => t.podSelector && !t.namespaceSelector)) {
+      for (const to of (rule.to || []).filter((t) => t.podSelector && !t.namespaceSelector)) {
         for (const p of rule.ports) {
           if (!has_port(chosen(to.podSelector), p.port)) complaints.push(`${name(o)}: nobody listens on ${p.port}`);
         }
@@ -57,18 +57,34 @@ for (const o of objects) {
   }
 }
 
+// Whether all that an account of these manifests may do in the cluster is to scale deployments that are here.
+function may_only_scale(account) {
+  const bound = objects.filter((o) => /RoleBinding$/.test(o.kind) && (o.subjects || []).some((s) => s.name === account));
+  const here = objects.filter((o) => o.kind === 'Deployment').map((o) => o.metadata.name);
+  return objects.some((o) => o.kind === 'ServiceAccount' && o.metadata.name === account) && bound.length > 0 &&
+    bound.every((b) => b.kind === 'RoleBinding' && b.roleRef.kind === 'Role' &&
+      objects.some((o) => o.kind === 'Role' && o.metadata.name === b.roleRef.name && o.rules.every((r) =>
+        r.resources.every((what) => what === 'deployments/scale') &&
+        r.verbs.every((verb) => ['get', 'patch'].includes(verb)) &&
+        (r.resourceNames || []).length > 0 && r.resourceNames.every((one) => here.includes(one)))));
+}
+
+const made = (kind, one) => objects.some((o) => o.kind === kind && o.metadata.name === one);
+
 for (const t of templates) {
   const spec = t.spec;
   const selector = t.owner.spec.selector;
   if (selector && !matches(selector, t.metadata.labels)) complaints.push(`${name(t.owner)}: does not choose its own pods`);
   if (!spec.securityContext.runAsNonRoot) complaints.push(`${name(t.owner)}: may run as root`);
-  if (spec.automountServiceAccountToken !== false) complaints.push(`${name(t.owner)}: holds a token of the cluster`);
+  if (spec.automountServiceAccountToken !== false && !may_only_scale(spec.serviceAccountName)) {
+    complaints.push(`${name(t.owner)}: holds a token of the cluster`);
+  }
   const prepared = (kind, one) => guide.includes(`${kind} ${one} `);
   for (const v of spec.volumes || []) {
     if (v.secret && !prepared('secret generic', v.secret.secretName) && !prepared('secret tls', v.secret.secretName)) {
       complaints.push(`${name(t.owner)}: docs/operate.md makes no secret ${v.secret.secretName}`);
     }
-    if (v.configMap && !prepared('configmap', v.configMap.name)) complaints.push(`${name(t.owner)}: docs/operate.md makes no configmap ${v.configMap.name}`);
+    if (v.configMap && !made('ConfigMap', v.configMap.name) && !prepared('configmap', v.configMap.name)) complaints.push(`${name(t.owner)}: docs/operate.md makes no configmap ${v.configMap.name}`);
   }
   for (const c of spec.containers) {
     const s = c.securityContext || {};
