@@ -41,7 +41,7 @@ core::Status read_contents(const LoadedJob& loaded, core::SceneCache& cache,
   const auto is_missing = [&](const auto& file) { return !loaded.assets->open(file.file); };
   std::erase_if(others.meshes, is_missing);
   std::erase_if(others.images, is_missing);
-  if (!others.sky.empty() && !loaded.assets->open(others.sky)) others.sky.clear();
+  std::erase_if(others.light_maps, is_missing);
   core::SceneCache aside(*loaded.assets);
   return core::load_files(others, aside, diagnostics);
 }

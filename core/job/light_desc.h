@@ -12,17 +12,20 @@ namespace hyades::core {
 struct LightDesc {
   std::string name;
   SourceLocation where;
-  std::string type;                                   ///< point | spot | sun
-  Animated<Vec3> at{Vec3(0.0F)};                      ///< point, spot
-  Animated<Vec3> look_at{Vec3(0.0F, -1.0F, 0.0F)};    ///< spot
+  std::string type;                                   ///< point | spot | projector | sun
+  Animated<Vec3> at{Vec3(0.0F)};                      ///< all but sun
+  Animated<Vec3> look_at{Vec3(0.0F, -1.0F, 0.0F)};    ///< spot, projector
+  Animated<Vec3> up{Vec3(0.0F, 1.0F, 0.0F)};          ///< projector: of its picture
   Animated<Vec3> direction{Vec3(0.0F, -1.0F, 0.0F)};  ///< sun: the way its light travels
   Animated<Rgb> color{Rgb(1.0F)};
-  Animated<float> power{10.0F};      ///< point, spot: W (spot: as if it shone all round)
+  Animated<float> power{10.0F};      ///< all but sun: W, as if it shone all round
   Animated<float> irradiance{1.0F};  ///< sun: W/m^2 on a surface facing it
   Animated<float> angle{0.53F};      ///< sun: diameter, degrees; spot: half angle of the cone
   Animated<float> blend{0.2F};       ///< spot: share of the cone that fades, 0..1
-  TransformList transform;           ///< of at, look_at and direction; after them
-  std::string light_group;           ///< empty: none
+  Animated<float> fov{40.0F};  ///< projector: across the picture's shorter side, degrees, (0, 180)
+  std::string image;           ///< point: lat-long, of how much goes where; projector: the picture
+  TransformList transform;     ///< of at, look_at, up, direction and image; after them
+  std::string light_group;     ///< empty: none
 };
 
 /// A clear sky and its sun.

@@ -8,18 +8,36 @@ namespace hyades::core {
 
 namespace {
 
-void read_point(MapReader& reader, LightDesc& light) {
+void read_place_and_power(MapReader& reader, LightDesc& light) {
   reader.animated("at", light.at, kAnyNumber);
   reader.color("color", light.color, kNotNegative);
   reader.animated("power", light.power, kNotNegative);
   read_light_group(reader, light.light_group);
 }
 
-void read_spot(MapReader& reader, LightDesc& light) {
-  light.angle = Animated<float>(30.0F);
-  read_point(reader, light);
+void read_aim(MapReader& reader, LightDesc& light) {
   reader.animated("look_at", light.look_at, kAnyNumber);
   reader.keep_apart("at", light.at, "look_at", light.look_at);
+}
+
+void read_point(MapReader& reader, LightDesc& light) {
+  read_place_and_power(reader, light);
+  reader.file("image", light.image);
+}
+
+void read_projector(MapReader& reader, LightDesc& light) {
+  read_place_and_power(reader, light);
+  read_aim(reader, light);
+  reader.direction("up", light.up);
+  reader.animated("fov", light.fov, {0.0, 180.0, true, true});
+  reader.require("image", "the picture that it throws");
+  reader.file("image", light.image);
+}
+
+void read_spot(MapReader& reader, LightDesc& light) {
+  light.angle = Animated<float>(30.0F);
+  read_place_and_power(reader, light);
+  read_aim(reader, light);
   reader.animated("angle", light.angle, {0.0, 90.0, true});
   reader.animated("blend", light.blend, kUnitInterval);
 }
@@ -32,9 +50,10 @@ void read_sun(MapReader& reader, LightDesc& light) {
   read_light_group(reader, light.light_group);
 }
 
-const std::array<TypeRow<LightDesc>, 3> kTypes = {{
+const std::array<TypeRow<LightDesc>, 4> kTypes = {{
     {"point", read_point},
     {"spot", read_spot},
+    {"projector", read_projector},
     {"sun", read_sun},
 }};
 

@@ -37,6 +37,7 @@ std::vector<std::string> referenced_files(const Job& job) {
   }
   for (const GroupDesc& group : job.groups) list.add_meshes(group.objects);
   list.add_meshes(job.objects);
+  for (const LightDesc& light : job.lights) list.add(light.image);
   if (job.environment) list.add(job.environment->image);
   return list.files;
 }

@@ -226,6 +226,11 @@ void write(FieldWriter& out, const LightDesc& light) {
   out.put("irradiance", light.irradiance);
   out.put("angle", light.angle);
   out.put("blend", light.blend);
+  if (!light.image.empty()) out.put_file("image", light.image);
+  if (light.type == "projector") {
+    out.put("up", light.up);
+    out.put("fov", light.fov);
+  }
   if (!light.transform.empty()) write_transform(out, light.transform);
   if (!light.light_group.empty()) out.put("light_group", light.light_group);
   out.leave();

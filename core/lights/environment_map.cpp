@@ -8,41 +8,8 @@
 
 namespace hyades::core {
 
-namespace {
-
-constexpr float kLargest = 1e15F;  ///< its square must be finite
-
-/// A place in [0, 1] with density in proportion to a at 0, b at 1, linear in between: the root of
-/// the quadratic distribution function in the form that does not cancel.
-float sample_linear(float u, float a, float b) {
-  const float divisor = a + std::sqrt((1.0F - u) * a * a + u * b * b);
-  return divisor > 0.0F ? std::min(u * (a + b) / divisor, 1.0F) : u;
-}
-
-Rgb blend(const Rgb& a, const Rgb& b, float t) { return (1.0F - t) * a + t * b; }
-
-bool is_clean(float value) { return value >= 0.0F && value <= kLargest; }
-
-/// The image itself, or a copy without what is no radiance.
-std::shared_ptr<const Image> clean(std::shared_ptr<const Image> image) {
-  if (std::all_of(image->data.begin(), image->data.end(), is_clean)) return image;
-  auto copy = std::make_shared<Image>(*image);
-  for (float& value : copy->data) {
-    if (!is_clean(value)) value = value > 0.0F ? kLargest : 0.0F;
-  }
-  return copy;
-}
-
-}  // namespace
-
 EnvironmentMap::EnvironmentMap(std::shared_ptr<const Image> image)
-    : image_(clean(std::move(image))), width_(image_->width), height_(image_->height) {
-  const char* names[] = {"R", "G", "B"};
-  for (int c = 0; c < 3; ++c) {
-    const int found = image_->find_channel(names[c]);
-    channels_[c] = std::max(found >= 0 ? found : image_->find_channel("Y"), 0);
-  }
-
+    : picture_(std::move(image)), width_(picture_.width()), height_(picture_.height()) {
   // 1 - cos = 2 sin^2(theta / 2) keeps its figures near the upper pole; the lower one mirrors it.
   const int rows = height_ + 1;
   cosines_.resize(static_cast<size_t>(rows) + 1);
@@ -67,7 +34,7 @@ void EnvironmentMap::measure() {
   const auto read_row = [&](int y, std::vector<float>& luminances, Vec3d& sum) {
     sum = Vec3d(0.0);
     for (size_t x = 0; x < columns; ++x) {
-      const Rgb value = pixel(static_cast<int>(x), y);
+      const Rgb value = picture_.at(static_cast<int>(x), y);
       luminances[x] = luminance(value);
       sum += Vec3d(value);
     }
@@ -102,21 +69,17 @@ double EnvironmentMap::cell_angle(int row) const {
 
 Rgb EnvironmentMap::look_up(const Vec3& direction, float turn) const {
   const Place place = locate(direction, turn);
-  const Cell c = cell(place.column, place.row);
-  return blend(blend(c.top_left, c.top_right, place.across),
-               blend(c.bottom_left, c.bottom_right, place.across), place.down);
+  return cell(place.column, place.row).at({place.across, place.down});
 }
 
 EnvironmentMap::View EnvironmentMap::view(const Vec3& direction, float turn) const {
   const Place place = locate(direction, turn);
-  const Cell c = cell(place.column, place.row);
-  const Rgb top = blend(c.top_left, c.top_right, place.across);
-  const Rgb bottom = blend(c.bottom_left, c.bottom_right, place.across);
+  const BilinearCell c = cell(place.column, place.row);
   View view;
-  view.radiance = blend(top, bottom, place.down);
-  const float mean = 0.25F * luminance(c.top_left + c.top_right + c.bottom_left + c.bottom_right);
+  view.radiance = c.at({place.across, place.down});
+  const float mean = c.mean();
   if (!(mean > 0.0F)) return view;
-  const float here = luminance(blend(top, bottom, place.lower));
+  const float here = luminance(c.at({place.across, place.lower}));
   const Vec2 middle((static_cast<float>(place.column) + 0.5F) / static_cast<float>(width_),
                     (static_cast<float>(place.row) + 0.5F) / static_cast<float>(height_ + 1));
   const double cells = static_cast<double>(width_) * (height_ + 1);
@@ -133,18 +96,14 @@ Vec3 EnvironmentMap::sample(const Vec2& u, float turn) const {
       std::max(chosen.at.x * static_cast<float>(width_) - static_cast<float>(column), 0.0F);
   const float down_u =
       std::max(chosen.at.y * static_cast<float>(height_ + 1) - static_cast<float>(row), 0.0F);
-  // Bilinear density: first the height (its marginal is linear), then the column given that.
-  const Cell c = cell(column, row);
-  const float lower = sample_linear(down_u, luminance(c.top_left + c.top_right),
-                                    luminance(c.bottom_left + c.bottom_right));
-  const float across = sample_linear(across_u, luminance(blend(c.top_left, c.bottom_left, lower)),
-                                     luminance(blend(c.top_right, c.bottom_right, lower)));
+  const Vec2 within = cell(column, row).sample({across_u, down_u});
 
   const auto r = static_cast<size_t>(row);
-  const double cosine = cosines_[r] + static_cast<double>(lower) * (cosines_[r + 1] - cosines_[r]);
+  const double cosine =
+      cosines_[r] + static_cast<double>(within.y) * (cosines_[r + 1] - cosines_[r]);
   const double sine = std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0));
   const float turns =
-      (static_cast<float>(column) + 0.5F + across) / static_cast<float>(width_) - 0.5F - turn;
+      (static_cast<float>(column) + 0.5F + within.x) / static_cast<float>(width_) - 0.5F - turn;
   const SinCos azimuth = sin_cos(2.0F * kPi * turns);
   return glm::normalize(Vec3(Vec3d(sine * static_cast<double>(azimuth.cos), cosine,
                                    sine * static_cast<double>(azimuth.sin))));
@@ -178,16 +137,12 @@ EnvironmentMap::Place EnvironmentMap::locate(const Vec3& direction, float turn) 
   return place;
 }
 
-Rgb EnvironmentMap::pixel(int x, int y) const {
-  const float* values = &image_->data[image_->index(x, y, 0)];
-  return {values[channels_[0]], values[channels_[1]], values[channels_[2]]};
-}
-
-EnvironmentMap::Cell EnvironmentMap::cell(int column, int row) const {
+BilinearCell EnvironmentMap::cell(int column, int row) const {
   const int right = column + 1 < width_ ? column + 1 : 0;
   const int top = std::max(row - 1, 0);
   const int bottom = std::min(row, height_ - 1);
-  return {pixel(column, top), pixel(right, top), pixel(column, bottom), pixel(right, bottom)};
+  return {picture_.at(column, top), picture_.at(right, top), picture_.at(column, bottom),
+          picture_.at(right, bottom)};
 }
 
 }  // namespace hyades::core

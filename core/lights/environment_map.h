@@ -7,6 +7,8 @@
 #include "core/base/distribution.h"
 #include "core/base/vec.h"
 #include "core/image/image.h"
+#include "core/lights/bilinear_cell.h"
+#include "core/lights/light_picture.h"
 
 namespace hyades::core {
 
@@ -55,21 +57,14 @@ class EnvironmentMap {
     float lower = 0.0F;   ///< in cos(theta), for density
   };
 
-  /// The values at the corners of a cell.
-  struct Cell {
-    Rgb top_left, top_right, bottom_left, bottom_right;
-  };
-
   void measure();
   Place locate(const Vec3& direction, float turn) const;
-  Rgb pixel(int x, int y) const;
-  Cell cell(int column, int row) const;
+  BilinearCell cell(int column, int row) const;
   double cell_angle(int row) const;  ///< of each cell of a row [sr]
 
-  std::shared_ptr<const Image> image_;  ///< without negative, broken or overwhelming values
+  LightPicture picture_;
   int width_;
   int height_;
-  int channels_[3];              ///< of the image: red, green, blue
   std::vector<double> cosines_;  ///< of theta at the rows' edges, from the upper pole down
   Distribution2D cells_;
   Rgb integral_{0.0F};

@@ -9,6 +9,7 @@
 #include "core/image/image.h"
 #include "core/lights/environment_map.h"
 #include "core/lights/light.h"
+#include "core/lights/slide.h"
 #include "core/lights/surface_emission.h"
 
 /// One maker per kind of light.
@@ -38,6 +39,19 @@ LightPtr make_point_light(const Vec3& position, const Rgb& power);
 /// 3 t^2 - 2 t^3 of the cosine in between.
 LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
                          float cos_inner, float cos_outer);
+
+/// As a point light of that power, times what `map` has in each direction: 1 there is the point
+/// light itself. The columns of `axes`, orthonormal and possibly mirrored, are the map's x, y (its
+/// top) and z in the world.
+LightPtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rgb& power,
+                                std::shared_ptr<const EnvironmentMap> map);
+
+/// As a point light of that power, but only through `slide`, whose colours it takes: white is the
+/// point light itself. `fov` [radians, in (0, pi)] is the angle across the slide's shorter side.
+/// The columns of `axes`, orthonormal and possibly mirrored, lead to the slide's right and upper
+/// sides and through its middle.
+LightPtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power, float fov,
+                              std::shared_ptr<const Slide> slide);
 
 /// Sun: light travelling along unit `direction`, irradiance [W/m^2] on a facing surface, from a
 /// disc of angular diameter `angle` [radians, at most pi] and uniform radiance; less than 1e-4

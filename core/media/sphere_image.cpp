@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/elementary.h"
+#include "core/image/rgb_channels.h"
 
 namespace hyades::core {
 namespace {
@@ -17,18 +18,13 @@ SphereImage::SphereImage(const Image& image, float turn)
       height_(image.height),
       turn_(turn),
       tiles_across_((image.width + kTile - 1) / kTile) {
-  int channels[3];
-  const char* names[] = {"R", "G", "B"};
-  for (int c = 0; c < 3; ++c) {
-    const int found = image.find_channel(names[c]);
-    channels[c] = std::max(found >= 0 ? found : image.find_channel("Y"), 0);
-  }
+  const auto channels = rgb_channels(image).value_or(std::array{0, 0, 0});
   const int tiles_down = (height_ + kTile - 1) / kTile;
   tiles_.assign(static_cast<size_t>(tiles_across_) * static_cast<size_t>(tiles_down), 0.0F);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      Rgb color;
-      for (int c = 0; c < 3; ++c) color[c] = clean(image.at(x, y, channels[c]));
+      Rgb color = rgb_at(image, channels, x, y);
+      for (int c = 0; c < 3; ++c) color[c] = clean(color[c]);
       pixels_.push_back(color);
       float& tile = tiles_[static_cast<size_t>(y / kTile * tiles_across_ + x / kTile)];
       tile = std::max(tile, luminance(color));

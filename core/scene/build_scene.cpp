@@ -210,7 +210,7 @@ class SceneBuilder {
   Status add_lights() {
     const LightSetting setting = this->setting();
     for (const LightDesc& desc : job_.lights) {
-      auto light = make_light(desc, setting);
+      auto light = make_light(desc, setting, cache_);
       if (!light) return Error{Diagnostic{desc.where, light.error().message}.to_string()};
       add_light(*light, desc.name, desc.light_group);
     }

@@ -6,6 +6,7 @@
 #include "core/base/result.h"
 #include "core/job/job.h"
 #include "core/lights/make_light.h"
+#include "core/scene/scene_cache.h"
 
 namespace hyades::core {
 
@@ -16,8 +17,9 @@ struct LightSetting {
   float world_radius = 1.0F;  ///< metres; infinite lights weigh their power by it
 };
 
-/// The light that `desc` describes (no shape's emission, no environment).
-Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting);
+/// The light that `desc` describes (no shape's emission, no environment); its picture is of
+/// `cache`.
+Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting, SceneCache& cache);
 
 /// The types that can be made: those of core/job/kinds.h.
 std::vector<std::string> made_light_types();

@@ -128,6 +128,14 @@ Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const 
   });
 }
 
+Result<std::shared_ptr<const Slide>> SceneCache::slide(const std::string& file) {
+  return slides_.get(file, [&]() -> Result<std::shared_ptr<const Slide>> {
+    auto picture = image(file, ColorSpace::automatic);
+    if (!picture) return picture.error();
+    return std::make_shared<const Slide>(*picture);
+  });
+}
+
 std::shared_ptr<const Sky> SceneCache::sky(const SkySettings& settings) {
   const std::lock_guard lock(sky_mutex_);
   if (!sky_ || !(settings == sky_settings_)) {

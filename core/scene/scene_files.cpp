@@ -27,7 +27,7 @@ class Walk {
     for (const MaterialDesc& material : job.materials) materials_.emplace(material.name, &material);
     for (const TextureDesc& texture : job.textures) textures_.emplace(texture.name, &texture);
     visit(job.objects, "");
-    add_sky(job);
+    add_light_maps(job);
   }
 
   /// Of all that the job holds. Follows no names, which may lead astray in a job with mistakes.
@@ -42,7 +42,7 @@ class Walk {
     for (const GroupDesc& group : job.groups) walk.add_meshes(group.objects);
     walk.add_meshes(job.objects);
     for (const TextureDesc& texture : job.textures) walk.add_image(texture);
-    walk.add_sky(job);
+    walk.add_light_maps(job);
     return walk.take();
   }
 
@@ -59,10 +59,21 @@ class Walk {
     if (looks_at_next_frame(job)) times_.push_back(job.time_of(frame + 1));
   }
 
-  void add_sky(const Job& job) {
+  void add_light_maps(const Job& job) {
+    for (const LightDesc& light : job.lights) {
+      add_light_map(light.image,
+                    light.type == "projector" ? LightMap::slide : LightMap::surroundings,
+                    "light '" + light.name + "'", light.where);
+    }
     if (!job.environment) return;
-    files_.sky = job.environment->image;
-    files_.sky_where = job.environment->where;
+    add_light_map(job.environment->image, LightMap::surroundings, "environment",
+                  job.environment->where);
+  }
+
+  void add_light_map(const std::string& file, LightMap how, const std::string& user,
+                     const SourceLocation& where) {
+    if (file.empty() || !seen_light_maps_.insert({file, how}).second) return;
+    files_.light_maps.push_back({file, how, user, where});
   }
 
   void add_meshes(const std::vector<ObjectDesc>& objects) {
@@ -146,6 +157,7 @@ class Walk {
   std::set<std::string> seen_textures_;
   std::set<std::pair<std::string, MeshUse>> seen_meshes_;
   std::set<std::pair<std::string, ImageUse>> seen_images_;
+  std::set<std::pair<std::string, LightMap>> seen_light_maps_;
   SceneFiles files_;
 };
 
@@ -188,7 +200,7 @@ SceneFiles without(SceneFiles all, const SceneFiles& some) {
   };
   remove(all.meshes, some.meshes);
   remove(all.images, some.images);
-  if (all.sky == some.sky) all.sky.clear();
+  remove(all.light_maps, some.light_maps);
   return all;
 }
 
@@ -197,7 +209,7 @@ Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagn
   const SceneFiles files = with_tiles(named, cache, diagnostics);
   const size_t meshes = files.meshes.size();
   const size_t images = files.images.size();
-  const size_t count = meshes + images + (files.sky.empty() ? 0 : 1);
+  const size_t count = meshes + images + files.light_maps.size();
   std::vector<std::optional<Diagnostic>> failures(count);
   HeldMeshes meshes_of_frame(meshes);
   const auto note = [&](size_t i, const auto& loaded, const std::string& user,
@@ -216,7 +228,12 @@ Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagn
       const auto& image = files.images[i - meshes];
       note(i, cache.pyramid(image.file, image.how), image.user, image.where);
     } else {
-      note(i, cache.environment_map(files.sky), "environment", files.sky_where);
+      const auto& map = files.light_maps[i - meshes - images];
+      if (map.how == LightMap::slide) {
+        note(i, cache.slide(map.file), map.user, map.where);
+      } else {
+        note(i, cache.environment_map(map.file), map.user, map.where);
+      }
     }
   });
   if (!all) return all;

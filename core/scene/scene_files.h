@@ -11,11 +11,14 @@
 
 namespace hyades::core {
 
+/// What a light makes of its picture.
+enum class LightMap { surroundings, slide };
+
 /// A file as the cache is asked for it, and who asks first.
 template <class How>
 struct SceneFile {
   std::string file;
-  How how;                ///< MeshUse or ImageUse
+  How how;                ///< MeshUse, ImageUse or LightMap
   std::string user;       ///< "object 'vase'", for messages
   SourceLocation where;   ///< of that user
   bool of_frame = false;  ///< a mesh that only some frames look at (SceneCache::frame_mesh)
@@ -25,8 +28,7 @@ struct SceneFile {
 struct SceneFiles {
   std::vector<SceneFile<MeshUse>> meshes;
   std::vector<SceneFile<ImageUse>> images;
-  std::string sky;           ///< empty: none
-  SourceLocation sky_where;  ///< of the environment
+  std::vector<SceneFile<LightMap>> light_maps;
 };
 
 /// Those of what the scene shows: groups, materials and textures that nothing uses do not count. Of

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <string>
 
+#include "core/image/write_image.h"
 #include "core/render/render_frame.h"
 #include "tests/support/means.h"
 #include "tests/support/quadrature.h"
 #include "tests/support/special_functions.h"
+#include "tests/support/temp_folder.h"
 #include "tests/truth/render_yaml.h"
 
 namespace hyades::test {
@@ -78,6 +80,41 @@ TEST(LightTruth, SpotInItsMiddleItsBorderAndBesides) {
   expect_picture_mean(spot("[" + std::to_string(2.0 * std::tan(M_PI / 6.0)) + ", 0, 0]"),
                       lit(Vec3d(e * t * t * (3.0 - 2.0 * t))));
   expect_picture_mean(spot("[2, 0, 0]"), Vec3d(0.0));
+}
+
+TEST(LightTruth, ProjectorAndPointWithAPicture) {
+  const TempFolder folder;
+  core::Image picture = core::make_image(2, 2, {"R", "G", "B"});
+  // Two pixels over two; what is halfway between some is their mean.
+  const Vec3d pixels[4] = {{1.0, 0.1, 0.2}, {0.3, 1.0, 0.1}, {0.2, 0.4, 1.0}, {0.7, 0.9, 0.6}};
+  for (int i = 0; i < 4; ++i) {
+    for (int c = 0; c < 3; ++c) picture.at(i % 2, i / 2, c) = static_cast<float>(pixels[i][c]);
+  }
+  ASSERT_TRUE(core::write_exr(folder.file("four.exr"), picture).ok());
+  const auto under = [&](const std::string& light) {
+    return plane_under(std::string(kPlane) + "lights:\n  a: {" + light +
+                       ", power: 30, image: " + folder.file("four.exr") + "}\n");
+  };
+  // Phi cos / (4 pi d^2), the cosine that of 1 across and 2 down.
+  const double e = 30.0 / (4.0 * M_PI * 5.0) * 2.0 / std::sqrt(5.0);
+  // Straight down from (1, 2, 0) with -z on top: the place that is looked at lies 1 to the left, at
+  // half of the way to the border where tan(fov / 2) = 1.
+  const std::string projector =
+      "type: projector, at: [1, 2, 0], look_at: [1, 0, 0], up: [0, 0, -1], fov: 90";
+  expect_picture_mean(under(projector), lit(e * 0.5 * (pixels[0] + pixels[2])));
+  // With +x on top that is a place below the middle.
+  expect_picture_mean(
+      under("type: projector, at: [1, 2, 0], look_at: [1, 0, 0], up: [1, 0, 0], fov: 90"),
+      lit(e * 0.5 * (pixels[2] + pixels[3])));
+  // Turned by a quarter about y and moved to (0, 2, -1), its right is +z.
+  expect_picture_mean(under(projector + ", transform: [{rotate_y: -90}, {translate: [0, 0, -2]}]"),
+                      lit(e * 0.5 * (pixels[1] + pixels[3])));
+  // Below the middle of the lower row, towards -x, where its ends meet, and towards -z.
+  expect_picture_mean(under("type: point, at: [1, 2, 0]"), lit(e * 0.5 * (pixels[2] + pixels[3])));
+  expect_picture_mean(under("type: point, at: [0, 2, 1]"), lit(e * pixels[2]));
+  // Moved from there by a turn, which its picture follows.
+  expect_picture_mean(under("type: point, at: [0, 2, 1], transform: [{rotate_y: 90}]"),
+                      lit(e * pixels[2]));
 }
 
 TEST(LightTruth, SunAsDirectionAndAsDisc) {

@@ -77,6 +77,20 @@ lights:
   a: {type: point, at: [-0.8, 1.5, 0.4], power: 40}
   b: {type: spot, at: [0.9, 1.6, 0.5], look_at: [0.2, 0, 0], angle: 35, blend: 0.4, power: 60, color: [1, 0.6, 0.3]}
 )"},
+      {"lights_with_pictures", R"(
+camera: {look_from: [0, 1, 3.4], look_at: [0, 0.8, 0], fov: 40}
+materials:
+  white: {type: lambert, color: [0.7, 0.6, 0.5]}
+  glass: {type: dielectric, ior: 1.5, roughness: 0.4}
+objects:
+  floor: {shape: rectangle, size: [4, 4], material: white}
+  back: {shape: rectangle, size: [4, 4], transform: [{rotate_x: 90}], at: [0, 1, -1], material: white}
+  ball: {shape: sphere, radius: 0.4, at: [0.3, 0.4, 0], material: glass}
+lights:
+  film: {type: projector, image: board.png, at: [-0.8, 1.5, 1.4], look_at: [0.2, 0.7, -1], up: [0.3, 1, 0], fov: 50, power: 150}
+  bulb: {type: point, image: board.png, at: [0.9, 1.6, 0.5], power: 30, color: [1, 0.6, 0.3], transform: [{rotate_y: 30}]}
+)",
+       256, 0.03},
       {"sky_and_sun", R"(
 camera: {look_from: [0, 1.2, 4], look_at: [0, 0.6, 0], fov: 35}
 materials:

@@ -4,25 +4,12 @@
 #include <cmath>
 
 #include "core/base/text.h"
+#include "core/import/pbrt/light_values.h"
+#include "core/import/pbrt/pictured_lights.h"
 #include "core/import/pbrt/sky.h"
 
 namespace hyades::core::pbrt {
 namespace {
-
-constexpr float kAllRound = 4.0F * kPi;  ///< steradians
-
-/// The colour of a light as its directive says it, times `scale` and the film's exposure. Spectra
-/// have luminance 1, whatever their numbers.
-Rgb light_value(Context& context, const Entity& light, ParameterReader& reader, const char* name) {
-  const float scale = reader.number("scale", 1.0F) * context.exposure;
-  const Parameter* p = reader.find(name);
-  if (p == nullptr) return light_from_rgb(*light.space, Vec3d(1.0)) * scale;
-  return color_of(context, *p, ColorUse::light).value_or(Rgb(0.0F)) * scale;
-}
-
-Vec3 place_of(Context& context, const LightEntity& light, const Vec3d& at) {
-  return Vec3(Vec3d(context.to_job * light.to_world.at[0] * glm::dvec4(at, 1.0)));
-}
 
 void add_point(Context& context, const LightEntity& light, ParameterReader& reader) {
   Rgb intensity = light_value(context, light, reader, "I");
@@ -64,32 +51,6 @@ void add_spot(Context& context, const LightEntity& light, ParameterReader& reade
                          .node());
 }
 
-/// Stands in for lights whose pictures say how much goes where.
-void add_pictured(Context& context, const LightEntity& light, ParameterReader& reader) {
-  reader.text("filename");
-  if (light.type == "goniometric") {
-    context.report.note(light.place, "a goniometric light shines alike in all directions");
-    add_point(context, light, reader);
-    return;
-  }
-  context.report.note(light.place, "a projection becomes a spotlight without its picture");
-  const float angle = std::clamp(0.5F * reader.number("fov", 90.0F), 1.0F, 90.0F);
-  Rgb intensity = Rgb(reader.number("scale", 1.0F) * context.exposure);
-  if (const float power = reader.number("power", -1.0F); power > 0.0F) {
-    intensity *= power / (2.0F * kPi * (1.0F - std::cos(angle * kPi / 180.0F)));
-  }
-  context.lights.put(
-      context.light_names.add("projection"),
-      YamlMap{{"type", yaml_word("spot")},
-              {"at", yaml_vector(place_of(context, light, Vec3d(0.0)))},
-              {"look_at", yaml_vector(place_of(context, light, Vec3d(0.0, 0.0, 1.0)))},
-              {"color", color_node(intensity)},
-              {"power", yaml_number(kAllRound)},
-              {"angle", yaml_number(angle)},
-              {"blend", yaml_number(0.0F)}}
-          .node());
-}
-
 void add_distant(Context& context, const LightEntity& light, ParameterReader& reader) {
   Rgb irradiance = light_value(context, light, reader, "L");
   if (const float target = reader.number("illuminance", -1.0F); target > 0.0F) irradiance *= target;
@@ -114,7 +75,8 @@ void add_distant(Context& context, const LightEntity& light, ParameterReader& re
 
 void add_lights(Context& context, YamlMap& out) {
   std::vector<const LightEntity*> infinite;
-  for (const LightEntity& light : context.scene.lights) {
+  for (size_t i = 0; i < context.scene.lights.size(); ++i) {
+    const LightEntity& light = context.scene.lights[i];
     if (light.type == "infinite") {
       infinite.push_back(&light);
       continue;
@@ -127,8 +89,10 @@ void add_lights(Context& context, YamlMap& out) {
       add_point(context, light, reader);
     } else if (light.type == "spot") {
       add_spot(context, light, reader);
-    } else if (light.type == "goniometric" || light.type == "projection") {
-      add_pictured(context, light, reader);
+    } else if (light.type == "goniometric") {
+      add_goniometric(context, i, reader);
+    } else if (light.type == "projection") {
+      add_projection(context, light, reader);
     } else if (light.type == "distant") {
       add_distant(context, light, reader);
     } else {

@@ -5,6 +5,7 @@
 #include "core/import/pbrt/instances.h"
 #include "core/import/pbrt/lights.h"
 #include "core/import/pbrt/mesh_files.h"
+#include "core/import/pbrt/pictured_lights.h"
 #include "core/import/pbrt/read_scene_text.h"
 #include "core/import/pbrt/render_sections.h"
 #include "core/import/pbrt/shapes.h"
@@ -35,7 +36,7 @@ class Loader {
     for (const NamedEntity& medium : scene.media) add_file(medium);
     for (const LightEntity& light : scene.lights) {
       add(light);
-      if (light.type == "infinite") add_file(light);
+      if (light.type != "point" && light.type != "spot" && light.type != "distant") add_file(light);
     }
     if (scene.camera.type == "realistic") add_file(scene.camera, "lensfile");
     add_reversed(scene.shapes);
@@ -149,6 +150,7 @@ class PbrtSource : public SceneSource {
 
   Result<Bytes> made_file(const std::string& name) const override {
     if (name == "sky.exr") return make_sky(loaded_);
+    if (name.starts_with("lights/")) return make_light_picture(loaded_, name.substr(7));
     if (name.starts_with("media/")) return make_medium_file(loaded_, name.substr(6));
     if (name.starts_with("places/")) return make_places_file(loaded_, name.substr(7));
     if (name.starts_with("meshes/")) return make_mesh_file(loaded_, name.substr(7));

@@ -1,10 +1,7 @@
-// Colours and spectra of pbrt's scenes, and its pictures of the sky.
+// Colours and spectra of pbrt's scenes.
 
 #include "core/base/color.h"
-#include "core/image/read_image.h"
-#include "core/image/write_image.h"
 #include "core/import/pbrt/color_space.h"
-#include "core/import/pbrt/sky.h"
 #include "core/import/pbrt/smooth_reflectance.h"
 #include "core/import/pbrt/spectra.h"
 #include "tests/core/import/pbrt_files.h"
@@ -100,90 +97,6 @@ TEST(PbrtColors, MetalsAndTheirReflectance) {
               HasSubstr("eta: [0.15, 0.13, 0.14], k: [4.4"));
   // k = 2 sqrt(r / (1 - r))
   EXPECT_THAT(material("\"rgb reflectance\" [.5 .5 .5]"), HasSubstr("eta: 1, k: 2"));
-}
-
-TEST(PbrtSky, TheSquareIsTheSphere) {
-  for (const auto& [place, direction] : {std::pair(glm::dvec2(0.5, 0.5), Vec3d(0, 0, 1)),
-                                         {{0.0, 0.0}, Vec3d(0, 0, -1)},
-                                         {{1.0, 0.5}, Vec3d(1, 0, 0)},
-                                         {{0.5, 0.0}, Vec3d(0, -1, 0)}}) {
-    EXPECT_NEAR(glm::length(equal_area_direction(place) - direction), 0.0, 1e-9);
-  }
-  // Equal areas: the mean of z^2 is that of the sphere.
-  double mean = 0.0;
-  constexpr int kSide = 64;
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
-      const glm::dvec2 place((x + 0.5) / kSide, (y + 0.5) / kSide);
-      const Vec3d d = equal_area_direction(place);
-      EXPECT_NEAR(glm::length(d), 1.0, 1e-9);
-      EXPECT_NEAR(glm::length(equal_area_square(d) - place), 0.0, 1e-9);
-      mean += d.z * d.z / (kSide * kSide);
-    }
-  }
-  EXPECT_NEAR(mean, 1.0 / 3.0, 1e-3);
-}
-
-/// An equal-area picture, red where the light's x is above 0, green where y, blue where z.
-std::string octants() {
-  core::Image image = core::make_image(32, 32, {"R", "G", "B"});
-  for (int y = 0; y < 32; ++y) {
-    for (int x = 0; x < 32; ++x) {
-      const Vec3d d = equal_area_direction({(x + 0.5) / 32, (y + 0.5) / 32});
-      for (int c = 0; c < 3; ++c) image.at(x, y, c) = d[c] > 0.0 ? 1.0F : 0.0F;
-    }
-  }
-  const auto bytes = core::encode_exr(image);
-  return {bytes->chars(), bytes->size()};
-}
-
-TEST(PbrtSky, PicturesBecomePanoramas) {
-  PbrtFiles files(
-      pbrt_world("AttributeBegin Rotate 90 0 1 0 LightSource \"infinite\" "
-                 "\"string filename\" \"sky.exr\" \"float scale\" 2 AttributeEnd "
-                 "LightSource \"infinite\" \"rgb L\" [.5 .5 .5]"));
-  files.add("sky.exr", octants());
-  core::SceneRequest request;
-  request.made = "made/";
-  const PbrtJob job = read_pbrt_job(files, request);
-  ASSERT_EQ(job.error, "");
-  EXPECT_THAT(job.text, HasSubstr("environment: {image: made/sky.exr}"));
-  const auto bytes = job.source->made_file("sky.exr");
-  ASSERT_TRUE(bytes.ok()) << bytes.error().message;
-  const auto image = core::read_image(*bytes, "sky.exr");
-  ASSERT_TRUE(image.ok());
-  EXPECT_EQ(image->width, 64);
-  EXPECT_EQ(image->height, 32);
-  // A quarter turn about y brings the light's x to -z and its z to x, and x is mirrored.
-  for (const Vec3d d : {Vec3d(0.5, 0.5, 0.7), Vec3d(-0.5, 0.5, 0.7), Vec3d(0.6, -0.5, -0.6)}) {
-    const Vec3d world(-d.x, d.y, d.z);
-    const Vec3d light(-world.z, world.y, world.x);
-    const double u = std::atan2(d.z, d.x) / (2.0 * 3.14159265358979) + 0.5;
-    const double v = std::acos(d.y / glm::length(d)) / 3.14159265358979;
-    for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(image->at(static_cast<int>(u * 64), static_cast<int>(v * 32), c),
-                  0.5F + (light[c] > 0.0 ? 2.0F : 0.0F), 1e-3F)
-          << c;
-    }
-  }
-}
-
-TEST(PbrtSky, IlluminanceIsOfLevelGround) {
-  PbrtFiles files(pbrt_world("LightSource \"infinite\" \"rgb L\" [3 3 3] \"float illuminance\" 2"));
-  // L = 3 E / pi: as pbrt has it, colours scale what is asked for.
-  EXPECT_THAT(read_pbrt_job(files).text, HasSubstr("environment: {color: 1.909859"));
-}
-
-TEST(PbrtSky, MissingAndUnfitPictures) {
-  PbrtFiles files(pbrt_world("LightSource \"infinite\" \"string filename\" \"sky.exr\""));
-  const PbrtJob missing = read_pbrt_job(files);
-  EXPECT_THAT(missing.source->made_file("sky.exr").error().message,
-              HasSubstr("scene.pbrt:5:1: cannot open 'sky.exr'"));
-  core::Image wide = core::make_image(4, 2, {"R", "G", "B"});
-  const auto bytes = core::encode_exr(wide);
-  files.add("sky.exr", {bytes->chars(), bytes->size()});
-  EXPECT_THAT(read_pbrt_job(files).source->made_file("sky.exr").error().message,
-              HasSubstr("is not square"));
 }
 
 TEST(PbrtSpectra, SmoothReflectancesLookAsTheyShould) {

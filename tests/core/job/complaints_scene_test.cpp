@@ -122,6 +122,17 @@ TEST(Complaints, DirectionsThatAreNone) {
             "job.yaml:2:30: at and look_at are both [0, -1, 0], expected two points\n");
 }
 
+TEST(Complaints, ProjectorsWithoutPictureOrDirection) {
+  EXPECT_EQ(complaints("lights: {p: {type: projector}}\n"),
+            "job.yaml:2:13: light 'p' has no 'image', expected the picture that it throws\n");
+  EXPECT_EQ(complaints("lights: {p: {type: projector, image: none.png}}\n"),
+            "job.yaml:2:38: image of light 'p': none.png: no such file\n");
+  EXPECT_EQ(complaints("lights: {p: {type: point, image: none.exr}}\n"),
+            "job.yaml:2:34: image of light 'p': none.exr: no such file\n");
+  EXPECT_EQ(complaints("lights: {s: {type: spot, image: none.exr}}\n"),
+            "job.yaml:2:26: unknown key 'image' in light 's'; it belongs to point or projector\n");
+}
+
 TEST(Complaints, DirectionsThatAreNoneAtAFrame) {
   EXPECT_EQ(complaints("frames: 1-2\n"
                        "lights: {s: {type: sun, direction: [0, \"= frame == 2 ? 0 : -1\", 0]}}\n"),

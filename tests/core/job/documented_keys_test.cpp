@@ -198,6 +198,7 @@ const std::map<std::string, Place>& places() {
     for (const char* type : {"point", "spot", "sun"}) {
       p[std::string("lights.") + type] = named("lights", type, {});
     }
+    p["lights.projector"] = named("lights", "projector", {{"image", "wood.png"}});
     p["color"] = {"color: {", {{"config", "view.ocio"}}, "}"};
     p["outputs"] = {"outputs: [{", {{"file", "image.####.exr"}}, "}]"};
     p["outputs.exr"] = p["outputs"];

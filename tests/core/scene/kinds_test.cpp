@@ -149,8 +149,10 @@ TEST(Kinds, ASceneIsBuiltOfEach) {
     expect_builds("materials: {a: {type: lambert}, m: {type: '" + type + "'" + more +
                   "}}\nobjects: {o: {shape: sphere, material: m}}\n");
   }
-  for (const std::string& type : light_types())
-    expect_builds("lights: {l: {type: " + type + "}}\n");
+  for (const std::string& type : light_types()) {
+    const std::string more = type == "projector" ? ", image: pixel.hdr" : "";
+    expect_builds("lights: {l: {type: " + type + more + "}}\n");
+  }
   for (const std::string& shape : shape_names()) {
     const std::string what = shape == "mesh" ? "mesh: triangle.ply" : "shape: " + shape;
     expect_builds("objects: {o: {" + what + "}}\n");

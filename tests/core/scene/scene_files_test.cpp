@@ -78,7 +78,8 @@ Job job_of_meshes(int count) {
 TEST(SceneFiles, AreWhatTheSceneShows) {
   MemoryAssets assets;
   for (const char* file : {"a.obj", "b.obj", "unused.obj"}) assets.add(file, kTriangle);
-  for (const char* file : {"bark.png", "leaf.png", "bump.png", "unused.png", "sky.hdr"}) {
+  for (const char* file :
+       {"bark.png", "leaf.png", "bump.png", "unused.png", "lamp.exr", "film.png", "sky.hdr"}) {
     assets.add(file, "never decoded here");
   }
   const Job job = parsed(R"yaml(
@@ -100,6 +101,11 @@ objects:
   one: {instance: tree, material: mixed}
   two: {instance: tree, material: mixed}
   three: {mesh: a.obj}
+lights:
+  lamp: {type: point, image: lamp.exr}
+  bulb: {type: point, image: lamp.exr}
+  plain: {type: point}
+  film: {type: projector, image: film.png}
 environment: {image: sky.hdr}
 )yaml",
                          assets);
@@ -109,7 +115,9 @@ environment: {image: sky.hdr}
   EXPECT_THAT(files.images, ElementsAre(Asked("leaf.png", ImageUse{}),
                                         Asked("bark.png", ImageUse{ColorSpace::linear}),
                                         Asked("bump.png", ImageUse{})));
-  EXPECT_EQ(files.sky, "sky.hdr");
+  EXPECT_THAT(files.light_maps, ElementsAre(Asked("lamp.exr", LightMap::surroundings),
+                                            Asked("film.png", LightMap::slide),
+                                            Asked("sky.hdr", LightMap::surroundings)));
 }
 
 TEST(SceneFiles, AreWhatDisplacesMeshes) {
