@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/meters/meters.h"
 #include "farm/log.h"
 #include "farm/wire.h"
 
@@ -42,6 +43,22 @@ v1::Rejected::Reason to_wire(RejectReason reason) {
   return v1::Rejected::REASON_UNSPECIFIED;
 }
 
+const char* name_of(RejectReason reason) {
+  switch (reason) {
+    case RejectReason::unknown:
+      return "unknown";
+    case RejectReason::malformed:
+      return "malformed";
+    case RejectReason::overlap:
+      return "overlap";
+    case RejectReason::conflict:
+      return "conflict";
+    case RejectReason::not_now:
+      break;
+  }
+  return "not_now";
+}
+
 constexpr uint32_t kRetryAfterMs = 1000;
 
 }  // namespace
@@ -74,10 +91,15 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
     v1::CoordinatorMessage message;
     *message.mutable_acknowledge()->mutable_unit() = to_wire(ack->lease, ack->job, ack->unit);
     send(ack->worker, std::move(message));
+    // Of a film that needs not be stored: it is there already.
+    if (delivery != nullptr && !std::exchange(delivery->settled, true)) {
+      meters_->result("duplicate");
+    }
   } else if (const auto* revoke = std::get_if<Revoke>(&action)) {
     v1::CoordinatorMessage message;
     *message.mutable_stop()->mutable_unit() = to_wire(revoke->lease, revoke->job, revoke->unit);
     send(revoke->worker, std::move(message));
+    meters_->lost(revoke->expired ? "expired" : "revoked");
   } else if (const auto* reject = std::get_if<Reject>(&action)) {
     v1::CoordinatorMessage message;
     v1::Rejected& rejected = *message.mutable_rejected();
@@ -85,6 +107,8 @@ void Brain::act(const Action& action, Delivery* delivery, std::vector<Action>& l
     rejected.set_reason(to_wire(reject->reason));
     if (reject->reason == RejectReason::not_now) rejected.set_retry_after_ms(kRetryAfterMs);
     send(reject->worker, std::move(message));
+    meters_->result(name_of(reject->reason));
+    if (delivery != nullptr) delivery->settled = true;
   } else if (const auto* conflict = std::get_if<Conflict>(&action)) {
     if (JobDesk* desk = desk_of(conflict->job)) {
       note(*desk, v1::LOG_LEVEL_ERROR, conflict->unit.frame, {},
@@ -123,6 +147,7 @@ void Brain::persist(const Persist& persist, Delivery* delivery) {
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
   if (const auto* unit = std::get_if<UnitRecord>(&persist.record)) {
+    delivery->settled = true;
     desk->films_under_way[persist.id] = std::move(delivery->rendered);
     keeper_of(*desk).keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
                                     std::move(delivery->record));
@@ -185,6 +210,7 @@ void Brain::send_lease(const Lease& lease) {
   wire.set_deadline_ms(static_cast<uint64_t>(
       std::chrono::duration_cast<std::chrono::milliseconds>(options_.lease_time).count()));
   send(lease.worker, std::move(message));
+  meters_->leased(lease.units.size(), lease.adopted);
 
   const int32_t number = lease.units.front().frame;
   FrameNote& frame = desk->touch(number);

@@ -33,6 +33,8 @@
 
 namespace hyades::coordinator {
 
+class Meters;
+
 /// The coordinator without its network: the scheduler, and everything that happens because of it.
 ///
 /// One lock guards the scheduler and all books; every event is handled and its messages are queued
@@ -155,6 +157,8 @@ class Brain {
   grpc::Status quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now);
   grpc::Status release_worker(const v1::WorkerRequest& request, v1::Worker& now);
 
+  /// What is counted, here and by those around.
+  Meters& meters() { return *meters_; }
   farm::ContentStore& assets() { return *assets_; }
   JobStore& store() { return *store_; }
   std::string output_folder(uint64_t job) const;
@@ -219,6 +223,7 @@ class Brain {
     std::vector<std::byte> record;
     AcceptedUnit unit;
     FilmUnderWay rendered;
+    bool settled = false;  ///< it is on its way to the disk, or was answered
   };
   class KeeperOwner;
 
@@ -373,6 +378,7 @@ class Brain {
   const std::unique_ptr<farm::ContentStore> assets_;
   const uint64_t incarnation_;
   const int64_t started_ms_;
+  const std::unique_ptr<Meters> meters_;
   std::atomic<bool> stop_{false};
 
   mutable std::mutex mutex_;

@@ -6,6 +6,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/wire_ids.h"
+#include "coordinator/meters/meters.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -78,6 +79,7 @@ std::vector<Event> Brain::take_back(Seat& seat, const LeaseId& lease, const Puls
                        reason),
            &held.unit);
     }
+    meters_->lost("stalled");
     v1::CoordinatorMessage stop;
     v1::LeasedUnit& unit = *stop.mutable_stop()->mutable_unit();
     unit.mutable_lease()->set_incarnation(lease.incarnation);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/brain/brain.h"
+#include "coordinator/meters/meters.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -75,6 +76,7 @@ Brain::Brain(BrainOptions options, std::unique_ptr<JobStore> store,
       assets_(std::move(assets)),
       incarnation_(incarnation),
       started_ms_(wall_ms()),
+      meters_(std::make_unique<Meters>()),
       scheduler_(scheduler_options(options_, incarnation)),
       moment_(incarnation << 32U),
       disk_(options_.disk) {}

@@ -5,6 +5,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/keeper_owner.h"
+#include "coordinator/meters/meters.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -267,6 +268,7 @@ std::unique_ptr<FilmKeeper> Brain::make_keeper(JobDesk& desk, bool resume) {
   place.frame_key = [key = desk.key](int32_t) { return key; };
   place.resume = resume;
   place.compact_bytes = options_.compact_bytes;
+  place.on_sync = [meters = meters_.get()](std::chrono::nanoseconds took) { meters->synced(took); };
   if (!desk.owner) desk.owner = std::make_unique<KeeperOwner>(*this, desk.id);
   return std::make_unique<FilmKeeper>(plan, place, *desk.owner);
 }

@@ -6,6 +6,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/finisher/finish_process.h"
+#include "coordinator/meters/meters.h"
 #include "core/base/failpoint.h"
 #include "core/base/fp_mode.h"
 #include "core/job/film_file.h"
@@ -105,6 +106,7 @@ void Brain::finish_loop() {
     if (done) {
       core::Unit all;
       all.frame = completed.frame;
+      meters_->finished(std::chrono::microseconds(std::max<int64_t>(wall_us() - begun_us, 0)));
       timelines_.note(id, {v1::TimelineStep::KIND_FINISH, {}, 0, all, begun_us, wall_us()});
     }
     const std::vector<Action> later =
@@ -155,6 +157,7 @@ std::vector<Action> Brain::mind_workers(TimePoint now) {
       seat.joined = false;
       if (seat.state != v1::WORKER_STATE_QUARANTINED) seat.state = v1::WORKER_STATE_GONE;
       note_losses(seat, scheduler_.units_of(seat.id), seat.leaving ? "has left" : "is lost");
+      if (!seat.leaving) meters_->worker_lost();
       add(tell(WorkerLost{seat.id}));
     }
     if (seat.held_wish > 0 && seat.joined && now >= adopting_until_) {

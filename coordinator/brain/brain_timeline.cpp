@@ -4,6 +4,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/not_there.h"
+#include "coordinator/meters/meters.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -34,6 +35,8 @@ void Brain::count_film(JobDesk& desk, const Merge& merge, int64_t begun_us) {
     const FilmUnderWay film = std::move(found->second);
     desk.films_under_way.erase(found);
     desk.stored.core_ns += film.render_ns;
+    meters_->result("accepted");
+    meters_->made_durable(std::chrono::steady_clock::now() - film.came);
     if (const auto seat = seats_.find(film.worker); seat != seats_.end()) {
       ++seat->second.units_done;
       seat->second.samples_done += samples_of(desk, merge.unit.tile, merge.unit.batches);
@@ -42,7 +45,9 @@ void Brain::count_film(JobDesk& desk, const Merge& merge, int64_t begun_us) {
     timelines_.note(id, {v1::TimelineStep::KIND_RENDER, film.name, film.thread, merge.unit,
                          film.came_us - took_us, film.came_us});
   }
-  timelines_.note(id, {v1::TimelineStep::KIND_MERGE, {}, 0, merge.unit, begun_us, wall_us()});
+  const int64_t now_us = wall_us();
+  meters_->merged(std::chrono::microseconds(std::max<int64_t>(now_us - begun_us, 0)));
+  timelines_.note(id, {v1::TimelineStep::KIND_MERGE, {}, 0, merge.unit, begun_us, now_us});
 }
 
 grpc::Status Brain::timeline(const v1::ListTimelineRequest& request,

@@ -7,6 +7,7 @@
 
 #include "coordinator/brain/brain.h"
 #include "coordinator/brain/wire_ids.h"
+#include "coordinator/meters/meters.h"
 #include "core/film/film_codec.h"
 #include "core/film/id_codec.h"
 #include "core/film/splat_codec.h"
@@ -22,6 +23,20 @@ constexpr uint32_t kFullRetryMs = 2000;
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
 /// What a unit can have taken: no worker makes a job more expensive than that.
 constexpr uint64_t kLongestRendering = 7ULL * 24 * 3600 * 1'000'000'000;  // ns
+
+/// Of results that the scheduler is not told of.
+const char* verdict_of(v1::Rejected::Reason reason) {
+  switch (reason) {
+    case v1::Rejected::REASON_DAMAGED:
+      return "damaged";
+    case v1::Rejected::REASON_MALFORMED:
+      return "malformed";
+    case v1::Rejected::REASON_NOT_NOW:
+      return "not_now";
+    default:
+      return "unknown";
+  }
+}
 
 }  // namespace
 
@@ -78,6 +93,7 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
       if (unit) {
         const JobId job{failure.unit().job()};
         ++seat->units_failed;
+        meters_->lost("failed");
         if (JobDesk* desk = desk_of(job)) {
           note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
                fmt::format("tile {},{} batches {}-{} failed: {}", unit->tile.x0, unit->tile.y0,
@@ -93,6 +109,7 @@ void Brain::receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMes
       for (const v1::LeasedUnit& returned : message.returned().units()) {
         const auto unit = farm::from_wire(returned.unit());
         if (!unit) continue;
+        meters_->lost("returned");
         note_return(*seat, JobId{returned.job()}, message.returned().reason());
         say(UnitReturned{worker, lease_from_wire(returned.lease()), JobId{returned.job()}, *unit});
       }
@@ -132,6 +149,7 @@ void Brain::reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult
     rejected.set_text(text);
     rejected.set_retry_after_ms(retry_after_ms);
     seat->link->send(std::move(message));
+    meters_->result(verdict_of(reason));
     if (reason != v1::Rejected::REASON_NOT_NOW) {
       const auto unit = farm::from_wire(result.unit());
       if (JobDesk* desk = desk_of(result.job())) {
@@ -150,11 +168,13 @@ void Brain::reject(WorkerId worker, const WorkerLink* link, const v1::UnitResult
 
 void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result) {
   using Rejected = v1::Rejected;
+  meters_->film_bytes(result.film().size());
   const JobId job{result.job()};
   core::FilmLayout layout;
   core::PixelRect region;
   FrameKey key{};
   Delivery delivery;
+  const TimePoint came = std::chrono::steady_clock::now();
   {
     const std::lock_guard lock(mutex_);
     Seat* seat = seat_of(worker, link);
@@ -220,8 +240,9 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
     } else if (desk != nullptr && desk->keeper && desk->keeper->crowded()) {
       verdict = Verdict::crowded;
     } else {
-      delivery.rendered = {seat->id, seat->hello.name(), result.thread(),
-                           std::min(result.render_ns(), kLongestRendering), wall_us()};
+      delivery.rendered = {seat->id,        seat->hello.name(),
+                           result.thread(), std::min(result.render_ns(), kLongestRendering),
+                           wall_us(),       came};
       for (int i = 0; desk != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
         note(*desk, v1::LOG_LEVEL_WARNING, unit->frame, seat->hello.name(),
              farm::wire_text(result.notes(i)), &*unit);
@@ -230,6 +251,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
       later =
           tell(ResultArrived{worker, lease_from_wire(result.lease()), job, *unit, *digest, took},
                &delivery);
+      if (!delivery.settled) meters_->result("waits");
       want(*seat, result.want(), later);
     }
   }

@@ -37,6 +37,7 @@ struct FilmUnderWay {
   uint32_t thread = 0;
   uint64_t render_ns = 0;
   int64_t came_us = 0;  ///< since 1970, UTC
+  TimePoint came;
 };
 
 /// How fast samples become durable, smoothed over some ten seconds.

@@ -63,6 +63,7 @@ core::Status FilmKeeper::open_log(bool erase) {
   }
   FilmLogOptions options;
   options.files = &files;
+  options.on_sync = options_.on_sync;
   options.on_durable = [this](uint64_t through) {
     const std::lock_guard lock(mutex_);
     durable_ = std::max(durable_, through);

@@ -52,6 +52,8 @@ struct LocalLog {
   /// The run ends with an error when nothing could be stored for this long.
   Duration patience = std::chrono::seconds(30);
   LogFiles* files = nullptr;  ///< the disk where null
+  /// Called by the log's thread: so long took the disk to make a group of films durable.
+  std::function<void(std::chrono::nanoseconds took)> on_sync{};
 };
 
 }  // namespace hyades::coordinator

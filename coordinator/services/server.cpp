@@ -10,6 +10,7 @@
 #include "coordinator/services/admin_service.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/assets_service.h"
+#include "coordinator/services/call_meter.h"
 #include "coordinator/services/farm_service.h"
 #include "coordinator/services/jobs_service.h"
 #include "coordinator/services/work_service.h"
@@ -67,6 +68,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brai
   builder.RegisterService(&parts->assets);
   builder.RegisterService(&parts->farm);
   builder.RegisterService(&parts->admin);
+  builder.experimental().SetInterceptorCreators(count_calls(brain.meters()));
   builder.SetMaxReceiveMessageSize(static_cast<int>(farm::kMaxResultBytes));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);

@@ -272,7 +272,9 @@ Status FilmLog::write_group(const std::vector<Pending>& group) {
   }
   if (Status s = active_->write(small); !s) return s;
   core::failpoint("log-written");
+  const auto begun = std::chrono::steady_clock::now();
   if (Status s = active_->sync(); !s) return s;
+  if (options_.on_sync) options_.on_sync(std::chrono::steady_clock::now() - begun);
   core::failpoint("log-synced");
   active_bytes_ += bytes;
   return {};

@@ -32,6 +32,9 @@ struct FilmLogOptions {
   /// kept in memory and tried again, in a new file.
   std::function<void(const core::Error& error)> on_trouble;
 
+  /// Called by the commit thread: so long took the disk to make a group durable.
+  std::function<void(std::chrono::nanoseconds took)> on_sync;
+
   LogFiles* files = nullptr;  ///< the disk where null
 
   // For simulations, which have to be the same every time.

@@ -17,6 +17,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/ssl.hpp>
 
+#include "coordinator/meters/meters.h"
 #include "coordinator/web/target.h"
 #include "farm/wire_status.h"
 
@@ -65,6 +66,7 @@ class ConnectionOver final : public Connection,
 
   void begin() override {
     world_.open.insert(self());
+    world_.meters.http_connections().Increment();
     ErrorCode unknown;
     const auto from = tcp(stream_).socket().remote_endpoint(unknown);
     if (!unknown) address_ = from.address().to_string() + ":" + std::to_string(from.port());
@@ -267,6 +269,7 @@ class ConnectionOver final : public Connection,
     const size_t count = std::min(kPiece, text->size() - from);
     tcp(stream_).expires_after(kSend);
     const auto piece = asio::buffer(text->data() + from, count);
+    world_.meters.http_bytes(count);
     asio::async_write(
         stream_, piece,
         [me = self(), text, from, count, then = std::move(then)](ErrorCode error, size_t) mutable {
@@ -294,6 +297,7 @@ class ConnectionOver final : public Connection,
     const bool last = piece->empty();
     if (last && !chunked) return sent();
     piece_ = std::move(*piece);
+    world_.meters.http_bytes(piece_.size());
     tcp(stream_).expires_after(kSend);
     const auto then = [me = self(), last](ErrorCode error, size_t) {
       if (error) return me->close();
@@ -415,7 +419,8 @@ class ConnectionOver final : public Connection,
     heartbeat_.cancel();
     ErrorCode ignored;
     tcp(stream_).socket().close(ignored);
-    world_.open.erase(self());
+    if (world_.open.erase(self()) == 0) return;
+    world_.meters.http_connections().Decrement();
   }
 
   ConnectionWorld& world_;

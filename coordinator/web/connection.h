@@ -18,6 +18,8 @@ class context;
 
 namespace hyades::coordinator {
 
+class Meters;
+
 /// One connection, over which requests come one after the other. Everything but push() and end()
 /// happens on the network's thread.
 class Connection : public LiveReader {
@@ -42,6 +44,7 @@ struct ConnectionWorld {
   std::function<void(WebRequest, Answer)> serve;
   Clerks& files;  ///< who reads what is sent from the disk
   std::shared_ptr<Outlet> outlet;
+  Meters& meters;
   std::set<std::shared_ptr<Connection>> open{};  ///< of the network's thread
   uint64_t body_bytes = 0;                       ///< that requests have been granted; likewise
 };

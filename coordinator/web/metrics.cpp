@@ -1,8 +1,10 @@
 #include "coordinator/web/metrics.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <prometheus/metric_family.h>
@@ -10,11 +12,18 @@
 
 #include "coordinator/brain/all_pages.h"
 #include "coordinator/brain/brain.h"
+#include "coordinator/meters/meters.h"
 #include "core/base/version.h"
 #include "farm/json_form.h"
 
 namespace hyades::coordinator {
 namespace {
+
+/// Rows for each of them; what is beyond is counted.
+constexpr uint64_t kMostWorkers = 1000;
+/// Of tags, which anybody may invent who may submit.
+constexpr size_t kMostTags = 100;
+constexpr const char* kOtherTags = "(others)";
 
 using Labels = std::vector<std::pair<const char*, std::string>>;
 
@@ -41,6 +50,9 @@ class Page {
   void counter(const char* name, const char* help, double value, const Labels& labels = {}) {
     add(prometheus::MetricType::Counter, name, help, value, labels);
   }
+  void add(std::vector<prometheus::MetricFamily> families) {
+    for (prometheus::MetricFamily& family : families) families_.push_back(std::move(family));
+  }
   std::string text() const { return prometheus::TextSerializer().Serialize(families_); }
 
  private:
@@ -55,9 +67,14 @@ void add_workers(Page& page, const std::vector<v1::Worker>& workers) {
     page.gauge("hyades_workers", "Workers that are known, by state", static_cast<double>(count),
                {{"state", state}});
   }
+  uint64_t here = 0;
+  for (const v1::Worker& worker : workers) here += worker.state() != v1::WORKER_STATE_GONE ? 1 : 0;
+  page.gauge("hyades_workers_left_out", "Connected workers that have no rows of their own here",
+             static_cast<double>(here - std::min(here, kMostWorkers)));
   const auto each = [&](auto add) {
+    uint64_t shown = 0;
     for (const v1::Worker& worker : workers) {
-      if (worker.state() == v1::WORKER_STATE_GONE) continue;
+      if (worker.state() == v1::WORKER_STATE_GONE || ++shown > kMostWorkers) continue;
       add(worker, Labels{{"worker", std::to_string(worker.id())}, {"name", worker.name()}});
     }
   };
@@ -81,6 +98,14 @@ void add_workers(Page& page, const std::vector<v1::Worker>& workers) {
                  static_cast<double>(worker.units_failed()), labels);
   });
   each([&](const v1::Worker& worker, const Labels& labels) {
+    page.gauge("hyades_worker_samples_per_second", "Samples that became durable, lately",
+               worker.samples_per_second(), labels);
+  });
+  each([&](const v1::Worker& worker, const Labels& labels) {
+    page.gauge("hyades_worker_cache_bytes", "Assets on the worker's disk",
+               static_cast<double>(worker.cache_bytes()), labels);
+  });
+  each([&](const v1::Worker& worker, const Labels& labels) {
     page.gauge("hyades_worker_memory_bytes", "Resident memory",
                static_cast<double>(worker.memory_bytes()), labels);
   });
@@ -98,7 +123,8 @@ void add_jobs(Page& page, const std::vector<v1::Job>& jobs) {
     // A job counts for each tag that it asks for.
     if (job.tags().empty()) waiting[""] += left;
     for (const std::string& tag : std::set<std::string>(job.tags().begin(), job.tags().end())) {
-      waiting[tag] += left;
+      const bool known = waiting.contains(tag) || waiting.size() < kMostTags;
+      waiting[known ? tag : kOtherTags] += left;
     }
   }
   for (const auto& [state, count] : states) {
@@ -128,6 +154,7 @@ std::string metrics_text(Brain& brain) {
   page.gauge("hyades_render_threads", "Threads of all connected workers", info.threads());
   add_jobs(page, all_open_jobs(brain));
   add_workers(page, all_workers(brain));
+  page.add(brain.meters().collect());
   return page.text();
 }
 

@@ -15,6 +15,7 @@
 #include "coordinator/access/authority.h"
 #include "coordinator/access/rules.h"
 #include "coordinator/brain/brain.h"
+#include "coordinator/meters/meters.h"
 #include "coordinator/services/desks.h"
 #include "coordinator/web/assets_api.h"
 #include "coordinator/web/connection.h"
@@ -93,7 +94,8 @@ void close_on_exec(Socket& socket) {
 
 struct WebServer::Parts {
   Parts(Brain& brain, Authority& known, Gatekeeper keeper)
-      : authority(known),
+      : meters(brain.meters()),
+        authority(known),
         gatekeeper(std::move(keeper)),
         outlet(std::make_shared<Outlet>(network)),
         farm(brain, desks),
@@ -106,10 +108,10 @@ struct WebServer::Parts {
               [this](const Caller& caller, std::function<void(const grpc::Status&)> leave) {
                 return authority.visit(caller, std::move(leave));
               },
-              [this](WebRequest request, Answer answer) {
-                router.answer(std::move(request), answer);
-              },
-              desks.files, outlet},
+              [this](WebRequest request, Answer answer) { serve(std::move(request), answer); },
+              desks.files,
+              outlet,
+              meters},
         acceptor(network),
         again(network),
         sweep(network),
@@ -127,6 +129,19 @@ struct WebServer::Parts {
     outputs.add_routes(router);
     pictures.add_routes(router);
     live.add_routes(router);
+  }
+
+  /// Counts by route, never by what was asked for: there are as many rows as routes.
+  void serve(WebRequest request, const Answer& answer) const {
+    const Router::Route* route = router.find(request);
+    const std::string name = route != nullptr ? route->pattern : "none";
+    const std::string method = route != nullptr ? request.method : "any";
+    const auto begun = std::chrono::steady_clock::now();
+    router.answer(
+        std::move(request), [&meters = meters, answer, name, method, begun](WebReply reply) {
+          meters.answered(method, name, reply.status, std::chrono::steady_clock::now() - begun);
+          answer(std::move(reply));
+        });
   }
 
   void add_session(Router& to) {
@@ -172,7 +187,9 @@ struct WebServer::Parts {
     if (allowed.ok()) allowed = allow(request.caller, rule);
     if (!allowed.ok()) {
       if (AuditLog* log = authority.audit()) log->refuse(request.caller, rule.deed, allowed);
-      return {0, error_reply(allowed)};
+      WebReply refusal = error_reply(allowed);
+      meters.answered("any", "refused", refusal.status, Meters::Time(0));
+      return {0, std::move(refusal)};
     }
     return {most_bytes(request)};
   }
@@ -257,6 +274,7 @@ struct WebServer::Parts {
 
   // The network is there before all that belongs to it, and ends after it.
   asio::io_context network{1};
+  Meters& meters;
   Authority& authority;
   Gatekeeper gatekeeper;
   std::shared_ptr<Outlet> outlet;

@@ -1,0 +1,108 @@
+#include "coordinator/services/call_meter.h"
+
+#include <array>
+#include <chrono>
+#include <string>
+
+#include <grpcpp/support/byte_buffer.h>
+
+#include "coordinator/meters/meters.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using grpc::experimental::InterceptionHookPoints;
+using grpc::experimental::Interceptor;
+using grpc::experimental::InterceptorBatchMethods;
+using grpc::experimental::ServerRpcInfo;
+
+const char* name_of(grpc::StatusCode code) {
+  static constexpr std::array<const char*, 17> kNames = {"OK",
+                                                         "CANCELLED",
+                                                         "UNKNOWN",
+                                                         "INVALID_ARGUMENT",
+                                                         "DEADLINE_EXCEEDED",
+                                                         "NOT_FOUND",
+                                                         "ALREADY_EXISTS",
+                                                         "PERMISSION_DENIED",
+                                                         "RESOURCE_EXHAUSTED",
+                                                         "FAILED_PRECONDITION",
+                                                         "ABORTED",
+                                                         "OUT_OF_RANGE",
+                                                         "UNIMPLEMENTED",
+                                                         "INTERNAL",
+                                                         "UNAVAILABLE",
+                                                         "DATA_LOSS",
+                                                         "UNAUTHENTICATED"};
+  const auto number = static_cast<size_t>(code);
+  return number < kNames.size() ? kNames[number] : "UNKNOWN";
+}
+
+/// "/hyades.v1.Jobs/List" -> "Jobs/List".
+std::string short_name(const std::string& method) {
+  const size_t dot = method.rfind('.');
+  return dot == std::string::npos ? method : method.substr(dot + 1);
+}
+
+class CallMeter final : public Interceptor {
+ public:
+  CallMeter(Meters& meters, const ServerRpcInfo& info)
+      : meters_(meters),
+        method_(short_name(info.method())),
+        unary_(info.type() == ServerRpcInfo::Type::UNARY),
+        begun_(std::chrono::steady_clock::now()) {}
+
+  /// A call that was broken off has no status.
+  ~CallMeter() override {
+    meters_.called(method_, name_of(code_), unary_, std::chrono::steady_clock::now() - begun_);
+  }
+  CallMeter(const CallMeter&) = delete;
+  CallMeter& operator=(const CallMeter&) = delete;
+
+  void Intercept(InterceptorBatchMethods* batch) override {
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_MESSAGE)) {
+      // All our services take bytes (raw.h).
+      if (const auto* bytes = static_cast<const grpc::ByteBuffer*>(batch->GetRecvMessage())) {
+        if (bytes->Valid()) meters_.call_bytes(method_, bytes->Length(), 0);
+      }
+    }
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_MESSAGE)) {
+      if (const grpc::ByteBuffer* bytes = batch->GetSerializedSendMessage()) {
+        if (bytes->Valid()) meters_.call_bytes(method_, 0, bytes->Length());
+      }
+    }
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) {
+      code_ = batch->GetSendStatus().error_code();
+    }
+    batch->Proceed();
+  }
+
+ private:
+  Meters& meters_;
+  const std::string method_;
+  const bool unary_;
+  const std::chrono::steady_clock::time_point begun_;
+  grpc::StatusCode code_ = grpc::StatusCode::CANCELLED;
+};
+
+class Factory final : public grpc::experimental::ServerInterceptorFactoryInterface {
+ public:
+  explicit Factory(Meters& meters) : meters_(meters) {}
+  Interceptor* CreateServerInterceptor(ServerRpcInfo* info) override {
+    return new CallMeter(meters_, *info);  // gRPC deletes it
+  }
+
+ private:
+  Meters& meters_;
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> count_calls(
+    Meters& meters) {
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> all;
+  all.push_back(std::make_unique<Factory>(meters));
+  return all;
+}
+
+}  // namespace hyades::coordinator
