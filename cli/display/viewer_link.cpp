@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <memory>
+#include <utility>
 
 #include "core/base/io_reason.h"
 
@@ -19,19 +20,60 @@ constexpr int kMostReads = 16;
 struct FreeAddresses {
   void operator()(addrinfo* found) const { ::freeaddrinfo(found); }
 };
+using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
+
+/// What the system's resolver is asked, which looks at it until it has answered.
+struct Question {
+  explicit Question(const core::Address& address) : host(address.host), port(address.port) {
+    wanted.ai_family = AF_UNSPEC;
+    wanted.ai_socktype = SOCK_STREAM;
+    request.ar_name = host.c_str();
+    request.ar_service = port.c_str();
+    request.ar_request = &wanted;
+  }
+  ~Question() {
+    if (request.ar_result != nullptr) ::freeaddrinfo(request.ar_result);
+  }
+  Question(const Question&) = delete;
+  Question& operator=(const Question&) = delete;
+
+  std::string host;
+  std::string port;
+  addrinfo wanted{};
+  gaicb request{};
+};
+
+/// A name server that does not answer must not hold up who gives up.
+core::Result<Addresses> look_up(const core::Address& address,
+                                const std::function<bool()>& give_up) {
+  auto question = std::make_unique<Question>(address);
+  gaicb* list[] = {&question->request};
+  if (::getaddrinfo_a(GAI_NOWAIT, list, 1, nullptr) != 0) {
+    return core::Error{"its name cannot be looked up now"};
+  }
+  const timespec wait{0, kLookUpMs * 1'000'000};
+  while (::gai_error(&question->request) == EAI_INPROGRESS) {
+    if (give_up()) {
+      // What the resolver is at cannot be called back, and is left to it.
+      if (::gai_cancel(&question->request) == EAI_NOTCANCELED)
+        static_cast<void>(question.release());
+      return core::Error{"its name is still looked up"};
+    }
+    ::gai_suspend(list, 1, &wait);
+  }
+  if (const int error = ::gai_error(&question->request); error != 0) {
+    return core::Error{::gai_strerror(error)};
+  }
+  return Addresses(std::exchange(question->request.ar_result, nullptr));
+}
 
 }  // namespace
 
 core::Status ViewerLink::open() {
-  addrinfo wanted{};
-  wanted.ai_family = AF_UNSPEC;
-  wanted.ai_socktype = SOCK_STREAM;
-  addrinfo* list = nullptr;
-  const int error = ::getaddrinfo(address_.host.c_str(), address_.port.c_str(), &wanted, &list);
-  if (error != 0) return core::Error{::gai_strerror(error)};
-  const std::unique_ptr<addrinfo, FreeAddresses> found(list);
+  const auto found = look_up(address_, give_up_);
+  if (!found) return found.error();
   std::string reason = "no address";
-  for (const addrinfo* one = found.get(); one != nullptr; one = one->ai_next) {
+  for (const addrinfo* one = found->get(); one != nullptr; one = one->ai_next) {
     socket_ = core::Descriptor(
         ::socket(one->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, one->ai_protocol));
     if (!socket_.valid()) {

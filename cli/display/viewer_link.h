@@ -13,8 +13,8 @@ namespace hyades::cli {
 /// A TCP connection to a viewer, for one thread.
 class ViewerLink {
  public:
-  /// `give_up` is asked every tenth of a second while a connection or a viewer that reads slowly is
-  /// waited for.
+  /// `give_up` is asked every tenth of a second while a name, a connection or a viewer that reads
+  /// slowly is waited for.
   ViewerLink(core::Address address, std::function<bool()> give_up)
       : address_(std::move(address)), give_up_(std::move(give_up)) {}
 
