@@ -150,7 +150,7 @@ void LightWorker::beat() {
     }
   }
   send(std::move(message));
-  crowd_.timer.at(Clock::now() + beat_every_, [this] { beat(); });
+  crowd_.beats.at(Clock::now() + beat_every_, [this] { beat(); });
 }
 
 void LightWorker::OnDone(const grpc::Status& status) {

@@ -20,6 +20,7 @@ namespace hyades::bench {
 /// What all light-weight workers share.
 struct Crowd {
   Timer& timer;
+  Timer& beats;  ///< for heartbeats alone: they are not late because films are being made
   core::FilmLayout layout;
   uint32_t samples = 0;           ///< per pixel, of the job
   double seconds_per_sample = 0;  ///< what they pretend that a sample takes

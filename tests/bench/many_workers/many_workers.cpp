@@ -69,7 +69,8 @@ int main(int count, char** arguments) {
   ::setrlimit(RLIMIT_NOFILE, &files);
 
   bench::Timer timer(2);
-  bench::Crowd crowd{timer, core::make_film_layout({}), 4096,
+  bench::Timer beats(1);
+  bench::Crowd crowd{timer, beats, core::make_film_layout({}), 4096,
                      count > 4 ? std::atof(arguments[4]) : 1e-5};
   std::vector<std::unique_ptr<bench::LightWorker>> all;
   for (int i = 0; i < workers; ++i) {
@@ -101,6 +102,7 @@ int main(int count, char** arguments) {
   }
   if (!trouble.empty()) std::printf("trouble: %s\n", trouble.c_str());
   timer.stop();
+  beats.stop();
   for (const auto& worker : all) worker->leave();
   for (const auto& worker : all) {
     while (!worker->done()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
