@@ -1,5 +1,8 @@
 #include "coordinator/web/farm_feed.h"
 
+#include <cmath>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,13 +16,47 @@ namespace {
 constexpr std::chrono::seconds kPerValue{5};
 constexpr size_t kMostValues = 720;  // an hour
 
-farm::Json values_of(const std::map<uint64_t, farm::Json>& things) {
-  farm::Json all = farm::Json::array();
-  for (const auto& [id, thing] : things) all.push_back(thing);
-  return all;
+/// Bytes a second of what always changes, to each reader: a hundred of them are told a megabyte or
+/// two. Of up to some hundred busy workers everything is told each second, of a thousand every few
+/// seconds.
+constexpr size_t kWorkerBytes = size_t{16} << 10U;
+constexpr size_t kJobBytes = size_t{16} << 10U;
+
+const std::set<std::string>& lively_of_workers() {
+  static const std::set<std::string> fields{
+      "leased", "units_done",  "samples_done", "heard_ms",     "memory_bytes",
+      "work",   "cache_bytes", "cache_hits",   "cache_misses", "samples_per_second"};
+  return fields;
+}
+
+const std::set<std::string>& lively_of_jobs() {
+  static const std::set<std::string> fields{"samples_done", "leased",       "samples_per_second",
+                                            "seconds_left", "core_seconds", "cost",
+                                            "preview_frame"};
+  return fields;
+}
+
+/// To three digits: a speed that stays what it is shall not look new each second.
+double rounded(double speed) {
+  if (!(speed > 0)) return 0;
+  const double unit = std::pow(10.0, std::floor(std::log10(speed)) - 2);
+  return std::round(speed / unit) * unit;
+}
+
+template <class Row>
+farm::Json row_of(const Row& row) {
+  farm::Json json = farm::to_json(row);
+  json["samples_per_second"] = rounded(row.samples_per_second());
+  return json;
 }
 
 }  // namespace
+
+FarmFeed::FarmFeed(Brain& brain, Desks& desks)
+    : brain_(brain),
+      desks_(desks),
+      jobs_(lively_of_jobs(), kJobBytes),
+      workers_(lively_of_workers(), kWorkerBytes) {}
 
 void FarmFeed::join(std::weak_ptr<LiveReader> reader) {
   {
@@ -63,17 +100,17 @@ void FarmFeed::step() {
   if (info != info_) change["info"] = info;
   info_ = std::move(info);
 
-  Things workers_now;
-  for (const v1::Worker& worker : workers) workers_now[worker.id()] = farm::to_json(worker);
+  LiveRows::Rows workers_now;
+  for (const v1::Worker& worker : workers) workers_now[worker.id()] = row_of(worker);
   farm::Json removed = farm::Json::array();
-  farm::Json told = changed(workers_now, workers_, removed);
+  farm::Json told = workers_.changes(workers_now, removed);
   if (!told.empty()) change["workers"] = std::move(told);
   if (!removed.empty()) change["removed_workers"] = std::move(removed);
 
-  Things jobs_now;
+  LiveRows::Rows jobs_now;
   farm::Json ended = tell_jobs(jobs_now);
   farm::Json gone = farm::Json::array();
-  told = changed(jobs_now, jobs_, gone);
+  told = jobs_.changes(jobs_now, gone);
   for (farm::Json& job : ended) told.push_back(std::move(job));
   if (!told.empty()) change["jobs"] = std::move(told);
   farm::Json deleted = farm::Json::array();
@@ -94,18 +131,18 @@ void FarmFeed::step() {
   if (fresh.empty()) return;
   LiveReaders::tell(fresh, "snapshot",
                     {{"info", info_},
-                     {"jobs", values_of(jobs_)},
-                     {"workers", values_of(workers_)},
+                     {"jobs", jobs_.all()},
+                     {"workers", workers_.all()},
                      {"samples_per_second", throughput_}});
   readers_.know(std::move(fresh));
 }
 
 /// The open jobs; and, as JSON, those that were told of as open and have ended.
-farm::Json FarmFeed::tell_jobs(Things& jobs) {
-  for (const v1::Job& job : all_open_jobs(brain_)) jobs[job.id()] = farm::to_json(job);
+farm::Json FarmFeed::tell_jobs(LiveRows::Rows& jobs) {
+  for (const v1::Job& job : all_open_jobs(brain_)) jobs[job.id()] = row_of(job);
   farm::Json ended = farm::Json::array();
-  for (const auto& [id, job] : jobs_) {
-    if (jobs.contains(id)) continue;
+  jobs_.each([&](uint64_t id, const farm::Json& job) {
+    if (jobs.contains(id)) return;
     v1::GetJobResponse got;
     const grpc::Status status = brain_.get(id, INT32_MAX, got);
     if (status.ok()) {
@@ -113,22 +150,8 @@ farm::Json FarmFeed::tell_jobs(Things& jobs) {
     } else if (status.error_code() != grpc::StatusCode::NOT_FOUND) {
       jobs[id] = job;  // the store does not answer: what became of it is told later
     }
-  }
+  });
   return ended;
-}
-
-/// What is new or different in `now`; `told` is that afterwards.
-farm::Json FarmFeed::changed(const Things& now, Things& told, farm::Json& removed) {
-  farm::Json different = farm::Json::array();
-  for (const auto& [id, thing] : now) {
-    const auto old = told.find(id);
-    if (old == told.end() || old->second != thing) different.push_back(thing);
-  }
-  for (const auto& [id, thing] : told) {
-    if (!now.contains(id)) removed.push_back(id);
-  }
-  told = now;
-  return different;
 }
 
 void FarmFeed::note_throughput(const std::vector<v1::Worker>& workers) {

@@ -13,25 +13,23 @@
 #include "coordinator/services/desks.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/live_readers.h"
+#include "coordinator/web/live_rows.h"
 
 namespace hyades::coordinator {
 
 /// What happens on the farm (openapi.yaml, /events).
 class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<FarmFeed> {
  public:
-  FarmFeed(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  FarmFeed(Brain& brain, Desks& desks);
 
   void join(std::weak_ptr<LiveReader> reader) override;
   /// Once a second.
   void tick();
 
  private:
-  using Things = std::map<uint64_t, farm::Json>;
-
   void step();
   void note_throughput(const std::vector<v1::Worker>& workers);
-  farm::Json tell_jobs(Things& jobs);
-  static farm::Json changed(const Things& now, Things& told, farm::Json& removed);
+  farm::Json tell_jobs(LiveRows::Rows& jobs);
 
   Brain& brain_;
   Desks& desks_;
@@ -41,8 +39,8 @@ class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<Far
 
   // Of the clerk that steps.
   farm::Json info_;
-  Things jobs_;
-  Things workers_;
+  LiveRows jobs_;
+  LiveRows workers_;
   std::map<uint64_t, uint64_t> samples_;  ///< that workers had done
   uint64_t new_samples_ = 0;              ///< since the last value of the row
   std::chrono::steady_clock::time_point value_since_;

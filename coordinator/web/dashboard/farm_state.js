@@ -1,4 +1,5 @@
 // The farm as it is now, kept by one stream for all views.
+import { changedRow } from './changed_row.js';
 import { listen } from './live.js';
 import { say } from './dom.js';
 
@@ -67,14 +68,18 @@ export function speed(worker, now = Date.now()) {
 
 const ENDS = { done: 'is done', failed: 'has failed', cancelled: 'was cancelled' };
 
-function takeJob(job) {
-  const before = farm.jobs.get(job.id);
+function takeJob(change) {
+  const before = farm.jobs.get(change.id);
+  const job = changedRow(before, change);
+  if (!job) return;
   if (before && isOpen(before) && ENDS[job.state]) say(`Job ${job.name} ${ENDS[job.state]}.`);
   farm.jobs.set(job.id, job);
 }
 
-function takeWorker(worker, now) {
-  const before = farm.workers.get(worker.id);
+function takeWorker(change, now) {
+  const before = farm.workers.get(change.id);
+  const worker = changedRow(before, change);
+  if (!worker) return;
   if (before && before.state !== worker.state && worker.state !== 'active') {
     say(`Worker ${worker.name} is ${worker.state}${worker.reason ? `: ${worker.reason}` : ''}.`);
   }

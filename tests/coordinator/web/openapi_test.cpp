@@ -36,7 +36,13 @@ class OpenApi : public ::testing::Test {
   void expect_form(const Json& value, const YAML::Node& said, const std::string& where) const {
     const YAML::Node schema = resolve(said);
     const auto type = schema["type"].as<std::string>();
-    if (type == "object") {
+    if (schema["x-part-of"]) {
+      ASSERT_TRUE(value.contains("id")) << where;
+      const YAML::Node whole = schema_of(schema["x-part-of"].as<std::string>());
+      for (const auto& [name, field] : value.items()) {
+        if (!field.is_null()) expect_form(field, whole["properties"][name], where + "." + name);
+      }
+    } else if (type == "object") {
       ASSERT_TRUE(value.is_object()) << where;
       for (const YAML::Node& needed : schema["required"]) {
         EXPECT_TRUE(value.contains(needed.as<std::string>()))
