@@ -15,6 +15,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "coordinator/brain/asked_video.h"
 #include "coordinator/brain/brain_options.h"
 #include "coordinator/brain/chores.h"
 #include "coordinator/brain/clerks.h"
@@ -119,6 +120,14 @@ class Brain {
   /// What was done for the job where and when, as far as it is kept in memory. May wait for the
   /// store.
   grpc::Status timeline(const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response);
+  /// Has a video made of the pictures of the job's finished frames, also of a job that has ended or
+  /// has none of its own; it is among the outputs once it is there. May wait for the store.
+  /// FAILED_PRECONDITION where there is nothing to make it of, RESOURCE_EXHAUSTED where too many
+  /// wait already.
+  grpc::Status ask_for_video(uint64_t job, const VideoWish& wish, AskedVideo& asked);
+  /// Those that were asked for since the coordinator started, the last ones; may wait for the
+  /// store.
+  grpc::Status asked_videos(uint64_t job, std::vector<AskedVideo>& videos);
   /// Whether a file is there only until the open job's video is made of it.
   bool is_for_video(uint64_t job, const std::string& path) const;
   /// How far somebody has been told of a job's changes; at first of nothing.
@@ -292,6 +301,8 @@ class Brain {
   core::Status make_videos(uint64_t id, const std::vector<core::VideoDesc>& videos,
                            const core::VideoFrames& frames);
   void film_loop();
+  void film_job(std::unique_lock<std::mutex>& lock, JobId job);
+  void film_asked(std::unique_lock<std::mutex>& lock);
   core::Status make_video(uint64_t id, const core::VideoDesc& video,
                           const core::VideoFrames& frames);
   core::Status repeat_for_videos(const JobDesk& desk, const std::vector<int32_t>& done,
@@ -418,6 +429,8 @@ class Brain {
   std::deque<Completed> to_finish_;
   std::condition_variable finish_wake_;
   std::deque<JobId> to_film_;
+  std::deque<AskedVideo> asked_videos_;  ///< the oldest first; those that are over too
+  uint64_t next_asked_ = 1;
   std::optional<JobId> filming_;  ///< whose videos are being made
   std::condition_variable film_wake_;
   std::atomic<bool> film_stop_{false};  ///< ends the video in work

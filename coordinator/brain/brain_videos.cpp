@@ -44,47 +44,62 @@ void Brain::cancel_filming(JobDesk& desk) {
 
 /// A thread of its own: what takes minutes must not hold up frames.
 void Brain::film_loop() {
+  const auto is_asked = [this] {
+    return std::any_of(asked_videos_.begin(), asked_videos_.end(), [](const AskedVideo& video) {
+      return video.state == AskedVideo::State::waiting;
+    });
+  };
   std::unique_lock lock(mutex_);
   for (;;) {
     filming_.reset();
-    film_wake_.wait(lock, [&] { return stop_ || !to_film_.empty(); });
+    film_wake_.wait(lock, [&] { return stop_ || !to_film_.empty() || is_asked(); });
     if (stop_) return;
-    const JobId job = to_film_.front();
-    to_film_.pop_front();
-    JobDesk* desk = desk_of(job);
-    if (desk == nullptr || !desk->filming) continue;
-    filming_ = job;
-    film_stop_ = false;
-    const auto id = static_cast<uint64_t>(job);
-    const std::vector<core::VideoDesc> videos = desk->videos();
-    const core::VideoFrames frames =
-        core::video_frames(desk->read.job, output_folder(id), desk->numbers);
-    lock.unlock();
-    const core::Status made = make_videos(id, videos, frames);
-    mind_disk();
-    lock.lock();
-    if (stop_) return;
-    desk = desk_of(job);
-    if (film_stop_ || desk == nullptr) continue;  // cancelled, and perhaps taken up again
-    if (!made && disk_.level() != DiskLevel::roomy) {
-      desk->trouble = "its video waits for room on the disk: " + made.error().message;
-      desk->touch();
-      to_film_.push_back(job);
-      film_wake_.wait_for(lock, kFilmAgain, [&] { return stop_.load(); });
-      continue;
-    }
-    desk->filming = false;
-    desk->trouble.clear();
-    if (made) {
-      note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
-           fmt::format("{} made of {} frames", in_words(videos), frames.numbers.size()));
-      end_job(*desk, false, {});
+    if (to_film_.empty()) {
+      film_asked(lock);
     } else {
-      const std::string why =
-          made.error().message + "; 'fetch' brings the frames' pictures, 'retry' tries again";
-      note(*desk, v1::LOG_LEVEL_ERROR, std::nullopt, {}, why);
-      end_job(*desk, false, why);
+      const JobId job = to_film_.front();
+      to_film_.pop_front();
+      film_job(lock, job);
     }
+    if (stop_) return;
+  }
+}
+
+/// The job's own videos. With the lock, which is let go of meanwhile.
+void Brain::film_job(std::unique_lock<std::mutex>& lock, JobId job) {
+  JobDesk* desk = desk_of(job);
+  if (desk == nullptr || !desk->filming) return;
+  filming_ = job;
+  film_stop_ = false;
+  const auto id = static_cast<uint64_t>(job);
+  const std::vector<core::VideoDesc> videos = desk->videos();
+  const core::VideoFrames frames =
+      core::video_frames(desk->read.job, output_folder(id), desk->numbers);
+  lock.unlock();
+  const core::Status made = make_videos(id, videos, frames);
+  mind_disk();
+  lock.lock();
+  if (stop_) return;
+  desk = desk_of(job);
+  if (film_stop_ || desk == nullptr) return;  // cancelled, and perhaps taken up again
+  if (!made && disk_.level() != DiskLevel::roomy) {
+    desk->trouble = "its video waits for room on the disk: " + made.error().message;
+    desk->touch();
+    to_film_.push_back(job);
+    film_wake_.wait_for(lock, kFilmAgain, [&] { return stop_.load(); });
+    return;
+  }
+  desk->filming = false;
+  desk->trouble.clear();
+  if (made) {
+    note(*desk, v1::LOG_LEVEL_INFO, std::nullopt, {},
+         fmt::format("{} made of {} frames", in_words(videos), frames.numbers.size()));
+    end_job(*desk, false, {});
+  } else {
+    const std::string why =
+        made.error().message + "; 'fetch' brings the frames' pictures, 'retry' tries again";
+    note(*desk, v1::LOG_LEVEL_ERROR, std::nullopt, {}, why);
+    end_job(*desk, false, why);
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <charconv>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,6 +8,8 @@
 
 #include "coordinator/services/desks.h"
 #include "coordinator/web/exchange.h"
+#include "coordinator/web/number.h"
+#include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
 
@@ -26,16 +27,7 @@ void answer_by(Clerks& clerks, const Answer& answer, What what) {
   if (!taken) answer(error_reply(crowded()));
 }
 
-/// The whole number that a part of the path or a value of the query is.
-template <class Number>
-std::optional<Number> number_of(const std::string& text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
-/// The same of a route's {name}; not found where it is none.
+/// The whole number that a route's {name} is; not found where it is none.
 template <class Number>
 std::optional<Number> parameter(const WebRequest& request, const char* name, const Answer& answer) {
   const std::string& text = request.parameters.at(name);
@@ -63,9 +55,37 @@ std::optional<Number> query_number(const WebRequest& request, const char* name, 
   return number;
 }
 
+/// The same of one that may be left out: `value` stays as it is then. False where it is no number
+/// (and answered).
+template <class Number>
+bool query_number_if_any(const WebRequest& request, const char* name, std::optional<Number>& value,
+                         const Answer& answer) {
+  if (!request.query.contains(name)) return true;
+  value = query_number<Number>(request, name, Number{}, answer);
+  return value.has_value();
+}
+
 inline bool query_flag(const WebRequest& request, const char* name) {
   const auto given = request.query.find(name);
   return given != request.query.end() && given->second != "false" && given->second != "0";
+}
+
+/// A handler of routes with a {job}: `what(job, request, answer)`; not found where it is no number.
+template <class What>
+Router::Handler of_job(What what) {
+  return [what = std::move(what)](const WebRequest& request, const Answer& answer) {
+    const auto job = parameter<uint64_t>(request, "job", answer);
+    if (job) what(*job, request, answer);
+  };
+}
+
+/// The same where one of `clerks` answers with what `what(job)` gives.
+template <class What>
+Router::Handler of_job_by(Clerks& clerks, What what) {
+  return of_job(
+      [&clerks, what = std::move(what)](uint64_t job, const WebRequest&, const Answer& answer) {
+        answer_by(clerks, answer, [what, job] { return what(job); });
+      });
 }
 
 }  // namespace hyades::coordinator

@@ -28,6 +28,7 @@
 #include "coordinator/web/pictures_api.h"
 #include "coordinator/web/router.h"
 #include "coordinator/web/tls_context.h"
+#include "coordinator/web/videos_api.h"
 #include "farm/log.h"
 #include "farm/wire.h"
 
@@ -103,6 +104,7 @@ struct WebServer::Parts {
         assets(brain, desks),
         outputs(brain, desks),
         pictures(brain),
+        videos(brain, desks),
         live(brain, desks, network, outlet),
         world{[this](WebRequest& request) { return admit(request); },
               [this](const Caller& caller, std::function<void(const grpc::Status&)> leave) {
@@ -128,6 +130,7 @@ struct WebServer::Parts {
     assets.add_routes(router);
     outputs.add_routes(router);
     pictures.add_routes(router);
+    videos.add_routes(router);
     live.add_routes(router);
   }
 
@@ -283,6 +286,7 @@ struct WebServer::Parts {
   AssetsApi assets;
   OutputsApi outputs;
   PicturesApi pictures;
+  VideosApi videos;
   LiveApi live;
   Router router;
   ConnectionWorld world;

@@ -91,6 +91,9 @@ export const explain = (id, signal) => json('GET', `api/v1/jobs/${id}/explain`, 
 export const documentOf = async (id, signal) => (await call('GET', `api/v1/jobs/${id}/document`, { signal })).text();
 export const logs = (id, after, signal) => json('GET', `api/v1/jobs/${id}/logs`, { query: { after }, signal });
 export const outputs = (id, signal) => json('GET', `api/v1/jobs/${id}/outputs`, { signal });
+/** Films that somebody has asked for, and how far they are. */
+export const videos = (id, signal) => json('GET', `api/v1/jobs/${id}/videos`, { signal });
+export const askForVideo = (id, wish) => json('POST', `api/v1/jobs/${id}/videos`, { body: wish });
 export const timeline = (id, after, signal) => json('GET', `api/v1/jobs/${id}/timeline`, { query: { after }, signal });
 export const missing = (files, signal) => json('POST', 'api/v1/assets/missing', { body: { files }, signal });
 export const putPiece = (sha256, size, offset, piece, signal) =>

@@ -1,5 +1,6 @@
 // The finished files of a job.
 import { archiveAddress, outputAddress, outputs } from './api.js';
+import { filmMaker } from './ask_film.js';
 import { bytes, counted } from './format.js';
 import { h, keyed, setText } from './dom.js';
 import { icon } from './icons.js';
@@ -100,12 +101,14 @@ export function outputsTab(state) {
       },
     ],
   });
-  const head = h('div', { class: 'outputs-head pad' }, search, summary, h('span', { class: 'spring' }), all);
-  const node = h('div', {}, head, films, table.node);
+  const maker = filmMaker(state, () => ask());
+  const head = h('div', { class: 'outputs-head pad' }, search, summary, h('span', { class: 'spring' }), maker.button, all);
+  const node = h('div', {}, head, maker.lines, films, table.node);
   const stop = new AbortController();
   let list = [];
   let known = -1;
   let busy = false;
+  let again = false;
 
   const draw = () => {
     const word = search.value.toLowerCase();
@@ -131,7 +134,10 @@ export function outputsTab(state) {
     );
   };
   const ask = async () => {
-    if (busy) return;
+    if (busy) {
+      again = true;
+      return;
+    }
     busy = true;
     try {
       ({ outputs: list } = await outputs(state.id, stop.signal));
@@ -140,9 +146,14 @@ export function outputsTab(state) {
       known = -1;
     }
     busy = false;
+    if (again) {
+      again = false;
+      ask();
+    }
   };
   // Files come with frames, a film with the end of the job.
   const update = () => {
+    maker.update();
     const { job } = state;
     const now = job ? `${job.frames_done} ${job.state}` : -1;
     if (now === known || busy) return;
@@ -158,6 +169,7 @@ export function outputsTab(state) {
     step: (by) => table.step(by),
     leave: () => {
       stop.abort();
+      maker.leave();
       table.leave();
     },
   };

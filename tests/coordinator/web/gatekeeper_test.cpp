@@ -114,6 +114,10 @@ TEST_F(WithRoles, EachRoleIsRefusedWhatIsAboveIt) {
   EXPECT_EQ(world.client->post(one + "/cancel", {}, with(tokens[1].second)).status, 403)
       << "another's job";
   EXPECT_EQ(world.client->send("DELETE", one, {}, with(tokens[1].second)).status, 403);
+  EXPECT_EQ(world.client->post(one + "/videos", {}, with(tokens[1].second)).status, 403);
+  EXPECT_EQ(world.client->get(one + "/videos", with(tokens[0].second)).status, 200);
+  EXPECT_EQ(world.client->post(one + "/videos", {}, with(tokens[2].second)).status, 409)
+      << "it may, and no frame is finished";
   EXPECT_EQ(world.client->post(one + "/cancel", {}, with(tokens[2].second)).status, 200);
 }
 

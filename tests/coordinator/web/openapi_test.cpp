@@ -133,6 +133,8 @@ TEST_F(OpenApi, AnswersHaveTheFormThatItGives) {
   expect_as_told("GET", "/api/v1/jobs/{job}/logs", one + "/logs");
   expect_as_told("GET", "/api/v1/jobs/{job}/outputs", one + "/outputs");
   expect_as_told("GET", "/api/v1/jobs/{job}/explain", one + "/explain");
+  expect_as_told("POST", "/api/v1/jobs/{job}/videos", one + "/videos", R"({"rate": 12})");
+  expect_as_told("GET", "/api/v1/jobs/{job}/videos", one + "/videos");
   expect_as_told("GET", "/api/v1/jobs/{job}/timeline", one + "/timeline");
   expect_as_told("GET", "/api/v1/jobs/{job}/frames", one + "/frames?state=done");
   EXPECT_EQ(world.json(one + "/frames?state=done")["frames"].size(), 2U);

@@ -1,0 +1,95 @@
+// Videos that somebody asks for.
+#include <gtest/gtest.h>
+
+#include "tests/coordinator/web/web_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using farm::Json;
+
+core::Job job_with(const std::vector<std::string>& files) {
+  core::Job job;
+  job.name = "two balls";
+  job.frames.first = 1;
+  job.frames.last = 3;
+  for (const std::string& file : files) {
+    core::OutputDesc output;
+    output.file = file;
+    job.outputs.push_back(output);
+  }
+  return job;
+}
+
+TEST(AskedVideo, IsMadeOfTheFirstPicturesForDisplays) {
+  const core::Job job = job_with({"a.####.exr", "a.####.png"});
+  const auto asked = plan_video(job, {}, {1, 2, 3}, {"a.0001.exr", "a.0001.png", "a.0003.png"});
+  ASSERT_TRUE(asked.ok()) << (asked ? "" : asked.error().message);
+  EXPECT_EQ(asked->video.file, "two-balls.mp4");
+  EXPECT_EQ(asked->video.pictures, "a.####.png");
+  EXPECT_EQ(asked->frames.numbers, (std::vector<int32_t>{1, 3})) << "whose picture is there";
+}
+
+TEST(AskedVideo, WhatCannotBeIsTold) {
+  core::Job job = job_with({"a.####.exr", "b/a.####.png"});
+  job.videos.emplace_back().file = "own.mp4";
+  const std::vector<std::string> files{"b/a.0001.png"};
+  const auto error = [&](const VideoWish& wish, const std::vector<std::string>& there) {
+    const auto asked = plan_video(job, wish, {1}, there);
+    return asked ? std::string("none") : asked.error().message;
+  };
+  EXPECT_EQ(error({}, files), "none");
+  EXPECT_NE(error({"film.avi", "", 0}, files).find(".mp4"), std::string::npos);
+  EXPECT_NE(error({"../film.mp4", "", 0}, files).find("below"), std::string::npos);
+  EXPECT_NE(error({"a/../../film.mp4", "", 0}, files).find("below"), std::string::npos);
+  EXPECT_NE(error({"film\n.mp4", "", 0}, files).find("below"), std::string::npos);
+  EXPECT_NE(error({"/film.mp4", "", 0}, files).find("below"), std::string::npos);
+  EXPECT_NE(error({"own.mp4", "", 0}, files).find("makes that video itself"), std::string::npos);
+  EXPECT_NE(error({"b/a.0001.png/x.mp4", "", 0}, files).find("writes"), std::string::npos);
+  EXPECT_NE(error({"f.####.mp4", "", 0}, files).find("expected"), std::string::npos);
+  EXPECT_NE(error({"", "c.####.png", 0}, files).find("writes no"), std::string::npos);
+  EXPECT_NE(error({"", "a.####.exr", 0}, files).find("PNG, JPEG"), std::string::npos);
+  EXPECT_NE(error({"", "", -1}, files).find("rate"), std::string::npos);
+  EXPECT_NE(error({"", "", 1e9}, files).find("rate"), std::string::npos);
+  EXPECT_NE(error({}, {}).find("no picture"), std::string::npos);
+}
+
+TEST(Videos, AreMadeOfAFinishedJob) {
+  WebWorld world;
+  world.start();
+  const uint64_t job = world.farm.submit(3);
+  const std::string path = "/api/v1/jobs/" + std::to_string(job);
+  EXPECT_EQ(world.client->post(path + "/videos").status, 409) << "no frame is done";
+  EXPECT_EQ(world.client->post("/api/v1/jobs/99/videos").status, 404);
+  EXPECT_EQ(world.client->post(path + "/videos", R"({"size": 3})").status, 400);
+  const ScriptedWorker worker(world.farm.address, world.farm.script());
+  ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
+  const auto asked = world.client->post(path + "/videos", R"({"file": "film.mp4", "rate": 12})");
+  ASSERT_EQ(asked.status, 202) << asked.body;
+  EXPECT_EQ(Json::parse(asked.body)["frames"], 3);
+  EXPECT_EQ(Json::parse(asked.body)["rate"], 12);
+  Json video;
+  ASSERT_TRUE(eventually([&] {
+    video = world.json(path + "/videos")["videos"][0];
+    return video["state"] == "done" || video["state"] == "failed";
+  }));
+  if (video["state"] == "failed") {
+    EXPECT_NE(video["reason"].get<std::string>().find("ffmpeg"), std::string::npos) << video;
+    GTEST_SKIP() << "ffmpeg is not here";
+  }
+  bool found = false;
+  const Json outputs = world.json(path + "/outputs")["outputs"];
+  for (const Json& output : outputs) {
+    found = found || output["id"] == "film.mp4";
+  }
+  EXPECT_TRUE(found);
+  const auto bytes = world.client->get(path + "/outputs/film.mp4");
+  EXPECT_EQ(bytes.status, 200);
+  EXPECT_EQ(bytes.headers.at("content-type"), "video/mp4");
+  EXPECT_EQ(bytes.body.substr(4, 4), "ftyp");
+  EXPECT_EQ(world.client->send("DELETE", path).status, 204);
+  EXPECT_EQ(world.client->get(path + "/videos").status, 404);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
