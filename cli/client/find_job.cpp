@@ -9,6 +9,7 @@
 
 #include "cli/client/show.h"
 #include "core/base/text.h"
+#include "farm/job_state.h"
 
 namespace hyades::cli {
 namespace {
@@ -29,11 +30,6 @@ Outcome check_frames(FarmClient& client, uint64_t id, const std::vector<int32_t>
     }
   }
   return std::nullopt;
-}
-
-bool has_ended(const v1::Job& job) {
-  return job.state() == v1::JOB_STATE_DONE || job.state() == v1::JOB_STATE_FAILED ||
-         job.state() == v1::JOB_STATE_CANCELLED;
 }
 
 Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
@@ -58,7 +54,7 @@ bool is_meant(const v1::Job& job, Namesakes namesakes) {
     case Namesakes::none:
       return false;
     case Namesakes::open:
-      return !has_ended(job);
+      return !farm::has_ended(job);
     case Namesakes::failed:
       return job.state() == v1::JOB_STATE_CANCELLED || job.state() == v1::JOB_STATE_FAILED ||
              job.frames_failed() > 0;

@@ -23,9 +23,6 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
 /// A failure where `frames` are not all of the job; an empty list is not looked at.
 Outcome check_frames(FarmClient& client, uint64_t id, const std::vector<int32_t>& frames);
 
-/// Whether it is done, failed or cancelled.
-bool has_ended(const v1::Job& job);
-
 /// Every job, the newest first: those that have not ended, or all; of one owner, or of all ("").
 Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
                       std::vector<v1::Job>& jobs);

@@ -13,6 +13,7 @@
 #include "cli/client/trace_writer.h"
 #include "cli/status_line.h"
 #include "core/base/io_reason.h"
+#include "farm/job_state.h"
 
 namespace hyades::cli {
 namespace {
@@ -57,7 +58,7 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
       }
       if (line.is_due()) line.show(fmt::format("{} units", writer.units()));
     } while (page.more() && page.steps_size() > 0 && out.good());
-    if (!follow || has_ended(job) || !out.good()) break;
+    if (!follow || farm::has_ended(job) || !out.good()) break;
     std::this_thread::sleep_for(kLook);
   }
   v1::LogsRequest logs;

@@ -16,6 +16,7 @@
 #include "cli/client/show.h"
 #include "cli/progress_display.h"
 #include "core/base/text.h"
+#include "farm/job_state.h"
 
 namespace hyades::cli {
 namespace {
@@ -70,10 +71,10 @@ class Watcher {
       }
     }
     if (!display_) display_ = std::make_unique<ProgressDisplay>(printable(job_.name()), quiet_);
-    if (!has_ended(job_)) display_->update(progress_of(job_));
+    if (!farm::has_ended(job_)) display_->update(progress_of(job_));
   }
 
-  bool ended() const { return has_ended(job_) && !more_; }
+  bool ended() const { return farm::has_ended(job_) && !more_; }
 
   /// Makes room for another line.
   void clear() {

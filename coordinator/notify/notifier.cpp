@@ -4,13 +4,10 @@
 
 #include "coordinator/brain/all_pages.h"
 #include "coordinator/brain/brain.h"
+#include "farm/job_state.h"
 
 namespace hyades::coordinator {
 namespace {
-
-bool has_ended(const v1::Job& job) {
-  return job.state() != v1::JOB_STATE_RUNNING && job.state() != v1::JOB_STATE_PAUSED;
-}
 
 std::vector<std::unique_ptr<Hook>> open_hooks(const std::vector<std::string>& urls,
                                               const Hook::Options& options) {
@@ -84,7 +81,7 @@ void Notifier::look() {
     if (status.ok() && got.job().state() == v1::JOB_STATE_FAILED) {
       tell({News::Kind::failed, got.job()});
     }
-    const bool open_again = status.ok() && !has_ended(got.job());
+    const bool open_again = status.ok() && !farm::has_ended(got.job());
     seen = open_again ? std::next(seen) : open_.erase(seen);
   }
   tell_of_ended();
@@ -120,7 +117,7 @@ void Notifier::tell_of_ended() {
   for (auto job = response.jobs().rbegin(); job != response.jobs().rend(); ++job) {
     if (job->id() <= newest_) continue;
     const bool seen = open_.contains(job->id());
-    if (!seen && !has_ended(*job)) break;
+    if (!seen && !farm::has_ended(*job)) break;
     newest_ = job->id();
     if (seen) continue;
     if (job->state() == v1::JOB_STATE_DONE) tell({News::Kind::done, *job});

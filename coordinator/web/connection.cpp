@@ -70,6 +70,8 @@ class ConnectionOver final : public Connection,
     ErrorCode unknown;
     const auto from = tcp(stream_).socket().remote_endpoint(unknown);
     if (!unknown) address_ = from.address().to_string() + ":" + std::to_string(from.port());
+    from_ = from.address();
+    world_.count.enter(from_);
     if constexpr (std::is_same_v<Stream, Tls>) {
       tcp(stream_).expires_after(kIdle);
       stream_.async_handshake(asio::ssl::stream_base::server, [me = self()](ErrorCode error) {
@@ -421,6 +423,7 @@ class ConnectionOver final : public Connection,
     tcp(stream_).socket().close(ignored);
     if (world_.open.erase(self()) == 0) return;
     world_.meters.http_connections().Decrement();
+    world_.count.leave(from_);
   }
 
   ConnectionWorld& world_;
@@ -429,8 +432,9 @@ class ConnectionOver final : public Connection,
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   WebRequest request_;
-  std::string address_;  ///< of the other side
-  Caller caller_;        ///< of the request in work
+  std::string address_;     ///< of the other side
+  asio::ip::address from_;  ///< likewise
+  Caller caller_;           ///< of the request in work
   std::unique_ptr<Visit> visit_;
   uint64_t granted_ = 0;  ///< bytes that its body may have, out of those of all
   unsigned version_ = 11;

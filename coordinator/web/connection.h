@@ -9,6 +9,7 @@
 
 #include "coordinator/access/authority.h"
 #include "coordinator/brain/clerks.h"
+#include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/outlet.h"
 
@@ -45,7 +46,8 @@ struct ConnectionWorld {
   Clerks& files;  ///< who reads what is sent from the disk
   std::shared_ptr<Outlet> outlet;
   Meters& meters;
-  std::set<std::shared_ptr<Connection>> open{};  ///< of the network's thread
+  ConnectionCount count;                         ///< of the network's thread
+  std::set<std::shared_ptr<Connection>> open{};  ///< likewise
   uint64_t body_bytes = 0;                       ///< that requests have been granted; likewise
 };
 

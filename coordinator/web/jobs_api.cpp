@@ -20,25 +20,30 @@ WebReply reply_with(const grpc::Status& status, const Response& response, Show s
   return status.ok() ? json_reply(show(response)) : error_reply(status);
 }
 
-/// Which frames of a job are asked for.
-struct FramesAsked {
-  uint64_t job = 0;
-  std::optional<int32_t> after;
-  v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED;
-};
-
 farm::Json job_with_frames(const v1::GetJobResponse& got) {
   farm::Json frames = farm::Json::array();
   for (const v1::Frame& frame : got.frames()) frames.push_back(farm::to_json(frame));
   return {{"job", farm::to_json(got.job())}, {"frames", std::move(frames)}, {"more", got.more()}};
 }
 
-/// The state that is called `name`.
-std::optional<v1::FrameState> frame_state_of(const std::string& name) {
+farm::Json frames_alone(const v1::GetJobResponse& got) {
+  farm::Json all = job_with_frames(got);
+  all.erase("job");
+  return all;
+}
+
+/// Frames of which state are asked for: unspecified without any; nothing (and answered) where there
+/// is no such state.
+std::optional<v1::FrameState> wanted_state(const WebRequest& request, const Answer& answer) {
+  const auto asked = request.query.find("state");
+  if (asked == request.query.end()) return v1::FRAME_STATE_UNSPECIFIED;
   for (int state = v1::FrameState_MIN; state <= v1::FrameState_MAX; ++state) {
     const auto known = static_cast<v1::FrameState>(state);
-    if (known != v1::FRAME_STATE_UNSPECIFIED && farm::state_name(known) == name) return known;
+    if (known == v1::FRAME_STATE_UNSPECIFIED || farm::state_name(known) != asked->second) continue;
+    return known;
   }
+  answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
+                      "state: expected waiting, rendering, finishing, done or failed"}));
   return std::nullopt;
 }
 
@@ -69,85 +74,51 @@ void JobsApi::add_questions(Router& router) {
     asked.set_before(*before);
     answer_by(desks_.rows, answer, [this, asked] { return list(asked); });
   });
-  router.add("GET", "/api/v1/jobs/{job}", [this](const WebRequest& request, const Answer& answer) {
-    const auto job = parameter<uint64_t>(request, "job", answer);
-    if (!job) return;
-    std::optional<int32_t> after;
-    if (request.query.contains("after")) {
-      after = query_number<int32_t>(request, "after", 0, answer);
-      if (!after) return;
-    }
-    answer_by(desks_.rows, answer, [this, id = *job, after] {
-      v1::GetJobResponse got;
-      return reply_with(brain_.get(id, after, got), got, job_with_frames);
-    });
-  });
-  router.add("GET", "/api/v1/jobs/{job}/explain",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
-               answer_by(desks_.rows, answer, [this, id = *job] {
-                 v1::ExplainResponse why;
-                 return reply_with(brain_.explain(id, why), why, reasons);
+  router.add("GET", "/api/v1/jobs/{job}",
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
+               std::optional<int32_t> after;
+               if (!query_number_if_any(request, "after", after, answer)) return;
+               answer_by(desks_.rows, answer, [this, job, after] {
+                 v1::GetJobResponse got;
+                 return reply_with(brain_.get(job, after, got), got, job_with_frames);
                });
-             });
-  router.add(
-      "GET", "/api/v1/jobs/{job}/logs", [this](const WebRequest& request, const Answer& answer) {
-        const auto job = parameter<uint64_t>(request, "job", answer);
-        if (!job) return;
-        const auto after = query_number<uint64_t>(request, "after", 0, answer);
-        if (!after) return;
-        answer_by(desks_.rows, answer, [this, id = *job, from = *after] { return logs(id, from); });
-      });
-  router.add(
-      "GET", "/api/v1/jobs/{job}/frames", [this](const WebRequest& request, const Answer& answer) {
-        const auto job = parameter<uint64_t>(request, "job", answer);
-        if (!job) return;
-        FramesAsked asked;
-        asked.job = *job;
-        if (request.query.contains("after")) {
-          asked.after = query_number<int32_t>(request, "after", 0, answer);
-          if (!asked.after) return;
-        }
-        if (const auto state = request.query.find("state"); state != request.query.end()) {
-          const auto known = frame_state_of(state->second);
-          if (!known) {
-            answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
-                                "state: expected waiting, rendering, finishing, done or failed"}));
-            return;
-          }
-          asked.only = *known;
-        }
-        answer_by(desks_.rows, answer, [this, asked] {
-          v1::GetJobResponse got;
-          return reply_with(brain_.get(asked.job, asked.after, got, asked.only), got,
-                            [](const v1::GetJobResponse& response) {
-                              farm::Json all = job_with_frames(response);
-                              all.erase("job");
-                              return all;
-                            });
-        });
-      });
+             }));
+  router.add("GET", "/api/v1/jobs/{job}/frames",
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
+               std::optional<int32_t> after;
+               if (!query_number_if_any(request, "after", after, answer)) return;
+               const auto only = wanted_state(request, answer);
+               if (!only) return;
+               answer_by(desks_.rows, answer, [this, job, after, only = *only] {
+                 v1::GetJobResponse got;
+                 return reply_with(brain_.get(job, after, got, only), got, frames_alone);
+               });
+             }));
+  router.add("GET", "/api/v1/jobs/{job}/explain", of_job_by(desks_.rows, [this](uint64_t job) {
+               v1::ExplainResponse why;
+               return reply_with(brain_.explain(job, why), why, reasons);
+             }));
+  router.add("GET", "/api/v1/jobs/{job}/logs",
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
+               const auto after = query_number<uint64_t>(request, "after", 0, answer);
+               if (!after) return;
+               answer_by(desks_.rows, answer,
+                         [this, job, from = *after] { return logs(job, from); });
+             }));
   router.add("GET", "/api/v1/jobs/{job}/timeline",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                const auto after = query_number<uint64_t>(request, "after", 0, answer);
                if (!after) return;
                const auto limit = query_number<uint32_t>(request, "limit", 0, answer);
                if (!limit) return;
                v1::ListTimelineRequest asked;
-               asked.set_job(*job);
+               asked.set_job(job);
                asked.set_after(*after);
                asked.set_limit(*limit);
                answer_by(desks_.rows, answer, [this, asked] { return timeline(asked); });
-             });
+             }));
   router.add("GET", "/api/v1/jobs/{job}/document",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
-               answer_by(desks_.files, answer, [this, id = *job] { return document(id); });
-             });
+             of_job_by(desks_.files, [this](uint64_t job) { return document(job); }));
 }
 
 void JobsApi::add_steering(Router& router) {
@@ -182,21 +153,18 @@ void JobsApi::add_steering(Router& router) {
   };
   for (const auto& [name, what] : steers) {
     router.add("POST", std::string("/api/v1/jobs/{job}/") + name,
-               [this, told, steer = what](const WebRequest& request, const Answer& answer) {
-                 const auto job = parameter<uint64_t>(request, "job", answer);
-                 if (!job) return;
-                 const bool taken = desks_.rows.hand(
-                     [this, told, steer, answer, id = *job, caller = request.caller] {
-                       const grpc::Status his = may_steer(brain_, caller, id);
-                       his.ok() ? (brain_.*steer)(id, told(answer)) : told(answer)(his, {});
+               of_job([this, told, steer = what](uint64_t job, const WebRequest& request,
+                                                 const Answer& answer) {
+                 const bool taken =
+                     desks_.rows.hand([this, told, steer, answer, job, caller = request.caller] {
+                       const grpc::Status his = may_steer(brain_, caller, job);
+                       his.ok() ? (brain_.*steer)(job, told(answer)) : told(answer)(his, {});
                      });
                  if (!taken) answer(error_reply(crowded()));
-               });
+               }));
   }
   router.add("PUT", "/api/v1/jobs/{job}/priority",
-             [this, told](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
+             of_job([this, told](uint64_t job, const WebRequest& request, const Answer& answer) {
                const auto json = farm::Json::parse(request.body, nullptr, false);
                const bool number = json.is_object() && json.contains("priority") &&
                                    json["priority"].is_number_integer();
@@ -206,35 +174,31 @@ void JobsApi::add_steering(Router& router) {
                                      "expected {\"priority\": a whole number}"}));
                  return;
                }
-               const bool taken = desks_.rows.hand(
-                   [this, told, answer, id = *job, priority, caller = request.caller] {
-                     const grpc::Status his = may_steer(brain_, caller, id);
+               const bool taken =
+                   desks_.rows.hand([this, told, answer, job, priority, caller = request.caller] {
+                     const grpc::Status his = may_steer(brain_, caller, job);
                      if (!his.ok()) return told(answer)(his, {});
-                     brain_.set_priority(id, static_cast<int>(priority), told(answer));
+                     brain_.set_priority(job, static_cast<int>(priority), told(answer));
                    });
                if (!taken) answer(error_reply(crowded()));
-             });
+             }));
   router.add("POST", "/api/v1/jobs/{job}/retry",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
-               answer_by(desks_.files, answer, [this, id = *job, caller = request.caller] {
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
+               answer_by(desks_.files, answer, [this, job, caller = request.caller] {
                  v1::Job now;
-                 grpc::Status done = may_steer(brain_, caller, id);
-                 if (done.ok()) done = brain_.retry(id, now);
+                 grpc::Status done = may_steer(brain_, caller, job);
+                 if (done.ok()) done = brain_.retry(job, now);
                  return reply_with(done, now, [](const v1::Job& j) { return farm::to_json(j); });
                });
-             });
+             }));
   router.add("DELETE", "/api/v1/jobs/{job}",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
-               answer_by(desks_.files, answer, [this, id = *job, caller = request.caller] {
-                 grpc::Status done = may_steer(brain_, caller, id);
-                 if (done.ok()) done = brain_.remove(id);
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
+               answer_by(desks_.files, answer, [this, job, caller = request.caller] {
+                 grpc::Status done = may_steer(brain_, caller, job);
+                 if (done.ok()) done = brain_.remove(job);
                  return done.ok() ? empty_reply(204) : error_reply(done);
                });
-             });
+             }));
 }
 
 WebReply JobsApi::list(const v1::ListJobsRequest& request) {

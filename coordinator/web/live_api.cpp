@@ -32,18 +32,16 @@ void LiveApi::add_routes(Router& router) {
   router.add("GET", "/api/v1/events",
              [this](const WebRequest&, const Answer& answer) { answer(live(farm_)); });
   router.add("GET", "/api/v1/jobs/{job}/events",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
+             of_job([this](uint64_t job, const WebRequest&, const Answer& answer) {
                // Whether there is such a job is known before the stream begins.
-               const bool taken = desks_.rows.hand([this, id = *job, answer] {
+               const bool taken = desks_.rows.hand([this, job, answer] {
                  v1::GetJobResponse got;
-                 const grpc::Status status = brain_.get(id, INT32_MAX, got);
+                 const grpc::Status status = brain_.get(job, INT32_MAX, got);
                  if (!status.ok()) return answer(error_reply(status));
-                 outlet_->post([this, id, answer] { answer(live(feed_of(id))); });
+                 outlet_->post([this, job, answer] { answer(live(feed_of(job))); });
                });
                if (!taken) answer(error_reply(crowded()));
-             });
+             }));
 }
 
 std::shared_ptr<JobFeed> LiveApi::feed_of(uint64_t job) {

@@ -1,6 +1,6 @@
 #include "coordinator/web/outputs_api.h"
 
-#include <set>
+#include <algorithm>
 #include <utility>
 
 #include "coordinator/brain/not_there.h"
@@ -16,6 +16,8 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr uint32_t kRowsAtOnce = 1000;
+/// Of an answer: some two megabytes.
+constexpr uint32_t kMostListed = 10'000;
 
 const char* type_of(const std::string& path) {
   constexpr std::pair<const char*, const char*> kTypes[] = {
@@ -50,62 +52,76 @@ WebReply lost(const std::string& path) {
 
 }  // namespace
 
-core::Result<std::vector<StoredOutput>> finished_files(Brain& brain, uint64_t job) {
-  std::vector<StoredOutput> all;
-  uint64_t seen = 0;
-  for (;;) {
-    auto outputs = brain.store().outputs(job, seen, kRowsAtOnce);
+core::Result<OutputsPage> finished_files(Brain& brain, uint64_t job, uint64_t after, size_t limit) {
+  OutputsPage page;
+  page.after = after;
+  while (page.outputs.size() < limit) {
+    auto outputs = brain.store().outputs(
+        job, page.after,
+        static_cast<uint32_t>(std::min<size_t>(kRowsAtOnce, limit - page.outputs.size())));
     if (!outputs) return outputs.error();
-    if (outputs->empty()) return all;
-    seen = outputs->back().number;
+    page.more = !outputs->empty();
+    if (!page.more) break;
+    page.after = outputs->back().number;
     for (StoredOutput& output : *outputs) {
-      if (!brain.is_for_video(job, output.path)) all.push_back(std::move(output));
+      if (!brain.is_for_video(job, output.path)) page.outputs.push_back(std::move(output));
     }
   }
+  return page;
 }
 
 void OutputsApi::add_routes(Router& router) {
   router.add("GET", "/api/v1/jobs/{job}/outputs",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
-               answer_by(desks_.rows, answer, [this, id = *job] { return list(id); });
-             });
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
+               ListAsked asked;
+               asked.job = job;
+               const auto after = query_number<uint64_t>(request, "after", 0, answer);
+               if (!after) return;
+               const auto limit = query_number<uint32_t>(request, "limit", kMostListed, answer);
+               if (!limit) return;
+               if (!query_number_if_any(request, "frame", asked.frame, answer)) return;
+               asked.after = *after;
+               asked.limit = std::clamp(*limit, 1U, kMostListed);
+               answer_by(desks_.rows, answer, [this, asked] { return list(asked); });
+             }));
   router.add("GET", "/api/v1/jobs/{job}/outputs/{path...}",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
+             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                answer_by(desks_.files, answer,
-                         [this, id = *job, path = request.parameters.at("path"),
+                         [this, job, path = request.parameters.at("path"),
                           range = WantedRange{request.header("range"), request.header("if-range")},
                           download = query_flag(request, "download")] {
-                           return file(id, path, range, download);
+                           return file(job, path, range, download);
                          });
-             });
+             }));
   router.add("GET", "/api/v1/jobs/{job}/archive.zip",
-             [this](const WebRequest& request, const Answer& answer) {
-               const auto job = parameter<uint64_t>(request, "job", answer);
-               if (!job) return;
-               answer_by(desks_.files, answer, [this, id = *job] { return archive(id); });
-             });
+             of_job_by(desks_.files, [this](uint64_t job) { return archive(job); }));
 }
 
-WebReply OutputsApi::list(uint64_t job) {
-  const auto state = brain_.store().state(job);
+WebReply OutputsApi::list(const ListAsked& asked) {
+  const auto state = brain_.store().state(asked.job);
   if (!state) return error_reply(farm::unavailable(state.error()));
-  if (!*state) {
-    return error_reply(no_job(job));
+  if (!*state) return error_reply(no_job(asked.job));
+  OutputsPage page;
+  if (asked.frame) {
+    auto outputs = brain_.store().outputs_of(asked.job, *asked.frame);
+    if (!outputs) return error_reply(farm::unavailable(outputs.error()));
+    page.outputs = std::move(*outputs);
+    std::erase_if(page.outputs, [&](const StoredOutput& output) {
+      return brain_.is_for_video(asked.job, output.path);
+    });
+  } else {
+    auto found = finished_files(brain_, asked.job, asked.after, asked.limit);
+    if (!found) return error_reply(farm::unavailable(found.error()));
+    page = std::move(*found);
   }
-  const auto outputs = finished_files(brain_, job);
-  if (!outputs) return error_reply(farm::unavailable(outputs.error()));
   farm::Json all = farm::Json::array();
-  for (const StoredOutput& output : *outputs) {
+  for (const StoredOutput& output : page.outputs) {
     all.push_back({{"id", output.path},
                    {"frame", output.frame},
                    {"size", output.size},
                    {"sha256", farm::hex_from_wire(output.sha256)}});
   }
-  return json_reply({{"outputs", std::move(all)}});
+  return json_reply({{"outputs", std::move(all)}, {"after", page.after}, {"more", page.more}});
 }
 
 WebReply OutputsApi::file(uint64_t job, const std::string& path, const WantedRange& wanted,
@@ -150,13 +166,11 @@ WebReply OutputsApi::file(uint64_t job, const std::string& path, const WantedRan
 WebReply OutputsApi::archive(uint64_t job) {
   const auto stored = brain_.store().job(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
-  if (!*stored) {
-    return error_reply(no_job(job));
-  }
-  const auto outputs = finished_files(brain_, job);
-  if (!outputs) return error_reply(farm::unavailable(outputs.error()));
+  if (!*stored) return error_reply(no_job(job));
+  const auto page = finished_files(brain_, job, 0, SIZE_MAX);
+  if (!page) return error_reply(farm::unavailable(page.error()));
   std::vector<ZipSource::File> files;
-  for (const StoredOutput& output : *outputs) {
+  for (const StoredOutput& output : page->outputs) {
     files.push_back({output.path, brain_.output_folder(job) + "/" + output.path, output.size});
   }
   WebReply reply;

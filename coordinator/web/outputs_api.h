@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/desks.h"
 #include "coordinator/web/router.h"
@@ -13,7 +18,14 @@ class OutputsApi {
   void add_routes(Router& router);
 
  private:
-  WebReply list(uint64_t job);
+  /// Which files of a job are asked for.
+  struct ListAsked {
+    uint64_t job = 0;
+    uint64_t after = 0;
+    uint32_t limit = 0;
+    std::optional<int32_t> frame;  ///< only its own
+  };
+  WebReply list(const ListAsked& asked);
   /// The headers Range and If-Range.
   struct WantedRange {
     std::string range;
@@ -26,8 +38,15 @@ class OutputsApi {
   Desks& desks_;
 };
 
-/// All finished files of a job that are of use now: not those that wait for the video which is made
-/// of them.
-core::Result<std::vector<StoredOutput>> finished_files(Brain& brain, uint64_t job);
+/// Finished files, in the order in which they were finished.
+struct OutputsPage {
+  std::vector<StoredOutput> outputs;
+  uint64_t after = 0;  ///< to ask for what comes behind them
+  bool more = false;   ///< something may
+};
+
+/// Finished files of a job behind `after` that are of use now: not those that wait for the video
+/// which is made of them. At most `limit`.
+core::Result<OutputsPage> finished_files(Brain& brain, uint64_t job, uint64_t after, size_t limit);
 
 }  // namespace hyades::coordinator

@@ -39,6 +39,8 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 
 constexpr size_t kMostConnections = 4000;
+/// From one address: a person has some ten, a proxy in front of many people more.
+constexpr size_t kMostOfAddress = 1000;
 constexpr std::chrono::milliseconds kAcceptAgain{200};
 constexpr std::chrono::seconds kSweep{30};
 /// How soon certificates that have changed are noticed.
@@ -113,7 +115,8 @@ struct WebServer::Parts {
               [this](WebRequest request, Answer answer) { serve(std::move(request), answer); },
               desks.files,
               outlet,
-              meters},
+              meters,
+              ConnectionCount(kMostConnections, kMostOfAddress)},
         acceptor(network),
         again(network),
         sweep(network),
@@ -220,7 +223,7 @@ struct WebServer::Parts {
   void accept() {
     acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && world.open.size() < kMostConnections) {
+      if (!error && may_come(socket)) {
         boost::system::error_code ignored;
         close_on_exec(socket);
         socket.set_option(tcp::no_delay(true), ignored);
@@ -231,6 +234,12 @@ struct WebServer::Parts {
       again.expires_after(kAcceptAgain);
       again.async_wait([this](boost::system::error_code) { accept(); });
     });
+  }
+
+  bool may_come(const tcp::socket& socket) const {
+    boost::system::error_code gone;
+    const auto from = socket.remote_endpoint(gone);
+    return !gone && world.count.may_come(from.address());
   }
 
   void sweep_now_and_then() {

@@ -90,7 +90,15 @@ export const setPriority = (id, priority) => json('PUT', `api/v1/jobs/${id}/prio
 export const explain = (id, signal) => json('GET', `api/v1/jobs/${id}/explain`, { signal });
 export const documentOf = async (id, signal) => (await call('GET', `api/v1/jobs/${id}/document`, { signal })).text();
 export const logs = (id, after, signal) => json('GET', `api/v1/jobs/${id}/logs`, { query: { after }, signal });
-export const outputs = (id, signal) => json('GET', `api/v1/jobs/${id}/outputs`, { signal });
+/** All finished files, page by page. */
+export async function outputs(id, signal) {
+  const all = [];
+  for (let page = { after: 0, more: true }; page.more; ) {
+    page = await json('GET', `api/v1/jobs/${id}/outputs`, { query: { after: page.after }, signal });
+    all.push(...page.outputs);
+  }
+  return { outputs: all };
+}
 /** Films that somebody has asked for, and how far they are. */
 export const videos = (id, signal) => json('GET', `api/v1/jobs/${id}/videos`, { signal });
 export const askForVideo = (id, wish) => json('POST', `api/v1/jobs/${id}/videos`, { body: wish });

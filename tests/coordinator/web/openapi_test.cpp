@@ -121,6 +121,27 @@ TEST_F(OpenApi, EveryPathIsAnsweredAndEveryRouteIsTold) {
   EXPECT_EQ(told, answered);
 }
 
+TEST_F(OpenApi, WhatItSaysOfQueriesIsRead) {
+  int tried = 0;
+  for (const auto& path : api["paths"]) {
+    std::string target = path.first.as<std::string>();
+    for (const char* name : {"{job}", "{frame}"}) {
+      const size_t at = target.find(name);
+      if (at != std::string::npos) target.replace(at, std::string(name).size(), "1");
+    }
+    const YAML::Node get = path.second["get"];
+    if (!get || !get["parameters"]) continue;
+    for (const YAML::Node& parameter : get["parameters"]) {
+      const YAML::Node schema = parameter["schema"];
+      if (!schema || (schema["type"].as<std::string>() != "integer" && !schema["enum"])) continue;
+      ++tried;
+      const std::string asked = target + "?" + parameter["name"].as<std::string>() + "=nonsense";
+      EXPECT_EQ(world.client->get(asked).status, 400) << asked;
+    }
+  }
+  EXPECT_GE(tried, 13);
+}
+
 TEST_F(OpenApi, AnswersHaveTheFormThatItGives) {
   const uint64_t job = world.farm.submit(2);
   const ScriptedWorker worker(world.farm.address, world.farm.script());

@@ -1,0 +1,61 @@
+// Lists of finished files, page by page.
+#include <gtest/gtest.h>
+
+#include "tests/coordinator/web/web_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using farm::Json;
+
+class Outputs : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    world.start();
+    const uint64_t job = world.farm.submit(3);
+    const ScriptedWorker worker(world.farm.address, world.farm.script());
+    ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
+    path = "/api/v1/jobs/" + std::to_string(job) + "/outputs";
+  }
+  WebWorld world;
+  std::string path;
+};
+
+TEST_F(Outputs, PagesHoldEachFileOnce) {
+  const Json whole = world.json(path);
+  const size_t count = whole["outputs"].size();
+  ASSERT_GE(count, 3U);
+  Json page = world.json(path + "?limit=2");
+  EXPECT_EQ(page["outputs"].size(), 2U);
+  EXPECT_EQ(page["more"], true);
+  Json all = page["outputs"];
+  for (size_t pages = 1; page["more"] == true; ++pages) {
+    ASSERT_LT(pages, 2 + count) << "they do not end";
+    page = world.json(path + "?limit=2&after=" + page["after"].dump());
+    for (const Json& output : page["outputs"]) all.push_back(output);
+  }
+  EXPECT_EQ(all, whole["outputs"]);
+  EXPECT_TRUE(world.json(path + "?after=" + whole["after"].dump())["outputs"].empty());
+}
+
+TEST_F(Outputs, OfOneFrame) {
+  size_t sum = 0;
+  for (int frame = 1; frame <= 3; ++frame) {
+    const Json of_frame = world.json(path + "?frame=" + std::to_string(frame));
+    EXPECT_EQ(of_frame["more"], false);
+    for (const Json& output : of_frame["outputs"]) EXPECT_EQ(output["frame"], frame);
+    sum += of_frame["outputs"].size();
+  }
+  EXPECT_EQ(sum, world.json(path)["outputs"].size());
+  EXPECT_TRUE(world.json(path + "?frame=9")["outputs"].empty());
+}
+
+TEST_F(Outputs, WhatIsNoNumberIsTold) {
+  for (const char* wrong : {"?after=x", "?limit=-1", "?frame=1.5", "?limit=99999999999"}) {
+    EXPECT_EQ(world.client->get(path + wrong).status, 400) << wrong;
+  }
+  EXPECT_EQ(world.json(path + "?limit=0")["outputs"].size(), 1U) << "one at least";
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
