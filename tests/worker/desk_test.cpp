@@ -282,7 +282,7 @@ TEST(Desk, AUnitThatHasHadItsTimeFailsAndTheOthersGoOn) {
   for (const int x : {0, 8, 16}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
   world.desk->files_are_there(DeskWorld::kJob);
   world.started(world.token_of(0), true);  // the time for its scene counts
-  const auto pass = [&](int time) {  // seconds, in which all that is in work gets on
+  const auto pass = [&](int time) {        // seconds, in which all that is in work gets on
     for (int i = 0; i < time; ++i) {
       world.now += seconds(1);
       const uint64_t samples = static_cast<uint64_t>(world.now.time_since_epoch().count());
