@@ -160,6 +160,9 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
       hyades::farm::log(LogLevel::warning, how);
     }
   };
+  options.tell_expiring = [](const std::string& line) {
+    hyades::farm::log(LogLevel::warning, line);
+  };
   auto authority = Authority::open(brain.store(), options);
   if (!authority || !options.beyond || arguments.listen.insecure || (*authority)->has_admin()) {
     return authority;

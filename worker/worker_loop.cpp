@@ -17,6 +17,7 @@
 #include "core/base/text.h"
 #include "farm/backoff.h"
 #include "farm/log.h"
+#include "farm/token_term.h"
 #include "farm/wire.h"
 #include "worker/asset_fetcher.h"
 #include "worker/clouds/preemption_watch.h"
@@ -40,6 +41,7 @@ constexpr int kMostStillbirths = 3;
 constexpr milliseconds kFetchPatience{60'000};
 /// How long a worker whose token is unknown all at once looks for another in its file.
 constexpr std::chrono::minutes kTokenPatience{5};
+constexpr std::chrono::hours kTellExpiryAgain{24};
 /// However long a coordinator asks not to be called.
 constexpr milliseconds kLongestPause{60'000};
 /// How long the end of the stream may take when all is said.
@@ -93,6 +95,7 @@ class Worker : private DeskPorts,
       desk_.cache_is(
           {fetcher_.cache_bytes(), options_.cache_size, fetcher_.hits(), fetcher_.misses()});
       desk_.tick(now, link_.flowing());
+      tell_expiry(now);
       if (desk_.leaving()) try_to_go(now);
     }
     return *exit_status_;
@@ -306,6 +309,7 @@ class Worker : private DeskPorts,
         welcomed_ = true;
         unknown_since_.reset();
         name_ = message.welcome().name();
+        token_term_ = {message.welcome().token_expires_ms(), message.welcome().token_warn_ms()};
         note(LogLevel::info, fmt::format("working for {} as {}", options_.coordinator.address,
                                          message.welcome().name()));
       }
@@ -336,6 +340,19 @@ class Worker : private DeskPorts,
     note(LogLevel::info,
          "shows the coordinator the token that " + options_.coordinator.token_file + " holds now");
     return true;
+  }
+
+  /// Once a day, in the token's last days.
+  void tell_expiry(TimePoint now) {
+    if (told_expiry_ && now - *told_expiry_ < kTellExpiryAgain) return;
+    const std::string when =
+        farm::expiry_warning(token_term_, std::chrono::duration_cast<milliseconds>(
+                                              std::chrono::system_clock::now().time_since_epoch())
+                                              .count());
+    if (when.empty()) return;
+    told_expiry_ = now;
+    note(LogLevel::warning, "the token of this worker " + when + ": put another one into " +
+                                options_.coordinator.token_file);
   }
 
   /// Who was known once waits for his new token a while, with the films in his hand.
@@ -412,6 +429,8 @@ class Worker : private DeskPorts,
   FolderIdentity cache_identity_{};  ///< when the rendering child began
   bool sandbox_told_ = false;
   std::string token_;
+  farm::TokenTerm token_term_;
+  std::optional<TimePoint> told_expiry_;
   bool welcomed_ = false;
   std::optional<TimePoint> unknown_since_;  ///< the coordinator does not know the token any more
   std::string told_trouble_;

@@ -1,6 +1,7 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "core/base/random_id.h"
 #include "farm/job_package.h"
 #include "farm/tags.h"
+#include "farm/token_term.h"
 #include "farm/wire.h"
 
 namespace hyades::cli {
@@ -31,6 +33,7 @@ struct Options {
   std::string path;
   std::string frames;
   std::string owner;
+  std::string name;
   SceneOptions scene;
   uint32_t samples = 0;
   int32_t priority = 0;
@@ -54,6 +57,7 @@ void declare(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--owner", options.owner,
                  "whose job it is; owners share the farm (default: the token's name, or you)");
+  app.add_option("--name", options.name, "what the job is called (default: its document's name)");
   app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)")
       ->check(no_frames_error);
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
@@ -82,6 +86,7 @@ void declare(CLI::App& app, Options& options) {
       "examples:\n  hyades submit jobs/perlin-sphere/job.yaml --watch && hyades fetch "
       "perlin-sphere "
       "--output out\n  hyades submit shot.yaml --frames 1-24 --priority 10 --tags fast\n"
+      "  hyades submit shot.yaml --name shot-take-2\n"
       "exit status: 0 taken in (with --watch: the job is done), 1 failed, 2 the job or the "
       "arguments are\n"
       "wrong, 3 no coordinator answers; others: docs/client.md");
@@ -96,7 +101,7 @@ std::string user_name() {
 Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Options& options) {
   v1::SubmitRequest request;
   v1::JobSpec& spec = *request.mutable_spec();
-  spec.set_name(package.job.name);
+  spec.set_name(options.name.empty() ? package.job.name : options.name);
   spec.set_document(package.document);
   spec.set_samples(options.samples);
   for (const core::AssetRecord& asset : package.files) {
@@ -158,6 +163,19 @@ Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFil
   }
 }
 
+/// Whoever submits hears in time that his token ends. An older coordinator does not say so.
+void tell_expiry(const ClientApp& app) {
+  const auto client = app.connect_impatiently();
+  v1::WhoAmIResponse me;
+  if (!client || client->whoami(me)) return;
+  const auto now = std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+  const std::string when = farm::expiry_warning({me.expires_ms(), me.warn_ms()}, now.count());
+  if (when.empty()) return;
+  std::fprintf(stderr, "hyades submit: WARNING: your token %s: ask an admin for another\n",
+               when.c_str());
+}
+
 }  // namespace
 
 int submit_command(int argc, char** argv) {
@@ -187,6 +205,7 @@ int submit_command(int argc, char** argv) {
                 job.frames() == 1 ? "" : "s");
   }
   std::fflush(stdout);
+  tell_expiry(app);
   Outcome failure;
   if (options.watch) failure = watch_job(*client, job.id(), options.quiet, &job);
   if (options.json) print_json(to_json(job));

@@ -21,6 +21,7 @@
 #include "coordinator/access/token.h"
 #include "core/base/duration.h"
 #include "farm/small_file.h"
+#include "farm/token_term.h"
 
 namespace hyades::cli {
 namespace {
@@ -163,6 +164,16 @@ std::string state_of(const v1::Token& token) {
   return over ? "expired" : "in use";
 }
 
+/// What people have to mind of it, besides.
+std::string shown_state(const v1::Token& token) {
+  const std::string state = state_of(token);
+  const bool soon = state == "in use" &&
+                    !farm::expiry_warning(farm::term_of(token.created_ms(), token.expires_ms()),
+                                          coordinator::token_clock_ms())
+                         .empty();
+  return soon ? "expires soon" : state;
+}
+
 /// The token itself goes to standard output or into a file, what is said of it to standard error.
 int hand_out(const ClientApp& app, const Options& options, const v1::Token& token,
              const std::string& secret) {
@@ -218,7 +229,7 @@ int list(const ClientApp& app, const Options& options, Book& book) {
       {"id", "role", "name", "state", "made", "expires", "last used"}};
   for (const v1::Token& token : response.tokens()) {
     rows.push_back({token.id(), farm::role_name(token.role()), printable(token.name()),
-                    state_of(token), format_time(token.created_ms()),
+                    shown_state(token), format_time(token.created_ms()),
                     moment(token.expires_ms(), "never"), moment(token.used_ms(), "never")});
   }
   print_table(rows);
@@ -275,13 +286,15 @@ int whoami(const ClientApp& app, const Options& options) {
     print_json({{"guarded", me.guarded()},
                 {"role", farm::role_name(me.role())},
                 {"name", me.name()},
-                {"token_id", me.token_id()}});
+                {"token_id", me.token_id()},
+                {"expires_ms", me.expires_ms()}});
   } else if (!me.guarded()) {
     std::printf("the farm asks for no token: everybody may do everything\n");
   } else {
-    std::printf("%s, %s (token %s)\n",
+    std::printf("%s, %s (token %s, expires: %s)\n",
                 me.name().empty() ? "nobody in particular" : me.name().c_str(),
-                farm::role_name(me.role()).c_str(), me.token_id().c_str());
+                farm::role_name(me.role()).c_str(), me.token_id().c_str(),
+                moment(me.expires_ms(), "never").c_str());
   }
   return kDone;
 }

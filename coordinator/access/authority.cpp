@@ -9,6 +9,7 @@
 #include <openssl/crypto.h>
 
 #include "coordinator/access/token.h"
+#include "farm/json_form.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -20,6 +21,10 @@ constexpr size_t kMostTokens = 10'000;
 /// How far the stored time of a token's last use may be behind.
 constexpr int64_t kUseStepMs = 60'000;
 constexpr std::chrono::seconds kLongestSleep{30};
+constexpr int64_t kDayMs = int64_t{24} * 3600 * 1000;
+constexpr int64_t kTellAgainMs = kDayMs;
+/// Who has not used his token for so long may not need it any more.
+constexpr int64_t kStillUsedMs = 30 * kDayMs;
 
 grpc::Status stranger(const std::string& why) { return {grpc::StatusCode::UNAUTHENTICATED, why}; }
 
@@ -70,7 +75,7 @@ Authority::~Authority() {
   store_uses();
 }
 
-void Authority::take_in(const StoredToken& row) { tokens_[row.id] = {row, row.used_ms}; }
+void Authority::take_in(const StoredToken& row) { tokens_[row.id] = {row, row.used_ms, 0}; }
 
 bool Authority::guarded() const {
   const std::lock_guard lock(mutex_);
@@ -136,6 +141,7 @@ grpc::Status Authority::admit_known(const std::string& id, Caller& caller) {
   found->second.row.used_ms = now;
   caller.name = found->second.row.name;
   caller.role = static_cast<v1::Role>(found->second.row.role);
+  caller.term = farm::term_of(found->second.row.created_ms, found->second.row.expires_ms);
   return grpc::Status::OK;
 }
 
@@ -297,7 +303,33 @@ void Authority::store_uses() {
   if (!uses.empty()) (void)store_.note_uses(uses);
 }
 
+/// One that nobody uses may expire in peace.
+void Authority::tell_expiring() {
+  if (!options_.tell_expiring) return;
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard lock(mutex_);
+    const int64_t now = token_clock_ms();
+    for (auto& [id, token] : tokens_) {
+      const StoredToken& row = token.row;
+      if (row.revoked_ms != 0 || row.used_ms == 0 || now - row.used_ms > kStillUsedMs ||
+          now - token.told_ms < kTellAgainMs) {
+        continue;
+      }
+      const std::string when =
+          farm::expiry_warning(farm::term_of(row.created_ms, row.expires_ms), now);
+      if (when.empty()) continue;
+      token.told_ms = now;
+      lines.push_back(fmt::format("the token {} of {} ({}) {}: 'hyades token create' makes another",
+                                  id, row.name, farm::role_name(static_cast<v1::Role>(row.role)),
+                                  when));
+    }
+  }
+  for (const std::string& line : lines) options_.tell_expiring(line);
+}
+
 void Authority::mind() {
+  tell_expiring();
   std::unique_lock lock(mutex_);
   while (!stop_) {
     const int64_t now = token_clock_ms();
@@ -311,6 +343,7 @@ void Authority::mind() {
     lock.unlock();
     end_stays();
     store_uses();
+    tell_expiring();
     lock.lock();
   }
 }

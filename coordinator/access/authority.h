@@ -44,6 +44,8 @@ class Authority {
     bool plain = false;          ///< ... without TLS
     /// Hears unguarded(), at once and whenever it has changed; called by any thread.
     std::function<void(const std::string&)> tell_unguarded{};
+    /// Hears of a token that is used and will expire soon, once a day; called by any thread.
+    std::function<void(const std::string&)> tell_expiring{};
     /// Where it is kept who did what (audit_log.h); empty: nowhere.
     std::string audit_folder{};
   };
@@ -92,6 +94,7 @@ class Authority {
   struct Known {
     StoredToken row;
     int64_t noted_ms = 0;  ///< used_ms as it is stored
+    int64_t told_ms = 0;   ///< when tell_expiring has heard of it
   };
   struct Stay {
     std::string token_id;
@@ -105,6 +108,7 @@ class Authority {
   core::Status make_room(int64_t now_ms);
   void end_stays();
   void store_uses();
+  void tell_expiring();
   void mind();
 
   JobStore& store_;

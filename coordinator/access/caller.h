@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "farm/token_term.h"
 #include "hyades/v1/admin.pb.h"
 
 namespace hyades::coordinator {
@@ -15,6 +16,7 @@ struct Caller {
   std::string name;      ///< of the token; empty: nobody in particular
   v1::Role role = v1::ROLE_UNSPECIFIED;
   std::string address;  ///< where the call comes from, for people
+  farm::TokenTerm term{};
 };
 
 }  // namespace hyades::coordinator

@@ -161,9 +161,15 @@ grpc::Status allow(const Caller& caller, const Rule& rule) {
                   rule.deed, needed, caller.token_id, caller.name, role_name(caller.role), needed)};
 }
 
-grpc::Status allow_steering(const Caller& caller, uint64_t job, const std::string& owner) {
-  if (caller.role == kAdmin || caller.role == kOperator || caller.name == owner) {
-    return grpc::Status::OK;
+grpc::Status allow_steering(const Caller& caller, uint64_t job, const std::string& owner,
+                            bool proven) {
+  const bool his = proven && caller.name == owner;
+  if (caller.role == kAdmin || caller.role == kOperator || his) return grpc::Status::OK;
+  if (!proven && caller.name == owner) {
+    return {grpc::StatusCode::PERMISSION_DENIED,
+            fmt::format("job {} was submitted in the name of {} without a token that proves it: "
+                        "operators may steer it",
+                        job, owner)};
   }
   return {grpc::StatusCode::PERMISSION_DENIED,
           fmt::format("job {} belongs to {}, and this token ({}) to {}: its owner and operators "

@@ -35,7 +35,8 @@ grpc::Status allow(const Caller& caller, const Rule& rule);
 
 /// Whether the caller may steer a job of this owner: PERMISSION_DENIED where it is another's and he
 /// no operator.
-grpc::Status allow_steering(const Caller& caller, uint64_t job, const std::string& owner);
+grpc::Status allow_steering(const Caller& caller, uint64_t job, const std::string& owner,
+                            bool proven);
 
 /// "submitter".
 std::string role_name(v1::Role role);

@@ -28,6 +28,7 @@
 #include "coordinator/store/disk_room.h"
 #include "core/job/video.h"
 #include "farm/content_store.h"
+#include "farm/token_term.h"
 #include "hyades/v1/farm.pb.h"
 #include "hyades/v1/jobs.pb.h"
 #include "hyades/v1/work.pb.h"
@@ -62,9 +63,9 @@ class Brain {
 
   /// A worker's stream begins; `link` gets the Welcome. An older stream of the same worker is
   /// closed, unless it is another process' that still speaks: ALREADY_EXISTS then. INVALID_ARGUMENT
-  /// for a Hello that makes no sense.
+  /// for a Hello that makes no sense. The Welcome tells `token`, how long that of the worker holds.
   grpc::Status attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
-                      WorkerId& worker);
+                      WorkerId& worker, const farm::TokenTerm& token = {});
   /// What came on the stream; what comes on one that is not the worker's newest is ignored.
   void receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMessage& message);
   /// The stream has ended.
@@ -78,7 +79,8 @@ class Brain {
   using Told = std::function<void(const grpc::Status&, const v1::Job&)>;
 
   /// May wait for the disk, for other submissions up to two seconds.
-  grpc::Status submit(const v1::SubmitRequest& request, v1::SubmitResponse& response);
+  grpc::Status submit(const v1::SubmitRequest& request, bool owner_proven,
+                      v1::SubmitResponse& response);
   /// May wait for the store; list_open() knows all jobs that have not ended, and says no where
   /// others are asked for.
   grpc::Status list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);

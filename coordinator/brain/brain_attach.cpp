@@ -87,7 +87,7 @@ grpc::Status Brain::meet_twin(Seat& seat, const v1::Hello& hello) {
 }
 
 grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
-                           WorkerId& worker) {
+                           WorkerId& worker, const farm::TokenTerm& token) {
   if (const std::string wrong = complaint(hello); !wrong.empty()) {
     return {hello.protocol() < farm::kOldestProtocol ? grpc::StatusCode::FAILED_PRECONDITION
                                                      : grpc::StatusCode::INVALID_ARGUMENT,
@@ -150,6 +150,8 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
     welcome.set_max_message_bytes(farm::kMaxResultBytes);
     welcome.set_version(core::kVersion);
     welcome.set_name(hello.name());
+    welcome.set_token_expires_ms(token.expires_ms);
+    welcome.set_token_warn_ms(token.warn_ms);
     link->send(std::move(message));
 
     joined.worker = worker;

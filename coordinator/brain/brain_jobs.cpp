@@ -45,7 +45,8 @@ grpc::Status wrong(const std::string& message) {
 
 }  // namespace
 
-grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse& response) {
+grpc::Status Brain::submit(const v1::SubmitRequest& request, bool owner_proven,
+                           v1::SubmitResponse& response) {
   const std::string& key = request.idempotency_key();
   if (!key.empty() && (key.size() < 16 || key.size() > 64)) {
     return wrong("idempotency_key has to have 16 to 64 characters");
@@ -53,6 +54,9 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   if (request.owner().size() > kLongestName) return wrong("owner: at most 200 characters");
   if (!is_one_line(request.owner())) {
     return wrong("owner: expected one line of printable characters");
+  }
+  if (!is_one_line(request.spec().name())) {
+    return wrong("name: expected one line of printable characters");
   }
   if (const grpc::Status sane = check_priority(request.priority()); !sane.ok()) return sane;
   auto tags = farm::check_tags({request.tags().begin(), request.tags().end()});
@@ -73,6 +77,7 @@ grpc::Status Brain::submit(const v1::SubmitRequest& request, v1::SubmitResponse&
   stored.key = key;
   stored.spec = request.spec().SerializeAsString();
   stored.owner = request.owner();
+  stored.owner_proven = owner_proven;
   stored.priority = request.priority();
   stored.max_workers = request.max_workers();
   stored.tags = std::move(*tags);

@@ -140,6 +140,7 @@ v1::Job describe(const StoredJob& job) {
   wire.set_id(job.id);
   wire.set_name(job.name);
   wire.set_owner(job.owner);
+  wire.set_owner_proven(job.owner_proven);
   wire.set_priority(job.priority);
   wire.set_max_workers(job.max_workers);
   for (const std::string& tag : job.tags) wire.add_tags(tag);
@@ -290,7 +291,7 @@ core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const 
       static_cast<uint64_t>(desk->region.area()) * uint64_t{job.sampling.samples};
   desk->key = key_of(spec, layers);
   for (const int32_t frame : desk->numbers) desk->frames[frame];
-  desk->stored.name = job.name;
+  desk->stored.name = spec.name().empty() ? job.name : spec.name();
   desk->stored.frames = static_cast<uint32_t>(desk->numbers.size());
   desk->stored.samples = desk->samples_per_frame * desk->numbers.size();
   return desk;

@@ -51,6 +51,8 @@ grpc::ServerUnaryReactor* AdminService::WhoAmI(Context* context, const Bytes* as
         response.set_name(caller.name);
         response.set_token_id(caller.token_id);
         response.set_guarded(authority_.guarded());
+        response.set_expires_ms(caller.term.expires_ms);
+        response.set_warn_ms(caller.term.warn_ms);
         return grpc::Status::OK;
       });
 }

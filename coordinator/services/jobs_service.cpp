@@ -18,8 +18,9 @@ grpc::ServerUnaryReactor* JobsService::Submit(Context* context, const Bytes* ask
   return answer_by<v1::SubmitRequest, v1::SubmitResponse>(
       desks_.files, {admission_, "Jobs/Submit", context, asked, said},
       [this](v1::SubmitRequest& request, v1::SubmitResponse& response, const Caller& caller) {
-        const grpc::Status owned = name_owner(caller, request);
-        return owned.ok() ? brain_.submit(request, response) : owned;
+        bool proven = false;
+        const grpc::Status owned = name_owner(caller, request, proven);
+        return owned.ok() ? brain_.submit(request, proven, response) : owned;
       },
       farm::kMaxMessageBytes);
 }

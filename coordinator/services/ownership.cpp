@@ -19,10 +19,12 @@ grpc::Status may_steer(Brain& brain, const Caller& caller, uint64_t job) {
   if (steers_all(caller)) return grpc::Status::OK;
   v1::GetJobResponse got;
   if (const grpc::Status known = brain.get(job, INT32_MAX, got); !known.ok()) return known;
-  return allow_steering(caller, job, got.job().owner());
+  return allow_steering(caller, job, got.job().owner(), got.job().owner_proven());
 }
 
-grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request) {
+grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request, bool& proven) {
+  // An operator vouches for the name that he gives; where no token is asked for everybody is one.
+  proven = !request.owner().empty() ? !caller.token_id.empty() : !caller.name.empty();
   if (request.owner().empty()) {
     request.set_owner(caller.name.empty() ? request.login() : caller.name);
   } else if (request.owner() != caller.name && !steers_all(caller)) {

@@ -12,7 +12,8 @@ namespace hyades::coordinator {
 grpc::Status may_steer(Brain& brain, const Caller& caller, uint64_t job);
 
 /// Puts in whose job it will be: the token's name, or, where that is none, the login. Another owner
-/// is for operators: PERMISSION_DENIED.
-grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request);
+/// is for operators: PERMISSION_DENIED. `proven`: a token stands for the name, the owner's own or
+/// that of an operator; without one it gives nobody any rights.
+grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request, bool& proven);
 
 }  // namespace hyades::coordinator

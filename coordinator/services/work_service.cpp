@@ -128,7 +128,10 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   /// `caller` has been admitted, or not.
   Attendance(Brain& brain, grpc::CallbackServerContext& context, const Admission& admission,
              const Caller& caller, const grpc::Status& admitted)
-      : brain_(brain), context_(context), link_(std::make_shared<Link>(*this)) {
+      : brain_(brain),
+        context_(context),
+        link_(std::make_shared<Link>(*this)),
+        token_(caller.term) {
     if (admitted.ok()) {
       visit_ = admission.visit(caller, [this](const grpc::Status& why) {
         sent_away_ = true;
@@ -154,7 +157,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
     }
     if (!attached_) {
       grpc::Status status{grpc::StatusCode::INVALID_ARGUMENT, "a stream begins with Hello"};
-      if (message.has_hello()) status = brain_.attach(message.hello(), link_, worker_);
+      if (message.has_hello()) status = brain_.attach(message.hello(), link_, worker_, token_);
       if (!status.ok()) {
         link_->close(status);
         return;
@@ -199,6 +202,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   Brain& brain_;
   grpc::CallbackServerContext& context_;
   const std::shared_ptr<Link> link_;
+  const farm::TokenTerm token_;
   std::unique_ptr<Visit> visit_;
   std::atomic<bool> sent_away_{false};  ///< its token is of no use any more
   grpc::ByteBuffer bytes_;

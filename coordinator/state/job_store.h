@@ -22,6 +22,7 @@ struct StoredJob {
   std::string spec;  ///< v1::JobSpec, serialised: the store does not look into it
   std::string name;
   std::string owner;
+  bool owner_proven = false;  ///< a token has shown who the owner is
   int priority = 0;
   uint32_t max_workers = 0;
   std::vector<std::string> tags;  ///< that a worker needs; no commas in them

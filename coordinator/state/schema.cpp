@@ -93,6 +93,11 @@ CREATE TABLE tokens (  -- who may come in; see token_rows.h
   used_ms INTEGER NOT NULL,
   revoked_ms INTEGER NOT NULL) WITHOUT ROWID;
 )",
+    R"(
+ALTER TABLE jobs ADD COLUMN owner_proven INTEGER NOT NULL DEFAULT 0;
+UPDATE jobs SET owner_proven = 1 WHERE owner IN
+  (SELECT name FROM tokens WHERE tokens.created_ms <= jobs.submitted_ms);
+)",
 };
 
 }  // namespace

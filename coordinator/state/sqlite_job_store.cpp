@@ -17,8 +17,8 @@ namespace {
 constexpr std::string_view kJobColumns =
     "id, key, name, owner, priority, max_workers, state, frames, frames_done, frames_failed, "
     "samples, submitted_ms, ended_ms, reason, tags, memory, max_attempts, frame_order, core_ns, "
-    "preview";
-constexpr int kSpecColumn = 20;  ///< where it is asked for: behind all others
+    "preview, owner_proven";
+constexpr int kSpecColumn = 21;  ///< where it is asked for: behind all others
 
 /// A few times what the largest transaction that frees room needs in the WAL.
 constexpr uint64_t kReserve = uint64_t{1} << 20U;
@@ -61,6 +61,7 @@ StoredJob read_job(const Query& row) {
   job.frame_order = static_cast<int>(row.integer(17));
   job.core_ns = static_cast<uint64_t>(row.integer(18));
   if (!row.is_null(19)) job.preview = static_cast<int32_t>(row.integer(19));
+  job.owner_proven = row.integer(20) != 0;
   return job;
 }
 
@@ -95,8 +96,8 @@ class SqliteJobStore final : public JobStore {
     Query insert(db_.get(),
                  "INSERT INTO jobs (key, spec, name, owner, priority, max_workers, state, frames, "
                  "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason, core_ns, "
-                 "preview, tags, memory, max_attempts, frame_order) "
-                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                 "preview, tags, memory, max_attempts, frame_order, owner_proven) "
+                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     if (job.key.empty()) {
       insert.bind_null();
     } else {
@@ -107,7 +108,8 @@ class SqliteJobStore final : public JobStore {
     insert.bind(join(job.tags))
         .bind(number(job.memory))
         .bind(int64_t{job.max_attempts})
-        .bind(int64_t{job.frame_order});
+        .bind(int64_t{job.frame_order})
+        .bind(int64_t{job.owner_proven ? 1 : 0});
     if (core::Status done = insert.run(); !done) return done.error();
     reserve_.keep();
     return Added{static_cast<uint64_t>(sqlite3_last_insert_rowid(db_.get())), false};

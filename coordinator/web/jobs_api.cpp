@@ -134,8 +134,9 @@ void JobsApi::add_steering(Router& router) {
         return error_reply({grpc::StatusCode::INVALID_ARGUMENT, asked.error().message});
       }
       v1::SubmitResponse response;
-      grpc::Status done = name_owner(caller, *asked);
-      if (done.ok()) done = brain_.submit(*asked, response);
+      bool proven = false;
+      grpc::Status done = name_owner(caller, *asked, proven);
+      if (done.ok()) done = brain_.submit(*asked, proven, response);
       if (!done.ok()) return error_reply(done);
       WebReply reply =
           json_reply({{"job", farm::to_json(response.job())}, {"existed", response.existed()}});

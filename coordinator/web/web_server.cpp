@@ -14,6 +14,7 @@
 
 #include "coordinator/access/authority.h"
 #include "coordinator/access/rules.h"
+#include "coordinator/access/token.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/services/desks.h"
@@ -172,7 +173,9 @@ struct WebServer::Parts {
       answer(json_reply({{"guarded", authority.guarded()},
                          {"role", role_name(caller.role)},
                          {"name", caller.name},
-                         {"token_id", caller.token_id}}));
+                         {"token_id", caller.token_id},
+                         {"expires_ms", caller.term.expires_ms},
+                         {"expiring", farm::expiry_warning(caller.term, token_clock_ms())}}));
     });
     to.add("DELETE", "/api/v1/session", [this](const WebRequest&, const Answer& answer) {
       WebReply reply = empty_reply(204);

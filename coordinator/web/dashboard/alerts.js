@@ -4,6 +4,7 @@ import { h, keyed, setText } from './dom.js';
 import { recall, remember } from './memory.js';
 import { counted } from './format.js';
 import { icon } from './icons.js';
+import { me } from './me.js';
 import { to } from './router.js';
 
 const MOST = 4;
@@ -12,8 +13,10 @@ const MOST_HUSHED = 100;
 const FRESH = 12 * 3600e3;
 
 /** What needs a person: [{key, text, bad, href, what}], the worst first. */
-export function alertsOf({ info, jobs, workers }, now = Date.now()) {
+export function alertsOf({ info, jobs, workers, me }, now = Date.now()) {
   const list = [];
+  if (me?.expiring)
+    list.push({ key: `expiring ${me.token_id}`, text: `Your token ${me.expiring}: ask an admin for another.` });
   if (info?.unguarded) list.push({ key: `unguarded ${info.unguarded}`, bad: true, text: info.unguarded });
   if (info?.trouble) list.push({ key: `trouble ${info.trouble}`, bad: true, text: info.trouble });
   for (const worker of workers.values()) {
@@ -65,7 +68,7 @@ export class Alerts {
   }
 
   draw() {
-    const list = alertsOf(farm).filter(({ key }) => !this.hushed.has(key));
+    const list = alertsOf({ ...farm, me }).filter(({ key }) => !this.hushed.has(key));
     this.node.hidden = list.length === 0;
     // For one that is left out, the line that says so is as long.
     const shown = this.all || list.length <= MOST + 1 ? [...list] : list.slice(0, MOST);

@@ -2,7 +2,7 @@
 import * as api from './api.js';
 
 /** As GET api/v1/session has it. Until that is known everything may be tried. */
-export const me = { guarded: false, role: 'admin', name: '', token_id: '' };
+export const me = { guarded: false, role: 'admin', name: '', token_id: '', expiring: '' };
 
 const RANKS = { viewer: 1, submitter: 2, operator: 3, admin: 4 };
 const listeners = new Set();
@@ -36,6 +36,8 @@ export const whyNotWorkers = () => (rank() >= RANKS.operator ? '' : `Needs the r
 export function whyNotJob(job) {
   if (rank() >= RANKS.operator) return '';
   if (rank() < RANKS.submitter) return whyNotSubmit();
+  if (job.owner === me.name && !job.owner_proven)
+    return `It was submitted in the name of ${job.owner} without a token that proves it: operators may.`;
   return job.owner === me.name ? '' : `It belongs to ${job.owner || 'nobody in particular'}: its owner and operators may.`;
 }
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <thread>
 
 #include "coordinator/access/token.h"
@@ -91,6 +92,43 @@ TEST_F(Tokens, TellWhoCalls) {
   }
   EXPECT_EQ(authority->admit("Basic " + bob, caller).error_code(),
             grpc::StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(Tokens, ThoseInUseAreToldOfBeforeTheyExpire) {
+  close();
+  store = open_sqlite_job_store(folder.file("state.db")).value();
+  const int64_t now = token_clock_ms();
+  constexpr int64_t kDay = int64_t{24} * 3600 * 1000;
+  const auto add = [&](const std::string& made_id, int64_t expires, int64_t used, int64_t revoked) {
+    const StoredToken row{
+        made_id, "n" + made_id, v1::ROLE_WORKER, std::string(32, 'h'), now - 300 * kDay,
+        expires, used,          revoked};
+    EXPECT_TRUE(store->add_token(row).ok());
+  };
+  add("00000001", now + 3 * kDay, now - kDay, 0);
+  add("00000002", now + 3 * kDay, 0, 0);                    // never used
+  add("00000003", now + 3 * kDay, now - 40 * kDay, 0);      // not for long
+  add("00000004", now + 3 * kDay, now - kDay, now - kDay);  // revoked
+  add("00000005", now + 30 * kDay, now - kDay, 0);          // there is time
+  add("00000006", 0, now - kDay, 0);                        // never expires
+  std::mutex mutex;
+  std::vector<std::string> told;
+  authority = Authority::open(*store, {.tell_expiring = [&](const std::string& line) {
+                const std::lock_guard lock(mutex);
+                told.push_back(line);
+              }}).value();
+  for (int i = 0; i < 400; ++i) {
+    std::this_thread::sleep_for(10ms);
+    const std::lock_guard lock(mutex);
+    if (!told.empty()) break;
+  }
+  // It looks again, and says nothing more today.
+  make(v1::ROLE_ADMIN, "ada");
+  std::this_thread::sleep_for(50ms);
+  authority.reset();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].find("token 00000001 of n00000001 (worker) expires on"), std::string::npos)
+      << told[0];
 }
 
 TEST_F(Tokens, RevokedOrExpiredTheyOpenNothingMore) {

@@ -119,10 +119,11 @@ TEST(Rules, ARefusalSaysWhatIsNeeded) {
 
 TEST(Rules, JobsAreSteeredByTheirOwners) {
   const Caller alice = {"1", "alice", v1::ROLE_SUBMITTER, {}};
-  EXPECT_TRUE(allow_steering(alice, 1, "alice").ok());
-  EXPECT_EQ(allow_steering(alice, 1, "bob").error_code(), grpc::StatusCode::PERMISSION_DENIED);
-  EXPECT_FALSE(allow_steering(alice, 1, "").ok());
-  EXPECT_TRUE(allow_steering({"2", "carol", v1::ROLE_OPERATOR, {}}, 1, "bob").ok());
+  EXPECT_TRUE(allow_steering(alice, 1, "alice", true).ok());
+  EXPECT_EQ(allow_steering(alice, 1, "bob", true).error_code(),
+            grpc::StatusCode::PERMISSION_DENIED);
+  EXPECT_FALSE(allow_steering(alice, 1, "", false).ok());
+  EXPECT_TRUE(allow_steering({"2", "carol", v1::ROLE_OPERATOR, {}}, 1, "bob", false).ok());
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(Needs, ThatMakeNoSenseAreRefused) {
     v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1));
     change(request);
     v1::SubmitResponse response;
-    const grpc::Status status = world.brain->submit(request, response);
+    const grpc::Status status = world.brain->submit(request, false, response);
     EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
     return status.error_message();
   };

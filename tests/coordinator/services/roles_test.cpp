@@ -6,6 +6,7 @@
 #include <grpcpp/generic/generic_stub.h>
 
 #include "coordinator/access/rules.h"
+#include "coordinator/access/token.h"
 #include "hyades/v1/admin.grpc.pb.h"
 #include "tests/coordinator/services/farm_world.h"
 
@@ -106,6 +107,62 @@ TEST_F(Roles, OwnersSteerTheirJobsAndOperatorsAll) {
   EXPECT_EQ(world.get(for_bob).job().owner(), "bob");
   EXPECT_FALSE(cancel(for_bob, alice).ok());
   EXPECT_TRUE(cancel(for_bob, bob).ok());
+}
+
+TEST(OpenFarm, ANameThatNoTokenProvedGivesNobodyRights) {
+  FarmWorld world;
+  world.start();
+  const uint64_t said = world.submit(1, [](v1::SubmitRequest& asked) { asked.set_owner("anna"); });
+  const uint64_t login = world.submit(1, [](v1::SubmitRequest& asked) {
+    asked.clear_owner();
+    asked.set_login("anna");
+  });
+  EXPECT_EQ(world.get(login).job().owner(), "anna");
+  std::string admin;
+  std::string anna;
+  StoredToken row;
+  ASSERT_TRUE(world.authority->create("root", v1::ROLE_ADMIN, 0, admin, row).ok());
+  ASSERT_TRUE(world.authority->create("anna", v1::ROLE_SUBMITTER, 0, anna, row).ok());
+  const auto cancel = [&](uint64_t job, const std::string& token) {
+    world.token = token;
+    v1::JobRequest request;
+    request.set_job(job);
+    v1::JobResponse response;
+    return world.jobs->Cancel(world.context().get(), request, &response);
+  };
+  for (const uint64_t job : {said, login}) {
+    const grpc::Status refused = cancel(job, anna);
+    EXPECT_EQ(refused.error_code(), grpc::StatusCode::PERMISSION_DENIED);
+    EXPECT_NE(refused.error_message().find("without a token that proves it"), std::string::npos);
+    EXPECT_FALSE(world.get(job).job().owner_proven());
+  }
+  world.stop();
+  world.start();
+  EXPECT_FALSE(cancel(said, anna).ok()) << "after a restart, too";
+  EXPECT_TRUE(cancel(said, admin).ok());
+  world.token = anna;
+  const uint64_t hers = world.submit(1, [](v1::SubmitRequest& asked) { asked.clear_owner(); });
+  EXPECT_TRUE(world.get(hers).job().owner_proven());
+  world.token = admin;
+  const uint64_t given = world.submit(1, [](v1::SubmitRequest& asked) { asked.set_owner("anna"); });
+  EXPECT_TRUE(cancel(hers, anna).ok());
+  EXPECT_TRUE(cancel(given, anna).ok()) << "an admin vouches for the name";
+}
+
+TEST_F(Roles, ATokenIsToldHowLongItHolds) {
+  constexpr int64_t kHour = 3'600'000;
+  const int64_t before = token_clock_ms();
+  world.token = make(v1::ROLE_SUBMITTER, "alice", 8 * kHour);
+  v1::WhoAmIResponse me;
+  const auto admin_service = v1::Admin::NewStub(world.channel);
+  ASSERT_TRUE(admin_service->WhoAmI(world.context().get(), {}, &me).ok());
+  EXPECT_GE(me.expires_ms(), before + 8 * kHour);
+  EXPECT_EQ(me.expires_ms() - me.warn_ms(), kHour);
+  ScriptedWorker::Script script = world.script();
+  script.token = make(v1::ROLE_WORKER, "node", 8 * kHour);
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return worker.welcome().token_expires_ms() > before; }));
+  EXPECT_EQ(worker.welcome().token_expires_ms() - worker.welcome().token_warn_ms(), kHour);
 }
 
 TEST_F(Roles, AnOwnerOutlivesTheCoordinator) {

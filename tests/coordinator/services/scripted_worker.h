@@ -83,6 +83,11 @@ class ScriptedWorker {
     const std::lock_guard lock(mutex_);
     return rejections_;
   }
+  /// The last one; empty before the first.
+  v1::Welcome welcome() const {
+    const std::lock_guard lock(mutex_);
+    return welcome_;
+  }
   grpc::Status last_status() const {
     const std::lock_guard lock(mutex_);
     return status_;
@@ -180,6 +185,10 @@ class ScriptedWorker {
     }
     v1::CoordinatorMessage reply;
     if (stream_->Write(message) && stream_->Read(&reply) && reply.has_welcome()) {
+      {
+        const std::lock_guard lock(mutex_);
+        welcome_ = reply.welcome();
+      }
       ++streams_;
       if (script_.backoff) script_.backoff->reset();
       for (const auto& [name, result] : kept_) {
@@ -288,6 +297,7 @@ class ScriptedWorker {
   std::unique_ptr<grpc::ClientContext> context_;
   std::map<std::string, v1::UnitResult> kept_;
   std::vector<v1::Rejected> rejections_;
+  v1::Welcome welcome_;
   grpc::Status status_;
   std::unique_ptr<Stream> stream_;
   std::thread thread_;

@@ -263,14 +263,15 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   }
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db,
-                         "DROP INDEX doubtful_frames; ALTER TABLE frames DROP COLUMN doubtful; "
-                         "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
-                         "DROP TABLE tokens; "
-                         "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
-                         "preview; PRAGMA user_version=3",
-                         nullptr, nullptr, nullptr),
-            SQLITE_OK);
+  ASSERT_EQ(
+      sqlite3_exec(db,
+                   "DROP INDEX doubtful_frames; ALTER TABLE frames DROP COLUMN doubtful; "
+                   "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
+                   "DROP TABLE tokens; "
+                   "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
+                   "preview; ALTER TABLE jobs DROP COLUMN owner_proven; PRAGMA user_version=3",
+                   nullptr, nullptr, nullptr),
+      SQLITE_OK);
   sqlite3_close(db);
   auto store = open(path);
   const auto frames = store->frames(1);
@@ -278,8 +279,35 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   EXPECT_FALSE(frames->at(0).doubtful);
   EXPECT_EQ((*store->job(1))->core_ns, 0U);
   EXPECT_FALSE((*store->job(1))->preview);
+  EXPECT_FALSE((*store->job(1))->owner_proven) << "no token has shown who ada is";
   EXPECT_TRUE(store->found_odd({"worker", "odd"}, 0, {})->empty())
       << "whose films an older program finished is not known";
+}
+
+TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("state.db");
+  {
+    auto store = open(path);
+    StoredToken token{"9f3a01c2", "ada", 2, std::string(32, 'h'), 1000};
+    ASSERT_TRUE(store->add_token(token).ok());
+    for (const auto& [owner, submitted] :
+         {std::pair("ada", 999), std::pair("ada", 1000), std::pair("bob", 2000)}) {
+      StoredJob job = some_job("", owner);
+      job.submitted_ms = submitted;
+      ASSERT_TRUE(store->add_job(job).ok());
+    }
+  }
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, "ALTER TABLE jobs DROP COLUMN owner_proven; PRAGMA user_version=6",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(db);
+  auto store = open(path);
+  EXPECT_FALSE((*store->job(1))->owner_proven);
+  EXPECT_TRUE((*store->job(2))->owner_proven);
+  EXPECT_FALSE((*store->job(3))->owner_proven);
 }
 
 TEST(JobStore, OneKeyOneJob) {

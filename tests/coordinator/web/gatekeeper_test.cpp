@@ -131,7 +131,12 @@ TEST_F(WithRoles, WhoIsSignedInIsToldAndHisSessionEndsWithHisToken) {
   const auto me = world.client->get("/api/v1/session", {{"Cookie", cookie}});
   ASSERT_EQ(me.status, 200) << me.body;
   EXPECT_EQ(Json::parse(me.body),
-            Json({{"guarded", true}, {"role", "submitter"}, {"name", "alice"}, {"token_id", id}}));
+            Json({{"guarded", true},
+                  {"role", "submitter"},
+                  {"name", "alice"},
+                  {"token_id", id},
+                  {"expires_ms", 0},
+                  {"expiring", ""}}));
   // Another's id under the same signature.
   std::string forged = cookie;
   forged.replace(forged.find(id), id.size(), world.farm.token.substr(7, 8));

@@ -17,6 +17,7 @@ const { inOrder } = await import('../../../../coordinator/web/dashboard/farm.js'
 const { byTile, byWorker } = await import('../../../../coordinator/web/dashboard/units.js');
 const { grouped, kindOf, nameOf, rangeOf, sourcesOf } = await import('../../../../coordinator/web/dashboard/layers.js');
 const { toneOf } = await import('../../../../coordinator/web/dashboard/viewer.js');
+const { me, whyNotJob } = await import('../../../../coordinator/web/dashboard/me.js');
 const { placeOf } = await import('../../../../coordinator/web/dashboard/star_places.js');
 
 const job = (id, more) => ({
@@ -48,15 +49,27 @@ test('what needs a person comes with the worst first', () => {
         [4, job(4, { reason: 'no worker has the tag gpu' })],
         [5, job(5, { frames_failed: 2 })],
       ]),
+      me: { token_id: '9f3a01c2', expiring: 'expires on 2026-03-01 12:00 UTC, in 3 days' },
     },
     now,
   );
   assert.deepEqual(
     list.map(({ what }) => what),
-    [undefined, 'w3', 'job 2', 'w2', 'job 4', 'job 5'],
+    [undefined, 'w3', 'job 2', undefined, 'w2', 'job 4', 'job 5'],
   );
   assert.equal(list[0].text, 'the disk is full');
-  assert.match(list[5].text, /2 frames failed/);
+  assert.match(list[3].text, /^Your token expires on .* in 3 days/);
+  assert.match(list[6].text, /2 frames failed/);
+});
+
+test('a name that no token has proven steers no job', () => {
+  Object.assign(me, { guarded: true, role: 'submitter', name: 'anna' });
+  assert.equal(whyNotJob(job(1, { owner: 'anna', owner_proven: true })), '');
+  assert.match(whyNotJob(job(2, { owner: 'anna', owner_proven: false })), /without a token that proves it/);
+  assert.match(whyNotJob(job(3, { owner: 'bob', owner_proven: true })), /belongs to bob/);
+  me.role = 'operator';
+  assert.equal(whyNotJob(job(2, { owner: 'anna', owner_proven: false })), '');
+  Object.assign(me, { guarded: false, role: 'admin', name: '' });
 });
 
 test('the queue is in the order in which units go out', () => {
