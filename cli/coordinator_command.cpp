@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <google/protobuf/stubs/logging.h>
 #include <CLI/CLI.hpp>
@@ -57,6 +58,7 @@ struct Arguments {
   hyades::farm::LogOptions log;
   std::string http = kHttp;
   bool http_asked = false;
+  std::vector<std::string> http_names;
   Notifier::Options news;
   double unit_seconds = 5;
   double lease_seconds = 30;
@@ -67,6 +69,14 @@ struct Arguments {
   double asset_grace = 3600;
 };
 
+/// Of a URL, without its port; empty where it has none.
+std::string host_of(const std::string& url) {
+  const size_t scheme = url.find("://");
+  if (scheme == std::string::npos) return {};
+  const std::string rest = url.substr(scheme + 3);
+  return rest.substr(0, rest.find_first_of(":/?#"));
+}
+
 /// The dashboard and the HTTP API; null where there is to be none. Where nobody has asked for the
 /// address, somebody else may have it.
 hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& arguments, Brain& brain,
@@ -74,7 +84,11 @@ hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& argu
   if (arguments.http == "off") return std::unique_ptr<WebServer>();
   hyades::farm::Listen listen = arguments.listen;
   listen.address = arguments.http;
-  auto server = WebServer::start(listen, brain, authority);
+  std::vector<std::string> names = arguments.http_names;
+  if (const std::string host = host_of(arguments.news.dashboard); !host.empty()) {
+    names.push_back(host);
+  }
+  auto server = WebServer::start(listen, brain, authority, std::move(names));
   if (server || arguments.http_asked) return server;
   hyades::farm::log(LogLevel::warning, "no dashboard: " + server.error().message +
                                            "; choose another place with --http");
@@ -270,6 +284,10 @@ int main(int argc, char** argv) {
                      return text == "off" ? std::string() : hyades::cli::address_error(text);
                    })
                    ->capture_default_str();
+  app.add_option(
+      "--http-name", arguments.http_names,
+      "a name by which browsers reach the dashboard, beside addresses and this machine's "
+      "own names; only needed where no token is asked for; again for others");
   app.add_option("--tls-cert", arguments.listen.cert_file, "certificate (PEM): TLS");
   app.add_option("--tls-key", arguments.listen.key_file, "its private key (PEM)");
   app.add_option("--tls-ca", arguments.listen.ca_file,
@@ -344,6 +362,8 @@ int main(int argc, char** argv) {
       "  hyades coordinator --data /var/lib/hyades\n"
       "  hyades coordinator --data farm --listen 0.0.0.0:7700 --tls-cert c.pem --tls-key k.pem "
       "--token-file token\n"
+      "  hyades coordinator --data farm --listen 0.0.0.0:7700 --http 0.0.0.0:8080 --insecure "
+      "--http-name farm.example\n"
       "  hyades coordinator --data farm --price 0.04:EUR --log-format json\n"
       "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
       "wrong arguments (or a token, certificate or key that is none)");

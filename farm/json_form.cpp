@@ -36,6 +36,7 @@ Json to_json(const v1::Job& job) {
   Json json = {{"id", job.id()},
                {"name", job.name()},
                {"owner", job.owner()},
+               {"owner_proven", job.owner_proven()},
                {"priority", job.priority()},
                {"state", state_name(job.state())},
                {"frames", job.frames()},

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "coordinator/access/address.h"
 #include "coordinator/access/token.h"
 #include "core/base/io_reason.h"
 #include "farm/json_form.h"
@@ -32,9 +33,6 @@ constexpr size_t kMostPurses = 1000;
 constexpr std::chrono::seconds kHeldAtMost{60};
 constexpr std::chrono::seconds kTryAgain{1};
 constexpr std::chrono::seconds kFlushPatience{2};
-
-/// An address without its port.
-std::string host_of(const std::string& address) { return address.substr(0, address.rfind(':')); }
 
 std::string line_of(const v1::AuditEntry& entry) {
   farm::Json line = farm::to_json(entry);
@@ -158,11 +156,12 @@ void AuditLog::refuse(const Caller& caller, const std::string& deed, const grpc:
   v1::AuditEntry entry = entry_for(caller, deed, {}, why, {});
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
-  if (purses_.size() >= kMostPurses && !purses_.contains(host_of(caller.address))) {
+  if (purses_.size() >= kMostPurses && !purses_.contains(neighbourhood_of(caller.address))) {
     release_held(true);
     purses_.clear();
   }
-  const auto [found, fresh] = purses_.try_emplace(host_of(caller.address), Purse{kPurse, now, {}});
+  const auto [found, fresh] =
+      purses_.try_emplace(neighbourhood_of(caller.address), Purse{kPurse, now, {}});
   Purse& purse = found->second;
   const std::chrono::duration<double> passed = now - purse.since;
   purse.left = std::min(kPurse, purse.left + passed.count() * kPerSecond);

@@ -176,12 +176,24 @@ std::unique_ptr<Visit> Authority::visit(const Caller& caller,
     live = check(caller.token_id, token_clock_ms());
   }
   if (live.ok()) {
-    stays_[next_stay_] = {caller.token_id, std::move(leave)};
+    stays_[next_stay_] = {caller.token_id, caller.session, std::move(leave)};
   } else {
     leave(live);
   }
   ++next_stay_;
   return visit;
+}
+
+void Authority::end_session(const std::string& session) {
+  const std::lock_guard staying(stays_mutex_);
+  for (auto stay = stays_.begin(); stay != stays_.end();) {
+    if (session.empty() || stay->second.session != session) {
+      ++stay;
+      continue;
+    }
+    stay->second.leave(stranger("the session was signed out"));
+    stay = stays_.erase(stay);
+  }
 }
 
 /// Those whose token is of no use any more have to go.

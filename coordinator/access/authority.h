@@ -77,6 +77,9 @@ class Authority {
   std::unique_ptr<Visit> visit(const Caller& caller,
                                std::function<void(const grpc::Status&)> leave);
 
+  /// Those who stay in this session (Caller::session) have to go: it was signed out.
+  void end_session(const std::string& session);
+
   // These may wait for the store.
 
   /// The token and what is stored of it. INVALID_ARGUMENT as check_token() has it,
@@ -98,6 +101,7 @@ class Authority {
   };
   struct Stay {
     std::string token_id;
+    std::string session;  ///< empty: none
     std::function<void(const grpc::Status&)> leave;
   };
 

@@ -17,6 +17,7 @@ struct Caller {
   v1::Role role = v1::ROLE_UNSPECIFIED;
   std::string address;  ///< where the call comes from, for people
   farm::TokenTerm term{};
+  std::string session{};  ///< of a browser that has signed in: names it (Authority::end_session)
 };
 
 }  // namespace hyades::coordinator

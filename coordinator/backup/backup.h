@@ -14,8 +14,9 @@ struct BackupCount {
 };
 
 /// Writes a tar file `to` of what the coordinator of the folder `data` keeps, while it may be
-/// running: films first, then the job store, then outputs and assets, so that whatever the store
-/// says is there. What is lost between them is rendered again. `to` is whole or absent.
+/// running: films first, then the job store, then outputs, assets and the audit log, so that
+/// whatever the store says is there. What is lost between them is rendered again. `to` is whole or
+/// absent.
 core::Result<BackupCount> write_backup(const std::string& data, const std::string& to);
 
 /// Makes the folder `data`, which must not be there or be empty, out of a backup. It appears only

@@ -65,8 +65,17 @@ core::Result<Manifest> parse_manifest(const std::string& text) {
   return manifest;
 }
 
+bool is_audit_file(const std::string& name) {
+  constexpr std::string_view kBegin = "audit.";
+  constexpr std::string_view kEnd = "jsonl";
+  if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) return false;
+  const std::string number = name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size());
+  return number.empty() ||
+         (number.size() == 2 && number[0] >= '1' && number[0] <= '9' && number[1] == '.');
+}
+
 bool is_backup_path(const std::string& path) {
-  if (path == "state.db" || path == "state.db.starts") return true;
+  if (path == "state.db" || path == "state.db.starts" || is_audit_file(path)) return true;
   const bool below =
       path.starts_with("films/") || path.starts_with("outputs/") || path.starts_with("assets/");
   if (!below || path.back() == '/' || path.find('\0') != std::string::npos ||

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "coordinator/backup/backup.h"
@@ -87,6 +88,7 @@ class Writer {
     for (const char* folder : {"outputs", "assets"}) {
       if (auto added = add_folder(folder); !added) return added;
     }
+    if (auto added = add_audit(); !added) return added;
     const std::string list = write_manifest(manifest_);
     if (auto begun = tar_.begin(kManifestName, list.size()); !begun) return begun;
     if (auto added = tar_.add(std::as_bytes(std::span(list))); !added) return added;
@@ -160,6 +162,47 @@ class Writer {
       return {};
     }
     return core::Error{folder + ": it was rewritten while it was copied, again and again"};
+  }
+
+  /// Who did what: the files of that log as they are now, the oldest first, each with what tells it
+  /// from another.
+  std::vector<std::pair<std::string, ino_t>> audit_files() const {
+    std::vector<std::pair<std::string, ino_t>> files;
+    std::error_code none;
+    for (fs::directory_iterator it(data_, none), end; !none && it != end; it.increment(none)) {
+      const std::string name = it->path().filename().string();
+      struct stat facts {};
+      if (is_audit_file(name) && ::lstat(it->path().c_str(), &facts) == 0 &&
+          S_ISREG(facts.st_mode)) {
+        files.emplace_back(name, facts.st_ino);
+      }
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+
+  /// Files are only ever appended to, or renamed all at once when one has become large: then they
+  /// are copied once more. The last line may be cut, as after a crash.
+  core::Status add_audit() {
+    const std::string copies = work_ + "/audit";
+    for (int i = 0; i < kTries; ++i) {
+      const auto files = audit_files();
+      fs::remove_all(copies);
+      fs::create_directories(copies);
+      for (const auto& [name, identity] : files) {
+        std::error_code gone;
+        fs::copy_file(fs::path(data_) / name, fs::path(copies) / name, gone);
+        if (gone && gone != std::errc::no_such_file_or_directory) {
+          return core::Error{name + ": " + gone.message()};
+        }
+      }
+      if (audit_files() != files) continue;
+      for (const auto& [name, identity] : files) {
+        if (auto added = add(copies + "/" + name, name); !added) return added;
+      }
+      return {};
+    }
+    return core::Error{"the audit log was begun anew while it was copied, again and again"};
   }
 
   std::vector<std::string> log_files(const std::string& folder) const {

@@ -160,8 +160,8 @@ grpc::Status Brain::attach(const v1::Hello& hello, const std::shared_ptr<WorkerL
     }
     seat.joined = true;
     farm::log_later(farm::LogLevel::info,
-                    fmt::format("attends: {} on {}", counted(hello.threads(), "thread"),
-                                farm::wire_text(hello.host())),
+                    fmt::format("attends: {}{}", counted(hello.threads(), "thread"),
+                                hello.host().empty() ? "" : " on " + hello.host()),
                     {{}, {}, {}, farm::wire_text(hello.name())});
     for (Action& action : tell(joined)) later.push_back(std::move(action));
     if (seat.state == v1::WORKER_STATE_QUARANTINED) {

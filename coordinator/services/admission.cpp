@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <grpcpp/security/auth_context.h>
 
+#include "coordinator/access/address.h"
 #include "farm/channel.h"
 #include "farm/wire.h"
 
@@ -24,7 +25,7 @@ grpc::Status Admission::check(const grpc::CallbackServerContext& context, const 
 
 grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const Rule& rule,
                               Caller& caller) const {
-  caller.address = context.peer();
+  caller.address = address_of_peer(context.peer());
   const auto& metadata = context.client_metadata();
   const auto shown = metadata.find(farm::kTokenKey);
   const grpc::Status known = authority_.admit(

@@ -17,6 +17,7 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/ssl.hpp>
 
+#include "coordinator/access/address.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/web/target.h"
 #include "farm/wire_status.h"
@@ -69,7 +70,7 @@ class ConnectionOver final : public Connection,
     world_.meters.http_connections().Increment();
     ErrorCode unknown;
     const auto from = tcp(stream_).socket().remote_endpoint(unknown);
-    if (!unknown) address_ = from.address().to_string() + ":" + std::to_string(from.port());
+    if (!unknown) address_ = address_text(from.address().to_string(), std::to_string(from.port()));
     from_ = from.address();
     world_.count.enter(from_);
     if constexpr (std::is_same_v<Stream, Tls>) {

@@ -1,34 +1,23 @@
 #include "coordinator/web/gatekeeper.h"
 
-#include <charconv>
+#include <arpa/inet.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
 #include <chrono>
-#include <span>
-#include <string_view>
 
 #include <fmt/format.h>
-#include <openssl/crypto.h>
-#include <openssl/evp.h>
-#include <openssl/hmac.h>
-
-#include "core/base/hash.h"
-#include "core/base/random_id.h"
-#include "farm/channel.h"
 
 namespace hyades::coordinator {
 namespace {
 
-constexpr std::string_view kCookie = "hyades_session=";
 constexpr int64_t kSessionSeconds = int64_t{30} * 24 * 3600;
 
 int64_t now_seconds() {
   return std::chrono::duration_cast<std::chrono::seconds>(
              std::chrono::system_clock::now().time_since_epoch())
       .count();
-}
-
-/// In a time that does not depend on how much of it is right.
-bool same(const std::string& a, const std::string& b) {
-  return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
 
 std::string small_letters(std::string text) {
@@ -38,38 +27,56 @@ std::string small_letters(std::string text) {
   return text;
 }
 
-/// The value of our cookie among those of a Cookie header.
-std::string_view find_cookie(std::string_view cookies) {
+/// The value of a cookie ("name=") among those of a Cookie header.
+std::string_view find_cookie(std::string_view cookies, std::string_view name) {
   while (!cookies.empty()) {
     std::string_view cookie = cookies.substr(0, cookies.find(';'));
     cookies.remove_prefix(std::min(cookies.size(), cookie.size() + 1));
     while (cookie.starts_with(' ')) cookie.remove_prefix(1);
-    if (cookie.starts_with(kCookie)) return cookie.substr(kCookie.size());
+    if (cookie.starts_with(name)) return cookie.substr(name.size());
   }
   return {};
 }
 
 bool changes_something(const std::string& method) { return method != "GET"; }
 
+/// Without its port.
+std::string_view name_of(std::string_view host) {
+  const size_t bracket = host.starts_with('[') ? host.find(']') : std::string_view::npos;
+  const size_t from = bracket == std::string_view::npos ? 0 : bracket + 1;
+  return host.substr(0, host.find(':', from));
+}
+
+bool is_address(std::string_view name) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  if (name.starts_with('[') && name.ends_with(']')) {
+    const std::string six(name.substr(1, name.size() - 2));
+    return ::inet_pton(AF_INET6, six.c_str(), bytes.data()) == 1;
+  }
+  return ::inet_pton(AF_INET, std::string(name).c_str(), bytes.data()) == 1;
+}
+
+std::string own_name() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? small_letters(name.data()) : "";
+}
+
 }  // namespace
 
-Gatekeeper::Gatekeeper(Authority& authority, std::string shared_token, bool loopback, bool secure)
-    : authority_(authority),
-      shared_token_(std::move(shared_token)),
-      loopback_(loopback),
-      secure_(secure) {
-  // Without random numbers no session can be opened: sign() gives nothing.
-  const auto half = core::random_id();
-  const auto rest = core::random_id();
-  if (half && rest) key_ = *half + *rest;
+Gatekeeper::Gatekeeper(Authority& authority, std::vector<std::string> names, bool secure)
+    : authority_(authority), names_(std::move(names)), secure_(secure) {
+  for (std::string& name : names_) name = small_letters(name);
+  names_.push_back(own_name());
 }
+
+void Gatekeeper::set_port(uint16_t port) { cookie_ = fmt::format("hyades_session_{}=", port); }
 
 grpc::Status Gatekeeper::check(const WebRequest& request, Caller& caller) const {
   if (const grpc::Status site = check_site(request); !site.ok()) return site;
   caller.address = request.address;
   const std::string& shown = request.header("authorization");
   if (shown.empty()) {
-    const std::string_view session = find_cookie(request.header("cookie"));
+    const std::string_view session = find_cookie(request.header("cookie"), cookie_);
     if (!session.empty() && authority_.guarded()) return admit_session(session, caller);
   }
   return authority_.admit(shown, caller);
@@ -77,15 +84,15 @@ grpc::Status Gatekeeper::check(const WebRequest& request, Caller& caller) const 
 
 grpc::Status Gatekeeper::check_site(const WebRequest& request) const {
   const std::string host = small_letters(request.header("host"));
-  // Without a token, the only guard is that nobody but this machine gets here; a page that has its
-  // own name resolve to 127.0.0.1 would be here, too.
-  if (loopback_ && !authority_.guarded() && !host.empty() &&
-      !farm::is_loopback(host.find(':') == std::string::npos || host.ends_with(']') ? host + ":80"
-                                                                                    : host)) {
-    return {grpc::StatusCode::PERMISSION_DENIED,
-            fmt::format("'{}' is not a name of this machine: use localhost or 127.0.0.1, or "
-                        "make a token ('hyades token create')",
-                        request.header("host"))};
+  // A page that has its own name resolve to this machine's address would be here without any token,
+  // and by a browser that may reach what its site may not.
+  if (!authority_.guarded() && !host.empty() && !is_ours(name_of(host))) {
+    return {
+        grpc::StatusCode::PERMISSION_DENIED,
+        fmt::format("'{}' is not known as a name of this machine: use its address or localhost, "
+                    "start the coordinator with --http-name {}, or make a token ('hyades token "
+                    "create')",
+                    request.header("host"), name_of(host))};
   }
   const bool other_site = request.header("sec-fetch-site") == "cross-site";
   const std::string& origin = request.header("origin");
@@ -99,59 +106,46 @@ grpc::Status Gatekeeper::check_site(const WebRequest& request) const {
   return grpc::Status::OK;
 }
 
-// A session is "ID.UNTIL.SIGNATURE": which token has opened it, and until when it lasts (seconds
-// since 1970). It ends with the token, too.
+bool Gatekeeper::is_ours(std::string_view name) const {
+  if (is_address(name) || name.find('.') == std::string_view::npos) return true;
+  for (const char* local : {".local", ".localhost", ".internal", ".home.arpa"}) {
+    if (name.ends_with(local)) return true;
+  }
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
+}
 
-std::optional<std::string> Gatekeeper::open_session(const std::string& token,
-                                                    grpc::Status& why) const {
+std::optional<std::string> Gatekeeper::open_session(const std::string& token, grpc::Status& why) {
   Caller caller;
   why = authority_.guarded()
             ? authority_.admit("Bearer " + token, caller)
             : grpc::Status(grpc::StatusCode::UNAUTHENTICATED, "this coordinator asks for no token");
   if (!why.ok()) return std::nullopt;
-  const std::string until = std::to_string(now_seconds() + kSessionSeconds);
-  const std::string signature = sign(caller.token_id, until);
-  if (signature.empty()) {
+  const auto secret = sessions_.open(caller.token_id, now_seconds() + kSessionSeconds);
+  if (!secret) {
     why = {grpc::StatusCode::INTERNAL, "the system gives no random numbers"};
     return std::nullopt;
   }
-  return fmt::format("{}{}.{}.{}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}{}", kCookie,
-                     caller.token_id, until, signature, kSessionSeconds, secure_ ? "; Secure" : "");
+  return fmt::format("{}{}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}{}", cookie_, *secret,
+                     kSessionSeconds, secure_ ? "; Secure" : "");
 }
 
-std::string Gatekeeper::end_session() const {
-  return fmt::format("{}; Path=/; HttpOnly; SameSite=Strict; Max-Age=0", kCookie);
+std::string Gatekeeper::end_session(const WebRequest& request) {
+  if (const auto ended = sessions_.end(find_cookie(request.header("cookie"), cookie_))) {
+    authority_.end_session(ended->key);
+  }
+  return fmt::format("{}; Path=/; HttpOnly; SameSite=Strict; Max-Age=0{}", cookie_,
+                     secure_ ? "; Secure" : "");
 }
 
-grpc::Status Gatekeeper::admit_session(std::string_view session, Caller& caller) const {
-  const grpc::Status over = {grpc::StatusCode::UNAUTHENTICATED,
-                             "the session is over: sign in again"};
-  const size_t first = session.find('.');
-  const size_t second = first == std::string_view::npos ? first : session.find('.', first + 1);
-  if (second == std::string_view::npos) return over;
-  const std::string id(session.substr(0, first));
-  const std::string until(session.substr(first + 1, second - first - 1));
-  const std::string signature = sign(id, until);
-  if (signature.empty() || !same(std::string(session.substr(second + 1)), signature)) return over;
-  int64_t seconds = 0;
-  std::from_chars(until.data(), until.data() + until.size(), seconds);
-  if (now_seconds() >= seconds) return over;
-  return authority_.admit_known(id, caller);
-}
-
-/// HMAC-SHA-256. Sessions of the shared token are signed with that, so that they outlive the
-/// process and end with it; of other tokens only hashes are known, which whoever reads the data
-/// folder has, too.
-std::string Gatekeeper::sign(const std::string& id, const std::string& until) const {
-  const std::string& key = id == kSharedToken ? shared_token_ : key_;
-  if (key.empty()) return {};
-  const std::string signed_text = "hyades session of " + id + " until " + until;
-  unsigned char digest[EVP_MAX_MD_SIZE];
-  unsigned int size = 0;
-  HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
-       reinterpret_cast<const unsigned char*>(signed_text.data()), signed_text.size(), digest,
-       &size);
-  return core::to_hex(std::span(digest, size));
+grpc::Status Gatekeeper::admit_session(std::string_view secret, Caller& caller) const {
+  const auto session = sessions_.find(secret, now_seconds());
+  if (!session) {
+    return {grpc::StatusCode::UNAUTHENTICATED,
+            "the session is over (it was ended, or the coordinator has started again): sign in "
+            "again"};
+  }
+  caller.session = session->key;
+  return authority_.admit_known(session->token_id, caller);
 }
 
 }  // namespace hyades::coordinator

@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "coordinator/access/authority.h"
 #include "coordinator/web/exchange.h"
+#include "coordinator/web/sessions.h"
 
 namespace hyades::coordinator {
 
@@ -13,30 +16,36 @@ namespace hyades::coordinator {
 /// in the name of a person whose browser reaches the coordinator.
 class Gatekeeper {
  public:
-  /// `shared_token`: that of --token-file, or empty. `loopback`: listens on this machine only.
-  /// `secure`: TLS. `authority` outlives it.
-  Gatekeeper(Authority& authority, std::string shared_token, bool loopback, bool secure);
+  /// `names`: by which browsers may reach it besides those that no stranger can have (see
+  /// check()). `secure`: TLS. `authority` outlives it.
+  Gatekeeper(Authority& authority, std::vector<std::string> names, bool secure);
+
+  /// Cookies are the same for all ports of a machine: a coordinator's are named by its own.
+  void set_port(uint16_t port);
 
   /// OK and who asks; UNAUTHENTICATED; or PERMISSION_DENIED for requests that another site's page
-  /// has made, or that came by a name which is not this machine's (DNS rebinding; only where
-  /// nothing else guards).
+  /// has made, or, where no token guards, that came by a name which a stranger may have led here
+  /// (DNS rebinding). No stranger can have an address, a name without a dot, one below .local,
+  /// .localhost, .internal or home.arpa, or this machine's own name; others have to be among
+  /// `names`.
   grpc::Status check(const WebRequest& request, Caller& caller) const;
 
   /// The header Set-Cookie of a session for who shows this token; or why there is none.
-  std::optional<std::string> open_session(const std::string& token, grpc::Status& why) const;
-  /// The header that ends it.
-  std::string end_session() const;
+  std::optional<std::string> open_session(const std::string& token, grpc::Status& why);
+  /// Ends the session of the request, if it has one, with all that is open in it; the header that
+  /// makes the browser forget it.
+  std::string end_session(const WebRequest& request);
 
  private:
   grpc::Status admit_session(std::string_view session, Caller& caller) const;
-  std::string sign(const std::string& id, const std::string& until) const;
   grpc::Status check_site(const WebRequest& request) const;
+  bool is_ours(std::string_view host) const;
 
   Authority& authority_;
-  std::string shared_token_;
-  std::string key_;  ///< that signs sessions of all other tokens: of this process alone
-  bool loopback_;
+  Sessions sessions_;
+  std::vector<std::string> names_;
   bool secure_;
+  std::string cookie_ = "hyades_session=";
 };
 
 }  // namespace hyades::coordinator

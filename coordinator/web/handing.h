@@ -65,9 +65,31 @@ bool query_number_if_any(const WebRequest& request, const char* name, std::optio
   return value.has_value();
 }
 
-inline bool query_flag(const WebRequest& request, const char* name) {
+/// The same of a value that has to lie within [least, most] where it is given.
+template <class Number>
+std::optional<Number> query_within(const WebRequest& request, const char* name, Number least,
+                                   Number most, Number fallback, const Answer& answer) {
+  const auto number = query_number<Number>(request, name, fallback, answer);
+  if (!number || !request.query.contains(name) || (*number >= least && *number <= most)) {
+    return number;
+  }
+  answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
+                      fmt::format("{}: expected {} to {}, not {}", name, least, most, *number)}));
+  return std::nullopt;
+}
+
+/// Whether something is wanted ("name", "name=true", "name=1"); nothing (and answered) where the
+/// value is neither yes nor no.
+inline std::optional<bool> query_flag(const WebRequest& request, const char* name,
+                                      const Answer& answer) {
   const auto given = request.query.find(name);
-  return given != request.query.end() && given->second != "false" && given->second != "0";
+  if (given == request.query.end()) return false;
+  const std::string& value = given->second;
+  if (value.empty() || value == "true" || value == "1") return true;
+  if (value == "false" || value == "0") return false;
+  answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
+                      fmt::format("{}: expected true or false, not '{}'", name, value)}));
+  return std::nullopt;
 }
 
 /// A handler of routes with a {job}: `what(job, request, answer)`; not found where it is no number.

@@ -13,6 +13,7 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr uint32_t kLinesAtOnce = 1000;
+constexpr uint32_t kMostJobs = 1000;  // on a page
 
 /// What a question answers with, where its status is OK.
 template <class Response, class Show>
@@ -63,10 +64,12 @@ void JobsApi::add_routes(Router& router) {
 void JobsApi::add_questions(Router& router) {
   router.add("GET", "/api/v1/jobs", [this](const WebRequest& request, const Answer& answer) {
     v1::ListJobsRequest asked;
-    asked.set_ended(query_flag(request, "ended"));
+    const auto ended = query_flag(request, "ended", answer);
+    if (!ended) return;
+    asked.set_ended(*ended);
     const auto owner = request.query.find("owner");
     if (owner != request.query.end()) asked.set_owner(owner->second);
-    const auto limit = query_number<uint32_t>(request, "limit", 0, answer);
+    const auto limit = query_within<uint32_t>(request, "limit", 1, kMostJobs, 0, answer);
     if (!limit) return;
     const auto before = query_number<uint64_t>(request, "before", 0, answer);
     if (!before) return;
@@ -109,7 +112,8 @@ void JobsApi::add_questions(Router& router) {
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                const auto after = query_number<uint64_t>(request, "after", 0, answer);
                if (!after) return;
-               const auto limit = query_number<uint32_t>(request, "limit", 0, answer);
+               const auto limit =
+                   query_within<uint32_t>(request, "limit", 1, UINT32_MAX, 0, answer);
                if (!limit) return;
                v1::ListTimelineRequest asked;
                asked.set_job(job);

@@ -77,21 +77,22 @@ void OutputsApi::add_routes(Router& router) {
                asked.job = job;
                const auto after = query_number<uint64_t>(request, "after", 0, answer);
                if (!after) return;
-               const auto limit = query_number<uint32_t>(request, "limit", kMostListed, answer);
+               const auto limit =
+                   query_within<uint32_t>(request, "limit", 1, kMostListed, kMostListed, answer);
                if (!limit) return;
                if (!query_number_if_any(request, "frame", asked.frame, answer)) return;
                asked.after = *after;
-               asked.limit = std::clamp(*limit, 1U, kMostListed);
+               asked.limit = *limit;
                answer_by(desks_.rows, answer, [this, asked] { return list(asked); });
              }));
   router.add("GET", "/api/v1/jobs/{job}/outputs/{path...}",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
+               const auto download = query_flag(request, "download", answer);
+               if (!download) return;
                answer_by(desks_.files, answer,
                          [this, job, path = request.parameters.at("path"),
                           range = WantedRange{request.header("range"), request.header("if-range")},
-                          download = query_flag(request, "download")] {
-                           return file(job, path, range, download);
-                         });
+                          download = *download] { return file(job, path, range, download); });
              }));
   router.add("GET", "/api/v1/jobs/{job}/archive.zip",
              of_job_by(desks_.files, [this](uint64_t job) { return archive(job); }));

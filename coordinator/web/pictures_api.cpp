@@ -95,14 +95,11 @@ void PicturesApi::add_routes(Router& router) {
         if (!job) return;
         const auto frame = parameter<int32_t>(request, "frame", answer);
         if (!frame) return;
-        const auto width = query_number<int>(request, "width", 0, answer);
+        const auto width = query_within<int>(request, "width", kNarrowest, kWidest, 0, answer);
         if (!width) return;
-        Asked asked{*job, *frame, false, query_flag(request, "mask"), *width, "beauty"};
-        if (*width != 0 && (*width < kNarrowest || *width > kWidest)) {
-          answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
-                              fmt::format("width: expected {} to {}", kNarrowest, kWidest)}));
-          return;
-        }
+        const auto mask = query_flag(request, "mask", answer);
+        if (!mask) return;
+        Asked asked{*job, *frame, false, *mask, *width, "beauty"};
         const auto format = request.query.find("format");
         if (format != request.query.end()) {
           asked.half = format->second == "half";

@@ -2,8 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <utility>
-
 #include <fmt/format.h>
 #include <boost/asio/buffer.hpp>
 
@@ -46,12 +44,23 @@ core::Result<TlsContext::Context> TlsContext::load() const {
   return context;
 }
 
-bool TlsContext::changed() {
-  std::vector<std::string> now;
+TlsContext::Stamps TlsContext::stamps() const {
+  Stamps now;
   for (const std::string& file : {listen_.cert_file, listen_.key_file, listen_.ca_file}) {
     now.push_back(stamp_of(file));
   }
-  return std::exchange(stamps_, now) != now;
+  return now;
+}
+
+bool TlsContext::changed() const {
+  const Stamps now = stamps();
+  const std::lock_guard lock(mutex_);
+  return now != taken_;
+}
+
+void TlsContext::taken(const Stamps& stamps) {
+  const std::lock_guard lock(mutex_);
+  taken_ = stamps;
 }
 
 }  // namespace hyades::coordinator

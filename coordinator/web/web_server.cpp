@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <exception>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -97,10 +98,10 @@ void close_on_exec(Socket& socket) {
 }  // namespace
 
 struct WebServer::Parts {
-  Parts(Brain& brain, Authority& known, Gatekeeper keeper)
+  Parts(Brain& brain, Authority& known, std::vector<std::string> names, bool secure)
       : meters(brain.meters()),
         authority(known),
-        gatekeeper(std::move(keeper)),
+        gatekeeper(known, std::move(names), secure),
         outlet(std::make_shared<Outlet>(network)),
         farm(brain, desks),
         jobs(brain, desks),
@@ -177,9 +178,9 @@ struct WebServer::Parts {
                          {"expires_ms", caller.term.expires_ms},
                          {"expiring", farm::expiry_warning(caller.term, token_clock_ms())}}));
     });
-    to.add("DELETE", "/api/v1/session", [this](const WebRequest&, const Answer& answer) {
+    to.add("DELETE", "/api/v1/session", [this](const WebRequest& request, const Answer& answer) {
       WebReply reply = empty_reply(204);
-      reply.headers.emplace_back("Set-Cookie", gatekeeper.end_session());
+      reply.headers.emplace_back("Set-Cookie", gatekeeper.end_session(request));
       answer(std::move(reply));
     });
   }
@@ -261,18 +262,26 @@ struct WebServer::Parts {
     look.async_wait([this](boost::system::error_code error) {
       if (error) return;
       if (certificates->changed()) {
-        (void)desks.files.hand([this] {
-          auto fresh = certificates->load();
-          if (!fresh) {
-            farm::log(farm::LogLevel::warning,
-                      fresh.error().message + ": HTTP goes on with the last certificate");
-            return;
-          }
-          outlet->post([this, context = std::move(*fresh)] { tls = context; });
-        });
+        (void)desks.files.hand([this] { load_certificates(); });
       }
       look_at_certificates();
     });
+  }
+
+  /// What is amiss is told once. Files that were read while they were being written, say, are read
+  /// again with the next look.
+  void load_certificates() {
+    const TlsContext::Stamps stamps = certificates->stamps();
+    auto fresh = certificates->load();
+    std::string trouble = fresh ? std::string() : fresh.error().message;
+    const std::lock_guard lock(certificates_mutex);
+    if (fresh) {
+      outlet->post([this, context = std::move(*fresh)] { tls = context; });
+      certificates->taken(stamps);
+    } else if (trouble != certificates_trouble) {
+      farm::log(farm::LogLevel::warning, trouble + ": HTTP goes on with the last certificate");
+    }
+    certificates_trouble = std::move(trouble);
   }
 
   void run() {
@@ -304,6 +313,8 @@ struct WebServer::Parts {
   ConnectionWorld world;
   std::optional<TlsContext> certificates;  ///< none: plain text
   TlsContext::Context tls;                 ///< of those who come from now on
+  std::mutex certificates_mutex;
+  std::string certificates_trouble;  ///< as it was told
   tcp::acceptor acceptor;
   asio::steady_timer again;
   asio::steady_timer sweep;
@@ -333,18 +344,18 @@ std::vector<std::string> WebServer::routes() const {
 }
 
 core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& listen, Brain& brain,
-                                                          Authority& authority) {
+                                                          Authority& authority,
+                                                          std::vector<std::string> names) {
   auto door = farm::open_door(listen);  // its rules are ours
   if (!door) return door.error();
   const bool secure = !listen.cert_file.empty();
-  auto parts = std::make_unique<Parts>(
-      brain, authority,
-      Gatekeeper(authority, door->token, farm::is_loopback(listen.address), secure));
+  auto parts = std::make_unique<Parts>(brain, authority, std::move(names), secure);
   if (secure) {
     parts->certificates.emplace(listen);
-    (void)parts->certificates->changed();
+    const TlsContext::Stamps stamps = parts->certificates->stamps();
     auto tls = parts->certificates->load();
     if (!tls) return tls.error();
+    parts->certificates->taken(stamps);
     parts->tls = std::move(*tls);
   }
   if (core::Status bound = parts->listen(listen.address); !bound) return bound.error();
@@ -352,6 +363,7 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   Parts& running = *server->parts_;
   boost::system::error_code error;
   const uint16_t port = running.acceptor.local_endpoint(error).port();
+  running.gatekeeper.set_port(port);
   server->url_ = (secure ? "https://" : "http://") +
                  listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
   running.accept();

@@ -20,9 +20,12 @@ class WebServer {
  public:
   /// Listens at listen.address, with its certificate and token (farm::open_door has the rules). An
   /// error where they do not hold together, or the address is taken or not this machine's. `brain`
-  /// and `authority`, which says who may come in, outlive the server.
+  /// and `authority`, which says who may come in, outlive the server. `names`: by which browsers
+  /// may reach it where no token guards, beside those that no stranger can have
+  /// (Gatekeeper::check).
   static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen, Brain& brain,
-                                                        Authority& authority);
+                                                        Authority& authority,
+                                                        std::vector<std::string> names = {});
 
   /// Breaks off all connections and stops listening.
   ~WebServer();

@@ -37,7 +37,7 @@ grpc::Status told(Order order) {
 bool try_submission(const v1::SubmitRequest& request) {
   Brain& brain = *farm().brain;
   v1::SubmitResponse response;
-  if (!brain.submit(request, response).ok()) return false;
+  if (!brain.submit(request, false, response).ok()) return false;
   const uint64_t job = response.job().id();
   v1::GetJobResponse got;
   if (!brain.get(job, std::nullopt, got).ok()) std::abort();

@@ -13,7 +13,7 @@ export class ApiError extends Error {
 
 let whenSignedOut = () => {};
 
-/** Calls `listener` whenever the coordinator wants a token. */
+/** Calls `listener` with the coordinator's words whenever it wants a token. */
 export function onSignedOut(listener) {
   whenSignedOut = listener;
 }
@@ -70,7 +70,7 @@ export async function call(method, path, { query, body, signal, cache } = {}) {
   }
   if (response.ok) return response;
   const error = await refusal(response);
-  if (error.code === 'unauthenticated' && path !== 'api/v1/session') whenSignedOut();
+  if (error.code === 'unauthenticated' && path !== 'api/v1/session') whenSignedOut(error.message);
   throw error;
 }
 

@@ -7,7 +7,7 @@ import { lost, onConnection } from './live.js';
 import { nextTheme, setTheme, theme } from './theme.js';
 import { parse, to } from './router.js';
 import { onMe, whoAmI } from './me.js';
-import { startSession } from './session.js';
+import { signOutButton, startSession } from './session.js';
 import { counted } from './format.js';
 import { enter, scrollBack } from './place.js';
 import { farmView } from './farm.js';
@@ -64,7 +64,8 @@ function retitle() {
   if (document.title !== text) document.title = text;
 }
 
-function show(first = false) {
+/** `anew`: the view is made again, whatever it holds. */
+function show(first = false, anew = false) {
   const back = enter();
   const route = parse(location.hash);
   for (const link of document.querySelectorAll('[data-place]')) {
@@ -72,7 +73,7 @@ function show(first = false) {
     if (here) link.setAttribute('aria-current', 'page');
     else link.removeAttribute('aria-current');
   }
-  if (view?.take?.(route)) {
+  if (!anew && view?.take?.(route)) {
     retitle();
     return;
   }
@@ -146,6 +147,7 @@ function makeTop() {
       { class: 'top-end' },
       count,
       who,
+      signOutButton(),
       themeButton(),
       h(
         'button',
@@ -213,6 +215,10 @@ makeTop();
 makeBanner();
 startSession();
 onMe(() => view && show(true)); // buttons depend on it
+// What a view could not be told while nobody was signed in it asks for again; what is being submitted stays.
+addEventListener('hyades-signed-in', () => {
+  if (view && document.body.dataset.view !== 'submit') show(true, true);
+});
 startFarm();
 offerDrop();
 addEventListener('hashchange', () => show());

@@ -1,14 +1,16 @@
 // Signing in, where the coordinator has a token.
 import { ask } from './dialog.js';
-import { onSignedOut, signIn } from './api.js';
-import { h } from './dom.js';
-import { learnMe } from './me.js';
+import { onSignedOut, signIn, signOut } from './api.js';
+import { h, setText } from './dom.js';
+import { learnMe, me, onMe } from './me.js';
 
 let asking = false;
 
-async function askForToken() {
+/** `why`: the coordinator's words; told where they say what became of a session or token that was there. */
+async function askForToken(why = '') {
   if (asking) return;
   asking = true;
+  const had = /^the (session|token) /.test(why);
   const field = h('input', {
     type: 'password',
     name: 'token',
@@ -23,6 +25,7 @@ async function askForToken() {
       title: 'Sign in',
       testid: 'sign-in',
       body: [
+        had ? h('p', { text: `${why[0].toUpperCase()}${why.slice(1)}.`, testid: 'why-sign-in' }) : null,
         h('p', {
           id: 'token-hint',
           text: 'This farm asks for a token: one line of text, which an admin makes (hyades token create).',
@@ -37,6 +40,30 @@ async function askForToken() {
   asking = false;
   await learnMe();
   dispatchEvent(new Event('hyades-signed-in'));
+}
+
+/** A button that ends the session, here and at the coordinator; it is there where somebody is signed in. */
+export function signOutButton() {
+  const button = h('button', {
+    type: 'button',
+    class: 'plain small',
+    text: 'Sign out',
+    hidden: true,
+    testid: 'sign-out',
+    onclick: async () => {
+      try {
+        await signOut();
+      } catch (error) {
+        setText(button, error.message);
+        return;
+      }
+      location.reload(); // nothing that he has seen stays
+    },
+  });
+  onMe(() => {
+    button.hidden = !me.guarded;
+  });
+  return button;
 }
 
 /** From now on whoever is told to sign in is asked for the token. */

@@ -19,9 +19,14 @@ context.setDefaultTimeout(60_000);
 export const page = await context.newPage();
 
 const wrong = [];
+let forgiven = /status of (404|503|400|409)/;
+/** What the console may say, besides. */
+export const forgive = (also) => {
+  forgiven = new RegExp(`${forgiven.source}|${also.source}`);
+};
 page.on('pageerror', (error) => wrong.push(`error in the page: ${error.message}`));
 page.on('console', (message) => {
-  if (message.type() === 'error' && !/status of (404|503|400|409)/.test(message.text()))
+  if (message.type() === 'error' && !forgiven.test(message.text()))
     wrong.push(`console: ${message.text()}`);
 });
 page.on('request', (request) => {

@@ -52,7 +52,7 @@ TEST_F(Guarded, ASessionOpensWhatTheTokenOpens) {
   const std::string cookie = set.substr(0, set.find(';'));
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", "a=b; " + cookie}}).status, 200);
   std::string forged = cookie;
-  forged[std::string("hyades_session=").size()] = '9';  // a later end
+  forged.back() = forged.back() == '0' ? '1' : '0';
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", forged}}).status, 401);
   EXPECT_EQ(world.client->post("/api/v1/session", R"({"token": "wrong"})").status, 401);
   EXPECT_EQ(world.client->post("/api/v1/session", "[").status, 401);
@@ -130,20 +130,74 @@ TEST_F(WithRoles, WhoIsSignedInIsToldAndHisSessionEndsWithHisToken) {
   const std::string cookie = set.substr(0, set.find(';'));
   const auto me = world.client->get("/api/v1/session", {{"Cookie", cookie}});
   ASSERT_EQ(me.status, 200) << me.body;
-  EXPECT_EQ(Json::parse(me.body),
-            Json({{"guarded", true},
-                  {"role", "submitter"},
-                  {"name", "alice"},
-                  {"token_id", id},
-                  {"expires_ms", 0},
-                  {"expiring", ""}}));
-  // Another's id under the same signature.
-  std::string forged = cookie;
-  forged.replace(forged.find(id), id.size(), world.farm.token.substr(7, 8));
-  EXPECT_EQ(world.client->get("/api/v1/session", {{"Cookie", forged}}).status, 401);
+  EXPECT_EQ(Json::parse(me.body), Json({{"guarded", true},
+                                        {"role", "submitter"},
+                                        {"name", "alice"},
+                                        {"token_id", id},
+                                        {"expires_ms", 0},
+                                        {"expiring", ""}}));
   StoredToken row;
   ASSERT_TRUE(world.farm.authority->revoke(id, row).ok());
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", cookie}}).status, 401);
+}
+
+TEST_F(WithRoles, SigningOutEndsTheSessionAndWhatIsOpenInIt) {
+  const std::string text = make(v1::ROLE_VIEWER, "vera");
+  const auto sign_in = [&] {
+    const auto reply = world.client->post("/api/v1/session", Json({{"token", text}}).dump());
+    const std::string set = reply.headers.at("set-cookie");
+    return set.substr(0, set.find(';'));
+  };
+  const std::string cookie = sign_in();
+  const std::string other = sign_in();
+  HttpClient::Events events(*world.client, "/api/v1/events", {{"Cookie", cookie}});
+  HttpClient::Events others(*world.client, "/api/v1/events", {{"Cookie", other}});
+  ASSERT_EQ(events.next().name, "snapshot");
+  ASSERT_EQ(others.next().name, "snapshot");
+  const auto out = world.client->send("DELETE", "/api/v1/session", {}, {{"Cookie", cookie}});
+  EXPECT_EQ(out.status, 204);
+  EXPECT_NE(out.headers.at("set-cookie").find("Max-Age=0"), std::string::npos);
+  for (auto event = events.next(); !event.name.empty(); event = events.next()) {
+  }
+  const auto after = world.client->get("/api/v1/info", {{"Cookie", cookie}});
+  EXPECT_EQ(after.status, 401) << "whoever has kept the cookie";
+  EXPECT_NE(after.body.find("the session is over"), std::string::npos);
+  EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", other}}).status, 200);
+  world.farm.submit(1);
+  EXPECT_EQ(others.next().name, "change") << "in another browser he goes on";
+  EXPECT_EQ(world.client->send("DELETE", "/api/v1/session").status, 204) << "nothing to end";
+}
+
+TEST_F(WithRoles, ASessionDoesNotOutliveTheCoordinatorAndSaysSo) {
+  const auto signed_in =
+      world.client->post("/api/v1/session", Json({{"token", world.farm.token}}).dump());
+  const std::string set = signed_in.headers.at("set-cookie");
+  const std::string cookie = set.substr(0, set.find(';'));
+  world.stop();
+  world.start();
+  const size_t name = std::string("hyades_session_").size();
+  const std::string port = world.web->url().substr(world.web->url().rfind(':') + 1);
+  const std::string again = cookie.substr(0, name) + port + cookie.substr(cookie.find('='));
+  const auto answer = world.client->get("/api/v1/info", {{"Cookie", again}});
+  EXPECT_EQ(answer.status, 401);
+  EXPECT_NE(answer.body.find("sign in again"), std::string::npos) << answer.body;
+}
+
+TEST_F(WithRoles, CoordinatorsOfOneMachineDoNotTakeEachOthersCookies) {
+  WebWorld second;
+  second.start();
+  std::string text;
+  StoredToken row;
+  ASSERT_TRUE(second.farm.authority->create("root", v1::ROLE_ADMIN, 0, text, row).ok());
+  const auto cookie_of = [](const WebWorld& of, const std::string& token) {
+    const auto reply = of.client->post("/api/v1/session", Json({{"token", token}}).dump());
+    const std::string set = reply.headers.at("set-cookie");
+    return set.substr(0, set.find(';'));
+  };
+  // A browser sends both to both.
+  const std::string both = cookie_of(second, text) + "; " + cookie_of(world, world.farm.token);
+  EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", both}}).status, 200);
+  EXPECT_EQ(second.client->get("/api/v1/info", {{"Cookie", both}}).status, 200);
 }
 
 TEST_F(WithRoles, LiveReadersAreSentAwayWithTheirToken) {
@@ -181,6 +235,30 @@ TEST(Gatekeeper, NamesThatAreNotThisMachinesAreRefusedWhereNothingElseGuards) {
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Host", "evil.example:8080"}}).status, 403);
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Host", "localhost"}}).status, 200);
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Host", "localhost:99"}}).status, 200);
+}
+
+TEST(Gatekeeper, ANameThatAStrangerMayHaveIsRefusedBeyondThisMachineToo) {
+  WebWorld world;
+  world.farm.how.insecure = true;
+  world.names = {"Farm.Example"};
+  world.start("0.0.0.0:0");
+  const auto as = [&](const std::string& host) {
+    return world.client->get("/api/v1/info", {{"Host", host}}).status;
+  };
+  for (const char* ours : {"192.0.2.7:8080", "192.0.2.7", "[2001:db8::1]:8080", "[::1]",
+                           "farm:8080", "node-7.local", "farm.example", "FARM.example:8080"}) {
+    EXPECT_EQ(as(ours), 200) << ours;
+  }
+  for (const char* strange :
+       {"evil.example", "farm.example.evil.example:8080", "192.0.2.7.evil.example", "1.2.3",
+        "[::1].evil.example", "farm.local.evil.example", "x.", "."}) {
+    EXPECT_EQ(as(strange), 403) << strange;
+  }
+  // Tokens guard by themselves: a page of another name has no cookie of ours.
+  std::string text;
+  StoredToken row;
+  ASSERT_TRUE(world.farm.authority->create("root", v1::ROLE_ADMIN, 0, text, row).ok());
+  EXPECT_EQ(as("evil.example"), 401);
 }
 
 TEST(Gatekeeper, BeyondThisMachineOnlyWithTlsAndToken) {

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
@@ -72,6 +75,40 @@ class OpenApi : public ::testing::Test {
     }
   }
 
+  static void expect_media_type(const HttpClient::Response& response, const YAML::Node& told,
+                                const std::string& where) {
+    const auto header = response.headers.find("content-type");
+    ASSERT_NE(header, response.headers.end()) << where;
+    const std::string type = header->second.substr(0, header->second.find(';'));
+    EXPECT_TRUE(told["content"][type].IsDefined() || told["content"]["*/*"].IsDefined())
+        << where << ": " << header->second;
+  }
+
+  /// That an answer has a media type which the description gives; what it was.
+  std::string media_type(const std::string& path, const std::string& target,
+                         const HttpClient::Headers& headers = {}) const {
+    const auto response = world.client->get(target, headers);
+    const YAML::Node told = api["paths"][path]["get"]["responses"][std::to_string(response.status)];
+    EXPECT_TRUE(told.IsDefined()) << target << ": " << response.status << " " << response.body;
+    if (!told.IsDefined()) return {};
+    expect_media_type(response, told, target);
+    return response.headers.at("content-type");
+  }
+
+  /// Values that a parameter of this schema may not have.
+  static std::vector<std::string> wrong_values(const YAML::Node& schema) {
+    std::vector<std::string> wrong;
+    const auto type = schema["type"].as<std::string>();
+    if (type == "integer") {
+      wrong = {"many", "1.5", "99999999999999999999"};
+      if (schema["minimum"]) wrong.push_back(std::to_string(schema["minimum"].as<int64_t>() - 1));
+      if (schema["maximum"]) wrong.push_back(std::to_string(schema["maximum"].as<int64_t>() + 1));
+    }
+    if (schema["enum"]) wrong.emplace_back("nonsense");
+    if (type == "boolean") wrong.emplace_back("perhaps");
+    return wrong;
+  }
+
   /// What the description says of a call's answer.
   void expect_as_told(const std::string& method, const std::string& path, const std::string& target,
                       const std::string& body = {}) const {
@@ -82,6 +119,7 @@ class OpenApi : public ::testing::Test {
     const YAML::Node told = api["paths"][path][small]["responses"][std::to_string(response.status)];
     ASSERT_TRUE(told.IsDefined()) << method << " " << path << " gives " << response.status;
     if (response.status == 204) return;
+    expect_media_type(response, told, method + " " + target);
     const YAML::Node content = told["content"]["application/json"];
     ASSERT_TRUE(content.IsDefined()) << method << " " << path;
     expect_form(Json::parse(response.body), content["schema"], method + " " + path);
@@ -186,6 +224,115 @@ TEST_F(OpenApi, AnswersHaveTheFormThatItGives) {
   expect_as_told("DELETE", "/api/v1/jobs/{job}", one);
   const auto wrong = world.client->get("/api/v1/jobs/999");
   expect_form(Json::parse(wrong.body), schema_of("Error"), "Error");
+}
+
+TEST_F(OpenApi, AnswersHaveTheMediaTypesThatItGives) {
+  const uint64_t job = world.farm.submit(1);
+  const ScriptedWorker worker(world.farm.address, world.farm.script());
+  ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
+  const std::string one = "/api/v1/jobs/" + std::to_string(job);
+  media_type("/api/v1/jobs/{job}/document", one + "/document");
+  media_type("/api/v1/jobs/{job}/archive.zip", one + "/archive.zip");
+  const std::string file = world.json(one + "/outputs")["outputs"][0]["id"];
+  media_type("/api/v1/jobs/{job}/outputs/{path}", one + "/outputs/" + file);
+  media_type("/api/v1/jobs/{job}/outputs/{path}", one + "/outputs/" + file,
+             {{"Range", "bytes=0-3"}});
+  media_type("/api/v1/jobs/{job}/frames/{frame}/picture", one + "/frames/1/picture");
+  for (const char* path : {"/healthz", "/readyz", "/metrics"}) media_type(path, path);
+  HttpClient::Events events(*world.client, "/api/v1/events");
+  EXPECT_EQ(events.status(), 200);
+}
+
+// A value that a parameter may not have is refused: so it is read, and as it is told.
+TEST_F(OpenApi, ParametersAreTakenAsItTells) {
+  const uint64_t job = world.farm.submit(1);
+  const ScriptedWorker worker(world.farm.address, world.farm.script());
+  ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
+  int tried = 0;
+  for (const auto& path : api["paths"]) {
+    std::string target = path.first.as<std::string>();
+    for (const auto& [name, value] :
+         {std::pair("{job}", std::to_string(job)), std::pair("{frame}", std::string("1")),
+          std::pair("{sha256}", std::string(64, 'a'))}) {
+      if (const size_t at = target.find(name); at != std::string::npos) {
+        target.replace(at, std::string(name).size(), value);
+      }
+    }
+    for (const auto& method : path.second) {
+      auto verb = method.first.as<std::string>();
+      std::transform(verb.begin(), verb.end(), verb.begin(), ::toupper);
+      for (const YAML::Node& parameter : method.second["parameters"]) {
+        const auto name = parameter["name"].as<std::string>();
+        const std::string needed = name != "size" && verb == "PUT" ? "&size=5" : "";
+        for (const std::string& wrong : wrong_values(parameter["schema"])) {
+          const std::string asked = target + "?" + name + "=" + wrong + needed;
+          EXPECT_EQ(world.client->send(verb, asked, verb == "PUT" ? "x" : "").status, 400) << asked;
+          ++tried;
+        }
+      }
+    }
+  }
+  EXPECT_GT(tried, 30);
+}
+
+// What stands in the path, too; the body of a request is JSON where it says so.
+TEST_F(OpenApi, PathsAndBodiesAreTakenAsItTells) {
+  const uint64_t job = world.farm.submit(1);
+  const std::string one = "/api/v1/jobs/" + std::to_string(job);
+  for (const char* wrong : {"seven", "-1", "0", "1.5", "99999999999999999999"}) {
+    EXPECT_EQ(world.client->get(std::string("/api/v1/jobs/") + wrong).status, 404) << wrong;
+  }
+  EXPECT_EQ(world.client->get(one + "/frames/first/picture").status, 404);
+  int bodies = 0;
+  for (const auto& path : api["paths"]) {
+    for (const auto& method : path.second) {
+      if (!method.second.IsMap()) continue;
+      const YAML::Node body = method.second["requestBody"];
+      if (!body.IsDefined() || !body["content"]["application/json"]) continue;
+      std::string target = path.first.as<std::string>();
+      for (const auto& [name, value] :
+           {std::pair("{job}", std::to_string(job)), std::pair("{worker}", std::string("1")),
+            std::pair("{action}", std::string("drain"))}) {
+        if (const size_t at = target.find(name); at != std::string::npos) {
+          target.replace(at, std::string(name).size(), value);
+        }
+      }
+      auto verb = method.first.as<std::string>();
+      std::transform(verb.begin(), verb.end(), verb.begin(), ::toupper);
+      const int status = world.client->send(verb, target, "{nonsense").status;
+      EXPECT_TRUE(status == 400 || status == 401) << verb << " " << target << " " << status;
+      ++bodies;
+    }
+  }
+  EXPECT_GE(bodies, 5);
+}
+
+// The other way round: no parameter is read that is not told of.
+TEST_F(OpenApi, EveryParameterThatIsReadIsTold) {
+  std::set<std::string> told;
+  for (const auto& path : api["paths"]) {
+    for (const auto& method : path.second) {
+      if (!method.second.IsMap()) continue;
+      for (const YAML::Node& parameter : method.second["parameters"]) {
+        if (parameter["in"] && parameter["in"].as<std::string>() == "query") {
+          told.insert(parameter["name"].as<std::string>());
+        }
+      }
+    }
+  }
+  std::set<std::string> read;
+  const std::regex reads(
+      R"re((?:query_(?:number|within)<[^>]*>|query_number_if_any|query_flag)\(\s*request,\s*"([a-z_]+)"|query\.(?:find|contains|at)\("([a-z_]+)"\))re");
+  for (const auto& file : std::filesystem::directory_iterator("coordinator/web")) {
+    if (file.path().extension() != ".cpp") continue;
+    std::stringstream source;
+    source << std::ifstream(file.path()).rdbuf();
+    const std::string text = source.str();
+    for (std::sregex_iterator it(text.begin(), text.end(), reads), end; it != end; ++it) {
+      read.insert((*it)[1].matched ? (*it)[1] : (*it)[2]);
+    }
+  }
+  EXPECT_EQ(told, read);
 }
 
 TEST_F(OpenApi, EventsHaveTheFormThatItGives) {

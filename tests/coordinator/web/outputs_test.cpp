@@ -51,10 +51,10 @@ TEST_F(Outputs, OfOneFrame) {
 }
 
 TEST_F(Outputs, WhatIsNoNumberIsTold) {
-  for (const char* wrong : {"?after=x", "?limit=-1", "?frame=1.5", "?limit=99999999999"}) {
+  for (const char* wrong :
+       {"?after=x", "?limit=-1", "?frame=1.5", "?limit=99999999999", "?limit=0"}) {
     EXPECT_EQ(world.client->get(path + wrong).status, 400) << wrong;
   }
-  EXPECT_EQ(world.json(path + "?limit=0")["outputs"].size(), 1U) << "one at least";
 }
 
 }  // namespace

@@ -17,11 +17,11 @@ class WebWorld {
   WebWorld() = default;
   ~WebWorld() { stop(); }
 
-  void start() {
+  void start(const std::string& address = "127.0.0.1:0") {
     farm.start();
     farm::Listen listen = farm.how;
-    listen.address = "127.0.0.1:0";
-    auto started = WebServer::start(listen, *farm.brain, *farm.authority);
+    listen.address = address;
+    auto started = WebServer::start(listen, *farm.brain, *farm.authority, names);
     ASSERT_TRUE(started.ok()) << (started ? "" : started.error().message);
     web = std::move(*started);
     client = std::make_unique<HttpClient>(web->url());
@@ -60,6 +60,7 @@ class WebWorld {
   }
 
   FarmWorld farm;
+  std::vector<std::string> names;  ///< by which browsers may come; before start()
   std::unique_ptr<WebServer> web;
   std::unique_ptr<HttpClient> client;
 };
