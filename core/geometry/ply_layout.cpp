@@ -1,5 +1,6 @@
 #include "core/geometry/ply_layout.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -87,7 +88,8 @@ float ply_color(PlyType type, PlySlot slot, float value) {
       linear[i] = srgb_decode(static_cast<float>(i) / 255.0F);
     return linear;
   }();
-  return codes[static_cast<uint8_t>(value)];
+  // Texts may hold numbers beyond the type that they name, and none at all.
+  return codes[value > 0.0F ? static_cast<uint8_t>(std::min(value, largest)) : 0];
 }
 
 }  // namespace hyades::core
