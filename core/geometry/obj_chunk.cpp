@@ -24,7 +24,7 @@ bool is_continued(const char* begin, const char* end) {
   return end > begin && end[-1] == '\\';
 }
 
-enum class Keyword { other, position, uv, normal, face, material, library };
+enum class Keyword { other, position, uv, normal, face, material, library, no_area };
 
 Keyword keyword_at(const char*& at, const char* end) {
   while (at < end && (*at == ' ' || *at == '\t')) ++at;
@@ -37,6 +37,8 @@ Keyword keyword_at(const char*& at, const char* end) {
   };
   if (word("usemtl")) return at += 6, Keyword::material;
   if (word("mtllib")) return at += 6, Keyword::library;
+  if ((*at == 'l' || *at == 'p') && blank(1)) return Keyword::no_area;
+  if (word("curv") || word("curv2") || word("surf")) return Keyword::no_area;
   if (*at != 'v') return Keyword::other;
   if (blank(1)) return at += 1, Keyword::position;
   if (blank(2) && at[1] == 't') return at += 2, Keyword::uv;
@@ -161,6 +163,9 @@ const char* ObjChunk::parse_line(const char* at, const char* end) {
     case Keyword::library:
       data_.libraries.push_back(rest_of_line(at, end));
       return nullptr;
+    case Keyword::no_area:
+      ++data_.left_out;
+      return nullptr;
     case Keyword::other:
       return nullptr;
   }
@@ -191,7 +196,12 @@ const char* ObjChunk::parse_face(const char* at, const char* end) {
     data_.corners.push_back(corner);
     if (++size > kMaxCorners) return "a face has more than 16384 corners";
   }
-  if (size < 3) return "a face needs at least three corners";
+  if (size == 0) return "a face without corners";
+  if (size < 3) {
+    data_.corners.resize(data_.corners.size() - size);
+    ++data_.left_out;
+    return nullptr;
+  }
   data_.sizes.push_back(size);
   return nullptr;
 }

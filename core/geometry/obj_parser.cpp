@@ -55,6 +55,7 @@ ObjData join(std::vector<ObjChunk>& chunks, const std::vector<ObjCounts>& before
       material.first += faces.back();
       all.materials.push_back(std::move(material));
     }
+    all.left_out += c.data().left_out;
     all.libraries.insert(all.libraries.end(), c.data().libraries.begin(), c.data().libraries.end());
     corners.push_back(corners.back() + c.data().corners.size());
     faces.push_back(faces.back() + c.data().sizes.size());

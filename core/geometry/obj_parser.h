@@ -37,13 +37,15 @@ struct ObjData {
   std::vector<uint32_t> sizes;         ///< corners of each face
   std::vector<ObjMaterial> materials;  ///< in order; may be none, or begin after face 0
   std::vector<std::string> libraries;  ///< what follows each mtllib
+  uint64_t left_out = 0;  ///< points, lines, curves, surfaces and faces without an area
 };
 
-/// Parses the lines v, vt, vn, f, usemtl and mtllib, in parallel; other lines (groups, curves) are
-/// passed over. Indices are in range, and there are fewer than 2^32 corners. A position may have a
-/// colour behind it, as MeshLab and Blender write it: `v x y z r g b` or with an alpha, codes of
-/// sRGB from 0 to 1, or from 0 to 255 where one of the file is above 1; one number alone is the
-/// weight of a curve and means nothing. Errors name the line: that of the first one.
+/// Parses the lines v, vt, vn, f, usemtl and mtllib, in parallel; other lines (groups) are
+/// passed over; points, lines, curves and faces of one or two corners are counted. Indices are in
+/// range, and there are fewer than 2^32 corners. A position may have a colour behind it, as MeshLab
+/// and Blender write it: `v x y z r g b` or with an alpha, codes of sRGB from 0 to 1, or from 0 to
+/// 255 where one of the file is above 1; one number alone is the weight of a curve and means
+/// nothing. Errors name the line: that of the first one.
 Result<ObjData> parse_obj(std::span<const char> bytes);
 
 }  // namespace hyades::core

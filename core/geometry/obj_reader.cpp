@@ -223,6 +223,7 @@ Result<MeshParts> read_obj_parts(std::span<const char> bytes) {
   if (!meshes) return meshes.error();
   MeshParts result;
   result.libraries = std::move(data->libraries);
+  result.left_out = data->left_out;
   for (size_t i = 0; i < parts.size(); ++i) {
     result.parts.push_back({parts[i].name, (*meshes)[i]});
   }

@@ -29,6 +29,7 @@ inline constexpr const char* kNoMaterial = "default";
 struct MeshParts {
   std::vector<MeshPart> parts;         ///< in order of first use; of a file with triangles
   std::vector<std::string> libraries;  ///< what follows each mtllib: files of materials
+  uint64_t left_out = 0;  ///< points, lines, curves and faces of less than three corners of an OBJ
 };
 
 /// Reads a mesh cut into its materials. A PLY file is one part. Errors as read_mesh's.

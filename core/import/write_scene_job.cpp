@@ -16,6 +16,7 @@
 #include "core/import/names.h"
 #include "core/import/scene_job.h"
 #include "core/job/output_path.h"
+#include "core/job/parse.h"
 #include "core/job/yaml_build.h"
 #include "core/job/yaml_writer.h"
 
@@ -64,6 +65,7 @@ class Writer {
       if (auto done = copy(name, in_scene); !done) return done.error();
     }
     const std::string text = heading(job->added) + write_yaml(*tree);
+    if (auto good = check(text); !good) return good.error();
     if (auto done = save(request_.job, text); !done) return done.error();
     return std::move(written_);
   }
@@ -87,6 +89,16 @@ class Writer {
     const auto inside = importing_.check_files(how.scene, job->files);
     if (!inside) return inside.error();
     return job;
+  }
+
+  /// Whether the job can be rendered: a scene may ask for what no job allows, or for a picture that
+  /// is not there.
+  Status check(const std::string& text) {
+    Diagnostics diagnostics;
+    (void)parse_job(text, std::filesystem::path(request_.job).filename().string(), importing_,
+                    diagnostics);
+    if (diagnostics.empty()) return {};
+    return Error{"the job was not written, for it would not render:\n" + diagnostics.to_string()};
   }
 
   /// Comments for who reads the job: where it is from, what is not of the scene, what is left out.

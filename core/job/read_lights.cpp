@@ -38,7 +38,7 @@ void read_spot(MapReader& reader, LightDesc& light) {
   light.angle = Animated<float>(30.0F);
   read_place_and_power(reader, light);
   read_aim(reader, light);
-  reader.animated("angle", light.angle, {0.0, 90.0, true});
+  reader.animated("angle", light.angle, {0.0, 180.0, true});
   reader.animated("blend", light.blend, kUnitInterval);
 }
 

@@ -95,6 +95,7 @@ const char* read_line(std::string_view key, std::string_view rest, int line, Mat
     Rgb color;
     if (const char* wrong = read_color(rest, color)) return wrong;
     material.*row->second = glm::clamp(color, 0.0F, 1.0F);
+    if (max_component(color) > 1.0F) leave_out(line, key, "above 1", material);
     return nullptr;
   }
   if (const auto* row = find_row(kShares, key); row != std::end(kShares)) {
@@ -148,6 +149,7 @@ Result<std::vector<MtlMaterial>> parse_mtl(std::string_view text) {
       if (fresh) materials.emplace_back();
       material = &materials[place->second];
       *material = {};
+      if (!fresh) leave_out(number, "newmtl", "of this name before", *material);
       material->name = std::string(rest);
       material->line = number;
     } else if (material != nullptr) {

@@ -3,6 +3,9 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "core/geometry/read_mesh.h"
 #include "core/import/names.h"
@@ -80,10 +83,26 @@ std::vector<const MtlMap*> maps_of(const MtlMaterial& m) {
           &m.sheen_map,   &m.coat_map,     &m.coat_roughness_map};
 }
 
-/// The materials of one library, as mtllib names it.
-Status read_library(AssetResolver& files, const std::string& library, ObjScene& scene) {
-  std::string name = library;
-  std::replace(name.begin(), name.end(), '\\', '/');
+/// The libraries of one line: its names have blanks between them, and may have some within.
+std::vector<std::string> libraries_of(AssetResolver& files, std::string line,
+                                      const std::string& scene) {
+  std::replace(line.begin(), line.end(), '\\', '/');
+  if (files.exists(resolve_reference(line, scene))) return {line};
+  constexpr std::string_view kEnd = ".mtl";
+  std::vector<std::string> names;
+  size_t begin = 0;
+  for (size_t at = line.find(kEnd); at != std::string::npos; at = line.find(kEnd, at + 1)) {
+    const size_t end = at + kEnd.size();
+    if (end < line.size() && line[end] != ' ' && line[end] != '\t') continue;
+    names.push_back(line.substr(begin, end - begin));
+    begin = std::min(line.find_first_not_of(" \t", end), line.size());
+  }
+  if (begin < line.size()) names.push_back(line.substr(begin));
+  return names;
+}
+
+/// The materials of one library.
+Status read_library(AssetResolver& files, const std::string& name, ObjScene& scene) {
   const std::string place = resolve_reference(name, scene.place);
   if (auto inside = within_folder(name); !inside) return inside.error().in(scene.place);
   const auto bytes = files.open(name, scene.place);
@@ -101,11 +120,31 @@ Status read_library(AssetResolver& files, const std::string& library, ObjScene& 
       if (inside) continue;
       return inside.error().in(place + ": material '" + material.name + "'");
     }
+    if (scene.materials.contains(material.name)) {
+      scene.notes.push_back(place + ": line " + std::to_string(material.line) + ": material '" +
+                            material.name + "' is there for the second time: the last one counts");
+    }
     scene.libraries[material.name] = name;
     const std::string called = material.name;
     scene.materials[called] = std::move(material);
   }
   return {};
+}
+
+void note_what_is_left_out(const MeshParts& mesh, ObjScene& scene) {
+  for (const Part& part : scene.parts) {
+    // That a library is missing has been told, and a mesh may have none.
+    if (scene.materials.empty() || part.material == kNoMaterial) continue;
+    if (scene.materials.contains(part.material)) continue;
+    scene.notes.push_back(scene.place + ": no library has a material '" + part.material +
+                          "'; it is clay");
+  }
+  if (mesh.left_out > 0) {
+    scene.notes.push_back(
+        fmt::format("{}: {} points, lines, curves and faces of less than three "
+                    "corners are left out",
+                    scene.place, mesh.left_out));
+  }
 }
 
 }  // namespace
@@ -123,9 +162,12 @@ Result<std::shared_ptr<const SceneSource>> read_obj_scene(AssetResolver& files,
     bounds.include(part.mesh->bounds);
   }
   if (bounds.empty()) return Error{reference + ": the mesh has no triangles"};
-  for (const std::string& library : mesh->libraries) {
-    if (auto read = read_library(files, library, *scene); !read) return read.error();
+  for (const std::string& line : mesh->libraries) {
+    for (const std::string& library : libraries_of(files, line, reference)) {
+      if (auto read = read_library(files, library, *scene); !read) return read.error();
+    }
   }
+  note_what_is_left_out(*mesh, *scene);
   return std::shared_ptr<const SceneSource>(std::move(scene));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <unordered_map>
 
@@ -35,6 +36,14 @@ struct Context {
   /// What the film multiplies all light by (its sensor's exposure); lights take it over.
   float exposure = 1.0F;
 
+  /// Pictures of goniometric lights that are made: by file and turn, the light that is the first to
+  /// have each, and the mean of its pixels.
+  struct LightPicture {
+    size_t light = 0;
+    double mean = 0.0;
+  };
+  std::map<std::string, LightPicture> light_pictures;
+
   Names texture_names, material_names, medium_names, light_names;
   YamlMap textures, materials, media, lights;
 
@@ -43,6 +52,9 @@ struct Context {
   std::string beside(const std::string& reference, const Place& place);
   std::vector<std::string> files;  ///< SceneSections::files
 };
+
+/// Textures or materials that are made of each other: as many in a row as jobs may have.
+inline constexpr int kLongestChain = 32;
 
 /// The parameters of one thing of the scene.
 ParameterReader read(Context& context, const Entity& entity);

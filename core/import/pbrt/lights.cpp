@@ -27,7 +27,11 @@ void add_point(Context& context, const LightEntity& light, ParameterReader& read
 
 void add_spot(Context& context, const LightEntity& light, ParameterReader& reader) {
   Rgb intensity = light_value(context, light, reader, "I");
-  const float angle = std::clamp(reader.number("coneangle", 30.0F), 0.01F, 90.0F);
+  const float angle = reader.number("coneangle", 30.0F);
+  if (!(angle > 0.0F && angle <= 180.0F)) {
+    context.report.error(light.place, "a spotlight's coneangle is above 0 and at most 180");
+    return;
+  }
   const float fading = std::clamp(reader.number("conedeltaangle", 5.0F), 0.0F, angle);
   if (const float power = reader.number("power", -1.0F); power > 0.0F) {
     const float outer = std::cos(angle * kPi / 180.0F);
@@ -124,7 +128,7 @@ YamlPtr emission_node(Context& context, const Entity& light) {
     const std::string file = context.beside(picture, light.place);
     if (file.empty()) return nullptr;
     out.put("color", YamlMap{{"type", yaml_word("image")}, {"file", yaml_text(file)}});
-    strength = reader.number("scale", 1.0F) * context.exposure;
+    strength = light_scale(context, light, reader);
   }
   if (power > 0.0F) {
     out.put("power", yaml_number(power * strength));

@@ -73,7 +73,12 @@ MadeMaterial MaterialKinds::make(const std::string& type) {
 float MaterialKinds::index(const char* name, float otherwise) {
   const Parameter* p = reader_.find(name);
   if (p == nullptr) return otherwise;
-  if (p->type == "float" && p->numbers.size() == 1) return p->numbers[0];
+  if (p->type == "float" && p->numbers.size() == 1) {
+    // As jobs have it.
+    if (p->numbers[0] >= 0.01F && p->numbers[0] <= 100.0F) return p->numbers[0];
+    context_.report.error(p->place, "an index of refraction lies between 0.01 and 100");
+    return otherwise;
+  }
   const auto color = color_of(context_, *p, ColorUse::surface);
   if (!color) return otherwise;
   note("light is refracted alike in all colours: the index of refraction is a mean");

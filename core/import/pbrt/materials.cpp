@@ -1,5 +1,7 @@
 #include "core/import/pbrt/materials.h"
 
+#include <fmt/format.h>
+
 #include "core/import/pbrt/material_kinds.h"
 #include "core/job/yaml_writer.h"
 
@@ -30,10 +32,20 @@ const WrittenMaterial& Materials::written(const Entity& entity, const std::strin
   const auto [known, is_new] = written_.emplace(&entity, WrittenMaterial());
   WrittenMaterial& place = known->second;  // stays where it is while others are added
   if (!is_new) {
-    if (place.name.empty()) context_.report.error(entity.place, "a material cannot be made");
+    if (making_.contains(&entity)) {
+      context_.report.error(entity.place, "material '" + wish + "' is made of itself");
+    }
     return place;
   }
+  if (making_.size() > static_cast<size_t>(kLongestChain)) {
+    context_.report.error(
+        entity.place,
+        fmt::format("material '{}' is the end of more than {} in a row", wish, kLongestChain));
+    return place;
+  }
+  making_.insert(&entity);
   MadeMaterial made = MaterialKinds(*this, context_, textures_, entity, wish).make(type);
+  making_.erase(&entity);
   if (made.node == nullptr) return place;
   WrittenMaterial out;
   out.interior = made.interior;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unordered_set>
+
 #include "core/import/pbrt/layer_walk.h"
 #include "core/import/pbrt/textures.h"
 
@@ -32,6 +34,7 @@ class Materials {
   Textures& textures_;
   std::unordered_map<std::string, const NamedEntity*> named_;
   std::unordered_map<const Entity*, WrittenMaterial> written_;
+  std::unordered_set<const Entity*> making_;               ///< those that are made of each other
   std::unordered_map<std::string, std::string> same_;      ///< text -> name, of those without one
   std::unordered_map<std::string, std::string> cut_outs_;  ///< material and opacity -> name
   LayerAnswers layers_;

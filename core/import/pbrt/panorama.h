@@ -14,7 +14,7 @@ namespace hyades::core::pbrt {
 /// What a light has in each direction: a colour, or an equal-area picture of the sphere times it.
 struct Layer {
   Rgb color{1.0F};
-  std::shared_ptr<const Image> picture;  ///< square, finite, not negative
+  std::shared_ptr<const Image> picture;  ///< finite, not negative
   std::array<int, 3> channels{};         ///< of the picture, for red, green and blue
   glm::dmat3 to_light{1.0};              ///< from the job's world
 
@@ -22,10 +22,14 @@ struct Layer {
   Rgb pixel(int x, int y) const { return rgb_at(*picture, channels, x, y); }
 };
 
-/// Sets the picture of `layer` to `file`, as the scene's light `light` names it. The error names
-/// the light's place.
+/// Sets the picture of `layer` to `file`, as the scene's light `light` names it, of any shape. The
+/// error names the light's place.
 Status load_picture(const LoadedScene& scene, const Entity& light, const std::string& file,
                     Layer& layer);
+
+/// The same of a picture of all directions, which is square.
+Status load_sphere(const LoadedScene& scene, const Entity& light, const std::string& file,
+                   Layer& layer);
 
 /// The bytes of an .exr, twice as wide as high: the sum of the layers as EnvironmentMap looks at
 /// it.

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <span>
 
-#include "core/image/read_image.h"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "core/import/pbrt/light_values.h"
 #include "core/import/pbrt/panorama.h"
 #include "core/import/pbrt/transforms.h"
@@ -26,9 +29,10 @@ std::shared_ptr<const Image> grey(const Layer& layer) {
 }
 
 /// The picture of a goniometric light; its pole (z) is the light's y.
-Result<Layer> layer_of(const Context& context, const LightEntity& light, const std::string& file) {
+Result<Layer> goniometric_of(const Context& context, const LightEntity& light,
+                             const std::string& file) {
   Layer layer;
-  if (Status loaded = load_picture(context.loaded, light, file, layer); !loaded) {
+  if (Status loaded = load_sphere(context.loaded, light, file, layer); !loaded) {
     return loaded.error();
   }
   layer.picture = grey(layer);
@@ -45,27 +49,49 @@ double mean_of(const Image& image) {
 }
 
 /// The solid angle of a projection, each pixel times its luminance [sr].
-Result<double> flux_of(const Context& context, const LightEntity& light, const std::string& file,
-                       float fov) {
-  const auto bytes = context.loaded.files.find(file);
-  if (bytes == context.loaded.files.end()) return light.place.error("cannot open '" + file + "'");
-  auto image = read_image(bytes->second, file);
-  if (!image) return light.place.error(image.error().message);
-  const auto channels = rgb_channels(*image);
-  if (!channels) return light.place.error("'" + file + "' has no channels R, G and B");
+double flux_of(const Layer& layer, float fov) {
+  const int width = layer.picture->width;
+  const int height = layer.picture->height;
   const double half = std::tan(0.5 * static_cast<double>(fov) * static_cast<double>(kPi) / 180.0);
-  const double pixel = 2.0 * half / std::min(image->width, image->height);
+  const double pixel = 2.0 * half / std::min(width, height);
   double sum = 0.0;
-  for (int row = 0; row < image->height; ++row) {
-    const double y = pixel * (row + 0.5 - 0.5 * image->height);
-    for (int column = 0; column < image->width; ++column) {
-      const double x = pixel * (column + 0.5 - 0.5 * image->width);
+  for (int row = 0; row < height; ++row) {
+    const double y = pixel * (row + 0.5 - 0.5 * height);
+    for (int column = 0; column < width; ++column) {
+      const double x = pixel * (column + 0.5 - 0.5 * width);
       const double distance2 = 1.0 + x * x + y * y;
-      sum += static_cast<double>(luminance(rgb_at(*image, *channels, column, row))) /
+      sum += static_cast<double>(luminance(layer.pixel(column, row))) /
              (distance2 * std::sqrt(distance2));
     }
   }
   return sum * pixel * pixel;
+}
+
+/// Scales a light so that `power` leaves it, where all that its picture lets through is `through`
+/// at intensity 1.
+void give_power(Context& context, const LightEntity& light, float power, double through,
+                Rgb& intensity) {
+  if (!(power > 0.0F)) return;
+  if (through > 0.0) {
+    intensity *= power / static_cast<float>(through);
+  } else {
+    context.report.note(light.place, "a light's picture is black, and its power is left out");
+  }
+}
+
+/// The picture of a goniometric light among those of the context.
+Result<Context::LightPicture> shared_picture(Context& context, size_t number,
+                                             const std::string& file) {
+  const LightEntity& light = context.scene.lights[number];
+  const glm::dmat3 turn(light.to_world.at[0]);
+  const std::span<const double> values(&turn[0].x, 9);
+  const std::string key = fmt::format("{} {}", file, fmt::join(values, " "));
+  if (const auto known = context.light_pictures.find(key); known != context.light_pictures.end()) {
+    return known->second;
+  }
+  const auto layer = goniometric_of(context, light, file);
+  if (!layer) return layer.error();
+  return context.light_pictures[key] = {number, mean_of(*layer->picture)};
 }
 
 /// Whether the transform keeps right angles and lengths as they are to each other.
@@ -94,14 +120,14 @@ void add_goniometric(Context& context, size_t number, ParameterReader& reader) {
                         "a goniometric light without a picture shines alike in all directions");
     if (power > 0.0F) intensity *= power / kAllRound;
   } else {
-    const auto layer = layer_of(context, light, file);
-    if (!layer) {
-      context.report.errors.push_back(layer.error().message);
+    const auto picture = shared_picture(context, number, file);
+    if (!picture) {
+      context.report.errors.push_back(picture.error().message);
       return;
     }
-    const double mean = mean_of(*layer->picture);
-    if (power > 0.0F && mean > 0.0) intensity *= power / (kAllRound * static_cast<float>(mean));
-    out.put("image", yaml_text(context.request.made + "lights/" + std::to_string(number) + ".exr"));
+    give_power(context, light, power, static_cast<double>(kAllRound) * picture->mean, intensity);
+    out.put("image",
+            yaml_text(fmt::format("{}lights/{}.exr", context.request.made, picture->light)));
   }
   out.put("color", color_node(intensity));
   out.put("power", yaml_number(kAllRound));
@@ -114,17 +140,21 @@ void add_projection(Context& context, const LightEntity& light, ParameterReader&
     context.report.error(light.place, "a projection has no 'filename', expected its picture");
     return;
   }
+  const float fov = reader.number("fov", 90.0F);
+  if (!(fov > 0.0F && fov < 180.0F)) {
+    context.report.error(light.place, "a projection's fov is above 0 and below 180");
+    return;
+  }
   const std::string file = context.beside(picture, light.place);
   if (file.empty()) return;
-  const float fov = std::clamp(reader.number("fov", 90.0F), 0.01F, 179.99F);
-  Rgb intensity = Rgb(reader.number("scale", 1.0F) * context.exposure);
+  Rgb intensity(light_scale(context, light, reader));
   if (const float power = reader.number("power", -1.0F); power > 0.0F) {
-    const auto flux = flux_of(context, light, picture, fov);
-    if (!flux) {
-      context.report.errors.push_back(flux.error().message);
+    Layer layer;
+    if (Status loaded = load_picture(context.loaded, light, picture, layer); !loaded) {
+      context.report.errors.push_back(loaded.error().message);
       return;
     }
-    if (*flux > 0.0) intensity *= power / static_cast<float>(*flux);
+    give_power(context, light, power, flux_of(layer, fov), intensity);
   }
   const Mat4d to_job = context.to_job * light.to_world.at[0];
   if (!keeps_shapes(glm::dmat3(to_job))) {
@@ -157,7 +187,7 @@ Result<Bytes> make_light_picture(const LoadedScene& scene, const std::string& na
   const SceneRequest request;
   Context context(scene, request);
   const LightEntity& light = scene.scene.lights[number];
-  auto layer = layer_of(context, light, read(context, light).text("filename"));
+  auto layer = goniometric_of(context, light, read(context, light).text("filename"));
   if (!layer) return layer.error();
   return make_panorama({*layer});
 }

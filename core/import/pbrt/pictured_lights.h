@@ -7,7 +7,7 @@
 namespace hyades::core::pbrt {
 
 /// Puts a goniometric light into the context's lights: a point with the picture "lights/N.exr",
-/// which is made, N its number in the scene.
+/// which is made, N the number in the scene of the first light that has the same.
 void add_goniometric(Context& context, size_t number, ParameterReader& reader);
 
 /// Puts a projection into the context's lights: a projector with the scene's own picture.

@@ -1,12 +1,13 @@
 #include "core/import/pbrt/sky.h"
 
+#include "core/import/pbrt/light_values.h"
 #include "core/import/pbrt/panorama.h"
 #include "core/import/pbrt/render_sections.h"
 
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kTurn = 3.14159265358979323846;
+constexpr double kPiExact = 3.14159265358979323846;
 
 /// The light that a level surface gets from the upper half of an equal-area picture (z is up).
 double illuminance_of(const Layer& layer) {
@@ -19,13 +20,13 @@ double illuminance_of(const Layer& layer) {
       sum += up * static_cast<double>(luminance(layer.pixel(x, y)));
     }
   }
-  return sum * 4.0 * kTurn / (static_cast<double>(image.width) * image.height);
+  return sum * 4.0 * kPiExact / (static_cast<double>(image.width) * image.height);
 }
 
-Result<Layer> layer_of(Context& context, const LightEntity& light, bool with_picture) {
+Result<Layer> sky_of(Context& context, const LightEntity& light, bool with_picture) {
   ParameterReader reader = read(context, light);
   Layer layer;
-  const float scale = reader.number("scale", 1.0F) * context.exposure;
+  const float scale = light_scale(context, light, reader);
   const float target = reader.number("illuminance", -1.0F);
   const std::string file = reader.text("filename");
   if (!reader.numbers("point3", "portal").empty()) {
@@ -47,7 +48,7 @@ Result<Layer> layer_of(Context& context, const LightEntity& light, bool with_pic
   layer.color = Rgb(scale);
   layer.to_light = glm::inverse(glm::dmat3(context.to_job * light.to_world.at[0]));
   if (!with_picture) return layer;
-  if (Status loaded = load_picture(context.loaded, light, file, layer); !loaded) {
+  if (Status loaded = load_sphere(context.loaded, light, file, layer); !loaded) {
     return loaded.error();
   }
   if (target > 0.0F) {
@@ -64,7 +65,7 @@ void add_environment(Context& context, const std::vector<const LightEntity*>& li
   Rgb color(0.0F);
   bool pictures = false;
   for (const LightEntity* light : lights) {
-    const auto layer = layer_of(context, *light, false);
+    const auto layer = sky_of(context, *light, false);
     if (!layer) {
       context.report.errors.push_back(layer.error().message);
       return;
@@ -90,7 +91,7 @@ Result<Bytes> make_sky(const LoadedScene& scene) {
   std::vector<Layer> layers;
   for (const LightEntity& light : scene.scene.lights) {
     if (light.type != "infinite") continue;
-    auto layer = layer_of(context, light, true);
+    auto layer = sky_of(context, light, true);
     if (!layer) return layer.error();
     layers.push_back(std::move(*layer));
   }

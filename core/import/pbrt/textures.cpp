@@ -1,5 +1,9 @@
 #include "core/import/pbrt/textures.h"
 
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include "core/import/pbrt/read_parameters.h"
 #include "core/import/pbrt/texture_kinds.h"
 #include "core/import/pbrt/transforms.h"
@@ -31,19 +35,29 @@ std::string Textures::named(bool floats, const std::string& name, const Place& p
                                      (floats ? "float" : "spectrum"));
     return {};
   }
-  const auto [known, is_new] = names_.emplace(entity, std::string());
+  const auto [known, is_new] = made_.emplace(entity, Made());
+  Made& made = known->second;  // stays where it is while others are added
   if (!is_new) {
-    if (known->second.empty()) {
+    if (made.state == Made::State::making) {
       context_.report.error(place, "texture '" + name + "' is made of itself");
     }
-    return known->second;
+    return made.name;
   }
-  YamlPtr made = make(floats, *entity);
-  if (made == nullptr) return {};
-  std::string ours = context_.texture_names.add(name);
-  context_.textures.put(ours, std::move(made));
-  names_[entity] = ours;
-  return ours;
+  made.state = Made::State::failed;
+  if (depth_ > kLongestChain) {
+    context_.report.error(place, fmt::format("texture '{}' is the end of more than {} in a row",
+                                             name, kLongestChain));
+    return {};
+  }
+  made.state = Made::State::making;
+  ++depth_;
+  YamlPtr node = make(floats, *entity);
+  --depth_;
+  made.state = node == nullptr ? Made::State::failed : Made::State::done;
+  if (node == nullptr) return {};
+  made.name = context_.texture_names.add(name);
+  context_.textures.put(made.name, std::move(node));
+  return made.name;
 }
 
 YamlPtr Textures::make(bool floats, const NamedEntity& entity) {
@@ -59,6 +73,10 @@ YamlPtr Textures::color_if(ParameterReader& reader, const char* name) {
   }
   if (p->type == "float" && p->numbers.size() == 1) return yaml_number(p->numbers[0]);
   const auto color = color_of(context_, *p, ColorUse::surface);
+  if (color && p->type == "rgb" && *std::max_element(p->numbers.begin(), p->numbers.end()) > 1.0F) {
+    context_.report.error(p->place, "parameter '" + p->name + "': found a colour above 1");
+    return nullptr;
+  }
   return color ? color_node(*color) : nullptr;
 }
 

@@ -30,12 +30,18 @@ class Textures {
 
  private:
   friend class TextureKinds;
+  struct Made {
+    enum class State { making, failed, done };
+    State state = State::making;
+    std::string name;  ///< the job's, where it is done
+  };
   const NamedEntity* find(bool floats, const std::string& name) const;
   YamlPtr make(bool floats, const NamedEntity& entity);
 
   Context& context_;
   std::unordered_map<std::string, const NamedEntity*> float_textures_, spectrum_textures_;
-  std::unordered_map<const NamedEntity*, std::string> names_;  ///< empty: being made
+  std::unordered_map<const NamedEntity*, Made> made_;
+  int depth_ = 0;  ///< how many that are made of each other are being made
 };
 
 /// Whether a node is a plain number, and which.

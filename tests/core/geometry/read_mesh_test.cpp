@@ -311,7 +311,7 @@ TEST(ReadObj, Errors) {
   expect_error("v 0 0 0x\n", "line 1: expected 'v x y z'");
   expect_error(three + "vt\n", "line 4: expected 'vt u v'");
   expect_error(three + "vn 1 2\n", "line 4: expected 'vn x y z'");
-  expect_error(three + "f 1 2\n", "line 4: a face needs at least three corners");
+  expect_error(three + "f\n", "line 4: a face without corners");
   expect_error(three + "f 1 2 4\n", "line 4: index 4 is out of range: the file has 3 lines of 'v'");
   expect_error(three + "\n\nf 1 2 -4\n",
                "line 6: index -4 is out of range: the file has 3 lines of 'v', 3 of them before");

@@ -36,5 +36,33 @@ TEST(ObjScene, ShowsTheColoursOfItsVertices) {
   }
 }
 
+constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST(ObjScene, ALineMayNameSeveralLibraries) {
+  MemoryAssets files;
+  files.add("a.obj",
+            std::string(kTriangle) +
+                "mtllib one.mtl two words.mtl\nusemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\n");
+  files.add("one.mtl", "newmtl red\nKd 1 0 0\n");
+  files.add("two words.mtl", "newmtl blue\nKd 0 0 1\n");
+  const SceneSections scene = scene_of(files, "a.obj");
+  EXPECT_THAT(scene.notes, IsEmpty());
+  EXPECT_THAT(write_yaml(*scene.sections), HasSubstr("[1, 0, 0]"));
+  EXPECT_THAT(write_yaml(*scene.sections), HasSubstr("[0, 0, 1]"));
+}
+
+TEST(ObjScene, TellsWhatItLeavesOut) {
+  MemoryAssets files;
+  files.add("a.obj",
+            std::string(kTriangle) +
+                "mtllib a.mtl\nusemtl red\nf 1 2 3\nusemtl gone\nf 3 2 1\nf 1 2\nl 1 2\np 3\n");
+  files.add("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl red\nKd 0 2 0\n");
+  const SceneSections scene = scene_of(files, "a.obj");
+  EXPECT_THAT(scene.notes,
+              testing::UnorderedElementsAre(
+                  HasSubstr("no library has a material 'gone'"), HasSubstr("3 points, lines"),
+                  HasSubstr("newmtl of this name before"), HasSubstr("Kd above 1")));
+}
+
 }  // namespace
 }  // namespace hyades::core

@@ -114,11 +114,59 @@ TEST(PbrtHostile, ThingsThatAreNotThere) {
   EXPECT_THAT(
       error_of(pbrt_world("MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string "
                           "materials\" [\"a\" \"a\"] NamedMaterial \"a\" Shape \"sphere\"")),
-      HasSubstr("a material cannot be made"));
+      HasSubstr("material 'a' is made of itself"));
   EXPECT_THAT(error_of(pbrt_world("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\" "
                                   "Material \"diffuse\" \"texture reflectance\" \"t\" "
                                   "Shape \"sphere\"")),
               HasSubstr("made of itself"));
+}
+
+TEST(PbrtHostile, LongChainsEndWithAnError) {
+  std::string textures = "Texture \"t0\" \"spectrum\" \"constant\" \"rgb value\" [.5 .5 .5]\n";
+  std::string mixes = "MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n";
+  constexpr int kLength = 50'000;
+  for (int i = 1; i <= kLength; ++i) {
+    const std::string before = std::to_string(i - 1);
+    const std::string now = std::to_string(i);
+    textures +=
+        "Texture \"t" + now + "\" \"spectrum\" \"scale\" \"texture tex\" \"t" + before + "\"\n";
+    mixes += "MakeNamedMaterial \"m" + now +
+             "\" \"string type\" \"mix\" \"string materials\" [\"m" + before + "\" \"m0\"]\n";
+  }
+  const std::string last = std::to_string(kLength);
+  EXPECT_THAT(error_of(pbrt_world(textures + "Material \"diffuse\" \"texture reflectance\" \"t" +
+                                  last + "\" Shape \"sphere\"")),
+              HasSubstr("more than 32 in a row"));
+  EXPECT_THAT(error_of(pbrt_world(mixes + "NamedMaterial \"m" + last + "\" Shape \"sphere\"")),
+              HasSubstr("more than 32 in a row"));
+}
+
+TEST(PbrtHostile, ValuesThatNoJobHas) {
+  const auto sphere_of = [](const std::string& material) {
+    return error_of(pbrt_world("Material " + material + " Shape \"sphere\""));
+  };
+  EXPECT_THAT(sphere_of("\"diffuse\" \"rgb reflectance\" [2 .5 .5]"),
+              HasSubstr("parameter 'reflectance': found a colour above 1"));
+  EXPECT_THAT(sphere_of("\"dielectric\" \"float eta\" 0"),
+              HasSubstr("an index of refraction lies between 0.01 and 100"));
+  for (const std::string light : {"point", "spot", "infinite", "goniometric"}) {
+    EXPECT_THAT(error_of(pbrt_world("LightSource \"" + light + "\" \"float scale\" -1")),
+                HasSubstr("a light's scale is below 0"));
+  }
+  EXPECT_THAT(error_of(pbrt_world("LightSource \"spot\" \"float coneangle\" 190")),
+              HasSubstr("coneangle is above 0 and at most 180"));
+  EXPECT_THAT(error_of(pbrt_world("LightSource \"projection\" \"string filename\" \"a.png\" "
+                                  "\"float fov\" 190")),
+              HasSubstr("fov is above 0 and below 180"));
+}
+
+TEST(PbrtHostile, WhatFailedIsToldOnce) {
+  const std::string error = error_of(pbrt_world(
+      "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"missing.png\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\" \"string name\" \"b\" Shape \"sphere\""));
+  EXPECT_THAT(error, HasSubstr("missing.png"));
+  EXPECT_THAT(error, Not(HasSubstr("made of itself")));
 }
 
 /// Enough of object "o" for a file of places.

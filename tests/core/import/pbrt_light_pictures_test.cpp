@@ -1,6 +1,7 @@
 // Lights of pbrt's scenes that have pictures: skies, goniometric lights and projections.
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "core/image/read_image.h"
@@ -181,6 +182,40 @@ TEST(PbrtPicturedLights, PowerIsWhatTheirPicturesLetThrough) {
   const std::vector<double> through = numbers_after(job.text, "color: ");
   ASSERT_FALSE(through.empty());
   EXPECT_NEAR(through[0], 10.0 / (4.0 * M_PI / 6.0), 2e-3);
+}
+
+TEST(PbrtPicturedLights, PowerLeavesOutWhatIsNoLight) {
+  core::Image picture = core::make_image(8, 8, {"R", "G", "B"});
+  picture.data.assign(picture.data.size(), 1.0F);
+  const auto color_of_film = [&] {
+    PbrtFiles film(
+        pbrt_world("LightSource \"projection\" \"string filename\" \"film.exr\" "
+                   "\"float power\" 10"));
+    const auto bytes = core::encode_exr(picture);
+    film.add("film.exr", {bytes->chars(), bytes->size()});
+    const PbrtJob job = read_pbrt_job(film);
+    EXPECT_EQ(job.error, "");
+    return std::pair(numbers_after(job.text, "color: ").at(0), job.notes);
+  };
+  const double clean = color_of_film().first;
+  picture.at(4, 4, 1) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NEAR(color_of_film().first / clean, 1.0, 0.05);
+  picture.data.assign(picture.data.size(), -1.0F);
+  EXPECT_THAT(color_of_film().second, testing::ElementsAre(HasSubstr("its power is left out")));
+}
+
+TEST(PbrtPicturedLights, LightsOfOnePictureShareIt) {
+  std::string lights;
+  for (const char* turn : {"Translate 1 0 0", "Translate 2 0 0", "Rotate 90 0 1 0"}) {
+    lights += std::string("AttributeBegin ") + turn +
+              " LightSource \"goniometric\" \"string filename\" \"lamp.exr\" AttributeEnd\n";
+  }
+  PbrtFiles files(pbrt_world(lights));
+  files.add("lamp.exr", octants());
+  const std::string text = read_pbrt_job(files).text;
+  EXPECT_THAT(text, HasSubstr("lights/0.exr"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("lights/1.exr")));
+  EXPECT_THAT(text, HasSubstr("lights/2.exr"));
 }
 
 TEST(PbrtPicturedLights, ProjectionsBecomeProjectors) {
