@@ -5,6 +5,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <thread>
 
 #include "tests/support/temp_folder.h"
 #include "tests/worker/clouds/fake_cloud.h"
@@ -29,7 +30,15 @@ TEST_P(WorkerOfACloud, HandsOverWhatIsDoneAndGivesBackTheRestAtOnce) {
                          {"--preemption", name, "--preemption-endpoint", cloud.url()});
     ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 1; }))
         << worker.log();
+    // So that there is still work when the cloud is asked again, however fast the machine is.
+    const pid_t renderer = worker.renderer();
+    ASSERT_GT(renderer, 0);
+    ::kill(renderer, SIGSTOP);
     cloud.preempt(40);
+    for (int i = 0; i < 600 && worker.log().find("pre-empted by") == std::string::npos; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    ::kill(renderer, SIGCONT);
     EXPECT_EQ(worker.wait(seconds(60)), 0) << worker.log();
     EXPECT_NE(worker.log().find("pre-empted by " + name + " at 20"), std::string::npos)
         << worker.log();
