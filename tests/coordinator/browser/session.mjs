@@ -76,3 +76,5 @@ await step('who signs out is out, and sees nothing more', async () => {
 });
 
 await finish();
+// One that runs on would keep this process.
+coordinator.kill('SIGKILL');
