@@ -108,6 +108,8 @@ Hook::Answer Hook::try_once(const std::string& message, std::string& why) const 
   curl_easy_setopt(call, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(call, CURLOPT_FOLLOWLOCATION, 1L);
   curl_easy_setopt(call, CURLOPT_MAXREDIRS, kMostRedirects);
+  // Else a place that has moved is asked for a page, and the message is lost.
+  curl_easy_setopt(call, CURLOPT_POSTREDIR, long{CURL_REDIR_POST_ALL});
   curl_easy_setopt(call, CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
   curl_easy_setopt(call, CURLOPT_TIMEOUT, static_cast<long>(options_.timeout.count()));
   curl_easy_setopt(call, CURLOPT_WRITEFUNCTION, ignore);

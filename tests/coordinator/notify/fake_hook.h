@@ -74,7 +74,8 @@ class FakeHook {
         }
       }
       const std::string reply = "HTTP/1.1 " + std::to_string(status) +
-                                " X\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+                                " X\r\nContent-Length: 0\r\nConnection: close\r\n" +
+                                (status / 100 == 3 ? "Location: " + url() + "\r\n" : "") + "\r\n";
       (void)::send(one, reply.data(), reply.size(), MSG_NOSIGNAL);
       ::close(one);
     }

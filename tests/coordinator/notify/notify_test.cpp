@@ -36,6 +36,17 @@ TEST(Hook, WhatIsNotTakenComesAgain) {
   EXPECT_EQ(server.bodies(), (std::vector<std::string>{"one", "one", "one", "one", "two"}));
 }
 
+TEST(Hook, WhatHasMovedGetsTheMessageToo) {
+  for (const int status : {301, 302, 307}) {
+    FakeHook server;
+    server.answer_with({status, 200});
+    Hook hook(quick(server.url()));
+    hook.post("one");
+    ASSERT_TRUE(eventually([&] { return server.bodies().size() == 2; }));
+    EXPECT_EQ(server.bodies(), (std::vector<std::string>{"one", "one"})) << status;
+  }
+}
+
 TEST(Hook, WhatIsRefusedIsToldAndDoesNotComeAgain) {
   FakeHook server;
   server.answer_with({404});
