@@ -8,9 +8,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/client/client_app.h"
 #include "cli/client/commands.h"
+#include "cli/client/find_job.h"
 #include "cli/client/top_page.h"
 
 namespace hyades::cli {
@@ -56,9 +59,12 @@ class Screen {
   static bool wait(double seconds) {
     pollfd keys{STDIN_FILENO, POLLIN, 0};
     if (g_end == 0 && poll(&keys, 1, static_cast<int>(seconds * 1000)) > 0) {
-      char key = 0;
-      if (::read(STDIN_FILENO, &key, 1) != 1) return true;
-      return key == 'q' || key == 'Q' || key == 27;
+      // An arrow or a function key is several bytes, of which the first is that of Escape.
+      char keys_read[64];
+      const ssize_t count = ::read(STDIN_FILENO, keys_read, sizeof keys_read);
+      if (count <= 0) return true;
+      const char key = keys_read[0];
+      return key == 'q' || key == 'Q' || (key == 27 && count == 1);
     }
     return g_end != 0;
   }
@@ -76,18 +82,24 @@ winsize terminal_size() {
   return size;
 }
 
+/// Whether there is a terminal on both sides that can be drawn on more than once.
+bool can_draw_again() {
+  const char* term = std::getenv("TERM");
+  return isatty(STDOUT_FILENO) == 1 && isatty(STDIN_FILENO) == 1 && term != nullptr &&
+         std::string_view(term) != "dumb";
+}
+
 bool shows_colors() {
   const char* none = std::getenv("NO_COLOR");
   return isatty(STDOUT_FILENO) == 1 && (none == nullptr || *none == '\0');
 }
 
 Outcome look(FarmClient& client, FarmNow& now) {
-  v1::ListJobsRequest request;
-  v1::ListJobsResponse jobs;
-  if (auto failure = client.list(request, jobs)) return failure;
+  std::vector<v1::Job> jobs;
+  if (auto failure = list_all_jobs(client, false, {}, jobs)) return failure;
   v1::WorkersResponse workers;
   if (auto failure = client.workers(workers)) return failure;
-  now.jobs.assign(jobs.jobs().begin(), jobs.jobs().end());
+  now.jobs = std::move(jobs);
   now.workers.assign(workers.workers().begin(), workers.workers().end());
   now.time_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
                     std::chrono::system_clock::now().time_since_epoch())
@@ -108,18 +120,27 @@ Outcome show_once(FarmClient& client, const std::string& address) {
   return std::nullopt;
 }
 
-Outcome show_always(FarmClient& client, const std::string& address, double interval) {
+/// `client` is for the first look; `again`, which answers at once, for all others.
+Outcome show_always(FarmClient& client, FarmClient& again, const std::string& address,
+                    double interval) {
   const bool colors = shows_colors();
   WorkerSpeeds speeds;
+  FarmNow now;
+  if (auto failure = look(client, now)) return failure;
   const Screen screen;
-  do {
-    FarmNow now;
-    if (auto failure = look(client, now)) return failure;
-    speeds.note(now);
+  for (bool reached = true;;) {
+    if (reached) speeds.note(now);
     const winsize size = terminal_size();
-    Screen::draw(top_page(now, speeds, address, size.ws_col, size.ws_row, colors));
-  } while (!Screen::wait(interval));
-  return std::nullopt;
+    std::vector<std::string> page =
+        top_page(now, speeds, address, size.ws_col, size.ws_row - (reached ? 0 : 1), colors);
+    // What was there last stays in sight meanwhile.
+    if (!reached) page.push_back("no answer from " + address + ": trying again; q ends");
+    Screen::draw(page);
+    if (Screen::wait(interval)) return std::nullopt;
+    const Outcome failure = look(again, now);
+    reached = !failure;
+    if (failure && failure->code != kNoAnswer) return failure;
+  }
 }
 
 }  // namespace
@@ -139,10 +160,11 @@ int top_command(int argc, char** argv) {
       "q ends it. NO_COLOR in the environment turns colours off.");
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
-  if (!client) return kBadArguments;
-  const bool terminal = isatty(STDOUT_FILENO) == 1 && isatty(STDIN_FILENO) == 1;
-  const Outcome failure = once || !terminal ? show_once(*client, app.address())
-                                            : show_always(*client, app.address(), interval);
+  const auto again = app.connect_impatiently();
+  if (!client || !again) return kBadArguments;
+  const Outcome failure = once || !can_draw_again()
+                              ? show_once(*client, app.address())
+                              : show_always(*client, *again, app.address(), interval);
   return failure ? app.report(*failure) : kDone;
 }
 
