@@ -111,6 +111,11 @@ void PicturesApi::add_routes(Router& router) {
         }
         const auto layer = request.query.find("layer");
         if (layer != request.query.end()) asked.layer = layer->second;
+        if (!asked.half && asked.layer != "beauty") {
+          answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
+                              "layer: png shows beauty; expected format=half for other layers"}));
+          return;
+        }
         const bool taken = clerks_.hand([this, asked, answer] { answer_picture(asked, answer); });
         if (!taken) answer(error_reply(crowded()));
       });

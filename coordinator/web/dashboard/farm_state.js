@@ -1,4 +1,5 @@
 // The farm as it is now, kept by one stream for all views.
+import * as api from './api.js';
 import { changedRow } from './changed_row.js';
 import { listen } from './live.js';
 import { say } from './dom.js';
@@ -87,6 +88,18 @@ function takeWorker(change, now) {
   note(worker, now);
 }
 
+/** A job that was open and is so no more, while nobody listened here. */
+async function askForEnd(id) {
+  try {
+    // Only the job itself: there are no frames above.
+    const { job } = await api.job(id, { after: 2147483646 });
+    takeJob(job);
+  } catch (error) {
+    if (error.status === 404) farm.jobs.delete(id);
+  }
+  tell('jobs');
+}
+
 /** Begins to listen; once, by main.js. */
 export function startFarm() {
   listen(
@@ -94,7 +107,8 @@ export function startFarm() {
     {
       snapshot(all) {
         const now = Date.now();
-        for (const [id, job] of farm.jobs) if (isOpen(job)) farm.jobs.delete(id);
+        const open = new Set(all.jobs.map(({ id }) => id));
+        for (const [id, job] of farm.jobs) if (isOpen(job) && !open.has(id)) askForEnd(id);
         for (const job of all.jobs) farm.jobs.set(job.id, job);
         farm.workers = new Map();
         for (const worker of all.workers) takeWorker(worker, now);

@@ -216,9 +216,7 @@ class FrameView {
     }
     const name = state.job?.name ?? `job ${this.id}`;
     this.bar.setFrame(this.frame, state.numbers, name, this.query());
-    this.bar.save.href = address(`api/v1/jobs/${this.id}/frames/${this.frame}/picture`, {
-      layer: this.layer === NOISE || this.layer === 'beauty' ? '' : this.layer,
-    });
+    this.bar.save.href = address(`api/v1/jobs/${this.id}/frames/${this.frame}/picture`, {});
     this.bar.save.download = `${name}.${this.frame}.png`;
     this.retitle();
     const frame = state.frames.get(this.frame);
