@@ -40,7 +40,8 @@ _hyades() {
     _files
   fi
 }
-compdef _hyades hyades
+# The file of a function is read when it is first wanted, and then it is to complete at once.
+if [[ ${funcstack[1]} == _hyades ]]; then _hyades "$@"; else compdef _hyades hyades; fi
 )sh";
 
 constexpr std::string_view kFish = R"sh(function __hyades_commands

@@ -450,6 +450,10 @@ Outcome FarmClient::audit(int64_t since_ms,
       std::nullopt);
 }
 
+Outcome FarmClient::info(v1::InfoResponse& response) {
+  return state_->call(*state_->farm, &v1::Farm::Stub::Info, v1::InfoRequest(), response);
+}
+
 Outcome FarmClient::workers(v1::WorkersResponse& response) {
   response.Clear();
   v1::WorkersRequest request;

@@ -81,6 +81,8 @@ class FarmClient {
   /// The oldest first; after a break from the last one's time on.
   Outcome audit(int64_t since_ms, const std::function<void(const v1::AuditEntry&)>& on_entry);
 
+  /// Of the coordinator itself.
+  Outcome info(v1::InfoResponse& response);
   Outcome workers(v1::WorkersResponse& response);
   enum class WorkerAction { drain, quarantine, release };
   Outcome act(WorkerAction action, const v1::WorkerRequest& request, v1::WorkerResponse& response);

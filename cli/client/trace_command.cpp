@@ -1,5 +1,6 @@
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 #include <thread>
@@ -19,6 +20,25 @@ namespace hyades::cli {
 namespace {
 
 constexpr auto kLook = std::chrono::seconds(1);
+constexpr auto kGlance = std::chrono::milliseconds(50);
+
+volatile std::sig_atomic_t g_end = 0;
+
+void on_end(int) { g_end = 1; }
+
+/// From now on Ctrl-C and SIGTERM end the following, and the document is written to its end.
+void mind_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_end;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+void wait_for_more() {
+  for (auto waited = kGlance; waited <= kLook && g_end == 0; waited += kGlance) {
+    std::this_thread::sleep_for(kGlance);
+  }
+}
 
 /// A job without its frames.
 Outcome get_job(FarmClient& client, uint64_t id, v1::Job& job) {
@@ -32,6 +52,19 @@ Outcome get_job(FarmClient& client, uint64_t id, v1::Job& job) {
     return Failure{kUnknown, fmt::format("there is no job {} any more", id)};
   }
   job = response.jobs(0);
+  return std::nullopt;
+}
+
+/// Steps are kept in memory only.
+Outcome tell_what_is_lost(FarmClient& client, const v1::Job& job) {
+  v1::InfoResponse coordinator;
+  if (auto failure = client.info(coordinator)) return failure;
+  if (coordinator.started_ms() > job.submitted_ms()) {
+    std::fprintf(stderr,
+                 "the coordinator was started again after job %lu was submitted: what was done "
+                 "before that is not in the trace\n",
+                 job.id());
+  }
   return std::nullopt;
 }
 
@@ -59,7 +92,8 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
       if (line.is_due()) line.show(fmt::format("{} units", writer.units()));
     } while (page.more() && page.steps_size() > 0 && out.good());
     if (!follow || farm::has_ended(job) || !out.good()) break;
-    std::this_thread::sleep_for(kLook);
+    wait_for_more();
+    if (g_end != 0) return std::nullopt;
   }
   v1::LogsRequest logs;
   logs.set_job(id);
@@ -91,6 +125,7 @@ int trace_command(int argc, char** argv) {
   if (auto failure = find_job(*client, name, Namesakes::newest, id)) return app.report(*failure);
   v1::Job job;
   if (auto failure = get_job(*client, id, job)) return app.report(*failure);
+  if (auto failure = tell_what_is_lost(*client, job)) return app.report(*failure);
   errno = 0;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   const auto cannot_write = [&] {
@@ -98,6 +133,7 @@ int trace_command(int argc, char** argv) {
   };
   if (!out) return cannot_write();
   TraceWriter writer(out, job);
+  if (follow) mind_signals();
   const Outcome failure = write_trace(*client, id, follow, out, writer, job);
   // What has come is a whole document also where the coordinator went away.
   writer.end(job);
