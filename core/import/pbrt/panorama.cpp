@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/elementary.h"
 #include "core/base/parallel.h"
 #include "core/image/read_image.h"
 #include "core/image/write_image.h"
@@ -10,7 +11,6 @@
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kPiExact = 3.14159265358979323846;
 /// Each pixel of the panorama is the mean of this many places squared.
 constexpr int kPlaces = 4;
 constexpr int kMostWide = 8192;
@@ -55,7 +55,8 @@ Status load_sphere(const LoadedScene& scene, const Entity& light, const std::str
 glm::dvec2 equal_area_square(const Vec3d& direction) {
   const Vec3d d = glm::abs(direction);
   const double r = std::sqrt(std::max(0.0, 1.0 - d.z));
-  const double turn = d.x == 0.0 && d.y == 0.0 ? 0.0 : std::atan2(d.y, d.x) * 2.0 / kPiExact;
+  const double turn =
+      d.x == 0.0 && d.y == 0.0 ? 0.0 : std::atan2(d.y, d.x) * 2.0 / elementary::kPiD;
   double v = turn * r;
   double u = r - v;
   if (direction.z < 0.0) {
@@ -71,7 +72,7 @@ Vec3d equal_area_direction(const glm::dvec2& place) {
   const glm::dvec2 a = glm::abs(p);
   const double beyond = 1.0 - (a.x + a.y);
   const double r = 1.0 - std::abs(beyond);
-  const double turn = (r == 0.0 ? 1.0 : (a.y - a.x) / r + 1.0) * kPiExact / 4.0;
+  const double turn = (r == 0.0 ? 1.0 : (a.y - a.x) / r + 1.0) * elementary::kPiD / 4.0;
   const double across = r * std::sqrt(std::max(0.0, 2.0 - r * r));
   return {std::copysign(std::cos(turn), p.x) * across, std::copysign(std::sin(turn), p.y) * across,
           std::copysign(1.0 - r * r, beyond)};
@@ -91,11 +92,12 @@ Result<Bytes> make_panorama(const std::vector<Layer>& layers) {
       Rgb sum(0.0F);
       double whole = 0.0;
       for (int j = 0; j < kPlaces; ++j) {
-        const double theta = kPiExact * (static_cast<double>(row) + (j + 0.5) / kPlaces) / height;
+        const double theta =
+            elementary::kPiD * (static_cast<double>(row) + (j + 0.5) / kPlaces) / height;
         const double weight = std::sin(theta);
         for (int i = 0; i < kPlaces; ++i) {
           // As EnvironmentMap has it: u = atan2(z, x) / 2 pi + 1 / 2.
-          const double phi = 2.0 * kPiExact * ((x + (i + 0.5) / kPlaces) / width - 0.5);
+          const double phi = 2.0 * elementary::kPiD * ((x + (i + 0.5) / kPlaces) / width - 0.5);
           const Vec3d d(weight * std::cos(phi), std::cos(theta), weight * std::sin(phi));
           for (const Layer& layer : layers) sum += static_cast<float>(weight) * layer.at(d);
           whole += weight;

@@ -1,13 +1,12 @@
 #include "core/import/pbrt/sky.h"
 
+#include "core/base/elementary.h"
 #include "core/import/pbrt/light_values.h"
 #include "core/import/pbrt/panorama.h"
 #include "core/import/pbrt/render_sections.h"
 
 namespace hyades::core::pbrt {
 namespace {
-
-constexpr double kPiExact = 3.14159265358979323846;
 
 /// The light that a level surface gets from the upper half of an equal-area picture (z is up).
 double illuminance_of(const Layer& layer) {
@@ -20,7 +19,7 @@ double illuminance_of(const Layer& layer) {
       sum += up * static_cast<double>(luminance(layer.pixel(x, y)));
     }
   }
-  return sum * 4.0 * kPiExact / (static_cast<double>(image.width) * image.height);
+  return sum * 4.0 * elementary::kPiD / (static_cast<double>(image.width) * image.height);
 }
 
 Result<Layer> sky_of(Context& context, const LightEntity& light, bool with_picture) {
