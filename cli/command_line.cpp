@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,26 @@
 #include "core/base/text.h"
 
 namespace hyades::cli {
+namespace {
+
+/// A subcommand's --help ends with those lines of its command's that are about it: the examples
+/// that call it, and the exit statuses.
+void share_footer(CLI::App& app) {
+  for (CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) {
+    if (!sub->get_footer().empty()) continue;
+    const std::string call = "  " + app.get_name() + " " + sub->get_name() + " ";
+    std::string examples;
+    std::string statuses;
+    std::istringstream lines(app.get_footer());
+    for (std::string line; std::getline(lines, line);) {
+      if ((line + " ").starts_with(call)) examples += line + "\n";
+      if (line.starts_with("exit status")) statuses = line;
+    }
+    if (!examples.empty()) sub->footer("examples:\n" + examples + statuses);
+  }
+}
+
+}  // namespace
 
 std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
   std::string text = error.what();
@@ -57,6 +78,7 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv, int wrong) {
+  share_footer(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

@@ -18,6 +18,8 @@ constexpr std::string_view kBash = R"sh(_hyades() {
     COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u)" -- "$word"))
   elif [ "${COMP_WORDS[1]}" = completion ]; then
     COMPREPLY=($(compgen -W "bash zsh fish" -- "$word"))
+  elif [ "$COMP_CWORD" = 2 ]; then
+    COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
   fi
 }
 complete -o default -F _hyades hyades
@@ -37,7 +39,9 @@ _hyades() {
   elif [[ ${words[2]} == completion ]]; then
     compadd bash zsh fish
   else
-    _files
+    local -a verbs
+    (( CURRENT == 3 )) && verbs=(${(f)"$("$program" "${words[2]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) +(.*)/\1:\2/p')"})
+    if (( ${#verbs} )); then _describe command verbs; else _files; fi
   fi
 }
 # The file of a function is read when it is first wanted, and then it is to complete at once.
@@ -47,11 +51,16 @@ if [[ ${funcstack[1]} == _hyades ]]; then _hyades "$@"; else compdef _hyades hya
 constexpr std::string_view kFish = R"sh(function __hyades_commands
   hyades --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z-]+) +(.*)/\1\t\2/p'
 end
+function __hyades_verbs
+  set -l words (commandline -opc)
+  hyades $words[2] --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) +(.*)/\1\t\2/p'
+end
 function __hyades_options
   set -l words (commandline -opc)
   hyades $words[2] --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u
 end
 complete -c hyades -n 'test (count (commandline -opc)) -eq 1' -f -a '(__hyades_commands)'
+complete -c hyades -n 'test (count (commandline -opc)) -eq 2' -a '(__hyades_verbs)'
 complete -c hyades -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__hyades_options)'
 complete -c hyades -n '__fish_seen_subcommand_from completion' -f -a 'bash zsh fish'
 )sh";

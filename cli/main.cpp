@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/completion.h"
@@ -87,13 +88,27 @@ void print_help() {
       "  hyades render jobs/quickstart/job.yaml\n"
       "  hyades render robot.glb --samples 64\n"
       "  hyades check jobs/cornell/job.yaml\n"
-      "\n'hyades COMMAND --help' tells more about a command. docs/job.md describes jobs.\n");
+      "\n'hyades COMMAND --help' or 'hyades help COMMAND' tells more about a command. docs/job.md "
+      "describes jobs.\n");
+}
+
+/// `help COMMAND...` as `COMMAND... --help`; other arguments as they are.
+std::vector<char*> spelled_out(int argc, char** argv) {
+  std::vector<char*> words(argv, argv + argc);
+  if (argc > 2 && std::string_view(argv[1]) == "help") {
+    static char help[] = "--help";
+    words.erase(words.begin() + 1);
+    words.push_back(help);
+  }
+  words.push_back(nullptr);
+  return words;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string name = argc > 1 ? argv[1] : "--help";
+  std::vector<char*> words = spelled_out(argc, argv);
+  const std::string name = argc > 1 ? words[1] : "--help";
   if (name == "--help" || name == "-h" || name == "help") {
     print_help();
     return 0;
@@ -105,9 +120,9 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Command& command : kCommands) {
     if (name == command.name) {
-      if (command.program == nullptr) return hyades::cli::completion_command(argc - 1, argv + 1);
+      if (command.program == nullptr) return hyades::cli::completion_command(argc - 1, words.data() + 1);
       const std::string program = hyades::core::program_folder() + command.program;
-      execv(program.c_str(), argv);
+      execv(program.c_str(), words.data());
       std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(),
                    std::strerror(errno));
       return 1;

@@ -337,7 +337,10 @@ int token_command(int argc, char** argv) {
       "examples:\n"
       "  hyades token create --data /var/lib/hyades --role admin --name ada --output admin-token\n"
       "  hyades token create --role submitter --name alice --expires 30d --output alice-token\n"
+      "  hyades token list\n"
       "  hyades token revoke 9f3a01c2\n"
+      "  hyades token rotate 9f3a01c2 --output node-token\n"
+      "  hyades token whoami\n"
       "docs/safety.md tells what each role may do\n"
       "exit status: 0 done, 1 it could not be done, 2 wrong arguments, 3 no coordinator answers, 4 "
       "no token, or not one that may");

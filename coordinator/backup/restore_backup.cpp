@@ -1,6 +1,7 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -143,7 +144,10 @@ core::Result<BackupCount> restore_backup(const std::string& from, const std::str
   if (auto free = check_target(wanted); !free) return free.error();
   const std::string work = wanted + ".restoring-" + std::to_string(::getpid());
   std::error_code failed;
-  if (!fs::create_directories(work, failed)) return core::Error{work + ": cannot be made"};
+  fs::create_directories(fs::path(work).parent_path(), failed);
+  if (::mkdir(work.c_str(), 0700) != 0) {
+    return core::Error{work + ": cannot be made: " + core::io_reason(errno)};
+  }
   const auto give_up = [&](const core::Error& error) {
     std::error_code ignored;
     fs::remove_all(work, ignored);

@@ -1,9 +1,11 @@
 #include <archive.h>
 #include <archive_entry.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
 #include <filesystem>
 #include <memory>
@@ -16,7 +18,9 @@
 #include "coordinator/backup/manifest.h"
 #include "coordinator/backup/read_file.h"
 #include "core/base/atomic_file.h"
+#include "core/base/descriptor.h"
 #include "core/base/hash.h"
+#include "core/base/io_reason.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -35,12 +39,15 @@ class Tar {
   Tar(const Tar&) = delete;
   Tar& operator=(const Tar&) = delete;
 
+  /// For its owner alone: it holds unfinished pictures, scenes, and the hashes of tokens.
   core::Status open(const std::string& path) {
+    file_ = core::Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    if (!file_.valid()) return core::Error{"cannot write " + path + ": " + core::io_reason(errno)};
     archive_ = archive_write_new();
     if (archive_ == nullptr) return core::Error{"no memory"};
     const bool ready = archive_write_set_format_pax_restricted(archive_) == ARCHIVE_OK &&
                        archive_write_add_filter_none(archive_) == ARCHIVE_OK &&
-                       archive_write_open_filename(archive_, path.c_str()) == ARCHIVE_OK;
+                       archive_write_open_fd(archive_, file_.get()) == ARCHIVE_OK;
     return ready ? core::Status() : trouble();
   }
 
@@ -69,6 +76,7 @@ class Tar {
     const char* words = archive_error_string(archive_);
     return {words != nullptr ? words : "the tar file could not be written"};
   }
+  core::Descriptor file_;
   archive* archive_ = nullptr;
 };
 
@@ -258,16 +266,17 @@ core::Result<BackupCount> write_backup(const std::string& data, const std::strin
   }
   BackupCount count;
   const std::string work = to + ".work-" + std::to_string(::getpid());
-  std::error_code failed;
-  fs::create_directories(work, failed);
-  if (failed) return core::Error{work + ": cannot be made: " + failed.message()};
+  if (::mkdir(work.c_str(), 0700) != 0) {
+    return core::Error{work + ": cannot be made: " + core::io_reason(errno)};
+  }
   const core::Status written = core::replace_file(to, [&](const std::string& path) {
     Writer writer(data, work);
     core::Status done = writer.write(path);
     count = writer.count();
     return done;
   });
-  fs::remove_all(work, failed);
+  std::error_code ignored;
+  fs::remove_all(work, ignored);
   if (!written) return written.error();
   return count;
 }

@@ -30,7 +30,8 @@ std::string Brain::unmet_needs(const StoredJob& job) const {
   bool enough_memory = false;
   bool suits = false;
   std::vector<std::string> missing = job.tags;
-  for (const auto& [worker, seat] : seats_) {
+  for (const auto& entry : seats_) {
+    const Seat& seat = entry.second;
     if (!seat.joined || seat.state != v1::WORKER_STATE_ACTIVE) continue;
     std::erase_if(missing, [&](const std::string& tag) { return has_tag(seat.hello, tag); });
     most_memory = std::max(most_memory, seat.hello.memory_bytes());

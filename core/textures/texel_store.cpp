@@ -68,9 +68,13 @@ Result<Bytes> TexelStore::keep(std::vector<std::byte> bytes) {
   }
   bytes.shrink_to_fit();
   struct Counted {
-    std::vector<std::byte> bytes;
-    std::shared_ptr<std::atomic<uint64_t>> used;
+    Counted(std::vector<std::byte> kept, std::shared_ptr<std::atomic<uint64_t>> counter)
+        : bytes(std::move(kept)), used(std::move(counter)) {}
+    Counted(const Counted&) = delete;
+    Counted& operator=(const Counted&) = delete;
     ~Counted() { used->fetch_sub(bytes.size()); }
+    const std::vector<std::byte> bytes;
+    const std::shared_ptr<std::atomic<uint64_t>> used;
   };
   auto owner = std::make_shared<Counted>(std::move(bytes), used_);
   const std::span<const std::byte> view(owner->bytes);

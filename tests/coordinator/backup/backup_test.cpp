@@ -1,6 +1,7 @@
 #include "coordinator/backup/backup.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -162,6 +163,17 @@ TEST_F(Backup, ComesBackAsItWas) {
     const std::string name = entry.path().filename().string();
     EXPECT_TRUE(name == "data" || name == "fresh" || name == "backup.tar") << name;
   }
+}
+
+TEST_F(Backup, IsForItsOwnersEyesAlone) {
+  const mode_t before = ::umask(0);
+  const auto written = write_backup(folder_.file("data"), tar());
+  const auto restored = restore_backup(tar(), fresh());
+  ::umask(before);
+  ASSERT_TRUE(written && restored);
+  EXPECT_EQ(fs::status(tar()).permissions(), fs::perms(0600));
+  EXPECT_EQ(fs::status(fresh()).permissions(), fs::perms(0700));
+  EXPECT_EQ(fs::status(fresh("/state.db")).permissions(), fs::perms(0600));
 }
 
 TEST_F(Backup, StartsAreCountedFarBeyondThoseOfTheLostCoordinator) {

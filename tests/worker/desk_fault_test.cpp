@@ -1,0 +1,187 @@
+#include "worker/desk.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/worker/desk_testing.h"
+
+namespace hyades::worker {
+namespace {
+
+using std::chrono::seconds;
+using Message = v1::WorkerMessage;
+
+TEST(Desk, TheUnitThatKillsItsProcessAloneHasFailed) {
+  DeskWorld world(3, 1);
+  world.begin();
+  for (const int x : {0, 8, 16, 24}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  for (const int x : {0, 8}) world.started(world.token_of(x));
+  world.take_sent();
+  world.desk->renderer_died("crashed with signal 11");
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_failure).has_failure())
+      << "nobody knows yet which of the two it was";
+  world.ports.told.clear();
+  world.renderer_up();
+  EXPECT_NE(world.token_of(0), 0U);
+  EXPECT_EQ(world.token_of(8), 0U) << "one suspect at a time";
+  EXPECT_EQ(world.token_of(16), 0U) << "and nothing beside it";
+  world.film(world.token_of(0));
+  EXPECT_NE(world.token_of(8), 0U);
+  EXPECT_EQ(world.token_of(16), 0U);
+  world.started(world.token_of(8));
+  world.desk->renderer_died("crashed with signal 11");
+  const Message failure = first(world.take_sent(), &Message::has_failure);
+  EXPECT_EQ(failure.failure().unit().unit().tile().x0(), 8);
+  EXPECT_NE(failure.failure().reason().find("signal 11"), std::string::npos);
+  world.renderer_up();
+  EXPECT_NE(world.token_of(16), 0U);
+  EXPECT_NE(world.token_of(24), 0U);
+}
+
+TEST(Desk, OneUnitInWorkNeedsNoSecondTrial) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.started(world.token_of(0));
+  world.take_sent();
+  world.desk->renderer_died("ran out of memory");
+  EXPECT_TRUE(first(world.take_sent(), &Message::has_failure).has_failure());
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, AHungUnitFailsAndThoseBesideItAreNotToBlame) {
+  DeskWorld world(3, 1);
+  world.begin();
+  for (const int x : {0, 8, 16}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  for (const int x : {0, 8}) world.started(world.token_of(x));
+  world.take_sent();
+  const auto pass = [&](int time) {  // seconds, in which unit 0 gets on and unit 8 does not
+    for (int i = 0; i < time; ++i) {
+      world.now += seconds(1);
+      world.progress({{world.token_of(0), 16 * world.now.time_since_epoch().count()},
+                      {world.token_of(8), 32}});
+      world.desk->tick(world.now, false);
+      world.echo(1);
+    }
+  };
+  world.welcome(1000, 1'000'000);
+  pass(60);
+  EXPECT_TRUE(world.ports.kills.empty());
+  pass(2);
+  ASSERT_EQ(world.ports.kills.size(), 1U);
+  EXPECT_EQ(world.ports.kills[0], "had no sample done in 60 s and was killed");
+  const Message failure = first(world.take_sent(), &Message::has_failure);
+  EXPECT_EQ(failure.failure().unit().unit().tile().x0(), 8);
+  EXPECT_EQ(failure.failure().reason(),
+            "the process that rendered it had no sample done in 60 s and was killed");
+  world.desk->renderer_died("had no sample done in 60 s and was killed");  // it is really dead
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_failure).has_failure());
+  world.ports.told.clear();
+  world.renderer_up();
+  EXPECT_NE(world.token_of(0), 0U);
+  EXPECT_NE(world.token_of(16), 0U) << "nobody is a suspect: all are rendered beside each other";
+}
+
+TEST(Desk, AUnitThatHasHadItsTimeFailsAndTheOthersGoOn) {
+  DeskWorld world(2, 1);
+  world.begin();
+  world.welcome(1000, 10'000'000);
+  for (const int x : {0, 8, 16}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.started(world.token_of(0), true);  // the time for its scene counts
+  const auto pass = [&](int time) {        // seconds, in which all that is in work gets on
+    for (int i = 0; i < time; ++i) {
+      world.now += seconds(1);
+      const uint64_t samples = static_cast<uint64_t>(world.now.time_since_epoch().count());
+      world.progress({{world.token_of(0), samples}, {world.token_of(8), samples}});
+      world.desk->tick(world.now, false);
+    }
+  };
+  pass(600);
+  world.started(world.token_of(0));
+  world.started(world.token_of(8));
+  pass(1198);
+  EXPECT_FALSE(world.stopped(world.token_of(0)));
+  world.take_sent();
+  pass(3);
+  EXPECT_TRUE(world.stopped(world.token_of(0)));
+  const Message failure = first(world.take_sent(), &Message::has_failure);
+  EXPECT_EQ(failure.failure().unit().unit().tile().x0(), 0);
+  EXPECT_EQ(failure.failure().reason(),
+            "took longer than 30 min 00 s (--unit-time-limit of the worker)");
+  world.returned(world.token_of(0));
+  pass(500);
+  EXPECT_FALSE(world.stopped(world.token_of(8))) << "each has its own time";
+  EXPECT_TRUE(world.ports.kills.empty()) << "those beside it are not disturbed";
+  EXPECT_EQ(world.desk->in_hand(), 2U);
+}
+
+TEST(Desk, AChildThatDoesNotStopAnOverdueUnitIsKilled) {
+  DeskWorld world(2, 1);
+  world.begin();
+  world.welcome(1000, 10'000'000);
+  for (const int x : {0, 8}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  const auto pass = [&](int time) {
+    for (int i = 0; i < time; ++i) {
+      world.now += seconds(1);
+      const uint64_t samples = static_cast<uint64_t>(world.now.time_since_epoch().count());
+      world.progress({{world.token_of(0), samples}, {world.token_of(8), samples}});
+      world.desk->tick(world.now, false);
+    }
+  };
+  world.started(world.token_of(0));
+  pass(1000);
+  world.started(world.token_of(8));
+  pass(809);
+  EXPECT_TRUE(world.stopped(world.token_of(0)));
+  EXPECT_TRUE(world.ports.kills.empty());
+  world.take_sent();
+  pass(3);
+  ASSERT_EQ(world.ports.kills.size(), 1U);
+  world.ports.told.clear();
+  world.renderer_up();
+  EXPECT_NE(world.token_of(8), 0U) << "rendered again, and nobody's fault";
+  EXPECT_EQ(world.token_of(0), 0U);
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_failure).has_failure());
+}
+
+TEST(Desk, ASceneThatLoadsForLongerThanAUnitMayTakeEndsItsProcess) {
+  DeskWorld world(2, 1);
+  world.begin();
+  world.welcome(1000, 10'000'000);
+  world.lease(DeskWorld::unit(0, 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.started(world.token_of(0), true);
+  world.take_sent();
+  for (int i = 0; i < 1801 && world.ports.kills.empty(); ++i) {
+    world.now += seconds(1);
+    world.progress({});
+    world.desk->tick(world.now, false);
+  }
+  ASSERT_EQ(world.ports.kills.size(), 1U);
+  EXPECT_NE(world.ports.kills[0].find("--unit-time-limit"), std::string::npos);
+  EXPECT_TRUE(first(world.take_sent(), &Message::has_failure).has_failure());
+}
+
+TEST(Desk, ASuspectThatWaitsIsNotBlamedForAHangOfAnother) {
+  DeskWorld world(3, 1);
+  world.begin();
+  for (const int x : {0, 8}) world.lease(DeskWorld::unit(x, static_cast<uint64_t>(x) + 1));
+  world.desk->files_are_there(DeskWorld::kJob);
+  for (const int x : {0, 8}) world.started(world.token_of(x));
+  world.desk->renderer_died("crashed with signal 11");
+  world.renderer_up();
+  world.started(world.token_of(0));
+  v1::CoordinatorMessage stop;
+  *stop.mutable_stop()->mutable_unit() = DeskWorld::unit(0);
+  world.desk->coordinator_says(stop, world.now);  // and the child does not even stop
+  world.take_sent();
+  world.desk->renderer_died("crashed with signal 11");
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_failure).has_failure());
+}
+
+}  // namespace
+}  // namespace hyades::worker

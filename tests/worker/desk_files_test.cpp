@@ -1,0 +1,126 @@
+#include "worker/desk.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/worker/desk_testing.h"
+
+namespace hyades::worker {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Message = v1::WorkerMessage;
+
+TEST(Desk, FilmsThatCannotBeStoredNowComeAgain) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.film(world.token_of(0));
+  world.take_sent();
+  v1::CoordinatorMessage message;
+  *message.mutable_rejected()->mutable_unit() = DeskWorld::unit(0);
+  message.mutable_rejected()->set_reason(v1::Rejected::REASON_NOT_NOW);
+  message.mutable_rejected()->set_retry_after_ms(500);
+  world.desk->coordinator_says(message, world.now);
+  world.now += milliseconds(400);
+  world.desk->tick(world.now, true);
+  EXPECT_FALSE(first(world.take_sent(), &Message::has_result).has_result());
+  world.now += milliseconds(200);
+  world.desk->tick(world.now, true);
+  EXPECT_TRUE(first(world.take_sent(), &Message::has_result).has_result());
+  message.mutable_rejected()->set_reason(v1::Rejected::REASON_UNKNOWN);
+  world.desk->coordinator_says(message, world.now);
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, UnitsWhoseFilesCannotBeHadGoBack) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.take_sent();
+  world.desk->files_failed(DeskWorld::kJob, "not there", false, world.now);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_returned).returned().reason(), "not there");
+  EXPECT_TRUE(world.desk->empty());
+  world.now += seconds(10);
+  world.desk->tick(world.now, true);
+  world.lease(DeskWorld::unit(0, 2));
+  EXPECT_EQ(world.ports.fetched.size(), 2U) << "and are tried again with the next lease";
+  world.take_sent();
+  world.desk->files_failed(DeskWorld::kJob, "its name is no SHA-256", true, world.now);
+  EXPECT_EQ(first(world.take_sent(), &Message::has_failure).failure().reason(),
+            "its name is no SHA-256");
+}
+
+TEST(Desk, RestsLongerEachTimeThatFilesCannotBeHad) {
+  DeskWorld world;
+  world.begin();
+  const auto fail = [&] {  // how long it asks for nothing
+    world.lease(DeskWorld::unit(0));
+    world.desk->files_failed(DeskWorld::kJob, "the disk is full", false, world.now);
+    world.take_sent();
+    for (milliseconds rest{0};; rest += milliseconds(100)) {
+      if (rest > seconds(200)) return rest;
+      world.desk->tick(world.now, true);
+      if (first(world.take_sent(), &Message::has_request).has_request()) return rest;
+      world.now += milliseconds(100);
+      world.welcome();
+    }
+  };
+  const auto rest = fail();
+  EXPECT_GE(rest, seconds(5));
+  EXPECT_LE(rest, seconds(11));
+  EXPECT_GE(fail(), seconds(10));
+  EXPECT_GE(fail(), seconds(20));
+  for (int i = 0; i < 5; ++i) EXPECT_LE(fail(), seconds(121));
+  EXPECT_EQ(world.ports.notes, std::vector<std::string>{"units go back: the disk is full"})
+      << "people are told of what changes";
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.film(world.token_of(0));
+  world.acknowledge(DeskWorld::unit(0));
+  EXPECT_LE(fail(), seconds(11));
+  EXPECT_EQ(world.ports.notes.size(), 2U);
+}
+
+TEST(Desk, WhatComesDuringARestGoesBackAtOnce) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_failed(DeskWorld::kJob, "the disk is full", false, world.now);
+  world.take_sent();
+  world.lease(DeskWorld::unit(0, 2));
+  const auto sent = world.take_sent();
+  EXPECT_EQ(first(sent, &Message::has_returned).returned().reason(), "the disk is full");
+  EXPECT_FALSE(first(sent, &Message::has_request).has_request());
+  EXPECT_EQ(world.ports.fetched.size(), 1U);
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, AJobThatIsOverIsForgotten) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  v1::CoordinatorMessage message;
+  message.mutable_over()->set_job(DeskWorld::kJob);
+  world.desk->coordinator_says(message, world.now);
+  EXPECT_TRUE(world.desk->empty());
+  EXPECT_TRUE(world.stopped(world.token_of(0)));
+  EXPECT_TRUE(world.ports.told.back().has_forget());
+}
+
+TEST(Desk, FilesThatComeTooLateAreNotKept) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  v1::CoordinatorMessage message;
+  message.mutable_over()->set_job(DeskWorld::kJob);
+  world.desk->coordinator_says(message, world.now);
+  world.ports.released.clear();
+  world.desk->files_are_there(DeskWorld::kJob);
+  EXPECT_EQ(world.ports.released, std::vector<uint64_t>{DeskWorld::kJob});
+}
+
+}  // namespace
+}  // namespace hyades::worker
