@@ -99,8 +99,8 @@ std::optional<double> work_left(const v1::Job& job) {
 
 class Autoscaler {
  public:
-  Autoscaler(const Options& options, std::optional<std::time_t> finish_by)
-      : options_(options), finish_by_(finish_by), damper_(seconds(options.down_after)) {}
+  explicit Autoscaler(const Options& options)
+      : options_(options), plan_(seconds(options.down_after)) {}
 
   /// Decides, and calls the command where that is due. False where the command failed.
   bool step(const Seen& seen, Clock::time_point now) {
@@ -109,17 +109,14 @@ class Autoscaler {
       spent_ += hours * static_cast<double>(seen.workers.size()) * *options_.price;
     }
     looked_ = now;
-    const ScaleDecision decision = decide_scale(state_of(seen));
-    const uint32_t wanted = damper_.follow(decision.wanted, now);
+    const ScaleDecision decision = plan_.next(state_of(seen), now);
+    const uint32_t wanted = decision.wanted;
     const bool changed = !called_ || *called_ != wanted;
     const bool stale = called_at_ && now - *called_at_ >= seconds(kRefresh);
     if (!changed && !stale) return true;
-    std::string line =
-        fmt::format("wanted {}, there are {}: {}", wanted, seen.workers.size(), decision.why);
-    if (wanted > decision.wanted) {
-      line += fmt::format("; {} are enough, waits before it sends others home", decision.wanted);
+    if (changed) {
+      say(fmt::format("wanted {}, there are {}: {}", wanted, seen.workers.size(), decision.why));
     }
-    if (changed) say(line);
     if (options_.dry) {
       called_ = wanted;
       return true;
@@ -159,26 +156,31 @@ class Autoscaler {
       ScaleJob left;
       left.core_seconds = work_left(job);
       left.max_workers = job.max_workers();
-      left.seconds_left =
-          finish_by_ ? static_cast<double>(*finish_by_) - now
-                     : 1e-3 * static_cast<double>(job.submitted_ms()) + options_.within - now;
+      left.seconds_left = deadline_of(job) - now;
       state.jobs.push_back(left);
     }
     return state;
   }
 
+  /// Unix seconds. A time of day is the first of its kind after the submission, so that a command
+  /// that runs for weeks has every night's.
+  double deadline_of(const v1::Job& job) const {
+    const double submitted = 1e-3 * static_cast<double>(job.submitted_ms());
+    if (options_.finish_by.empty()) return submitted + options_.within;
+    const auto moment = parse_moment(options_.finish_by, static_cast<std::time_t>(submitted));
+    return moment ? static_cast<double>(*moment) : submitted;
+  }
+
   const Options options_;
-  const std::optional<std::time_t> finish_by_;
-  ScaleDamper damper_;
+  ScalePlan plan_;
   std::optional<Clock::time_point> looked_;
   double spent_ = 0;
   std::optional<uint32_t> called_;  ///< what the command was told last, if it did not fail
   std::optional<Clock::time_point> called_at_;
 };
 
-int run(const ClientApp& app, FarmClient& client, const Options& options,
-        std::optional<std::time_t> finish_by) {
-  Autoscaler scaler(options, finish_by);
+int run(const ClientApp& app, FarmClient& client, const Options& options) {
+  Autoscaler scaler(options);
   std::string told;
   while (!ended()) {
     const auto begin = Clock::now();
@@ -219,7 +221,8 @@ int autoscale_command(int argc, char** argv) {
       ->check(CLI::Range(1U, 1'000'000U))
       ->required();
   auto* by = words.add_option("--finish-by", options.finish_by,
-                              "when all shall be done: 18:00, 2026-03-01T18:00");
+                              "when all shall be done: 18:00 (the first one after a job's "
+                              "submission), 2026-03-01T18:00");
   add_duration(words, "--within", options.within,
                "how long after its submission a job shall be done (default: 1h)", 60)
       ->excludes(by);
@@ -262,11 +265,9 @@ int autoscale_command(int argc, char** argv) {
   if (options.exec.empty() && !options.dry) return wrong("--exec is missing (or --dry-run)");
   if (options.least > options.most) return wrong("--min is more than --max");
   if (options.money && !options.price) return wrong("--max-cost: expected --price beside it");
-  std::optional<std::time_t> finish_by;
   if (!options.finish_by.empty()) {
     const auto moment = parse_moment(options.finish_by, std::time(nullptr));
     if (!moment) return wrong("--finish-by " + moment.error().message);
-    finish_by = *moment;
   }
   const auto client = app.connect();
   if (!client) return kBadArguments;
@@ -274,7 +275,7 @@ int autoscale_command(int argc, char** argv) {
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  return run(app, *client, options, finish_by);
+  return run(app, *client, options);
 }
 
 }  // namespace hyades::cli

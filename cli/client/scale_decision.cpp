@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -10,20 +11,30 @@
 namespace hyades::cli {
 namespace {
 
-/// Seconds of work that a new worker is worth its start for.
-constexpr double kWorthAStart = 60;
-/// What a deadline that is near, or past, is taken for, s.
+/// What a deadline that is near, or past, is taken for, s: so no worker starts for less work than
+/// that.
 constexpr double kSoonest = 60;
 
 uint32_t whole(double workers) {
   return static_cast<uint32_t>(std::clamp(std::ceil(workers - 1e-9), 0.0, 1e9));
 }
 
-/// The most workers that all jobs together can use.
-double usable(const std::vector<ScaleJob>& jobs) {
+/// How many of `due`, which are due within `seconds`, can be at work on them so that they are done
+/// in time.
+double workers_within(double seconds, std::span<const ScaleJob> due, double threads) {
   double sum = 0;
-  for (const ScaleJob& job : jobs) sum += job.max_workers > 0 ? job.max_workers : 1e9;
+  for (const ScaleJob& job : due) {
+    const double needed = *job.core_seconds / threads / seconds;
+    sum += job.max_workers > 0 ? std::min<double>(needed, job.max_workers) : needed;
+  }
   return sum;
+}
+
+/// How many workers the money that is left pays until the next decision.
+uint32_t affordable(const ScaleState& state) {
+  const double hours = std::max(state.interval, 1.0) / 3600;
+  const double paid = std::floor(std::max(state.money_left, 0.0) / (*state.price * hours) + 1e-9);
+  return static_cast<uint32_t>(std::min(paid, 1e9));
 }
 
 }  // namespace
@@ -44,28 +55,19 @@ ScaleDecision decide_scale(const ScaleState& state) {
             [](const ScaleJob& a, const ScaleJob& b) { return a.seconds_left < b.seconds_left; });
   const double threads = std::max(state.threads_per_worker, 1.0);
   double needed = 0;
-  double so_far = 0;
-  for (const ScaleJob& job : due) {
-    so_far += *job.core_seconds;
-    needed = std::max(needed, so_far / threads / std::max(job.seconds_left, kSoonest));
+  // O(jobs) where all are due together, which --finish-by means; else O(jobs^2), of a queue's
+  // thousand.
+  for (size_t i = 0; i < due.size(); ++i) {
+    const double seconds = std::max(due[i].seconds_left, kSoonest);
+    if (i + 1 < due.size() && std::max(due[i + 1].seconds_left, kSoonest) == seconds) continue;
+    needed = std::max(needed, workers_within(seconds, std::span(due).first(i + 1), threads));
   }
-  const double worth = std::ceil(work / threads / kWorthAStart);
-  const double wished = std::min({needed, std::max(worth, 1.0), usable(state.jobs)});
-  uint32_t wanted = std::max(whole(wished), 1U);
+  uint32_t wanted = std::max(whole(needed), 1U);
   std::string why = fmt::format("{} of work", core::format_duration(work / threads));
   if (unmeasured) why += due.empty() ? " that nobody has begun" : " and more";
   if (due.empty() && unmeasured) why = "work that nobody has begun";
   if (wanted > most) why += fmt::format("; {} workers would be right", wanted);
   wanted = std::clamp(wanted, state.least, most);
-  if (state.price && *state.price > 0) {
-    const double hours = std::max(state.interval, 1.0) / 3600;
-    const auto paid = static_cast<uint32_t>(std::clamp(
-        std::floor(std::max(state.money_left, 0.0) / (*state.price * hours) + 1e-9), 0.0, 1e9));
-    if (paid < wanted) {
-      wanted = std::max(paid, state.least);
-      why += fmt::format("; {:.2f} are left to be spent", std::max(state.money_left, 0.0));
-    }
-  }
   return {wanted, why};
 }
 
@@ -75,6 +77,21 @@ uint32_t ScaleDamper::follow(uint32_t wanted, TimePoint now) {
   return std::max_element(lately_.begin(), lately_.end(),
                           [](const auto& a, const auto& b) { return a.second < b.second; })
       ->second;
+}
+
+ScaleDecision ScalePlan::next(const ScaleState& state, ScaleDamper::TimePoint now) {
+  ScaleDecision decision = decide_scale(state);
+  const uint32_t enough = decision.wanted;
+  decision.wanted = damper_.follow(enough, now);
+  if (decision.wanted > enough) {
+    decision.why += fmt::format("; {} are enough, waits before it sends others home", enough);
+  }
+  if (!state.price || *state.price <= 0) return decision;
+  if (const uint32_t paid = affordable(state); paid < decision.wanted) {
+    decision.wanted = std::max(paid, state.least);
+    decision.why += fmt::format("; {:.2f} are left to be spent", std::max(state.money_left, 0.0));
+  }
+  return decision;
 }
 
 }  // namespace hyades::cli

@@ -33,10 +33,11 @@ struct ScaleDecision {
   std::string why;
 };
 
-/// Workers start as late as the deadlines allow, and no sooner: for each deadline as many threads
-/// as the work that is due by then takes, and of these numbers the largest. A worker is not worth
-/// its start for less than a minute of work; a job that nobody has begun gets one worker, which
-/// measures it; beyond the money that is left there are only the `least`.
+/// How many workers the work needs, whatever they cost. They start as late as the deadlines allow,
+/// and no sooner: for each deadline as many as the work that is due by then takes, no more of each
+/// job than may render it at once, and of these numbers the largest. A worker is not worth its
+/// start for less than a minute of work; a job that nobody has begun gets one worker, which
+/// measures it.
 ScaleDecision decide_scale(const ScaleState& state);
 
 /// Follows decisions upwards at once, and downwards only when they were lower for long enough: to
@@ -51,6 +52,17 @@ class ScaleDamper {
  private:
   const Duration delay_;
   std::vector<std::pair<TimePoint, uint32_t>> lately_;
+};
+
+/// Decisions that follow each other: what the work needs, sent home late, and never more than what
+/// is left of the money pays until the next decision; beyond it there are only the `least`.
+class ScalePlan {
+ public:
+  explicit ScalePlan(ScaleDamper::Duration down_after) : damper_(down_after) {}
+  ScaleDecision next(const ScaleState& state, ScaleDamper::TimePoint now);
+
+ private:
+  ScaleDamper damper_;
 };
 
 }  // namespace hyades::cli

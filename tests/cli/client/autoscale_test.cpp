@@ -75,19 +75,50 @@ TEST(ScaleDecision, WorkThatNobodyHasBegunGetsOneWorkerToMeasureIt) {
   EXPECT_EQ(decide_scale(state({{std::nullopt, kHour, 0}, {80 * kHour, kHour, 0}})).wanted, 10U);
 }
 
-TEST(ScaleDecision, BeyondTheMoneyThereAreOnlyTheFewest) {
+TEST(ScaleDecision, AJobCountsForNoMoreWorkersThanMayRenderIt) {
+  // One may have two workers and is late by far; the other is a minute of work for one.
+  EXPECT_EQ(decide_scale(state({{800 * kHour, -kHour, 2}, {8 * 60, kHour, 0}})).wanted, 3U);
+  // The limit of one is nothing to the other.
+  EXPECT_EQ(decide_scale(state({{800 * kHour, kHour, 2}, {80 * kHour, kHour, 0}})).wanted, 12U);
+}
+
+ScaleDecision now_wanted(const ScaleState& state) {
+  return ScalePlan(std::chrono::minutes(5)).next(state, {});
+}
+
+TEST(ScalePlan, BeyondTheMoneyThereAreOnlyTheFewest) {
   ScaleState dear = state({{800 * kHour, 10 * kHour, 0}});
   dear.interval = kHour;
   dear.price = 2;
   dear.money_left = 1000;
-  EXPECT_EQ(decide_scale(dear).wanted, 10U);
+  EXPECT_EQ(now_wanted(dear).wanted, 10U);
   dear.money_left = 7;  // three workers for an hour, and a rest
-  EXPECT_EQ(decide_scale(dear).wanted, 3U);
-  EXPECT_NE(decide_scale(dear).why.find("7.00 are left"), std::string::npos);
+  EXPECT_EQ(now_wanted(dear).wanted, 3U);
+  EXPECT_NE(now_wanted(dear).why.find("7.00 are left"), std::string::npos);
   dear.money_left = -1;
-  EXPECT_EQ(decide_scale(dear).wanted, 0U);
+  EXPECT_EQ(now_wanted(dear).wanted, 0U);
   dear.least = 2;
-  EXPECT_EQ(decide_scale(dear).wanted, 2U);
+  EXPECT_EQ(now_wanted(dear).wanted, 2U);
+}
+
+TEST(ScalePlan, NeverSpendsMoreThanThereIsWhileItWaitsToSendWorkersHome) {
+  ScaleState farm = state({{1000 * kHour, kHour, 0}});
+  farm.most = 20;
+  farm.interval = 60;
+  farm.price = 0.35;
+  ScalePlan plan(std::chrono::hours(1));
+  double spent = 0;
+  ScaleDamper::TimePoint now{};
+  uint32_t last = 0;
+  for (int minute = 0; minute < 120; ++minute) {
+    farm.money_left = 1 - spent;
+    last = plan.next(farm, now).wanted;
+    spent += last * *farm.price / 60;
+    now += std::chrono::minutes(1);
+  }
+  EXPECT_LE(spent, 1.0 + 1e-9);
+  EXPECT_GT(spent, 0.9) << "what is there may be spent";
+  EXPECT_EQ(last, 0U);
 }
 
 TEST(ScaleDamper, GoesUpAtOnceAndDownWhenLessWasEnoughForLong) {
@@ -210,6 +241,23 @@ TEST_F(Autoscale, AsksForWhatTheQueueNeeds) {
   EXPECT_EQ(called(), "1\n") << err_;
   EXPECT_EQ(run({"--within", "2h"}), kDone) << err_;
   EXPECT_EQ(called(), "1\n5\n") << err_;
+}
+
+TEST_F(Autoscale, ATimeOfDayIsTheFirstOneAfterAJobsSubmission) {
+  // Submitted six hours ago, due five hours ago: late, so that all the workers are wanted that may
+  // be.
+  const std::time_t due = std::time(nullptr) - 5 * 3600;
+  char text[6];
+  std::tm local{};
+  std::strftime(text, sizeof text, "%H:%M", ::localtime_r(&due, &local));
+  add_job(1600).set_submitted_ms(1000 * (static_cast<int64_t>(due) - 3600));
+  add_worker();
+  EXPECT_EQ(run({"--finish-by", text}), kDone) << err_;
+  EXPECT_EQ(called(), "20\n") << err_;
+  // Submitted an hour after it: due tomorrow, in nineteen hours.
+  farm_.jobs.back().set_submitted_ms(1000 * (static_cast<int64_t>(due) + 3600));
+  EXPECT_EQ(run({"--finish-by", text}), kDone) << err_;
+  EXPECT_EQ(called(), "20\n11\n") << err_;
 }
 
 TEST_F(Autoscale, PausedJobsAndThoseForOtherWorkersDoNotCount) {
