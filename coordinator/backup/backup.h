@@ -19,10 +19,12 @@ struct BackupCount {
 /// absent, and for its owner's eyes alone (mode 0600) unless it was there with another mode.
 core::Result<BackupCount> write_backup(const std::string& data, const std::string& to);
 
-/// Makes the folder `data`, which must not be there or be empty, out of a backup. It appears, for
-/// its owner alone (mode 0700), only when every file was there and had its digest; a backup that is
-/// torn or damaged is refused. The folder's starts are counted on by a thousand, so that what
-/// workers hold of the coordinator that was lost is not taken for this one's.
+/// Makes the folder `data`, which must not be there or be empty (but for lost+found), out of a
+/// backup, when every file was there and had its digest; a backup that is torn or damaged is
+/// refused. A folder that was not there appears as a whole, for its owner alone (mode 0700); one
+/// that was, where a disk is mounted say, is filled, the job store last. The folder's starts are
+/// counted on by a thousand, so that what workers hold of the coordinator that was lost is not
+/// taken for this one's.
 core::Result<BackupCount> restore_backup(const std::string& from, const std::string& data);
 
 }  // namespace hyades::coordinator

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <memory>
@@ -124,10 +125,19 @@ core::Result<Manifest> extract_all(const std::string& from, const std::string& f
   return manifest;
 }
 
-core::Status check_target(const std::string& data) {
+/// What a fresh file system has of its own.
+constexpr const char* kLostAndFound = "lost+found";
+
+/// Whether the folder is there, and empty; an error where it holds anything.
+core::Result<bool> is_there(const std::string& data) {
   std::error_code none;
-  if (!fs::exists(fs::symlink_status(data, none))) return {};
-  if (fs::is_directory(data, none) && fs::is_empty(data, none)) return {};
+  if (!fs::exists(fs::symlink_status(data, none))) return false;
+  bool empty = fs::is_directory(data, none);
+  for (fs::directory_iterator it(data, none), end; empty && !none && it != end;
+       it.increment(none)) {
+    empty = it->path().filename() == kLostAndFound;
+  }
+  if (empty && !none) return true;
   return core::Error{data + ": expected a folder that is not there yet, or is empty"};
 }
 
@@ -136,13 +146,43 @@ void sync_folder(const std::string& path) {
   if (open.valid()) (void)::fsync(open.get());
 }
 
+void sync_all(const std::string& folder) {
+  std::error_code failed;
+  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end;
+       it.increment(failed)) {
+    if (it->is_directory()) sync_folder(it->path().string());
+  }
+  sync_folder(folder);
+}
+
+/// Moves what is in `work` into the folder above it, which may be where a file system is mounted
+/// and cannot be replaced. The job store comes last: without it the folder is no coordinator's.
+core::Status move_up(const std::string& work, const std::string& data) {
+  std::error_code failed;
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(work, failed), end; !failed && it != end; it.increment(failed)) {
+    names.push_back(it->path().filename().string());
+  }
+  std::stable_partition(names.begin(), names.end(),
+                        [](const std::string& name) { return name != "state.db"; });
+  for (size_t i = 0; !failed && i < names.size(); ++i) {
+    if (i + 1 == names.size()) sync_folder(data);
+    fs::rename(fs::path(work) / names[i], fs::path(data) / names[i], failed);
+  }
+  if (!failed) fs::remove(work, failed);
+  if (failed) return core::Error{data + ": " + failed.message()};
+  return {};
+}
+
 }  // namespace
 
 core::Result<BackupCount> restore_backup(const std::string& from, const std::string& data) {
   const std::string target = fs::path(data).lexically_normal().string();
   const std::string wanted = target.ends_with('/') ? target.substr(0, target.size() - 1) : target;
-  if (auto free = check_target(wanted); !free) return free.error();
-  const std::string work = wanted + ".restoring-" + std::to_string(::getpid());
+  const auto there = is_there(wanted);
+  if (!there) return there.error();
+  const std::string name = ".restoring-" + std::to_string(::getpid());
+  const std::string work = *there ? wanted + "/" + name : wanted + name;
   std::error_code failed;
   fs::create_directories(fs::path(work).parent_path(), failed);
   if (::mkdir(work.c_str(), 0700) != 0) {
@@ -159,13 +199,14 @@ core::Result<BackupCount> restore_backup(const std::string& from, const std::str
   auto counted = count_start(starts, 0);
   if (counted) counted = count_start(starts, *counted + kStartsBetween);
   if (!counted) return give_up(counted.error());
-  for (fs::recursive_directory_iterator it(work, failed), end; !failed && it != end;
-       it.increment(failed)) {
-    if (it->is_directory()) sync_folder(it->path().string());
+  sync_all(work);
+  if (*there) {
+    if (auto moved = move_up(work, wanted); !moved) return moved.error();
+    sync_folder(wanted);
+  } else {
+    fs::rename(work, wanted, failed);
+    if (failed) return give_up({wanted + ": " + failed.message()});
   }
-  sync_folder(work);
-  fs::rename(work, wanted, failed);  // onto an empty folder, too
-  if (failed) return give_up({wanted + ": " + failed.message()});
   sync_folder(fs::absolute(wanted).parent_path().string());
   BackupCount count;
   for (const auto& [path, file] : manifest->files) count.bytes += file.size;

@@ -225,6 +225,31 @@ TEST_F(Backup, OnlyAFreshFolderIsRestoredInto) {
             std::string::npos);
 }
 
+TEST_F(Backup, AFolderThatIsThereIsFilledAsADiskIsMountedThere) {
+  ASSERT_TRUE(write_backup(folder_.file("data"), tar()));
+  fs::create_directories(fresh("/lost+found"));
+  struct stat before {};
+  ASSERT_EQ(::stat(fresh().c_str(), &before), 0);
+  const auto restored = restore_backup(tar(), fresh());
+  ASSERT_TRUE(restored) << restored.error().message;
+  struct stat after {};
+  ASSERT_EQ(::stat(fresh().c_str(), &after), 0);
+  EXPECT_EQ(after.st_ino, before.st_ino) << "a place of mounting cannot be replaced";
+  EXPECT_EQ(marks_of(fresh("/state.db")), 5);
+  EXPECT_EQ(read(fresh("/films/3/log.key")), "key");
+  for (const auto& entry : fs::directory_iterator(fresh())) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+  }
+}
+
+TEST_F(Backup, ATornOneLeavesAFolderThatIsThereEmpty) {
+  ASSERT_TRUE(write_backup(folder_.file("data"), tar()));
+  fs::resize_file(tar(), fs::file_size(tar()) / 2);
+  fs::create_directories(fresh());
+  EXPECT_FALSE(restore_backup(tar(), fresh()));
+  EXPECT_TRUE(fs::is_empty(fresh()));
+}
+
 TEST(Manifest, HoldsOnlyACoordinatorsOwnFiles) {
   for (const char* path :
        {"state.db", "films/1/00000001.films", "outputs/7/a/b.png", "assets/aa"}) {
