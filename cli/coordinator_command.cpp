@@ -27,6 +27,7 @@
 #include "coordinator/services/server.h"
 #include "coordinator/web/web_server.h"
 #include "core/base/atomic_file.h"
+#include "core/base/landlock.h"
 #include "core/base/machine.h"
 #include "farm/last_words.h"
 #include "farm/log.h"
@@ -219,6 +220,11 @@ int serve(const Arguments& arguments) {
     return kBadArguments;
   }
   open_many_files();
+  if (const std::string lacks = hyades::core::landlock_lacks(); !lacks.empty()) {
+    hyades::farm::log(LogLevel::warning,
+                      "pictures are made in a process that can read this coordinator's files (" +
+                          lacks + "): docs/safety.md");
+  }
   // Who sends what is no message is told so; it does not fill the log.
   google::protobuf::SetLogHandler(nullptr);
   // Signals are waited for below; every thread inherits that they are blocked.

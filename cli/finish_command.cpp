@@ -8,11 +8,13 @@
 #include <memory>
 #include <utility>
 
+#include "coordinator/finisher/confine.h"
 #include "coordinator/finisher/finish_task.h"
 #include "coordinator/finisher/video_task.h"
 #include "core/base/assets.h"
 #include "core/base/fp_mode.h"
 #include "core/base/hash.h"
+#include "core/base/landlock.h"
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/video.h"
@@ -37,6 +39,9 @@ core::Status write_result(const std::string& folder, const std::string& outputs,
 core::Status finish(const std::string& folder) {
   auto task = coordinator::read_finish_task(folder);
   if (!task) return task.error();
+  // A machine without Landlock finishes all the same; the coordinator has said so at its start.
+  const core::Status confined = coordinator::confine_finisher(folder, task->folder);
+  if (!confined && core::landlock_lacks().empty()) return confined;
   auto film = coordinator::read_finish_film(folder);
   if (!film) return film.error();
   std::shared_ptr<const core::DisplayTransform> display;

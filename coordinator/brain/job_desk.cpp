@@ -13,6 +13,7 @@
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/job/layers.h"
+#include "core/job/ocio_files.h"
 #include "core/job/render_key.h"
 #include "core/job/video.h"
 #include "farm/manifest_resolver.h"
@@ -74,6 +75,23 @@ Digest key_of(const v1::JobSpec& spec, const core::LayerSet& layers) {
   std::sort(files.begin(), files.end());
   for (const std::string& file : files) text += file + '\n';
   return core::sha256(text);
+}
+
+/// Where pictures are finished, tables lie to their configuration as in the job: what it names by
+/// an absolute path would be looked for among the coordinator's own files.
+core::Status check_color_files(const core::Job& job, core::AssetResolver& files) {
+  if (!job.color) return {};
+  const auto config = files.open(job.color->config);
+  if (!config) return config.error();
+  const std::vector<std::string>& used = job.color->files;
+  for (const std::string& file : core::ocio_file_candidates({config->chars(), config->size()})) {
+    if (!file.starts_with('/') || std::find(used.begin(), used.end(), file) == used.end()) continue;
+    return core::Error{fmt::format(
+        "{} names '{}': expected a path relative to the configuration, as a farm's machines have "
+        "no such file",
+        job.color->config, file)};
+  }
+  return {};
 }
 
 }  // namespace
@@ -272,6 +290,9 @@ core::Result<std::unique_ptr<JobDesk>> make_desk(const StoredJob& stored, const 
     if (path.is_absolute() || path.empty() || *path.begin() == "..") {
       return core::Error{"output '" + output.file + "': a farm writes below the job's folder only"};
     }
+  }
+  if (const core::Status portable = check_color_files(job, files); !portable) {
+    return portable.error();
   }
   auto numbers = frames_of(spec, job);
   if (!numbers) return numbers.error();

@@ -17,6 +17,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/own_environment.h"
+
 namespace hyades::coordinator {
 namespace {
 
@@ -55,7 +57,9 @@ core::Status run(const std::string& program, std::string word, const std::string
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  const int failed = posix_spawn(&child, program.c_str(), &files, &attributes, argv, environ);
+  std::vector<std::string> variables = core::own_environment();
+  const int failed = posix_spawn(&child, program.c_str(), &files, &attributes, argv,
+                                 core::for_exec(variables).data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&files);
   if (failed != 0) {

@@ -1,0 +1,46 @@
+#include "coordinator/finisher/confine.h"
+
+#include <sys/resource.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/base/landlock.h"
+#include "core/base/machine.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// Libraries that are opened only when they are wanted may lie elsewhere than the system's.
+void add_libraries(std::vector<core::FileRule>& rules) {
+  const char* const paths = std::getenv("LD_LIBRARY_PATH");
+  std::istringstream folders(paths != nullptr ? paths : "");
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (!folder.empty()) rules.push_back({folder});
+  }
+  if (const char* const denoiser = std::getenv("HYADES_OIDN"); denoiser != nullptr) {
+    rules.push_back({std::filesystem::path(denoiser).parent_path().string()});
+  }
+}
+
+}  // namespace
+
+core::Status confine_finisher(const std::string& scratch, const std::string& outputs) {
+  std::ofstream("/proc/self/oom_score_adj") << 800;
+  if (const uint64_t memory = core::usable_memory(); memory > 0) {
+    const rlimit limit{memory / 4 * 3, memory / 4 * 3};
+    ::setrlimit(RLIMIT_DATA, &limit);
+  }
+  std::error_code failed;
+  std::filesystem::create_directories(outputs, failed);
+  if (failed) return core::Error{outputs + ": cannot be made: " + failed.message()};
+  std::vector<core::FileRule> rules = core::system_files();
+  add_libraries(rules);
+  rules.push_back({scratch, core::FileAccess::write, true});
+  rules.push_back({outputs, core::FileAccess::write, true});
+  return core::restrict_files(rules);
+}
+
+}  // namespace hyades::coordinator
