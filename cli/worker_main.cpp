@@ -1,8 +1,12 @@
 // `hyades worker`: works for a coordinator.
 #include <unistd.h>
 
+#include <atomic>
+#include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
+#include <ctime>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,11 +29,29 @@ using hyades::worker::WorkerOptions;
 
 volatile std::sig_atomic_t g_signals = 0;
 
+/// The first signal and when it came: milliseconds of the monotonic clock times 128, and its
+/// number; 0: none yet.
+std::atomic<int64_t> g_first_signal{0};
+static_assert(std::atomic<int64_t>::is_always_lock_free, "a signal's handler may not wait");
+
+/// A batch system or a container's init may tell a whole group of processes, whose parent tells its
+/// child as well: the same signal within this time is still the first one.
+constexpr int64_t kSameSignalMs = 1000;
+
 /// The first signal asks for an orderly end, the second ends the process: the rendering child goes
 /// with it, and what was not delivered is rendered again elsewhere.
 void on_signal(int signal) {
-  g_signals = g_signals + 1;
-  if (g_signals > 1) _exit(128 + signal);
+  const int reason = errno;
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  errno = reason;
+  const int64_t ms = int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
+  int64_t first = 0;
+  if (g_first_signal.compare_exchange_strong(first, ms * 128 + signal)) {
+    g_signals = 1;
+  } else if (first % 128 != signal || ms - first / 128 >= kSameSignalMs) {
+    _exit(128 + signal);
+  }
 }
 
 /// Less than a second would kill healthy renderers.
@@ -129,6 +151,11 @@ int main(int argc, char** argv) {
                             "end after so long without work, such as 5m; also where no coordinator "
                             "answers (default: never)",
                             0.1);
+  app.add_option("--exit-status-when-told", options.told_status,
+                 "exit status where SIGTERM, Ctrl-C or the cloud (--preemption) ended it, such as "
+                 "143 where 0 would mean that its work is done")
+      ->check(CLI::Range(0, 255))
+      ->capture_default_str();
   std::string preemption = "off";
   auto* cloud = app.add_option("--preemption", preemption,
                                "hand over what is done when this cloud says that it takes the "
@@ -149,11 +176,10 @@ int main(int argc, char** argv) {
       "  hyades worker --coordinator farm.example:7700 --tls-ca ca.pem --token-file token\n"
       "  hyades worker --exit-when-idle 5m --preemption auto --log-format json\n"
       "  hyades worker --memory 8G --unit-time-limit 30m --sandbox require\n"
-      "Ctrl-C or SIGTERM: what is done is handed over, the rest given back; a second one ends it "
-      "at once.\n"
-      "exit status: 0 asked to leave or without work, 1 cannot work here, 2 wrong arguments or "
-      "refused by the "
-      "coordinator");
+      "Ctrl-C or SIGTERM: what is done is handed over, the rest given back; a second one, a second "
+      "later or more, ends it at once.\n"
+      "exit status: 0 asked to leave (or --exit-status-when-told) or without work, 1 cannot work "
+      "here, 2 wrong arguments or refused by the coordinator");
   // Where `hyades` has started this program, argv[1] is the word "worker".
   const int skipped = argc > 1 && std::string_view(argv[1]) == "worker" ? 1 : 0;
   if (const auto status = hyades::cli::parse_command_line(app, argc - skipped, argv + skipped)) {

@@ -23,6 +23,7 @@ struct WorkerOptions {
   double hang_limit = 60;    ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
   double unit_limit = 3600;  ///< seconds for one unit; 0: no limit (UnitLimit)
   double idle_limit = 0;     ///< seconds without work after which it ends; 0: never (IdleWatch)
+  int told_status = 0;       ///< exit status where a signal or the cloud ended it, not lack of work
   std::string sandbox = "auto";  ///< of the rendering child: auto, require or off
   std::optional<Cloud> cloud;    ///< whose notices of pre-emption to watch for
   std::string cloud_endpoint;    ///< instead of the cloud's own metadata service; empty: that one
@@ -30,9 +31,9 @@ struct WorkerOptions {
 };
 
 /// Works for a coordinator until `signals` is not 0, it is drained, or it was idle for long enough.
-/// Returns the process' exit status: 0 when it was asked to leave or was idle, 1 where it cannot
-/// work here, 2 where an option or its file is wrong, or the coordinator does not want it (token,
-/// version).
+/// Returns the process' exit status: 0 when it was drained or idle, `told_status` when a signal or
+/// the cloud ended it, 1 where it cannot work here, 2 where an option or its file is wrong, or the
+/// coordinator does not want it (token, version).
 int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& signals);
 
 }  // namespace hyades::worker

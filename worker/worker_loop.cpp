@@ -142,6 +142,7 @@ class Worker : private DeskPorts,
     if (!leave_by_) {
       note(LogLevel::info, reason + ": batches that are done are handed over");
       leave_reason_ = reason;
+      end_status_ = options_.told_status;
       desk_.leave(reason, true);
     }
     leave_by_ = leave_by_ ? std::min(*leave_by_, by) : by;
@@ -179,7 +180,7 @@ class Worker : private DeskPorts,
       link_.finish();
       goodbye_by_ = now + kGoodbye;
     }
-    if (goodbye_by_ && (now >= *goodbye_by_ || !streaming_)) exit_status_ = 0;
+    if (goodbye_by_ && (now >= *goodbye_by_ || !streaming_)) exit_status_ = end_status_;
   }
 
   // ---- the cloud ----
@@ -438,6 +439,7 @@ class Worker : private DeskPorts,
   std::optional<TimePoint> restart_at_;
   std::optional<TimePoint> leave_by_;
   std::string leave_reason_ = "drained";
+  int end_status_ = 0;
   bool asked_to_leave_ = false;
   std::optional<TimePoint> goodbye_by_;
   std::optional<int> exit_status_;

@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <csignal>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "core/render/class_probe.h"
 #include "farm/backoff.h"
@@ -324,9 +326,45 @@ TEST(WorkerProcess, ASecondSignalEndsItAtOnce) {
   ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 2; }))
       << worker.log();
   worker.signal(SIGTERM);
-  EXPECT_EQ(worker.wait(seconds(1)), std::nullopt);
+  std::this_thread::sleep_for(milliseconds(200));
+  worker.signal(SIGTERM);  // the same one, come by another way
+  EXPECT_EQ(worker.wait(seconds(2)), std::nullopt) << worker.log();
   worker.signal(SIGTERM);
   EXPECT_EQ(worker.wait(seconds(2)), 128 + SIGTERM);
+}
+
+TEST(WorkerProcess, ASignalOfAnotherKindIsASecondOne) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  coordinator.acknowledge = false;
+  WorkerProcess worker(coordinator.address(), folder.path().string(), {"--grace", "60"});
+  ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 2; }))
+      << worker.log();
+  worker.signal(SIGTERM);
+  std::this_thread::sleep_for(milliseconds(100));
+  worker.signal(SIGINT);
+  EXPECT_EQ(worker.wait(seconds(2)), 128 + SIGINT);
+}
+
+TEST(WorkerProcess, WhoWasToldToLeaveEndsWithTheStatusThatWasAskedFor) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  const std::vector<std::string> words = {"--exit-status-when-told", "143"};
+  {
+    WorkerProcess told(coordinator.address(), folder.path().string(), words);
+    ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.accepted >= 2; }))
+        << told.log();
+    told.signal(SIGTERM);
+    EXPECT_EQ(told.wait(seconds(10)), 143) << told.log();
+    EXPECT_NE(told.log().find("are handed over"), std::string::npos) << told.log();
+  }
+  std::vector<std::string> idle_words = words;
+  idle_words.insert(idle_words.end(), {"--exit-when-idle", "1s"});
+  WorkerProcess idle(coordinator.address(), folder.path().string(), idle_words);
+  ASSERT_TRUE(coordinator.wait_for_all()) << idle.log();
+  EXPECT_EQ(idle.wait(seconds(30)), 0) << "its work is done: " << idle.log();
 }
 
 }  // namespace
