@@ -38,7 +38,9 @@ core::Result<std::string> enter_sandbox(SandboxMode mode, const std::string& cac
   try_to(restrict_files(cache));
   try_to(restrict_calls());
   if (!lacking.empty() && mode == SandboxMode::required) {
-    return core::Error{"this machine has no whole sandbox (" + lacking + ")"};
+    return core::Error{"this machine has no whole sandbox (" + lacking +
+                       "); with 'auto' instead of 'require' as the worker's --sandbox it renders "
+                       "with what there is of one"};
   }
   return lacking;
 }
