@@ -1,20 +1,25 @@
 // hyades-worker-render: the child of a worker that renders. It knows light and no network: units
 // come and films go through the socket it is born with, files come out of the worker's cache.
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "core/base/descriptor.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
 #include "core/base/version.h"
 #include "core/render/class_probe.h"
 #include "farm/content_store.h"
+#include "farm/wire.h"
 #include "worker/pipe/message_pipe.h"
 #include "worker/pipe/render_pipe.pb.h"
 #include "worker/render/process_memory.h"
@@ -28,15 +33,31 @@ using namespace hyades;
 
 /// Where the worker leaves its end of the pipe.
 constexpr int kPipe = 3;
+/// Where the file for texels is; what comes after is closed.
+constexpr int kTexels = 4;
+/// The most bytes of a message from the worker: a job's specification, and what goes with it.
+constexpr uint32_t kMostSaid = farm::kMaxMessageBytes + (uint32_t{64} << 10U);
 /// What libraries take besides scenes, and what each thread's stack may.
 constexpr uint64_t kOverhead = uint64_t{256} << 20U;
 constexpr uint64_t kThreadOverhead = uint64_t{8} << 20U;
 
 int refuse(pipe::MessagePipe& parent, const std::string& reason) {
   pipe::FromRenderer message;
-  message.mutable_not_ready()->set_reason(reason);
+  message.mutable_not_ready()->set_reason(farm::wire_text(reason));
   (void)parent.send(message);
   return 1;
+}
+
+/// A file without a name at kTexels, in TMPDIR or beside the cache's files (/tmp may be in memory);
+/// none where none can be made.
+core::Descriptor open_texel_file(const std::string& cache) {
+  const char* temporary = std::getenv("TMPDIR");
+  std::string name = (temporary == nullptr ? cache : temporary) + "/hyades-texels-XXXXXX";
+  core::Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
+  if (!file.valid()) return {};
+  ::unlink(name.c_str());
+  if (file.get() == kTexels) return file;
+  return core::Descriptor(::dup3(file.get(), kTexels, O_CLOEXEC));
 }
 
 }  // namespace
@@ -56,14 +77,19 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   core::ignore_file_size_signal();
-  pipe::MessagePipe parent(kPipe);
+  pipe::MessagePipe parent(kPipe, {kMostSaid, 0});
   const auto mode = worker::read_sandbox_mode(sandbox);
   if (!mode) return refuse(parent, mode.error().message);
-  const auto lacking = worker::enter_sandbox(*mode, cache, kPipe + 1);
+  // What has to be opened or written, before nothing can be.
+  core::Descriptor texels = open_texel_file(cache);
+  const core::Status goes_first = worker::go_first();
+  const auto lacking = worker::enter_sandbox(*mode, cache, kTexels + 1);
   if (!lacking) return refuse(parent, lacking.error().message);
   // Scenes are built by as many threads as the machine has.
   const auto all_threads = static_cast<uint64_t>(threads + core::hardware_threads());
-  worker::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);
+  const core::Status limited =
+      worker::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);
+  if (!limited) return refuse(parent, limited.error().message);
 
   const auto measured = core::this_class();
   if (!measured) return refuse(parent, measured.error().message);
@@ -74,10 +100,11 @@ int main(int argc, char** argv) {
   ready.mutable_ready()->set_build(fmt::format("hyades {}, renderer {}, build {}", core::kVersion,
                                                core::kRendererRevision,
                                                core::build_id().substr(0, 12)));
-  ready.mutable_ready()->set_sandbox_lacks(*lacking);
+  ready.mutable_ready()->set_sandbox_lacks(farm::wire_text(*lacking));
+  if (!goes_first) ready.mutable_ready()->set_not_first(goes_first.error().message);
   if (!parent.send(ready)) return 1;
 
-  worker::SceneShelf shelf(**store, memory);
+  worker::SceneShelf shelf(**store, memory, std::move(texels));
   worker::RenderServer server(parent, shelf, threads);
   server.run();
   ::_exit(0);  // threads may be in the midst of units that nobody waits for

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "core/base/assets.h"
 #include "core/base/failpoint.h"
@@ -107,11 +108,27 @@ Result<Bytes> ContentStore::read(const std::string& name) {
   if (core::to_hex(core::sha256(bytes->span())) != name) {
     // Another process may have put a good one there meanwhile.
     const auto now = identify(path);
-    if (now && *now == *identity) ::unlink(path.c_str());
-    return Error{"asset " + name + ": the stored file was damaged and has been removed"};
+    const bool removed = now && *now == *identity && ::unlink(path.c_str()) == 0;
+    const std::lock_guard lock(mutex_);
+    damaged_.insert(name);
+    return Error{"asset " + name + ": the stored file " +
+                 (removed ? "was damaged and has been removed" : "is damaged")};
   }
   remember(name, *identity);
   return bytes;
+}
+
+std::set<std::string> ContentStore::take_damaged() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(damaged_, {});
+}
+
+void ContentStore::check_again(const std::string& name) {
+  {
+    const std::lock_guard lock(mutex_);
+    verified_.erase(name);
+  }
+  (void)read(name);
 }
 
 void ContentStore::touch(const std::string& name) const {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,8 +56,15 @@ class ContentStore {
   bool missing(const std::string& name) const;
 
   /// The bytes of file `name`, mapped. They are hashed when this process first reads the file and
-  /// whenever the file changed since. Errors: no such file, damaged (it is removed), unreadable.
+  /// whenever the file changed since. Errors: no such file, damaged (it is removed, where this
+  /// process may), unreadable.
   core::Result<core::Bytes> read(const std::string& name);
+
+  /// The names of files that read() found damaged since the last call.
+  std::set<std::string> take_damaged();
+
+  /// Hashes file `name` also where this process knows it; a damaged one is removed.
+  void check_again(const std::string& name);
 
   /// Error where there is no such file.
   core::Result<ContentPin> pin(const std::string& name);
@@ -113,7 +121,8 @@ class ContentStore {
   std::atomic<int64_t> next_sweep_{0};  ///< seconds of the steady clock
   std::atomic<uint64_t> commits_{0};
   std::mutex mutex_;
-  std::map<std::string, Identity> verified_;  ///< guarded by mutex_
+  std::map<std::string, Identity> verified_;  ///< guarded by mutex_, as is
+  std::set<std::string> damaged_;
 };
 
 }  // namespace hyades::farm

@@ -96,6 +96,19 @@ void AssetFetcher::fetch(uint64_t job, const v1::JobSpec& spec) {
   wake_.notify_all();  // of those who wait not all wait for this
 }
 
+void AssetFetcher::doubt(const std::string& file) {
+  const std::lock_guard lock(mutex_);
+  doubted_.insert(file);
+}
+
+void AssetFetcher::settle_doubts(const std::string& name) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (doubted_.erase(name) == 0) return;
+  }
+  store_.check_again(name);
+}
+
 void AssetFetcher::release(uint64_t job) {
   std::vector<farm::ContentPin> released;  // let go of without the lock
   const std::lock_guard lock(mutex_);
@@ -166,6 +179,7 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
 /// Nothing to do where the file is there.
 AssetFetcher::Outcome AssetFetcher::fetch_file(Wanted& wanted, const v1::JobFile& file) {
   const std::string name = name_of(file);
+  settle_doubts(name);
   if (store_.contains(name, file.size())) {
     ++hits_;
     return std::nullopt;

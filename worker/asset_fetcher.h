@@ -54,6 +54,9 @@ class AssetFetcher {
 
   /// All files of the job, which are then kept from eviction until release().
   void fetch(uint64_t job, const v1::JobSpec& spec);
+  /// Somebody has found this file of the store damaged: before it counts as there again it is
+  /// hashed.
+  void doubt(const std::string& file);
   /// The job's files are no longer wanted: what is under way is broken off and not reported.
   void release(uint64_t job);
 
@@ -85,6 +88,7 @@ class AssetFetcher {
   void loop();
   Outcome fetch_all(Wanted& wanted);
   Outcome fetch_file(Wanted& wanted, const v1::JobFile& file);
+  void settle_doubts(const std::string& name);
   static Failure local_trouble(const core::Error& error);
   Outcome fetch_patiently(Wanted& wanted, const v1::JobFile& file);
   Outcome download(Wanted& wanted, const v1::JobFile& file);
@@ -103,6 +107,7 @@ class AssetFetcher {
   std::deque<std::shared_ptr<Wanted>> wanted_;    ///< those that nobody has begun with
   std::vector<std::shared_ptr<Wanted>> in_work_;  ///< one for each busy thread
   std::set<std::string> turns_;                   ///< files that are being fetched
+  std::set<std::string> doubted_;                 ///< files that doubt() has named
   std::map<uint64_t, std::vector<farm::ContentPin>> pins_;
   bool stop_ = false;
 

@@ -36,6 +36,9 @@ class DeskPorts {
   virtual void kill_renderer(const std::string& reason) = 0;
   /// Brings the job's files into the cache; answered by Desk::files_are_there or files_failed.
   virtual void fetch(uint64_t job, const v1::JobSpec& spec) = 0;
+  /// The child has found this file of the cache (by its name there) damaged: to be looked at before
+  /// it is used again.
+  virtual void doubt(const std::string& file) = 0;
   /// No unit of the job is left: its files may be evicted. What was being fetched may go on.
   virtual void release(uint64_t job) = 0;
   /// For people.
@@ -77,7 +80,8 @@ struct DeskOptions {
 /// When the rendering child dies, every unit that it had begun is a suspect. Suspects are rendered
 /// again one at a time, with nothing beside them: the one that kills the child alone has failed. A
 /// child that hangs is killed, and then only the units that it hung in are suspects. A unit that
-/// takes longer than it may has failed, whoever is to blame.
+/// takes longer than it may has failed, whoever is to blame. A child whose answer fits none of its
+/// units is killed, and they are suspects as when it dies.
 class Desk {
  public:
   Desk(DeskOptions options, DeskPorts& ports)
@@ -158,6 +162,8 @@ class Desk {
 
   static farm::LogFields about(const v1::LeasedUnit& leased);
   static v1::LeaseProgress::Stage stage_of(const Item& item);
+  void doubt_files(uint64_t job, const pipe::UnitFailed& failed);
+  void distrust(const std::string& reason);
   void lose_renderer(const std::string& reason, const std::set<uint64_t>* hung);
   void watch(TimePoint now);
   void end_overdue(TimePoint now);

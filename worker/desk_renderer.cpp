@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "farm/wire.h"
 #include "worker/desk.h"
 
 namespace hyades::worker {
@@ -43,7 +44,10 @@ void Desk::renderer_says(pipe::FromRenderer message, TimePoint /*now*/) {
       item->second.begun = true;
       item->second.loading = message.started().loading();
     }
-    unit_limit_.begun(message.started().token(), message.started().loading());
+    // Also of a unit that was given up: it holds up the child until it is answered for.
+    if (watch_.knows(message.started().token())) {
+      unit_limit_.begun(message.started().token(), message.started().loading());
+    }
     if (message.started().loading()) {
       watch_.loading(message.started().token());
     } else {
@@ -52,11 +56,16 @@ void Desk::renderer_says(pipe::FromRenderer message, TimePoint /*now*/) {
   } else if (message.has_film()) {
     answered(message.film().token());
     if (const auto item = named(message.film().token()); item != items_.end()) {
+      if (message.film().batches() > item->second.leased.unit().batches()) {
+        distrust("sent a film of more batches than its unit has and was killed");
+        return;
+      }
       keep_film(item, message.film());
     }
   } else if (message.has_failed()) {
     answered(message.failed().token());
     if (const auto item = named(message.failed().token()); item != items_.end()) {
+      doubt_files(item->second.leased.job(), message.failed());
       fail(item, message.failed().reason());
     }
   } else if (message.has_returned()) {
@@ -70,6 +79,22 @@ void Desk::renderer_says(pipe::FromRenderer message, TimePoint /*now*/) {
   }
   dispatch();
   top_up();
+}
+
+/// Files of other jobs are none of the child's business.
+void Desk::doubt_files(uint64_t id, const pipe::UnitFailed& failed) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end() || failed.damaged().empty()) return;
+  const std::set<std::string> damaged(failed.damaged().begin(), failed.damaged().end());
+  for (const v1::JobFile& file : job->second.spec.files()) {
+    const std::string name = farm::hex_from_wire(file.sha256());
+    if (damaged.contains(name)) ports_.doubt(name);
+  }
+}
+
+void Desk::distrust(const std::string& reason) {
+  ports_.kill_renderer(reason);
+  lose_renderer(reason, nullptr);
 }
 
 void Desk::renderer_died(const std::string& reason) { lose_renderer(reason, nullptr); }

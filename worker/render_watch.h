@@ -42,6 +42,7 @@ class RenderWatch {
 
   /// The child was given a unit of a job.
   void told(uint64_t token, uint64_t job);
+  bool knows(uint64_t token) const { return tasks_.contains(token); }
   void loading(uint64_t token);
   void rendering(uint64_t token);
   /// So many samples of it are done.

@@ -6,14 +6,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "worker/renderer_talk.h"
 
 namespace hyades::worker {
 namespace {
@@ -30,6 +34,37 @@ std::string describe_end(int status) {
     return fmt::format("crashed with signal {} ({})", signal, strsignal(signal));
   }
   return fmt::format("ended with status {}", WEXITSTATUS(status));
+}
+
+/// What of the environment the child gets: how libraries are found and behave, and how messages
+/// read. Not the rest: there may be secrets of a cloud, a batch queue or a test run.
+constexpr std::array kInherited = {"PATH",
+                                   "TMPDIR",
+                                   "TZ",
+                                   "LANG",
+                                   "LANGUAGE",
+                                   "LD_LIBRARY_PATH",
+                                   "LD_PRELOAD",
+                                   "GLIBC_TUNABLES",
+                                   "ASAN_OPTIONS",
+                                   "LSAN_OPTIONS",
+                                   "MSAN_OPTIONS",
+                                   "TSAN_OPTIONS",
+                                   "UBSAN_OPTIONS",
+                                   "LLVM_PROFILE_FILE",
+                                   "HYADES_FAILPOINT"};
+
+std::vector<char*> child_environment() {
+  std::vector<char*> child;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text(*entry);
+    const std::string_view name = text.substr(0, text.find('='));
+    const bool wanted = name.starts_with("LC_") ||
+                        std::find(kInherited.begin(), kInherited.end(), name) != kInherited.end();
+    if (wanted) child.push_back(*entry);
+  }
+  child.push_back(nullptr);
+  return child;
 }
 
 }  // namespace
@@ -55,9 +90,12 @@ core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], kChildPipe);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  std::vector<char*> environment = child_environment();
   pid_t pid = 0;
-  const int error =
-      ::posix_spawn(&pid, options.program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int error = ::posix_spawn(&pid, options.program.c_str(), &actions, nullptr,
+                                  arguments.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[1]);
   if (error != 0) {
@@ -68,9 +106,11 @@ core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
 }
 
 RendererProcess::RendererProcess(pid_t pid, int fd, Owner& owner)
-    : owner_(owner), pipe_(fd), pid_(pid), reader_([this] { read_loop(); }), writer_([this] {
-        write_loop();
-      }) {}
+    : owner_(owner),
+      pipe_(fd, renderer_limits()),
+      pid_(pid),
+      reader_([this] { read_loop(); }),
+      writer_([this] { write_loop(); }) {}
 
 RendererProcess::~RendererProcess() {
   {
@@ -99,14 +139,40 @@ void RendererProcess::kill(const std::string& reason) {
 void RendererProcess::send(pipe::ToRenderer message) {
   const std::lock_guard lock(mutex_);
   outgoing_.push_back(std::move(message));
-  wake_.notify_one();
+  wake_.notify_all();  // the reader may wait, too
+}
+
+void RendererProcess::heard() {
+  const std::lock_guard lock(mutex_);
+  if (unheard_.empty()) return;
+  unheard_bytes_ -= unheard_.front();
+  unheard_.pop_front();
+  wake_.notify_all();
+}
+
+void RendererProcess::wait_for_owner(size_t bytes) {
+  std::unique_lock lock(mutex_);
+  wake_.wait(lock, [this] {
+    return closing_ || (unheard_.size() < kMostUnheard && unheard_bytes_ < kMostUnheardBytes);
+  });
+  unheard_.push_back(bytes);
+  unheard_bytes_ += bytes;
 }
 
 void RendererProcess::read_loop() {
+  RendererTalk talk;
   for (;;) {
     pipe::FromRenderer message;
-    const auto more = pipe_.receive(message);
-    if (!more || !*more) break;
+    std::string load;
+    const auto more = pipe_.receive(message, load);
+    if (more && !*more) break;
+    const size_t bytes = load.size();
+    const core::Status sound = more ? talk.hear(message, std::move(load)) : more.error();
+    if (!sound) {
+      kill(sound.error().message + " and was killed");
+      break;
+    }
+    wait_for_owner(bytes);
     owner_.renderer_says(std::move(message));
   }
   kill_child();  // where it has merely closed its end

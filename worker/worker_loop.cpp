@@ -235,7 +235,7 @@ class Worker : private DeskPorts,
       if (message.has_ready()) {
         renderer_ready_ = true;
         stillbirths_ = 0;
-        tell_sandbox(message.ready().sandbox_lacks());
+        tell_sandbox(message.ready());
         desk_.renderer_ready(message.ready());
         if (!ever_connected_) connect(Clock::now());
       } else if (message.has_not_ready()) {
@@ -244,6 +244,7 @@ class Worker : private DeskPorts,
       } else {
         desk_.renderer_says(std::move(message), Clock::now());
       }
+      if (renderer_) renderer_->heard();
     });
   }
 
@@ -264,10 +265,18 @@ class Worker : private DeskPorts,
   }
 
   /// Once: how far the rendering child is held.
-  void tell_sandbox(const std::string& lacking) {
-    if (lacking.empty() || sandbox_told_) return;
-    sandbox_told_ = true;
-    note(LogLevel::warning, "the process that renders is not wholly sandboxed: " + lacking);
+  void tell_sandbox(const pipe::Ready& ready) {
+    if (std::exchange(sandbox_told_, true)) return;
+    if (!ready.sandbox_lacks().empty()) {
+      note(LogLevel::warning,
+           "the process that renders is not wholly sandboxed: " + ready.sandbox_lacks());
+    }
+    if (!ready.not_first().empty()) {
+      note(LogLevel::warning,
+           "the process that renders is not the first to go when this machine runs out of memory "
+           "(" +
+               ready.not_first() + ")");
+    }
   }
 
   void tell_renderer(pipe::ToRenderer message) override {
@@ -396,6 +405,7 @@ class Worker : private DeskPorts,
 
   void fetch(uint64_t job, const v1::JobSpec& spec) override { fetcher_.fetch(job, spec); }
   void release(uint64_t job) override { fetcher_.release(job); }
+  void doubt(const std::string& file) override { fetcher_.doubt(file); }
   void files_are_there(uint64_t job) override {
     post([this, job] { desk_.files_are_there(job); });
   }

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,20 +26,12 @@ std::string temporary_folder() {
   return error ? std::string("/tmp") : folder.string();
 }
 
-/// A descriptor that closes itself.
-struct File {
-  int descriptor = -1;
-  ~File() {
-    if (descriptor >= 0) ::close(descriptor);
-  }
-};
-
 /// 0, or what went wrong.
-int write_all(int descriptor, const std::vector<std::byte>& bytes) {
+int write_all(int descriptor, off_t begin, const std::vector<std::byte>& bytes) {
   size_t done = 0;
   while (done < bytes.size()) {
-    const ssize_t written =
-        ::pwrite(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    const ssize_t written = ::pwrite(descriptor, bytes.data() + done, bytes.size() - done,
+                                     begin + static_cast<off_t>(done));
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) return written < 0 ? errno : ENOSPC;
     done += static_cast<size_t>(written);
@@ -47,6 +40,51 @@ int write_all(int descriptor, const std::vector<std::byte>& bytes) {
 }
 
 }  // namespace
+
+/// Parts of one file, each from a page of its own on.
+class TexelStore::CommonFile {
+ public:
+  explicit CommonFile(Descriptor file) : file_(std::move(file)) {}
+
+  int descriptor() const { return file_.get(); }
+
+  off_t take(size_t size) {
+    const std::lock_guard lock(mutex_);
+    ++parts_;
+    return std::exchange(end_, end_ + whole_pages(size));
+  }
+  void give_back(off_t begin, size_t size) {
+    // Its room on the disk is free again; where the file system knows no holes, with the last part.
+    ::fallocate(file_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, begin, whole_pages(size));
+    const std::lock_guard lock(mutex_);
+    if (--parts_ == 0) end_ = 0;
+  }
+
+ private:
+  static off_t whole_pages(size_t size) {
+    const auto page = static_cast<size_t>(::sysconf(_SC_PAGESIZE));
+    return static_cast<off_t>((size + page - 1) / page * page);
+  }
+
+  const Descriptor file_;
+  std::mutex mutex_;
+  off_t end_ = 0;     ///< guarded by mutex_, as is
+  size_t parts_ = 0;  ///< that are in use
+};
+
+/// Room for bytes in a file; what of it is in use has to be given back.
+struct TexelStore::Place {
+  std::shared_ptr<CommonFile> common;
+  Descriptor own;  ///< where there is no common file
+  off_t begin = 0;
+  int descriptor() const { return common ? common->descriptor() : own.get(); }
+};
+
+TexelStore::TexelStore(uint64_t budget, Descriptor file)
+    : budget_(budget),
+      folder_("the file that it was given"),
+      common_(std::make_shared<CommonFile>(std::move(file))),
+      used_(std::make_shared<std::atomic<uint64_t>>(0)) {}
 
 TexelStore::TexelStore(uint64_t budget, std::string folder)
     : budget_(budget),
@@ -81,28 +119,44 @@ Result<Bytes> TexelStore::keep(std::vector<std::byte> bytes) {
   return Bytes(std::move(owner), view);
 }
 
+Result<TexelStore::Place> TexelStore::place_for(size_t size) const {
+  if (common_) return Place{common_, Descriptor(), common_->take(size)};
+  std::string name = folder_ + "/hyades-texels-XXXXXX";
+  Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
+  if (!file.valid()) return Error{io_reason(errno)};
+  ::unlink(name.c_str());
+  return Place{nullptr, std::move(file), 0};
+}
+
 Result<Bytes> TexelStore::keep_in_file(const std::vector<std::byte>& bytes) const {
-  const auto failed = [&](int error) {
+  const auto failed = [&](const std::string& why) {
     return Error{
         fmt::format("{} of texels are more than is left of the memory for textures ({}), "
                     "and cannot be kept in {}: {}",
-                    format_bytes(bytes.size()), format_bytes(budget_), folder_, io_reason(error))};
+                    format_bytes(bytes.size()), format_bytes(budget_), folder_, why)};
   };
-  std::string name = folder_ + "/hyades-texels-XXXXXX";
-  const File file{::mkostemp(name.data(), O_CLOEXEC)};
-  if (file.descriptor < 0) return failed(errno);
-  ::unlink(name.c_str());
-  // All room is taken now: a page that found none later would be the end of the process.
-  const int no_room = ::posix_fallocate(file.descriptor, 0, static_cast<off_t>(bytes.size()));
-  if (no_room != 0) return failed(no_room);
-  if (const int error = write_all(file.descriptor, bytes); error != 0) return failed(error);
   const size_t size = bytes.size();
-  void* address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file.descriptor, 0);
-  if (address == MAP_FAILED) return failed(errno);
+  auto place = place_for(size);
+  if (!place) return failed(place.error().message);
+  // All room is taken now: a page that found none later would be the end of the process.
+  int error = ::posix_fallocate(place->descriptor(), place->begin, static_cast<off_t>(size));
+  if (error == 0) error = write_all(place->descriptor(), place->begin, bytes);
+  void* address = MAP_FAILED;
+  if (error == 0) {
+    address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, place->descriptor(), place->begin);
+    if (address == MAP_FAILED) error = errno;
+  }
+  if (error != 0) {
+    if (place->common) place->common->give_back(place->begin, size);
+    return failed(io_reason(error));
+  }
   // Neighbours in a file are neighbours in the picture, but not those of the next ray.
   ::madvise(address, size, MADV_RANDOM);
   std::shared_ptr<const void> owner(
-      address, [size](const void* mapped) { ::munmap(const_cast<void*>(mapped), size); });
+      address, [size, common = place->common, begin = place->begin](const void* mapped) {
+        ::munmap(const_cast<void*>(mapped), size);
+        if (common) common->give_back(begin, size);
+      });
   return Bytes(std::move(owner), {static_cast<const std::byte*>(address), size});
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/bytes.h"
+#include "core/base/descriptor.h"
 #include "core/base/result.h"
 
 namespace hyades::core {
@@ -21,6 +22,10 @@ class TexelStore {
   /// TMPDIR or /tmp), which should not be one in memory.
   explicit TexelStore(uint64_t budget = default_budget(), std::string folder = {});
 
+  /// With one file for all that is kept in files, open to read and write and used by nobody else,
+  /// instead of a folder: for a process that may open none later.
+  TexelStore(uint64_t budget, Descriptor file);
+
   /// A quarter of the memory that this process may take; without bound where that is not known.
   static uint64_t default_budget();
 
@@ -31,10 +36,14 @@ class TexelStore {
   uint64_t in_memory() const { return used_->load(); }
 
  private:
+  struct Place;
+  class CommonFile;
   Result<Bytes> keep_in_file(const std::vector<std::byte>& bytes) const;
+  Result<Place> place_for(size_t size) const;
 
   const uint64_t budget_;
   const std::string folder_;
+  const std::shared_ptr<CommonFile> common_;  ///< null: a file of its own for all that is kept
   const std::shared_ptr<std::atomic<uint64_t>> used_;  ///< bytes, also of what outlives the store
 };
 

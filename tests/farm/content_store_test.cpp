@@ -136,6 +136,21 @@ TEST(ContentStore, CorruptedFilesAreRemoved) {
   EXPECT_FALSE(store->contains(name, 4));
 }
 
+/// A disk may give other bytes than it was given, and say nothing.
+TEST(ContentStore, FilesThatAreKnownCanBeCheckedAgain) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("assets"));
+  const std::string name = put(*store, "good");
+  const std::string path = folder.file("assets/" + name);
+  const auto written = fs::last_write_time(path);
+  fs::permissions(path, fs::perms::owner_all);
+  std::fstream(path, std::ios::in | std::ios::out) << "evil";
+  fs::last_write_time(path, written);
+  EXPECT_TRUE(store->contains(name, 4));
+  store->check_again(name);
+  EXPECT_FALSE(store->contains(name, 4));
+}
+
 /// Who asks with a wrong size must not be able to remove a good file.
 TEST(ContentStore, WrongSizesRemoveNothing) {
   const TempFolder folder;

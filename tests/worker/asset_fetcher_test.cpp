@@ -1,6 +1,8 @@
 #include "worker/asset_fetcher.h"
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
@@ -138,6 +140,37 @@ TEST(AssetFetcher, AReleasedJobIsBrokenOffAndNotReported) {
   fetcher.fetch(3, spec_of(kSmall));
   const std::vector<std::pair<uint64_t, std::string>> expected{{3, "there"}};
   EXPECT_EQ(reports.first(), expected);
+}
+
+/// Its size and its times are those of the good file: only its bytes tell.
+TEST(AssetFetcher, AFileThatIsDoubtedIsFetchedAgainWhereItIsDamaged) {
+  Served served;
+  const test::TempFolder folder;
+  const auto store = farm::ContentStore::open({folder.file("cache"), 0});
+  ASSERT_TRUE(store.ok());
+  const std::string small = kSmall;
+  const std::string name = farm::hex_from_wire(digest_of(small));
+  const std::string path = folder.file("cache/" + name);
+  {
+    Reports reports;
+    AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+    fetcher.fetch(1, spec_of(small));
+    ASSERT_EQ(reports.first().at(0).second, "there");
+  }
+  const auto written = std::filesystem::last_write_time(path);
+  std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  std::fstream(path, std::ios::in | std::ios::out) << std::string(small.size(), '?');
+  std::filesystem::last_write_time(path, written);
+  ASSERT_TRUE((*store)->contains(name, small.size())) << "nobody has noticed";
+  Reports reports;
+  AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
+  fetcher.doubt(name);
+  fetcher.fetch(2, spec_of(small));
+  ASSERT_EQ(reports.first().at(0).second, "there");
+  EXPECT_EQ(fetcher.misses(), 1U);
+  std::ifstream file(path);
+  std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  EXPECT_EQ(bytes, small);
 }
 
 TEST(AssetFetcher, AFileThatDoesNotComeHoldsUpNobodyElse) {

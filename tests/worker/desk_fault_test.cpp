@@ -38,6 +38,36 @@ TEST(Desk, TheUnitThatKillsItsProcessAloneHasFailed) {
   EXPECT_NE(world.token_of(24), 0U);
 }
 
+TEST(Desk, AFilmThatIsMoreThanItsUnitEndsTheChildAndBlamesWhatItHadBegun) {
+  DeskWorld world;
+  world.begin();
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  world.started(world.token_of(0));
+  world.take_sent();
+  world.film(world.token_of(0), 5);
+  ASSERT_EQ(world.ports.kills.size(), 1U);
+  const auto sent = world.take_sent();
+  EXPECT_FALSE(first(sent, &Message::has_result).has_result());
+  EXPECT_NE(first(sent, &Message::has_failure).failure().reason().find("more batches"),
+            std::string::npos);
+  world.desk->renderer_died("sent a film of more batches");
+  world.renderer_up();
+  EXPECT_TRUE(world.desk->empty());
+}
+
+TEST(Desk, UnitsThatNobodyGaveTheChildTakeNoTime) {
+  DeskWorld world;
+  world.begin();
+  world.welcome(1000, 10'000'000);
+  for (uint64_t token = 1000; token < 1100; ++token) world.started(token, true);
+  for (int minute = 0; minute < 40; ++minute) {
+    world.now += std::chrono::minutes(1);
+    world.desk->tick(world.now, false);
+  }
+  EXPECT_TRUE(world.ports.kills.empty());
+}
+
 TEST(Desk, OneUnitInWorkNeedsNoSecondTrial) {
   DeskWorld world;
   world.begin();

@@ -7,6 +7,28 @@
 namespace hyades::worker {
 namespace {
 
+/// The child may remove nothing from the cache, and is believed only about its job's files.
+TEST(Desk, AFileThatTheChildFindsDamagedIsLookedAtIfItIsOneOfItsJob) {
+  DeskWorld world;
+  world.begin();
+  v1::CoordinatorMessage job;
+  job.mutable_job()->set_job(DeskWorld::kJob);
+  job.mutable_job()->mutable_spec()->set_document("job.yaml");
+  job.mutable_job()->mutable_spec()->add_files()->set_sha256(std::string(32, '\x11'));
+  job.mutable_job()->mutable_spec()->add_files()->set_sha256(std::string(32, '\x22'));
+  world.desk->coordinator_says(job, world.now);
+  world.lease(DeskWorld::unit(0));
+  world.desk->files_are_there(DeskWorld::kJob);
+  pipe::FromRenderer message;
+  message.mutable_failed()->set_token(world.token_of(0));
+  message.mutable_failed()->set_reason("asset 22...: the stored file is damaged");
+  message.mutable_failed()->add_damaged(std::string(64, '2'));
+  message.mutable_failed()->add_damaged(std::string(64, '3'));
+  world.desk->renderer_says(message, world.now);
+  EXPECT_EQ(world.ports.doubted, std::vector<std::string>{std::string(64, '2')});
+  EXPECT_TRUE(world.desk->empty());
+}
+
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Message = v1::WorkerMessage;

@@ -17,6 +17,7 @@ class FakePorts : public DeskPorts {
   void tell_renderer(pipe::ToRenderer message) override { told.push_back(std::move(message)); }
   void kill_renderer(const std::string& reason) override { kills.push_back(reason); }
   void fetch(uint64_t job, const v1::JobSpec& /*spec*/) override { fetched.push_back(job); }
+  void doubt(const std::string& file) override { doubted.push_back(file); }
   void release(uint64_t job) override { released.push_back(job); }
   void note(farm::LogLevel level, const std::string& text, const farm::LogFields& about) override {
     if (level == farm::LogLevel::debug) return;
@@ -29,6 +30,7 @@ class FakePorts : public DeskPorts {
   std::vector<std::string> kills;
   std::vector<uint64_t> fetched;
   std::vector<uint64_t> released;
+  std::vector<std::string> doubted;
   std::vector<std::string> notes;      ///< but for those of level debug
   std::vector<farm::LogFields> noted;  ///< what they were about
 };

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/base/fp_mode.h"
+#include "core/base/text.h"
 #include "core/film/film_codec.h"
 #include "farm/wire.h"
 #include "worker/render/process_memory.h"
@@ -50,8 +51,9 @@ RenderServer::RenderServer(pipe::MessagePipe& parent, SceneShelf& shelf, int thr
 
 void RenderServer::run() {
   pipe::ToRenderer message;
+  std::string load;
   for (;;) {
-    const auto more = parent_.receive(message);
+    const auto more = parent_.receive(message, load);
     if (!more || !*more) return;
     if (message.has_job()) {
       shelf_.add_job(message.job().job(), message.job().spec());
@@ -133,6 +135,7 @@ void RenderServer::render_loop(int thread) {
 void RenderServer::render(Task& task, int thread) {
   const auto begin = std::chrono::steady_clock::now();
   pipe::FromRenderer message;
+  std::string film_bytes;
   const core::Status done = guarded([&]() -> core::Status {
     if (auto checked = check(task.unit, *task.frame); !checked) return checked;
     const core::RenderedUnit unit =
@@ -151,7 +154,12 @@ void RenderServer::render(Task& task, int thread) {
     film.set_token(task.token);
     film.set_batches(batches);
     const auto bytes = core::encode_film(unit.film);
-    film.set_film(bytes.data(), bytes.size());
+    if (bytes.size() > farm::kMaxResultBytes) {
+      return core::Error{fmt::format("its film is too large to be sent: {}, at most {}",
+                                     core::format_bytes(bytes.size()),
+                                     core::format_bytes(farm::kMaxResultBytes))};
+    }
+    film_bytes.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const auto digest = farm::digest_from_hex(unit.film.digest());
     if (!digest) return digest.error();
     film.set_digest(farm::to_wire(*digest));
@@ -161,16 +169,16 @@ void RenderServer::render(Task& task, int thread) {
     film.set_rays(unit.counters.rays);
     film.set_bad_samples(unit.counters.bad_samples);
     for (const core::BadSample& bad : unit.counters.examples) {
-      film.add_notes(
+      film.add_notes(farm::wire_text(
           fmt::format("a sample is {} and counts as black; to see why: hyades replay {} --frame "
                       "{} --pixel {},{} --sample {}",
                       core::bad_sample_words(), task.frame->document, task.unit.frame, bad.pixel.x,
-                      bad.pixel.y, bad.sample));
+                      bad.pixel.y, bad.sample)));
     }
     return {};
   });
   if (done) {
-    send(message);
+    send(message, film_bytes);
   } else {
     say_failed(task.token, done.error().message);
   }
@@ -213,7 +221,9 @@ void RenderServer::load_loop() {
       }
       render_wake_.notify_all();
     }
-    for (const uint64_t token : failed) say_failed(token, frame.error().message);
+    // What this process may not remove, its worker does.
+    const std::set<std::string> damaged = shelf_.take_damaged();
+    for (const uint64_t token : failed) say_failed(token, frame.error().message, damaged);
   }
 }
 
@@ -236,16 +246,18 @@ void RenderServer::progress_loop() {
   }
 }
 
-void RenderServer::say_failed(uint64_t token, const std::string& reason) {
+void RenderServer::say_failed(uint64_t token, const std::string& reason,
+                              const std::set<std::string>& damaged) {
   pipe::FromRenderer message;
   message.mutable_failed()->set_token(token);
-  message.mutable_failed()->set_reason(reason);
+  message.mutable_failed()->set_reason(farm::wire_text(reason));
+  for (const std::string& name : damaged) message.mutable_failed()->add_damaged(name);
   send(message);
 }
 
-void RenderServer::send(const pipe::FromRenderer& message) {
+void RenderServer::send(const pipe::FromRenderer& message, const std::string& film) {
   // Without its parent this process has nothing to do.
-  if (!parent_.send(message)) ::_exit(1);
+  if (!parent_.send(message, film)) ::_exit(1);
 }
 
 }  // namespace hyades::worker

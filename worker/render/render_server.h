@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -49,8 +50,9 @@ class RenderServer {
   void progress_loop();
   void render(Task& task, int thread);
   TaskPtr next_ready();
-  void send(const pipe::FromRenderer& message);
-  void say_failed(uint64_t token, const std::string& reason);
+  void send(const pipe::FromRenderer& message, const std::string& film = {});
+  void say_failed(uint64_t token, const std::string& reason,
+                  const std::set<std::string>& damaged = {});
 
   pipe::MessagePipe& parent_;
   SceneShelf& shelf_;

@@ -20,11 +20,11 @@ core::Result<SandboxMode> read_sandbox_mode(const std::string& word);
 /// from now on; to be called before there are others. Afterwards it
 /// - can gain no privileges (no_new_privs);
 /// - reads programs, libraries and what the kernel tells (/usr, /lib, /proc, /sys), and the files
-/// of
-///   `cache`, of which it may remove damaged ones; it opens no other file, and writes none
-///   (Landlock, since Linux 5.13; its ABI 1 is enough);
-/// - makes no sockets, no connections and no processes, traces nobody, and changes nothing of the
-///   system (seccomp: such calls fail with EPERM).
+///   of `cache`; it opens no other file, writes and removes none (Landlock, since Linux 5.13; its
+///   ABI 1 is enough);
+/// - makes no sockets, no connections and no processes, touches no other process, takes no memory
+///   that RLIMIT_DATA does not count, and changes nothing of the system (seccomp: such calls fail
+///   with EPERM).
 /// What is open stays open, so that the pipe to the worker does; everything from file descriptor
 /// `first_closed` on is closed.
 ///

@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <seccomp.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <array>
@@ -26,7 +27,11 @@ constexpr std::array kForbidden = {
     "execve", "execveat", "fork", "vfork", "kill", "tkill", "rt_sigqueueinfo", "rt_tgsigqueueinfo",
     "pidfd_open", "pidfd_getfd", "pidfd_send_signal", "process_mrelease", "ptrace",
     "process_vm_readv", "process_vm_writev", "process_madvise", "kcmp", "setns", "unshare",
-    "shmget", "shmat", "msgget", "semget", "mq_open",
+    "shmget", "shmat", "shmctl", "msgget", "msgsnd", "msgrcv", "msgctl", "semget", "semop",
+    "semtimedop", "semctl", "mq_open", "mq_unlink", "setpriority", "ioprio_set", "migrate_pages",
+    "move_pages",
+    // memory that RLIMIT_DATA does not count
+    "memfd_create", "memfd_secret",
     // the file system, where Landlock does not reach
     "mount", "umount2", "pivot_root", "chroot", "fsopen", "fsmount", "move_mount", "open_tree",
     "open_by_handle_at", "name_to_handle_at", "quotactl", "swapon", "swapoff", "chmod", "fchmod",
@@ -56,15 +61,24 @@ struct Rule {
 };
 
 /// What is forbidden in some cases only.
-std::array<Rule, 7> rules() {
+std::array<Rule, 13> rules() {
   const auto own = static_cast<uint64_t>(::getpid());
   constexpr uint64_t kLow = 0xFFFFFFFF;  // of a register of 64 bits
+  constexpr uint64_t kSharedNameless = MAP_SHARED | MAP_ANONYMOUS;
   return {{
       // Threads are made by clone, processes too.
       {SCMP_SYS(clone), EPERM, 0, SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0},
       // abort() and raise() signal one's own threads; limits are asked and set for oneself.
       {SCMP_SYS(tgkill), EPERM, 0, SCMP_CMP_NE, own},
       {SCMP_SYS(prlimit64), EPERM, 0, SCMP_CMP_NE, 0},
+      // The calling thread's own, for libraries that tie threads to processors.
+      {SCMP_SYS(sched_setaffinity), EPERM, 0, SCMP_CMP_NE, 0},
+      {SCMP_SYS(sched_setscheduler), EPERM, 0, SCMP_CMP_NE, 0},
+      {SCMP_SYS(sched_setparam), EPERM, 0, SCMP_CMP_NE, 0},
+      {SCMP_SYS(sched_setattr), EPERM, 0, SCMP_CMP_NE, 0},
+      // Memory that RLIMIT_DATA does not count, as it belongs to no process alone, or to a stack.
+      {SCMP_SYS(mmap), EPERM, 3, SCMP_CMP_MASKED_EQ, kSharedNameless, kSharedNameless},
+      {SCMP_SYS(mmap), EPERM, 3, SCMP_CMP_MASKED_EQ, MAP_GROWSDOWN, MAP_GROWSDOWN},
       // Typing into the terminal that the worker was started from.
       {SCMP_SYS(ioctl), EPERM, 1, SCMP_CMP_MASKED_EQ, kLow, TIOCSTI},
       {SCMP_SYS(ioctl), EPERM, 1, SCMP_CMP_MASKED_EQ, kLow, TIOCLINUX},

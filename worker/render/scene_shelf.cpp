@@ -19,6 +19,13 @@ constexpr size_t kFramesKept = 3;
 
 }  // namespace
 
+std::shared_ptr<core::TexelStore> SceneShelf::make_texel_store(uint64_t memory,
+                                                               core::Descriptor file) {
+  const uint64_t budget = memory > 0 ? memory / 4 : core::TexelStore::default_budget();
+  if (!file.valid()) return std::make_shared<core::TexelStore>(budget);
+  return std::make_shared<core::TexelStore>(budget, std::move(file));
+}
+
 void SceneShelf::add_job(uint64_t job, hyades::v1::JobSpec spec) {
   const std::lock_guard lock(mutex_);
   jobs_[job].spec = std::move(spec);

@@ -5,8 +5,11 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
+#include "core/base/descriptor.h"
 #include "core/base/result.h"
 #include "core/film/layout.h"
 #include "core/job/job.h"
@@ -32,15 +35,16 @@ struct ShelvedFrame {
 class SceneShelf {
  public:
   /// `memory` in bytes, of the whole process: what was not used for longest goes when more is in
-  /// use than that; 0: no limit.
-  SceneShelf(farm::ContentStore& store, uint64_t memory)
-      : store_(store),
-        memory_(memory),
-        texels_(std::make_shared<core::TexelStore>(
-            memory > 0 ? memory / 4 : core::TexelStore::default_budget())) {}
+  /// use than that; 0: no limit. `texels`: an empty file for the texels that a quarter of the
+  /// memory does not hold; where it is none they go to temporary files, which a sandbox refuses.
+  SceneShelf(farm::ContentStore& store, uint64_t memory, core::Descriptor texels)
+      : store_(store), memory_(memory), texels_(make_texel_store(memory, std::move(texels))) {}
 
   void add_job(uint64_t job, hyades::v1::JobSpec spec);
   void forget_job(uint64_t job);
+
+  /// The names of files that were found damaged since the last call.
+  std::set<std::string> take_damaged() { return store_.take_damaged(); }
 
   /// The frame, if it is loaded.
   std::shared_ptr<const ShelvedFrame> find(uint64_t job, int32_t frame);
@@ -67,6 +71,7 @@ class SceneShelf {
     uint64_t used = 0;
   };
 
+  static std::shared_ptr<core::TexelStore> make_texel_store(uint64_t memory, core::Descriptor file);
   core::Result<std::shared_ptr<LoadedJob>> read(const hyades::v1::JobSpec& spec) const;
   bool drop_one_locked(uint64_t but_job, size_t frames_kept);
   void make_room(uint64_t job);

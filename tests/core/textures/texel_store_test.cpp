@@ -1,9 +1,12 @@
 #include "core/textures/texel_store.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "core/textures/make_texture.h"
 #include "tests/support/random.h"
@@ -41,6 +44,28 @@ TEST(TexelStore, KeepsInMemoryUpToItsBudgetAndInFilesBeyond) {
   const auto again = store.keep(bytes);
   EXPECT_TRUE(same(*again, bytes));
   EXPECT_EQ(store.in_memory(), 300'000U) << "the room of what is gone is used again";
+}
+
+/// In a sandbox no file can be opened.
+TEST(TexelStore, KeepsAllInOneFileThatWasOpenBefore) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("texels");
+  TexelStore store(0, Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)));
+  const auto room = [&] {
+    struct stat info {};
+    return ::stat(path.c_str(), &info) == 0 ? static_cast<uint64_t>(info.st_blocks) * 512 : 0;
+  };
+  const auto bytes = some_bytes(100'000);
+  auto others = bytes;
+  std::reverse(others.begin(), others.end());
+  std::optional<Bytes> first = *store.keep(bytes);
+  const Bytes second = *store.keep(others);
+  EXPECT_TRUE(same(*first, bytes) && same(second, others)) << "each has its own place";
+  EXPECT_GE(room(), 200'000U);
+  first.reset();
+  EXPECT_LT(room(), 200'000U) << "the room of what is gone is free again";
+  EXPECT_TRUE(same(second, others));
+  EXPECT_TRUE(same(*store.keep(bytes), bytes));
 }
 
 TEST(TexelStore, LittleIsKeptInMemoryInAnyCase) {

@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
+#include "core/base/hash.h"
 #include "tests/support/temp_folder.h"
 #include "tests/worker/process/process_testing.h"
 
@@ -28,6 +30,34 @@ TEST(WorkerSandbox, TheSameBitsInAWholeOne) {
   const std::string status = read_file("/proc/" + std::to_string(worker.renderer()) + "/status");
   EXPECT_TRUE(has(status, "NoNewPrivs:\t1")) << status;
   EXPECT_TRUE(has(status, "Seccomp:\t2")) << status;
+}
+
+/// The sandbox refuses to write this, so that it has to be said before.
+TEST(WorkerSandbox, TheRendererIsTheFirstToGoWhenMemoryRunsOut) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  FakeCoordinator coordinator(made.job);
+  WorkerProcess worker(coordinator.address(), folder.path().string());
+  ASSERT_TRUE(coordinator.wait_for_all()) << worker.log();
+  const std::string renderer = "/proc/" + std::to_string(worker.renderer());
+  EXPECT_GE(std::stoi("0" + read_file(renderer + "/oom_score_adj")), 800);
+  EXPECT_FALSE(has(worker.log(), "first to go")) << worker.log();
+}
+
+/// The process that renders notices, and its worker removes.
+TEST(WorkerSandbox, ADamagedFileOfTheCacheIsFetchedAnew) {
+  const test::TempFolder folder;
+  const Made made = make_job();
+  const std::string& mesh = made.job.files.at("vase.ply");
+  const std::filesystem::path cache = folder.path() / "cache";
+  std::filesystem::create_directory(cache);
+  std::ofstream(cache / core::to_hex(core::sha256(mesh))) << std::string(mesh.size(), '?');
+  FakeCoordinator coordinator(made.job);
+  WorkerProcess worker(coordinator.address(), folder.path().string());
+  ASSERT_TRUE(coordinator.wait_for_all()) << worker.log();
+  expect_whole(coordinator, made);
+  ASSERT_GE(coordinator.seen().failures.size(), 1U);
+  EXPECT_TRUE(has(coordinator.seen().failures[0].reason(), "damaged"));
 }
 
 TEST(WorkerSandbox, OffItSaysSo) {

@@ -5,11 +5,15 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sched.h>
+#include <seccomp.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/resource.h>
+#include <sys/shm.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -20,9 +24,14 @@
 #include <cerrno>
 #include <fstream>
 #include <functional>
+#include <set>
+#include <string>
 #include <thread>
 
+#include "core/base/hash.h"
+#include "farm/content_store.h"
 #include "tests/support/temp_folder.h"
+#include "worker/render/process_memory.h"
 #include "worker/render/sandbox.h"
 
 namespace hyades::worker {
@@ -62,9 +71,31 @@ class Sandbox : public ::testing::Test {
 bool opens(const std::string& path, int flags) { return ::open(path.c_str(), flags, 0600) >= 0; }
 bool refused(long result) { return result < 0 && (errno == EPERM || errno == EACCES); }
 
-TEST_F(Sandbox, ReadsItsCacheAndRemovesWhatIsDamaged) {
+TEST_F(Sandbox, ReadsItsCache) {
   expect([&] { return opens(cache_ + "/asset", O_RDONLY); });
-  expect([&] { return ::unlink((cache_ + "/asset").c_str()) == 0; });
+}
+
+TEST_F(Sandbox, RemovesNothingOfOtherJobsAndNotTheWorkersId) {
+  for (const char* name : {"/asset", "/worker-0.id", "/lock"}) {
+    std::ofstream(cache_ + name) << "bytes";
+    expect([&] { return refused(::unlink((cache_ + name).c_str())); });
+    expect([&] { return refused(::rename((cache_ + name).c_str(), (cache_ + "/x").c_str())); });
+  }
+}
+
+/// What it may not remove it tells of.
+TEST_F(Sandbox, NamesFilesThatAreDamaged) {
+  const std::string name = core::to_hex(core::sha256("good"));
+  std::ofstream(cache_ + "/" + name) << "evil";
+  ::mkdir((cache_ + "/partial").c_str(), 0700);
+  expect([&] {
+    auto store = farm::ContentStore::open({cache_, 0});
+    if (!store) return false;
+    const auto bytes = (*store)->read(name);
+    return !bytes && bytes.error().message.ends_with("the stored file is damaged") &&
+           (*store)->take_damaged() == std::set<std::string>{name} &&
+           (*store)->take_damaged().empty();
+  });
 }
 
 TEST_F(Sandbox, ReadsLibrariesAndWhatTheKernelTells) {
@@ -157,8 +188,134 @@ TEST_F(Sandbox, TouchesNoOtherProcess) {
     return !opens("/proc/" + std::to_string(runner) + "/cmdline", O_RDONLY) && errno == EACCES;
   });
   expect([] { return refused(::ptrace(PTRACE_ATTACH, ::getppid(), nullptr, nullptr)); });
+  const cpu_set_t one = [] {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    CPU_SET(0, &set);
+    return set;
+  }();
+  const sched_param none{};
+  expect([&] { return refused(::sched_setaffinity(runner, sizeof one, &one)); });
+  expect([&] { return refused(::sched_setscheduler(runner, SCHED_BATCH, &none)); });
+  expect([&] { return refused(::sched_setparam(runner, &none)); });
+  expect([&] { return refused(::syscall(SYS_sched_setattr, runner, nullptr, 0)); });
+  expect([&] { return refused(::setpriority(PRIO_PROCESS, static_cast<id_t>(runner), 19)); });
+  expect([&] { return refused(::setpriority(PRIO_USER, 0, 19)); });
+  expect([&] { return refused(::syscall(SYS_ioprio_set, 1, runner, 0)); });
+  expect([&] { return refused(::syscall(SYS_migrate_pages, runner, 0, nullptr, nullptr)); });
+  expect(
+      [&] { return refused(::syscall(SYS_move_pages, runner, 0, nullptr, nullptr, nullptr, 0)); });
+  expect([] { return refused(::shmctl(0, IPC_RMID, nullptr)); });
   expect([] { return refused(::unshare(CLONE_NEWUSER)); });
   expect([] { return refused(::syscall(SYS_bpf, 0, nullptr, 0)); });
+}
+
+/// Whoever starts the worker may refuse it these calls: the lists of systemd 252 and of old
+/// container engines do.
+TEST_F(Sandbox, WhereTheCallsForItAreRefusedItIsLackingAndTheWayOutIsTold) {
+  const auto refuses = [] {
+    scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+    const int call = seccomp_syscall_resolve_name("landlock_create_ruleset");
+    const bool held = ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+                      seccomp_rule_add(filter, SCMP_ACT_ERRNO(EPERM), call, 0) == 0 &&
+                      seccomp_load(filter) == 0;
+    seccomp_release(filter);
+    return held;
+  };
+  const auto in_child = [&](SandboxMode mode, const std::function<bool(const std::string&)>& says) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      if (!refuses()) ::_exit(2);
+      const auto entered = enter_sandbox(mode, cache_, kFirstClosed);
+      ::_exit(says(entered ? *entered : "error: " + entered.error().message) ? 0 : 1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 100;
+  };
+  EXPECT_EQ(in_child(SandboxMode::automatic,
+                     [](const std::string& text) { return text.starts_with("Landlock: "); }),
+            0);
+  EXPECT_EQ(in_child(SandboxMode::required,
+                     [](const std::string& text) {
+                       return text.starts_with("error: this machine has no whole sandbox") &&
+                              text.find("'auto' instead of 'require'") != std::string::npos;
+                     }),
+            0);
+}
+
+/// RLIMIT_DATA counts none of these.
+TEST_F(Sandbox, TakesNoMemoryThatIsNotCounted) {
+  const auto takes = [](int flags) {
+    return ::mmap(nullptr, 1U << 20U, PROT_READ | PROT_WRITE, flags, -1, 0) != MAP_FAILED;
+  };
+  ASSERT_TRUE(takes(MAP_SHARED | MAP_ANONYMOUS));
+  ASSERT_TRUE(takes(MAP_PRIVATE | MAP_ANONYMOUS | MAP_GROWSDOWN));
+  expect([&] { return takes(MAP_PRIVATE | MAP_ANONYMOUS); });
+  expect([&] { return !takes(MAP_SHARED | MAP_ANONYMOUS) && errno == EPERM; });
+  expect([&] { return !takes(MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE) && errno == EPERM; });
+  expect([&] {
+    return !takes(MAP_PRIVATE | MAP_ANONYMOUS | MAP_GROWSDOWN | MAP_NORESERVE) && errno == EPERM;
+  });
+  expect([] { return refused(::memfd_create("memory", 0)); });
+  constexpr long kMemfdSecret = 447;
+  expect([] { return ::syscall(kMemfdSecret, 0) < 0; });
+}
+
+TEST_F(Sandbox, FilesThatAreOpenTakeTexels) {
+  std::ofstream(folder_.file("texels")) << std::string(5000, 'x');
+  const int before = ::open(folder_.file("texels").c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(::dup2(before, kFirstClosed - 1), static_cast<int>(kFirstClosed - 1));
+  expect([] {
+    const int file = kFirstClosed - 1;
+    if (::posix_fallocate(file, 4096, 8192) != 0 || ::pwrite(file, "yy", 2, 4096) != 2)
+      return false;
+    const void* at = ::mmap(nullptr, 4096, PROT_READ, MAP_SHARED, file, 4096);
+    return at != MAP_FAILED && *static_cast<const char*>(at) == 'y';
+  });
+  ::close(before);
+  ::close(kFirstClosed - 1);
+}
+
+TEST_F(Sandbox, ThreadsMayTieThemselvesToProcessors) {
+  expect([] {
+    cpu_set_t set;
+    return ::sched_getaffinity(0, sizeof set, &set) == 0 &&
+           ::sched_setaffinity(0, sizeof set, &set) == 0;
+  });
+}
+
+TEST(ProcessMemory, IsTheFirstToGoAndNoLessThanItWas) {
+  const auto score_after = [](const std::function<bool()>& act) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(act() ? 0 : 1);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  };
+  const auto score = [] {
+    int value = 0;
+    std::ifstream("/proc/self/oom_score_adj") >> value;
+    return value;
+  };
+  EXPECT_TRUE(score_after([&] { return go_first() && score() >= 800; }));
+  EXPECT_TRUE(score_after([&] {
+    std::ofstream("/proc/self/oom_score_adj") << 950 << std::flush;
+    return go_first() && score() == 950;
+  }));
+}
+
+TEST(ProcessMemory, StacksHaveALimitToo) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    rlimit stack{};
+    const bool held = limit_memory(uint64_t{1} << 33U) && ::getrlimit(RLIMIT_STACK, &stack) == 0 &&
+                      stack.rlim_max <= uint64_t{64} << 20U;
+    ::_exit(held ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
 TEST(SandboxMode, IsOneOfThreeWords) {
