@@ -1,21 +1,15 @@
 #include "coordinator/access/audit_log.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "coordinator/access/address.h"
 #include "coordinator/access/token.h"
-#include "core/base/io_reason.h"
 #include "farm/json_form.h"
-#include "farm/log.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -23,13 +17,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t kMostWaiting = 10'000;
 constexpr size_t kMostDetail = 500;
 constexpr size_t kPiece = size_t{64} << 10U;
 constexpr size_t kLongestLine = size_t{16} << 10U;
 constexpr double kPurse = 10;       // refusals of one address, noted one by one
 constexpr double kPerSecond = 0.1;  // ... and after that
 constexpr size_t kMostPurses = 1000;
+/// The purse of all whose neighbourhood has none of its own. To forget those that there are instead
+/// would give everybody new ones, as often as somebody with a thousand addresses likes.
+constexpr const char* kSharedPurse = "others";
 constexpr std::chrono::seconds kHeldAtMost{60};
 constexpr std::chrono::seconds kTryAgain{1};
 constexpr std::chrono::seconds kFlushPatience{2};
@@ -108,9 +104,17 @@ std::string result_name(const grpc::Status& status) {
   return code < std::size(kNames) ? kNames[code] : "unknown";
 }
 
-core::Result<std::unique_ptr<AuditLog>> AuditLog::open(AuditOptions options) {
-  std::unique_ptr<AuditLog> log(new AuditLog(std::move(options)));
-  if (core::Status opened = log->open_file(); !opened) return opened.error();
+AuditLog::AuditLog(const AuditOptions& options)
+    : most_waiting_(options.most_waiting),
+      deeds_({options.folder, "audit", options.most_bytes, options.most_files}),
+      refusals_({options.folder, "refusals", options.most_bytes, options.most_of_others}),
+      uploads_({options.folder, "uploads", options.most_bytes, options.most_of_others}) {}
+
+core::Result<std::unique_ptr<AuditLog>> AuditLog::open(const AuditOptions& options) {
+  std::unique_ptr<AuditLog> log(new AuditLog(options));
+  for (Book* book : log->books_) {
+    if (core::Status opened = book->files.open(); !opened) return opened.error();
+  }
   log->thread_ = std::thread([&me = *log] { me.work(); });
   return log;
 }
@@ -125,55 +129,40 @@ AuditLog::~AuditLog() {
   if (thread_.joinable()) thread_.join();
 }
 
-std::string AuditLog::path(int number) const {
-  return options_.folder + "/audit." + (number == 0 ? "" : std::to_string(number) + ".") + "jsonl";
-}
-
-core::Status AuditLog::open_file() {
-  constexpr mode_t kOwnerOnly = 0600;
-  file_ = core::Descriptor(
-      ::open(path(0).c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, kOwnerOnly));
-  struct stat facts {};
-  if (!file_.valid() || ::fstat(file_.get(), &facts) != 0) {
-    return core::Error{path(0) + ": cannot be opened: " + core::io_reason(errno)};
-  }
-  size_ = static_cast<uint64_t>(facts.st_size);
-  // A crash may have cut the last line.
-  char last = '\n';
-  if (size_ > 0 && ::pread(file_.get(), &last, 1, facts.st_size - 1) == 1 && last != '\n') {
-    if (::write(file_.get(), "\n", 1) == 1) ++size_;
-  }
-  return {};
-}
-
 void AuditLog::note(const Caller& caller, const std::string& deed, const std::string& target,
                     const grpc::Status& result, const std::string& detail) {
   const std::lock_guard lock(mutex_);
-  add(entry_for(caller, deed, target, result, detail));
+  add(deeds_, entry_for(caller, deed, target, result, detail));
+}
+
+void AuditLog::upload(const Caller& caller, const std::string& deed, const std::string& sha256,
+                      const std::string& detail) {
+  const std::lock_guard lock(mutex_);
+  add(uploads_, entry_for(caller, deed, sha256, grpc::Status::OK, detail));
 }
 
 void AuditLog::refuse(const Caller& caller, const std::string& deed, const grpc::Status& why) {
   v1::AuditEntry entry = entry_for(caller, deed, {}, why, {});
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
-  if (purses_.size() >= kMostPurses && !purses_.contains(neighbourhood_of(caller.address))) {
-    release_held(true);
-    purses_.clear();
-  }
-  const auto [found, fresh] =
-      purses_.try_emplace(neighbourhood_of(caller.address), Purse{kPurse, now, {}});
+  std::string whose = neighbourhood_of(caller.address);
+  if (purses_.size() >= kMostPurses && !purses_.contains(whose)) whose = kSharedPurse;
+  const auto [found, fresh] = purses_.try_emplace(whose, Purse{kPurse, now, {}});
   Purse& purse = found->second;
   const std::chrono::duration<double> passed = now - purse.since;
   purse.left = std::min(kPurse, purse.left + passed.count() * kPerSecond);
   purse.since = now;
   entry.set_times(purse.held.times() + 1);
+  if (whose == kSharedPurse && entry.times() > 1) {
+    entry.set_detail("of several addresses, this the last: " + entry.detail());
+  }
   if (purse.left < 1) {
     purse.held = std::move(entry);
     return;
   }
   purse.left -= 1;
   purse.held.Clear();
-  add(std::move(entry));
+  add(refusals_, std::move(entry));
 }
 
 /// Notes what stands for others and has waited long enough, or all; with the lock.
@@ -182,7 +171,7 @@ void AuditLog::release_held(bool all) {
   for (auto purse = purses_.begin(); purse != purses_.end();) {
     v1::AuditEntry& held = purse->second.held;
     if (held.times() > 0 && (all || held.time_ms() < before)) {
-      add(std::move(held));
+      add(refusals_, std::move(held));
       held.Clear();
     }
     const bool idle = held.times() == 0 && Clock::now() - purse->second.since > 10 * kHeldAtMost;
@@ -191,116 +180,117 @@ void AuditLog::release_held(bool all) {
 }
 
 /// With the lock.
-void AuditLog::add(v1::AuditEntry entry) {
-  if (queue_.size() >= kMostWaiting) {
-    ++lost_;
+void AuditLog::add(Book& book, v1::AuditEntry entry) {
+  if (book.queue.size() >= most_waiting_) {
+    ++book.lost;
     return;
   }
-  if (lost_ > 0) {
+  if (book.lost > 0) {
     v1::AuditEntry gap;
     gap.set_time_ms(entry.time_ms());
     gap.set_deed("audit.lost");
     gap.set_result("data_loss");
     gap.set_detail("entries that the disk did not take in time");
-    gap.set_times(std::exchange(lost_, 0));
-    queue_.push_back(line_of(gap));
+    gap.set_times(std::exchange(book.lost, 0));
+    book.queue.push_back(line_of(gap));
   }
-  queue_.push_back(line_of(entry));
+  book.queue.push_back(line_of(entry));
   wake_.notify_all();
 }
 
 void AuditLog::flush() {
   std::unique_lock lock(mutex_);
-  written_.wait_for(lock, kFlushPatience, [&] { return queue_.empty() && !busy_; });
+  written_.wait_for(lock, kFlushPatience, [&] {
+    return !busy_ && std::all_of(books_.begin(), books_.end(),
+                                 [](const Book* book) { return book->queue.empty(); });
+  });
 }
 
+/// Some of what waits in a book, without the lock meanwhile; whether the disk has taken it.
+bool AuditLog::write_some(Book& book, std::unique_lock<std::mutex>& lock) {
+  std::string lines;
+  size_t count = 0;
+  for (; count < book.queue.size() && lines.size() < kPiece; ++count) lines += book.queue[count];
+  busy_ = true;
+  lock.unlock();
+  const bool done = book.files.write(lines);
+  lock.lock();
+  busy_ = false;
+  if (done) book.queue.erase(book.queue.begin(), book.queue.begin() + static_cast<int64_t>(count));
+  written_.notify_all();
+  return done;
+}
+
+/// A piece of each book in turn, so that none waits for all of another.
 void AuditLog::work() {
   std::unique_lock lock(mutex_);
-  while (!stop_ || !queue_.empty()) {
-    if (queue_.empty()) {
-      wake_.wait_for(lock, kHeldAtMost / 2);
+  auto release = Clock::now() + kHeldAtMost / 2;
+  for (;;) {
+    if (Clock::now() >= release) {
       release_held(false);
-      continue;
+      release = Clock::now() + kHeldAtMost / 2;
     }
-    std::string lines;
-    size_t count = 0;
-    for (; count < queue_.size() && lines.size() < kPiece; ++count) lines += queue_[count];
-    busy_ = true;
-    lock.unlock();
-    const bool done = write(lines);
-    lock.lock();
-    busy_ = false;
-    if (done) {
-      queue_.erase(queue_.begin(), queue_.begin() + static_cast<std::ptrdiff_t>(count));
-      written_.notify_all();
-    } else if (stop_) {
-      return;
-    } else {
+    bool some = false;
+    bool done = false;
+    for (Book* book : books_) {
+      if (book->queue.empty()) continue;
+      some = true;
+      done = write_some(*book, lock) || done;
+    }
+    if (!some) {
+      if (stop_) return;
+      wake_.wait_until(lock, release);
+    } else if (!done) {
+      if (stop_) return;
       wake_.wait_for(lock, kTryAgain, [&] { return stop_; });
     }
   }
 }
 
-/// All of it, or none that counts: what is cut off by a full disk is taken away again.
-bool AuditLog::write(const std::string& lines) {
-  if (size_ > 0 && size_ + lines.size() > options_.most_bytes) rotate();
-  if (!file_.valid() && !open_file()) return false;
-  size_t written = 0;
-  while (written < lines.size()) {
-    const ssize_t got = ::write(file_.get(), lines.data() + written, lines.size() - written);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) {
-      (void)::ftruncate(file_.get(), static_cast<off_t>(size_));
-      return false;
-    }
-    written += static_cast<size_t>(got);
-  }
-  size_ += lines.size();
-  (void)::fdatasync(file_.get());
-  return true;
-}
-
-void AuditLog::rotate() {
-  (void)::unlink(path(options_.most_files - 1).c_str());
-  for (int number = options_.most_files - 2; number >= 0; --number) {
-    (void)std::rename(path(number).c_str(), path(number + 1).c_str());
-  }
-  file_.close();
-  if (auto opened = open_file(); !opened) {
-    farm::log(farm::LogLevel::error, opened.error().message);
-  }
-}
-
 AuditLog::Reader AuditLog::read() const {
   Reader reader;
-  for (int number = 0; number < options_.most_files; ++number) {
-    core::Descriptor file(::open(path(number).c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.valid()) reader.files_.push_back(std::move(file));
+  for (const Book* book : books_) {
+    reader.rows_.emplace_back();
+    reader.rows_.back().files = book->files.for_reading();
+    reader.rows_.back().step();
   }
   return reader;
 }
 
+/// Each kind is written in order of time, but for what was held back: so they are merged.
 std::optional<v1::AuditEntry> AuditLog::Reader::next() {
+  Row* oldest = nullptr;
+  for (Row& row : rows_) {
+    if (!row.head) continue;
+    if (oldest == nullptr || row.head->time_ms() < oldest->head->time_ms()) oldest = &row;
+  }
+  if (oldest == nullptr) return std::nullopt;
+  std::optional<v1::AuditEntry> entry = std::exchange(oldest->head, std::nullopt);
+  oldest->step();
+  return entry;
+}
+
+void AuditLog::Reader::Row::step() {
   for (;;) {
-    const size_t end = waiting_.find('\n', begin_);
+    const size_t end = waiting.find('\n', begin);
     if (end != std::string::npos) {
-      const std::string line = waiting_.substr(begin_, end - begin_);
-      begin_ = end + 1;
-      if (auto entry = entry_of(line)) return entry;
+      head = entry_of(waiting.substr(begin, end - begin));
+      begin = end + 1;
+      if (head) return;
       continue;
     }
-    waiting_.erase(0, begin_);
-    begin_ = 0;
+    waiting.erase(0, begin);
+    begin = 0;
     // Nobody but us writes there; what has no end is not ours.
-    if (waiting_.size() > kLongestLine) waiting_.clear();
-    if (files_.empty()) return std::nullopt;
-    const size_t had = waiting_.size();
-    waiting_.resize(had + kPiece);
-    const ssize_t got = ::read(files_.back().get(), waiting_.data() + had, kPiece);
-    waiting_.resize(had + static_cast<size_t>(std::max<ssize_t>(got, 0)));
+    if (waiting.size() > kLongestLine) waiting.clear();
+    if (files.empty()) return;
+    const size_t had = waiting.size();
+    waiting.resize(had + kPiece);
+    const ssize_t got = ::read(files.back().get(), waiting.data() + had, kPiece);
+    waiting.resize(had + static_cast<size_t>(std::max<ssize_t>(got, 0)));
     if (got <= 0) {
-      files_.pop_back();
-      waiting_.clear();
+      files.pop_back();
+      waiting.clear();
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include <grpcpp/support/status.h>
 
 #include "coordinator/access/caller.h"
+#include "coordinator/access/line_files.h"
 #include "core/base/descriptor.h"
 #include "core/base/result.h"
 #include "hyades/v1/admin.pb.h"
@@ -25,15 +27,21 @@ namespace hyades::coordinator {
 struct AuditOptions {
   std::string folder;                         ///< audit.jsonl, audit.1.jsonl (older), ...
   uint64_t most_bytes = uint64_t{16} << 20U;  ///< of a file; then the next one is begun
-  int most_files = 10;                        ///< the oldest goes
+  int most_files = 10;                        ///< of deeds; the oldest goes
+  int most_of_others = 4;                     ///< of refusals, and of uploads
+  size_t most_waiting = 10'000;  ///< lines of each kind that the disk has not taken yet
 };
 
 /// Who did what: lines of JSON that are only ever added to. Nobody who notes something waits: a
 /// thread writes and syncs, within milliseconds where the disk answers. Thread-safe.
+///
+/// Deeds, refusals and uploads have files and room of their own: whoever is refused as often as he
+/// likes, as any stranger may be, and whoever uploads many files, makes none vanish that somebody
+/// needs to know of.
 class AuditLog {
  public:
   /// An error where the folder cannot be written to.
-  static core::Result<std::unique_ptr<AuditLog>> open(AuditOptions options);
+  static core::Result<std::unique_ptr<AuditLog>> open(const AuditOptions& options);
   /// All that was noted is written, if the disk takes it.
   ~AuditLog();
   AuditLog(const AuditLog&) = delete;
@@ -43,8 +51,11 @@ class AuditLog {
   void note(const Caller& caller, const std::string& deed, const std::string& target,
             const grpc::Status& result, const std::string& detail);
   /// Somebody may not. Of one address a few are noted one by one, then some every minute, which say
-  /// how many they stand for.
+  /// how many they stand for. Of more than a thousand addresses all others count as one.
   void refuse(const Caller& caller, const std::string& deed, const grpc::Status& why);
+  /// Somebody begins to upload, or to go on with, the file of this digest.
+  void upload(const Caller& caller, const std::string& deed, const std::string& sha256,
+              const std::string& detail);
 
   /// Waits until all that was noted is written; two seconds at most.
   void flush();
@@ -57,9 +68,15 @@ class AuditLog {
 
    private:
     friend class AuditLog;
-    std::vector<core::Descriptor> files_;  ///< the newest first
-    std::string waiting_;                  ///< bytes of the oldest that are not given yet
-    size_t begin_ = 0;
+    /// Entries of one kind.
+    struct Row {
+      std::vector<core::Descriptor> files;  ///< the newest first
+      std::string waiting;                  ///< bytes of the oldest that are not given yet
+      size_t begin = 0;
+      std::optional<v1::AuditEntry> head;  ///< nothing: that was all
+      void step();
+    };
+    std::vector<Row> rows_;
   };
   Reader read() const;
 
@@ -71,23 +88,28 @@ class AuditLog {
     v1::AuditEntry held;  ///< with `times` of those that were not noted
   };
 
-  explicit AuditLog(AuditOptions options) : options_(std::move(options)) {}
-  std::string path(int number) const;
-  core::Status open_file();
-  void add(v1::AuditEntry entry);
+  /// Lines of one kind.
+  struct Book {
+    explicit Book(LineFiles::Options options) : files(std::move(options)) {}
+    LineFiles files;  ///< written by the thread alone, once it runs
+    std::deque<std::string> queue;
+    uint64_t lost = 0;  ///< that found no room in the queue
+  };
+
+  explicit AuditLog(const AuditOptions& options);
+  void add(Book& book, v1::AuditEntry entry);
   void release_held(bool all);
-  bool write(const std::string& lines);
-  void rotate();
+  bool write_some(Book& book, std::unique_lock<std::mutex>& lock);
   void work();
 
-  const AuditOptions options_;
-  core::Descriptor file_;  ///< of the thread alone, once it runs
-  uint64_t size_ = 0;
+  const size_t most_waiting_;
 
-  mutable std::mutex mutex_;
-  std::deque<std::string> queue_;
-  uint64_t lost_ = 0;  ///< that found no room in the queue
-  std::map<std::string, Purse> purses_;
+  mutable std::mutex mutex_;  ///< of all below, but for the books' files
+  Book deeds_;
+  Book refusals_;
+  Book uploads_;
+  const std::array<Book*, 3> books_ = {&deeds_, &refusals_, &uploads_};  ///< as they are written
+  std::map<std::string, Purse> purses_;  ///< by neighbourhood_of() an address
   bool stop_ = false;
   bool busy_ = false;  ///< lines are on their way
   std::condition_variable wake_;

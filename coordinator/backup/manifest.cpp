@@ -66,12 +66,14 @@ core::Result<Manifest> parse_manifest(const std::string& text) {
 }
 
 bool is_audit_file(const std::string& name) {
-  constexpr std::string_view kBegin = "audit.";
   constexpr std::string_view kEnd = "jsonl";
-  if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) return false;
-  const std::string number = name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size());
-  return number.empty() ||
-         (number.size() == 2 && number[0] >= '1' && number[0] <= '9' && number[1] == '.');
+  for (const std::string_view begin : {"audit.", "refusals.", "uploads."}) {
+    if (!name.starts_with(begin) || !name.ends_with(kEnd)) continue;
+    const std::string number = name.substr(begin.size(), name.size() - begin.size() - kEnd.size());
+    return number.empty() ||
+           (number.size() == 2 && number[0] >= '1' && number[0] <= '9' && number[1] == '.');
+  }
+  return false;
 }
 
 bool is_backup_path(const std::string& path) {

@@ -26,7 +26,8 @@ std::string write_manifest(const Manifest& manifest);
 /// The inverse; strict.
 core::Result<Manifest> parse_manifest(const std::string& text);
 
-/// Whether it is the name of a file of the audit log: audit.jsonl, audit.1.jsonl, ...
+/// Whether it is the name of a file of the audit log: audit.jsonl, audit.1.jsonl, ...; the same of
+/// refusals and uploads.
 bool is_audit_file(const std::string& name);
 
 /// Whether a backup may hold a file of that path: one of a coordinator's own, which leads nowhere

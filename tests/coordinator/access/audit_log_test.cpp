@@ -1,10 +1,16 @@
 // Who did what: lines that are only added to.
 #include "coordinator/access/audit_log.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <atomic>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 #include <vector>
 
 #include "tests/support/temp_folder.h"
@@ -101,6 +107,119 @@ TEST_F(Audit, RefusalsThatComeThickAndFastAreCounted) {
   for (const v1::AuditEntry& entry : all) times += std::max<uint64_t>(entry.times(), 1);
   EXPECT_EQ(times, 1001U) << "none is forgotten";
   EXPECT_LT(all.size(), 20U);
+}
+
+/// One of so many networks: 2001:db8:: and what follows, each a /64 of its own.
+Caller stranger(int network) {
+  char address[64];
+  std::snprintf(address, sizeof address, "[2001:db8:0:%x::1]:5000", network);
+  return {{}, {}, v1::ROLE_UNSPECIFIED, address};
+}
+
+const grpc::Status kNoToken = {grpc::StatusCode::UNAUTHENTICATED, "no token"};
+
+TEST_F(Audit, ADeedStaysWhateverStrangersFromManyAddressesAreRefused) {
+  open({.folder = folder.path().string(), .most_bytes = 4000, .most_files = 2});
+  log->note(kAlice, "job.delete", "7", grpc::Status::OK, {});
+  for (int round = 0; round < 10; ++round) {
+    for (int network = 0; network < 3000; ++network) {
+      log->refuse(stranger(network), "job.list", kNoToken);
+    }
+    log->flush();
+  }
+  open({.folder = folder.path().string(), .most_bytes = 4000, .most_files = 2});
+  const auto all = entries();
+  ASSERT_GT(all.size(), 20U) << "refusals are kept as well, as far as there is room";
+  EXPECT_EQ(all[0].deed(), "job.delete") << "and nothing is gone that is older than they";
+  EXPECT_EQ(all[0].target(), "7");
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    EXPECT_LE(entry.file_size(), 4000U + (64U << 10U)) << entry.path();
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder.file("refusals.3.jsonl")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("refusals.4.jsonl")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("audit.1.jsonl")));
+}
+
+TEST_F(Audit, AddressesWithoutEndShareOnePurse) {
+  uint64_t calls = 0;
+  for (int network = 0; network < 20'000; ++network, ++calls) {
+    log->refuse(stranger(network), "job.list", kNoToken);
+    if (network % 2000 == 0) log->flush();
+  }
+  open({.folder = folder.path().string()});
+  const auto all = entries();
+  // One of each of the first thousand, ten of all others, and some that stand for the rest.
+  EXPECT_GE(all.size(), 1000U);
+  EXPECT_LE(all.size(), 1100U);
+  uint64_t times = 0;
+  bool told = false;
+  for (const v1::AuditEntry& entry : all) {
+    times += std::max<uint64_t>(entry.times(), 1);
+    told = told ||
+           (entry.times() > 1'000 && entry.detail().find("several addresses") != std::string::npos);
+  }
+  EXPECT_EQ(times, calls) << "none is forgotten";
+  EXPECT_TRUE(told) << "what stands for many addresses says so";
+}
+
+TEST_F(Audit, DeedsHaveRoomWhileRefusalsWaitForTheDisk) {
+  log.reset();
+  const std::string pipe = folder.file("refusals.jsonl");
+  std::filesystem::remove(pipe);
+  // A file that takes nothing until somebody reads.
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  open({.folder = folder.path().string(), .most_waiting = 50});
+  for (int network = 0; network < 900; ++network) {
+    for (int i = 0; i < 3; ++i) log->refuse(stranger(network), "job.list", kNoToken);
+  }
+  log->note(kAlice, "job.delete", "7", grpc::Status::OK, {});
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  std::atomic<bool> stop{false};
+  std::string refused;
+  std::thread drain([&] {
+    std::vector<char> bytes(1U << 16U);
+    for (;;) {
+      const bool last = stop;
+      const ssize_t got = ::read(reader, bytes.data(), bytes.size());
+      if (got > 0) {
+        refused.append(bytes.data(), static_cast<size_t>(got));
+      } else if (last) {
+        return;
+      } else {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    }
+  });
+  log->flush();
+  for (int i = 0; i < 20; ++i) log->refuse(stranger(5000), "job.list", kNoToken);
+  log.reset();
+  stop = true;
+  drain.join();
+  ::close(reader);
+  std::ifstream deeds(folder.file("audit.jsonl"));
+  std::string line;
+  EXPECT_TRUE(std::getline(deeds, line)) << "the deed is lost";
+  EXPECT_NE(line.find("job.delete"), std::string::npos) << line;
+  EXPECT_NE(refused.find("audit.lost"), std::string::npos) << "it was no flood";
+}
+
+TEST_F(Audit, AllKindsAreReadInOrderOfTime) {
+  const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(3)); };
+  log->upload(kAlice, "file.upload", "ab12", "7 bytes");
+  pause();
+  log->note(kAlice, "job.submit", "1", grpc::Status::OK, {});
+  pause();
+  log->refuse(stranger(1), "job.list", kNoToken);
+  pause();
+  log->note(kAlice, "job.cancel", "1", grpc::Status::OK, {});
+  pause();
+  log->upload(kAlice, "file.upload", "cd34", "8 bytes");
+  std::vector<std::string> deeds;
+  for (const v1::AuditEntry& entry : entries()) deeds.push_back(entry.deed());
+  EXPECT_EQ(deeds, (std::vector<std::string>{"file.upload", "job.submit", "job.list", "job.cancel",
+                                             "file.upload"}));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("uploads.jsonl")));
 }
 
 TEST_F(Audit, AFileThatCannotBePutAsideGrows) {

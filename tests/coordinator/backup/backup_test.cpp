@@ -116,6 +116,8 @@ class Backup : public ::testing::Test {
     write(data("assets/partial/" + std::string(64, 'b')), "half");
     write(data("audit.jsonl"), "{\"deed\":\"job.cancel\"}\n");
     write(data("audit.1.jsonl"), "{\"deed\":\"job.submit\"}\n");
+    write(data("refusals.jsonl"), "{\"deed\":\"job.list\"}\n");
+    write(data("uploads.3.jsonl"), "{\"deed\":\"file.upload\"}\n");
     write(data("audit.jsonl.tmp"), "half");
     write(data("tmp/1/film.bin"), "scratch");
     write(data("address"), "127.0.0.1:7700\n");
@@ -143,7 +145,7 @@ class Backup : public ::testing::Test {
 TEST_F(Backup, ComesBackAsItWas) {
   const auto written = write_backup(folder_.file("data"), tar());
   ASSERT_TRUE(written) << written.error().message;
-  EXPECT_EQ(written->files, 8U);
+  EXPECT_EQ(written->files, 10U);
   const auto restored = restore_backup(tar(), fresh());
   ASSERT_TRUE(restored) << restored.error().message;
   EXPECT_EQ(restored->files, written->files);
@@ -152,7 +154,8 @@ TEST_F(Backup, ComesBackAsItWas) {
   for (const std::string& same :
        {std::string("films/3/log.key"), std::string("films/3/00000001.films"),
         std::string("outputs/3/a b/ball.0001.exr"), "assets/" + std::string(64, 'a'),
-        std::string("audit.jsonl"), std::string("audit.1.jsonl")}) {
+        std::string("audit.jsonl"), std::string("audit.1.jsonl"), std::string("refusals.jsonl"),
+        std::string("uploads.3.jsonl")}) {
     EXPECT_EQ(read(fresh("/" + same)), read(data(same))) << same;
   }
   for (const char* none : {"films/3/log.lock", "films/3/00000002.snapshot.tmp", "outputs/3/.hidden",
