@@ -22,6 +22,7 @@
 #include "cli/config_file.h"
 #include "cli/log_options.h"
 #include "coordinator/access/authority.h"
+#include "coordinator/access/first_admin.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/notify/notifier.h"
 #include "coordinator/services/server.h"
@@ -31,7 +32,6 @@
 #include "core/base/machine.h"
 #include "farm/last_words.h"
 #include "farm/log.h"
-#include "farm/small_file.h"
 
 namespace {
 
@@ -182,18 +182,12 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
   if (!authority || !options.beyond || arguments.listen.insecure || (*authority)->has_admin()) {
     return authority;
   }
-  std::string text;
-  hyades::coordinator::StoredToken row;
-  const std::string file = arguments.brain.folder + "/admin-token";
-  // One that lies there is of no use: no admin's token is.
-  (void)::unlink(file.c_str());
-  const grpc::Status made = (*authority)->create("admin", hyades::v1::ROLE_ADMIN, 0, text, row);
-  if (!made.ok()) return hyades::core::Error{made.error_message()};
-  if (auto written = hyades::farm::write_secret(file, text + "\n"); !written) {
-    (void)(*authority)->revoke(row.id, row);
-    return written.error();
-  }
-  hyades::farm::log(LogLevel::info, "an admin's token (" + row.id + ") is in " + file);
+  const auto made = hyades::coordinator::make_first_admin(**authority, arguments.brain.folder);
+  if (!made) return made.error();
+  hyades::farm::log(LogLevel::info,
+                    "an admin's token (" + made->id + ") is in " + arguments.brain.folder +
+                        "/admin-token and holds for 30 days: make your own with it (hyades token "
+                        "create --role admin --name NAME), revoke it and remove the file");
   return authority;
 }
 

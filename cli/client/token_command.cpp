@@ -1,5 +1,6 @@
 // `hyades token`: who may come in. Asked of the coordinator, or, with --data, of its folder while
 // it does not run: that is how the first admin comes by a token.
+#include <pwd.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -18,10 +19,12 @@
 #include "cli/client/client_app.h"
 #include "cli/client/commands.h"
 #include "cli/client/show.h"
+#include "coordinator/access/audit_log.h"
 #include "coordinator/access/token.h"
 #include "core/base/duration.h"
 #include "farm/small_file.h"
 #include "farm/token_term.h"
+#include "farm/wire.h"
 
 namespace hyades::cli {
 namespace {
@@ -72,17 +75,47 @@ class FarBook final : public Book {
   const std::unique_ptr<FarmClient> client_;
 };
 
+/// What root has just made belongs to whom the folder belongs to: the coordinator's user.
+void give_to_owner_of(const std::string& folder) {
+  struct stat info {};
+  if (::geteuid() != 0 || ::stat(folder.c_str(), &info) != 0 || info.st_uid == 0) return;
+  for (const char* name : {"state.db", "state.db-wal", "state.db-shm", "state.db-journal",
+                           "audit.jsonl", "refusals.jsonl", "uploads.jsonl"}) {
+    const std::string path = folder + "/" + name;
+    if (::lchown(path.c_str(), info.st_uid, info.st_gid) != 0 && errno != ENOENT) {
+      std::fprintf(stderr, "%s: cannot be given to the owner of %s: %s\n", path.c_str(),
+                   folder.c_str(), std::strerror(errno));
+    }
+  }
+}
+
+/// Who runs this command, as the system knows it.
+std::string account_name() {
+  const passwd* entry = ::getpwuid(::getuid());  // NOLINT(concurrency-mt-unsafe): one thread asks
+  return entry != nullptr ? entry->pw_name : fmt::format("user-{}", ::getuid());
+}
+
+/// The folder of a coordinator that does not run. Its audit log tells what was done, as if the
+/// coordinator had been asked.
 class NearBook final : public Book {
  public:
-  explicit NearBook(std::unique_ptr<coordinator::JobStore> store) : store_(std::move(store)) {}
+  NearBook(std::string folder, std::unique_ptr<coordinator::JobStore> store,
+           std::unique_ptr<coordinator::AuditLog> audit)
+      : folder_(std::move(folder)), store_(std::move(store)), audit_(std::move(audit)) {}
+  ~NearBook() override {
+    audit_.reset();  // may have begun another file
+    give_to_owner_of(folder_);
+  }
+  NearBook(const NearBook&) = delete;
+  NearBook& operator=(const NearBook&) = delete;
   Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
                  std::string& secret) override {
     const auto fresh = coordinator::make_token(
         request.name(), request.role(), request.lifetime_ms(), coordinator::token_clock_ms());
     if (!fresh) return Failure{kBadArguments, fresh.error().message};
-    if (const auto added = store_->add_token(fresh->row); !added) {
-      return Failure{kFailed, added.error().message};
-    }
+    const auto added = store_->add_token(fresh->row);
+    note("token.create", fresh->row.id, added, request.ShortDebugString());
+    if (!added) return Failure{kFailed, added.error().message};
     token = coordinator::to_wire(fresh->row);
     secret = fresh->text;
     return std::nullopt;
@@ -95,32 +128,33 @@ class NearBook final : public Book {
   }
   Outcome revoke(const std::string& id, v1::Token& token) override {
     const auto done = store_->revoke_token(id, coordinator::token_clock_ms());
-    if (!done) return Failure{kFailed, done.error().message};
+    if (!done) {
+      note("token.revoke", id, done, {});
+      return Failure{kFailed, done.error().message};
+    }
     v1::ListTokensResponse all;
     if (Outcome failed = list(all)) return failed;
     for (const v1::Token& one : all.tokens()) {
       if (one.id() == id) token = one;
     }
-    if (token.id() == id) return std::nullopt;
-    return Failure{kUnknown, fmt::format("there is no token '{}'", id)};
+    if (token.id() != id) return Failure{kUnknown, fmt::format("there is no token '{}'", id)};
+    note("token.revoke", id, done, {});
+    return std::nullopt;
   }
 
  private:
-  const std::unique_ptr<coordinator::JobStore> store_;
-};
-
-/// What root has just made belongs to whom the folder belongs to: the coordinator's user.
-void give_to_owner_of(const std::string& folder, const std::string& file) {
-  struct stat info {};
-  if (::geteuid() != 0 || ::stat(folder.c_str(), &info) != 0 || info.st_uid == 0) return;
-  for (const char* end : {"", "-wal", "-shm", "-journal"}) {
-    const std::string path = file + end;
-    if (::lchown(path.c_str(), info.st_uid, info.st_gid) != 0 && errno != ENOENT) {
-      std::fprintf(stderr, "%s: cannot be given to the owner of %s: %s\n", path.c_str(),
-                   folder.c_str(), std::strerror(errno));
-    }
+  void note(const std::string& deed, const std::string& id, const core::Status& done,
+            const std::string& detail) {
+    const auto result =
+        done ? grpc::Status::OK : grpc::Status(grpc::StatusCode::UNAVAILABLE, done.error().message);
+    audit_->note({coordinator::kByFolder, farm::wire_text(account_name()), v1::ROLE_ADMIN,
+                  coordinator::kThisMachine},
+                 deed, id, result, detail);
   }
-}
+  const std::string folder_;
+  const std::unique_ptr<coordinator::JobStore> store_;
+  std::unique_ptr<coordinator::AuditLog> audit_;
+};
 
 std::unique_ptr<Book> open_book(const ClientApp& app, const Options& options) {
   if (options.data.empty()) {
@@ -140,12 +174,16 @@ std::unique_ptr<Book> open_book(const ClientApp& app, const Options& options) {
     return nullptr;
   }
   auto store = coordinator::open_sqlite_job_store(file);
-  if (store) {
-    give_to_owner_of(options.data, file);
-    return std::make_unique<NearBook>(std::move(*store));
+  if (!store) {
+    app.report({kBadArguments, store.error().message +
+                                   " (--data is for a coordinator that does not run; "
+                                   "without it the running one is asked)"});
+    return nullptr;
   }
-  app.report({kBadArguments, store.error().message + " (--data is for a coordinator that does not "
-                                                     "run; without it the running one is asked)"});
+  auto audit = coordinator::AuditLog::open({.folder = options.data});
+  give_to_owner_of(options.data);
+  if (audit) return std::make_unique<NearBook>(options.data, std::move(*store), std::move(*audit));
+  app.report({kFailed, audit.error().message});
   return nullptr;
 }
 

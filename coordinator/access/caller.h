@@ -9,6 +9,12 @@ namespace hyades::coordinator {
 
 /// Caller::token_id of the token that --token-file gives, which is one for all.
 inline constexpr const char* kSharedToken = "file";
+/// Caller::token_id, in the audit log, of who works on a coordinator's folder itself (--data).
+inline constexpr const char* kByFolder = "folder";
+/// Caller::token_id, in the audit log, of what the coordinator does of itself.
+inline constexpr const char* kByItself = "coordinator";
+/// Caller::address of both.
+inline constexpr const char* kThisMachine = "this machine";
 
 /// Who calls.
 struct Caller {

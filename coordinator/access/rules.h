@@ -16,7 +16,7 @@ struct Rule {
   const char* deed;    ///< "job.cancel": what refusals call it
   v1::Role least;      ///< of viewer < submitter < operator < admin; unspecified: everybody may
   bool worker;         ///< whether workers may, too
-  bool audited;        ///< changes something: it is noted who did it
+  bool audited;        ///< changes something: each is noted, and who did it (files: upload_note.h)
   const char* method;  ///< of gRPC: "Jobs/Cancel"; empty: none does it
   std::vector<const char*> routes;  ///< of HTTP: "POST /api/v1/jobs/{job}/cancel"
 };

@@ -39,6 +39,9 @@ class Admission {
     }
   }
 
+  /// Where it is kept who did what; null where it is not.
+  AuditLog* audit() const { return authority_.audit(); }
+
   /// To be held while a large request is parsed and answered, so that many of them do not fill the
   /// memory; not held where another one is.
   std::unique_lock<std::mutex> alone() const {

@@ -11,6 +11,7 @@
 
 #include "coordinator/services/answer.h"
 #include "coordinator/services/file_stream.h"
+#include "coordinator/services/upload_note.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -30,7 +31,11 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   Uploading(Brain& brain, Clerks& clerks, const Admission& admission,
             grpc::CallbackServerContext& context, const Caller& caller,
             const grpc::Status& admitted)
-      : brain_(brain), clerks_(clerks), store_(brain.assets()) {
+      : brain_(brain),
+        clerks_(clerks),
+        store_(brain.assets()),
+        caller_(caller),
+        audit_(admission.audit()) {
     if (admitted.ok()) {
       visit_ = admission.visit(caller, [&context](const grpc::Status&) { context.TryCancel(); });
       StartRead(&bytes_);
@@ -90,6 +95,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
                                std::chrono::seconds(10));
     }
     writer_.emplace(std::move(*writer));
+    note_upload(audit_, caller_, name, part.size(), writer_->offset());
     return grpc::Status::OK;
   }
 
@@ -137,6 +143,8 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   Brain& brain_;
   Clerks& clerks_;
   farm::ContentStore& store_;
+  const Caller caller_;
+  AuditLog* const audit_;
   std::unique_ptr<Visit> visit_;
   grpc::ByteBuffer bytes_;
   std::optional<farm::ContentWriter> writer_;

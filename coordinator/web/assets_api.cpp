@@ -4,6 +4,7 @@
 #include <set>
 #include <span>
 
+#include "coordinator/services/upload_note.h"
 #include "coordinator/web/handing.h"
 #include "farm/content_store.h"
 #include "farm/wire_status.h"
@@ -58,9 +59,8 @@ void AssetsApi::add_routes(Router& router) {
         const auto offset = query_number<uint64_t>(request, "offset", 0, answer);
         if (!offset) return;
         answer_by(desks_.files, answer,
-                  [this, name, whole = *size, from = *offset, piece = request.body] {
-                    return take(name, whole, from, piece);
-                  });
+                  [this, caller = request.caller, name, whole = *size, from = *offset,
+                   piece = request.body] { return take(caller, name, whole, from, piece); });
       });
 }
 
@@ -90,8 +90,8 @@ WebReply AssetsApi::missing(const std::string& body) {
   return json_reply({{"missing", std::move(missing)}});
 }
 
-WebReply AssetsApi::take(const std::string& name, uint64_t size, uint64_t offset,
-                         const std::string& piece) {
+WebReply AssetsApi::take(const Caller& caller, const std::string& name, uint64_t size,
+                         uint64_t offset, const std::string& piece) {
   if (brain_.assets().contains(name, size)) {
     return json_reply({{"offset", size}, {"complete", true}});
   }
@@ -107,7 +107,7 @@ WebReply AssetsApi::take(const std::string& name, uint64_t size, uint64_t offset
                                            std::chrono::milliseconds(500)));
     }
   }
-  auto writer = take_writer(name, size);
+  auto writer = take_writer(caller, name, size);
   WebReply reply = writer.ok() ? append(*writer.writer, offset, piece) : error_reply(writer.status);
   if (writer.ok() && writer.writer->offset() < size) put_back(name, std::move(writer.writer));
   done_with(name);
@@ -150,7 +150,8 @@ WebReply AssetsApi::append(farm::ContentWriter& writer, uint64_t offset, const s
   return json_reply({{"offset", size}, {"complete", true}});
 }
 
-AssetsApi::Taken AssetsApi::take_writer(const std::string& name, uint64_t size) {
+AssetsApi::Taken AssetsApi::take_writer(const Caller& caller, const std::string& name,
+                                        uint64_t size) {
   {
     const std::lock_guard lock(mutex_);
     let_go_of_old();
@@ -168,6 +169,7 @@ AssetsApi::Taken AssetsApi::take_writer(const std::string& name, uint64_t size) 
     return {nullptr, farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
                                        std::chrono::seconds(10))};
   }
+  note_upload(audit_, caller, name, size, writer->offset());
   return {std::make_unique<farm::ContentWriter>(std::move(*writer)), grpc::Status::OK};
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 
+#include "coordinator/access/audit_log.h"
 #include "coordinator/brain/brain.h"
 #include "coordinator/services/desks.h"
 #include "coordinator/web/router.h"
@@ -17,14 +18,17 @@ namespace hyades::coordinator {
 /// Files by content, in pieces.
 class AssetsApi {
  public:
-  AssetsApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  /// `audit` (where it is kept who did what; null: nowhere) outlives it, as the others do.
+  AssetsApi(Brain& brain, Desks& desks, AuditLog* audit)
+      : brain_(brain), desks_(desks), audit_(audit) {}
   void add_routes(Router& router);
   /// Lets go of files whose pieces do not come any more; now and then.
   void sweep();
 
  private:
   WebReply missing(const std::string& body);
-  WebReply take(const std::string& name, uint64_t size, uint64_t offset, const std::string& piece);
+  WebReply take(const Caller& caller, const std::string& name, uint64_t size, uint64_t offset,
+                const std::string& piece);
   WebReply append(farm::ContentWriter& writer, uint64_t offset, const std::string& piece);
 
   /// A file in the making, between two pieces: to open it anew is to read what is there of it.
@@ -37,13 +41,14 @@ class AssetsApi {
     grpc::Status status;
     bool ok() const { return writer != nullptr; }
   };
-  Taken take_writer(const std::string& name, uint64_t size);
+  Taken take_writer(const Caller& caller, const std::string& name, uint64_t size);
   void put_back(const std::string& name, std::unique_ptr<farm::ContentWriter> writer);
   void let_go_of_old();
   void done_with(const std::string& name);
 
   Brain& brain_;
   Desks& desks_;
+  AuditLog* const audit_;
   std::mutex mutex_;
   std::map<std::string, Open> open_;  ///< by the file's name
   std::set<std::string> busy_;        ///< files of which a piece is being written

@@ -72,8 +72,8 @@ Gatekeeper::Gatekeeper(Authority& authority, std::vector<std::string> names, boo
 void Gatekeeper::set_port(uint16_t port) { cookie_ = fmt::format("hyades_session_{}=", port); }
 
 grpc::Status Gatekeeper::check(const WebRequest& request, Caller& caller) const {
-  if (const grpc::Status site = check_site(request); !site.ok()) return site;
   caller.address = request.address;
+  if (const grpc::Status site = check_site(request); !site.ok()) return site;
   const std::string& shown = request.header("authorization");
   if (shown.empty()) {
     const std::string_view session = find_cookie(request.header("cookie"), cookie_);

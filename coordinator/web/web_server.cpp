@@ -105,7 +105,7 @@ struct WebServer::Parts {
         outlet(std::make_shared<Outlet>(network)),
         farm(brain, desks),
         jobs(brain, desks),
-        assets(brain, desks),
+        assets(brain, desks, known.audit()),
         outputs(brain, desks),
         pictures(brain),
         videos(brain, desks),
@@ -162,6 +162,9 @@ struct WebServer::Parts {
       grpc::Status why;
       const auto cookie = gatekeeper.open_session(token, why);
       if (!cookie) {
+        if (why.error_code() == grpc::StatusCode::UNAUTHENTICATED) {
+          note_refusal(request.caller, rule_of_route("POST /api/v1/session"), why);
+        }
         answer(error_reply(why));
         return;
       }
@@ -196,12 +199,16 @@ struct WebServer::Parts {
     }
     if (allowed.ok()) allowed = allow(request.caller, rule);
     if (!allowed.ok()) {
-      if (AuditLog* log = authority.audit()) log->refuse(request.caller, rule.deed, allowed);
+      note_refusal(request.caller, rule, allowed);
       WebReply refusal = error_reply(allowed);
       meters.answered("any", "refused", refusal.status, Meters::Time(0));
       return {0, std::move(refusal)};
     }
     return {most_bytes(request)};
+  }
+
+  void note_refusal(const Caller& caller, const Rule& rule, const grpc::Status& why) const {
+    if (AuditLog* log = authority.audit()) log->refuse(caller, rule.deed, why);
   }
 
   core::Status listen(const std::string& address) {

@@ -247,10 +247,15 @@ TEST_F(Roles, AnAdminMakesAndRevokesOverTheWire) {
 TEST_F(Roles, WhoDidWhatIsKept) {
   const std::string sam = make(v1::ROLE_SUBMITTER, "sam");
   const std::string vera = make(v1::ROLE_VIEWER, "vera");
+  // Two of one millisecond may be told either way round.
+  const auto pause = [] { std::this_thread::sleep_for(3ms); };
   const uint64_t job = world.submit(1);
+  pause();
   EXPECT_FALSE(cancel(job, vera).ok());
+  pause();
   EXPECT_FALSE(cancel(job, sam).ok()) << "another's";
   EXPECT_TRUE(cancel(job, admin).ok());
+  pause();
   EXPECT_FALSE(cancel(job, "hyades-unknown-token").ok());
   const auto stub = v1::Admin::NewStub(world.channel);
   const auto context = world.context();
@@ -264,11 +269,54 @@ TEST_F(Roles, WhoDidWhatIsKept) {
   }
   EXPECT_TRUE(reader->Finish().ok());
   const std::string id_text = std::to_string(job);
-  EXPECT_EQ(told,
-            (std::vector<std::string>{
-                "job.submit " + id_text + " by root: ok", "job.cancel  by vera: permission_denied",
-                "job.cancel " + id_text + " by sam: permission_denied",
-                "job.cancel " + id_text + " by root: ok", "job.cancel  by : unauthenticated"}));
+  EXPECT_EQ(
+      told,
+      (std::vector<std::string>{
+          "file.upload " + core::to_hex(core::sha256(FarmWorld::document(1))) + " by root: ok",
+          "job.submit " + id_text + " by root: ok", "job.cancel  by vera: permission_denied",
+          "job.cancel " + id_text + " by sam: permission_denied",
+          "job.cancel " + id_text + " by root: ok", "job.cancel  by : unauthenticated"}));
+}
+
+TEST_F(Roles, WhoUploadsIsKeptOnceForAFile) {
+  world.token = make(v1::ROLE_SUBMITTER, "sam");
+  const std::string text(100'000, 'x');
+  const std::string name = core::to_hex(core::sha256(text));
+  v1::UploadResponse response;
+  const auto send = [&](size_t from, size_t to) {
+    const auto context = world.context();
+    const auto writer = world.assets->Upload(context.get(), &response);
+    for (size_t at = from; at < to; at += 10'000) {
+      v1::UploadPart part;
+      part.set_sha256(farm::to_wire(core::sha256(text)));
+      part.set_size(text.size());
+      part.mutable_chunk()->set_offset(at);
+      part.mutable_chunk()->set_data(text.substr(at, 10'000));
+      if (!writer->Write(part)) break;
+    }
+    writer->WritesDone();
+    return writer->Finish();
+  };
+  EXPECT_EQ(send(0, 50'000).error_code(), grpc::StatusCode::ABORTED) << "left unfinished";
+  AuditLog& log = *world.authority->audit();
+  const auto told = [&] {
+    log.flush();
+    std::vector<v1::AuditEntry> all;
+    auto reader = log.read();
+    while (auto entry = reader.next()) all.push_back(std::move(*entry));
+    return all;
+  };
+  const auto begun = told();
+  ASSERT_EQ(begun.size(), 1U) << "before it is whole, and not for each piece";
+  EXPECT_EQ(begun[0].deed(), "file.upload");
+  EXPECT_EQ(begun[0].name(), "sam");
+  EXPECT_EQ(begun[0].target(), name);
+  EXPECT_EQ(begun[0].detail(), "100000 bytes");
+  EXPECT_TRUE(send(50'000, 100'000).ok());
+  EXPECT_TRUE(send(0, 100'000).ok()) << "it is here already";
+  const auto all = told();
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[1].detail(), "100000 bytes, goes on from 50000");
 }
 
 TEST_F(Roles, StrangersWhoMayListenAreToldOf) {

@@ -141,6 +141,50 @@ TEST_F(WithRoles, WhoIsSignedInIsToldAndHisSessionEndsWithHisToken) {
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", cookie}}).status, 401);
 }
 
+TEST_F(WithRoles, ASignInThatFailsIsKept) {
+  const std::string text = make(v1::ROLE_VIEWER, "vera");
+  StoredToken row;
+  ASSERT_TRUE(world.farm.authority->revoke(id, row).ok());
+  const auto sign_in = [&](const std::string& token) {
+    return world.client->post("/api/v1/session", Json({{"token", token}}).dump()).status;
+  };
+  EXPECT_EQ(sign_in("wrong"), 401);
+  EXPECT_EQ(sign_in(text), 401);
+  EXPECT_EQ(sign_in(world.farm.token), 204);
+  AuditLog& log = *world.farm.authority->audit();
+  log.flush();
+  auto reader = log.read();
+  for (const std::string why : {"not a token", "was revoked"}) {
+    const auto entry = reader.next();
+    ASSERT_TRUE(entry) << why;
+    EXPECT_EQ(entry->deed(), "session");
+    EXPECT_EQ(entry->result(), "unauthenticated");
+    EXPECT_NE(entry->detail().find(why), std::string::npos) << entry->detail();
+    EXPECT_EQ(entry->address().rfind("127.0.0.1:", 0), 0U) << entry->address();
+    EXPECT_EQ(entry->detail().find(text.substr(16)), std::string::npos) << "not the token itself";
+  }
+  EXPECT_FALSE(reader.next());
+}
+
+TEST_F(WithRoles, WhoUploadsIsKeptOnceForAFile) {
+  const auto head = with(make(v1::ROLE_SUBMITTER, "sam"));
+  const std::string text(3000, 'x');
+  const std::string target = "/api/v1/assets/" + core::to_hex(core::sha256(text)) + "?size=3000";
+  for (int piece = 0; piece < 2; ++piece) {
+    const std::string offset = "&offset=" + std::to_string(piece * 1000);
+    EXPECT_EQ(world.client->send("PUT", target + offset, text.substr(0, 1000), head).status, 200);
+  }
+  AuditLog& log = *world.farm.authority->audit();
+  log.flush();
+  auto reader = log.read();
+  const auto entry = reader.next();
+  ASSERT_TRUE(entry);
+  EXPECT_EQ(entry->deed(), "file.upload");
+  EXPECT_EQ(entry->name(), "sam");
+  EXPECT_EQ(entry->detail(), "3000 bytes");
+  EXPECT_FALSE(reader.next());
+}
+
 TEST_F(WithRoles, SigningOutEndsTheSessionAndWhatIsOpenInIt) {
   const std::string text = make(v1::ROLE_VIEWER, "vera");
   const auto sign_in = [&] {
