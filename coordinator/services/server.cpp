@@ -58,7 +58,7 @@ Server::~Server() {
 }
 
 core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brain& brain,
-                                                    Authority& authority) {
+                                                    Authority& authority, const Options& options) {
   auto parts = std::make_unique<Parts>(brain, authority, door.workers_show);
   grpc::ServerBuilder builder;
   int port = 0;
@@ -76,6 +76,9 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brai
                              kLeastPingIntervalMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostCalls);
+  // Keepalive keeps what is answered at the other end, and anybody may answer.
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS,
+                             static_cast<int>(options.idle.count()));
   // A megabyte may be unpacked to a thousand: gRPC looks at the length only then. Films are packed
   // by their own codec, which is told how much it may unpack.
   builder.AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);

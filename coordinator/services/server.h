@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -14,10 +15,20 @@ class Brain;
 /// The coordinator's gRPC server: services over a brain.
 class Server {
  public:
+  struct Options {
+    /// A connection on which no call is open for so long is ended. Workers hold a stream as long as
+    /// they are there, and clients connect again with their next call: what is ended is nobody's.
+    std::chrono::milliseconds idle = std::chrono::minutes(5);
+  };
+
   /// Listens; an error where the address is taken or not this machine's. `brain` and `authority`,
   /// which says who may come in, outlive the server.
   static core::Result<std::unique_ptr<Server>> start(const farm::Door& door, Brain& brain,
-                                                     Authority& authority);
+                                                     Authority& authority, const Options& options);
+  static core::Result<std::unique_ptr<Server>> start(const farm::Door& door, Brain& brain,
+                                                     Authority& authority) {
+    return start(door, brain, authority, {});
+  }
 
   /// Ends all calls and stops listening.
   ~Server();

@@ -74,7 +74,7 @@ class FarmWorld {
                                  {.shared_token = door->token, .audit_folder = options.folder});
     ASSERT_TRUE(known.ok()) << (known ? "" : known.error().message);
     authority = std::move(*known);
-    auto listening = Server::start(*door, *brain, *authority);
+    auto listening = Server::start(*door, *brain, *authority, serving);
     ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
     server = std::move(*listening);
     connect(server->address());
@@ -235,6 +235,7 @@ class FarmWorld {
   /// Puts something before the coordinator's job store, to make it fail or wait.
   std::function<std::unique_ptr<JobStore>(std::unique_ptr<JobStore>)> wrap_store;
   farm::Listen how;
+  Server::Options serving;
   std::string token;
   std::string address;
   std::unique_ptr<Brain> brain;
