@@ -28,6 +28,7 @@ namespace {
 
 constexpr int64_t kPartialLife = 3 * 24 * 3600;  // s without a byte: an upload may rest a weekend
 constexpr int64_t kSweepEvery = 3600;            // s
+constexpr int64_t kPartialRest = 60;             // s without a byte, where room is wanted
 
 struct StoredFile {
   std::string path;
@@ -71,6 +72,19 @@ void ContentStore::sweep_partials() {
   for (const StoredFile& file : files) {
     if (file.modified + kPartialLife < std::time(nullptr)) remove_if_free(file.path);
   }
+}
+
+uint64_t ContentStore::free_partials(uint64_t bytes) {
+  std::vector<StoredFile> files;
+  list_files(options_.folder + "/partial", files);
+  std::sort(files.begin(), files.end(),
+            [](const StoredFile& a, const StoredFile& b) { return a.modified < b.modified; });
+  uint64_t freed = 0;
+  for (const StoredFile& file : files) {
+    if (freed >= bytes || file.modified + kPartialRest > std::time(nullptr)) break;
+    if (remove_if_free(file.path)) freed += file.size;
+  }
+  return freed;
 }
 
 Status ContentStore::make_room(const std::string& name, uint64_t bytes) {

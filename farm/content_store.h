@@ -86,6 +86,10 @@ class ContentStore {
   std::vector<std::string> names() const;
   /// Bytes of all complete files; looks at each of them.
   uint64_t used() const;
+  /// Removes unfinished files that nobody writes, those that rest for longest first, until `bytes`
+  /// are free. One that got a byte within the last minute stays: it may be between two pieces. How
+  /// many bytes that were.
+  uint64_t free_partials(uint64_t bytes);
   /// How many files this process has completed so far.
   uint64_t commits() const { return commits_; }
   /// Bytes that this process' writers have still to write.

@@ -346,6 +346,7 @@ class Brain {
   void finish_loop();
   void sweep_loop();
   void disk_loop();
+  void sweep_partials();
   std::vector<Action> mind_workers(TimePoint now);
   void mind_jobs(TimePoint now);
   void tell_watcher(const std::function<void()>& poke);

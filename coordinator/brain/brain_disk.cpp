@@ -44,8 +44,26 @@ void Brain::mind_disk() {
   carry_out(later);
 }
 
+/// Where the disk is short, what uploads have left that nobody goes on with makes room: the farm
+/// stands still, and who wants his file begins again. Without the lock.
+void Brain::sweep_partials() {
+  uint64_t shortage = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    shortage = disk_.shortage();
+  }
+  if (shortage == 0) return;
+  const uint64_t freed = assets_->free_partials(shortage);
+  if (freed == 0) return;
+  const std::lock_guard lock(mutex_);
+  // As if the last walk had not found them, so that the next round does not take as many again.
+  walked_used_ = surplus(walked_used_, freed);
+  walked_free_ += freed;
+}
+
 void Brain::disk_loop() {
   TimePoint walk_again;
+  TimePoint sweep_again;
   std::unique_lock lock(mutex_);
   while (!stop_) {
     lock.unlock();
@@ -60,6 +78,10 @@ void Brain::disk_loop() {
       walked_free_ = free ? free->free : 0;
     }
     mind_disk();
+    if (begin >= sweep_again) {
+      sweep_again = begin + kMakeRoomEvery;
+      sweep_partials();
+    }
     lock.lock();
     disk_wake_.wait_for(lock, kMeasureEvery, [&] { return stop_.load(); });
   }

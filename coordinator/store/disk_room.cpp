@@ -43,12 +43,18 @@ uint64_t DiskRoom::Tank::room() const {
   return level == DiskLevel::roomy ? surplus(free, reserve) : 0;
 }
 
+uint64_t DiskRoom::Tank::shortage() const {
+  if (level == DiskLevel::roomy) return 0;
+  return over + surplus(std::max<uint64_t>(reserve + reserve / 4, 1), free);
+}
+
 bool DiskRoom::update(const DiskMeasure& now) {
   const DiskLevel before = level();
   disk_.fill(now.size, now.free, limits_.reserve.value_or(default_reserve(now.size)));
   if (limits_.budget > 0) {
     budget_.fill(limits_.budget, surplus(limits_.budget, now.used),
                  default_reserve(limits_.budget));
+    budget_.over = surplus(now.used, limits_.budget);
   }
   return level() != before;
 }
@@ -56,6 +62,8 @@ bool DiskRoom::update(const DiskMeasure& now) {
 uint64_t DiskRoom::room() const {
   return limits_.budget > 0 ? std::min(disk_.room(), budget_.room()) : disk_.room();
 }
+
+uint64_t DiskRoom::shortage() const { return std::max(disk_.shortage(), budget_.shortage()); }
 
 std::string DiskRoom::reason() const {
   if (level() == DiskLevel::roomy) return {};

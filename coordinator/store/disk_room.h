@@ -44,6 +44,8 @@ class DiskRoom {
   DiskLevel level() const { return disk_.level > budget_.level ? disk_.level : budget_.level; }
   /// Bytes that may still be written before the reserve is touched; 0 unless the level is roomy.
   uint64_t room() const;
+  /// Bytes that would have to become free for the level to be roomy again; 0 where it is.
+  uint64_t shortage() const;
   /// Why there is no room, for people; empty where there is.
   std::string reason() const;
 
@@ -53,9 +55,11 @@ class DiskRoom {
     uint64_t size = 0;
     uint64_t free = 0;
     uint64_t reserve = 0;
+    uint64_t over = 0;  ///< beyond the size: of a budget
     DiskLevel level = DiskLevel::roomy;
     void fill(uint64_t size_now, uint64_t free_now, uint64_t reserve_now);
     uint64_t room() const;
+    uint64_t shortage() const;
   };
 
   DiskLimits limits_;

@@ -108,6 +108,36 @@ TEST(ContentEviction, OldUnfinishedFilesAreSwept) {
   EXPECT_TRUE(fs::exists(foreign));
 }
 
+TEST(ContentEviction, WhereRoomIsWantedUnfinishedFilesOfNobodyGoOldestFirst) {
+  const TempFolder folder;
+  const auto store = open_store(folder.file("assets"));
+  const std::string whole = put(*store, text('w'));
+  const auto begin = [&](char letter) {
+    auto writer = store->write(name_of(text(letter)), 1000);
+    EXPECT_TRUE(writer && writer->append(bytes_of(text(letter, 900))));
+    return writer;
+  };
+  const auto path = [&](char letter) {
+    return folder.file("assets/partial/" + name_of(text(letter)));
+  };
+  for (const char letter : {'a', 'b', 'c', 'd'}) (void)begin(letter);
+  const auto writing = begin('e');
+  age(path('a'), 300);
+  age(path('b'), 400);
+  age(path('c'), 200);
+  age(path('d'), 10);
+  age(path('e'), 500);
+  EXPECT_EQ(store->free_partials(1000), 1800U);
+  EXPECT_FALSE(fs::exists(path('b')));
+  EXPECT_FALSE(fs::exists(path('a')));
+  EXPECT_TRUE(fs::exists(path('c'))) << "no more than is wanted";
+  EXPECT_EQ(store->free_partials(100'000), 900U);
+  EXPECT_FALSE(fs::exists(path('c')));
+  EXPECT_TRUE(fs::exists(path('d'))) << "its next piece may be on the way";
+  EXPECT_TRUE(fs::exists(path('e'))) << "somebody writes it";
+  EXPECT_TRUE(store->contains(whole, 1000));
+}
+
 TEST(ContentEviction, OtherPeoplesFilesStay) {
   const TempFolder folder;
   std::ofstream(folder.file("thesis.tex")) << text('t', 5000);

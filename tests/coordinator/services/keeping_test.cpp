@@ -271,6 +271,32 @@ TEST(Keeping, AFullDiskTakesNothingInLeasesNothingAndGoesOnByItself) {
   EXPECT_NE(large.error_message().find("does not fit"), std::string::npos);
 }
 
+TEST(Keeping, UploadsThatNobodyGoesOnWithDoNotHoldTheFarmUp) {
+  FarmWorld world;
+  world.options.disk.budget = 100U << 20U;
+  world.start();
+  // Begun and left, by whom one does not know.
+  constexpr int kLeft = 10;
+  const std::string folder = world.options.folder + "/assets/partial/";
+  const std::vector<char> bytes(10U << 20U, 'x');
+  // The oldest first: what was written within the last minute stays.
+  for (int i = kLeft - 1; i >= 0; --i) {
+    const std::string path = folder + core::to_hex(core::sha256("left " + std::to_string(i)));
+    std::ofstream(path).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    std::filesystem::last_write_time(
+        path, std::filesystem::file_time_type::clock::now() - 3600s - i * 60s);
+  }
+  const auto left = [&] { return std::distance(std::filesystem::directory_iterator(folder), {}); };
+  ASSERT_TRUE(eventually([&] { return left() < kLeft; })) << "the farm stands still for days";
+  EXPECT_TRUE(eventually([&] { return world.brain->admit(0).ok(); }));
+  std::this_thread::sleep_for(1500ms);
+  // Others write to this disk, too, and that is taken for the farm's.
+  EXPECT_GT(left(), kLeft / 2) << "no more goes than has to";
+  EXPECT_FALSE(std::filesystem::exists(
+      folder + core::to_hex(core::sha256("left " + std::to_string(kLeft - 1)))))
+      << "the oldest first";
+}
+
 TEST(Keeping, FilmsWaitWithTheirWorkersWhileTheDiskIsFull) {
   FarmWorld world;
   world.options.disk.budget = 20 << 20U;

@@ -63,6 +63,22 @@ TEST(DiskRoom, ABudgetCountsAsADiskOfItsOwn) {
   EXPECT_EQ(room.level(), DiskLevel::roomy);
 }
 
+TEST(DiskRoom, SaysHowMuchItLacks) {
+  DiskRoom room({1000 * kMiB, 100 * kMiB});
+  room.update({kGiB, 100 * kMiB, 500 * kMiB});
+  EXPECT_EQ(room.shortage(), 0U);
+  room.update({kGiB, 70 * kMiB, 500 * kMiB});
+  ASSERT_EQ(room.level(), DiskLevel::low);
+  EXPECT_EQ(room.shortage(), 55 * kMiB);
+  room.update({kGiB, (70 + 55) * kMiB, 500 * kMiB});
+  EXPECT_EQ(room.level(), DiskLevel::roomy) << "with so much more it is roomy again";
+  room.update({kGiB, 500 * kMiB, 1100 * kMiB});
+  ASSERT_EQ(room.level(), DiskLevel::full);
+  const uint64_t lacks = room.shortage();
+  room.update({kGiB, 500 * kMiB, 1100 * kMiB - lacks + 1});
+  EXPECT_EQ(room.level(), DiskLevel::low);
+}
+
 TEST(DiskRoom, WithoutAReserveTheLastByteCounts) {
   DiskRoom room({0, 0});
   room.update({kGiB, 1, 0});
