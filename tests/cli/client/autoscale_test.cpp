@@ -111,6 +111,7 @@ TEST(ScalePlan, NeverSpendsMoreThanThereIsWhileItWaitsToSendWorkersHome) {
   ScaleDamper::TimePoint now{};
   uint32_t last = 0;
   for (int minute = 0; minute < 120; ++minute) {
+    if (minute == 1) farm.jobs = {{kHour, kHour, 0}};  // one is enough, and the others stay a while
     farm.money_left = 1 - spent;
     last = plan.next(farm, now).wanted;
     spent += last * *farm.price / 60;

@@ -61,6 +61,12 @@ class FakeCloud {
     waiting_.clear();
   }
 
+  /// Questions of somebody who waits for the change after the last one: he has missed that.
+  size_t missed() const {
+    const std::lock_guard lock(mutex_);
+    return missed_;
+  }
+
  private:
   void serve() {
     for (;;) {
@@ -126,12 +132,15 @@ class FakeCloud {
         return answer(one, 200, "NONE");
       }
       if (!asks("GET /computeMetadata/v1/instance/preempted")) return answer(one, 404, "");
-      if (gone_at_ > 0) return answer(one, 200, "TRUE", "ETag: b2\r\n");
-      if (has("wait_for_change=true") && has("last_etag=a1")) {
+      const bool gone = gone_at_ > 0;
+      // Who knows the present state waits for the next, also where that state is the last.
+      if (has("wait_for_change=true") && has(gone ? "last_etag=b2" : "last_etag=a1")) {
+        if (gone) ++missed_;
         waiting_.push_back(one);
         return;
       }
-      return answer(one, 200, "FALSE", "ETag: a1\r\n");
+      return gone ? answer(one, 200, "TRUE", "ETag: b2\r\n")
+                  : answer(one, 200, "FALSE", "ETag: a1\r\n");
     }
     if (!has("Metadata: true\r\n")) return answer(one, 400, "");
     if (asks("GET /metadata/instance/compute/name?")) return answer(one, 200, "Node_7");
@@ -158,6 +167,7 @@ class FakeCloud {
   uint16_t port_ = 0;
   mutable std::mutex mutex_;
   // Guarded by mutex_.
+  size_t missed_ = 0;
   Manner manner_ = Manner::right;
   size_t asked_ = 0;
   std::time_t gone_at_ = 0;

@@ -74,6 +74,7 @@ TEST_P(PreemptionWatchOf, HearsTheNoticeOnce) {
   EXPECT_EQ(notice.at.size(), 20U) << notice.at;
   EXPECT_GT(notice.seconds_left, 10);
   EXPECT_LE(notice.seconds_left, 100);
+  EXPECT_EQ(cloud.missed(), 0U);
   const size_t asked = cloud.asked();
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   EXPECT_EQ(cloud.asked(), asked) << "the watch is over";
