@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "core/base/hash.h"
 #include "tests/support/temp_folder.h"
@@ -30,6 +33,17 @@ TEST(WorkerSandbox, TheSameBitsInAWholeOne) {
   const std::string status = read_file("/proc/" + std::to_string(worker.renderer()) + "/status");
   EXPECT_TRUE(has(status, "NoNewPrivs:\t1")) << status;
   EXPECT_TRUE(has(status, "Seccomp:\t2")) << status;
+  std::vector<std::string> open;
+  for (const auto& entry :
+       std::filesystem::directory_iterator("/proc/" + std::to_string(worker.renderer()) + "/fd")) {
+    open.push_back(std::filesystem::read_symlink(entry.path()).string());
+  }
+  std::sort(open.begin(), open.end());
+  ASSERT_EQ(open.size(), 5U) << "nothing, nothing, the log, the pipe, a file for texels";
+  EXPECT_EQ(std::count(open.begin(), open.end(), "/dev/null"), 2);
+  EXPECT_EQ(std::count_if(open.begin(), open.end(),
+                          [](const auto& name) { return has(name, "/hyades-texels-"); }),
+            1);
 }
 
 /// The sandbox refuses to write this, so that it has to be said before.
