@@ -6,17 +6,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/base/own_environment.h"
 #include "worker/renderer_talk.h"
 
 namespace hyades::worker {
@@ -34,37 +33,6 @@ std::string describe_end(int status) {
     return fmt::format("crashed with signal {} ({})", signal, strsignal(signal));
   }
   return fmt::format("ended with status {}", WEXITSTATUS(status));
-}
-
-/// What of the environment the child gets: how libraries are found and behave, and how messages
-/// read. Not the rest: there may be secrets of a cloud, a batch queue or a test run.
-constexpr std::array kInherited = {"PATH",
-                                   "TMPDIR",
-                                   "TZ",
-                                   "LANG",
-                                   "LANGUAGE",
-                                   "LD_LIBRARY_PATH",
-                                   "LD_PRELOAD",
-                                   "GLIBC_TUNABLES",
-                                   "ASAN_OPTIONS",
-                                   "LSAN_OPTIONS",
-                                   "MSAN_OPTIONS",
-                                   "TSAN_OPTIONS",
-                                   "UBSAN_OPTIONS",
-                                   "LLVM_PROFILE_FILE",
-                                   "HYADES_FAILPOINT"};
-
-std::vector<char*> child_environment() {
-  std::vector<char*> child;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string_view text(*entry);
-    const std::string_view name = text.substr(0, text.find('='));
-    const bool wanted = name.starts_with("LC_") ||
-                        std::find(kInherited.begin(), kInherited.end(), name) != kInherited.end();
-    if (wanted) child.push_back(*entry);
-  }
-  child.push_back(nullptr);
-  return child;
 }
 
 }  // namespace
@@ -92,10 +60,10 @@ core::Result<std::unique_ptr<RendererProcess>> RendererProcess::start(
   posix_spawn_file_actions_adddup2(&actions, ends[1], kChildPipe);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  std::vector<char*> environment = child_environment();
+  std::vector<std::string> environment = core::own_environment();
   pid_t pid = 0;
   const int error = ::posix_spawn(&pid, options.program.c_str(), &actions, nullptr,
-                                  arguments.data(), environment.data());
+                                  arguments.data(), core::for_exec(environment).data());
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[1]);
   if (error != 0) {

@@ -43,8 +43,6 @@ uint64_t rights_of(FileAccess access) {
   switch (access) {
     case FileAccess::read:
       return kRead;
-    case FileAccess::read_and_remove:
-      return kRead | LANDLOCK_ACCESS_FS_REMOVE_FILE;
     case FileAccess::write:
       return kRead | LANDLOCK_ACCESS_FS_WRITE_FILE | kTruncate | kOfFolders;
   }
@@ -87,7 +85,7 @@ Status restrict_files(const std::vector<FileRule>& rules) {
   // Without privileges a process may restrict itself only where it can gain none.
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return failure("no_new_privs");
   const int abi = abi_version();
-  if (abi < 1) return failure("not in this kernel, or switched off");
+  if (abi < 1) return failure("not in this kernel, switched off or refused");
   landlock_ruleset_attr attributes{};
   attributes.handled_access_fs = kAbi1;
   if (abi >= 2) attributes.handled_access_fs |= kRefer;
@@ -103,7 +101,7 @@ Status restrict_files(const std::vector<FileRule>& rules) {
 
 std::string landlock_lacks() {
   return abi_version() >= 1 ? std::string()
-                            : failure("not in this kernel, or switched off").message;
+                            : failure("not in this kernel, switched off or refused").message;
 }
 
 }  // namespace hyades::core

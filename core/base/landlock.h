@@ -9,9 +9,8 @@ namespace hyades::core {
 
 /// What a process may do with a file, or with all that is below a folder.
 enum class FileAccess {
-  read,             ///< files and lists of folders
-  read_and_remove,  ///< the same, and remove files
-  write,            ///< read, make, write, rename and remove files and folders
+  read,   ///< files and lists of folders
+  write,  ///< read, make, write, rename and remove files and folders
 };
 
 struct FileRule {

@@ -9,14 +9,25 @@
 namespace hyades::core {
 namespace {
 
-constexpr std::array<std::string_view, 11> kPassedOn = {
-    "PATH",        "LD_LIBRARY_PATH",  "LANG",         "LC_ALL",        "LC_CTYPE",
-    "HYADES_OIDN", "HYADES_FAILPOINT", "ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS",
-    "LSAN_OPTIONS"};
+constexpr std::array<std::string_view, 14> kPassedOn = {"PATH",
+                                                        "TMPDIR",
+                                                        "TZ",
+                                                        "LANG",
+                                                        "LANGUAGE",
+                                                        "LD_LIBRARY_PATH",
+                                                        "LD_PRELOAD",
+                                                        "ASAN_OPTIONS",
+                                                        "LSAN_OPTIONS",
+                                                        "TSAN_OPTIONS",
+                                                        "UBSAN_OPTIONS",
+                                                        "LLVM_PROFILE_FILE",
+                                                        "HYADES_FAILPOINT",
+                                                        "HYADES_OIDN"};
 
 bool is_passed_on(std::string_view variable) {
   const std::string_view name = variable.substr(0, variable.find('='));
-  return std::find(kPassedOn.begin(), kPassedOn.end(), name) != kPassedOn.end();
+  return name.starts_with("LC_") ||
+         std::find(kPassedOn.begin(), kPassedOn.end(), name) != kPassedOn.end();
 }
 
 }  // namespace

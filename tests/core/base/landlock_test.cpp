@@ -78,16 +78,6 @@ TEST_F(Landlock, AFolderToReadMayOnlyBeRead) {
   EXPECT_EQ(held([&] { return ::unlink(file("read/there").c_str()) != 0 ? errno : 0; }), EACCES);
 }
 
-TEST_F(Landlock, AFolderOfThingsToRemoveMayNotBeWrittenIn) {
-  const std::vector<FileRule> rules = {{file("read"), FileAccess::read_and_remove, true}};
-  EXPECT_EQ(
-      in_a_held_process(rules, [&] { return open_error(file("read/new"), O_WRONLY | O_CREAT); }),
-      EACCES);
-  EXPECT_EQ(in_a_held_process(
-                rules, [&] { return ::unlink(file("read/there").c_str()) != 0 ? errno : 0; }),
-            0);
-}
-
 TEST_F(Landlock, WhatMustBeThereAndIsNotIsNamed) {
   const Status held = restrict_files({{file("none"), FileAccess::read, true}});
   ASSERT_FALSE(held.ok());
