@@ -360,11 +360,11 @@ int main(int argc, char** argv) {
   app.footer(
       "examples:\n"
       "  hyades coordinator --data /var/lib/hyades\n"
-      "  hyades coordinator --data farm --listen 0.0.0.0:7700 --tls-cert c.pem --tls-key k.pem "
+      "  hyades coordinator --data my-farm --listen 0.0.0.0:7700 --tls-cert c.pem --tls-key k.pem "
       "--token-file token\n"
-      "  hyades coordinator --data farm --listen 0.0.0.0:7700 --http 0.0.0.0:8080 --insecure "
+      "  hyades coordinator --data my-farm --listen 0.0.0.0:7700 --http 0.0.0.0:8080 --insecure "
       "--http-name farm.example\n"
-      "  hyades coordinator --data farm --price 0.04:EUR --log-format json\n"
+      "  hyades coordinator --data my-farm --price 0.04:EUR --log-format json\n"
       "docs/farm.md tells more. exit status: 0 after SIGTERM or SIGINT, 1 it could not start, 2 "
       "wrong arguments (or a token, certificate or key that is none)");
   // argv[1] is the word "coordinator".
