@@ -44,6 +44,17 @@ for (const o of objects) {
       }
     }
     for (const rule of o.spec.egress || []) {
+      // Whoever may ask for names finds who answers, whatever the cluster puts before kube-dns; and of the addresses of
+      // a node, one of which tells its secrets, nothing but names is asked.
+      const to = rule.to || [];
+      const dns = (app) => to.some((t) => t.podSelector && (t.podSelector.matchLabels || {})['k8s-app'] === app);
+      const block = (address) => to.some((t) => t.ipBlock && t.ipBlock.cidr === address + '/32');
+      if (dns('kube-dns') && !(dns('node-local-dns') && block('169.254.20.10') && block('169.254.169.254'))) {
+        complaints.push(`${name(o)}: finds no names where a cache of the node answers`);
+      }
+      if (to.some((t) => t.ipBlock && t.ipBlock.cidr.startsWith('169.254.')) && !(rule.ports || []).every((p) => p.port === 53)) {
+        complaints.push(`${name(o)}: reaches more of its node than names`);
+      }
       for (const to of (rule.to || []).filter((t) => t.podSelector && !t.namespaceSelector)) {
         for (const p of rule.ports) {
           if (!has_port(chosen(to.podSelector), p.port)) complaints.push(`${name(o)}: nobody listens on ${p.port}`);
@@ -96,6 +107,10 @@ for (const t of templates) {
       if (!(spec.volumes || []).some((v) => v.name === m.name) && !claims.includes(m.name)) {
         complaints.push(`${name(t.owner)}: there is no volume ${m.name}`);
       }
+    }
+    // A worker of a Job that is told to leave must not end as one whose work is done: its index would be complete.
+    if (t.owner.kind === 'Job' && !(c.args || []).some((a) => /^--exit-status-when-told=[1-9]/.test(a))) {
+      complaints.push(`${name(t.owner)}: counts as done when it is evicted`);
     }
     // SIGTERM to SIGKILL is longer than the worker takes to leave.
     const grace = (c.args || []).map((a) => /^--grace=(\d+)$/.exec(a)).find(Boolean);
