@@ -120,7 +120,8 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   for (const Command& command : kCommands) {
     if (name == command.name) {
-      if (command.program == nullptr) return hyades::cli::completion_command(argc - 1, words.data() + 1);
+      if (command.program == nullptr)
+        return hyades::cli::completion_command(argc - 1, words.data() + 1);
       const std::string program = hyades::core::program_folder() + command.program;
       execv(program.c_str(), words.data());
       std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(),
