@@ -52,12 +52,16 @@ int refuse(pipe::MessagePipe& parent, const std::string& reason) {
 /// none where none can be made.
 core::Descriptor open_texel_file(const std::string& cache) {
   const char* temporary = std::getenv("TMPDIR");
-  std::string name = (temporary == nullptr ? cache : temporary) + "/hyades-texels-XXXXXX";
-  core::Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
-  if (!file.valid()) return {};
-  ::unlink(name.c_str());
-  if (file.get() == kTexels) return file;
-  return core::Descriptor(::dup3(file.get(), kTexels, O_CLOEXEC));
+  for (const std::string& folder : {std::string(temporary == nullptr ? "" : temporary), cache}) {
+    if (folder.empty()) continue;
+    std::string name = folder + "/hyades-texels-XXXXXX";
+    core::Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
+    if (!file.valid()) continue;
+    ::unlink(name.c_str());
+    if (file.get() == kTexels) return file;
+    return core::Descriptor(::dup3(file.get(), kTexels, O_CLOEXEC));
+  }
+  return {};
 }
 
 }  // namespace
@@ -83,7 +87,7 @@ int main(int argc, char** argv) {
   // What has to be opened or written, before nothing can be.
   core::Descriptor texels = open_texel_file(cache);
   const core::Status goes_first = worker::go_first();
-  const auto lacking = worker::enter_sandbox(*mode, cache, kTexels + 1);
+  const auto lacking = worker::enter_sandbox(*mode, cache, texels.valid() ? kTexels + 1 : kTexels);
   if (!lacking) return refuse(parent, lacking.error().message);
   // Scenes are built by as many threads as the machine has.
   const auto all_threads = static_cast<uint64_t>(threads + core::hardware_threads());

@@ -88,7 +88,9 @@ void Desk::doubt_files(uint64_t id, const pipe::UnitFailed& failed) {
   const std::set<std::string> damaged(failed.damaged().begin(), failed.damaged().end());
   for (const v1::JobFile& file : job->second.spec.files()) {
     const std::string name = farm::hex_from_wire(file.sha256());
-    if (damaged.contains(name)) ports_.doubt(name);
+    if (!damaged.contains(name)) continue;
+    ports_.doubt(name);
+    job->second.has_files = false;  // fetched, which looks at it, before the next unit
   }
 }
 

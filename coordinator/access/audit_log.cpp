@@ -262,7 +262,8 @@ std::optional<v1::AuditEntry> AuditLog::Reader::next() {
   Row* oldest = nullptr;
   for (Row& row : rows_) {
     if (!row.head) continue;
-    if (oldest == nullptr || row.head->time_ms() < oldest->head->time_ms()) oldest = &row;
+    // Of the same moment uploads, the last row, come first: a submission follows them.
+    if (oldest == nullptr || row.head->time_ms() <= oldest->head->time_ms()) oldest = &row;
   }
   if (oldest == nullptr) return std::nullopt;
   std::optional<v1::AuditEntry> entry = std::exchange(oldest->head, std::nullopt);

@@ -36,7 +36,8 @@ core::Status LineFiles::open() {
 }
 
 bool LineFiles::write(const std::string& lines) {
-  if (size_ > 0 && size_ + lines.size() > options_.most_bytes) rotate();
+  // A file that could not be opened is not full: each turn of the names loses the oldest.
+  if (file_.valid() && size_ > 0 && size_ + lines.size() > options_.most_bytes) rotate();
   if (!file_.valid() && !open()) return false;
   size_t written = 0;
   while (written < lines.size()) {

@@ -127,6 +127,8 @@ core::Result<Manifest> extract_all(const std::string& from, const std::string& f
 
 /// What a fresh file system has of its own.
 constexpr const char* kLostAndFound = "lost+found";
+/// Where a backup is unpacked; what a restoration that was killed has left is in nobody's way.
+constexpr const char* kInWork = ".restoring-";
 
 /// Whether the folder is there, and empty; an error where it holds anything.
 core::Result<bool> is_there(const std::string& data) {
@@ -135,10 +137,20 @@ core::Result<bool> is_there(const std::string& data) {
   bool empty = fs::is_directory(data, none);
   for (fs::directory_iterator it(data, none), end; empty && !none && it != end;
        it.increment(none)) {
-    empty = it->path().filename() == kLostAndFound;
+    const std::string name = it->path().filename().string();
+    empty = name == kLostAndFound || name.starts_with(kInWork);
   }
   if (empty && !none) return true;
   return core::Error{data + ": expected a folder that is not there yet, or is empty"};
+}
+
+void remove_leftovers(const std::string& data) {
+  std::vector<fs::path> left;
+  std::error_code none;
+  for (fs::directory_iterator it(data, none), end; !none && it != end; it.increment(none)) {
+    if (it->path().filename().string().starts_with(kInWork)) left.push_back(it->path());
+  }
+  for (const fs::path& path : left) fs::remove_all(path, none);
 }
 
 void sync_folder(const std::string& path) {
@@ -181,10 +193,11 @@ core::Result<BackupCount> restore_backup(const std::string& from, const std::str
   const std::string wanted = target.ends_with('/') ? target.substr(0, target.size() - 1) : target;
   const auto there = is_there(wanted);
   if (!there) return there.error();
-  const std::string name = ".restoring-" + std::to_string(::getpid());
+  const std::string name = kInWork + std::to_string(::getpid());
   const std::string work = *there ? wanted + "/" + name : wanted + name;
   std::error_code failed;
   fs::create_directories(fs::path(work).parent_path(), failed);
+  if (*there) remove_leftovers(wanted);
   if (::mkdir(work.c_str(), 0700) != 0) {
     return core::Error{work + ": cannot be made: " + core::io_reason(errno)};
   }

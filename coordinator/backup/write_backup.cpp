@@ -266,6 +266,8 @@ core::Result<BackupCount> write_backup(const std::string& data, const std::strin
   }
   BackupCount count;
   const std::string work = to + ".work-" + std::to_string(::getpid());
+  std::error_code ignored;
+  fs::remove_all(work, ignored);  // of one with our number that was killed: in containers all are 1
   if (::mkdir(work.c_str(), 0700) != 0) {
     return core::Error{work + ": cannot be made: " + core::io_reason(errno)};
   }
@@ -275,7 +277,6 @@ core::Result<BackupCount> write_backup(const std::string& data, const std::strin
     count = writer.count();
     return done;
   });
-  std::error_code ignored;
   fs::remove_all(work, ignored);
   if (!written) return written.error();
   return count;

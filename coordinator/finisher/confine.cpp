@@ -21,7 +21,16 @@ void add_libraries(std::vector<core::FileRule>& rules) {
     if (!folder.empty()) rules.push_back({folder});
   }
   if (const char* const denoiser = std::getenv("HYADES_OIDN"); denoiser != nullptr) {
-    rules.push_back({std::filesystem::path(denoiser).parent_path().string()});
+    std::error_code none;
+    rules.push_back({std::filesystem::weakly_canonical(denoiser, none).parent_path().string()});
+  }
+  std::error_code none;
+  for (std::filesystem::directory_iterator it("/etc/ld.so.conf.d", none), end; !none && it != end;
+       it.increment(none)) {
+    std::ifstream lines(it->path());
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with('/')) rules.push_back({line});
+    }
   }
 }
 

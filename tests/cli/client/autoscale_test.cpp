@@ -245,6 +245,8 @@ TEST_F(Autoscale, AsksForWhatTheQueueNeeds) {
 }
 
 TEST_F(Autoscale, ATimeOfDayIsTheFirstOneAfterAJobsSubmission) {
+  ::setenv("TZ", "UTC", 1);  // no clocks change
+  ::tzset();
   // Submitted six hours ago, due five hours ago: late, so that all the workers are wanted that may
   // be.
   const std::time_t due = std::time(nullptr) - 5 * 3600;
@@ -259,6 +261,8 @@ TEST_F(Autoscale, ATimeOfDayIsTheFirstOneAfterAJobsSubmission) {
   farm_.jobs.back().set_submitted_ms(1000 * (static_cast<int64_t>(due) + 3600));
   EXPECT_EQ(run({"--finish-by", text}), kDone) << err_;
   EXPECT_EQ(called(), "20\n11\n") << err_;
+  ::unsetenv("TZ");
+  ::tzset();
 }
 
 TEST_F(Autoscale, PausedJobsAndThoseForOtherWorkersDoNotCount) {

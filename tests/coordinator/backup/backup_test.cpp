@@ -231,6 +231,7 @@ TEST_F(Backup, OnlyAFreshFolderIsRestoredInto) {
 TEST_F(Backup, AFolderThatIsThereIsFilledAsADiskIsMountedThere) {
   ASSERT_TRUE(write_backup(folder_.file("data"), tar()));
   fs::create_directories(fresh("/lost+found"));
+  write(fresh("/.restoring-1/state.db"), "of a restoration that was killed");
   struct stat before {};
   ASSERT_EQ(::stat(fresh().c_str(), &before), 0);
   const auto restored = restore_backup(tar(), fresh());

@@ -174,13 +174,17 @@ TEST(Previews, TheFrameInWorkStandsForAJobThenTheLastOne) {
   EXPECT_FALSE(world.get(job).job().has_preview_frame()) << "nothing is there yet";
   ScriptedWorker::Script script = world.script();
   script.unit_time = 5ms;
+  std::atomic<bool> seen{false};
+  // However slow this machine looks: the first frame is in work until that was seen.
+  script.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
+    return self.acknowledged() == 0 || eventually([&] { return seen.load(); });
+  };
   const ScriptedWorker worker(world.address, script);
-  bool seen = false;
   ASSERT_TRUE(eventually([&] {
     const v1::GetJobResponse now = world.get(job);
     if (!now.job().has_preview_frame()) return false;
     const v1::Frame& shown = now.frames(now.job().preview_frame() - 1);
-    seen = seen || shown.state() == v1::FRAME_STATE_RENDERING;
+    if (shown.state() == v1::FRAME_STATE_RENDERING) seen = true;
     EXPECT_GT(shown.samples_done(), 0U);
     return now.job().state() == v1::JOB_STATE_DONE;
   }));

@@ -1,9 +1,12 @@
 // What of a job stays on the coordinator's disk, and what goes.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "core/base/descriptor.h"
 #include "core/film/film_codec.h"
 #include "core/film/film_exr.h"
 #include "tests/coordinator/services/farm_world.h"
@@ -299,7 +302,9 @@ TEST(Keeping, UploadsThatNobodyGoesOnWithDoNotHoldTheFarmUp) {
 
 TEST(Keeping, FilmsWaitWithTheirWorkersWhileTheDiskIsFull) {
   FarmWorld world;
-  world.options.disk.budget = 20 << 20U;
+  // What other programs write meanwhile is taken for the coordinator's, too: much more than that.
+  constexpr off_t kBudget = off_t{512} << 20U;
+  world.options.disk.budget = kBudget;
   world.options.disk.reserve = 0;
   world.start();
   const uint64_t job = world.submit(2);
@@ -309,7 +314,8 @@ TEST(Keeping, FilmsWaitWithTheirWorkersWhileTheDiskIsFull) {
   script.unit_time = 20ms;  // so that some are acknowledged before all are rendered
   script.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
     if (self.acknowledged() < 3 || filled.exchange(true)) return true;
-    std::ofstream(ballast) << std::string(20 << 20U, 'x');
+    const core::Descriptor file(::open(ballast.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
+    EXPECT_EQ(::posix_fallocate(file.get(), 0, kBudget), 0);
     EXPECT_TRUE(eventually([&] { return world.brain->disk_is_full(); }));
     return true;
   };
