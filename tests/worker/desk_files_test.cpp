@@ -29,6 +29,30 @@ TEST(Desk, AFileThatTheChildFindsDamagedIsLookedAtIfItIsOneOfItsJob) {
   EXPECT_TRUE(world.desk->empty());
 }
 
+TEST(Desk, FilesInDoubtAreFetchedBeforeTheNextUnitThoughOthersOfTheJobAreInWork) {
+  DeskWorld world;
+  world.begin();
+  v1::CoordinatorMessage job;
+  job.mutable_job()->set_job(DeskWorld::kJob);
+  job.mutable_job()->mutable_spec()->set_document("job.yaml");
+  job.mutable_job()->mutable_spec()->add_files()->set_sha256(std::string(32, '\x22'));
+  world.desk->coordinator_says(job, world.now);
+  world.lease(DeskWorld::unit(0));
+  world.lease(DeskWorld::unit(8, 2));
+  world.desk->files_are_there(DeskWorld::kJob);
+  ASSERT_EQ(world.ports.fetched.size(), 1U);
+  pipe::FromRenderer message;
+  message.mutable_failed()->set_token(world.token_of(0));
+  message.mutable_failed()->set_reason("asset 22...: the stored file is damaged");
+  message.mutable_failed()->add_damaged(std::string(64, '2'));
+  world.desk->renderer_says(message, world.now);
+  world.lease(DeskWorld::unit(16, 3));
+  EXPECT_EQ(world.ports.fetched.size(), 2U) << "fetching looks at what is in doubt";
+  EXPECT_EQ(world.token_of(16), 0U) << "not before that";
+  world.desk->files_are_there(DeskWorld::kJob);
+  EXPECT_NE(world.token_of(16), 0U);
+}
+
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Message = v1::WorkerMessage;
