@@ -16,13 +16,14 @@
 #include "core/base/descriptor.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
+#include "core/base/process_limits.h"
 #include "core/base/version.h"
 #include "core/render/class_probe.h"
+#include "core/textures/texel_store.h"
 #include "farm/content_store.h"
 #include "farm/wire.h"
 #include "worker/pipe/message_pipe.h"
 #include "worker/pipe/render_pipe.pb.h"
-#include "worker/render/process_memory.h"
 #include "worker/render/render_server.h"
 #include "worker/render/sandbox.h"
 #include "worker/render/scene_shelf.h"
@@ -54,12 +55,10 @@ core::Descriptor open_texel_file(const std::string& cache) {
   const char* temporary = std::getenv("TMPDIR");
   for (const std::string& folder : {std::string(temporary == nullptr ? "" : temporary), cache}) {
     if (folder.empty()) continue;
-    std::string name = folder + "/hyades-texels-XXXXXX";
-    core::Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
-    if (!file.valid()) continue;
-    ::unlink(name.c_str());
-    if (file.get() == kTexels) return file;
-    return core::Descriptor(::dup3(file.get(), kTexels, O_CLOEXEC));
+    auto file = core::TexelStore::open_file(folder);
+    if (!file) continue;
+    if (file->get() == kTexels) return std::move(*file);
+    return core::Descriptor(::dup3(file->get(), kTexels, O_CLOEXEC));
   }
   return {};
 }
@@ -86,13 +85,13 @@ int main(int argc, char** argv) {
   if (!mode) return refuse(parent, mode.error().message);
   // What has to be opened or written, before nothing can be.
   core::Descriptor texels = open_texel_file(cache);
-  const core::Status goes_first = worker::go_first();
+  const core::Status goes_first = core::go_first();
   const auto lacking = worker::enter_sandbox(*mode, cache, texels.valid() ? kTexels + 1 : kTexels);
   if (!lacking) return refuse(parent, lacking.error().message);
   // Scenes are built by as many threads as the machine has.
   const auto all_threads = static_cast<uint64_t>(threads + core::hardware_threads());
   const core::Status limited =
-      worker::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);
+      core::limit_memory(memory == 0 ? 0 : memory + kOverhead + all_threads * kThreadOverhead);
   if (!limited) return refuse(parent, limited.error().message);
 
   const auto measured = core::this_class();

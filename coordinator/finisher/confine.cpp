@@ -1,7 +1,5 @@
 #include "coordinator/finisher/confine.h"
 
-#include <sys/resource.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +7,7 @@
 
 #include "core/base/landlock.h"
 #include "core/base/machine.h"
+#include "core/base/process_limits.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -37,11 +36,9 @@ void add_libraries(std::vector<core::FileRule>& rules) {
 }  // namespace
 
 core::Status confine_finisher(const std::string& scratch, const std::string& outputs) {
-  std::ofstream("/proc/self/oom_score_adj") << 800;
-  if (const uint64_t memory = core::usable_memory(); memory > 0) {
-    const rlimit limit{memory / 4 * 3, memory / 4 * 3};
-    ::setrlimit(RLIMIT_DATA, &limit);
-  }
+  // Without it the kernel chooses by size, as ever.
+  (void)core::go_first();
+  if (auto limited = core::limit_memory(core::usable_memory() / 4 * 3); !limited) return limited;
   std::error_code failed;
   std::filesystem::create_directories(outputs, failed);
   if (failed) return core::Error{outputs + ": cannot be made: " + failed.message()};

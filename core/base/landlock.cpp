@@ -84,8 +84,8 @@ std::vector<FileRule> system_files() {
 Status restrict_files(const std::vector<FileRule>& rules) {
   // Without privileges a process may restrict itself only where it can gain none.
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return failure("no_new_privs");
+  if (const std::string lacks = landlock_lacks(); !lacks.empty()) return Error{lacks};
   const int abi = abi_version();
-  if (abi < 1) return failure("not in this kernel, switched off or refused");
   landlock_ruleset_attr attributes{};
   attributes.handled_access_fs = kAbi1;
   if (abi >= 2) attributes.handled_access_fs |= kRefer;

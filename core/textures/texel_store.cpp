@@ -119,13 +119,19 @@ Result<Bytes> TexelStore::keep(std::vector<std::byte> bytes) {
   return Bytes(std::move(owner), view);
 }
 
-Result<TexelStore::Place> TexelStore::place_for(size_t size) const {
-  if (common_) return Place{common_, Descriptor(), common_->take(size)};
-  std::string name = folder_ + "/hyades-texels-XXXXXX";
+Result<Descriptor> TexelStore::open_file(const std::string& folder) {
+  std::string name = folder + "/hyades-texels-XXXXXX";
   Descriptor file(::mkostemp(name.data(), O_CLOEXEC));
   if (!file.valid()) return Error{io_reason(errno)};
   ::unlink(name.c_str());
-  return Place{nullptr, std::move(file), 0};
+  return file;
+}
+
+Result<TexelStore::Place> TexelStore::place_for(size_t size) const {
+  if (common_) return Place{common_, Descriptor(), common_->take(size)};
+  auto file = open_file(folder_);
+  if (!file) return file.error();
+  return Place{nullptr, std::move(*file), 0};
 }
 
 Result<Bytes> TexelStore::keep_in_file(const std::vector<std::byte>& bytes) const {

@@ -26,6 +26,9 @@ class TexelStore {
   /// instead of a folder: for a process that may open none later.
   TexelStore(uint64_t budget, Descriptor file);
 
+  /// A file without a name in the folder, to read and write.
+  static Result<Descriptor> open_file(const std::string& folder);
+
   /// A quarter of the memory that this process may take; without bound where that is not known.
   static uint64_t default_budget();
 

@@ -7,24 +7,18 @@
 namespace hyades::worker {
 namespace {
 
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Message = v1::WorkerMessage;
+
 /// The child may remove nothing from the cache, and is believed only about its job's files.
 TEST(Desk, AFileThatTheChildFindsDamagedIsLookedAtIfItIsOneOfItsJob) {
   DeskWorld world;
   world.begin();
-  v1::CoordinatorMessage job;
-  job.mutable_job()->set_job(DeskWorld::kJob);
-  job.mutable_job()->mutable_spec()->set_document("job.yaml");
-  job.mutable_job()->mutable_spec()->add_files()->set_sha256(std::string(32, '\x11'));
-  job.mutable_job()->mutable_spec()->add_files()->set_sha256(std::string(32, '\x22'));
-  world.desk->coordinator_says(job, world.now);
+  world.job(DeskWorld::kJob, {std::string(32, '\x11'), std::string(32, '\x22')});
   world.lease(DeskWorld::unit(0));
   world.desk->files_are_there(DeskWorld::kJob);
-  pipe::FromRenderer message;
-  message.mutable_failed()->set_token(world.token_of(0));
-  message.mutable_failed()->set_reason("asset 22...: the stored file is damaged");
-  message.mutable_failed()->add_damaged(std::string(64, '2'));
-  message.mutable_failed()->add_damaged(std::string(64, '3'));
-  world.desk->renderer_says(message, world.now);
+  world.failed(world.token_of(0), {std::string(64, '2'), std::string(64, '3')});
   EXPECT_EQ(world.ports.doubted, std::vector<std::string>{std::string(64, '2')});
   EXPECT_TRUE(world.desk->empty());
 }
@@ -32,30 +26,18 @@ TEST(Desk, AFileThatTheChildFindsDamagedIsLookedAtIfItIsOneOfItsJob) {
 TEST(Desk, FilesInDoubtAreFetchedBeforeTheNextUnitThoughOthersOfTheJobAreInWork) {
   DeskWorld world;
   world.begin();
-  v1::CoordinatorMessage job;
-  job.mutable_job()->set_job(DeskWorld::kJob);
-  job.mutable_job()->mutable_spec()->set_document("job.yaml");
-  job.mutable_job()->mutable_spec()->add_files()->set_sha256(std::string(32, '\x22'));
-  world.desk->coordinator_says(job, world.now);
+  world.job(DeskWorld::kJob, {std::string(32, '\x22')});
   world.lease(DeskWorld::unit(0));
   world.lease(DeskWorld::unit(8, 2));
   world.desk->files_are_there(DeskWorld::kJob);
   ASSERT_EQ(world.ports.fetched.size(), 1U);
-  pipe::FromRenderer message;
-  message.mutable_failed()->set_token(world.token_of(0));
-  message.mutable_failed()->set_reason("asset 22...: the stored file is damaged");
-  message.mutable_failed()->add_damaged(std::string(64, '2'));
-  world.desk->renderer_says(message, world.now);
+  world.failed(world.token_of(0), {std::string(64, '2')});
   world.lease(DeskWorld::unit(16, 3));
   EXPECT_EQ(world.ports.fetched.size(), 2U) << "fetching looks at what is in doubt";
   EXPECT_EQ(world.token_of(16), 0U) << "not before that";
   world.desk->files_are_there(DeskWorld::kJob);
   EXPECT_NE(world.token_of(16), 0U);
 }
-
-using std::chrono::milliseconds;
-using std::chrono::seconds;
-using Message = v1::WorkerMessage;
 
 TEST(Desk, FilmsThatCannotBeStoredNowComeAgain) {
   DeskWorld world;

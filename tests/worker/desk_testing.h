@@ -62,10 +62,14 @@ class DeskWorld {
     message.mutable_welcome()->set_lease_ms(lease_ms);
     desk->coordinator_says(message, now);
   }
-  void job(uint64_t id = kJob) {
+  /// `digests`: of the files that it names, 32 bytes each.
+  void job(uint64_t id = kJob, const std::vector<std::string>& digests = {}) {
     v1::CoordinatorMessage message;
     message.mutable_job()->set_job(id);
     message.mutable_job()->mutable_spec()->set_document("job.yaml");
+    for (const std::string& digest : digests) {
+      message.mutable_job()->mutable_spec()->add_files()->set_sha256(digest);
+    }
     desk->coordinator_says(message, now);
   }
   /// Everything up to where units can come.
@@ -119,6 +123,15 @@ class DeskWorld {
     message.mutable_film()->set_token(token);
     message.mutable_film()->set_batches(batches);
     message.mutable_film()->set_film(std::string(bytes, 'f'));
+    desk->renderer_says(message, now);
+  }
+  /// `damaged`: names of files, in hexadecimal.
+  void failed(uint64_t token, const std::vector<std::string>& damaged) {
+    pipe::FromRenderer message;
+    message.mutable_failed()->set_token(token);
+    message.mutable_failed()->set_reason("asset " + damaged.front().substr(0, 2) +
+                                         "...: the stored file is damaged");
+    for (const std::string& name : damaged) message.mutable_failed()->add_damaged(name);
     desk->renderer_says(message, now);
   }
   void progress(const std::map<uint64_t, uint64_t>& samples_by_token) {

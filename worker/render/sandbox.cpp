@@ -1,16 +1,16 @@
 #include "worker/render/sandbox.h"
 
 #include <linux/close_range.h>
-#include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <climits>
 #include <cstring>
+#include <vector>
 
+#include "core/base/landlock.h"
 #include "worker/render/sandbox_calls.h"
-#include "worker/render/sandbox_files.h"
 
 namespace hyades::worker {
 
@@ -31,11 +31,10 @@ core::Result<std::string> enter_sandbox(SandboxMode mode, const std::string& cac
   if (::syscall(SYS_close_range, first_closed, UINT_MAX, 0) != 0) {
     try_to(core::Error{std::string("close_range: ") + std::strerror(errno)});
   }
-  // Without privileges a process may restrict itself only where it can gain none.
-  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) {
-    try_to(core::Error{std::string("no_new_privs: ") + std::strerror(errno)});
-  }
-  try_to(restrict_files(cache));
+  // The cache not to remove from either: there are other jobs' files, and the worker's id.
+  std::vector<core::FileRule> rules = core::system_files();
+  rules.push_back({cache, core::FileAccess::read, true});
+  try_to(core::restrict_files(rules));
   try_to(restrict_calls());
   if (!lacking.empty() && mode == SandboxMode::required) {
     return core::Error{"this machine has no whole sandbox (" + lacking +

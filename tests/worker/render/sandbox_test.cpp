@@ -29,9 +29,9 @@
 #include <thread>
 
 #include "core/base/hash.h"
+#include "core/base/process_limits.h"
 #include "farm/content_store.h"
 #include "tests/support/temp_folder.h"
-#include "worker/render/process_memory.h"
 #include "worker/render/sandbox.h"
 
 namespace hyades::worker {
@@ -298,10 +298,10 @@ TEST(ProcessMemory, IsTheFirstToGoAndNoLessThanItWas) {
     std::ifstream("/proc/self/oom_score_adj") >> value;
     return value;
   };
-  EXPECT_TRUE(score_after([&] { return go_first() && score() >= 800; }));
+  EXPECT_TRUE(score_after([&] { return core::go_first() && score() >= 800; }));
   EXPECT_TRUE(score_after([&] {
     std::ofstream("/proc/self/oom_score_adj") << 950 << std::flush;
-    return go_first() && score() == 950;
+    return core::go_first() && score() == 950;
   }));
 }
 
@@ -309,7 +309,8 @@ TEST(ProcessMemory, StacksHaveALimitToo) {
   const pid_t child = ::fork();
   if (child == 0) {
     rlimit stack{};
-    const bool held = limit_memory(uint64_t{1} << 33U) && ::getrlimit(RLIMIT_STACK, &stack) == 0 &&
+    const bool held = core::limit_memory(uint64_t{1} << 33U) &&
+                      ::getrlimit(RLIMIT_STACK, &stack) == 0 &&
                       stack.rlim_max <= uint64_t{64} << 20U;
     ::_exit(held ? 0 : 1);
   }
