@@ -1,5 +1,6 @@
 #include "core/import/obj/read_obj_scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
