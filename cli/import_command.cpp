@@ -7,8 +7,8 @@
 #include "cli/command_line.h"
 #include "cli/load_job.h"
 #include "cli/printable.h"
-#include "core/import/write_scene_job.h"
 #include "core/job/scene_document.h"
+#include "import/write_scene_job.h"
 
 namespace hyades::cli {
 

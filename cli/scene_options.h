@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/import/job_files.h"
+#include "import/job_files.h"
 
 namespace CLI {
 class App;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "cli/client/farm_client.h"
-#include "core/import/job_files.h"
 #include "farm/job_package.h"
+#include "import/job_files.h"
 
 namespace hyades::cli {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 /// Scenes of other tools in a job. For a scene file `robot.glb` there is a folder `robot.glb.files`
-/// that no disk holds: whoever imports scenes (core/import) makes its files when they are opened,
+/// that no disk holds: whoever imports scenes (import/) makes its files when they are opened,
 /// and a farm stores them as any others. In it lies the scene as a document of the job language.
 namespace hyades::core {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/geometry/read_mesh.h"
-#include "core/import/gltf/read_gltf.h"
+#include "import/gltf/read_gltf.h"
 
 namespace {
 

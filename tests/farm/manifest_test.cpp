@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/import/job_files.h"
 #include "core/job/layers.h"
 #include "core/job/render_key.h"
 #include "core/render/render_frame.h"
 #include "core/scene/build_scene.h"
 #include "farm/job_package.h"
+#include "import/job_files.h"
 #include "tests/farm/content_testing.h"
 #include "tests/support/temp_folder.h"
 

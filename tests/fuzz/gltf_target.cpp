@@ -1,9 +1,9 @@
 // A glTF scene: a .glb, or the JSON of a .gltf.
 
-#include "tests/core/import/gltf_builder.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_files.h"
 #include "tests/fuzz/scene_target.h"
+#include "tests/import/gltf_builder.h"
 
 namespace hyades::fuzz {
 namespace {

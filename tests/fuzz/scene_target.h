@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "core/import/scene_source.h"
 #include "core/job/yaml_writer.h"
+#include "import/scene_source.h"
 #include "tests/support/made_files.h"
 
 namespace hyades::fuzz {

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <fstream>
 
-#include "core/import/pbrt/read_pbrt.h"
-#include "tests/core/import/gltf_builder.h"
+#include "import/pbrt/read_pbrt.h"
+#include "tests/import/gltf_builder.h"
 #include "tests/import/rendered_scene.h"
 
 namespace hyades::test {

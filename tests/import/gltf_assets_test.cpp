@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/import/gltf/read_gltf.h"
+#include "import/gltf/read_gltf.h"
 #include "tests/import/rendered_scene.h"
 #include "tests/support/moments.h"
 #include "tests/support/shared_assets.h"

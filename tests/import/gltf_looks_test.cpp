@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/import/stand_in.h"
-#include "tests/core/import/gltf_builder.h"
+#include "import/stand_in.h"
+#include "tests/import/gltf_builder.h"
 #include "tests/import/rendered_scene.h"
 
 namespace hyades::test {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "core/import/pbrt/read_pbrt.h"
+#include "import/pbrt/read_pbrt.h"
 #include "tests/import/rendered_scene.h"
 
 namespace hyades::test {

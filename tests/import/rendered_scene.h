@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "core/import/scene_source.h"
 #include "core/render/render_frame.h"
 #include "core/scene/scene_cache.h"
+#include "import/scene_source.h"
 
 namespace hyades::test {
 

@@ -1,0 +1,86 @@
+#include "import/gltf/uri.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "import/within_folder.h"
+
+namespace hyades::core {
+
+namespace {
+
+constexpr std::string_view kAlphabet =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+std::array<int8_t, 256> make_values() {
+  std::array<int8_t, 256> values{};
+  values.fill(-1);
+  for (size_t i = 0; i < kAlphabet.size(); ++i) {
+    values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<int8_t>(i);
+  }
+  return values;
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+std::string shown(std::string_view uri) {
+  return std::string(uri.substr(0, 80)) + (uri.size() > 80 ? "..." : "");
+}
+
+}  // namespace
+
+bool is_data_uri(std::string_view uri) { return uri.starts_with("data:"); }
+
+std::string data_uri_type(std::string_view uri) {
+  uri.remove_prefix(5);
+  return std::string(uri.substr(0, std::min(uri.find_first_of(";,"), uri.size())));
+}
+
+Result<Bytes> decode_data_uri(std::string_view uri) {
+  static const std::array<int8_t, 256> kValues = make_values();
+  const size_t comma = uri.find(',');
+  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
+    return Error{"a data: URI is not in base64: '" + shown(uri) + "'"};
+  }
+  std::string_view text = uri.substr(comma + 1);
+  while (text.ends_with('=')) text.remove_suffix(1);
+  auto bytes = std::make_shared<std::vector<std::byte>>();
+  bytes->reserve(text.size() / 4 * 3 + 3);
+  uint32_t held = 0;
+  int bits = 0;
+  for (const char c : text) {
+    const int value = kValues[static_cast<unsigned char>(c)];
+    if (value < 0) return Error{"a data: URI has characters that are not base64"};
+    held = (held << 6U) | static_cast<uint32_t>(value);
+    bits += 6;
+    if (bits >= 8) {
+      bits -= 8;
+      bytes->push_back(static_cast<std::byte>((held >> static_cast<unsigned>(bits)) & 0xFFU));
+    }
+  }
+  return Bytes(bytes, *bytes);
+}
+
+Result<std::string> decode_file_uri(std::string_view uri) {
+  std::string path;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 &&
+        hex_digit(uri[i + 2]) >= 0) {
+      path += static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2]));
+      i += 2;
+    } else {
+      path += uri[i];
+    }
+  }
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return within_folder(path);
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,216 @@
+#include "import/importing_resolver.h"
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "core/job/scene_document.h"
+#include "core/job/yaml_writer.h"
+#include "import/scene_source.h"
+#include "import/stand_in.h"
+
+namespace hyades::core {
+
+namespace {
+
+using SourcePtr = std::shared_ptr<const SceneSource>;
+
+Bytes owned(std::string text) {
+  const auto held = std::make_shared<const std::string>(std::move(text));
+  return {held, std::as_bytes(std::span(held->data(), held->size()))};
+}
+
+/// A reference into the folder of a scene.
+struct Inside {
+  std::string scene;  ///< the scene file
+  std::string name;   ///< of the file in its folder
+};
+
+/// Splits "robot.glb.files/meshes/body.ply"; nothing where no folder on the way is a scene's.
+std::optional<Inside> inside_of(const std::string& reference) {
+  const std::string mark = std::string(kMadeFolder) + "/";
+  for (size_t at = reference.find(mark); at != std::string::npos;
+       at = reference.find(mark, at + 1)) {
+    const std::string scene = reference.substr(0, at);
+    if (is_scene_file(scene)) return Inside{scene, reference.substr(at + mark.size())};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+/// Files as importers see them, and what stands in for pictures that are not there.
+class ImportingResolver::Sources : public AssetResolver {
+ public:
+  Sources(AssetResolver& files, MissingTextures missing, SceneLinks links)
+      : files_(files), missing_(missing), links_(std::move(links)) {}
+
+  Result<Bytes> open(const std::string& reference, const std::string& from) override {
+    if (is_scene_file(from)) {
+      const auto inside = links_.check(from, resolve_reference(reference, from));
+      if (!inside) return inside.error();
+    }
+    return open_anywhere(reference, from);
+  }
+
+  /// The same for jobs, which may name what they like.
+  Result<Bytes> open_anywhere(const std::string& reference, const std::string& from) {
+    const std::string resolved = resolve_reference(reference, from);
+    auto bytes = files_.open(reference, from);
+    if (bytes || !names_picture(resolved) || files_.exists(resolved)) return bytes;
+    if (missing_ == MissingTextures::refused) {
+      return Error{bytes.error().message + "; --missing-textures lets magenta stand in for it"};
+    }
+    note(resolved + ": no such picture; magenta stands in for it");
+    return magenta_picture();
+  }
+
+  bool exists(const std::string& reference) override { return files_.exists(reference); }
+
+  Status check(const std::string& scene, const std::vector<std::string>& files) const {
+    for (const std::string& file : files) {
+      const auto inside = links_.check(scene, resolve_reference(file, scene));
+      if (!inside) return inside.error().in(scene);
+    }
+    return {};
+  }
+
+  /// Keeps a line, once.
+  void note(const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    if (noted_.insert(line).second) notes_.push_back(line);
+  }
+
+  std::vector<std::string> notes() const {
+    const std::lock_guard lock(mutex_);
+    return notes_;
+  }
+
+ private:
+  AssetResolver& files_;
+  MissingTextures missing_;
+  SceneLinks links_;
+  mutable std::mutex mutex_;
+  // Guarded by mutex_.
+  std::vector<std::string> notes_;
+  std::set<std::string> noted_;
+};
+
+struct ImportingResolver::State {
+  AssetResolver& files;
+  Sources lenient;
+  mutable std::mutex mutex;
+  // Guarded by mutex.
+  std::map<std::string, Bytes> added;
+  std::map<std::string, SourcePtr> sources;
+
+  State(AssetResolver& below, MissingTextures missing, SceneLinks links)
+      : files(below), lenient(below, missing, std::move(links)) {}
+
+  /// Reads a scene once. Two who ask for the same one at the same time may both read it; one result
+  /// stays.
+  Result<SourcePtr> source(const std::string& scene) {
+    {
+      const std::lock_guard lock(mutex);
+      if (const auto found = sources.find(scene); found != sources.end()) return found->second;
+    }
+    auto read = read_scene(lenient, scene);
+    if (!read) return read;
+    const std::lock_guard lock(mutex);
+    return sources.emplace(scene, *read).first->second;
+  }
+
+  Result<Bytes> document(const SceneDocument& wanted) {
+    const auto scene = source(wanted.scene);
+    if (!scene) return scene.error();
+    SceneRequest request;
+    request.prefix = wanted.prefix;
+    request.fps = wanted.fps;
+    request.animation = wanted.animation;
+    request.loop = wanted.loop;
+    request.beside = "../";
+    const auto told = (*scene)->sections(request);
+    if (!told) return told.error();
+    if (auto inside = lenient.check(wanted.scene, told->files); !inside) return inside.error();
+    for (const std::string& line : told->notes) lenient.note(line);
+    return owned(write_yaml(*told->sections));
+  }
+
+  /// Whether a file of a scene's folder is to be made: not where no such scene is.
+  bool makes(const Inside& inside) {
+    return files.exists(inside.scene) || !files.exists(inside.scene + std::string(kMadeFolder));
+  }
+
+  Result<Bytes> made(const Inside& inside, const std::string& reference) {
+    if (files.exists(inside.scene + std::string(kMadeFolder)) || files.exists(reference)) {
+      return Error{inside.scene + std::string(kMadeFolder) + ": there is a folder of this name; " +
+                   "it stands for what is made of " + inside.scene +
+                   ". Give the folder another name"};
+    }
+    if (const auto wanted = document_of(reference)) return document(*wanted);
+    const auto scene = source(inside.scene);
+    if (!scene) return scene.error();
+    return (*scene)->made_file(inside.name);
+  }
+};
+
+ImportingResolver::ImportingResolver(AssetResolver& files, MissingTextures missing,
+                                     SceneLinks links)
+    : state_(new State(files, missing, std::move(links))) {}
+
+ImportingResolver::~ImportingResolver() = default;
+
+Result<Bytes> ImportingResolver::open(const std::string& reference, const std::string& from) {
+  const std::string resolved = resolve_reference(reference, from);
+  {
+    const std::lock_guard lock(state_->mutex);
+    const auto found = state_->added.find(resolved);
+    if (found != state_->added.end()) return found->second;
+  }
+  const auto inside = inside_of(resolved);
+  if (inside && state_->makes(*inside)) return state_->made(*inside, resolved);
+  return state_->lenient.open_anywhere(reference, from);
+}
+
+bool ImportingResolver::exists(const std::string& reference) {
+  const std::string resolved = resolve_reference(reference);
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->added.contains(resolved)) return true;
+  }
+  const auto inside = inside_of(resolved);
+  if (inside && state_->makes(*inside)) return state_->made(*inside, resolved).ok();
+  return state_->files.exists(reference);
+}
+
+bool ImportingResolver::is_on_disk(const std::string& reference) const {
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->added.contains(resolve_reference(reference))) return false;
+  }
+  const auto inside = inside_of(resolve_reference(reference));
+  return !(inside && state_->makes(*inside)) && state_->files.exists(reference);
+}
+
+void ImportingResolver::add(const std::string& reference, std::string text) {
+  const std::lock_guard lock(state_->mutex);
+  state_->added[resolve_reference(reference)] = owned(std::move(text));
+}
+
+void ImportingResolver::adopt(const std::string& scene, SourcePtr source) {
+  const std::lock_guard lock(state_->mutex);
+  state_->sources[resolve_reference(scene)] = std::move(source);
+}
+
+AssetResolver& ImportingResolver::sources() { return state_->lenient; }
+
+Status ImportingResolver::check_files(const std::string& scene,
+                                      const std::vector<std::string>& files) const {
+  return state_->lenient.check(scene, files);
+}
+
+std::vector<std::string> ImportingResolver::notes() const { return state_->lenient.notes(); }
+
+}  // namespace hyades::core

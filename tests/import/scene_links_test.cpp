@@ -1,0 +1,147 @@
+#include "import/scene_links.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/job/scene_document.h"
+#include "import/job_files.h"
+#include "import/write_scene_job.h"
+#include "tests/support/temp_folder.h"
+
+namespace hyades::core {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A folder of secrets, and a scene beside it.
+class Links : public testing::Test {
+ protected:
+  void SetUp() override {
+    write("secrets/id.png", "a key");
+    write("secrets/id.mtl", "newmtl glow\nKe 1\n");
+    write("scene/here/wood.png", "a picture");
+    write("scene/a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl glow\nf 1 2 3\n");
+    write("scene/a.mtl", "newmtl glow\nmap_Kd tex/id.png\n");
+  }
+  void write(const std::string& name, const std::string& text) {
+    fs::create_directories((folder_.path() / name).parent_path());
+    std::ofstream(folder_.path() / name) << text;
+  }
+  void link(const std::string& to, const std::string& name) {
+    fs::create_symlink(to, folder_.path() / name);
+  }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  /// What opening a scene says; empty: it is fine.
+  std::string trouble(const std::string& scene, bool follow = false) const {
+    JobFileOptions options;
+    options.follow_links = follow;
+    const auto files = JobFiles::open(path(scene), options);
+    if (!files) return files.error().message;
+    // Jobs name scenes; those become documents when they are opened.
+    if (is_scene_file(scene)) return {};
+    const auto bytes = (*files)->files().open("scene/a.obj.files/scene.yaml");
+    return bytes ? std::string() : bytes.error().message;
+  }
+
+  test::TempFolder folder_;
+};
+
+TEST_F(Links, ThatStayInTheScenesFolderAreFollowed) {
+  link("here", "scene/tex");
+  link("wood.png", "scene/here/id.png");
+  EXPECT_EQ(trouble("scene/a.obj"), "");
+  link("scene", "shortcut");
+  EXPECT_EQ(trouble("shortcut/a.obj"), "") << "where the folder itself is reached by one";
+}
+
+TEST_F(Links, OfFilesAndFoldersThatLeadOutAreRefusedAndNamed) {
+  link("../secrets", "scene/tex");
+  for (const char* scene : {"scene/a.obj", "job.yaml"}) {
+    const std::string said = trouble(scene);
+    EXPECT_THAT(said, HasSubstr("tex/id.png: leads out of the scene's folder, by the link"));
+    EXPECT_THAT(said, HasSubstr("scene/tex;"));
+    EXPECT_THAT(said, HasSubstr("--follow-links"));
+    EXPECT_EQ(trouble(scene, true), "");
+  }
+  fs::remove(folder_.path() / "scene/tex");
+  fs::create_directories(folder_.path() / "scene/tex");
+  link("../../secrets/id.png", "scene/tex/id.png");
+  EXPECT_THAT(trouble("scene/a.obj"), HasSubstr("scene/tex/id.png;"));
+}
+
+TEST_F(Links, OfWhatImportersReadThemselvesAreRefused) {
+  write("scene/a.mtl", "");
+  fs::remove(folder_.path() / "scene/a.mtl");
+  link("../secrets/id.mtl", "scene/a.mtl");
+  EXPECT_THAT(trouble("scene/a.obj"), HasSubstr("a.mtl: leads out of the scene's folder"));
+  write("scene/a.gltf",
+        R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":5,"uri":"a.bin"}]})");
+  link("../secrets/id.png", "scene/a.bin");
+  EXPECT_THAT(trouble("scene/a.gltf"), HasSubstr("a.bin: leads out of the scene's folder"));
+  write("scene/a.pbrt", "Include \"b.pbrt\"\n");
+  link("../secrets/id.mtl", "scene/b.pbrt");
+  EXPECT_THAT(trouble("scene/a.pbrt"), HasSubstr("b.pbrt: leads out of the scene's folder"));
+}
+
+TEST_F(Links, OfPicturesOfOtherFormatsAreRefused) {
+  link("../secrets/id.png", "scene/id.png");
+  write("scene/t.pbrt",
+        "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"id.png\"\n"
+        "Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"sphere\"\n");
+  EXPECT_THAT(trouble("scene/t.pbrt"), HasSubstr("id.png: leads out of the scene's folder"));
+  write("scene/t.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"id.png"}]})");
+  EXPECT_THAT(trouble("scene/t.gltf"), HasSubstr("id.png: leads out of the scene's folder"));
+}
+
+TEST_F(Links, OfAnyFileOfAPatternAreRefused) {
+  const SceneLinks links(folder_.path().string());
+  write("scene/skin.1001.png", "x");
+  EXPECT_TRUE(links.check("scene/a.obj", "scene/skin.<UDIM>.png"));
+  EXPECT_TRUE(links.check("scene/a.obj", "scene/walk.####.ply"));
+  link("../secrets/id.png", "scene/skin.1002.png");
+  EXPECT_FALSE(links.check("scene/a.obj", "scene/skin.<UDIM>.png"));
+  link("../secrets/id.png", "scene/walk.0001.ply");
+  EXPECT_FALSE(links.check("scene/a.obj", "scene/walk.####.ply"));
+}
+
+TEST_F(Links, ImportKeepsToTheSameRule) {
+  link("../secrets", "scene/tex");
+  WriteSceneJob request;
+  request.scene = path("scene/a.obj");
+  request.job = path("out/a.yaml");
+  const auto refused = write_scene_job(request);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("leads out of the scene's folder"));
+  request.follow_links = true;
+  EXPECT_TRUE(write_scene_job(request));
+}
+
+// The job around a scene may name what it likes: a file of media beside the scene's folder.
+TEST_F(Links, AreNoBusinessOfJobs) {
+  const auto files = JobFiles::open(path("scene/a.obj"));
+  ASSERT_TRUE(files) << files.error().message;
+  EXPECT_TRUE((*files)->files().open("../secrets/id.mtl", "a.obj"));
+}
+
+TEST_F(Links, FilesThatAreNotThereAreTheirOpenersBusiness) {
+  EXPECT_EQ(trouble("scene/a.obj"), "");
+  link("nowhere", "scene/tex");
+  EXPECT_EQ(trouble("scene/a.obj"), "");
+}
+
+TEST_F(Links, AFolderOfTheNameOfWhatIsMadeIsRefused) {
+  link("here", "scene/tex");
+  write("scene/a.obj.files/scene.yaml", "hyades: 1\n");
+  const std::string said = trouble("job.yaml");
+  EXPECT_THAT(said, HasSubstr("scene/a.obj.files: there is a folder of this name"));
+  fs::remove(folder_.path() / "scene/a.obj");
+  EXPECT_EQ(trouble("job.yaml"), "") << "without the scene, it is a folder as any other";
+}
+
+}  // namespace
+}  // namespace hyades::core
