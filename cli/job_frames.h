@@ -9,7 +9,7 @@
 
 #include "cli/load_job.h"
 #include "coordinator/local/frame_work.h"
-#include "coordinator/local/local_plan.h"
+#include "coordinator/store/film_records.h"
 #include "core/film/film_exr.h"
 #include "core/film/film_info.h"
 #include "core/finish/display_transform.h"

@@ -175,7 +175,7 @@ int render_command(int argc, char** argv) {
   plan.threads = options.threads;
   if (core::makes_splats(job.integrator)) plan.tile_size = coordinator::kSplatTile;
   plan.frames_in_flight = room.frames_in_flight();
-  coordinator::LocalLog log;
+  coordinator::FilmStoreOptions log;
   log.folder = kept;
   log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
   log.resume = options.resume;

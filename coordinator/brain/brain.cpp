@@ -149,21 +149,21 @@ void Brain::persist(const Persist& persist, Delivery* delivery) {
   if (const auto* unit = std::get_if<UnitRecord>(&persist.record)) {
     delivery->settled = true;
     desk->films_under_way[persist.id] = std::move(delivery->rendered);
-    keeper_of(*desk).keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
-                                    std::move(delivery->record));
+    film_store_of(*desk).keep_delivered(persist.id, unit->accepted, std::move(delivery->film),
+                                        std::move(delivery->record));
   } else if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {
-    keeper_of(*desk).keep_finished(persist.id, done->frame);
+    film_store_of(*desk).keep_finished(persist.id, done->frame);
   } else if (const auto* voided = std::get_if<TileVoidedRecord>(&persist.record)) {
-    keeper_of(*desk).void_tile(persist.id, voided->frame, voided->tile);
+    film_store_of(*desk).void_tile(persist.id, voided->frame, voided->tile);
   } else if (const auto* dispute = std::get_if<DisputeRecord>(&persist.record)) {
-    keeper_of(*desk).keep_dispute(persist.id, dispute->open);
+    film_store_of(*desk).keep_dispute(persist.id, dispute->open);
   } else if (const auto* again = std::get_if<FrameRestartedRecord>(&persist.record)) {
     chores_.add(static_cast<uint64_t>(job), [this, job, id = persist.id, frame = again->frame] {
       const core::Status forgotten = store_->forget_frame(static_cast<uint64_t>(job), frame);
       const std::lock_guard lock(mutex_);
       JobDesk* still = desk_of(job);
       if (still == nullptr || still->ending) return true;
-      if (forgotten) keeper_of(*still).begin_again(id, frame);
+      if (forgotten) film_store_of(*still).begin_again(id, frame);
       return forgotten.ok();
     });
   } else if (const auto* failed = std::get_if<FrameFailedRecord>(&persist.record)) {
@@ -177,7 +177,7 @@ void Brain::persist(const Persist& persist, Delivery* delivery) {
       if (still == nullptr) return true;
       // Where it could not be stored the frame fails again after a restart, if it must.
       if (!stored) still->trouble = stored.error().message;
-      keeper_of(*still).keep_failed(id);
+      film_store_of(*still).keep_failed(id);
       return true;
     });
   }

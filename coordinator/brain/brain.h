@@ -42,7 +42,7 @@ class Meters;
 /// One lock guards the scheduler and all books; every event is handled and its messages are queued
 /// under it, so that what workers are told has one order. Nothing slow happens under it: films are
 /// decoded before (by the thread that received them), made durable and merged by each job's
-/// FilmKeeper, finished by a process; what changes in a job's rows is stored by its chores.
+/// FilmStore, finished by a process; what changes in a job's rows is stored by its chores.
 /// Thread-safe.
 class Brain {
  public:
@@ -236,7 +236,7 @@ class Brain {
     FilmUnderWay rendered;
     bool settled = false;  ///< it is on its way to the disk, or was answered
   };
-  class KeeperOwner;
+  class FilmStoreOwner;
 
   Brain(BrainOptions options, std::unique_ptr<JobStore> store,
         std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation);
@@ -273,9 +273,9 @@ class Brain {
   core::Result<std::set<int32_t>> frames_to_repeat(const JobDesk& desk,
                                                    const std::vector<StoredFrame>& frames);
   core::Status start(std::unique_ptr<JobDesk> desk, RestoredJob restored);
-  std::unique_ptr<FilmKeeper> make_keeper(JobDesk& desk, bool resume);
-  FilmKeeper& keeper_of(JobDesk& desk);
-  bool open_keeper(JobId job);
+  std::unique_ptr<FilmStore> make_film_store(JobDesk& desk, bool resume);
+  FilmStore& film_store_of(JobDesk& desk);
+  bool open_film_store(JobId job);
   void restore_films(JobDesk& desk, const LogContents& contents, RestoredJob& restored);
 
   // brain.cpp: events in, actions out; with the lock.
@@ -310,7 +310,7 @@ class Brain {
   core::Status repeat_for_videos(const JobDesk& desk, const std::vector<int32_t>& done,
                                  std::set<int32_t>& repeated);
 
-  // Keepers' threads.
+  // Film stores' threads.
   void persisted(JobId job, RecordId record);
   void not_persisted(JobId job, RecordId record, const std::string& reason);
   void storage_failed(JobId job, const std::string& reason);
@@ -420,7 +420,7 @@ class Brain {
   uint64_t disk_free_ = UINT64_MAX;  ///< bytes, when it was last measured
   uint64_t walked_used_ = 0;         ///< bytes of the folder, when it was last walked through
   uint64_t walked_free_ = 0;         ///< bytes of the disk at that time
-  TimePoint room_made_;              ///< when keepers were last asked for room
+  TimePoint room_made_;              ///< when film stores were last asked for room
   std::atomic<bool> disk_full_{false};
   std::condition_variable disk_wake_;
 

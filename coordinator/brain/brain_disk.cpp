@@ -37,7 +37,7 @@ void Brain::mind_disk() {
     if (disk_.level() != DiskLevel::roomy && now - room_made_ >= kMakeRoomEvery) {
       room_made_ = now;
       for (auto& [id, desk] : desks_) {
-        if (desk->keeper) desk->keeper->make_room();
+        if (desk->film_store) desk->film_store->make_room();
       }
     }
   }

@@ -181,7 +181,7 @@ bool Brain::store_end(uint64_t id) {
     }
   }
   for (const Waiter& waiter : told) waiter.then(grpc::Status::OK, describe(job));
-  over.reset();  // waits for the keeper's thread
+  over.reset();  // waits for the film store's thread
   // Films of frames that failed stay, should they be taken up again.
   std::error_code ignored;
   if (job.state == StoredState::done) std::filesystem::remove_all(films_folder(id), ignored);

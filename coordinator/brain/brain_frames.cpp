@@ -9,16 +9,16 @@
 
 namespace hyades::coordinator {
 
-/// On the keeper's thread, as the film is at hand there.
+/// On the film store's thread, as the film is at hand there.
 void Brain::merged(JobId job, const Merge& merge) {
-  FilmKeeper* keeper = nullptr;
+  FilmStore* film_store = nullptr;
   {
     const std::lock_guard lock(mutex_);
-    if (JobDesk* desk = desk_of(job)) keeper = desk->keeper.get();
+    if (JobDesk* desk = desk_of(job)) film_store = desk->film_store.get();
   }
-  if (keeper == nullptr) return;
+  if (film_store == nullptr) return;
   const int64_t begun_us = wall_us();
-  const core::Status status = keeper->merge(merge.record);
+  const core::Status status = film_store->merge(merge.record);
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
@@ -39,7 +39,7 @@ uint64_t Brain::samples_of(const JobDesk& desk, const core::PixelRect& tile,
   return core::samples_in(tile, batches, desk.read.job.sampling.samples);
 }
 
-/// The keeper has taken the tile out of the film.
+/// The film store has taken the tile out of the film.
 void Brain::tile_voided(const TileVoided& voided) {
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(voided.job);
@@ -73,13 +73,13 @@ void Brain::frame_reopened(JobId job, int32_t frame) {
   });
 }
 
-/// On the keeper's thread, unless the film is among the complete ones already.
+/// On the film store's thread, unless the film is among the complete ones already.
 void Brain::finish_frame(const FinishFrame& finish) {
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(finish.job);
   if (desk == nullptr) return;
   auto& film = desk->complete[finish.frame];
-  if (!film) film = desk->keeper->film(finish.frame);
+  if (!film) film = desk->film_store->film(finish.frame);
   desk->touch(finish.frame).state = v1::FRAME_STATE_FINISHING;
   to_finish_.push_back({finish.job, finish.frame, film, names_of(finish.unconfirmed)});
   finish_wake_.notify_one();
@@ -89,7 +89,7 @@ void Brain::frame_done(JobId job, int32_t frame) {
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
-  desk->keeper->forget(frame, true);
+  desk->film_store->forget(frame, true);
   desk->complete.erase(frame);
   desk->touch(frame).state = v1::FRAME_STATE_DONE;
   desk->in_work.erase(frame);
@@ -102,7 +102,7 @@ void Brain::frame_failed(JobId job, int32_t frame, const std::string& reason) {
   const std::lock_guard lock(mutex_);
   JobDesk* desk = desk_of(job);
   if (desk == nullptr) return;
-  desk->keeper->forget(frame, false);
+  desk->film_store->forget(frame, false);
   desk->complete.erase(frame);
   FrameNote& noted = desk->touch(frame);
   noted.state = v1::FRAME_STATE_FAILED;

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
-#include "coordinator/local/local_log.h"
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/store/disk_room.h"
+#include "coordinator/store/film_store.h"
 #include "core/base/machine.h"
 
 namespace hyades::coordinator {
@@ -43,7 +43,7 @@ struct BrainOptions {
   /// takes more are refused.
   uint64_t film_memory = core::half_of_memory();
   /// A job's film log is rewritten when it has grown by this much.
-  uint64_t compact_bytes = LocalLog{}.compact_bytes;
+  uint64_t compact_bytes = FilmStoreOptions{}.compact_bytes;
   Price price;
 };
 

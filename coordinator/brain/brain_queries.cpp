@@ -272,21 +272,22 @@ grpc::Status Brain::film(uint64_t id, int32_t frame, FilmTaker then) {
     lock.unlock();
     return kept_film(id, frame, then);
   }
-  if (!desk->keeper) {
+  if (!desk->film_store) {
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "nothing of the frame is there yet",
                              std::chrono::seconds(1));
   }
   core::FilmInfo info = desk->film_info(frame);
   info.worker_class = noted->second.worker_class;
-  // The keeper's thread copies, as only it may look at films while they grow.
-  desk->keeper->call([keeper = desk->keeper.get(), frame, info, then = std::move(then)] {
-    const auto film = keeper->film(frame);
-    const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
-    then(copy ? grpc::Status::OK
-              : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
-                                  "nothing of the frame is there yet", std::chrono::seconds(1)),
-         info, copy);
-  });
+  // The film store's thread copies, as only it may look at films while they grow.
+  desk->film_store->call(
+      [film_store = desk->film_store.get(), frame, info, then = std::move(then)] {
+        const auto film = film_store->film(frame);
+        const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
+        then(copy ? grpc::Status::OK
+                  : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                                      "nothing of the frame is there yet", std::chrono::seconds(1)),
+             info, copy);
+      });
   return grpc::Status::OK;
 }
 

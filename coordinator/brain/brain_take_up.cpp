@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "coordinator/brain/brain.h"
-#include "coordinator/brain/keeper_owner.h"
+#include "coordinator/brain/film_store_owner.h"
 #include "coordinator/meters/meters.h"
 #include "farm/wire.h"
 
@@ -234,7 +234,7 @@ void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJo
       std::erase(restored.finished, number);
     }
     if (frame.state != v1::FRAME_STATE_WAITING) {
-      desk.keeper->forget(number, frame.state == v1::FRAME_STATE_DONE);
+      desk.film_store->forget(number, frame.state == v1::FRAME_STATE_DONE);
       continue;
     }
     frame.state = v1::FRAME_STATE_RENDERING;
@@ -246,57 +246,55 @@ void Brain::restore_films(JobDesk& desk, const LogContents& contents, RestoredJo
       restored.accepted.push_back(unit);
     }
     desk.samples_done += frame.samples_done;
-    // Will be finished at once, by another thread than the keeper's, which runs by then.
+    // Will be finished at once, by another thread than the film store's, which runs by then.
     if (frame.samples_done == desk.samples_per_frame) {
-      desk.complete[number] = desk.keeper->film(number);
+      desk.complete[number] = desk.film_store->film(number);
     }
   }
   for (const auto& [frame, finished] : contents.finished) {
-    if (desk.frames[frame].state != v1::FRAME_STATE_DONE) desk.keeper->reopen(frame);
+    if (desk.frames[frame].state != v1::FRAME_STATE_DONE) desk.film_store->reopen(frame);
   }
 }
 
-/// A keeper of the job's films, not opened yet.
-std::unique_ptr<FilmKeeper> Brain::make_keeper(JobDesk& desk, bool resume) {
-  LocalPlan plan;
-  plan.frames = desk.numbers;
-  plan.region = desk.region;
-  plan.samples = desk.read.job.sampling.samples;
-  plan.max_waiting_bytes = kWaitingBytes;
-  LocalLog place;
+/// A store of the job's films, not opened yet.
+std::unique_ptr<FilmStore> Brain::make_film_store(JobDesk& desk, bool resume) {
+  const uint32_t samples = desk.read.job.sampling.samples;
+  FilmSet films{desk.numbers, desk.region, samples, core::batch_count(samples)};
+  FilmStoreOptions place;
+  place.max_waiting_bytes = kWaitingBytes;
   place.folder = films_folder(desk.stored.id);
   place.frame_key = [key = desk.key](int32_t) { return key; };
   place.resume = resume;
   place.compact_bytes = options_.compact_bytes;
   place.on_sync = [meters = meters_.get()](std::chrono::nanoseconds took) { meters->synced(took); };
-  if (!desk.owner) desk.owner = std::make_unique<KeeperOwner>(*this, desk.id);
-  return std::make_unique<FilmKeeper>(plan, place, *desk.owner);
+  if (!desk.owner) desk.owner = std::make_unique<FilmStoreOwner>(*this, desk.id);
+  return std::make_unique<FilmStore>(std::move(films), std::move(place), *desk.owner);
 }
 
 /// A job gets its log and threads with its first film, so that those that wait cost little. The
-/// keeper takes what it is given from now on; its log is opened by the job's chores. With the lock.
-FilmKeeper& Brain::keeper_of(JobDesk& desk) {
-  if (!desk.keeper) {
-    desk.keeper = make_keeper(desk, false);
-    chores_.add(desk.stored.id, [this, job = desk.id] { return open_keeper(job); });
+/// store takes what it is given from now on; its log is opened by the job's chores. With the lock.
+FilmStore& Brain::film_store_of(JobDesk& desk) {
+  if (!desk.film_store) {
+    desk.film_store = make_film_store(desk, false);
+    chores_.add(desk.stored.id, [this, job = desk.id] { return open_film_store(job); });
   }
-  return *desk.keeper;
+  return *desk.film_store;
 }
 
 /// Without the lock; the desk stays while its chores do.
-bool Brain::open_keeper(JobId job) {
-  FilmKeeper* keeper = nullptr;
+bool Brain::open_film_store(JobId job) {
+  FilmStore* film_store = nullptr;
   int32_t tile_size = 0;
   {
     const std::lock_guard lock(mutex_);
     JobDesk* desk = desk_of(job);
     if (desk == nullptr || desk->ending) return true;  // or its end would wait for this
-    keeper = desk->keeper.get();
+    film_store = desk->film_store.get();
     tile_size = tile_size_for(*desk);
   }
   core::Status opened;
-  if (const auto contents = keeper->open(); !contents) opened = contents.error();
-  if (opened) opened = keeper->start(tile_size);
+  if (const auto contents = film_store->open(); !contents) opened = contents.error();
+  if (opened) opened = film_store->start(tile_size);
   if (!opened) storage_failed(job, opened.error().message);
   return opened.ok();
 }
@@ -309,12 +307,12 @@ core::Status Brain::start(std::unique_ptr<JobDesk> owned, RestoredJob restored) 
   const bool films = std::filesystem::exists(films_folder(desk.stored.id), unknown);
   if (unknown) return core::Error{films_folder(desk.stored.id) + ": " + unknown.message()};
   if (films) {
-    desk.keeper = make_keeper(desk, true);
-    auto contents = desk.keeper->open();
+    desk.film_store = make_film_store(desk, true);
+    auto contents = desk.film_store->open();
     if (!contents) return contents.error();
     if (contents->cut.tile_size > 0) tile_size = contents->cut.tile_size;
     restore_films(desk, *contents, restored);
-    if (auto started = desk.keeper->start(tile_size); !started) return started;
+    if (auto started = desk.film_store->start(tile_size); !started) return started;
   }
   JobAdded added;
   added.job = desk.id;

@@ -237,7 +237,7 @@ void Brain::on_result(WorkerId worker, const WorkerLink* link, const v1::UnitRes
       verdict = Verdict::quarantined;
     } else if (disk_.level() == DiskLevel::full) {
       verdict = Verdict::full;
-    } else if (desk != nullptr && desk->keeper && desk->keeper->crowded()) {
+    } else if (desk != nullptr && desk->film_store && desk->film_store->crowded()) {
       verdict = Verdict::crowded;
     } else {
       delivery.rendered = {seat->id,        seat->hello.name(),

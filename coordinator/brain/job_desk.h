@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/local/film_keeper.h"
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/state/job_store.h"
+#include "coordinator/store/film_store.h"
 #include "core/film/film_info.h"
 #include "farm/content_store.h"
 #include "farm/job_package.h"
@@ -54,7 +54,7 @@ class Speed {
 };
 
 /// All that the coordinator has in memory of a job that has not ended. Guarded by the brain's lock,
-/// except for what never changes, and the keeper.
+/// except for what never changes, and the film store.
 struct JobDesk {
   JobDesk(StoredJob stored_, v1::JobSpec spec_)
       : spec(std::move(spec_)), stored(std::move(stored_)) {}
@@ -70,8 +70,8 @@ struct JobDesk {
   uint64_t samples_per_frame = 0;
   Digest key{};  ///< JobBrief.key
 
-  std::unique_ptr<FilmKeeper::Owner> owner;  ///< reports to the brain
-  std::unique_ptr<FilmKeeper> keeper;        ///< null until there is a film
+  std::unique_ptr<FilmStore::Owner> owner;  ///< reports to the brain
+  std::unique_ptr<FilmStore> film_store;    ///< null until there is a film
   /// Complete films until their frame is over.
   std::map<int32_t, std::shared_ptr<const core::Film>> complete;
 

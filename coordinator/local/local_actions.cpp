@@ -17,20 +17,20 @@ void LocalRun::carry_out(const std::vector<Action>& actions) {
 
 void LocalRun::act(const Persist& persist) {
   if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {
-    keeper_.keep_finished(persist.id, done->frame);
+    film_store_.keep_finished(persist.id, done->frame);
   } else if (std::holds_alternative<FrameFailedRecord>(persist.record)) {
-    keeper_.keep_failed(persist.id);
+    film_store_.keep_failed(persist.id);
   }
   // A unit's film is handed over by the thread that has it, see deliver().
 }
 
 void LocalRun::act(const Merge& merge) {
-  if (const core::Status merged = keeper_.merge(merge.record); !merged) {
+  if (const core::Status merged = film_store_.merge(merge.record); !merged) {
     const std::lock_guard lock(mutex_);
     end_locked("a film cannot be merged: " + merged.error().message);
     return;
   }
-  const core::Film& film = *keeper_.film(merge.unit.frame);
+  const core::Film& film = *film_store_.film(merge.unit.frame);
   note_film(merge.unit.frame, film);
   if (audience_ != nullptr) audience_->grown(merge.unit.frame, film, merge.unit.tile);
 }
@@ -41,9 +41,9 @@ void LocalRun::act(const FinishFrame& finish) {
     const std::lock_guard lock(mutex_);
     works_.erase(finish.frame);
     in_flight_.insert(finish.frame);
-    // The keeper's films are its thread's; a second attempt comes from the finishing thread.
+    // The store's films are its thread's; a second attempt comes from the finishing thread.
     auto& complete = complete_[finish.frame];
-    if (!complete) complete = keeper_.film(finish.frame);
+    if (!complete) complete = film_store_.film(finish.frame);
     film = complete;
     to_finish_.push_back({finish.frame, film});
     finish_wake_.notify_one();
@@ -52,7 +52,7 @@ void LocalRun::act(const FinishFrame& finish) {
 }
 
 void LocalRun::act(const FrameDone& done) {
-  keeper_.forget(done.frame, true);
+  film_store_.forget(done.frame, true);
   const std::lock_guard lock(mutex_);
   in_flight_.erase(done.frame);
   complete_.erase(done.frame);
@@ -61,7 +61,7 @@ void LocalRun::act(const FrameDone& done) {
 }
 
 void LocalRun::act(const FrameFailed& failed) {
-  keeper_.forget(failed.frame, false);
+  film_store_.forget(failed.frame, false);
   const std::lock_guard lock(mutex_);
   works_.erase(failed.frame);
   in_flight_.erase(failed.frame);

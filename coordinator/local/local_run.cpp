@@ -28,22 +28,22 @@ double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
 
 }  // namespace
 
-LocalRun::LocalRun(LocalPlan plan, LocalLog log, FrameSource& source, FrameSink& sink,
-                   FilmAudience* audience)
+LocalRun::LocalRun(LocalPlan plan, const FilmStoreOptions& log, FrameSource& source,
+                   FrameSink& sink, FilmAudience* audience)
     : plan_(std::move(plan)),
-      log_(std::move(log)),
       source_(source),
       sink_(sink),
       audience_(audience),
       scheduler_(scheduler_options(plan_)),
-      keeper_(plan_, log_, *this) {
+      film_store_({plan_.frames, plan_.region, plan_.samples, batches_of(plan_).count}, log,
+                  *this) {
   plan_.threads = std::max(plan_.threads, 1);
 }
 
 LocalRun::~LocalRun() {
   stop();
   for (std::thread& thread : threads_) thread.join();
-  keeper_.join();
+  film_store_.join();
 }
 
 core::Status LocalRun::start() {
@@ -53,7 +53,7 @@ core::Status LocalRun::start() {
   if (batches_of(plan_).end() > core::batch_count(plan_.samples)) {
     return core::Error{"there are not so many batches"};
   }
-  auto contents = keeper_.open();
+  auto contents = film_store_.open();
   if (!contents) return contents.error();
   log_problems_ = contents->problems;
   if (contents->cut.tile_size > 0) plan_.tile_size = contents->cut.tile_size;
@@ -69,7 +69,7 @@ core::Status LocalRun::start() {
   for (const int32_t frame : plan_.frames) {
     if (contents->finished.contains(frame)) {
       if (!sink_.outputs_exist(frame)) {
-        keeper_.reopen(frame);
+        film_store_.reopen(frame);
         continue;
       }
       job.restored.finished.push_back(frame);
@@ -89,7 +89,7 @@ core::Status LocalRun::start() {
   samples_before_ = progress_.samples_done;
   started_ = std::chrono::steady_clock::now();
 
-  if (core::Status kept = keeper_.start(plan_.tile_size); !kept) return kept;
+  if (core::Status kept = film_store_.start(plan_.tile_size); !kept) return kept;
   for (int i = 0; i < plan_.threads; ++i) {
     seats_.push_back(std::make_unique<Seat>());
     tell(WorkerJoined{WorkerId{static_cast<uint64_t>(i)}, 1, {}, {}});
@@ -114,7 +114,7 @@ void LocalRun::end_locked(const std::string& error) {
   for (const auto& seat : seats_) seat->wake.notify_all();
   load_wake_.notify_all();
   finish_wake_.notify_all();
-  keeper_.hurry();
+  film_store_.hurry();
 }
 
 bool LocalRun::wait_for(Duration duration) {
@@ -139,7 +139,7 @@ Progress LocalRun::progress() const {
       }
     }
   }
-  if (const std::string trouble = keeper_.trouble(); !trouble.empty()) {
+  if (const std::string trouble = film_store_.trouble(); !trouble.empty()) {
     p.trouble = "waits for the disk: " + reason_of(trouble);
   }
   return p;
@@ -194,7 +194,7 @@ void LocalRun::storage_failed(const std::string& reason) {
   end_locked("films cannot be stored: " + reason);
 }
 
-void LocalRun::keeper_done() {
+void LocalRun::drained() {
   const std::lock_guard lock(mutex_);
   over_ = true;
   over_wake_.notify_all();

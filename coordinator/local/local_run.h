@@ -14,22 +14,22 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/local/film_keeper.h"
 #include "coordinator/local/frame_work.h"
 #include "coordinator/local/local_plan.h"
 #include "coordinator/local/progress.h"
 #include "coordinator/scheduler/scheduler.h"
+#include "coordinator/store/film_store.h"
 
 namespace hyades::coordinator {
 
 /// A job on this machine: the farm's scheduler, with threads where the farm has workers. One thread
 /// renders one unit; one loads the next frame while the last one's tail renders; one keeps films
-/// (FilmKeeper); one finishes frames. Films are the same bits whatever the number of threads, the
+/// (FilmStore); one finishes frames. Films are the same bits whatever the number of threads, the
 /// tile size, and how often the run was stopped, killed and resumed.
-class LocalRun : private FilmKeeper::Owner {
+class LocalRun : private FilmStore::Owner {
  public:
   /// `source`, `sink` and `audience`, which may be null, outlive the run.
-  LocalRun(LocalPlan plan, LocalLog log, FrameSource& source, FrameSink& sink,
+  LocalRun(LocalPlan plan, const FilmStoreOptions& log, FrameSource& source, FrameSink& sink,
            FilmAudience* audience = nullptr);
   /// Stops, and waits for all threads, also for a frame that is being loaded or finished.
   ~LocalRun() override;
@@ -107,22 +107,21 @@ class LocalRun : private FilmKeeper::Owner {
   void count_locked(const core::Unit& unit, bool done);
   void note_film(int32_t frame, const core::Film& film);
 
-  // FilmKeeper::Owner
+  // FilmStore::Owner
   void persisted(RecordId record) override;
   void not_persisted(RecordId record, const std::string& reason) override;
   void try_again() override;
   void storage_failed(const std::string& reason) override;
-  void keeper_done() override;
+  void drained() override;
 
   LocalPlan plan_;
-  const LocalLog log_;
   FrameSource& source_;
   FrameSink& sink_;
   FilmAudience* const audience_;
   std::vector<std::string> log_problems_;
   std::atomic<bool> stop_{false};  ///< seen by whoever renders or loads
 
-  /// Everything up to the keeper.
+  /// Everything up to the film store.
   mutable std::mutex mutex_;
   Scheduler scheduler_;
   std::vector<std::unique_ptr<Seat>> seats_;
@@ -145,7 +144,7 @@ class LocalRun : private FilmKeeper::Owner {
   bool ending_ = false;
   bool over_ = false;
 
-  FilmKeeper keeper_;
+  FilmStore film_store_;
   std::vector<std::thread> threads_;
 };
 

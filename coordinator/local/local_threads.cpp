@@ -53,7 +53,7 @@ void LocalRun::render_loop(int thread) {
     }
   }
   const std::lock_guard lock(mutex_);
-  if (--rendering_ == 0) keeper_.drain();
+  if (--rendering_ == 0) film_store_.drain();
 }
 
 std::optional<LocalRun::Task> LocalRun::next_task(int thread) {
@@ -82,7 +82,7 @@ void LocalRun::deliver(int thread, const Task& task, core::Film film, Duration r
     }
     if (record) count_locked(task.unit, true);
   }
-  if (record) keeper_.keep(*record, task.unit.frame, std::move(film));
+  if (record) film_store_.keep(*record, task.unit.frame, std::move(film));
 }
 
 void LocalRun::load_loop() {

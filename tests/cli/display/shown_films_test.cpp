@@ -38,7 +38,7 @@ testing::AssertionResult shows_film(const test::FakeViewer& fake, const std::str
 }
 
 void run(const coordinator::LocalPlan& plan, bool splats, ShownFilms& shown,
-         const coordinator::LocalLog& log = {}) {
+         const coordinator::FilmStoreOptions& log = {}) {
   coordinator::FakeRender render(plan.samples);
   if (splats) render.splat_region = plan.region;
   coordinator::LocalRun run(plan, log, render, render, &shown);
@@ -81,7 +81,7 @@ TEST(ShownFilms, WhatAnEarlierRunLeftIsShownToo) {
   ShownFilms shown(viewer, "walk", true);
   coordinator::LocalPlan plan = small_plan();
   plan.frames = {3};
-  coordinator::LocalLog log;
+  coordinator::FilmStoreOptions log;
   log.folder = folder.file("log");
   {
     coordinator::FakeRender render(plan.samples);

@@ -24,7 +24,8 @@ LocalPlan small_plan() {
   return plan;
 }
 
-LocalOutcome run_to_the_end(const LocalPlan& plan, FakeRender& render, const LocalLog& log = {}) {
+LocalOutcome run_to_the_end(const LocalPlan& plan, FakeRender& render,
+                            const FilmStoreOptions& log = {}) {
   LocalRun run(plan, log, render, render);
   const core::Status started = run.start();
   EXPECT_TRUE(started) << (started ? "" : started.error().message);

@@ -34,8 +34,8 @@ LocalPlan small_plan() {
   return plan;
 }
 
-LocalLog log_in(const std::string& folder, bool resume) {
-  LocalLog log;
+FilmStoreOptions log_in(const std::string& folder, bool resume) {
+  FilmStoreOptions log;
   log.folder = folder;
   log.frame_key = [](int32_t frame) { return core::sha256("pixels " + std::to_string(frame)); };
   log.resume = resume;
@@ -53,7 +53,8 @@ void expect_the_truth(const LocalPlan& plan, const FakeRender& render) {
 }
 
 /// Runs until the end or until `stop_after`; returns whether it ended.
-bool run_for(const LocalPlan& plan, const LocalLog& log, FakeRender& render, Duration stop_after) {
+bool run_for(const LocalPlan& plan, const FilmStoreOptions& log, FakeRender& render,
+             Duration stop_after) {
   LocalRun run(plan, log, render, render);
   const core::Status started = run.start();
   EXPECT_TRUE(started) << (started ? "" : started.error().message);
@@ -66,7 +67,7 @@ bool run_for(const LocalPlan& plan, const LocalLog& log, FakeRender& render, Dur
 }
 
 /// What a run that must not start says.
-std::string refusal(const LocalPlan& plan, const LocalLog& log, FakeRender& render) {
+std::string refusal(const LocalPlan& plan, const FilmStoreOptions& log, FakeRender& render) {
   LocalRun run(plan, log, render, render);
   const core::Status started = run.start();
   EXPECT_FALSE(started);
@@ -86,7 +87,7 @@ TEST(Resume, TenInterruptionsChangeNoBit) {
       // Every run has another number of threads, and asks for another size of tiles in vain.
       plan.threads = 1 + runs % 3;
       plan.tile_size = 16 + runs % 5;
-      LocalLog log = log_in(folder.file("log"), runs > 0);
+      FilmStoreOptions log = log_in(folder.file("log"), runs > 0);
       log.compact_bytes = compact_bytes;
       complete = run_for(plan, log, render, runs < 10 ? milliseconds(20) : kLong);
     }
@@ -109,7 +110,7 @@ TEST(Resume, InterruptionsChangeNoBitOfFilmsWithSplats) {
     for (bool complete = false; !complete; ++runs) {
       ASSERT_LT(runs, 100);
       plan.threads = 1 + runs % 3;
-      LocalLog log = log_in(folder.file("log"), runs > 0);
+      FilmStoreOptions log = log_in(folder.file("log"), runs > 0);
       log.compact_bytes = compact_bytes;
       complete = run_for(plan, log, render, runs < 10 ? milliseconds(20) : kLong);
     }
@@ -156,7 +157,7 @@ TEST(Resume, AFrameWhoseOutputCouldNotBeWrittenIsOnlyFinishedAgain) {
   plan.frames = {1, 2};
   FakeRender render(plan.samples);
   render.finish_fault = [](int32_t) -> core::Status { return core::Error{"no such folder"}; };
-  LocalLog log = log_in(folder.file("log"), false);
+  FilmStoreOptions log = log_in(folder.file("log"), false);
   log.compact_bytes = 1000;
   ASSERT_TRUE(run_for(plan, log, render, kLong));
   EXPECT_TRUE(render.digests().empty());
@@ -183,7 +184,7 @@ TEST(Resume, AnotherJobsFilmsAreRefused) {
   LocalPlan plan = small_plan();
   FakeRender render(plan.samples);
   ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
-  LocalLog other = log_in(folder.file("log"), true);
+  FilmStoreOptions other = log_in(folder.file("log"), true);
   other.frame_key = [](int32_t frame) { return core::sha256("others " + std::to_string(frame)); };
   EXPECT_THAT(refusal(plan, other, render), testing::HasSubstr("frame 1 are of another picture"));
   plan.samples += 1;
@@ -192,7 +193,8 @@ TEST(Resume, AnotherJobsFilmsAreRefused) {
 }
 
 /// Everything is rendered and kept, but no output can be written: the log holds all films.
-void render_without_outputs(const LocalPlan& plan, const LocalLog& log, FakeRender& render) {
+void render_without_outputs(const LocalPlan& plan, const FilmStoreOptions& log,
+                            FakeRender& render) {
   render.finish_fault = [](int32_t) -> core::Status { return core::Error{"no such folder"}; };
   ASSERT_TRUE(run_for(plan, log, render, kLong));
   render.finish_fault = nullptr;
@@ -210,7 +212,7 @@ TEST(Resume, OnlyTheFramesAskedForMustBeOfTheSamePixels) {
       render_without_outputs(plan, log_in(folder.file("log"), false), render);
     }
     const uint64_t units = render.units();
-    LocalLog changed = log_in(folder.file("log"), true);
+    FilmStoreOptions changed = log_in(folder.file("log"), true);
     changed.frame_key = [](int32_t frame) {
       return core::sha256((frame == 2 ? "others " : "pixels ") + std::to_string(frame));
     };
@@ -229,7 +231,7 @@ TEST(Resume, AnotherCropKeepsTheTilesThatItShares) {
     LocalPlan plan = small_plan();
     plan.frames = {1, 2};
     FakeRender render(plan.samples);
-    LocalLog log = log_in(folder.file("log"), false);
+    FilmStoreOptions log = log_in(folder.file("log"), false);
     log.compact_bytes = compact_bytes;
     render_without_outputs(plan, log, render);
     log.resume = true;
@@ -261,9 +263,9 @@ TEST(Resume, FilmsWithSplatsAreOfNoUseToAnotherCrop) {
   plan.frames = {1};
   FakeRender render(plan.samples);
   render.splat_region = {0, 0, 48, 48};
-  const LocalLog begin = log_in(folder.file("log"), false);
+  const FilmStoreOptions begin = log_in(folder.file("log"), false);
   render_without_outputs(plan, begin, render);
-  const LocalLog log = log_in(folder.file("log"), true);
+  const FilmStoreOptions log = log_in(folder.file("log"), true);
   uint64_t before = render.units();
   plan.region = {0, 0, 16, 32};  // two whole tiles
   render_without_outputs(plan, log, render);
@@ -339,7 +341,7 @@ TEST(Resume, KilledAtRandomAgainAndAgain) {
     if (child == 0) {
       FakeRender render(plan.samples);
       render.unit_delay = milliseconds(3);
-      LocalLog log = log_in(folder.file("log"), true);
+      FilmStoreOptions log = log_in(folder.file("log"), true);
       log.compact_bytes = 20'000;
       bool ended = false;
       {
@@ -371,8 +373,8 @@ TEST(Resume, KilledAtRandomAgainAndAgain) {
   }
 }
 
-LocalLog log_on(FaultyFiles& files) {
-  LocalLog log = log_in("log", true);
+FilmStoreOptions log_on(FaultyFiles& files) {
+  FilmStoreOptions log = log_in("log", true);
   log.files = &files;
   log.compact_bytes = 20'000;
   return log;
@@ -389,7 +391,7 @@ TEST(Resume, LostPowerCostsRenderingNeverBits) {
     for (int outage = 0; outage < 8 && !complete; ++outage) {
       files.fail_from_operation(files.operations() + random() % 60);
       {
-        LocalLog log = log_on(files);
+        FilmStoreOptions log = log_on(files);
         log.patience = milliseconds(20);
         LocalRun run(plan, log, render, render);
         if (run.start()) {
@@ -412,7 +414,7 @@ TEST(Resume, AFullDiskHoldsTheRunUntilThereIsRoom) {
   const LocalPlan plan = small_plan();
   FaultyFiles files;
   FakeRender render(plan.samples);
-  LocalLog log = log_on(files);
+  FilmStoreOptions log = log_on(files);
   log.compact_bytes = uint64_t{1} << 30U;
   files.set_capacity(30'000);
   LocalRun run(plan, log, render, render);
@@ -431,7 +433,7 @@ TEST(Resume, ADiskThatStaysFullEndsTheRunWithTheReason) {
   const LocalPlan plan = small_plan();
   FaultyFiles files;
   FakeRender render(plan.samples);
-  LocalLog log = log_on(files);
+  FilmStoreOptions log = log_on(files);
   log.patience = milliseconds(50);
   files.set_capacity(10'000);
   {

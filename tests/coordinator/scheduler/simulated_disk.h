@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/local/local_log.h"
 #include "coordinator/scheduler/actions.h"
+#include "coordinator/store/film_records.h"
 #include "core/film/film.h"
 #include "tests/coordinator/store/faulty_files.h"
 

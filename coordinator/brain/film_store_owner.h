@@ -7,9 +7,9 @@
 namespace hyades::coordinator {
 
 /// Reports what becomes of one job's films to the brain.
-class Brain::KeeperOwner final : public FilmKeeper::Owner {
+class Brain::FilmStoreOwner final : public FilmStore::Owner {
  public:
-  KeeperOwner(Brain& brain, JobId job) : brain_(brain), job_(job) {}
+  FilmStoreOwner(Brain& brain, JobId job) : brain_(brain), job_(job) {}
 
   void persisted(RecordId record) override { brain_.persisted(job_, record); }
   void not_persisted(RecordId record, const std::string& reason) override {
@@ -17,7 +17,7 @@ class Brain::KeeperOwner final : public FilmKeeper::Owner {
   }
   void try_again() override {}  // the brain's clock ticks anyway
   void storage_failed(const std::string& reason) override { brain_.storage_failed(job_, reason); }
-  void keeper_done() override {}
+  void drained() override {}
 
  private:
   Brain& brain_;

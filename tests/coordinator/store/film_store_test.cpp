@@ -5,8 +5,8 @@
 #include <mutex>
 #include <set>
 
-#include "coordinator/local/film_keeper.h"
-#include "tests/coordinator/local/fake_render.h"
+#include "coordinator/store/film_store.h"
+#include "tests/coordinator/store/fake_film.h"
 #include "tests/coordinator/store/faulty_files.h"
 
 namespace hyades::coordinator {
@@ -14,33 +14,33 @@ namespace {
 
 constexpr uint32_t kSamples = 16;
 
-/// A keeper on files in memory, and somebody who merges what is durable.
-class Kept final : public FilmKeeper::Owner {
+/// A film store on files in memory, and somebody who merges what is durable.
+class Kept final : public FilmStore::Owner {
  public:
-  explicit Kept(FaultyFiles& files) : keeper_(plan(), log(files), *this) {
-    EXPECT_TRUE(keeper_.open().ok());
-    EXPECT_TRUE(keeper_.start(16).ok());
+  explicit Kept(FaultyFiles& files) : film_store_(films(), log(files), *this) {
+    EXPECT_TRUE(film_store_.open().ok());
+    EXPECT_TRUE(film_store_.start(16).ok());
   }
 
   /// Whether the film of `tile` is durable within some seconds.
   bool keep(int32_t frame, const core::PixelRect& tile) {
     const RecordId record{++records_};
-    keeper_.keep(record, frame, fake_film({frame, tile, {0, 1}}, kSamples));
+    film_store_.keep(record, frame, fake_film({frame, tile, {0, 1}}, kSamples));
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::seconds(20),
                              [&] { return durable_.contains(record); });
   }
   void finish(int32_t frame) {
-    on_its_thread([&] { keeper_.forget(frame, true); });
+    on_its_thread([&] { film_store_.forget(frame, true); });
   }
   void make_room() {
-    keeper_.make_room();
+    film_store_.make_room();
     on_its_thread([] {});  // it has been seen
     on_its_thread([] {});  // and dealt with
   }
 
   void persisted(RecordId record) override {
-    EXPECT_TRUE(keeper_.merge(record).ok());
+    EXPECT_TRUE(film_store_.merge(record).ok());
     const std::lock_guard lock(mutex_);
     durable_.insert(record);
     changed_.notify_all();
@@ -48,18 +48,12 @@ class Kept final : public FilmKeeper::Owner {
   void not_persisted(RecordId, const std::string& reason) override { ADD_FAILURE() << reason; }
   void try_again() override {}
   void storage_failed(const std::string& reason) override { ADD_FAILURE() << reason; }
-  void keeper_done() override {}
+  void drained() override {}
 
  private:
-  static LocalPlan plan() {
-    LocalPlan plan;
-    plan.frames = {1, 2};
-    plan.region = {0, 0, 64, 16};
-    plan.samples = kSamples;
-    return plan;
-  }
-  static LocalLog log(FaultyFiles& files) {
-    LocalLog log;
+  static FilmSet films() { return {{1, 2}, {0, 0, 64, 16}, kSamples, 1}; }
+  static FilmStoreOptions log(FaultyFiles& files) {
+    FilmStoreOptions log;
     log.folder = "films";
     log.files = &files;
     log.compact_bytes = uint64_t{1} << 30U;
@@ -67,7 +61,7 @@ class Kept final : public FilmKeeper::Owner {
   }
   void on_its_thread(const std::function<void()>& what) {
     bool done = false;
-    keeper_.call([&] {
+    film_store_.call([&] {
       what();
       const std::lock_guard lock(mutex_);
       done = true;
@@ -81,7 +75,7 @@ class Kept final : public FilmKeeper::Owner {
   std::condition_variable changed_;
   std::set<RecordId> durable_;
   uint64_t records_ = 0;
-  FilmKeeper keeper_;
+  FilmStore film_store_;
 };
 
 uint64_t size_of(FaultyFiles& files) {
@@ -92,7 +86,7 @@ uint64_t size_of(FaultyFiles& files) {
 
 core::PixelRect tile(int number) { return {16 * number, 0, 16 * number + 16, 16}; }
 
-TEST(MakeRoom, FinishedFramesLeaveTheLogWhenRoomIsAskedFor) {
+TEST(FilmStore, FinishedFramesLeaveTheLogWhenRoomIsAskedFor) {
   FaultyFiles files;
   Kept kept(files);
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
@@ -106,7 +100,7 @@ TEST(MakeRoom, FinishedFramesLeaveTheLogWhenRoomIsAskedFor) {
   EXPECT_EQ(files.operations(), writes) << "there is nothing to gain any more";
 }
 
-TEST(MakeRoom, AFullDiskIsRelievedByThem) {
+TEST(FilmStore, AFullDiskIsRelievedByThem) {
   FaultyFiles files;
   Kept kept(files);
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));

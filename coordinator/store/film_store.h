@@ -14,21 +14,49 @@
 #include <thread>
 #include <vector>
 
-#include "coordinator/local/local_log.h"
-#include "coordinator/local/local_plan.h"
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/store/film_log.h"
+#include "coordinator/store/film_records.h"
+#include "coordinator/store/log_files.h"
 #include "core/base/result.h"
 #include "core/film/film.h"
 
 namespace hyades::coordinator {
 
-/// Makes films durable and merges them, on a thread of its own, so that render threads never wait
-/// for the disk: they hand films over and go on. Films are merged in memory only once they are
-/// durable (invariant 4).
-class FilmKeeper {
+/// The films that a store is for.
+struct FilmSet {
+  std::vector<int32_t> frames;
+  core::PixelRect region;  ///< of every frame
+  uint32_t samples = 1;    ///< per pixel, of the whole job
+  uint32_t batches = 1;    ///< that a complete film has
+};
+
+/// Where and how a store keeps its films.
+struct FilmStoreOptions {
+  std::string folder;  ///< empty: nothing is kept, the run cannot be resumed
+  /// Hash of what decides a frame's pixels: a kept film of another key is never mixed in, it ends
+  /// the run before it begins. Called by many threads. All frames have the same key where it is
+  /// empty.
+  std::function<FrameKey(int32_t frame)> frame_key;
+  /// Continue with what the folder holds; otherwise it is emptied first.
+  bool resume = false;
+  /// Films that may wait for the disk before those who hand them over wait too.
+  uint64_t max_waiting_bytes = uint64_t{512} << 20U;
+  /// The log is rewritten when it has grown by this much, and by as much as the films take.
+  uint64_t compact_bytes = uint64_t{256} << 20U;
+  /// The store gives up when nothing could be stored for this long.
+  Duration patience = std::chrono::seconds(30);
+  LogFiles* files = nullptr;  ///< the disk where null
+  /// Called by the log's thread: so long took the disk to make a group of films durable.
+  std::function<void(std::chrono::nanoseconds took)> on_sync{};
+};
+
+/// Makes films durable and merges them: a write-ahead log and the films in memory. It works on a
+/// thread of its own, so that render threads never wait for the disk: they hand films over and go
+/// on. Films are merged in memory only once they are durable (invariant 4).
+class FilmStore {
  public:
-  /// Whom the keeper's thread reports to.
+  /// Whom the store's thread reports to.
   class Owner {
    public:
     virtual ~Owner() = default;
@@ -39,13 +67,13 @@ class FilmKeeper {
     /// Nothing could be stored for too long.
     virtual void storage_failed(const std::string& reason) = 0;
     /// All that was handed over is durable or lost, and the thread ends.
-    virtual void keeper_done() = 0;
+    virtual void drained() = 0;
   };
 
-  FilmKeeper(const LocalPlan& plan, const LocalLog& log, Owner& owner);
-  ~FilmKeeper();
+  FilmStore(FilmSet films, FilmStoreOptions options, Owner& owner);
+  ~FilmStore();
 
-  /// Opens the log, if there is to be one, and returns what it holds of plan.frames.
+  /// Opens the log, if there is to be one, and returns what it holds of the frames it is for.
   core::Result<LogContents> open();
   /// The frame's outputs are gone: it will be rendered again. Before start().
   void reopen(int32_t frame) { finished_.erase(frame); }
@@ -78,10 +106,10 @@ class FilmKeeper {
   bool crowded() const;
   /// The disk is short: the log is rewritten soon, if that frees something.
   void make_room();
-  /// Has the keeper's thread call `what` soon.
+  /// Has the store's thread call `what` soon.
   void call(std::function<void()> what);
 
-  // The keeper's thread (from within Owner's functions), or before start().
+  // The store's thread (from within Owner's functions), or before start().
 
   /// Adds the film that was handed over as `record` and is durable now.
   core::Status merge(RecordId record);
@@ -118,13 +146,13 @@ class FilmKeeper {
   core::Status write_snapshot(const FilmLog::Sink& sink);
   void release(uint64_t memory);
 
-  const LocalPlan plan_;
-  const LocalLog options_;
+  const FilmSet set_;
+  const FilmStoreOptions options_;
   Owner& owner_;
 
   /// Shared with those who hand over and with the log's commit thread.
   mutable std::mutex mutex_;
-  std::condition_variable wake_;  ///< for the keeper
+  std::condition_variable wake_;  ///< for the store's thread
   std::condition_variable room_;  ///< for those who hand over
   std::deque<Item> queue_;
   uint64_t waiting_bytes_ = 0;
@@ -135,7 +163,7 @@ class FilmKeeper {
   std::string trouble_;
   TimePoint trouble_since_;
 
-  /// Of the keeper's thread.
+  /// Of the store's thread.
   std::deque<Item> appended_;  ///< not durable yet, or not settled
   Item* settling_ = nullptr;
   std::map<int32_t, std::shared_ptr<core::Film>> films_;

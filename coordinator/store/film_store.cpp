@@ -1,4 +1,4 @@
-#include "coordinator/local/film_keeper.h"
+#include "coordinator/store/film_store.h"
 
 #include <algorithm>
 #include <utility>
@@ -33,10 +33,10 @@ bool too_large(const core::Film& film) {
 
 }  // namespace
 
-FilmKeeper::FilmKeeper(const LocalPlan& plan, const LocalLog& log, Owner& owner)
-    : plan_(plan), options_(log), owner_(owner) {}
+FilmStore::FilmStore(FilmSet films, FilmStoreOptions options, Owner& owner)
+    : set_(std::move(films)), options_(std::move(options)), owner_(owner) {}
 
-FilmKeeper::~FilmKeeper() {
+FilmStore::~FilmStore() {
   drain();
   join();
   // Where it was never started somebody may wait still.
@@ -46,15 +46,15 @@ FilmKeeper::~FilmKeeper() {
   log_.reset();
 }
 
-void FilmKeeper::join() {
+void FilmStore::join() {
   if (thread_.joinable()) thread_.join();
 }
 
-FrameKey FilmKeeper::key_of(int32_t frame) const {
+FrameKey FilmStore::key_of(int32_t frame) const {
   return options_.frame_key ? options_.frame_key(frame) : FrameKey{};
 }
 
-core::Status FilmKeeper::open_log(bool erase) {
+core::Status FilmStore::open_log(bool erase) {
   log_.reset();
   LogFiles& files = options_.files != nullptr ? *options_.files : disk_log_files();
   if (core::Status made = files.make_folder(options_.folder); !made) return made;
@@ -83,11 +83,11 @@ core::Status FilmKeeper::open_log(bool erase) {
   return {};
 }
 
-core::Result<LogContents> FilmKeeper::open() {
+core::Result<LogContents> FilmStore::open() {
   if (options_.folder.empty()) return LogContents{};
   if (core::Status opened = open_log(!options_.resume); !opened) return opened.error();
   const LogWish wish{
-      {plan_.frames.begin(), plan_.frames.end()}, plan_.region, plan_.samples, options_.frame_key};
+      {set_.frames.begin(), set_.frames.end()}, set_.region, set_.samples, options_.frame_key};
   auto contents = read_log(*log_, wish);
   if (contents && !contents->empty && contents->cut.tile_size == 0) {
     // Its beginning is damaged: without the cut the films cannot be told apart into units.
@@ -109,31 +109,31 @@ core::Result<LogContents> FilmKeeper::open() {
   settled_sequence_ = log_->durable();
   others_films_ = contents->others;
   for (const auto& [frame, units] : contents->units) classes_[frame] = units.front().worker_class;
-  write_cut_ = contents->empty || contents->cut.region != plan_.region;
+  write_cut_ = contents->empty || contents->cut.region != set_.region;
   return contents;
 }
 
-core::Status FilmKeeper::start(int32_t tile_size) {
+core::Status FilmStore::start(int32_t tile_size) {
   tile_size_ = tile_size;
   if (log_ && write_cut_) {
-    auto written = log_->append(encode_cut({plan_.region, tile_size, plan_.samples}));
+    auto written = log_->append(encode_cut({set_.region, tile_size, set_.samples}));
     if (!written) return written.error();
   }
   thread_ = std::thread([this] { run(); });
   return {};
 }
 
-void FilmKeeper::push(Item item, bool may_wait) {
+void FilmStore::push(Item item, bool may_wait) {
   std::unique_lock lock(mutex_);
   if (may_wait) {
-    room_.wait(lock, [&] { return hurrying_ || waiting_bytes_ < plan_.max_waiting_bytes; });
+    room_.wait(lock, [&] { return hurrying_ || waiting_bytes_ < options_.max_waiting_bytes; });
   }
   waiting_bytes_ += item.memory;
   queue_.push_back(std::move(item));
   wake_.notify_one();
 }
 
-void FilmKeeper::keep(RecordId record, int32_t frame, core::Film film) {
+void FilmStore::keep(RecordId record, int32_t frame, core::Film film) {
   Item item;
   item.record = record;
   item.frame = frame;
@@ -144,8 +144,8 @@ void FilmKeeper::keep(RecordId record, int32_t frame, core::Film film) {
   push(std::move(item), true);
 }
 
-void FilmKeeper::keep_delivered(RecordId record, const AcceptedUnit& unit, core::Film film,
-                                std::vector<std::byte> bytes) {
+void FilmStore::keep_delivered(RecordId record, const AcceptedUnit& unit, core::Film film,
+                               std::vector<std::byte> bytes) {
   Item item;
   item.record = record;
   item.frame = unit.unit.frame;
@@ -156,7 +156,7 @@ void FilmKeeper::keep_delivered(RecordId record, const AcceptedUnit& unit, core:
   push(std::move(item), false);
 }
 
-void FilmKeeper::begin_again(RecordId record, int32_t frame) {
+void FilmStore::begin_again(RecordId record, int32_t frame) {
   Item item;
   item.record = record;
   item.kind = Item::Kind::begun_again;
@@ -165,7 +165,7 @@ void FilmKeeper::begin_again(RecordId record, int32_t frame) {
   push(std::move(item), false);
 }
 
-void FilmKeeper::void_tile(RecordId record, int32_t frame, const core::PixelRect& tile) {
+void FilmStore::void_tile(RecordId record, int32_t frame, const core::PixelRect& tile) {
   Item item;
   item.record = record;
   item.kind = Item::Kind::tile_voided;
@@ -175,7 +175,7 @@ void FilmKeeper::void_tile(RecordId record, int32_t frame, const core::PixelRect
   push(std::move(item), false);
 }
 
-void FilmKeeper::keep_dispute(RecordId record, bool open) {
+void FilmStore::keep_dispute(RecordId record, bool open) {
   Item item;
   item.record = record;
   item.kind = Item::Kind::dispute;
@@ -184,47 +184,47 @@ void FilmKeeper::keep_dispute(RecordId record, bool open) {
   push(std::move(item), false);
 }
 
-void FilmKeeper::call(std::function<void()> what) {
+void FilmStore::call(std::function<void()> what) {
   Item item;
   item.kind = Item::Kind::call;
   item.call = std::move(what);
   push(std::move(item), false);
 }
 
-void FilmKeeper::make_room() {
+void FilmStore::make_room() {
   const std::lock_guard lock(mutex_);
   room_wanted_ = true;
   wake_.notify_one();
 }
 
-bool FilmKeeper::crowded() const {
+bool FilmStore::crowded() const {
   const std::lock_guard lock(mutex_);
-  return waiting_bytes_ >= plan_.max_waiting_bytes;
+  return waiting_bytes_ >= options_.max_waiting_bytes;
 }
 
-void FilmKeeper::keep_finished(RecordId record, int32_t frame) {
+void FilmStore::keep_finished(RecordId record, int32_t frame) {
   Item item;
   item.record = record;
   item.kind = Item::Kind::finished;
   item.frame = frame;
-  if (logs()) item.bytes = encode_finished(frame, {key_of(frame), plan_.region});
+  if (logs()) item.bytes = encode_finished(frame, {key_of(frame), set_.region});
   push(std::move(item), false);
 }
 
-void FilmKeeper::keep_failed(RecordId record) {
+void FilmStore::keep_failed(RecordId record) {
   Item item;
   item.record = record;
   item.kind = Item::Kind::failed;
   push(std::move(item), false);
 }
 
-void FilmKeeper::hurry() {
+void FilmStore::hurry() {
   const std::lock_guard lock(mutex_);
   hurrying_ = true;
   room_.notify_all();
 }
 
-void FilmKeeper::drain() {
+void FilmStore::drain() {
   const std::lock_guard lock(mutex_);
   hurrying_ = true;
   draining_ = true;
@@ -232,12 +232,12 @@ void FilmKeeper::drain() {
   room_.notify_all();
 }
 
-std::string FilmKeeper::trouble() const {
+std::string FilmStore::trouble() const {
   const std::lock_guard lock(mutex_);
   return trouble_;
 }
 
-void FilmKeeper::run() {
+void FilmStore::run() {
   for (;;) {
     std::unique_lock lock(mutex_);
     const auto something = [&] {
@@ -280,10 +280,10 @@ void FilmKeeper::run() {
     if (!synced) owner_.storage_failed(synced.error().message);
     settle(log_->durable());
   }
-  owner_.keeper_done();
+  owner_.drained();
 }
 
-void FilmKeeper::append(std::deque<Item> items) {
+void FilmStore::append(std::deque<Item> items) {
   for (Item& item : items) {
     if (item.kind == Item::Kind::call) {
       item.call();
@@ -308,7 +308,7 @@ void FilmKeeper::append(std::deque<Item> items) {
   }
 }
 
-void FilmKeeper::settle(uint64_t durable) {
+void FilmStore::settle(uint64_t durable) {
   while (!appended_.empty() && appended_.front().sequence <= durable) {
     Item item = std::move(appended_.front());
     appended_.pop_front();
@@ -331,7 +331,7 @@ void FilmKeeper::settle(uint64_t durable) {
     if (item.kind == Item::Kind::dispute) disputed_ = item.open;
     if (!item.worker_class.empty()) classes_[item.frame] = item.worker_class;
     if (item.kind == Item::Kind::finished) {
-      finished_[item.frame] = {key_of(item.frame), plan_.region};
+      finished_[item.frame] = {key_of(item.frame), set_.region};
     }
     owner_.persisted(item.record);
     settling_ = nullptr;
@@ -339,37 +339,37 @@ void FilmKeeper::settle(uint64_t durable) {
   }
 }
 
-void FilmKeeper::release(uint64_t memory) {
+void FilmStore::release(uint64_t memory) {
   const std::lock_guard lock(mutex_);
   waiting_bytes_ -= memory;
   room_.notify_all();
 }
 
-core::Status FilmKeeper::merge(RecordId record) {
+core::Status FilmStore::merge(RecordId record) {
   if (settling_ == nullptr || settling_->record != record) {
     return core::Error{"a film is to be merged that is not at hand"};
   }
   auto& whole = films_[settling_->frame];
   const core::Film& film = settling_->film;
   if (!whole) {
-    whole = std::make_shared<core::Film>(film.layout(), plan_.region, film.splats().region());
+    whole = std::make_shared<core::Film>(film.layout(), set_.region, film.splats().region());
   }
   const core::Status merged = whole->merge(film);
   core::failpoint("mid-merge");
   return merged;
 }
 
-std::shared_ptr<const core::Film> FilmKeeper::film(int32_t frame) const {
+std::shared_ptr<const core::Film> FilmStore::film(int32_t frame) const {
   const auto it = films_.find(frame);
   return it == films_.end() ? nullptr : it->second;
 }
 
-void FilmKeeper::forget(int32_t frame, bool finished) {
+void FilmStore::forget(int32_t frame, bool finished) {
   if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
   const auto it = films_.find(frame);
   if (it == films_.end()) return;
   if (finished) classes_.erase(frame);
-  const uint64_t all = static_cast<uint64_t>(plan_.region.area()) * batches_of(plan_).count;
+  const uint64_t all = static_cast<uint64_t>(set_.region.area()) * set_.batches;
   if (!finished && log_ && it->second->coverage().volume() == all &&
       unfinished_.size() < kUnfinishedFilms) {
     unfinished_.insert(*it);
@@ -379,7 +379,7 @@ void FilmKeeper::forget(int32_t frame, bool finished) {
 
 /// Rewrites the log when films of finished frames, and units that could lie in it merged, fill it;
 /// where room is wanted, as soon as there is anything to gain.
-void FilmKeeper::compact_if_worthwhile(bool room_wanted) {
+void FilmStore::compact_if_worthwhile(bool room_wanted) {
   if (!log_ || settled_sequence_ == 0 || now() < compact_again_) return;
   // What nobody asks for now goes only when the log has grown.
   const bool gain = !others_films_ && (useless_bytes_ > 0 || log_bytes_ > snapshot_bytes_);
@@ -411,12 +411,12 @@ void FilmKeeper::compact_if_worthwhile(bool room_wanted) {
   trouble_ = done.error().message;
 }
 
-core::Status FilmKeeper::write_snapshot(const FilmLog::Sink& sink) {
+core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
   const auto put = [&](std::span<const std::byte> bytes) {
     snapshot_bytes_ += bytes.size();
     return sink(bytes);
   };
-  const CutRecord cut{plan_.region, tile_size_, plan_.samples};
+  const CutRecord cut{set_.region, tile_size_, set_.samples};
   core::Status status = put(encode_cut(cut));
   if (status && disputed_) status = put(encode_dispute(true));
   for (const auto& [frame, finished] : finished_) {

@@ -10,15 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/local/local_plan.h"
 #include "coordinator/scheduler/job_plan.h"
 #include "coordinator/store/film_log.h"
+#include "core/base/hash.h"
+#include "core/base/rect.h"
 #include "core/film/film.h"
 
 namespace hyades::coordinator {
 
 // The records of a film log, of a run on this machine or of a job of a farm. docs/film-log.md
 // describes the log, which does not know them.
+
+/// Hash of what decides a frame's pixels: films of different keys are never merged.
+using FrameKey = core::Sha256;
 
 /// What the log of every run begins with: how the frames are cut. Where the region differs from run
 /// to run (another crop), one stands before the films of each.

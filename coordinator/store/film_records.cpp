@@ -1,4 +1,4 @@
-#include "coordinator/local/local_log.h"
+#include "coordinator/store/film_records.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,9 +1,9 @@
 // Films that turned out wrong stay out, also after a restart.
 #include <gtest/gtest.h>
 
-#include "coordinator/local/local_log.h"
+#include "coordinator/store/film_records.h"
 #include "core/film/film_codec.h"
-#include "tests/coordinator/local/fake_render.h"
+#include "tests/coordinator/store/fake_film.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
