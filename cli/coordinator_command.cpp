@@ -23,7 +23,7 @@
 #include "cli/log_options.h"
 #include "coordinator/access/authority.h"
 #include "coordinator/access/first_admin.h"
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/notify/notifier.h"
 #include "coordinator/services/server.h"
 #include "coordinator/web/web_server.h"
@@ -36,8 +36,8 @@
 namespace {
 
 using hyades::coordinator::Authority;
-using hyades::coordinator::Brain;
-using hyades::coordinator::BrainOptions;
+using hyades::coordinator::Controller;
+using hyades::coordinator::ControllerOptions;
 using hyades::coordinator::Duration;
 using hyades::coordinator::Hook;
 using hyades::coordinator::Notifier;
@@ -54,7 +54,7 @@ Duration seconds(double value) {
 }
 
 struct Arguments {
-  BrainOptions brain;
+  ControllerOptions controller;
   hyades::farm::Listen listen;
   hyades::farm::LogOptions log;
   std::string http = kHttp;
@@ -80,7 +80,8 @@ std::string host_of(const std::string& url) {
 
 /// The dashboard and the HTTP API; null where there is to be none. Where nobody has asked for the
 /// address, somebody else may have it.
-hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& arguments, Brain& brain,
+hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& arguments,
+                                                           Controller& controller,
                                                            Authority& authority) {
   if (arguments.http == "off") return std::unique_ptr<WebServer>();
   hyades::farm::Listen listen = arguments.listen;
@@ -89,7 +90,7 @@ hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& argu
   if (const std::string host = host_of(arguments.news.dashboard); !host.empty()) {
     names.push_back(host);
   }
-  auto server = WebServer::start(listen, brain, authority, std::move(names));
+  auto server = WebServer::start(listen, controller, authority, std::move(names));
   if (server || arguments.http_asked) return server;
   hyades::farm::log(LogLevel::warning, "no dashboard: " + server.error().message +
                                            "; choose another place with --http");
@@ -106,14 +107,15 @@ void open_many_files() {
 }
 
 /// Tells those who want to hear of jobs; null where nobody does.
-std::unique_ptr<Notifier> open_notifier(const Arguments& arguments, Brain& brain,
+std::unique_ptr<Notifier> open_notifier(const Arguments& arguments, Controller& controller,
                                         const WebServer* http) {
   Notifier::Options options = arguments.news;
   if (options.hooks.empty() && options.chats.empty()) return nullptr;
   if (options.dashboard.empty() && http != nullptr) options.dashboard = http->url();
-  options.stall = std::chrono::duration_cast<std::chrono::milliseconds>(arguments.brain.stall_time);
+  options.stall =
+      std::chrono::duration_cast<std::chrono::milliseconds>(arguments.controller.stall_time);
   options.hook.tell = [](const std::string& line) { hyades::farm::log(LogLevel::warning, line); };
-  return std::make_unique<Notifier>(brain, std::move(options));
+  return std::make_unique<Notifier>(controller, std::move(options));
 }
 
 /// Writes where it listens; an empty text where it does not. That it cannot be written keeps
@@ -163,14 +165,14 @@ bool is_beyond(const Arguments& arguments) {
 /// for whoever runs the farm.
 hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments& arguments,
                                                                 const std::string& shared_token,
-                                                                Brain& brain) {
+                                                                Controller& controller) {
   Authority::Options options;
   options.shared_token = shared_token;
   options.beyond = is_beyond(arguments);
-  options.audit_folder = arguments.brain.folder;
+  options.audit_folder = arguments.controller.folder;
   options.plain = arguments.listen.cert_file.empty();
-  options.tell_unguarded = [&brain](const std::string& how) {
-    brain.set_unguarded(how);
+  options.tell_unguarded = [&controller](const std::string& how) {
+    controller.set_unguarded(how);
     if (!how.empty()) {
       hyades::farm::log(LogLevel::warning, how);
     }
@@ -178,14 +180,14 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
   options.tell_expiring = [](const std::string& line) {
     hyades::farm::log(LogLevel::warning, line);
   };
-  auto authority = Authority::open(brain.store(), options);
+  auto authority = Authority::open(controller.store(), options);
   if (!authority || !options.beyond || arguments.listen.insecure || (*authority)->has_admin()) {
     return authority;
   }
-  const auto made = hyades::coordinator::make_first_admin(**authority, arguments.brain.folder);
+  const auto made = hyades::coordinator::make_first_admin(**authority, arguments.controller.folder);
   if (!made) return made.error();
   hyades::farm::log(LogLevel::info,
-                    "an admin's token (" + made->id + ") is in " + arguments.brain.folder +
+                    "an admin's token (" + made->id + ") is in " + arguments.controller.folder +
                         "/admin-token and holds for 30 days: make your own with it (hyades token "
                         "create --role admin --name NAME), revoke it and remove the file");
   return authority;
@@ -228,37 +230,37 @@ int serve(const Arguments& arguments) {
   sigaddset(&signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-  auto brain = Brain::open(arguments.brain);
-  if (!brain) {
-    hyades::farm::log(LogLevel::error, brain.error().message);
+  auto controller = Controller::open(arguments.controller);
+  if (!controller) {
+    hyades::farm::log(LogLevel::error, controller.error().message);
     return 1;
   }
   {
-    auto authority = open_authority(arguments, door->token, **brain);
+    auto authority = open_authority(arguments, door->token, **controller);
     if (!authority) {
       hyades::farm::log(LogLevel::error, authority.error().message);
       return 1;
     }
-    auto server = Server::start(*door, **brain, **authority);
+    auto server = Server::start(*door, **controller, **authority);
     if (!server) {
       hyades::farm::log(LogLevel::error, server.error().message);
       return 1;
     }
-    note_address(arguments.brain.folder + "/address", (*server)->address() + "\n");
-    if (const grpc::Status room = (*brain)->admit(0); !room.ok()) {
+    note_address(arguments.controller.folder + "/address", (*server)->address() + "\n");
+    if (const grpc::Status room = (*controller)->admit(0); !room.ok()) {
       hyades::farm::log(LogLevel::error, room.error_message());
     }
-    auto http = open_http(arguments, **brain, **authority);
+    auto http = open_http(arguments, **controller, **authority);
     if (!http) {
       hyades::farm::log(LogLevel::error, http.error().message);
       return 1;
     }
-    const auto notifier = open_notifier(arguments, **brain, http->get());
-    note_address(arguments.brain.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
+    const auto notifier = open_notifier(arguments, **controller, http->get());
+    note_address(arguments.controller.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
     tell_where((*server)->address(), http->get());
     int signal = 0;
     sigwait(&signals, &signal);
-    (*brain)->stop();
+    (*controller)->stop();
   }
   return 0;
 }
@@ -272,7 +274,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Owns jobs, leases their units to workers, merges the films and writes the outputs.",
                "hyades coordinator");
-  app.add_option("--data", arguments.brain.folder, "folder for everything that is kept")
+  app.add_option("--data", arguments.controller.folder, "folder for everything that is kept")
       ->required();
   app.add_option("--listen", arguments.listen.address, "HOST:PORT; port 0 takes a free one")
       ->check(hyades::cli::address_error)
@@ -332,20 +334,20 @@ int main(int argc, char** argv) {
                  "a job's film log is rewritten when it has grown by this much")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();
-  app.add_option("--disk-budget", arguments.brain.disk.budget,
+  app.add_option("--disk-budget", arguments.controller.disk.budget,
                  "most bytes that the data may take, such as 200G (default: no limit)")
       ->transform(CLI::AsSizeValue(false));
-  app.add_option("--disk-reserve", arguments.brain.disk.reserve,
+  app.add_option("--disk-reserve", arguments.controller.disk.reserve,
                  "bytes of the disk to keep free (default: a twentieth of it, at most 2G)")
       ->transform(CLI::AsSizeValue(false));
-  app.add_option("--film-memory", arguments.brain.film_memory,
+  app.add_option("--film-memory", arguments.controller.film_memory,
                  "most bytes that films of frames in work may take in memory; jobs of which one "
                  "takes more are refused (default: half of the machine's memory)")
       ->transform(CLI::AsSizeValue(false));
   app.add_option_function<std::string>(
          "--price",
          [&](const std::string& text) {
-           if (const auto wrong = read_price(text, arguments.brain.price); !wrong.empty()) {
+           if (const auto wrong = read_price(text, arguments.controller.price); !wrong.empty()) {
              throw CLI::ValidationError("--price", wrong);
            }
          },
@@ -375,13 +377,13 @@ int main(int argc, char** argv) {
   }
   arguments.http_asked = http->count() > 0;
   arguments.listen.asks_tokens = true;  // open_authority sees to it
-  arguments.brain.finisher = hyades::core::program_folder() + "hyades-film";
-  arguments.brain.unit_time = seconds(arguments.unit_seconds);
-  arguments.brain.lease_time = seconds(arguments.lease_seconds);
-  arguments.brain.asset_grace = seconds(arguments.asset_grace);
-  arguments.brain.class_patience = seconds(arguments.class_patience);
-  arguments.brain.adoption_time = seconds(arguments.adoption_seconds);
-  arguments.brain.stall_time = seconds(arguments.stall_seconds);
-  arguments.brain.compact_bytes = static_cast<uint64_t>(arguments.compact_mb * 1e6);
+  arguments.controller.finisher = hyades::core::program_folder() + "hyades-film";
+  arguments.controller.unit_time = seconds(arguments.unit_seconds);
+  arguments.controller.lease_time = seconds(arguments.lease_seconds);
+  arguments.controller.asset_grace = seconds(arguments.asset_grace);
+  arguments.controller.class_patience = seconds(arguments.class_patience);
+  arguments.controller.adoption_time = seconds(arguments.adoption_seconds);
+  arguments.controller.stall_time = seconds(arguments.stall_seconds);
+  arguments.controller.compact_bytes = static_cast<uint64_t>(arguments.compact_mb * 1e6);
   return serve(arguments);
 }

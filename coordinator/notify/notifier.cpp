@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "coordinator/brain/all_pages.h"
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/all_pages.h"
+#include "coordinator/controller/controller.h"
 #include "farm/job_state.h"
 
 namespace hyades::coordinator {
@@ -21,23 +21,23 @@ std::vector<std::unique_ptr<Hook>> open_hooks(const std::vector<std::string>& ur
 }
 
 /// The newest job there is, ended or not; 0: none.
-uint64_t newest_job(Brain& brain) {
+uint64_t newest_job(Controller& controller) {
   v1::ListJobsRequest request;
   request.set_ended(true);
   request.set_limit(1);
   v1::ListJobsResponse response;
-  const bool known = brain.list(request, response).ok() && response.jobs_size() > 0;
+  const bool known = controller.list(request, response).ok() && response.jobs_size() > 0;
   return known ? response.jobs(0).id() : 0;
 }
 
 }  // namespace
 
-Notifier::Notifier(Brain& brain, Options options)
-    : brain_(brain),
+Notifier::Notifier(Controller& controller, Options options)
+    : controller_(controller),
       options_(std::move(options)),
       hooks_(open_hooks(options_.hooks, options_.hook)),
       chats_(open_hooks(options_.chats, options_.hook)),
-      newest_(newest_job(brain)) {
+      newest_(newest_job(controller)) {
   look();
   thread_ = std::thread([this] { run(); });
 }
@@ -63,7 +63,7 @@ void Notifier::run() {
 void Notifier::look() {
   const auto now = Clock::now();
   std::map<uint64_t, v1::Job> jobs;
-  for (const v1::Job& job : all_open_jobs(brain_)) jobs[job.id()] = job;
+  for (const v1::Job& job : all_open_jobs(controller_)) jobs[job.id()] = job;
   for (const auto& [id, job] : jobs) look_at(job, now);
   // What was open and is no more has ended, or was deleted since.
   for (auto seen = open_.begin(); seen != open_.end();) {
@@ -72,7 +72,7 @@ void Notifier::look() {
       continue;
     }
     v1::GetJobResponse got;
-    const grpc::Status status = brain_.get(seen->first, INT32_MAX, got);
+    const grpc::Status status = controller_.get(seen->first, INT32_MAX, got);
     if (status.error_code() == grpc::StatusCode::UNAVAILABLE) {
       ++seen;  // again with the next look
       continue;
@@ -99,7 +99,7 @@ void Notifier::look_at(const v1::Job& job, Clock::time_point now) {
   before.told = true;
   v1::ExplainResponse why;
   News news{News::Kind::stalled, job};
-  if (brain_.explain(job.id(), why).ok()) {
+  if (controller_.explain(job.id(), why).ok()) {
     news.reasons.assign(why.reasons().begin(), why.reasons().end());
   }
   tell(news);
@@ -111,8 +111,8 @@ void Notifier::tell_of_ended() {
   request.set_ended(true);
   v1::ListJobsResponse response;
   request.set_limit(100);
-  if (newest_job(brain_) <= newest_) return;
-  if (!brain_.list(request, response).ok()) return;
+  if (newest_job(controller_) <= newest_) return;
+  if (!controller_.list(request, response).ok()) return;
   // From the oldest on: one that is open and was not seen yet is looked at next time.
   for (auto job = response.jobs().rbegin(); job != response.jobs().rend(); ++job) {
     if (job->id() <= newest_) continue;

@@ -16,10 +16,10 @@
 
 namespace hyades::coordinator {
 
-class Brain;
+class Controller;
 
 /// Watches all jobs and posts what people want to hear of: that one is done, has failed, or stands
-/// still. It only asks the brain, so that nothing of the farm ever waits for it. Jobs that end
+/// still. It only asks the controller, so that nothing of the farm ever waits for it. Jobs that end
 /// while the coordinator ends are not told of.
 class Notifier {
  public:
@@ -31,8 +31,8 @@ class Notifier {
     std::chrono::milliseconds look{1000};
     Hook::Options hook{};  ///< of all; their URLs are those above
   };
-  /// `brain` outlives the notifier.
-  Notifier(Brain& brain, Options options);
+  /// `controller` outlives the notifier.
+  Notifier(Controller& controller, Options options);
   ~Notifier();
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;
@@ -52,7 +52,7 @@ class Notifier {
   void tell_of_ended();
   void tell(const News& news);
 
-  Brain& brain_;
+  Controller& controller_;
   const Options options_;
   std::vector<std::unique_ptr<Hook>> hooks_;
   std::vector<std::unique_ptr<Hook>> chats_;

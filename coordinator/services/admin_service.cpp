@@ -13,9 +13,9 @@ namespace {
 
 class AuditEntries final : public Producer<v1::AuditEntry> {
  public:
-  AuditEntries(grpc::CallbackServerContext& context, Clerks& clerks, AuditLog* log,
+  AuditEntries(grpc::CallbackServerContext& context, ThreadPool& pool, AuditLog* log,
                int64_t since_ms)
-      : Producer(context, clerks), log_(log), since_ms_(since_ms) {}
+      : Producer(context, pool), log_(log), since_ms_(since_ms) {}
 
  private:
   Step next(v1::AuditEntry& entry, grpc::Status& status, bool may_wait) override {
@@ -60,7 +60,7 @@ grpc::ServerUnaryReactor* AdminService::WhoAmI(Context* context, const Bytes* as
 grpc::ServerUnaryReactor* AdminService::CreateToken(Context* context, const Bytes* asked,
                                                     Bytes* said) {
   return answer_by<v1::CreateTokenRequest, v1::CreateTokenResponse>(
-      desks_.rows, {admission_, "Admin/CreateToken", context, asked, said},
+      executors_.rows, {admission_, "Admin/CreateToken", context, asked, said},
       [this](const v1::CreateTokenRequest& request, v1::CreateTokenResponse& response) {
         StoredToken row;
         const grpc::Status made = authority_.create(
@@ -85,7 +85,7 @@ grpc::ServerUnaryReactor* AdminService::ListTokens(Context* context, const Bytes
 grpc::ServerUnaryReactor* AdminService::RevokeToken(Context* context, const Bytes* asked,
                                                     Bytes* said) {
   return answer_by<v1::RevokeTokenRequest, v1::RevokeTokenResponse>(
-      desks_.rows, {admission_, "Admin/RevokeToken", context, asked, said},
+      executors_.rows, {admission_, "Admin/RevokeToken", context, asked, said},
       [this](const v1::RevokeTokenRequest& request, v1::RevokeTokenResponse& response) {
         StoredToken row;
         const grpc::Status done = authority_.revoke(request.id(), row);
@@ -101,7 +101,8 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* AdminService::Audit(Context* context
   v1::AuditRequest request;
   if (taken.ok()) taken = parse(*asked, farm::kMaxRequestBytes, request);
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new AuditEntries(*context, desks_.files, authority_.audit(), request.since_ms());
+  auto* stream =
+      new AuditEntries(*context, executors_.files, authority_.audit(), request.since_ms());
   stream->guard(admission_, caller);
   stream->begin();
   return stream;

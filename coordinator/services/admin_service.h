@@ -2,7 +2,7 @@
 
 #include "coordinator/access/authority.h"
 #include "coordinator/services/admission.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/services/executors.h"
 #include "hyades/v1/admin.grpc.pb.h"
 
 namespace hyades::coordinator {
@@ -16,8 +16,8 @@ using RawAdmin =
 /// Who may do what (admin_service.cpp).
 class AdminService final : public RawAdmin {
  public:
-  AdminService(Authority& authority, const Admission& admission, Desks& desks)
-      : authority_(authority), admission_(admission), desks_(desks) {}
+  AdminService(Authority& authority, const Admission& admission, Executors& executors)
+      : authority_(authority), admission_(admission), executors_(executors) {}
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -30,7 +30,7 @@ class AdminService final : public RawAdmin {
  private:
   Authority& authority_;
   const Admission& admission_;
-  Desks& desks_;
+  Executors& executors_;
 };
 
 }  // namespace hyades::coordinator

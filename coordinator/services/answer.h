@@ -11,7 +11,7 @@
 
 #include "coordinator/services/admission.h"
 #include "coordinator/services/audit_target.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/services/part_count.h"
 #include "coordinator/services/raw.h"
 #include "farm/wire_status.h"
@@ -105,13 +105,13 @@ grpc::ServerUnaryReactor* answer(Call call, What what) {
   return call.reactor;
 }
 
-/// An admitted call is answered by one of `clerks`: for what may wait.
+/// An admitted call is answered by a thread of `pool`: for what may wait.
 template <class Request, class Response, class What>
-grpc::ServerUnaryReactor* answer_by(Clerks& clerks, Call call, What what,
+grpc::ServerUnaryReactor* answer_by(ThreadPool& pool, Call call, What what,
                                     uint64_t limit = farm::kMaxRequestBytes) {
   if (const grpc::Status admitted = call.admit(); !admitted.ok()) {
     call.reactor->Finish(admitted);
-  } else if (!clerks.hand([call, what, limit]() mutable {
+  } else if (!pool.submit([call, what, limit]() mutable {
                answer_here<Request, Response>(call, what, limit);
              })) {
     call.reactor->Finish(crowded());
@@ -120,9 +120,9 @@ grpc::ServerUnaryReactor* answer_by(Clerks& clerks, Call call, What what,
 }
 
 /// An admitted call is answered at once where `known(request, response)` says yes, and otherwise by
-/// one of `clerks`, with what `what` makes of it.
+/// a thread of `pool`, with what `what` makes of it.
 template <class Request, class Response, class Known, class What>
-grpc::ServerUnaryReactor* answer_or_by(Clerks& clerks, Call call, Known known, What what) {
+grpc::ServerUnaryReactor* answer_or_by(ThreadPool& pool, Call call, Known known, What what) {
   Request request;
   Response response;
   grpc::Status status = call.admit();
@@ -131,7 +131,7 @@ grpc::ServerUnaryReactor* answer_or_by(Clerks& clerks, Call call, Known known, W
     call.reactor->Finish(status);
   } else if (known(request, response)) {
     call.finish(grpc::Status::OK, response);
-  } else if (!clerks.hand([call, what, request = std::move(request)] {
+  } else if (!pool.submit([call, what, request = std::move(request)] {
                Response found;
                const grpc::Status done = within_memory([&] { return what(request, found); });
                call.finish(done, found);

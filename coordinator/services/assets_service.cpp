@@ -28,12 +28,12 @@ grpc::Status invalid(const std::string& message) {
 class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
   /// `caller` has been admitted, or not.
-  Uploading(Brain& brain, Clerks& clerks, const Admission& admission,
+  Uploading(Controller& controller, ThreadPool& pool, const Admission& admission,
             grpc::CallbackServerContext& context, const Caller& caller,
             const grpc::Status& admitted)
-      : brain_(brain),
-        clerks_(clerks),
-        store_(brain.assets()),
+      : controller_(controller),
+        pool_(pool),
+        store_(controller.assets()),
         caller_(caller),
         audit_(admission.audit()) {
     if (admitted.ok()) {
@@ -45,7 +45,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   }
 
   void OnReadDone(bool ok) override {
-    if (!clerks_.hand([this, ok] { take_part(ok); })) Finish(crowded());
+    if (!pool_.submit([this, ok] { take_part(ok); })) Finish(crowded());
   }
 
   void OnDone() override { delete this; }
@@ -88,7 +88,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
       return grpc::Status::OK;
     }
     const uint64_t begun = std::min(store_.begun(name), part.size());
-    if (grpc::Status room = brain_.admit(part.size() - begun); !room.ok()) return room;
+    if (grpc::Status room = controller_.admit(part.size() - begun); !room.ok()) return room;
     auto writer = store_.write(name, part.size());
     if (!writer) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
@@ -123,9 +123,9 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     if (data.size() > writer_->size() - writer_->offset()) {
       return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
     }
-    if (brain_.disk_is_full()) {
+    if (controller_.disk_is_full()) {
       // What has come stays for a later upload to go on with.
-      if (grpc::Status room = brain_.admit(0); !room.ok()) return room;
+      if (grpc::Status room = controller_.admit(0); !room.ok()) return room;
     }
     if (auto written = writer_->append(data); !written) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, written.error().message,
@@ -133,15 +133,15 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     }
     if (writer_->offset() < writer_->size()) return grpc::Status::OK;
     if (auto whole = writer_->commit(); !whole) {
-      if (grpc::Status room = brain_.admit(0); !room.ok()) return room;
+      if (grpc::Status room = controller_.admit(0); !room.ok()) return room;
       return {grpc::StatusCode::DATA_LOSS, whole.error().message};
     }
     done_ = true;
     return grpc::Status::OK;
   }
 
-  Brain& brain_;
-  Clerks& clerks_;
+  Controller& controller_;
+  ThreadPool& pool_;
   farm::ContentStore& store_;
   const Caller caller_;
   AuditLog* const audit_;
@@ -172,7 +172,7 @@ grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context, const Byt
     return grpc::Status::OK;
   };
   return answer_by<v1::FindMissingRequest, v1::FindMissingResponse>(
-      desks_.files, {admission_, "Assets/FindMissing", context, asked, said}, find,
+      executors_.files, {admission_, "Assets/FindMissing", context, asked, said}, find,
       farm::kMaxMessageBytes);
 }
 
@@ -180,7 +180,7 @@ grpc::ServerReadReactor<grpc::ByteBuffer>* AssetsService::Upload(Context* contex
   (void)serialise(v1::UploadResponse(), *said);
   Caller caller;
   const grpc::Status admitted = admission_.check(*context, rule_of_method("Assets/Upload"), caller);
-  return new Uploading(brain_, desks_.files, admission_, *context, caller, admitted);
+  return new Uploading(controller_, executors_.files, admission_, *context, caller, admitted);
 }
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* context,
@@ -202,7 +202,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* con
     file = std::move(*bytes);
     return grpc::Status::OK;
   };
-  auto* stream = new FileStream(*context, desks_.files, open, request.offset());
+  auto* stream = new FileStream(*context, executors_.files, open, request.offset());
   stream->guard(admission_, caller);
   return stream;
 }

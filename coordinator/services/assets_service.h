@@ -1,8 +1,8 @@
 #pragma once
 
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/admission.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/services/executors.h"
 #include "hyades/v1/assets.grpc.pb.h"
 
 namespace hyades::coordinator {
@@ -15,8 +15,11 @@ using RawAssets =
 /// Files by content (assets_service.cpp).
 class AssetsService final : public RawAssets {
  public:
-  AssetsService(Brain& brain, const Admission& admission, Desks& desks)
-      : brain_(brain), store_(brain.assets()), admission_(admission), desks_(desks) {}
+  AssetsService(Controller& controller, const Admission& admission, Executors& executors)
+      : controller_(controller),
+        store_(controller.assets()),
+        admission_(admission),
+        executors_(executors) {}
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -25,10 +28,10 @@ class AssetsService final : public RawAssets {
   grpc::ServerWriteReactor<Bytes>* Download(Context* context, const Bytes* asked) override;
 
  private:
-  Brain& brain_;
+  Controller& controller_;
   farm::ContentStore& store_;
   const Admission& admission_;
-  Desks& desks_;
+  Executors& executors_;
 };
 
 }  // namespace hyades::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/admission.h"
 #include "hyades/v1/farm.grpc.pb.h"
 
@@ -14,7 +14,8 @@ using RawFarm = v1::Farm::WithRawCallbackMethod_Info<v1::Farm::WithRawCallbackMe
 /// What operators ask for (farm_service.cpp).
 class FarmService final : public RawFarm {
  public:
-  FarmService(Brain& brain, const Admission& admission) : brain_(brain), admission_(admission) {}
+  FarmService(Controller& controller, const Admission& admission)
+      : controller_(controller), admission_(admission) {}
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -27,7 +28,7 @@ class FarmService final : public RawFarm {
                                           Bytes* said) override;
 
  private:
-  Brain& brain_;
+  Controller& controller_;
   const Admission& admission_;
 };
 

@@ -23,10 +23,10 @@ class Refusal final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
 /// A file's bytes from an offset on, in chunks. To touch them is to read the disk.
 class FileStream final : public Producer<v1::Chunk> {
  public:
-  /// `open` finds the bytes, or says why not; called once, by one of the clerks.
+  /// `open` finds the bytes, or says why not; called once, by a thread of the pool.
   using Open = std::function<grpc::Status(core::Bytes&)>;
-  FileStream(grpc::CallbackServerContext& context, Clerks& clerks, Open open, uint64_t offset)
-      : Producer(context, clerks), open_(std::move(open)), offset_(offset) {
+  FileStream(grpc::CallbackServerContext& context, ThreadPool& pool, Open open, uint64_t offset)
+      : Producer(context, pool), open_(std::move(open)), offset_(offset) {
     begin();
   }
 

@@ -16,74 +16,74 @@ std::optional<int32_t> after(const v1::GetJobRequest& request) {
 
 grpc::ServerUnaryReactor* JobsService::Submit(Context* context, const Bytes* asked, Bytes* said) {
   return answer_by<v1::SubmitRequest, v1::SubmitResponse>(
-      desks_.files, {admission_, "Jobs/Submit", context, asked, said},
+      executors_.files, {admission_, "Jobs/Submit", context, asked, said},
       [this](v1::SubmitRequest& request, v1::SubmitResponse& response, const Caller& caller) {
         bool proven = false;
         const grpc::Status owned = name_owner(caller, request, proven);
-        return owned.ok() ? brain_.submit(request, proven, response) : owned;
+        return owned.ok() ? controller_.submit(request, proven, response) : owned;
       },
       farm::kMaxMessageBytes);
 }
 
 grpc::ServerUnaryReactor* JobsService::List(Context* context, const Bytes* asked, Bytes* said) {
   return answer_or_by<v1::ListJobsRequest, v1::ListJobsResponse>(
-      desks_.rows, {admission_, "Jobs/List", context, asked, said},
+      executors_.rows, {admission_, "Jobs/List", context, asked, said},
       [this](const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
-        return brain_.list_open(request, response);
+        return controller_.list_open(request, response);
       },
       [this](const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
-        return brain_.list(request, response);
+        return controller_.list(request, response);
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::Get(Context* context, const Bytes* asked, Bytes* said) {
   return answer_or_by<v1::GetJobRequest, v1::GetJobResponse>(
-      desks_.rows, {admission_, "Jobs/Get", context, asked, said},
+      executors_.rows, {admission_, "Jobs/Get", context, asked, said},
       [this](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
-        return brain_.get_open(request.job(), after(request), response, request.state());
+        return controller_.get_open(request.job(), after(request), response, request.state());
       },
       [this](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
-        return brain_.get(request.job(), after(request), response, request.state());
+        return controller_.get(request.job(), after(request), response, request.state());
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::Explain(Context* context, const Bytes* asked, Bytes* said) {
   return answer_or_by<v1::JobRequest, v1::ExplainResponse>(
-      desks_.rows, {admission_, "Jobs/Explain", context, asked, said},
+      executors_.rows, {admission_, "Jobs/Explain", context, asked, said},
       [this](const v1::JobRequest& request, v1::ExplainResponse& response) {
-        return brain_.explain_open(request.job(), response);
+        return controller_.explain_open(request.job(), response);
       },
       [this](const v1::JobRequest& request, v1::ExplainResponse& response) {
-        return brain_.explain(request.job(), response);
+        return controller_.explain(request.job(), response);
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::ListTimeline(Context* context, const Bytes* asked,
                                                     Bytes* said) {
   return answer_by<v1::ListTimelineRequest, v1::ListTimelineResponse>(
-      desks_.rows, {admission_, "Jobs/ListTimeline", context, asked, said},
+      executors_.rows, {admission_, "Jobs/ListTimeline", context, asked, said},
       [this](const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response) {
-        return brain_.timeline(request, response);
+        return controller_.timeline(request, response);
       });
 }
 
 template <class Request>
-grpc::ServerUnaryReactor* JobsService::steer(Call call,
-                                             void (*what)(Brain&, const Request&, Brain::Told)) {
+grpc::ServerUnaryReactor* JobsService::steer(Call call, void (*what)(Controller&, const Request&,
+                                                                     Controller::JobReply)) {
   Request request;
   grpc::Status status = call.admit();
   if (status.ok()) status = parse(*call.asked, farm::kMaxRequestBytes, request);
   if (!status.ok()) {
     call.reactor->Finish(status);
-  } else if (!desks_.rows.hand([this, call, what, request = std::move(request)] {
+  } else if (!executors_.rows.submit([this, call, what, request = std::move(request)] {
                const auto told = [call, request](const grpc::Status& done, const v1::Job& now) {
                  v1::JobResponse response;
                  *response.mutable_job() = now;
                  call.note(done, request, response);
                  call.finish(done, response);
                };
-               const grpc::Status his = may_steer(brain_, call.caller, request.job());
-               his.ok() ? what(brain_, request, told) : told(his, {});
+               const grpc::Status his = may_steer(controller_, call.caller, request.job());
+               his.ok() ? what(controller_, request, told) : told(his, {});
              })) {
     call.reactor->Finish(crowded());
   }
@@ -91,50 +91,53 @@ grpc::ServerUnaryReactor* JobsService::steer(Call call,
 }
 
 grpc::ServerUnaryReactor* JobsService::Pause(Context* context, const Bytes* asked, Bytes* said) {
-  return steer<v1::JobRequest>({admission_, "Jobs/Pause", context, asked, said},
-                               [](Brain& brain, const v1::JobRequest& request, Brain::Told then) {
-                                 brain.pause(request.job(), std::move(then));
-                               });
+  return steer<v1::JobRequest>(
+      {admission_, "Jobs/Pause", context, asked, said},
+      [](Controller& controller, const v1::JobRequest& request, Controller::JobReply then) {
+        controller.pause(request.job(), std::move(then));
+      });
 }
 
 grpc::ServerUnaryReactor* JobsService::Resume(Context* context, const Bytes* asked, Bytes* said) {
-  return steer<v1::JobRequest>({admission_, "Jobs/Resume", context, asked, said},
-                               [](Brain& brain, const v1::JobRequest& request, Brain::Told then) {
-                                 brain.resume(request.job(), std::move(then));
-                               });
+  return steer<v1::JobRequest>(
+      {admission_, "Jobs/Resume", context, asked, said},
+      [](Controller& controller, const v1::JobRequest& request, Controller::JobReply then) {
+        controller.resume(request.job(), std::move(then));
+      });
 }
 
 grpc::ServerUnaryReactor* JobsService::Cancel(Context* context, const Bytes* asked, Bytes* said) {
-  return steer<v1::JobRequest>({admission_, "Jobs/Cancel", context, asked, said},
-                               [](Brain& brain, const v1::JobRequest& request, Brain::Told then) {
-                                 brain.cancel(request.job(), std::move(then));
-                               });
+  return steer<v1::JobRequest>(
+      {admission_, "Jobs/Cancel", context, asked, said},
+      [](Controller& controller, const v1::JobRequest& request, Controller::JobReply then) {
+        controller.cancel(request.job(), std::move(then));
+      });
 }
 
 grpc::ServerUnaryReactor* JobsService::SetPriority(Context* context, const Bytes* asked,
                                                    Bytes* said) {
   return steer<v1::SetPriorityRequest>(
       {admission_, "Jobs/SetPriority", context, asked, said},
-      [](Brain& brain, const v1::SetPriorityRequest& request, Brain::Told then) {
-        brain.set_priority(request.job(), request.priority(), std::move(then));
+      [](Controller& controller, const v1::SetPriorityRequest& request, Controller::JobReply then) {
+        controller.set_priority(request.job(), request.priority(), std::move(then));
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::Retry(Context* context, const Bytes* asked, Bytes* said) {
   return answer_by<v1::JobRequest, v1::JobResponse>(
-      desks_.files, {admission_, "Jobs/Retry", context, asked, said},
+      executors_.files, {admission_, "Jobs/Retry", context, asked, said},
       [this](const v1::JobRequest& request, v1::JobResponse& response, const Caller& caller) {
-        const grpc::Status his = may_steer(brain_, caller, request.job());
-        return his.ok() ? brain_.retry(request.job(), *response.mutable_job()) : his;
+        const grpc::Status his = may_steer(controller_, caller, request.job());
+        return his.ok() ? controller_.retry(request.job(), *response.mutable_job()) : his;
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::Delete(Context* context, const Bytes* asked, Bytes* said) {
   return answer_by<v1::JobRequest, v1::DeleteJobResponse>(
-      desks_.files, {admission_, "Jobs/Delete", context, asked, said},
+      executors_.files, {admission_, "Jobs/Delete", context, asked, said},
       [this](const v1::JobRequest& request, v1::DeleteJobResponse&, const Caller& caller) {
-        const grpc::Status his = may_steer(brain_, caller, request.job());
-        return his.ok() ? brain_.remove(request.job()) : his;
+        const grpc::Status his = may_steer(controller_, caller, request.job());
+        return his.ok() ? controller_.remove(request.job()) : his;
       });
 }
 

@@ -2,9 +2,9 @@
 
 #include <atomic>
 
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/answer.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/services/executors.h"
 #include "hyades/v1/jobs.grpc.pb.h"
 
 namespace hyades::coordinator {
@@ -24,8 +24,8 @@ using RawJobs = v1::Jobs::WithRawCallbackMethod_Submit<v1::Jobs::WithRawCallback
 /// What clients ask about jobs (jobs_service.cpp, jobs_streams.cpp).
 class JobsService final : public RawJobs {
  public:
-  JobsService(Brain& brain, const Admission& admission, Desks& desks)
-      : brain_(brain), admission_(admission), desks_(desks) {}
+  JobsService(Controller& controller, const Admission& admission, Executors& executors)
+      : controller_(controller), admission_(admission), executors_(executors) {}
 
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
@@ -50,11 +50,12 @@ class JobsService final : public RawJobs {
  private:
   /// What a method does that takes a job and answers with how it is now.
   template <class Request>
-  grpc::ServerUnaryReactor* steer(Call call, void (*what)(Brain&, const Request&, Brain::Told));
+  grpc::ServerUnaryReactor* steer(Call call,
+                                  void (*what)(Controller&, const Request&, Controller::JobReply));
 
-  Brain& brain_;
+  Controller& controller_;
   const Admission& admission_;
-  Desks& desks_;
+  Executors& executors_;
   std::atomic<int> films_{0};  ///< on their way
 };
 

@@ -43,22 +43,23 @@ grpc::Status take_in(const Admission& admission, const char* method,
 template <class Message>
 class Follower : public Producer<Message> {
  protected:
-  Follower(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain, uint64_t job)
-      : Producer<Message>(context, clerks), brain_(brain), job_(job) {
-    watch_ = brain.watch(job, [poker = this->poker()] { poker->poke(); });
+  Follower(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
+           uint64_t job)
+      : Producer<Message>(context, pool), controller_(controller), job_(job) {
+    watch_ = controller.watch(job, [poker = this->poker()] { poker->poke(); });
   }
-  void over() override { brain_.unwatch(watch_); }
+  void over() override { controller_.unwatch(watch_); }
 
   /// Whether nothing can come any more, or why the job cannot be followed.
   grpc::Status ended(bool& ended) {
     v1::WatchEvent event;
     told_.version = std::max<uint64_t>(told_.version, 1);
-    return brain_.changes(job_, told_, event, ended);
+    return controller_.changes(job_, told_, event, ended);
   }
 
-  Brain& brain_;
+  Controller& controller_;
   const uint64_t job_;
-  Brain::ToldOf told_;
+  Controller::ChangeCursor told_;
 
  private:
   uint64_t watch_ = 0;
@@ -66,17 +67,18 @@ class Follower : public Producer<Message> {
 
 class Watching final : public Follower<v1::WatchEvent> {
  public:
-  Watching(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain, uint64_t job)
-      : Follower(context, clerks, brain, job) {}
+  Watching(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
+           uint64_t job)
+      : Follower(context, pool, controller, job) {}
 
  private:
   Step next(v1::WatchEvent& event, grpc::Status& status, bool may_wait) override {
     if (ended_) return Step::end;
-    const Brain::ToldOf before = told_;
+    const Controller::ChangeCursor before = told_;
     bool over = false;
-    if (!brain_.changes_of_open(job_, told_, event)) {
+    if (!controller_.changes_of_open(job_, told_, event)) {
       if (!may_wait) return Step::hand;
-      status = brain_.changes(job_, told_, event, over);
+      status = controller_.changes(job_, told_, event, over);
       if (!status.ok()) return Step::end;
     }
     ended_ = over && !event.more();
@@ -88,9 +90,9 @@ class Watching final : public Follower<v1::WatchEvent> {
 
 class OutputList final : public Follower<v1::OutputFile> {
  public:
-  OutputList(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain,
+  OutputList(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
              const v1::OutputsRequest& request)
-      : Follower(context, clerks, brain, request.job()), request_(request) {}
+      : Follower(context, pool, controller, request.job()), request_(request) {}
 
  private:
   bool wanted(int32_t frame) const {
@@ -120,7 +122,7 @@ class OutputList final : public Follower<v1::OutputFile> {
       bool over = false;
       status = ended(over);
       if (!status.ok()) return Step::end;
-      auto outputs = brain_.store().outputs(job_, seen_, kRowsAtOnce);
+      auto outputs = controller_.store().outputs(job_, seen_, kRowsAtOnce);
       if (!outputs) {
         status = farm::unavailable(outputs.error());
         return Step::end;
@@ -129,7 +131,7 @@ class OutputList final : public Follower<v1::OutputFile> {
       if (!all) seen_ = outputs->back().number;
       for (const StoredOutput& output : *outputs) {
         // Those for a video go when it is made, and are of use only where it never will be.
-        if (!over && brain_.is_for_video(job_, output.path)) {
+        if (!over && controller_.is_for_video(job_, output.path)) {
           passed_over_.insert(output.path);
         } else if (!again_ || passed_over_.contains(output.path)) {
           ready_.push_back(output);
@@ -156,9 +158,11 @@ class OutputList final : public Follower<v1::OutputFile> {
 
 class LogLines final : public Follower<v1::LogLine> {
  public:
-  LogLines(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain,
+  LogLines(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
            const v1::LogsRequest& request)
-      : Follower(context, clerks, brain, request.job()), request_(request), seen_(request.after()) {
+      : Follower(context, pool, controller, request.job()),
+        request_(request),
+        seen_(request.after()) {
     frames_.insert(request.frames().begin(), request.frames().end());
   }
 
@@ -183,7 +187,7 @@ class LogLines final : public Follower<v1::LogLine> {
       bool over = false;
       status = ended(over);
       if (!status.ok()) return Step::end;
-      auto lines = brain_.store().lines(job_, seen_, kRowsAtOnce);
+      auto lines = controller_.store().lines(job_, seen_, kRowsAtOnce);
       if (!lines) {
         status = farm::unavailable(lines.error());
         return Step::end;
@@ -206,10 +210,10 @@ class LogLines final : public Follower<v1::LogLine> {
 class FilmStream final : public Producer<v1::FilmPart> {
  public:
   /// `open` counts such streams.
-  FilmStream(grpc::CallbackServerContext& context, Clerks& clerks, Brain& brain,
+  FilmStream(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
              v1::FilmRequest request, std::atomic<int>& open)
-      : Producer(context, clerks),
-        brain_(brain),
+      : Producer(context, pool),
+        controller_(controller),
         request_(std::move(request)),
         open_(open),
         found_(std::make_shared<Found>()) {
@@ -229,7 +233,7 @@ class FilmStream final : public Producer<v1::FilmPart> {
 
   /// The stream may be over before the film is found.
   void ask() {
-    const grpc::Status asked = brain_.film(
+    const grpc::Status asked = controller_.film(
         request_.job(), request_.frame(),
         [found = found_, poker = poker()](const grpc::Status& said, const core::FilmInfo& info,
                                           std::shared_ptr<const core::Film> film) {
@@ -267,7 +271,7 @@ class FilmStream final : public Producer<v1::FilmPart> {
     return Step::message;
   }
 
-  Brain& brain_;
+  Controller& controller_;
   const v1::FilmRequest request_;
   std::atomic<int>& open_;
   const std::shared_ptr<Found> found_;
@@ -284,7 +288,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Watch(Context* context,
   Caller caller;
   const grpc::Status taken = take_in(admission_, "Jobs/Watch", *context, *asked, request, caller);
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new Watching(*context, desks_.rows, brain_, request.job());
+  auto* stream = new Watching(*context, executors_.rows, controller_, request.job());
   stream->guard(admission_, caller);
   stream->begin();
   return stream;
@@ -297,7 +301,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Outputs(Context* contex
   grpc::Status taken = take_in(admission_, "Jobs/Outputs", *context, *asked, request, caller);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("ranges of frames");
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new OutputList(*context, desks_.rows, brain_, request);
+  auto* stream = new OutputList(*context, executors_.rows, controller_, request);
   stream->guard(admission_, caller);
   stream->begin();
   return stream;
@@ -310,7 +314,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
   grpc::Status taken = take_in(admission_, "Jobs/Logs", *context, *asked, request, caller);
   if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("frames");
   if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new LogLines(*context, desks_.rows, brain_, request);
+  auto* stream = new LogLines(*context, executors_.rows, controller_, request);
   stream->guard(admission_, caller);
   stream->begin();
   return stream;
@@ -325,7 +329,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
   const uint64_t offset = request.offset();
   const auto open = [this, request = std::move(request)](core::Bytes& file) -> grpc::Status {
     // The path is looked up among the job's outputs and never taken for one of the file system's.
-    const auto output = brain_.store().output(request.job(), request.path());
+    const auto output = controller_.store().output(request.job(), request.path());
     if (!output) return farm::unavailable(output.error());
     if (!*output) {
       return {grpc::StatusCode::NOT_FOUND,
@@ -335,7 +339,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
       return {grpc::StatusCode::FAILED_PRECONDITION,
               request.path() + " has been rendered again: fetch it from its beginning"};
     }
-    auto bytes = core::map_file(brain_.output_folder(request.job()) + "/" + (*output)->path);
+    auto bytes = core::map_file(controller_.output_folder(request.job()) + "/" + (*output)->path);
     if (!bytes || bytes->size() != (*output)->size) {
       return {grpc::StatusCode::DATA_LOSS,
               request.path() + " is damaged on the coordinator's disk"};
@@ -343,7 +347,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
     file = std::move(*bytes);
     return grpc::Status::OK;
   };
-  auto* stream = new FileStream(*context, desks_.files, open, offset);
+  auto* stream = new FileStream(*context, executors_.files, open, offset);
   stream->guard(admission_, caller);
   return stream;
 }
@@ -359,7 +363,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
                                          "enough films are on their way to others",
                                          std::chrono::seconds(2)));
   }
-  auto* stream = new FilmStream(*context, desks_.files, brain_, request, films_);
+  auto* stream = new FilmStream(*context, executors_.files, controller_, request, films_);
   stream->guard(admission_, caller);
   return stream;
 }

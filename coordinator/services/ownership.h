@@ -3,13 +3,13 @@
 #include <grpcpp/support/status.h>
 
 #include "coordinator/access/caller.h"
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 
 namespace hyades::coordinator {
 
 /// Whether the caller may steer that job: its owner may, and operators. NOT_FOUND, or
 /// PERMISSION_DENIED. May wait for the store.
-grpc::Status may_steer(Brain& brain, const Caller& caller, uint64_t job);
+grpc::Status may_steer(Controller& controller, const Caller& caller, uint64_t job);
 
 /// Puts in whose job it will be: the token's name, or, where that is none, the login. Another owner
 /// is for operators: PERMISSION_DENIED. `proven`: a token stands for the name, the owner's own or

@@ -10,7 +10,7 @@
 #include <grpcpp/support/status.h>
 
 #include "coordinator/services/admission.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/services/raw.h"
 
 namespace hyades::coordinator {
@@ -27,8 +27,8 @@ class Poker {
 
 /// A stream of messages to a client, produced as fast as it reads: next() is called again when the
 /// last message is on its way, or, after it had nothing, when somebody pokes. Where it would have
-/// to wait (for the disk, say) it has itself called by a clerk. Broken off where the client does
-/// not read, or the clerks have too much to do. Deletes itself.
+/// to wait (for the disk, say) it has itself called by a thread of the pool. Broken off where the
+/// client does not read, or the pool has too much to do. Deletes itself.
 template <class Message>
 class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
@@ -66,11 +66,11 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   }
 
  protected:
-  Producer(grpc::CallbackServerContext& context, Clerks& clerks,
+  Producer(grpc::CallbackServerContext& context, ThreadPool& pool,
            std::chrono::milliseconds patience = kReaderPatience)
       : handle_(std::make_shared<Handle>(this)),
         context_(context),
-        clerks_(clerks),
+        pool_(pool),
         patience_(patience) {}
 
   /// Puts the next message, or, where it says end, the status. May say `hand` where it may not
@@ -153,7 +153,7 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
       if (step == Step::message) return write();
       if (step == Step::end) return Finish(status);
       if (step == Step::hand) {
-        if (!clerks_.hand([this] { advance(true); })) Finish(crowded());
+        if (!pool_.submit([this] { advance(true); })) Finish(crowded());
         return;
       }
       const std::lock_guard lock(mutex_);
@@ -173,7 +173,7 @@ class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
 
   const std::shared_ptr<Handle> handle_;
   grpc::CallbackServerContext& context_;
-  Clerks& clerks_;
+  ThreadPool& pool_;
   const std::chrono::milliseconds patience_;
   std::unique_ptr<grpc::Alarm> too_slow_;  ///< while a message is on its way
   Message message_;

@@ -32,16 +32,16 @@ constexpr int kMostCalls = 100;
 }  // namespace
 
 struct Server::Parts {
-  Parts(Brain& brain, Authority& authority, bool workers_show)
+  Parts(Controller& controller, Authority& authority, bool workers_show)
       : admission(authority, workers_show),
-        work(brain, admission),
-        jobs(brain, admission, desks),
-        assets(brain, admission, desks),
-        farm(brain, admission),
-        admin(authority, admission, desks) {}
+        work(controller, admission),
+        jobs(controller, admission, executors),
+        assets(controller, admission, executors),
+        farm(controller, admission),
+        admin(authority, admission, executors) {}
 
   Admission admission;
-  Desks desks;
+  Executors executors;
   WorkService work;
   JobsService jobs;
   AssetsService assets;
@@ -57,9 +57,9 @@ Server::~Server() {
   parts_->server->Wait();
 }
 
-core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brain& brain,
+core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Controller& controller,
                                                     Authority& authority, const Options& options) {
-  auto parts = std::make_unique<Parts>(brain, authority, door.workers_show);
+  auto parts = std::make_unique<Parts>(controller, authority, door.workers_show);
   grpc::ServerBuilder builder;
   int port = 0;
   builder.AddListeningPort(door.address, door.credentials, &port);
@@ -68,7 +68,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brai
   builder.RegisterService(&parts->assets);
   builder.RegisterService(&parts->farm);
   builder.RegisterService(&parts->admin);
-  builder.experimental().SetInterceptorCreators(count_calls(brain.meters()));
+  builder.experimental().SetInterceptorCreators(count_calls(controller.meters()));
   builder.SetMaxReceiveMessageSize(static_cast<int>(farm::kMaxResultBytes));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
@@ -93,7 +93,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Brai
   }
   std::unique_ptr<Server> server(new Server(std::move(parts)));
   server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
-  brain.listens_at(server->address_);
+  controller.listens_at(server->address_);
   return server;
 }
 

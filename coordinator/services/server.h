@@ -10,9 +10,9 @@
 namespace hyades::coordinator {
 
 class Authority;
-class Brain;
+class Controller;
 
-/// The coordinator's gRPC server: services over a brain.
+/// The coordinator's gRPC server: services over a controller.
 class Server {
  public:
   struct Options {
@@ -21,13 +21,13 @@ class Server {
     std::chrono::milliseconds idle = std::chrono::minutes(5);
   };
 
-  /// Listens; an error where the address is taken or not this machine's. `brain` and `authority`,
-  /// which says who may come in, outlive the server.
-  static core::Result<std::unique_ptr<Server>> start(const farm::Door& door, Brain& brain,
+  /// Listens; an error where the address is taken or not this machine's. `controller` and
+  /// `authority`, which says who may come in, outlive the server.
+  static core::Result<std::unique_ptr<Server>> start(const farm::Door& door, Controller& controller,
                                                      Authority& authority, const Options& options);
-  static core::Result<std::unique_ptr<Server>> start(const farm::Door& door, Brain& brain,
+  static core::Result<std::unique_ptr<Server>> start(const farm::Door& door, Controller& controller,
                                                      Authority& authority) {
-    return start(door, brain, authority, {});
+    return start(door, controller, authority, {});
   }
 
   /// Ends all calls and stops listening.

@@ -19,7 +19,7 @@ namespace {
 constexpr size_t kMostWaiting = 100'000;
 constexpr uint64_t kMostWaitingBytes = uint64_t{64} << 20U;
 
-/// The stream's writing side, which outlives the stream as long as the brain holds it.
+/// The stream's writing side, which outlives the stream as long as the controller holds it.
 class Link final : public WorkerLink {
  public:
   /// What the reactor does for it; null once the call is over.
@@ -126,9 +126,9 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
                          public Link::Wire {
  public:
   /// `caller` has been admitted, or not.
-  Attendance(Brain& brain, grpc::CallbackServerContext& context, const Admission& admission,
-             const Caller& caller, const grpc::Status& admitted)
-      : brain_(brain),
+  Attendance(Controller& controller, grpc::CallbackServerContext& context,
+             const Admission& admission, const Caller& caller, const grpc::Status& admitted)
+      : controller_(controller),
         context_(context),
         link_(std::make_shared<Link>(*this)),
         token_(caller.term) {
@@ -157,14 +157,14 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
     }
     if (!attached_) {
       grpc::Status status{grpc::StatusCode::INVALID_ARGUMENT, "a stream begins with Hello"};
-      if (message.has_hello()) status = brain_.attach(message.hello(), link_, worker_, token_);
+      if (message.has_hello()) status = controller_.attach(message.hello(), link_, worker_, token_);
       if (!status.ok()) {
         link_->close(status);
         return;
       }
       attached_ = true;
     } else {
-      brain_.receive(worker_, link_.get(), message);
+      controller_.receive(worker_, link_.get(), message);
     }
     StartRead(&bytes_);
   }
@@ -174,7 +174,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   void OnDone() override {
     visit_.reset();
     link_->detach();
-    if (attached_) brain_.detach(worker_, link_.get());
+    if (attached_) controller_.detach(worker_, link_.get());
     delete this;
   }
 
@@ -199,7 +199,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   void finish(const grpc::Status& status) override { Finish(status); }
   void cancel() override { context_.TryCancel(); }
 
-  Brain& brain_;
+  Controller& controller_;
   grpc::CallbackServerContext& context_;
   const std::shared_ptr<Link> link_;
   const farm::TokenTerm token_;
@@ -216,7 +216,7 @@ grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* WorkService::Attend
     grpc::CallbackServerContext* context) {
   Caller caller;
   const grpc::Status admitted = admission_.check(*context, rule_of_method("Work/Attend"), caller);
-  return new Attendance(brain_, *context, admission_, caller, admitted);
+  return new Attendance(controller_, *context, admission_, caller, admitted);
 }
 
 }  // namespace hyades::coordinator

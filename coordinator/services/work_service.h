@@ -1,6 +1,6 @@
 #pragma once
 
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/admission.h"
 #include "hyades/v1/work.grpc.pb.h"
 
@@ -9,12 +9,13 @@ namespace hyades::coordinator {
 /// One stream per worker (work_service.cpp).
 class WorkService final : public v1::Work::WithRawCallbackMethod_Attend<v1::Work::Service> {
  public:
-  WorkService(Brain& brain, const Admission& admission) : brain_(brain), admission_(admission) {}
+  WorkService(Controller& controller, const Admission& admission)
+      : controller_(controller), admission_(admission) {}
   grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Attend(
       grpc::CallbackServerContext* context) override;
 
  private:
-  Brain& brain_;
+  Controller& controller_;
   const Admission& admission_;
 };
 

@@ -41,7 +41,7 @@ std::optional<Wanted> read_wanted(const farm::Json& json) {
 void AssetsApi::add_routes(Router& router) {
   router.add(
       "POST", "/api/v1/assets/missing", [this](const WebRequest& request, const Answer& answer) {
-        answer_by(desks_.files, answer, [this, body = request.body] { return missing(body); });
+        answer_by(executors_.files, answer, [this, body = request.body] { return missing(body); });
       });
   router.add(
       "PUT", "/api/v1/assets/{sha256}", [this](const WebRequest& request, const Answer& answer) {
@@ -58,7 +58,7 @@ void AssetsApi::add_routes(Router& router) {
         if (!size) return;
         const auto offset = query_number<uint64_t>(request, "offset", 0, answer);
         if (!offset) return;
-        answer_by(desks_.files, answer,
+        answer_by(executors_.files, answer,
                   [this, caller = request.caller, name, whole = *size, from = *offset,
                    piece = request.body] { return take(caller, name, whole, from, piece); });
       });
@@ -80,11 +80,11 @@ WebReply AssetsApi::missing(const std::string& body) {
     const auto wanted = read_wanted(file);
     if (!wanted) return error_reply(invalid("files: expected sha256 and size of each"));
     if (!seen.insert(wanted->name).second) continue;
-    if (brain_.assets().contains(wanted->name, wanted->size)) {
-      brain_.assets().touch(wanted->name);
+    if (controller_.assets().contains(wanted->name, wanted->size)) {
+      controller_.assets().touch(wanted->name);
       continue;
     }
-    const uint64_t begun = std::min(brain_.assets().begun(wanted->name), wanted->size);
+    const uint64_t begun = std::min(controller_.assets().begun(wanted->name), wanted->size);
     missing.push_back({{"sha256", wanted->name}, {"offset", begun}});
   }
   return json_reply({{"missing", std::move(missing)}});
@@ -92,12 +92,12 @@ WebReply AssetsApi::missing(const std::string& body) {
 
 WebReply AssetsApi::take(const Caller& caller, const std::string& name, uint64_t size,
                          uint64_t offset, const std::string& piece) {
-  if (brain_.assets().contains(name, size)) {
+  if (controller_.assets().contains(name, size)) {
     return json_reply({{"offset", size}, {"complete", true}});
   }
-  if (brain_.disk_is_full()) {
+  if (controller_.disk_is_full()) {
     // What has come stays for a later upload to go on with.
-    if (const grpc::Status room = brain_.admit(0); !room.ok()) return error_reply(room);
+    if (const grpc::Status room = controller_.admit(0); !room.ok()) return error_reply(room);
   }
   {
     const std::lock_guard lock(mutex_);
@@ -144,7 +144,7 @@ WebReply AssetsApi::append(farm::ContentWriter& writer, uint64_t offset, const s
     return json_reply({{"offset", writer.offset()}, {"complete", false}});
   }
   if (auto whole = writer.commit(); !whole) {
-    if (const grpc::Status room = brain_.admit(0); !room.ok()) return error_reply(room);
+    if (const grpc::Status room = controller_.admit(0); !room.ok()) return error_reply(room);
     return error_reply({grpc::StatusCode::DATA_LOSS, whole.error().message});
   }
   return json_reply({{"offset", size}, {"complete", true}});
@@ -162,9 +162,9 @@ AssetsApi::Taken AssetsApi::take_writer(const Caller& caller, const std::string&
       return taken;
     }
   }
-  const uint64_t begun = std::min(brain_.assets().begun(name), size);
-  if (grpc::Status room = brain_.admit(size - begun); !room.ok()) return {nullptr, room};
-  auto writer = brain_.assets().write(name, size);
+  const uint64_t begun = std::min(controller_.assets().begun(name), size);
+  if (grpc::Status room = controller_.admit(size - begun); !room.ok()) return {nullptr, room};
+  auto writer = controller_.assets().write(name, size);
   if (!writer) {
     return {nullptr, farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
                                        std::chrono::seconds(10))};

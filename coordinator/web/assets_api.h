@@ -8,8 +8,8 @@
 #include <string>
 
 #include "coordinator/access/audit_log.h"
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/router.h"
 #include "farm/content_writer.h"
 
@@ -19,8 +19,8 @@ namespace hyades::coordinator {
 class AssetsApi {
  public:
   /// `audit` (where it is kept who did what; null: nowhere) outlives it, as the others do.
-  AssetsApi(Brain& brain, Desks& desks, AuditLog* audit)
-      : brain_(brain), desks_(desks), audit_(audit) {}
+  AssetsApi(Controller& controller, Executors& executors, AuditLog* audit)
+      : controller_(controller), executors_(executors), audit_(audit) {}
   void add_routes(Router& router);
   /// Lets go of files whose pieces do not come any more; now and then.
   void sweep();
@@ -46,8 +46,8 @@ class AssetsApi {
   void let_go_of_old();
   void done_with(const std::string& name);
 
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
   AuditLog* const audit_;
   std::mutex mutex_;
   std::map<std::string, Open> open_;  ///< by the file's name

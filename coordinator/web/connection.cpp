@@ -283,7 +283,7 @@ class ConnectionOver final : public Connection,
 
   void next_piece() {
     tcp(stream_).expires_never();
-    const bool taken = world_.files.hand(
+    const bool taken = world_.files.submit(
         [outlet = world_.outlet, weak = weak_from_this_(), source = reply_.source] {
           std::optional<std::string> piece = source->next();
           outlet->post([weak, piece = std::move(piece)]() mutable {

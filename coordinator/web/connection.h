@@ -8,7 +8,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "coordinator/access/authority.h"
-#include "coordinator/brain/clerks.h"
+#include "coordinator/controller/thread_pool.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/outlet.h"
@@ -43,7 +43,7 @@ struct ConnectionWorld {
       visit;
   /// Answers a request; called by the network's thread.
   std::function<void(WebRequest, Answer)> serve;
-  Clerks& files;  ///< who reads what is sent from the disk
+  ThreadPool& files;  ///< who reads what is sent from the disk
   std::shared_ptr<Outlet> outlet;
   Meters& meters;
   ConnectionCount count;                         ///< of the network's thread

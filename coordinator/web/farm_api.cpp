@@ -1,13 +1,13 @@
 #include "coordinator/web/farm_api.h"
 
-#include "coordinator/brain/all_pages.h"
+#include "coordinator/controller/all_pages.h"
 #include "coordinator/web/handing.h"
 #include "coordinator/web/metrics.h"
 
 namespace hyades::coordinator {
 namespace {
 
-using Steer = grpc::Status (Brain::*)(const v1::WorkerRequest&, v1::Worker&);
+using Steer = grpc::Status (Controller::*)(const v1::WorkerRequest&, v1::Worker&);
 
 /// The reason that a body may give; nothing where it is no such body.
 std::optional<std::string> reason_in(const std::string& body) {
@@ -42,8 +42,8 @@ void FarmApi::add_routes(Router& router) {
     answer(text_reply("well\n", "text/plain; charset=utf-8"));
   });
   router.add("GET", "/readyz", [this](const WebRequest&, const Answer& answer) {
-    answer_by(desks_.files, answer, [this] {
-      const grpc::Status room = brain_.admit(0);
+    answer_by(executors_.files, answer, [this] {
+      const grpc::Status room = controller_.admit(0);
       WebReply reply = text_reply(room.ok() ? "ready\n" : room.error_message() + "\n",
                                   "text/plain; charset=utf-8");
       if (!room.ok()) reply.status = 503;
@@ -51,25 +51,26 @@ void FarmApi::add_routes(Router& router) {
     });
   });
   router.add("GET", "/metrics", [this](const WebRequest&, const Answer& answer) {
-    answer_by(desks_.rows, answer, [this] {
-      return text_reply(metrics_text(brain_), "text/plain; version=0.0.4; charset=utf-8");
+    answer_by(executors_.rows, answer, [this] {
+      return text_reply(metrics_text(controller_), "text/plain; version=0.0.4; charset=utf-8");
     });
   });
   router.add("GET", "/api/v1/info", [this](const WebRequest&, const Answer& answer) {
     v1::InfoResponse info;
-    brain_.info(info);
+    controller_.info(info);
     answer(json_reply(to_json(info)));
   });
   router.add("GET", "/api/v1/workers", [this](const WebRequest&, const Answer& answer) {
-    answer_by(desks_.rows, answer, [this] {
+    answer_by(executors_.rows, answer, [this] {
       farm::Json workers = farm::Json::array();
-      for (const v1::Worker& worker : all_workers(brain_)) workers.push_back(farm::to_json(worker));
+      for (const v1::Worker& worker : all_workers(controller_))
+        workers.push_back(farm::to_json(worker));
       return json_reply({{"workers", std::move(workers)}});
     });
   });
-  const std::pair<const char*, Steer> steers[] = {{"drain", &Brain::drain_worker},
-                                                  {"quarantine", &Brain::quarantine_worker},
-                                                  {"release", &Brain::release_worker}};
+  const std::pair<const char*, Steer> steers[] = {{"drain", &Controller::drain_worker},
+                                                  {"quarantine", &Controller::quarantine_worker},
+                                                  {"release", &Controller::release_worker}};
   for (const auto& [name, what] : steers) {
     router.add("POST", std::string("/api/v1/workers/{worker}/") + name,
                [this, steer = what](const WebRequest& request, const Answer& answer) {
@@ -82,9 +83,9 @@ void FarmApi::add_routes(Router& router) {
                  v1::WorkerRequest asked;
                  asked.set_worker(request.parameters.at("worker"));
                  asked.set_reason(*reason);
-                 answer_by(desks_.rows, answer, [this, steer, asked] {
+                 answer_by(executors_.rows, answer, [this, steer, asked] {
                    v1::Worker now;
-                   const grpc::Status done = (brain_.*steer)(asked, now);
+                   const grpc::Status done = (controller_.*steer)(asked, now);
                    return done.ok() ? json_reply(farm::to_json(now)) : error_reply(done);
                  });
                });

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/router.h"
 #include "farm/json_form.h"
 
@@ -10,12 +10,13 @@ namespace hyades::coordinator {
 /// The farm and its workers; whether the coordinator is well.
 class FarmApi {
  public:
-  FarmApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  FarmApi(Controller& controller, Executors& executors)
+      : controller_(controller), executors_(executors) {}
   void add_routes(Router& router);
 
  private:
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
 };
 
 /// As openapi.yaml's Info.

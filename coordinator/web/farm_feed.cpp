@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/brain/all_pages.h"
+#include "coordinator/controller/all_pages.h"
 #include "coordinator/web/farm_api.h"
 #include "farm/json_form.h"
 
@@ -52,9 +52,9 @@ farm::Json row_of(const Row& row) {
 
 }  // namespace
 
-FarmFeed::FarmFeed(Brain& brain, Desks& desks)
-    : brain_(brain),
-      desks_(desks),
+FarmFeed::FarmFeed(Controller& controller, Executors& executors)
+    : controller_(controller),
+      executors_(executors),
       jobs_(lively_of_jobs(), kJobBytes),
       workers_(lively_of_workers(), kWorkerBytes) {}
 
@@ -68,7 +68,7 @@ void FarmFeed::join(std::weak_ptr<LiveReader> reader) {
 
 void FarmFeed::tick() {
   if (stepping_.exchange(true)) return;
-  const bool taken = desks_.rows.hand([me = shared_from_this()] {
+  const bool taken = executors_.rows.submit([me = shared_from_this()] {
     // Without memory for it nothing is told this time.
     (void)within_memory([&] {
       me->step();
@@ -80,7 +80,7 @@ void FarmFeed::tick() {
 }
 
 void FarmFeed::step() {
-  const std::vector<v1::Worker> workers = all_workers(brain_);
+  const std::vector<v1::Worker> workers = all_workers(controller_);
   note_throughput(workers);
   {
     const std::lock_guard lock(mutex_);
@@ -95,7 +95,7 @@ void FarmFeed::step() {
   }
   farm::Json change = farm::Json::object();
   v1::InfoResponse asked;
-  brain_.info(asked);
+  controller_.info(asked);
   farm::Json info = to_json(asked);
   if (info != info_) change["info"] = info;
   info_ = std::move(info);
@@ -139,12 +139,12 @@ void FarmFeed::step() {
 
 /// The open jobs; and, as JSON, those that were told of as open and have ended.
 farm::Json FarmFeed::tell_jobs(LiveRows::Rows& jobs) {
-  for (const v1::Job& job : all_open_jobs(brain_)) jobs[job.id()] = row_of(job);
+  for (const v1::Job& job : all_open_jobs(controller_)) jobs[job.id()] = row_of(job);
   farm::Json ended = farm::Json::array();
   jobs_.each([&](uint64_t id, const farm::Json& job) {
     if (jobs.contains(id)) return;
     v1::GetJobResponse got;
-    const grpc::Status status = brain_.get(id, INT32_MAX, got);
+    const grpc::Status status = controller_.get(id, INT32_MAX, got);
     if (status.ok()) {
       ended.push_back(farm::to_json(got.job()));
     } else if (status.error_code() != grpc::StatusCode::NOT_FOUND) {

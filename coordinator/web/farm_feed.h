@@ -9,8 +9,8 @@
 #include <mutex>
 #include <string>
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/live_readers.h"
 #include "coordinator/web/live_rows.h"
@@ -20,7 +20,7 @@ namespace hyades::coordinator {
 /// What happens on the farm (openapi.yaml, /events).
 class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<FarmFeed> {
  public:
-  FarmFeed(Brain& brain, Desks& desks);
+  FarmFeed(Controller& controller, Executors& executors);
 
   void join(std::weak_ptr<LiveReader> reader) override;
   /// Once a second.
@@ -31,13 +31,13 @@ class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<Far
   void note_throughput(const std::vector<v1::Worker>& workers);
   farm::Json tell_jobs(LiveRows::Rows& jobs);
 
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
   std::atomic<bool> stepping_{false};
   std::mutex mutex_;  ///< guards readers_
   LiveReaders readers_;
 
-  // Of the clerk that steps.
+  // Of the thread that steps.
   farm::Json info_;
   LiveRows jobs_;
   LiveRows workers_;

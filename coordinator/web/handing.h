@@ -6,17 +6,18 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/services/desks.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/number.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
 
-/// Has one of `clerks` answer with what `what` gives, a WebReply: for what may wait for the disk.
+/// Has a thread of `pool` answer with what `what` gives, a WebReply: for what may wait for the
+/// disk.
 template <class What>
-void answer_by(Clerks& clerks, const Answer& answer, What what) {
-  const bool taken = clerks.hand([answer, what = std::move(what)]() mutable {
+void answer_by(ThreadPool& pool, const Answer& answer, What what) {
+  const bool taken = pool.submit([answer, what = std::move(what)]() mutable {
     WebReply reply;
     const grpc::Status done = within_memory([&] {
       reply = what();
@@ -101,12 +102,12 @@ Router::Handler of_job(What what) {
   };
 }
 
-/// The same where one of `clerks` answers with what `what(job)` gives.
+/// The same where a thread of `pool` answers with what `what(job)` gives.
 template <class What>
-Router::Handler of_job_by(Clerks& clerks, What what) {
+Router::Handler of_job_by(ThreadPool& pool, What what) {
   return of_job(
-      [&clerks, what = std::move(what)](uint64_t job, const WebRequest&, const Answer& answer) {
-        answer_by(clerks, answer, [what, job] { return what(job); });
+      [&pool, what = std::move(what)](uint64_t job, const WebRequest&, const Answer& answer) {
+        answer_by(pool, answer, [what, job] { return what(job); });
       });
 }
 

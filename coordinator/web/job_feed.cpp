@@ -7,7 +7,7 @@
 namespace hyades::coordinator {
 
 JobFeed::~JobFeed() {
-  if (watch_ != 0) brain_.unwatch(watch_);
+  if (watch_ != 0) controller_.unwatch(watch_);
 }
 
 void JobFeed::join(std::weak_ptr<LiveReader> reader) {
@@ -15,7 +15,7 @@ void JobFeed::join(std::weak_ptr<LiveReader> reader) {
     const std::lock_guard lock(mutex_);
     readers_.add(std::move(reader));
   }
-  if (watch_ == 0) watch_ = brain_.watch(job_, [changed = changed_] { *changed = true; });
+  if (watch_ == 0) watch_ = controller_.watch(job_, [changed = changed_] { *changed = true; });
   *changed_ = true;
   tick();
 }
@@ -27,7 +27,7 @@ bool JobFeed::tick() {
   }
   if (!*changed_ || stepping_.exchange(true)) return true;
   *changed_ = false;
-  const bool taken = desks_.rows.hand([me = shared_from_this()] {
+  const bool taken = executors_.rows.submit([me = shared_from_this()] {
     const grpc::Status done = within_memory([&] {
       me->step();
       return grpc::Status::OK;
@@ -42,7 +42,7 @@ bool JobFeed::tick() {
   return true;
 }
 
-/// By one clerk at a time. Those who know hear of changes before those who have just come are told
+/// By one thread at a time. Those who know hear of changes before those who have just come are told
 /// everything, so that nobody ever sees a frame go back; what happens in between both hear of
 /// next time, the newer ones perhaps twice.
 void JobFeed::step() {
@@ -58,7 +58,7 @@ void JobFeed::step() {
   grpc::Status status;
   if (begun_) status = changes(told_, change, ended);
   if (status.ok() && !fresh.empty()) {
-    Brain::ToldOf all;
+    Controller::ChangeCursor all;
     status = changes(all, snapshot, ended_for_fresh);
     if (status.ok() && !std::exchange(begun_, true)) told_ = all;
   }
@@ -91,11 +91,11 @@ void JobFeed::step() {
 }
 
 /// All pages of what has changed, as one.
-grpc::Status JobFeed::changes(Brain::ToldOf& told, farm::Json& change, bool& ended) {
+grpc::Status JobFeed::changes(Controller::ChangeCursor& told, farm::Json& change, bool& ended) {
   farm::Json frames = farm::Json::array();
   for (;;) {
     v1::WatchEvent event;
-    const grpc::Status status = brain_.changes(job_, told, event, ended);
+    const grpc::Status status = controller_.changes(job_, told, event, ended);
     if (!status.ok()) return status;
     for (const v1::Frame& frame : event.changed()) frames.push_back(farm::to_json(frame));
     if (event.more()) continue;

@@ -5,8 +5,8 @@
 #include <memory>
 #include <mutex>
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/live_readers.h"
 
@@ -15,7 +15,8 @@ namespace hyades::coordinator {
 /// What happens to one job (openapi.yaml, /jobs/{job}/events).
 class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobFeed> {
  public:
-  JobFeed(Brain& brain, Desks& desks, uint64_t job) : brain_(brain), desks_(desks), job_(job) {}
+  JobFeed(Controller& controller, Executors& executors, uint64_t job)
+      : controller_(controller), executors_(executors), job_(job) {}
   ~JobFeed() override;
   JobFeed(const JobFeed&) = delete;
   JobFeed& operator=(const JobFeed&) = delete;
@@ -28,18 +29,18 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
 
  private:
   void step();
-  grpc::Status changes(Brain::ToldOf& told, farm::Json& change, bool& ended);
+  grpc::Status changes(Controller::ChangeCursor& told, farm::Json& change, bool& ended);
 
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
   const uint64_t job_;
   uint64_t watch_ = 0;
   std::shared_ptr<std::atomic<bool>> changed_ = std::make_shared<std::atomic<bool>>(true);
   std::atomic<bool> stepping_{false};
   std::mutex mutex_;  ///< guards readers_
   LiveReaders readers_;
-  Brain::ToldOf told_;  ///< to those who know; of the clerk that steps
-  bool begun_ = false;  ///< told_ means something
+  Controller::ChangeCursor told_;  ///< to those who know; of the thread that steps
+  bool begun_ = false;             ///< told_ means something
 };
 
 }  // namespace hyades::coordinator

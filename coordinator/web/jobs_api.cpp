@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "coordinator/brain/not_there.h"
+#include "coordinator/controller/not_there.h"
 #include "coordinator/services/ownership.h"
 #include "coordinator/web/handing.h"
 #include "coordinator/web/submission.h"
@@ -75,15 +75,15 @@ void JobsApi::add_questions(Router& router) {
     if (!before) return;
     asked.set_limit(*limit);
     asked.set_before(*before);
-    answer_by(desks_.rows, answer, [this, asked] { return list(asked); });
+    answer_by(executors_.rows, answer, [this, asked] { return list(asked); });
   });
   router.add("GET", "/api/v1/jobs/{job}",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                std::optional<int32_t> after;
                if (!query_number_if_any(request, "after", after, answer)) return;
-               answer_by(desks_.rows, answer, [this, job, after] {
+               answer_by(executors_.rows, answer, [this, job, after] {
                  v1::GetJobResponse got;
-                 return reply_with(brain_.get(job, after, got), got, job_with_frames);
+                 return reply_with(controller_.get(job, after, got), got, job_with_frames);
                });
              }));
   router.add("GET", "/api/v1/jobs/{job}/frames",
@@ -92,20 +92,20 @@ void JobsApi::add_questions(Router& router) {
                if (!query_number_if_any(request, "after", after, answer)) return;
                const auto only = wanted_state(request, answer);
                if (!only) return;
-               answer_by(desks_.rows, answer, [this, job, after, only = *only] {
+               answer_by(executors_.rows, answer, [this, job, after, only = *only] {
                  v1::GetJobResponse got;
-                 return reply_with(brain_.get(job, after, got, only), got, frames_alone);
+                 return reply_with(controller_.get(job, after, got, only), got, frames_alone);
                });
              }));
-  router.add("GET", "/api/v1/jobs/{job}/explain", of_job_by(desks_.rows, [this](uint64_t job) {
+  router.add("GET", "/api/v1/jobs/{job}/explain", of_job_by(executors_.rows, [this](uint64_t job) {
                v1::ExplainResponse why;
-               return reply_with(brain_.explain(job, why), why, reasons);
+               return reply_with(controller_.explain(job, why), why, reasons);
              }));
   router.add("GET", "/api/v1/jobs/{job}/logs",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                const auto after = query_number<uint64_t>(request, "after", 0, answer);
                if (!after) return;
-               answer_by(desks_.rows, answer,
+               answer_by(executors_.rows, answer,
                          [this, job, from = *after] { return logs(job, from); });
              }));
   router.add("GET", "/api/v1/jobs/{job}/timeline",
@@ -119,15 +119,15 @@ void JobsApi::add_questions(Router& router) {
                asked.set_job(job);
                asked.set_after(*after);
                asked.set_limit(*limit);
-               answer_by(desks_.rows, answer, [this, asked] { return timeline(asked); });
+               answer_by(executors_.rows, answer, [this, asked] { return timeline(asked); });
              }));
   router.add("GET", "/api/v1/jobs/{job}/document",
-             of_job_by(desks_.files, [this](uint64_t job) { return document(job); }));
+             of_job_by(executors_.files, [this](uint64_t job) { return document(job); }));
 }
 
 void JobsApi::add_steering(Router& router) {
   router.add("POST", "/api/v1/jobs", [this](const WebRequest& request, const Answer& answer) {
-    answer_by(desks_.files, answer, [this, body = request.body, caller = request.caller] {
+    answer_by(executors_.files, answer, [this, body = request.body, caller = request.caller] {
       core::Result<v1::SubmitRequest> asked = core::Error{};
       {
         const std::unique_lock alone(large_, std::try_to_lock);
@@ -140,7 +140,7 @@ void JobsApi::add_steering(Router& router) {
       v1::SubmitResponse response;
       bool proven = false;
       grpc::Status done = name_owner(caller, *asked, proven);
-      if (done.ok()) done = brain_.submit(*asked, proven, response);
+      if (done.ok()) done = controller_.submit(*asked, proven, response);
       if (!done.ok()) return error_reply(done);
       WebReply reply =
           json_reply({{"job", farm::to_json(response.job())}, {"existed", response.existed()}});
@@ -148,9 +148,10 @@ void JobsApi::add_steering(Router& router) {
       return reply;
     });
   });
-  using Steer = void (Brain::*)(uint64_t, Brain::Told);
-  const std::pair<const char*, Steer> steers[] = {
-      {"pause", &Brain::pause}, {"resume", &Brain::resume}, {"cancel", &Brain::cancel}};
+  using Steer = void (Controller::*)(uint64_t, Controller::JobReply);
+  const std::pair<const char*, Steer> steers[] = {{"pause", &Controller::pause},
+                                                  {"resume", &Controller::resume},
+                                                  {"cancel", &Controller::cancel}};
   const auto told = [](const Answer& answer) {
     return [answer](const grpc::Status& done, const v1::Job& now) {
       answer(done.ok() ? json_reply(farm::to_json(now)) : error_reply(done));
@@ -160,10 +161,10 @@ void JobsApi::add_steering(Router& router) {
     router.add("POST", std::string("/api/v1/jobs/{job}/") + name,
                of_job([this, told, steer = what](uint64_t job, const WebRequest& request,
                                                  const Answer& answer) {
-                 const bool taken =
-                     desks_.rows.hand([this, told, steer, answer, job, caller = request.caller] {
-                       const grpc::Status his = may_steer(brain_, caller, job);
-                       his.ok() ? (brain_.*steer)(job, told(answer)) : told(answer)(his, {});
+                 const bool taken = executors_.rows.submit(
+                     [this, told, steer, answer, job, caller = request.caller] {
+                       const grpc::Status his = may_steer(controller_, caller, job);
+                       his.ok() ? (controller_.*steer)(job, told(answer)) : told(answer)(his, {});
                      });
                  if (!taken) answer(error_reply(crowded()));
                }));
@@ -179,28 +180,28 @@ void JobsApi::add_steering(Router& router) {
                                      "expected {\"priority\": a whole number}"}));
                  return;
                }
-               const bool taken =
-                   desks_.rows.hand([this, told, answer, job, priority, caller = request.caller] {
-                     const grpc::Status his = may_steer(brain_, caller, job);
+               const bool taken = executors_.rows.submit(
+                   [this, told, answer, job, priority, caller = request.caller] {
+                     const grpc::Status his = may_steer(controller_, caller, job);
                      if (!his.ok()) return told(answer)(his, {});
-                     brain_.set_priority(job, static_cast<int>(priority), told(answer));
+                     controller_.set_priority(job, static_cast<int>(priority), told(answer));
                    });
                if (!taken) answer(error_reply(crowded()));
              }));
   router.add("POST", "/api/v1/jobs/{job}/retry",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
-               answer_by(desks_.files, answer, [this, job, caller = request.caller] {
+               answer_by(executors_.files, answer, [this, job, caller = request.caller] {
                  v1::Job now;
-                 grpc::Status done = may_steer(brain_, caller, job);
-                 if (done.ok()) done = brain_.retry(job, now);
+                 grpc::Status done = may_steer(controller_, caller, job);
+                 if (done.ok()) done = controller_.retry(job, now);
                  return reply_with(done, now, [](const v1::Job& j) { return farm::to_json(j); });
                });
              }));
   router.add("DELETE", "/api/v1/jobs/{job}",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
-               answer_by(desks_.files, answer, [this, job, caller = request.caller] {
-                 grpc::Status done = may_steer(brain_, caller, job);
-                 if (done.ok()) done = brain_.remove(job);
+               answer_by(executors_.files, answer, [this, job, caller = request.caller] {
+                 grpc::Status done = may_steer(controller_, caller, job);
+                 if (done.ok()) done = controller_.remove(job);
                  return done.ok() ? empty_reply(204) : error_reply(done);
                });
              }));
@@ -208,8 +209,9 @@ void JobsApi::add_steering(Router& router) {
 
 WebReply JobsApi::list(const v1::ListJobsRequest& request) {
   v1::ListJobsResponse response;
-  const grpc::Status status =
-      brain_.list_open(request, response) ? grpc::Status::OK : brain_.list(request, response);
+  const grpc::Status status = controller_.list_open(request, response)
+                                  ? grpc::Status::OK
+                                  : controller_.list(request, response);
   if (!status.ok()) return error_reply(status);
   farm::Json jobs = farm::Json::array();
   for (const v1::Job& job : response.jobs()) jobs.push_back(farm::to_json(job));
@@ -225,7 +227,7 @@ WebReply JobsApi::timeline(v1::ListTimelineRequest asked) {
   for (uint32_t left = wanted;;) {
     asked.set_limit(left);
     page.Clear();
-    const grpc::Status known = brain_.timeline(asked, page);
+    const grpc::Status known = controller_.timeline(asked, page);
     if (!known.ok()) return error_reply(known);
     for (const v1::TimelineStep& step : page.steps()) {
       const bool unit = step.kind() == v1::TimelineStep::KIND_RENDER;
@@ -243,12 +245,12 @@ WebReply JobsApi::timeline(v1::ListTimelineRequest asked) {
 }
 
 WebReply JobsApi::logs(uint64_t job, uint64_t after) {
-  const auto stored = brain_.store().state(job);
+  const auto stored = controller_.store().state(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
   if (!*stored) {
     return error_reply(no_job(job));
   }
-  const auto lines = brain_.store().lines(job, after, kLinesAtOnce);
+  const auto lines = controller_.store().lines(job, after, kLinesAtOnce);
   if (!lines) return error_reply(farm::unavailable(lines.error()));
   farm::Json all = farm::Json::array();
   for (const StoredLine& line : *lines) {
@@ -264,7 +266,7 @@ WebReply JobsApi::logs(uint64_t job, uint64_t after) {
 }
 
 WebReply JobsApi::document(uint64_t job) {
-  const auto stored = brain_.store().job(job);
+  const auto stored = controller_.store().job(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
   if (!*stored) {
     return error_reply(no_job(job));
@@ -273,7 +275,7 @@ WebReply JobsApi::document(uint64_t job) {
   spec.ParseFromString((*stored)->spec);
   for (const v1::JobFile& file : spec.files()) {
     if (file.path() != spec.document()) continue;
-    const auto bytes = brain_.assets().read(farm::hex_from_wire(file.sha256()));
+    const auto bytes = controller_.assets().read(farm::hex_from_wire(file.sha256()));
     if (!bytes) return error_reply({grpc::StatusCode::DATA_LOSS, bytes.error().message});
     return text_reply(std::string(bytes->chars(), bytes->size()), "text/plain; charset=utf-8");
   }

@@ -2,8 +2,8 @@
 
 #include <mutex>
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
@@ -11,7 +11,8 @@ namespace hyades::coordinator {
 /// What people ask about jobs, and have done with them.
 class JobsApi {
  public:
-  JobsApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  JobsApi(Controller& controller, Executors& executors)
+      : controller_(controller), executors_(executors) {}
   void add_routes(Router& router);
 
  private:
@@ -22,8 +23,8 @@ class JobsApi {
   WebReply logs(uint64_t job, uint64_t after);
   WebReply document(uint64_t job);
 
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
   std::mutex large_;  ///< held while a submission is looked at
 };
 

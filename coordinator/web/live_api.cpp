@@ -20,13 +20,13 @@ WebReply live(std::shared_ptr<LiveTopic> topic) {
 
 }  // namespace
 
-LiveApi::LiveApi(Brain& brain, Desks& desks, boost::asio::io_context& network,
+LiveApi::LiveApi(Controller& controller, Executors& executors, boost::asio::io_context& network,
                  std::shared_ptr<Outlet> outlet)
-    : brain_(brain),
-      desks_(desks),
+    : controller_(controller),
+      executors_(executors),
       outlet_(std::move(outlet)),
       timer_(network),
-      farm_(std::make_shared<FarmFeed>(brain, desks)) {}
+      farm_(std::make_shared<FarmFeed>(controller, executors)) {}
 
 void LiveApi::add_routes(Router& router) {
   router.add("GET", "/api/v1/events",
@@ -34,9 +34,9 @@ void LiveApi::add_routes(Router& router) {
   router.add("GET", "/api/v1/jobs/{job}/events",
              of_job([this](uint64_t job, const WebRequest&, const Answer& answer) {
                // Whether there is such a job is known before the stream begins.
-               const bool taken = desks_.rows.hand([this, job, answer] {
+               const bool taken = executors_.rows.submit([this, job, answer] {
                  v1::GetJobResponse got;
-                 const grpc::Status status = brain_.get(job, INT32_MAX, got);
+                 const grpc::Status status = controller_.get(job, INT32_MAX, got);
                  if (!status.ok()) return answer(error_reply(status));
                  outlet_->post([this, job, answer] { answer(live(feed_of(job))); });
                });
@@ -46,7 +46,7 @@ void LiveApi::add_routes(Router& router) {
 
 std::shared_ptr<JobFeed> LiveApi::feed_of(uint64_t job) {
   auto& feed = jobs_[job];
-  if (!feed) feed = std::make_shared<JobFeed>(brain_, desks_, job);
+  if (!feed) feed = std::make_shared<JobFeed>(controller_, executors_, job);
   return feed;
 }
 

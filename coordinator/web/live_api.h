@@ -7,8 +7,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/farm_feed.h"
 #include "coordinator/web/job_feed.h"
 #include "coordinator/web/outlet.h"
@@ -20,7 +20,7 @@ namespace hyades::coordinator {
 /// many read it.
 class LiveApi {
  public:
-  LiveApi(Brain& brain, Desks& desks, boost::asio::io_context& network,
+  LiveApi(Controller& controller, Executors& executors, boost::asio::io_context& network,
           std::shared_ptr<Outlet> outlet);
   void add_routes(Router& router);
   /// From now on the farm's throughput is noted, whether anybody looks or not.
@@ -32,8 +32,8 @@ class LiveApi {
   void tick();
   std::shared_ptr<JobFeed> feed_of(uint64_t job);
 
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
   std::shared_ptr<Outlet> outlet_;
   boost::asio::steady_timer timer_;
   std::shared_ptr<FarmFeed> farm_;

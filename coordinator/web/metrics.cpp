@@ -10,8 +10,8 @@
 #include <prometheus/metric_family.h>
 #include <prometheus/text_serializer.h>
 
-#include "coordinator/brain/all_pages.h"
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/all_pages.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
 #include "core/base/version.h"
 #include "farm/json_form.h"
@@ -141,9 +141,9 @@ void add_jobs(Page& page, const std::vector<v1::Job>& jobs) {
 
 }  // namespace
 
-std::string metrics_text(Brain& brain) {
+std::string metrics_text(Controller& controller) {
   v1::InfoResponse info;
-  brain.info(info);
+  controller.info(info);
   Page page;
   page.gauge("hyades_build_info", "1, with the version", 1, {{"version", info.version()}});
   page.gauge("hyades_start_time_seconds", "When the coordinator started, since 1970",
@@ -152,9 +152,9 @@ std::string metrics_text(Brain& brain) {
              "1 where something keeps the coordinator from storing what it is given",
              info.trouble().empty() ? 0 : 1);
   page.gauge("hyades_render_threads", "Threads of all connected workers", info.threads());
-  add_jobs(page, all_open_jobs(brain));
-  add_workers(page, all_workers(brain));
-  page.add(brain.meters().collect());
+  add_jobs(page, all_open_jobs(controller));
+  add_workers(page, all_workers(controller));
+  page.add(controller.meters().collect());
   return page.text();
 }
 

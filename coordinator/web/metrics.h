@@ -4,9 +4,9 @@
 
 namespace hyades::coordinator {
 
-class Brain;
+class Controller;
 
 /// The coordinator's numbers in Prometheus' text format.
-std::string metrics_text(Brain& brain);
+std::string metrics_text(Controller& controller);
 
 }  // namespace hyades::coordinator

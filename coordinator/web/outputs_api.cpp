@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/brain/not_there.h"
+#include "coordinator/controller/not_there.h"
 #include "coordinator/web/byte_range.h"
 #include "coordinator/web/file_source.h"
 #include "coordinator/web/handing.h"
@@ -52,11 +52,12 @@ WebReply lost(const std::string& path) {
 
 }  // namespace
 
-core::Result<OutputsPage> finished_files(Brain& brain, uint64_t job, uint64_t after, size_t limit) {
+core::Result<OutputsPage> finished_files(Controller& controller, uint64_t job, uint64_t after,
+                                         size_t limit) {
   OutputsPage page;
   page.after = after;
   while (page.outputs.size() < limit) {
-    auto outputs = brain.store().outputs(
+    auto outputs = controller.store().outputs(
         job, page.after,
         static_cast<uint32_t>(std::min<size_t>(kRowsAtOnce, limit - page.outputs.size())));
     if (!outputs) return outputs.error();
@@ -64,7 +65,7 @@ core::Result<OutputsPage> finished_files(Brain& brain, uint64_t job, uint64_t af
     if (!page.more) break;
     page.after = outputs->back().number;
     for (StoredOutput& output : *outputs) {
-      if (!brain.is_for_video(job, output.path)) page.outputs.push_back(std::move(output));
+      if (!controller.is_for_video(job, output.path)) page.outputs.push_back(std::move(output));
     }
   }
   return page;
@@ -83,35 +84,35 @@ void OutputsApi::add_routes(Router& router) {
                if (!query_number_if_any(request, "frame", asked.frame, answer)) return;
                asked.after = *after;
                asked.limit = *limit;
-               answer_by(desks_.rows, answer, [this, asked] { return list(asked); });
+               answer_by(executors_.rows, answer, [this, asked] { return list(asked); });
              }));
   router.add("GET", "/api/v1/jobs/{job}/outputs/{path...}",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                const auto download = query_flag(request, "download", answer);
                if (!download) return;
-               answer_by(desks_.files, answer,
+               answer_by(executors_.files, answer,
                          [this, job, path = request.parameters.at("path"),
                           range = WantedRange{request.header("range"), request.header("if-range")},
                           download = *download] { return file(job, path, range, download); });
              }));
   router.add("GET", "/api/v1/jobs/{job}/archive.zip",
-             of_job_by(desks_.files, [this](uint64_t job) { return archive(job); }));
+             of_job_by(executors_.files, [this](uint64_t job) { return archive(job); }));
 }
 
 WebReply OutputsApi::list(const ListAsked& asked) {
-  const auto state = brain_.store().state(asked.job);
+  const auto state = controller_.store().state(asked.job);
   if (!state) return error_reply(farm::unavailable(state.error()));
   if (!*state) return error_reply(no_job(asked.job));
   OutputsPage page;
   if (asked.frame) {
-    auto outputs = brain_.store().outputs_of(asked.job, *asked.frame);
+    auto outputs = controller_.store().outputs_of(asked.job, *asked.frame);
     if (!outputs) return error_reply(farm::unavailable(outputs.error()));
     page.outputs = std::move(*outputs);
     std::erase_if(page.outputs, [&](const StoredOutput& output) {
-      return brain_.is_for_video(asked.job, output.path);
+      return controller_.is_for_video(asked.job, output.path);
     });
   } else {
-    auto found = finished_files(brain_, asked.job, asked.after, asked.limit);
+    auto found = finished_files(controller_, asked.job, asked.after, asked.limit);
     if (!found) return error_reply(farm::unavailable(found.error()));
     page = std::move(*found);
   }
@@ -128,10 +129,10 @@ WebReply OutputsApi::list(const ListAsked& asked) {
 WebReply OutputsApi::file(uint64_t job, const std::string& path, const WantedRange& wanted,
                           bool download) {
   // The path is looked up among the job's outputs and never taken for one of the file system's.
-  const auto output = brain_.store().output(job, path);
+  const auto output = controller_.store().output(job, path);
   if (!output) return error_reply(farm::unavailable(output.error()));
   if (!*output) return not_found(job, path);
-  auto bytes = core::map_file(brain_.output_folder(job) + "/" + (*output)->path);
+  auto bytes = core::map_file(controller_.output_folder(job) + "/" + (*output)->path);
   if (!bytes || bytes->size() != (*output)->size) return lost(path);
   const uint64_t size = bytes->size();
   WebReply reply;
@@ -165,14 +166,14 @@ WebReply OutputsApi::file(uint64_t job, const std::string& path, const WantedRan
 }
 
 WebReply OutputsApi::archive(uint64_t job) {
-  const auto stored = brain_.store().job(job);
+  const auto stored = controller_.store().job(job);
   if (!stored) return error_reply(farm::unavailable(stored.error()));
   if (!*stored) return error_reply(no_job(job));
-  const auto page = finished_files(brain_, job, 0, SIZE_MAX);
+  const auto page = finished_files(controller_, job, 0, SIZE_MAX);
   if (!page) return error_reply(farm::unavailable(page.error()));
   std::vector<ZipSource::File> files;
   for (const StoredOutput& output : page->outputs) {
-    files.push_back({output.path, brain_.output_folder(job) + "/" + output.path, output.size});
+    files.push_back({output.path, controller_.output_folder(job) + "/" + output.path, output.size});
   }
   WebReply reply;
   reply.type = "application/zip";

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
@@ -14,7 +14,8 @@ namespace hyades::coordinator {
 /// A job's finished files: told, shown, downloaded one by one or all together.
 class OutputsApi {
  public:
-  OutputsApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  OutputsApi(Controller& controller, Executors& executors)
+      : controller_(controller), executors_(executors) {}
   void add_routes(Router& router);
 
  private:
@@ -34,8 +35,8 @@ class OutputsApi {
   WebReply file(uint64_t job, const std::string& path, const WantedRange& wanted, bool download);
   WebReply archive(uint64_t job);
 
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
 };
 
 /// Finished files, in the order in which they were finished.
@@ -47,6 +48,7 @@ struct OutputsPage {
 
 /// Finished files of a job behind `after` that are of use now: not those that wait for the video
 /// which is made of them. At most `limit`.
-core::Result<OutputsPage> finished_files(Brain& brain, uint64_t job, uint64_t after, size_t limit);
+core::Result<OutputsPage> finished_files(Controller& controller, uint64_t job, uint64_t after,
+                                         size_t limit);
 
 }  // namespace hyades::coordinator

@@ -47,7 +47,7 @@ struct Shot {
 };
 
 /// The picture that `asked` means.
-WebReply show(const PicturesApi::Asked& asked, const Brain::FrameNow& now, const Shot& shot,
+WebReply show(const PicturesApi::Asked& asked, const Controller::FrameNow& now, const Shot& shot,
               const std::string& tag) {
   const core::Image& image = shot.image;
   const auto layer = take_layer(image, asked.layer);
@@ -116,14 +116,14 @@ void PicturesApi::add_routes(Router& router) {
                               "layer: png shows beauty; expected format=half for other layers"}));
           return;
         }
-        const bool taken = clerks_.hand([this, asked, answer] { answer_picture(asked, answer); });
+        const bool taken = pool_.submit([this, asked, answer] { answer_picture(asked, answer); });
         if (!taken) answer(error_reply(crowded()));
       });
 }
 
 void PicturesApi::answer_picture(const Asked& asked, const Answer& answer) {
-  Brain::FrameNow now;
-  if (const grpc::Status known = brain_.frame_now(asked.job, asked.frame, now); !known.ok()) {
+  Controller::FrameNow now;
+  if (const grpc::Status known = controller_.frame_now(asked.job, asked.frame, now); !known.ok()) {
     answer(error_reply(known));
   } else if (is_over(now.frame)) {
     answer(in_memory([&] { return of_file(asked, now); }));
@@ -134,8 +134,8 @@ void PicturesApi::answer_picture(const Asked& asked, const Answer& answer) {
   }
 }
 
-WebReply PicturesApi::of_file(const Asked& asked, const Brain::FrameNow& now) {
-  const auto outputs = brain_.store().outputs_of(asked.job, asked.frame);
+WebReply PicturesApi::of_file(const Asked& asked, const Controller::FrameNow& now) {
+  const auto outputs = controller_.store().outputs_of(asked.job, asked.frame);
   if (!outputs) return error_reply(farm::unavailable(outputs.error()));
   const StoredOutput* best = nullptr;
   for (const StoredOutput& output : *outputs) {
@@ -148,12 +148,12 @@ WebReply PicturesApi::of_file(const Asked& asked, const Brain::FrameNow& now) {
   }
   const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
   if (const auto made = find(asked, tag, true)) return *made;
-  auto image = core::read_image_file(brain_.output_folder(asked.job) + "/" + best->path);
+  auto image = core::read_image_file(controller_.output_folder(asked.job) + "/" + best->path);
   if (!image) {
     return error_reply(
         {grpc::StatusCode::DATA_LOSS, best->path + " is damaged on the coordinator's disk"});
   }
-  Brain::FrameNow plain = now;
+  Controller::FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
   WebReply reply = show(asked, plain, {std::move(*image), {}, best->path.ends_with(".exr")}, tag);
@@ -194,16 +194,16 @@ void PicturesApi::begin_some() {
 
 void PicturesApi::take_film(FrameId id) {
   // As of before the film, so that the picture never claims more than it shows.
-  Brain::FrameNow now;
-  grpc::Status status = brain_.frame_now(id.first, id.second, now);
+  Controller::FrameNow now;
+  grpc::Status status = controller_.frame_now(id.first, id.second, now);
   if (status.ok()) {
-    status = brain_.film(
+    status = controller_.film(
         id.first, id.second,
         [this, gate = gate_, id, now](const grpc::Status& found, const core::FilmInfo&,
                                       std::shared_ptr<const core::Film> film) {
           const std::lock_guard lock(gate->mutex);
           if (!gate->open) return;
-          const bool taken = clerks_.hand([this, id, now, found, film = std::move(film)] {
+          const bool taken = pool_.submit([this, id, now, found, film = std::move(film)] {
             make_all(id, now, found, film.get());
           });
           if (!taken) end(id, [](const Asked&) { return error_reply(crowded()); });
@@ -218,7 +218,7 @@ void PicturesApi::take_film(FrameId id) {
   end(id, [&](const Asked&) { return error_reply(status); });
 }
 
-void PicturesApi::make_all(FrameId id, const Brain::FrameNow& now, const grpc::Status& found,
+void PicturesApi::make_all(FrameId id, const Controller::FrameNow& now, const grpc::Status& found,
                            const core::Film* film) {
   Shot shot;
   const grpc::Status made = !found.ok() ? found : within_memory([&] {
@@ -250,7 +250,7 @@ void PicturesApi::end(FrameId id, const std::function<WebReply(const Asked&)>& r
     const std::lock_guard lock(mutex_);
     --films_;
   }
-  (void)clerks_.hand([this] { begin_some(); });
+  (void)pool_.submit([this] { begin_some(); });
 }
 
 std::optional<WebReply> PicturesApi::find(const Asked& asked, const std::string& tag, bool over) {

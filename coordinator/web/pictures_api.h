@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/brain/clerks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/controller/thread_pool.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
@@ -23,12 +23,13 @@ namespace hyades::coordinator {
 /// most once a second, and two films at a time, whoever asks for how many.
 class PicturesApi {
  public:
-  explicit PicturesApi(Brain& brain) : brain_(brain), gate_(std::make_shared<Gate>()) {}
+  explicit PicturesApi(Controller& controller)
+      : controller_(controller), gate_(std::make_shared<Gate>()) {}
   PicturesApi(const PicturesApi&) = delete;
   PicturesApi& operator=(const PicturesApi&) = delete;
 
   void add_routes(Router& router);
-  /// Films that come later are let go of; before the destructor, which may wait for clerks.
+  /// Films that come later are let go of; before the destructor, which may wait for the pool.
   void close();
 
   /// What is asked for.
@@ -65,17 +66,17 @@ class PicturesApi {
   };
 
   void answer_picture(const Asked& asked, const Answer& answer);
-  WebReply of_file(const Asked& asked, const Brain::FrameNow& now);
+  WebReply of_file(const Asked& asked, const Controller::FrameNow& now);
   void want(const Asked& asked, const Answer& answer);
   void begin_some();
   void take_film(FrameId id);
-  void make_all(FrameId id, const Brain::FrameNow& now, const grpc::Status& found,
+  void make_all(FrameId id, const Controller::FrameNow& now, const grpc::Status& found,
                 const core::Film* film);
   void end(FrameId id, const std::function<WebReply(const Asked&)>& reply);
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
   void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply);
 
-  Brain& brain_;
+  Controller& controller_;
   const std::shared_ptr<Gate> gate_;
   std::mutex mutex_;
   Kept kept_;  ///< what was asked for last is in front
@@ -84,7 +85,7 @@ class PicturesApi {
   std::map<FrameId, Frame> frames_;
   std::deque<FrameId> queue_;  ///< of frames whose films nobody fetches yet
   int films_ = 0;              ///< that are being fetched or shown
-  Clerks clerks_{2, 1000};     ///< they end first
+  ThreadPool pool_{2, 1000};   ///< they end first
 };
 
 }  // namespace hyades::coordinator

@@ -46,7 +46,7 @@ core::Result<VideoWish> read_wish(const std::string& body) {
 
 void VideosApi::add_routes(Router& router) {
   router.add("GET", "/api/v1/jobs/{job}/videos",
-             of_job_by(desks_.rows, [this](uint64_t job) { return list(job); }));
+             of_job_by(executors_.rows, [this](uint64_t job) { return list(job); }));
   router.add("POST", "/api/v1/jobs/{job}/videos",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                auto wish = read_wish(request.body);
@@ -54,7 +54,7 @@ void VideosApi::add_routes(Router& router) {
                  answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT, wish.error().message}));
                  return;
                }
-               answer_by(desks_.files, answer,
+               answer_by(executors_.files, answer,
                          [this, job, wish = std::move(*wish), caller = request.caller] {
                            return ask(caller, job, wish);
                          });
@@ -63,7 +63,7 @@ void VideosApi::add_routes(Router& router) {
 
 WebReply VideosApi::list(uint64_t job) {
   std::vector<AskedVideo> videos;
-  if (const grpc::Status known = brain_.asked_videos(job, videos); !known.ok()) {
+  if (const grpc::Status known = controller_.asked_videos(job, videos); !known.ok()) {
     return error_reply(known);
   }
   farm::Json all = farm::Json::array();
@@ -72,9 +72,10 @@ WebReply VideosApi::list(uint64_t job) {
 }
 
 WebReply VideosApi::ask(const Caller& caller, uint64_t job, const VideoWish& wish) {
-  if (const grpc::Status his = may_steer(brain_, caller, job); !his.ok()) return error_reply(his);
+  if (const grpc::Status his = may_steer(controller_, caller, job); !his.ok())
+    return error_reply(his);
   AskedVideo video;
-  const grpc::Status taken = brain_.ask_for_video(job, wish, video);
+  const grpc::Status taken = controller_.ask_for_video(job, wish, video);
   if (!taken.ok()) return error_reply(taken);
   WebReply reply = json_reply(to_json(video));
   reply.status = 202;

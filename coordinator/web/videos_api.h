@@ -1,7 +1,7 @@
 #pragma once
 
-#include "coordinator/brain/brain.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
@@ -10,15 +10,16 @@ namespace hyades::coordinator {
 /// costs the coordinator work and writes among the job's outputs.
 class VideosApi {
  public:
-  VideosApi(Brain& brain, Desks& desks) : brain_(brain), desks_(desks) {}
+  VideosApi(Controller& controller, Executors& executors)
+      : controller_(controller), executors_(executors) {}
   void add_routes(Router& router);
 
  private:
   WebReply list(uint64_t job);
   WebReply ask(const Caller& caller, uint64_t job, const VideoWish& wish);
 
-  Brain& brain_;
-  Desks& desks_;
+  Controller& controller_;
+  Executors& executors_;
 };
 
 }  // namespace hyades::coordinator

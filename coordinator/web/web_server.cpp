@@ -16,9 +16,9 @@
 #include "coordinator/access/authority.h"
 #include "coordinator/access/rules.h"
 #include "coordinator/access/token.h"
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
-#include "coordinator/services/desks.h"
+#include "coordinator/services/executors.h"
 #include "coordinator/web/assets_api.h"
 #include "coordinator/web/connection.h"
 #include "coordinator/web/dashboard.h"
@@ -98,24 +98,24 @@ void close_on_exec(Socket& socket) {
 }  // namespace
 
 struct WebServer::Parts {
-  Parts(Brain& brain, Authority& known, std::vector<std::string> names, bool secure)
-      : meters(brain.meters()),
+  Parts(Controller& controller, Authority& known, std::vector<std::string> names, bool secure)
+      : meters(controller.meters()),
         authority(known),
         gatekeeper(known, std::move(names), secure),
         outlet(std::make_shared<Outlet>(network)),
-        farm(brain, desks),
-        jobs(brain, desks),
-        assets(brain, desks, known.audit()),
-        outputs(brain, desks),
-        pictures(brain),
-        videos(brain, desks),
-        live(brain, desks, network, outlet),
+        farm(controller, executors),
+        jobs(controller, executors),
+        assets(controller, executors, known.audit()),
+        outputs(controller, executors),
+        pictures(controller),
+        videos(controller, executors),
+        live(controller, executors, network, outlet),
         world{[this](WebRequest& request) { return admit(request); },
               [this](const Caller& caller, std::function<void(const grpc::Status&)> leave) {
                 return authority.visit(caller, std::move(leave));
               },
               [this](WebRequest request, Answer answer) { serve(std::move(request), answer); },
-              desks.files,
+              executors.files,
               outlet,
               meters,
               ConnectionCount(kMostConnections, kMostOfAddress)},
@@ -257,7 +257,7 @@ struct WebServer::Parts {
     sweep.expires_after(kSweep);
     sweep.async_wait([this](boost::system::error_code error) {
       if (error) return;
-      (void)desks.files.hand([this] { assets.sweep(); });
+      (void)executors.files.submit([this] { assets.sweep(); });
       sweep_now_and_then();
     });
   }
@@ -269,7 +269,7 @@ struct WebServer::Parts {
     look.async_wait([this](boost::system::error_code error) {
       if (error) return;
       if (certificates->changed()) {
-        (void)desks.files.hand([this] { load_certificates(); });
+        (void)executors.files.submit([this] { load_certificates(); });
       }
       look_at_certificates();
     });
@@ -327,7 +327,7 @@ struct WebServer::Parts {
   asio::steady_timer sweep;
   asio::steady_timer look;
   std::thread thread;
-  Desks desks;  ///< ends first: its clerks use all of the above
+  Executors executors;  ///< ends first: its threads use all of the above
 };
 
 WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -350,13 +350,14 @@ std::vector<std::string> WebServer::routes() const {
   return all;
 }
 
-core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& listen, Brain& brain,
+core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& listen,
+                                                          Controller& controller,
                                                           Authority& authority,
                                                           std::vector<std::string> names) {
   auto door = farm::open_door(listen);  // its rules are ours
   if (!door) return door.error();
   const bool secure = !listen.cert_file.empty();
-  auto parts = std::make_unique<Parts>(brain, authority, std::move(names), secure);
+  auto parts = std::make_unique<Parts>(controller, authority, std::move(names), secure);
   if (secure) {
     parts->certificates.emplace(listen);
     const TlsContext::Stamps stamps = parts->certificates->stamps();

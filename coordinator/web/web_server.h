@@ -10,20 +10,21 @@
 namespace hyades::coordinator {
 
 class Authority;
-class Brain;
+class Controller;
 
-/// The coordinator's HTTP server: the dashboard and the API of openapi.yaml over a brain.
+/// The coordinator's HTTP server: the dashboard and the API of openapi.yaml over a controller.
 ///
 /// One thread does all that concerns connections, so that thousands of them cost no more than what
-/// they ask for; what may wait for the disk is done by clerks, as for gRPC.
+/// they ask for; what may wait for the disk is done by pools of threads, as for gRPC.
 class WebServer {
  public:
   /// Listens at listen.address, with its certificate and token (farm::open_door has the rules). An
-  /// error where they do not hold together, or the address is taken or not this machine's. `brain`
-  /// and `authority`, which says who may come in, outlive the server. `names`: by which browsers
-  /// may reach it where no token guards, beside those that no stranger can have
+  /// error where they do not hold together, or the address is taken or not this machine's.
+  /// `controller` and `authority`, which says who may come in, outlive the server. `names`: by
+  /// which browsers may reach it where no token guards, beside those that no stranger can have
   /// (Gatekeeper::check).
-  static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen, Brain& brain,
+  static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen,
+                                                        Controller& controller,
                                                         Authority& authority,
                                                         std::vector<std::string> names = {});
 

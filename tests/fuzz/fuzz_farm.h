@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "coordinator/access/authority.h"
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "core/base/hash.h"
 #include "farm/log.h"
 #include "farm/wire.h"
@@ -46,28 +46,28 @@ struct Farm {
 
   Farm() {
     farm::set_log("fuzz", {farm::LogLevel::error});
-    coordinator::BrainOptions options;
+    coordinator::ControllerOptions options;
     options.folder = folder.file("data");
     options.finisher = "/bin/false";
-    brain = must(coordinator::Brain::open(options));
-    authority = must(coordinator::Authority::open(brain->store(), {}));
+    controller = must(coordinator::Controller::open(options));
+    authority = must(coordinator::Authority::open(controller->store(), {}));
     const std::string name = core::to_hex(core::sha256(kDocument));
-    auto writer = must(brain->assets().write(name, kDocument.size()));
+    auto writer = must(controller->assets().write(name, kDocument.size()));
     const bool written =
         writer.append(std::as_bytes(std::span(kDocument))).ok() && writer.commit().ok();
     v1::SubmitResponse made;
-    if (!written || !brain->submit(submission(), false, made).ok()) {
+    if (!written || !controller->submit(submission(), false, made).ok()) {
       std::fprintf(stderr, "no farm: its job cannot be made\n");
       std::exit(1);
     }
     job = made.job().id();
   }
-  ~Farm() { brain->stop(); }
+  ~Farm() { controller->stop(); }
   Farm(const Farm&) = delete;
   Farm& operator=(const Farm&) = delete;
 
   test::TempFolder folder;
-  std::unique_ptr<coordinator::Brain> brain;
+  std::unique_ptr<coordinator::Controller> controller;
   std::unique_ptr<coordinator::Authority> authority;
   uint64_t job = 0;
 };

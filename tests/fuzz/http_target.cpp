@@ -25,11 +25,11 @@ struct Site {
   Site() {
     farm::Listen listen;
     listen.address = "127.0.0.1:0";
-    web = must(coordinator::WebServer::start(listen, *farm.brain, *farm.authority));
+    web = must(coordinator::WebServer::start(listen, *farm.controller, *farm.authority));
     port = std::atoi(web->url().substr(web->url().rfind(':') + 1).c_str());
   }
   ~Site() {
-    farm.brain->stop();
+    farm.controller->stop();
     web.reset();
   }
   Site(const Site&) = delete;

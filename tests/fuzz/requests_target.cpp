@@ -14,7 +14,7 @@
 namespace hyades::fuzz {
 namespace {
 
-using coordinator::Brain;
+using coordinator::Controller;
 
 Farm& farm() {
   static Farm one;
@@ -35,36 +35,39 @@ grpc::Status told(Order order) {
 
 /// A submission that is taken is a job, and can be shown, ended and forgotten.
 bool try_submission(const v1::SubmitRequest& request) {
-  Brain& brain = *farm().brain;
+  Controller& controller = *farm().controller;
   v1::SubmitResponse response;
-  if (!brain.submit(request, false, response).ok()) return false;
+  if (!controller.submit(request, false, response).ok()) return false;
   const uint64_t job = response.job().id();
   v1::GetJobResponse got;
-  if (!brain.get(job, std::nullopt, got).ok()) std::abort();
+  if (!controller.get(job, std::nullopt, got).ok()) std::abort();
   (void)farm::to_json(got.job());
   if (response.existed() || job == farm().job) return true;
-  if (!told([&](Brain::Told then) { brain.cancel(job, std::move(then)); }).ok()) return true;
-  (void)brain.remove(job);
+  if (!told([&](Controller::JobReply then) { controller.cancel(job, std::move(then)); }).ok())
+    return true;
+  (void)controller.remove(job);
   return true;
 }
 
 bool try_orders(const v1::JobRequest& request) {
-  Brain& brain = *farm().brain;
+  Controller& controller = *farm().controller;
   const uint64_t job = request.job();
-  const bool paused = told([&](Brain::Told then) { brain.pause(job, std::move(then)); }).ok();
-  if (paused && !told([&](Brain::Told then) { brain.resume(job, std::move(then)); }).ok()) {
+  const bool paused =
+      told([&](Controller::JobReply then) { controller.pause(job, std::move(then)); }).ok();
+  if (paused &&
+      !told([&](Controller::JobReply then) { controller.resume(job, std::move(then)); }).ok()) {
     std::abort();
   }
   v1::ExplainResponse why;
-  return brain.explain(job, why).ok() && paused;
+  return controller.explain(job, why).ok() && paused;
 }
 
 bool try_worker_orders(const v1::WorkerRequest& request) {
-  Brain& brain = *farm().brain;
+  Controller& controller = *farm().controller;
   v1::Worker now;
-  const bool drained = brain.drain_worker(request, now).ok();
-  const bool barred = brain.quarantine_worker(request, now).ok();
-  const bool freed = brain.release_worker(request, now).ok();
+  const bool drained = controller.drain_worker(request, now).ok();
+  const bool barred = controller.quarantine_worker(request, now).ok();
+  const bool freed = controller.release_worker(request, now).ok();
   return drained || barred || freed;
 }
 
@@ -86,7 +89,7 @@ class Deaf : public coordinator::WorkerLink {
 
 /// The message is a worker's first, or what a proper worker says second.
 bool try_worker(const v1::WorkerMessage& message) {
-  Brain& brain = *farm().brain;
+  Controller& controller = *farm().controller;
   const auto link = std::make_shared<Deaf>();
   v1::Hello hello;
   hello.set_protocol(farm::kProtocol);
@@ -97,12 +100,13 @@ bool try_worker(const v1::WorkerMessage& message) {
   hello.set_threads(1);
   hello.set_want(2);
   coordinator::WorkerId worker{};
-  if (!brain.attach(message.has_hello() ? message.hello() : hello, link, worker).ok()) return false;
-  if (!message.has_hello()) brain.receive(worker, link.get(), message);
+  if (!controller.attach(message.has_hello() ? message.hello() : hello, link, worker).ok())
+    return false;
+  if (!message.has_hello()) controller.receive(worker, link.get(), message);
   v1::WorkersResponse all;
-  brain.workers({}, all);
+  controller.workers({}, all);
   for (const v1::Worker& one : all.workers()) (void)farm::to_json(one);
-  brain.detach(worker, link.get());
+  controller.detach(worker, link.get());
   return true;
 }
 
@@ -174,7 +178,7 @@ std::vector<std::string> seeds() {
 
 bool try_input(std::string_view input) {
   if (input.empty()) return false;
-  Brain& brain = *farm().brain;
+  Controller& controller = *farm().controller;
   const std::string bytes(input.substr(1));
   switch (input.front()) {
     case 's':
@@ -185,31 +189,31 @@ bool try_input(std::string_view input) {
       return parsed<v1::GetJobRequest>(bytes, [&](const v1::GetJobRequest& request) {
         v1::GetJobResponse got;
         const auto after = request.has_after() ? std::optional(request.after()) : std::nullopt;
-        return brain.get(request.job(), after, got, request.state()).ok();
+        return controller.get(request.job(), after, got, request.state()).ok();
       });
     case 'l':
       return parsed<v1::ListJobsRequest>(bytes, [&](const v1::ListJobsRequest& request) {
         v1::ListJobsResponse open;
         v1::ListJobsResponse all;
-        (void)brain.list_open(request, open);
-        return brain.list(request, all).ok();
+        (void)controller.list_open(request, open);
+        return controller.list(request, all).ok();
       });
     case 't':
       return parsed<v1::ListTimelineRequest>(bytes, [&](const v1::ListTimelineRequest& request) {
         v1::ListTimelineResponse steps;
-        return brain.timeline(request, steps).ok();
+        return controller.timeline(request, steps).ok();
       });
     case 'p':
       return parsed<v1::SetPriorityRequest>(bytes, [&](const v1::SetPriorityRequest& request) {
-        return told([&](Brain::Told then) {
-                 brain.set_priority(request.job(), request.priority(), std::move(then));
+        return told([&](Controller::JobReply then) {
+                 controller.set_priority(request.job(), request.priority(), std::move(then));
                })
             .ok();
       });
     case 'w':
       return parsed<v1::WorkersRequest>(bytes, [&](const v1::WorkersRequest& request) {
         v1::WorkersResponse all;
-        brain.workers(request, all);
+        controller.workers(request, all);
         return true;
       });
     case 'd':

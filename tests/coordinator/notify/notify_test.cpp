@@ -96,7 +96,7 @@ TEST(Notifier, AJobThatIsDoneIsToldOfOnce) {
   Notifier::Options options = watching(server);
   options.chats = {chat.url()};
   options.dashboard = "https://farm.example.org";
-  const Notifier notifier(*world.brain, options);
+  const Notifier notifier(*world.controller, options);
   const uint64_t job = world.submit(2);
   const ScriptedWorker worker(world.address, world.script());
   ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
@@ -122,7 +122,7 @@ TEST(Notifier, ManyQuickJobsAreAllToldOf) {
   FakeHook server;
   Notifier::Options options = watching(server);
   options.look = 300ms;  // most begin and end between two looks
-  const Notifier notifier(*world.brain, options);
+  const Notifier notifier(*world.controller, options);
   std::set<uint64_t> jobs;
   for (int i = 0; i < 8; ++i) jobs.insert(world.submit(1));
   ASSERT_TRUE(eventually([&] { return server.bodies().size() >= jobs.size(); }));
@@ -138,7 +138,7 @@ TEST(Notifier, AJobThatStandsStillIsToldOfWithTheReason) {
   FakeHook server;
   Notifier::Options options = watching(server);
   options.stall = 150ms;
-  const Notifier notifier(*world.brain, options);
+  const Notifier notifier(*world.controller, options);
   const uint64_t job = world.submit(1);
   ASSERT_TRUE(eventually([&] { return !server.bodies().empty(); }));
   const Json said = Json::parse(server.bodies().front());
@@ -160,7 +160,7 @@ TEST(Notifier, APausedJobDoesNotStandStill) {
   FakeHook server;
   Notifier::Options options = watching(server);
   options.stall = 100ms;
-  const Notifier notifier(*world.brain, options);
+  const Notifier notifier(*world.controller, options);
   std::this_thread::sleep_for(400ms);
   EXPECT_TRUE(server.bodies().empty());
 }

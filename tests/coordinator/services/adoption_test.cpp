@@ -17,7 +17,7 @@ constexpr int kFaster = 10;
 TEST(Adoption, AfterHalfAMinuteWithoutACoordinatorUnitsStayWithTheirWorkers) {
   FarmWorld world;
   world.options.unit_time = 1ms;  // a batch: so there are many units
-  world.options.adoption_time = BrainOptions().adoption_time / kFaster;
+  world.options.adoption_time = ControllerOptions().adoption_time / kFaster;
   world.start();
   std::string text = FarmWorld::document(1);
   text.replace(text.find("[80, 48]"), 8, "[1280, 768]");  // 720 units

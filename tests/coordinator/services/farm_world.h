@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "coordinator/access/authority.h"
-#include "coordinator/brain/brain.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/server.h"
 #include "core/base/hash.h"
 #include "core/image/read_image.h"
@@ -63,18 +63,18 @@ class FarmWorld {
       ASSERT_TRUE(stored.ok()) << (stored ? "" : stored.error().message);
       store = wrap_store(std::move(*stored));
     }
-    auto opened = Brain::open(options, std::move(store));
+    auto opened = Controller::open(options, std::move(store));
     ASSERT_TRUE(opened.ok()) << (opened ? "" : opened.error().message);
-    brain = std::move(*opened);
+    controller = std::move(*opened);
     farm::Listen listen = how;
     listen.address = address.empty() ? "127.0.0.1:0" : address;
     auto door = farm::open_door(listen);
     ASSERT_TRUE(door.ok()) << (door ? "" : door.error().message);
-    auto known = Authority::open(brain->store(),
+    auto known = Authority::open(controller->store(),
                                  {.shared_token = door->token, .audit_folder = options.folder});
     ASSERT_TRUE(known.ok()) << (known ? "" : known.error().message);
     authority = std::move(*known);
-    auto listening = Server::start(*door, *brain, *authority, serving);
+    auto listening = Server::start(*door, *controller, *authority, serving);
     ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
     server = std::move(*listening);
     connect(server->address());
@@ -93,10 +93,10 @@ class FarmWorld {
 
   /// Orderly; a killed process is for the tests of whole processes.
   void stop() {
-    if (brain) brain->stop();
+    if (controller) controller->stop();
     server.reset();
     authority.reset();
-    brain.reset();
+    controller.reset();
   }
 
   static std::string document(int last_frame) {
@@ -231,14 +231,14 @@ class FarmWorld {
   }
 
   test::TempFolder folder;
-  BrainOptions options;
+  ControllerOptions options;
   /// Puts something before the coordinator's job store, to make it fail or wait.
   std::function<std::unique_ptr<JobStore>(std::unique_ptr<JobStore>)> wrap_store;
   farm::Listen how;
   Server::Options serving;
   std::string token;
   std::string address;
-  std::unique_ptr<Brain> brain;
+  std::unique_ptr<Controller> controller;
   std::unique_ptr<Authority> authority;
   std::unique_ptr<Server> server;
   std::shared_ptr<grpc::Channel> channel;

@@ -159,7 +159,7 @@ TEST_F(Losses, LinesThatCannotBeStoredWait) {
 }
 
 TEST(LossesAtTheDesk, LinesThatCannotBeStoredAreBounded) {
-  JobDesk desk({}, {});
+  ActiveJob active({}, {});
   const auto line_of = [](const std::string& text) {
     StoredLine line;
     line.text = text;
@@ -167,10 +167,10 @@ TEST(LossesAtTheDesk, LinesThatCannotBeStoredAreBounded) {
   };
   std::vector<StoredLine> old;
   for (int i = 0; i < 1999; ++i) old.push_back(line_of("old"));
-  desk.note(line_of("new"));
-  desk.note(line_of("newest"));
-  desk.put_back(old);
-  const std::vector<StoredLine> taken = desk.take_lines();
+  active.note(line_of("new"));
+  active.note(line_of("newest"));
+  active.put_back(old);
+  const std::vector<StoredLine> taken = active.take_lines();
   ASSERT_EQ(taken.size(), 2001U);
   EXPECT_EQ(taken[1999].text, "newest");
   EXPECT_EQ(taken[2000].text, "1 line was dropped: too many at once");

@@ -181,8 +181,8 @@ TEST_F(NeverFreezes, WhileFilesCannotBeRead) {
     ASSERT_TRUE(world.wait_for(done, v1::JOB_STATE_DONE));
   }
   // Who opens a pipe that nobody writes to waits, as for a disk that does not answer.
-  const std::string film = world.brain->output_folder(done) + "/balls.0001.film.exr";
-  const std::string picture = world.brain->output_folder(done) + "/balls.0001.png";
+  const std::string film = world.controller->output_folder(done) + "/balls.0001.film.exr";
+  const std::string picture = world.controller->output_folder(done) + "/balls.0001.png";
   for (const std::string& path : {film, picture}) {
     ASSERT_TRUE(std::filesystem::remove(path));
     ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);

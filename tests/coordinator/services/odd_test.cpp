@@ -43,7 +43,7 @@ class OddWorker : public testing::Test {
     return all;
   }
   std::string log(uint64_t job) {
-    const auto lines = world_.brain->store().lines(job, 0, 1000);
+    const auto lines = world_.controller->store().lines(job, 0, 1000);
     std::string all;
     for (const StoredLine& line : *lines) all += line.text + "\n";
     return all;
@@ -118,7 +118,7 @@ TEST_F(OddWorker, IsTrustedUpToTheFrameInWhichAnotherAgreedWithIt) {
     ScriptedWorker bert(world_.address, world_.script(2));
     ASSERT_TRUE(eventually([&] { return bert.streams() > 0; }));
     bert.deliver(*shared);
-    ASSERT_TRUE(eventually([&] { return !world_.brain->store().trusted()->empty(); }));
+    ASSERT_TRUE(eventually([&] { return !world_.controller->store().trusted()->empty(); }));
     go = true;
     ASSERT_TRUE(world_.wait_for(2, v1::JOB_STATE_DONE));
   }

@@ -17,7 +17,7 @@ namespace {
 /// Whoever wakes it may do so as soon as it is told of it, which is before the stream is made.
 class Woken : public Producer<v1::Chunk> {
  protected:
-  Woken(grpc::CallbackServerContext& context, Clerks& clerks) : Producer(context, clerks) {
+  Woken(grpc::CallbackServerContext& context, ThreadPool& pool) : Producer(context, pool) {
     poker()->poke();
   }
 };
@@ -25,7 +25,7 @@ class Woken : public Producer<v1::Chunk> {
 class Counting final : public Woken {
  public:
   using Woken::poker;
-  Counting(grpc::CallbackServerContext& context, Clerks& clerks) : Woken(context, clerks) {}
+  Counting(grpc::CallbackServerContext& context, ThreadPool& pool) : Woken(context, pool) {}
   int asked = 0;
 
  private:
@@ -37,8 +37,8 @@ class Counting final : public Woken {
 
 TEST(Producer, IsNotAskedBeforeItBegins) {
   grpc::CallbackServerContext context;
-  Clerks clerks(1, 1);
-  Counting stream(context, clerks);  // a stream that is asked here calls a pure virtual function
+  ThreadPool pool(1, 1);
+  Counting stream(context, pool);  // a stream that is asked here calls a pure virtual function
   stream.poker()->poke();
   EXPECT_EQ(stream.asked, 0);
   stream.begin();
@@ -50,8 +50,8 @@ TEST(Producer, IsNotAskedBeforeItBegins) {
 /// 64 MiB for anybody, of whom it expects to take something every 200 ms.
 class Chunks final : public Producer<v1::Chunk> {
  public:
-  Chunks(grpc::CallbackServerContext& context, Clerks& clerks, bool hungry)
-      : Producer(context, clerks, std::chrono::milliseconds(200)), hungry_(hungry) {
+  Chunks(grpc::CallbackServerContext& context, ThreadPool& pool, bool hungry)
+      : Producer(context, pool, std::chrono::milliseconds(200)), hungry_(hungry) {
     begin();
   }
 
@@ -70,12 +70,12 @@ class ChunkService final : public v1::Assets::WithRawCallbackMethod_Download<v1:
  public:
   grpc::ServerWriteReactor<grpc::ByteBuffer>* Download(grpc::CallbackServerContext* context,
                                                        const grpc::ByteBuffer*) override {
-    return new Chunks(*context, clerks_, hungry);
+    return new Chunks(*context, pool_, hungry);
   }
   bool hungry = false;
 
  private:
-  Clerks clerks_{1, 1};
+  ThreadPool pool_{1, 1};
 };
 
 TEST(Producer, BreaksOffWhereNobodyReads) {

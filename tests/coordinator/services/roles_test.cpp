@@ -321,13 +321,13 @@ TEST_F(Roles, WhoUploadsIsKeptOnceForAFile) {
 
 TEST_F(Roles, StrangersWhoMayListenAreToldOf) {
   const auto how = [&](Authority::Options options) {
-    const auto known = Authority::open(world.brain->store(), std::move(options));
+    const auto known = Authority::open(world.controller->store(), std::move(options));
     return known ? (*known)->unguarded() : known.error().message;
   };
   EXPECT_EQ(how({.beyond = false, .plain = true}), "");
   EXPECT_EQ(how({.beyond = true, .plain = false}), "");
   EXPECT_NE(how({.beyond = true, .plain = true}).find("plain text"), std::string::npos);
-  world.brain->set_unguarded("anybody may");
+  world.controller->set_unguarded("anybody may");
   v1::InfoResponse info;
   ASSERT_TRUE(world.farm_->Info(world.context().get(), {}, &info).ok());
   EXPECT_EQ(info.unguarded(), "anybody may");

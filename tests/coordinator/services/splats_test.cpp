@@ -106,7 +106,7 @@ TEST_F(Splats, OfAnOddWorkerTakeTheirFrameWithThem) {
   }
   expect_truth(job);
   EXPECT_EQ(world_.get(job).frames(0).restarts(), 1U);
-  const auto lines = world_.brain->store().lines(job, 0, 1000);
+  const auto lines = world_.controller->store().lines(job, 0, 1000);
   std::string all;
   for (const StoredLine& line : *lines) all += line.text + "\n";
   EXPECT_THAT(all, HasSubstr("is rendered again from its beginning"));

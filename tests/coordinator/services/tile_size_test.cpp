@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "coordinator/brain/job_desk.h"
+#include "coordinator/controller/active_job.h"
 
 namespace hyades::coordinator {
 namespace {

@@ -310,7 +310,7 @@ TEST(Gatekeeper, BeyondThisMachineOnlyWithTlsAndToken) {
   farm.start();
   farm::Listen listen;
   listen.address = "0.0.0.0:0";
-  EXPECT_FALSE(WebServer::start(listen, *farm.brain, *farm.authority).ok());
+  EXPECT_FALSE(WebServer::start(listen, *farm.controller, *farm.authority).ok());
 }
 
 TEST(WebServer, AnAddressThatIsTakenIsTold) {
@@ -318,7 +318,7 @@ TEST(WebServer, AnAddressThatIsTakenIsTold) {
   world.start();
   farm::Listen listen;
   listen.address = world.web->url().substr(7);
-  const auto second = WebServer::start(listen, *world.farm.brain, *world.farm.authority);
+  const auto second = WebServer::start(listen, *world.farm.controller, *world.farm.authority);
   ASSERT_FALSE(second.ok());
   EXPECT_NE(second.error().message.find(listen.address), std::string::npos);
 }

@@ -87,7 +87,7 @@ TEST(Live, AServerThatEndsUnderLoadEndsCleanly) {
       });
     }
     std::this_thread::sleep_for(200ms);
-    world.farm.brain->stop();
+    world.farm.controller->stop();
     world.web.reset();
     stop = true;
     for (std::thread& person : people) person.join();

@@ -34,7 +34,7 @@ TEST(Protocol, ManyRequestsAtOnceAreAnsweredInOrder) {
   world.start();
   std::string asked;
   for (int i = 0; i < 40; ++i) {
-    // Some are answered by the network's thread, some by clerks.
+    // Some are answered by the network's thread, some by pool.
     asked += (i % 2 == 0 ? "GET /healthz" : "GET /api/v1/jobs") + kHead + "\r\n";
   }
   const std::string all =

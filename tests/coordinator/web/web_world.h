@@ -21,13 +21,13 @@ class WebWorld {
     farm.start();
     farm::Listen listen = farm.how;
     listen.address = address;
-    auto started = WebServer::start(listen, *farm.brain, *farm.authority, names);
+    auto started = WebServer::start(listen, *farm.controller, *farm.authority, names);
     ASSERT_TRUE(started.ok()) << (started ? "" : started.error().message);
     web = std::move(*started);
     client = std::make_unique<HttpClient>(web->url());
   }
   void stop() {
-    if (farm.brain) farm.brain->stop();
+    if (farm.controller) farm.controller->stop();
     web.reset();
     farm.stop();
   }

@@ -1,0 +1,323 @@
+#include "coordinator/controller/active_job.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/counted.h"
+#include "coordinator/scheduler/tile_grid.h"
+#include "core/base/text.h"
+#include "core/base/version.h"
+#include "core/job/layers.h"
+#include "core/job/ocio_files.h"
+#include "core/job/render_key.h"
+#include "core/job/video.h"
+#include "farm/manifest_resolver.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr double kSmoothing = 10;  // seconds
+constexpr int kMostFiles = 100'000;
+constexpr int kMostRanges = 10'000;
+constexpr size_t kLongestName = 200;
+constexpr size_t kMostLinesWaiting = 2000;
+constexpr size_t kLongestPath = 4096;
+constexpr uint32_t kMostSamples = 1U << 24U;
+constexpr int64_t kMostFrames = 1'000'000;
+constexpr int32_t kSmallTile = 32;
+constexpr int32_t kLargeTile = 64;
+constexpr uint32_t kManySamples = 512;
+constexpr uint64_t kEnoughPieces = 512;  ///< of a frame, each one batch of a tile
+
+/// The frames that the spec asks for, in order; an error where the document does not have them.
+core::Result<std::vector<int32_t>> frames_of(const v1::JobSpec& spec, const core::Job& job) {
+  std::vector<int32_t> numbers;
+  std::set<int32_t> seen;
+  int64_t asked = 0;
+  const auto add = [&](int64_t first, int64_t last, int64_t step) -> core::Status {
+    if (step < 1 || first > last || first < job.frames.first || last > job.frames.last) {
+      return core::Error{
+          fmt::format("frames {}-{} (step {}): expected frames within the job's {}-{}", first, last,
+                      step, job.frames.first, job.frames.last)};
+    }
+    asked += (last - first) / step + 1;  // those that are named twice make work too
+    if (asked > kMostFrames) return core::Error{"more than a million frames"};
+    for (int64_t f = first; f <= last; f += step) {
+      const auto number = static_cast<int32_t>(f);
+      if (seen.insert(number).second) numbers.push_back(number);
+    }
+    return {};
+  };
+  if (spec.frames().empty()) {
+    if (auto added = add(job.frames.first, job.frames.last, job.frames.step); !added) {
+      return added.error();
+    }
+  }
+  for (const v1::FrameRange& range : spec.frames()) {
+    const int64_t step = range.step() == 0 ? 1 : range.step();
+    if (auto added = add(range.first(), range.last(), step); !added) return added.error();
+  }
+  return numbers;
+}
+
+/// What names the bits of all films of this spec.
+Digest key_of(const v1::JobSpec& spec, const core::LayerSet& layers) {
+  std::string text =
+      fmt::format("{} {} {}\n", spec.document(), spec.samples(), core::layers_text(layers));
+  std::vector<std::string> files;
+  for (const v1::JobFile& file : spec.files()) files.push_back(file.path() + '\0' + file.sha256());
+  std::sort(files.begin(), files.end());
+  for (const std::string& file : files) text += file + '\n';
+  return core::sha256(text);
+}
+
+/// Where pictures are finished, tables lie to their configuration as in the job: what it names by
+/// an absolute path would be looked for among the coordinator's own files.
+core::Status check_color_files(const core::Job& job, core::AssetResolver& files) {
+  if (!job.color) return {};
+  const auto config = files.open(job.color->config);
+  if (!config) return config.error();
+  const std::vector<std::string>& used = job.color->files;
+  for (const std::string& file : core::ocio_file_candidates({config->chars(), config->size()})) {
+    if (!file.starts_with('/') || std::find(used.begin(), used.end(), file) == used.end()) continue;
+    return core::Error{fmt::format(
+        "{} names '{}': expected a path relative to the configuration, as a farm's machines have "
+        "no such file",
+        job.color->config, file)};
+  }
+  return {};
+}
+
+}  // namespace
+
+int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats) {
+  if (splats) return kSplatTile;
+  const auto along = [](int32_t pixels) { return (pixels + kLargeTile - 1) / kLargeTile; };
+  const uint64_t pieces = static_cast<uint64_t>(along(region.width())) *
+                          static_cast<uint64_t>(along(region.height())) *
+                          core::batch_count(samples);
+  return samples < kManySamples && pieces >= kEnoughPieces ? kLargeTile : kSmallTile;
+}
+
+void Speed::note(uint64_t done, TimePoint now) {
+  if (last_ != TimePoint{}) {
+    const double passed = std::chrono::duration<double>(now - last_).count();
+    if (passed <= 0) return;
+    const double keep = std::exp(-passed / kSmoothing);
+    const double recent = done > done_ ? static_cast<double>(done - done_) / passed : 0.0;
+    rate_ = rate_ == 0 ? recent : keep * rate_ + (1 - keep) * recent;
+  }
+  last_ = now;
+  done_ = done;
+}
+
+FrameNote& ActiveJob::touch(int32_t frame) {
+  FrameNote& note = frames[frame];
+  note.version = ++version;
+  in_work.insert(frame);
+  return note;
+}
+
+void ActiveJob::note(StoredLine line) {
+  touch();
+  if (lines.size() < kMostLinesWaiting) {
+    lines.push_back(std::move(line));
+  } else {
+    ++lines_dropped;
+  }
+}
+
+std::vector<StoredLine> ActiveJob::take_lines() {
+  std::vector<StoredLine> taken = std::exchange(lines, {});
+  if (const uint64_t dropped = std::exchange(lines_dropped, 0); dropped > 0) {
+    taken.push_back({taken.back().time_ms, v1::LOG_LEVEL_WARNING, std::nullopt, "",
+                     counted(dropped, "line") + (dropped == 1 ? " was" : " were") +
+                         " dropped: too many at once"});
+  }
+  return taken;
+}
+
+void ActiveJob::put_back(std::vector<StoredLine> taken) {
+  taken.insert(taken.end(), std::make_move_iterator(lines.begin()),
+               std::make_move_iterator(lines.end()));
+  lines = std::move(taken);
+  if (lines.size() <= kMostLinesWaiting) return;
+  const size_t over = lines.size() - kMostLinesWaiting;
+  lines.erase(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(over));
+  lines_dropped += over;
+}
+
+v1::Job describe(const StoredJob& job) {
+  v1::Job wire;
+  wire.set_id(job.id);
+  wire.set_name(job.name);
+  wire.set_owner(job.owner);
+  wire.set_owner_proven(job.owner_proven);
+  wire.set_priority(job.priority);
+  wire.set_max_workers(job.max_workers);
+  for (const std::string& tag : job.tags) wire.add_tags(tag);
+  wire.set_memory_bytes(job.memory);
+  wire.set_max_attempts(job.max_attempts);
+  wire.set_frame_order(static_cast<v1::FrameOrder>(job.frame_order));
+  wire.set_state(static_cast<v1::JobState>(job.state));  // the numbers are the same
+  wire.set_frames(job.frames);
+  wire.set_frames_done(job.frames_done);
+  wire.set_frames_failed(job.frames_failed);
+  wire.set_samples(job.samples);
+  if (job.frames > 0) wire.set_samples_done(job.samples / job.frames * job.frames_done);
+  wire.set_seconds_left(-1);
+  wire.set_submitted_ms(job.submitted_ms);
+  wire.set_ended_ms(job.ended_ms);
+  wire.set_reason(farm::wire_text(job.reason));
+  wire.set_core_seconds(1e-9 * static_cast<double>(job.core_ns));
+  if (job.preview) wire.set_preview_frame(*job.preview);
+  return wire;
+}
+
+const std::vector<core::VideoDesc>& ActiveJob::videos() const {
+  static const std::vector<core::VideoDesc> none;
+  return core::are_all_frames(read.job, numbers) ? read.job.videos : none;
+}
+
+std::optional<int32_t> ActiveJob::preview_frame() const {
+  for (const int32_t frame : in_work) {
+    const auto noted = frames.find(frame);
+    if (noted == frames.end() || noted->second.samples_done == 0) continue;
+    const v1::FrameState state = noted->second.state;
+    if (state == v1::FRAME_STATE_RENDERING || state == v1::FRAME_STATE_FINISHING) return frame;
+  }
+  return stored.preview;
+}
+
+v1::Job ActiveJob::describe(uint32_t leased) const {
+  v1::Job wire = coordinator::describe(stored);
+  wire.set_samples_done(samples_done);
+  wire.set_leased(leased);
+  if (const auto shown = preview_frame()) wire.set_preview_frame(*shown);
+  wire.set_samples_per_second(speed.per_second());
+  if (speed.per_second() > 0) {
+    wire.set_seconds_left(
+        static_cast<double>(stored.samples - std::min(samples_done, stored.samples)) /
+        speed.per_second());
+  }
+  if (!row_trouble.empty()) wire.set_reason(farm::wire_text(row_trouble));
+  if (!trouble.empty()) wire.set_reason(farm::wire_text(trouble));
+  return wire;
+}
+
+v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const {
+  v1::Frame wire;
+  wire.set_frame(number);
+  wire.set_state(note.state);
+  wire.set_samples(samples_per_frame);
+  wire.set_samples_done(note.samples_done);
+  wire.set_reason(farm::wire_text(note.reason));
+  wire.set_worker_class(note.worker_class);
+  wire.set_restarts(note.restarts);
+  return wire;
+}
+
+core::FilmInfo ActiveJob::film_info(int32_t frame) const {
+  const core::Job& job = read.job;
+  core::FilmInfo info;
+  info.job_name = job.name;
+  info.render_key = core::render_key(job, frame, read.assets);
+  info.frame = frame;
+  info.width = job.film.width;
+  info.height = job.film.height;
+  info.crop = region;
+  info.samples = job.sampling.samples;
+  info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
+  return info;
+}
+
+core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec) {
+  if (spec.files_size() > kMostFiles) {
+    return core::Error{fmt::format("{} files: at most {}", spec.files_size(), kMostFiles)};
+  }
+  if (spec.frames_size() > kMostRanges) {
+    return core::Error{
+        fmt::format("{} ranges of frames: at most {}", spec.frames_size(), kMostRanges)};
+  }
+  if (spec.name().size() > kLongestName) {
+    return core::Error{fmt::format("name: at most {} characters", kLongestName)};
+  }
+  std::vector<core::AssetRecord> records;
+  std::set<std::string> paths;
+  for (const v1::JobFile& file : spec.files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (!digest) return digest.error().in(file.path());
+    if (file.path().empty() || file.path().size() > kLongestPath) {
+      return core::Error{"a file without a path, or with one of more than 4096 bytes"};
+    }
+    if (!paths.insert(file.path()).second) return core::Error{file.path() + ": named twice"};
+    records.push_back({file.path(), core::to_hex(*digest), file.size()});
+  }
+  if (!paths.contains(spec.document())) {
+    return core::Error{"the document '" + spec.document() + "' is not among the job's files"};
+  }
+  return records;
+}
+
+core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored,
+                                                         const v1::JobSpec& spec,
+                                                         farm::ContentStore& assets,
+                                                         uint64_t film_memory) {
+  auto records = files_of(spec);
+  if (!records) return records.error();
+  farm::ManifestResolver files(*records, assets);
+  auto read = farm::read_job(spec.document(), spec.document(), files);
+  if (!read) return read.error();
+  auto active = std::make_unique<ActiveJob>(stored, spec);
+  active->read = std::move(*read);
+  core::Job& job = active->read.job;
+  if (spec.samples() > kMostSamples) {
+    return core::Error{fmt::format("{} samples: at most {}", spec.samples(), kMostSamples)};
+  }
+  if (spec.samples() > 0) job.sampling.samples = spec.samples();
+  if (farm::wire_text(job.name) != job.name || job.name.size() > kLongestName) {
+    return core::Error{fmt::format("name: expected at most {} bytes of UTF-8", kLongestName)};
+  }
+  for (const core::OutputDesc& output : job.outputs) {
+    if (farm::wire_text(output.file) != output.file) {
+      return core::Error{"output '" + farm::wire_text(output.file) + "': expected UTF-8"};
+    }
+    const std::filesystem::path path = std::filesystem::path(output.file).lexically_normal();
+    if (path.is_absolute() || path.empty() || *path.begin() == "..") {
+      return core::Error{"output '" + output.file + "': a farm writes below the job's folder only"};
+    }
+  }
+  if (const core::Status portable = check_color_files(job, files); !portable) {
+    return portable.error();
+  }
+  auto numbers = frames_of(spec, job);
+  if (!numbers) return numbers.error();
+  active->numbers = std::move(*numbers);
+  active->region = core::render_window(job.film);
+  const core::LayerSet layers = core::needed_layers(job);
+  active->layout = core::make_film_layout(layers);
+  active->film_bytes = core::film_memory(active->layout, active->region);
+  if (active->film_bytes > film_memory) {
+    return core::Error{fmt::format(
+        "film: {} x {} pixels of {} channels take {} of the coordinator's memory, which holds at "
+        "most {} of films (--film-memory); expected a smaller size, a crop, or fewer layers",
+        active->region.width(), active->region.height(), active->layout.channels.size(),
+        core::format_bytes(active->film_bytes), core::format_bytes(film_memory))};
+  }
+  active->samples_per_frame =
+      static_cast<uint64_t>(active->region.area()) * uint64_t{job.sampling.samples};
+  active->key = key_of(spec, layers);
+  for (const int32_t frame : active->numbers) active->frames[frame];
+  active->stored.name = spec.name().empty() ? job.name : spec.name();
+  active->stored.frames = static_cast<uint32_t>(active->numbers.size());
+  active->stored.samples = active->samples_per_frame * active->numbers.size();
+  return active;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "coordinator/scheduler/ids.h"
+#include "coordinator/store/disk_room.h"
+#include "coordinator/store/film_store.h"
+#include "core/base/machine.h"
+
+namespace hyades::coordinator {
+
+/// What rendering costs.
+struct Price {
+  double per_core_hour = 0;  ///< of one thread; 0: nobody has said
+  std::string currency;      ///< three capital letters (ISO 4217), or empty
+};
+
+struct ControllerOptions {
+  std::string folder;                            ///< where all state lies; made if it is missing
+  std::string finisher;                          ///< the program hyades-film
+  Duration unit_time = std::chrono::seconds(5);  ///< of one thread for one unit
+  Duration lease_time = std::chrono::seconds(30);
+  Duration copy_after = std::chrono::seconds(10);
+  /// A frame whose class of workers has been gone for this long begins again with another.
+  Duration class_patience = std::chrono::minutes(5);
+  /// A worker whose stream has ended is lost if it has not come again after this.
+  Duration reconnect_time = std::chrono::seconds(3);
+  /// ... and forgotten after this.
+  Duration forget_time = std::chrono::hours(1);
+  DiskLimits disk;
+  /// Files that no job needs any more stay for so long after they were last used.
+  Duration asset_grace = std::chrono::hours(1);
+  /// After a restart no new units are leased for this long, so that workers can say what they hold;
+  /// longer, up to four times this, while those who hold something still come. By default the
+  /// longest wait of a worker (farm/backoff.h), and what connecting takes.
+  Duration adoption_time = std::chrono::seconds(5);
+  /// A lease whose rendering makes no progress is not renewed any more after this; where the worker
+  /// loads or waits, after six times this.
+  Duration stall_time = std::chrono::minutes(10);
+  /// Bytes that films of frames in work, of all jobs, may take in memory. Jobs of which one frame
+  /// takes more are refused.
+  uint64_t film_memory = core::half_of_memory();
+  /// A job's film log is rewritten when it has grown by this much.
+  uint64_t compact_bytes = FilmStoreOptions{}.compact_bytes;
+  Price price;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,136 @@
+// Whether any worker has what a job asks for, and who has what of it.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/controller.h"
+#include "coordinator/controller/counted.h"
+#include "core/base/text.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr size_t kMostNamed = 8;
+
+bool has_tag(const v1::Hello& hello, const std::string& tag) {
+  return std::find(hello.tags().begin(), hello.tags().end(), tag) != hello.tags().end();
+}
+
+bool has_memory(const v1::Hello& hello, uint64_t bytes) {
+  return hello.memory_bytes() == 0 || hello.memory_bytes() >= bytes;
+}
+
+}  // namespace
+
+/// Why none of the workers that could take units may take this job's; nothing where one may, or
+/// where it asks for nothing.
+std::string Controller::unmet_needs(const StoredJob& job) const {
+  if (job.tags.empty() && job.memory == 0) return {};
+  uint64_t most_memory = 0;
+  bool enough_memory = false;
+  bool suits = false;
+  std::vector<std::string> missing = job.tags;
+  for (const auto& entry : sessions_) {
+    const WorkerSession& session = entry.second;
+    if (!session.joined || session.state != v1::WORKER_STATE_ACTIVE) continue;
+    std::erase_if(missing, [&](const std::string& tag) { return has_tag(session.hello, tag); });
+    most_memory = std::max(most_memory, session.hello.memory_bytes());
+    const bool memory = has_memory(session.hello, job.memory);
+    enough_memory |= memory;
+    suits |= memory && std::all_of(job.tags.begin(), job.tags.end(), [&](const std::string& tag) {
+               return has_tag(session.hello, tag);
+             });
+  }
+  if (suits) return {};
+  if (!missing.empty()) {
+    return fmt::format("it asks for workers with the tag '{}', and none is there", missing.front());
+  }
+  if (!enough_memory && most_memory == 0) {
+    return fmt::format("it asks for workers with {} of memory, and none is there",
+                       core::format_bytes(job.memory));
+  }
+  if (!enough_memory) {
+    return fmt::format("it asks for workers with {} of memory; the most that one has is {}",
+                       core::format_bytes(job.memory), core::format_bytes(most_memory));
+  }
+  return "no worker has both all its tags and the memory that it asks for";
+}
+
+/// Workers that are there and get nothing, and why; the first few.
+std::vector<std::string> Controller::barred_workers() const {
+  std::vector<std::string> words;
+  size_t others = 0;
+  for (const auto& [worker, session] : sessions_) {
+    if (!session.joined || session.state == v1::WORKER_STATE_ACTIVE) continue;
+    if (words.size() == kMostNamed) {
+      ++others;
+      continue;
+    }
+    const std::string because =
+        session.reason.empty() ? std::string() : " (" + session.reason + ")";
+    words.push_back(session.state == v1::WORKER_STATE_QUARANTINED
+                        ? fmt::format("worker {} is in quarantine{}; 'release' ends that",
+                                      session.hello.name(), because)
+                        : fmt::format("worker {} delivers what it has and leaves{}",
+                                      session.hello.name(), because));
+  }
+  if (others > 0) words.push_back(counted(others, "more worker") + " in quarantine or leaving");
+  return words;
+}
+
+/// What workers last said of the units that they have of the job, in one line; nothing where they
+/// have none.
+std::vector<std::string> Controller::where_units_are(JobId job) const {
+  uint32_t rendering = 0;
+  uint32_t loading = 0;
+  uint32_t waiting = 0;
+  uint32_t fetching = 0;
+  uint32_t rendered = 0;
+  uint32_t away = 0;
+  uint32_t silent = 0;
+  const auto units = scheduler_.units_of(job);
+  for (const auto& [worker, held] : units) {
+    const auto session = sessions_.find(worker);
+    if (session == sessions_.end() || !session->second.link) {
+      ++away;
+      continue;
+    }
+    const auto progress = session->second.progress.find(held.lease);
+    switch (progress == session->second.progress.end() ? v1::LeaseProgress::STAGE_UNSPECIFIED
+                                                       : progress->second.stage) {
+      case v1::LeaseProgress::STAGE_RENDERING:
+        ++rendering;
+        break;
+      case v1::LeaseProgress::STAGE_LOADING:
+        ++loading;
+        break;
+      case v1::LeaseProgress::STAGE_WAITING:
+        ++waiting;
+        break;
+      case v1::LeaseProgress::STAGE_FETCHING:
+        ++fetching;
+        break;
+      case v1::LeaseProgress::STAGE_FILM:
+        ++rendered;
+        break;
+      default:
+        ++silent;
+    }
+  }
+  if (units.empty()) return {};
+  std::vector<std::string> parts;
+  const auto add = [&](uint32_t count, const char* what) {
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, what));
+  };
+  add(rendering, "being rendered");
+  add(loading, "waiting for their scene to be loaded");
+  add(waiting, "waiting for a thread");
+  add(fetching, "waiting for the job's files");
+  add(rendered, "rendered, their films on the way");
+  add(away, "with workers whose connection is lost");
+  add(silent, "of which nothing is known yet");
+  return {
+      fmt::format("{} with workers: {}", counted(units.size(), "unit"), fmt::join(parts, ", "))};
+}
+
+}  // namespace hyades::coordinator

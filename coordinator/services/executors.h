@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <new>
+
+#include <grpcpp/support/status.h>
+
+#include "coordinator/controller/thread_pool.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+
+/// Where gRPC's threads hand over whatever may wait for the disk: they are few, and workers'
+/// heartbeats and results come by them too. Two pools, so that files on a disk that does not answer
+/// leave those waiting alone who only want to know something.
+struct Executors {
+  ThreadPool rows{4, 1000};   ///< what is read from and stored in the job store
+  ThreadPool files{8, 1000};  ///< what reads or writes files besides
+};
+
+/// For those whose pool has too long a queue.
+inline grpc::Status crowded() {
+  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                           "more requests wait for the coordinator's disk than may",
+                           std::chrono::seconds(2));
+}
+
+/// What `question` answers; or that there is no memory for the answer now. For what changes
+/// nothing: a change that breaks off in its middle ends the process (farm/last_words.h).
+template <class Question>
+grpc::Status within_memory(const Question& question) {
+  try {
+    return question();
+  } catch (const std::bad_alloc&) {
+    return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                             "the coordinator has no memory for this now", std::chrono::seconds(2));
+  }
+}
+
+}  // namespace hyades::coordinator
