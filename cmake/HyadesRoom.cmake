@@ -1,7 +1,8 @@
-# hyades_room(NAME [USES rooms or libraries...] [FOLDERS folders...]): one static library per room, made of all
-# .cpp files of the current folder, and of those below it that are named. A room sees only the rooms that it names.
+# hyades_room(NAME [USES rooms or libraries...] [FOLDERS folders...] [HEADERS set]): one static library per room, made
+# of all .cpp files of the current folder, and of those below it that are named. A room sees only the rooms that it
+# names. HEADERS: which headers are read compiled (HyadesHeaders.cmake), "core" by default.
 function(hyades_room name)
-  cmake_parse_arguments(ROOM "" "" "USES;FOLDERS" ${ARGN})
+  cmake_parse_arguments(ROOM "" "HEADERS" "USES;FOLDERS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   foreach(folder ${ROOM_FOLDERS})
     file(GLOB more CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
@@ -10,6 +11,10 @@ function(hyades_room name)
   if(sources)
     add_library(hyades_${name} STATIC ${sources})
     set(scope PUBLIC)
+    if(NOT ROOM_HEADERS)
+      set(ROOM_HEADERS core)
+    endif()
+    hyades_headers(hyades_${name} ${ROOM_HEADERS})
   else()
     add_library(hyades_${name} INTERFACE)
     set(scope INTERFACE)
