@@ -122,8 +122,8 @@ class Worker final : public grpc::ClientBidiReactor<v1::WorkerMessage, v1::Coord
 
  private:
   void deliver(const v1::Lease& lease) {
+    ++counts_.leased;
     for (const v1::Unit& unit : lease.units()) {
-      ++counts_.leased;
       v1::WorkerMessage message;
       v1::UnitResult& result = *message.mutable_result();
       *result.mutable_lease() = lease.lease();
@@ -191,7 +191,8 @@ void measure(double seconds, int streams, int height, const std::string& folder)
   const auto done = static_cast<double>(counts.acknowledged - acknowledged);
   const auto granted = static_cast<double>(counts.leased - leased);
   std::printf(
-      "%.0f leases and %.0f results/s of %zu bytes, durable and acknowledged, over %d streams; per "
+      "%.0f leases and %.0f results/s of %zu bytes, durable and acknowledged, over %d streams "
+      "of one connection without TLS (many_workers: one each, with TLS); per "
       "result %.0f us of CPU in the coordinator, %.0f us in the simulated workers; %llu refused\n",
       granted / wall, done / wall, films.mean_bytes(), streams,
       1e6 * (cpu_seconds(coordinator.process()) - cpu) / done, 1e6 * (own_cpu() - own) / done,

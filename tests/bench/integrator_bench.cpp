@@ -296,17 +296,17 @@ void print_summary() {
     for (const auto& [name, work] : parts) times[name].push_back(seconds_each(work));
   }
   const auto ns = [&](const char* name) { return 1e9 * median(times[name]); };
+  const double shadows =
+      static_cast<double>(setup().shadow.size()) / static_cast<double>(setup().closest.size());
   // Of each round, since the machine's speed may change from one to the next.
   const auto percent = [&](const char* closest, const char* occlusion) {
     std::vector<double> values;
     for (size_t i = 0; i < kRounds; ++i) {
-      values.push_back(100.0 * (times[closest][i] + times[occlusion][i]) /
+      values.push_back(100.0 * (times[closest][i] + shadows * times[occlusion][i]) /
                        times["the integrator"][i]);
     }
     return median(values);
   };
-  const double shadows =
-      static_cast<double>(setup().shadow.size()) / static_cast<double>(setup().closest.size());
   std::printf("\none bounce, ns (medians of %d rounds in turn):\n", kRounds);
   for (const auto& [name, work] : parts) std::printf("  %-28s %7.1f\n", name, ns(name));
   const double known =
@@ -315,8 +315,8 @@ void print_summary() {
               "what remains", ns("the integrator") - known, shadows);
   std::printf("the integrator: %.2f M bounces/s\n", 1e3 / ns("the integrator"));
   std::printf(
-      "of the ceiling 1/(1/c + 1/o) of Embree as the renderer needs it, watertight: %.0f %%\n",
-      percent("robust, closest hit", "robust, occlusion"));
+      "of the ceiling 1/(1/c + %.2f/o) of Embree as the renderer needs it, watertight: %.0f %%\n",
+      shadows, percent("robust, closest hit", "robust, occlusion"));
   std::printf("of the same of Embree without RTC_SCENE_FLAG_ROBUST: %.0f %%\n",
               percent("bare Embree, closest hit", "bare Embree, occlusion"));
 }

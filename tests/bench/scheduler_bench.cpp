@@ -22,7 +22,8 @@ class Farm {
   }
 
   /// One worker delivers a unit and, with its lease's last, asks for the next. Returns how many
-  /// events the scheduler has answered.
+  /// of its wishes and results were answered; what the coordinator echoes of actions is not
+  /// counted.
   uint64_t step() {
     const uint64_t before = answered_;
     now_ += std::chrono::microseconds(5);
@@ -62,9 +63,9 @@ class Farm {
   }
 
   void tell(const Event& event) {
+    ++answered_;
     std::deque<Event> events{event};
     while (!events.empty()) {
-      ++answered_;
       for (Action& action : scheduler_.handle(events.front(), now_)) {
         if (auto* lease = std::get_if<Lease>(&action)) {
           out_.push_back(std::move(*lease));
