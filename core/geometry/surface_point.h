@@ -39,7 +39,7 @@ struct SurfacePoint {
 Vec3 offset_position(const SurfacePoint& p, const Vec3& direction);
 
 /// A ray that starts at `p`, on the side of it that `direction` (unit) points to, without meeting
-/// p's own surface again.
+/// p's own surface again; it keeps the shutter time of `p`, as all rays from surfaces do.
 Ray spawn_ray(const SurfacePoint& p, const Vec3& direction, float t_max = kInfinity);
 
 /// A ray from `p` to just before `target`: what a shadow test between two points needs. It ends

@@ -9,7 +9,7 @@
 #include "core/integrators/light_parts.h"
 #include "core/integrators/light_path.h"
 #include "core/integrators/path_in_words.h"
-#include "core/integrators/random_walk.h"
+#include "core/integrators/subpath_walk.h"
 #include "core/integrators/visibility.h"
 #include "core/scene/media_around.h"
 
@@ -33,7 +33,7 @@ double square(double x) { return x * x; }
 double ratio(double a, double b) { return a > 0.0 ? a / b : 0.0; }
 
 /// One sample: a camera path, a light path, and all that joins them.
-class BidirectionalSample final : public WalkWatcher {
+class BidirectionalSample final : public SubpathWatcher {
  public:
   BidirectionalSample(const IntegratorDesc& settings, const Scene& scene, const Ray& ray,
                       Sampler& sampler, Workspace& work, BdptScratch& scratch)
@@ -49,7 +49,7 @@ class BidirectionalSample final : public WalkWatcher {
 
   PixelSample trace() {
     const LightPathStart start = begin_light_path(scene_, ray_.time, sampler_, light_);
-    if (start.way) walk_from_light(*start.way);
+    if (start.segment) walk_from_light(*start.segment);
     if (work_.log != nullptr) tell_subpath(scene_, light_, "light path", *work_.log);
     walk_from_camera();
     if (work_.log != nullptr) tell_subpath(scene_, camera_, "camera path", *work_.log);
@@ -114,31 +114,30 @@ class BidirectionalSample final : public WalkWatcher {
     camera_.clear();
     PathVertex& lens = camera_.add(PathVertex::Kind::lens);
     lens.position = ray_.origin;
-    Way way{.ray = ray_, .around = bodies_around_lens(scene_, ray_)};
+    PathSegment segment{.ray = ray_, .around = bodies_around_lens(scene_, ray_)};
     const double density =
         static_cast<double>(scene_.camera->film_density(ray_.direction, ray_.time)) / film_pixels_;
-    (scene_.camera->rays_are_parallel() ? way.pdf_across : way.pdf) = density;
-    const WalkNumbers numbers{kCameraDimensions + kScattering, kPerEvent,
-                              MediaNumbers::Purpose::flight, MediaNumbers::Purpose::passing};
-    RandomWalk(settings_, scene_, sampler_, work_, TransportMode::radiance, numbers)
-        .go(camera_, way, settings_.max_depth + 2, *this);
+    (scene_.camera->rays_are_parallel() ? segment.pdf_across : segment.pdf) = density;
+    const WalkKind kind{TransportMode::radiance, kCameraDimensions + kScattering, kPerEvent,
+                        MediaNumbers::Purpose::flight, MediaNumbers::Purpose::passing};
+    RandomWalk walk(settings_, scene_, sampler_, work_, kind, segment, *this);
+    lengthen(camera_, walk, settings_.max_depth + 2, *this);
   }
 
-  void walk_from_light(const Way& way) {
+  void walk_from_light(const PathSegment& start) {
     FirstLightVertex watcher(scene_, light_);
-    const WalkNumbers numbers{kLightPathDimensions + kLightPathStart, 4,
-                              MediaNumbers::Purpose::light_flight,
-                              MediaNumbers::Purpose::light_passing};
-    RandomWalk(settings_, scene_, sampler_, work_, TransportMode::importance, numbers)
-        .go(light_, way, settings_.max_depth + 1, watcher);
+    const WalkKind kind{TransportMode::importance, kLightPathDimensions + kLightPathStart, 4,
+                        MediaNumbers::Purpose::light_flight, MediaNumbers::Purpose::light_passing};
+    RandomWalk walk(settings_, scene_, sampler_, work_, kind, start, watcher);
+    lengthen(light_, walk, settings_.max_depth + 1, watcher);
   }
 
   // What the camera path meets.
 
-  void medium_emits(const Way& way, const Rgb& radiance) override {
+  void medium_emits(const PathSegment& segment, const Rgb& radiance) override {
     if (wanted(0, camera_.size() + 1))
-      add(0, camera_.size() + 1, LightSource::of(*way.around.medium()), first_,
-          way.throughput * radiance);
+      add(0, camera_.size() + 1, LightSource::of(*segment.around.medium()), first_,
+          segment.throughput * radiance);
   }
 
   void arrives(const PathVertex& v) override {
@@ -158,15 +157,16 @@ class BidirectionalSample final : public WalkWatcher {
     albedo_noted_ = true;
   }
 
-  void goes_on(const PathVertex& from, const Way& way) override {
+  void goes_on(const PathVertex& from, const PathSegment& segment) override {
     if (work_.parts != nullptr && camera_.size() == 2)
-      first_ = event_at(from, from.wo, way.ray.direction, way.specular);
+      first_ = event_at(from, from.wo, segment.ray.direction, segment.specular);
   }
 
-  void meets(const Way& way, const SurfacePoint& point, const SceneObject& object) override {
+  void meets(const PathSegment& segment, const SurfacePoint& point, const SceneObject& object,
+             bool /*passed*/) override {
     if (object.light == SceneObject::kNoLight || !wanted(0, camera_.size() + 1)) return;
     const Light& light = *scene_.lights[object.light];
-    const Rgb radiance = light.radiance(point, -way.ray.direction);
+    const Rgb radiance = light.radiance(point, -segment.ray.direction);
     if (is_black(radiance)) return;
     PathVertex& on = met_light_;
     on.kind = PathVertex::Kind::light;
@@ -174,42 +174,42 @@ class BidirectionalSample final : public WalkWatcher {
     on.point = point;
     on.light = object.light;
     on.infinitely_far = false;
-    add_met_light(way, on, radiance);
+    add_met_light(segment, on, radiance);
   }
 
-  void leaves(const Way& way) override {
+  void leaves(const PathSegment& segment) override {
     if (!wanted(0, camera_.size() + 1)) return;
     if (camera_.size() == 1 && !scene_.environment_visible) return;
     for (const uint32_t index : scene_.infinite_lights) {
       const Light& light = *scene_.lights[index];
-      const Rgb radiance = light.radiance(SurfacePoint(), -way.ray.direction);
+      const Rgb radiance = light.radiance(SurfacePoint(), -segment.ray.direction);
       if (is_black(radiance)) continue;
       PathVertex& sky = met_light_;
       sky.kind = PathVertex::Kind::light;
       sky.light = index;
       sky.infinitely_far = true;
-      add_met_light(way, sky, radiance);
+      add_met_light(segment, sky, radiance);
     }
   }
 
-  /// s = 0: the way from the last vertex of the camera path has come to a light.
-  void add_met_light(const Way& way, const PathVertex& on, const Rgb& radiance) {
+  /// s = 0: `segment` from the last vertex of the camera path has come to a light.
+  void add_met_light(const PathSegment& segment, const PathVertex& on, const Rgb& radiance) {
     double others = 0.0;
-    const Vec3& direction = way.ray.direction;
+    const Vec3& direction = segment.ray.direction;
     if (camera_.size() > 1) {
       const PathVertex& before = camera_.back();
-      const double met = way.density_at(on, before.position);
+      const double met = density_at(segment, on, before.position);
       const LightDensities densities = light_densities(scene_, on, before, direction);
       const double back = densities.towards / before.density;
-      others = (way.specular ? 0.0 : square(ratio(densities.chosen, met))) +
+      others = (segment.specular ? 0.0 : square(ratio(densities.chosen, met))) +
                square(ratio(densities.emitted * back, met)) * before.chain;
     }
     FoundPath path = path_of(0, camera_.size() + 1, on.light);
     path.direction = direction;
     path.end = on.position;
-    path.specular = way.specular;
+    path.specular = segment.specular;
     add(0, camera_.size() + 1, {on.light, on.infinitely_far}, first_,
-        way.throughput * radiance * weight(path, 0.0, others));
+        segment.throughput * radiance * weight(path, 0.0, others));
   }
 
   /// s = 1: a place on a light is chosen from the camera path's vertex t - 1.

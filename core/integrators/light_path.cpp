@@ -27,9 +27,9 @@ double pdf_across(const Scene& scene) {
   return radius > 0.0 ? 1.0 / (static_cast<double>(kPi) * radius * radius) : 0.0;
 }
 
-std::optional<Way> begin_far_away(const Scene& scene, const Light& light, float probability,
-                                  float time, float pick, const Vec2& place, const Vec2& direction,
-                                  PathVertex& first) {
+std::optional<PathSegment> begin_far_away(const Scene& scene, const Light& light, float probability,
+                                          float time, float pick, const Vec2& place,
+                                          const Vec2& direction, PathVertex& first) {
   const Ball ball = ball_around(scene.world->bounds());
   if (!(ball.radius > 0.0F)) return std::nullopt;
   const auto sample = light.sample_direct(ball.center, time, pick, direction);
@@ -38,37 +38,39 @@ std::optional<Way> begin_far_away(const Scene& scene, const Light& light, float 
   const Vec2 disc = square_to_disk(place);
   first.infinitely_far = true;
   first.density = static_cast<double>(probability) * static_cast<double>(sample->pdf_place);
-  Way way;
-  way.ray.origin = ball.center + ball.radius * (frame.n + disc.x * frame.s + disc.y * frame.t);
-  way.ray.direction = -sample->direction;
-  way.pdf_across = pdf_across(scene);
-  way.throughput = sample->radiance *
-                   static_cast<float>(1.0 / (static_cast<double>(probability) *
-                                             static_cast<double>(sample->pdf) * way.pdf_across));
+  PathSegment segment;
+  segment.ray.origin = ball.center + ball.radius * (frame.n + disc.x * frame.s + disc.y * frame.t);
+  segment.ray.direction = -sample->direction;
+  segment.ray.time = time;
+  segment.pdf_across = pdf_across(scene);
+  segment.throughput =
+      sample->radiance *
+      static_cast<float>(1.0 / (static_cast<double>(probability) *
+                                static_cast<double>(sample->pdf) * segment.pdf_across));
   if (const Medium* air = scene.atmosphere.get(); air != nullptr) {
     // All the way from there: nothing, but in channels that it does not touch.
-    const Ray all_the_way{way.ray.origin, sample->direction, kInfinity, time};
-    way.throughput *= air->transmittance(all_the_way, kInfinity, Vec4(0.5F));
-    if (is_black(way.throughput)) return std::nullopt;
+    const Ray all_the_way{segment.ray.origin, sample->direction, kInfinity, time};
+    segment.throughput *= air->transmittance(all_the_way, kInfinity, Vec4(0.5F));
+    if (is_black(segment.throughput)) return std::nullopt;
   }
-  way.around = MediumStack(scene.atmosphere.get());
-  return way;
+  segment.around = MediumStack(scene.atmosphere.get());
+  return segment;
 }
 
-std::optional<Way> begin_at_place(const Scene& scene, const Light& light, float probability,
-                                  float time, float pick, const Vec2& place, const Vec2& direction,
-                                  PathVertex& first) {
+std::optional<PathSegment> begin_at_place(const Scene& scene, const Light& light, float probability,
+                                          float time, float pick, const Vec2& place,
+                                          const Vec2& direction, PathVertex& first) {
   const auto sample = light.sample_emission(time, pick, place, direction);
   if (!sample || is_black(sample->weight)) return std::nullopt;
   first.point = sample->on;
   first.position = sample->on.position;
   first.density = static_cast<double>(probability) * static_cast<double>(sample->pdf_place);
-  Way way;
-  way.ray = spawn_ray(sample->on, sample->direction);
-  way.throughput = sample->weight / probability;
-  way.pdf = static_cast<double>(sample->pdf_direction);
-  way.around = media_around(scene, way.ray.origin, time);
-  return way;
+  PathSegment segment;
+  segment.ray = spawn_ray(sample->on, sample->direction);
+  segment.throughput = sample->weight / probability;
+  segment.pdf = static_cast<double>(sample->pdf_direction);
+  segment.around = media_around(scene, segment.ray.origin, time);
+  return segment;
 }
 
 }  // namespace
@@ -87,12 +89,11 @@ LightPathStart begin_light_path(const Scene& scene, float time, Sampler& sampler
   PathVertex& first = path.add(PathVertex::Kind::light);
   first.light = selected->index;
   const auto begin = light.is_infinite() ? begin_far_away : begin_at_place;
-  start.way = begin(scene, light, selected->probability, time, a.w, Vec2(a), Vec2(b), first);
-  if (!start.way) {
+  start.segment = begin(scene, light, selected->probability, time, a.w, Vec2(a), Vec2(b), first);
+  if (!start.segment) {
     path.clear();
     return start;
   }
-  start.way->ray.time = time;
   first.chain = light.is_delta() ? 0.0 : 1.0;  // whether camera paths can meet it
   return start;
 }

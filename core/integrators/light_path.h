@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/integrators/random_walk.h"
+#include "core/integrators/subpath_walk.h"
 
 namespace hyades::core {
 
@@ -12,8 +12,9 @@ inline constexpr uint32_t kLightPathDimensions = (1U << 19U) + 64;
 inline constexpr uint32_t kLightPathStart = 8;
 
 struct LightPathStart {
-  std::optional<Way> way;  ///< nothing where no light leaves; else `path` has its first vertex
-  Vec2 lens{0.0F};         ///< random numbers for a place of the lens
+  std::optional<PathSegment>
+      segment;      ///< nothing where no light leaves; else `path` has its first vertex
+  Vec2 lens{0.0F};  ///< random numbers for a place of the lens
 };
 
 /// Begins a light path at shutter time `time`: a light, a place on it, a direction. Lights that are
@@ -38,7 +39,7 @@ double emission_density(const Scene& scene, const Light& light, const PathVertex
 
 /// Corrects the sums of the first vertex after the light: choosing the light from there has another
 /// density than beginning at it.
-class FirstLightVertex final : public WalkWatcher {
+class FirstLightVertex final : public SubpathWatcher {
  public:
   FirstLightVertex(const Scene& scene, Subpath& path) : scene_(scene), path_(path) {}
   void arrives(const PathVertex& vertex) override;

@@ -54,17 +54,10 @@ PathVertex& Subpath::add(PathVertex::Kind kind) {
 Ray ray_between(const PathVertex& a, const PathVertex& b, float time) {
   const bool from_surface = a.kind == PathVertex::Kind::surface;
   const bool to_surface = b.kind == PathVertex::Kind::surface;
-  Ray ray;
-  if (from_surface && to_surface) {
-    ray = spawn_ray_to(a.point, b.point);
-  } else if (from_surface) {
-    ray = spawn_ray_to(a.point, b.position, 0.0F);
-  } else {
-    const Vec3 end = to_surface ? offset_position(b.point, a.position - b.position) : b.position;
-    ray = ray_between(a.position, end, time);
-  }
-  ray.time = time;
-  return ray;
+  if (from_surface && to_surface) return spawn_ray_to(a.point, b.point);
+  if (from_surface) return spawn_ray_to(a.point, b.position, 0.0F);
+  const Vec3 end = to_surface ? offset_position(b.point, a.position - b.position) : b.position;
+  return ray_between(a.position, end, time);
 }
 
 }  // namespace hyades::core

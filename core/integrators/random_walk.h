@@ -1,89 +1,115 @@
 #pragma once
 
+#include <optional>
+
 #include "core/integrators/integrator.h"
 #include "core/integrators/media_numbers.h"
-#include "core/integrators/path_vertex.h"
+#include "core/integrators/medium_segment.h"
+#include "core/materials/shaded_surface.h"
 
 namespace hyades::core {
 
-/// The way on from the last vertex of a subpath.
-struct Way {
+/// The part of a path that leads on from its last vertex.
+struct PathSegment {
   Ray ray;
-  Rgb throughput{1.0F};   ///< what arrives at the end of the way, before media take their part
+  Rgb throughput{1.0F};   ///< what arrives at its end, before media take their part
   double pdf = 1.0;       ///< density per solid angle of its direction; of delta lobes 1
   bool specular = false;  ///< a delta lobe chose it: nothing else could have
   MediumStack around;     ///< the bodies that it begins in
   /// Parallel rays, of light from infinitely far away or of a camera: their density per area across
   /// them; else 0.
   double pdf_across = 0.0;
-
-  /// The density in `v`'s own measure with which this way, from a vertex at `from`, leads to it.
-  double density_at(const PathVertex& v, const Vec3& from) const;
 };
 
-/// What a walk meets besides vertices.
+/// A place where a walk may scatter.
+struct ScatteringPlace {
+  const SceneObject* object = nullptr;  ///< whose surface; null: in a medium
+  SurfacePoint point;                   ///< on a surface
+  MediumSegment flight;                 ///< in a medium: on which the walk came there
+  float t = 0.0F;                       ///< how far along it
+  Vec3 position{0.0F};
+};
+
+/// What a walk meets besides places where it may scatter.
 class WalkWatcher {
  public:
   virtual ~WalkWatcher() = default;
 
-  /// The medium on the way gives off `radiance`; `way.throughput` is what of it arrives.
-  virtual void medium_emits(const Way& /*way*/, const Rgb& /*radiance*/) {}
+  /// The medium along `segment` gives off `radiance`; the segment's throughput is what of it
+  /// arrives.
+  virtual void medium_emits(const PathSegment& /*segment*/, const Rgb& /*radiance*/) {}
 
-  /// A surface, before it becomes a vertex or is crossed (null surfaces).
-  virtual void meets(const Way& /*way*/, const SurfacePoint& /*point*/,
-                     const SceneObject& /*object*/) {}
+  /// The walk looks for a place to scatter along `flight`, which ends at `surface` (null: nowhere).
+  /// `numbers` are those of media along it.
+  virtual void flies(const MediumSegment& /*flight*/, const SurfacePoint* /*surface*/,
+                     MediaNumbers& /*numbers*/) {}
 
-  /// The way leaves the scene.
-  virtual void leaves(const Way& /*way*/) {}
+  /// A surface, before the walk may scatter there; `passed`: it goes straight through.
+  virtual void meets(const PathSegment& /*segment*/, const SurfacePoint& /*point*/,
+                     const SceneObject& /*object*/, bool /*passed*/) {}
 
-  /// A vertex was added; the walk has not gone on from it.
-  virtual void arrives(const PathVertex& /*vertex*/) {}
+  /// The segment leaves the scene.
+  virtual void leaves(const PathSegment& /*segment*/) {}
 
-  /// The walk goes on from its last vertex along `way`.
-  virtual void goes_on(const PathVertex& /*from*/, const Way& /*way*/) {}
+  /// Russian roulette ends the walk.
+  virtual void loses_roulette() {}
 };
 
-/// Where a walk takes its random numbers from.
-struct WalkNumbers {
-  uint32_t first = 0;      ///< dimension of the first scattering event
-  uint32_t per_event = 4;  ///< distance to the next event's
+/// Which way light is followed, and where the walk takes its random numbers from.
+struct WalkKind {
+  TransportMode mode = TransportMode::radiance;  ///< from the camera; importance: from a light
+  uint32_t first = 0;                            ///< dimension of the first scattering event
+  uint32_t per_event = 4;                        ///< distance to the next event's
   MediaNumbers::Purpose flights = MediaNumbers::Purpose::flight;
   MediaNumbers::Purpose passing = MediaNumbers::Purpose::passing;
 };
 
-/// Lengthens subpaths by scattering: the random walk of path tracing, from the camera
-/// (TransportMode::radiance) or from a light (importance), which keeps its vertices and what their
-/// weights need.
+/// The random walk of all integrators: straight through null surfaces, free flight in media, and
+/// scattering along BSDFs and phase functions until roulette ends it.
 class RandomWalk {
  public:
+  /// Begins along `start`. `watcher` outlives the walk.
   RandomWalk(const IntegratorDesc& settings, const Scene& scene, Sampler& sampler, Workspace& work,
-             TransportMode mode, const WalkNumbers& numbers)
-      : settings_(settings),
-        scene_(scene),
-        sampler_(sampler),
-        work_(work),
-        mode_(mode),
-        numbers_(numbers) {}
+             const WalkKind& kind, const PathSegment& start, WalkWatcher& watcher);
 
-  /// Goes on along `way` until `path`, which has its first vertex, has `most` vertices, the walk
-  /// leaves the scene, or roulette ends it.
-  void go(Subpath& path, Way way, int most, WalkWatcher& watcher);
+  /// Follows the segment to the next place where light may scatter; false where there is none.
+  bool next(ScatteringPlace& place);
+
+  /// Goes on from `surface` of `object` along its BSDF, away from `wo`: how, or nothing where the
+  /// walk ends.
+  std::optional<BsdfSample> scatter(const ShadedSurface& surface, const SceneObject& object,
+                                    const Vec3& wo);
+
+  /// Goes on from `position` along the phase function of `medium`; false where the walk ends.
+  bool scatter(const Medium& medium, const Vec3& position);
+
+  /// The segment that the walk is on. Its pdf is the walker's to change: the walk never reads it.
+  PathSegment& segment() { return segment_; }
+  const PathSegment& segment() const { return segment_; }
+
+  TransportMode mode() const { return kind_.mode; }
+
+  /// How often it has scattered.
+  int events() const { return events_; }
 
  private:
-  PathVertex* next_vertex(Subpath& path, Way& way, WalkWatcher& watcher);
-  void connect_to_last(Subpath& path, const Way& way, PathVertex& v) const;
-  bool scatter(Subpath& path, Way& way);
-  bool survives(Way& way, float u);
+  enum class Flight { passed, scattered, absorbed };
+
+  Flight fly(const Medium& medium, const SurfacePoint* surface, MediaNumbers& numbers,
+             ScatteringPlace& place);
+  Vec4 event_numbers();
+  bool survives(float u);
 
   const IntegratorDesc& settings_;
   const Scene& scene_;
   Sampler& sampler_;
   Workspace& work_;
-  TransportMode mode_;
-  WalkNumbers numbers_;
-  int events_ = 0;
+  WalkKind kind_;
+  WalkWatcher& watcher_;
+  PathSegment segment_;
+  float start_;  ///< the first throughput, which roulette compares with
   float eta_scale_ = 1.0F;
-  float start_ = 1.0F;  ///< the walk's first throughput, which roulette compares with
+  int events_ = 0;
 };
 
 }  // namespace hyades::core

@@ -44,7 +44,6 @@ Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
     cross(object, point, way.direction, inside);
     const float left = way.t_max - point.t;
     way = spawn_ray(point, way.direction);
-    way.time = ray.time;
     way.t_max = left;
     if (!(left > 0.0F)) return share;
   }
@@ -54,10 +53,8 @@ Rgb share_through_shells(const Scene& scene, const Ray& ray, RayKind kind,
 }  // namespace
 
 Ray shadow_ray(const SurfacePoint& from, const LightSample& to) {
-  Ray ray = to.distance == kInfinity ? spawn_ray(from, to.direction)
-                                     : spawn_ray_to(from, to.position, 0.0F);
-  ray.time = from.time;
-  return ray;
+  return to.distance == kInfinity ? spawn_ray(from, to.direction)
+                                  : spawn_ray_to(from, to.position, 0.0F);
 }
 
 Ray shadow_ray(const Vec3& from, const LightSample& to, float time) {

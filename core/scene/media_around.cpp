@@ -27,7 +27,6 @@ MediumStack media_around(const Scene& scene, const Vec3& point, float time) {
       if (glm::dot(kDirection, surface.ng) > 0.0F) stack.enter(*body);
     }
     ray = spawn_ray(surface, kDirection);
-    ray.time = time;
   }
   return stack;
 }

@@ -19,8 +19,8 @@ inline Vec3 place_in_medium(const Ray& ray, float t, const SurfacePoint* surface
   return ray.at(t);
 }
 
-/// A way through a medium on which a path looks for a place to scatter.
-struct MediumWay {
+/// The part of a path that leads through a medium, on which it looks for a place to scatter.
+struct MediumSegment {
   Ray ray;
   float t_max = 0.0F;
   const Medium* medium = nullptr;  ///< null: the path was not in a medium
@@ -29,7 +29,7 @@ struct MediumWay {
 
   /// Where to look for places besides free flight: near `light`, in media that are the same
   /// everywhere, where the light may come in straight and is not all but swallowed on the way from
-  /// there. Nothing where that does not pay. Depends on nothing but the way and the light.
+  /// there. Nothing where that does not pay. Depends on nothing but the segment and the light.
   std::optional<Equiangular> places_near(const Light& light) const {
     if (medium == nullptr || !open || !medium->flight_density(0.0F, shares)) return std::nullopt;
     const std::optional<Vec3> middle = light.middle();
