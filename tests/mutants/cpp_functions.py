@@ -24,8 +24,15 @@ def _brackets_alone(text):
 class Function:
     """A function's definition: text[head:body] is its head, text[body:end] its body between the braces."""
 
-    def __init__(self, name, head, body, end):
-        self.name, self.head, self.body, self.end = name, head, body, end
+    def __init__(self, name, parameters, head, body, end):
+        self.name, self.parameters, self.head, self.body, self.end = name, parameters, head, body, end
+
+    def is_called(self, wanted):
+        """Whether it is NAME, or NAME(TYPE) with a parameter of that type, which tells overloads apart."""
+        overload = re.fullmatch(r'(.+)\((\w+)\)', wanted)
+        if not overload:
+            return self.name == wanted
+        return self.name == overload[1] and re.search(rf'\b{overload[2]}\b', self.parameters) is not None
 
 
 def _end_of_bracket(bones, at):
@@ -88,7 +95,8 @@ def functions(text):
             else:
                 end = _end_of_bracket(bones, i)
                 if kind == 'function':
-                    found.append(Function(name, head, i + 1, end))
+                    parameters = bones[head + bones[head:i].find('('):i]
+                    found.append(Function(name, parameters, head, i + 1, end))
                     head = end + 1
                 i = end
         i += 1
