@@ -29,19 +29,19 @@ size_t triangle_count(const Placement& p) {
 
 /// How a placement gets into the world.
 enum class Way {
-  copied,    ///< as a member of a swarm, by its copies
+  copied,    ///< as a member of a instancer, by its copies
   direct,    ///< in world space, in the top scene; vertices may move
   shared,    ///< in world space, in the still scene that frames share
   instance,  ///< its mesh has a scene of its own
 };
 
-/// Depends on the placements alone: never on what was built before. `inside_swarm`: they are what a
-/// swarm copies.
+/// Depends on the placements alone: never on what was built before. `inside_instancer`: they are
+/// what a instancer copies.
 std::vector<Way> choose_ways(const std::vector<Placement>& placements,
-                             const BuildThresholds& thresholds, bool inside_swarm) {
+                             const BuildThresholds& thresholds, bool inside_instancer) {
   std::map<MeshKey, size_t> uses;
   for (const Placement& p : placements) {
-    if (p.shape.kind == Shape::Kind::mesh && (inside_swarm || p.swarm == nullptr)) {
+    if (p.shape.kind == Shape::Kind::mesh && (inside_instancer || p.instancer == nullptr)) {
       ++uses[mesh_key(p.shape)];
     }
   }
@@ -49,7 +49,7 @@ std::vector<Way> choose_ways(const std::vector<Placement>& placements,
   size_t still_triangles = 0;
   bool any_changes = false;
   for (const Placement& p : placements) {
-    if (p.swarm != nullptr && !inside_swarm) {
+    if (p.instancer != nullptr && !inside_instancer) {
       ways.push_back(Way::copied);
       continue;
     }
@@ -109,14 +109,14 @@ class WorldBuilder {
 
  private:
   Status build_parts(std::vector<Placement> placements, const BuildThresholds& thresholds) {
-    const std::vector<Way> ways = choose_ways(placements, thresholds, inside_swarm_);
+    const std::vector<Way> ways = choose_ways(placements, thresholds, inside_instancer_);
     if (Status s = add_shared(placements, ways); !s) return s.error();
     parts_.objects.resize(placements.size());
     if (parts_.still != nullptr) {
       for (const NumberedObject& o : parts_.still->objects) parts_.objects[o.number] = o.object;
     }
-    if (!inside_swarm_) {
-      if (Status s = add_swarms(placements); !s) return s.error();
+    if (!inside_instancer_) {
+      if (Status s = add_instancers(placements); !s) return s.error();
     }
     std::vector<std::shared_ptr<const MeshScene>> instanced(placements.size());
     for (size_t i = 0; i < placements.size(); ++i) {
@@ -131,21 +131,21 @@ class WorldBuilder {
     return build_top(ways, instanced);
   }
 
-  /// Each run of placements with the same swarm.
-  Status add_swarms(const std::vector<Placement>& placements) {
+  /// Each run of placements with the same instancer.
+  Status add_instancers(const std::vector<Placement>& placements) {
     for (size_t first = 0; first < placements.size();) {
-      const std::shared_ptr<const Swarm>& swarm = placements[first].swarm;
+      const std::shared_ptr<const PointInstancer>& instancer = placements[first].instancer;
       size_t end = first + 1;
-      while (end < placements.size() && placements[end].swarm == swarm) ++end;
-      if (swarm != nullptr) {
+      while (end < placements.size() && placements[end].instancer == instancer) ++end;
+      if (instancer != nullptr) {
         const auto from = placements.begin();
-        auto scene = swarm_scene(
-            swarm, {from + static_cast<ptrdiff_t>(first), from + static_cast<ptrdiff_t>(end)});
+        auto scene = instancer_scene(
+            instancer, {from + static_cast<ptrdiff_t>(first), from + static_cast<ptrdiff_t>(end)});
         if (!scene) return scene.error();
         for (size_t i = first; i < end; ++i) {
           parts_.objects[i] = (*scene)->inner().objects()[i - first];
         }
-        parts_.swarms.push_back({static_cast<uint32_t>(first), *scene});
+        parts_.instancers.push_back({static_cast<uint32_t>(first), *scene});
       }
       first = end;
     }
@@ -153,24 +153,25 @@ class WorldBuilder {
   }
 
   /// The copies of `members`; those of the frame before where they are the same.
-  Result<std::shared_ptr<const SwarmScene>> swarm_scene(const std::shared_ptr<const Swarm>& swarm,
-                                                        const std::vector<Placement>& members) {
-    for (const auto& known : cache_.swarms) {
+  Result<std::shared_ptr<const InstancerScene>> instancer_scene(
+      const std::shared_ptr<const PointInstancer>& instancer,
+      const std::vector<Placement>& members) {
+    for (const auto& known : cache_.instancers) {
       auto found = known.lock();
-      if (found != nullptr && found->is_of(*swarm, members)) return found;
+      if (found != nullptr && found->is_of(*instancer, members)) return found;
     }
     // A world of what is copied. Nothing in it is an instance that need not be: a ray that comes
     // near a copy would be transformed once more.
     const BuildThresholds all_direct{std::numeric_limits<size_t>::max(),
                                      std::numeric_limits<size_t>::max()};
     WorldBuilder builder(cache_);
-    builder.inside_swarm_ = true;
+    builder.inside_instancer_ = true;
     if (Status s = builder.build_parts(members, all_direct); !s) return s.error();
     const auto inner = std::make_shared<const EmbreeWorld>(std::move(builder.parts_));
-    auto scene = std::make_shared<SwarmScene>(swarm, members, inner);
+    auto scene = std::make_shared<InstancerScene>(instancer, members, inner);
     if (Status s = scene->build(); !s) return s.error();
-    cache_.swarms.push_back(scene);
-    return std::shared_ptr<const SwarmScene>(std::move(scene));
+    cache_.instancers.push_back(scene);
+    return std::shared_ptr<const InstancerScene>(std::move(scene));
   }
 
   /// Finds the still scene of the frame before or makes one.
@@ -240,8 +241,8 @@ class WorldBuilder {
                                            Motion(), kAllRays),
                      static_cast<uint32_t>(ways.size()));
     }
-    for (size_t i = 0; i < parts_.swarms.size(); ++i) {
-      builder.attach(new_instance_geometry(builder.device(), parts_.swarms[i].scene->scene(),
+    for (size_t i = 0; i < parts_.instancers.size(); ++i) {
+      builder.attach(new_instance_geometry(builder.device(), parts_.instancers[i].scene->scene(),
                                            Motion(), kAllRays),
                      static_cast<uint32_t>(ways.size() + 1 + i));
     }
@@ -256,14 +257,14 @@ class WorldBuilder {
     std::vector<std::shared_ptr<const void>> recent(parts_.mesh_scenes.begin(),
                                                     parts_.mesh_scenes.end());
     if (parts_.still != nullptr) recent.push_back(parts_.still);
-    for (const PlacedSwarm& swarm : parts_.swarms) recent.push_back(swarm.scene);
+    for (const PlacedInstancer& instancer : parts_.instancers) recent.push_back(instancer.scene);
     cache_.recent = std::move(recent);
-    std::erase_if(cache_.swarms, [](const auto& swarm) { return swarm.expired(); });
+    std::erase_if(cache_.instancers, [](const auto& instancer) { return instancer.expired(); });
     std::erase_if(cache_.meshes, [](const auto& entry) { return entry.second.expired(); });
   }
 
   GeometryCache::State& cache_;
-  bool inside_swarm_ = false;  ///< what is built is what a swarm copies
+  bool inside_instancer_ = false;  ///< what is built is what a instancer copies
   WorldParts parts_;
   std::set<const MeshScene*> used_;  ///< those in parts_.mesh_scenes
 };
@@ -274,9 +275,9 @@ bool same_placement(const Placement& a, const Placement& b) {
   return a.shape.kind == b.shape.kind && mesh_key(a.shape) == mesh_key(b.shape) &&
          a.shape.radius == b.shape.radius && a.shape.height == b.shape.height &&
          a.to_world == b.to_world && a.visible_to_camera == b.visible_to_camera &&
-         a.blocks_light == b.blocks_light && (a.swarm == nullptr) == (b.swarm == nullptr) &&
-         (a.swarm == nullptr ||
-          (a.swarm->places == b.swarm->places && a.swarm->to_world == b.swarm->to_world));
+         a.blocks_light == b.blocks_light && (a.instancer == nullptr) == (b.instancer == nullptr) &&
+         (a.instancer == nullptr || (a.instancer->places == b.instancer->places &&
+                                     a.instancer->to_world == b.instancer->to_world));
 }
 
 GeometryCache::GeometryCache() : state_(std::make_unique<State>()) {}

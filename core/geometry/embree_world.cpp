@@ -50,15 +50,15 @@ EmbreeWorld::EmbreeWorld(WorldParts parts)
       still_number_(static_cast<uint32_t>(parts_.objects.size())) {
   std::set<const MeshBuffers*> copies;
   for (uint32_t i = 0; i < parts_.objects.size(); ++i) {
-    if (swarm_of(i) != nullptr) continue;
+    if (instancer_of(i) != nullptr) continue;
     const auto& object = parts_.objects[i];
     bounds_.include(object->bounds());
     const MeshBuffers* buffers = object->buffers();
     if (buffers != nullptr && copies.insert(buffers).second) memory_ += buffers->own_memory();
   }
-  for (const PlacedSwarm& swarm : parts_.swarms) {
-    bounds_.include(swarm.scene->bounds());
-    memory_ += swarm.scene->memory();
+  for (const PlacedInstancer& instancer : parts_.instancers) {
+    bounds_.include(instancer.scene->bounds());
+    memory_ += instancer.scene->memory();
   }
   memory_ += parts_.top->memory();
   if (parts_.still != nullptr) memory_ += parts_.still->scene->memory();
@@ -85,9 +85,10 @@ bool EmbreeWorld::find_nearest(const Ray& ray, RayKind kind, Take&& take) const 
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     const uint32_t instance = query.hit.instID[0];
     if (instance != RTC_INVALID_GEOMETRY_ID && instance > still_number_) {
-      const PlacedSwarm& swarm = parts_.swarms[instance - still_number_ - 1];
+      const PlacedInstancer& instancer = parts_.instancers[instance - still_number_ - 1];
       const CopyHit on = copy_hit(query.hit);
-      if (take(swarm.first + on.object, query.hit.primID, swarm.scene.get(), on.copy)) return true;
+      if (take(instancer.first + on.object, query.hit.primID, instancer.scene.get(), on.copy))
+        return true;
     } else if (take(object_of(query.hit), query.hit.primID, nullptr, 0U)) {
       return true;
     }
@@ -101,28 +102,30 @@ bool EmbreeWorld::find_nearest(const Ray& ray, RayKind kind, Take&& take) const 
 
 std::optional<Hit> EmbreeWorld::intersect(const Ray& ray, RayKind kind) const {
   std::optional<Hit> hit;
-  find_nearest(ray, kind,
-               [&](uint32_t object, uint32_t primitive, const SwarmScene* swarm, uint32_t copy) {
-                 if (swarm == nullptr) {
-                   hit = parts_.objects[object]->meet(ray, primitive);
-                 } else {
-                   const CopyPose pose = swarm->pose(copy, ray.time);
-                   hit = parts_.objects[object]->meet(ray, primitive, &pose);
-                 }
-                 if (hit) hit->object = object;
-                 if (hit) hit->copy = copy;
-                 return hit.has_value();
-               });
+  find_nearest(
+      ray, kind,
+      [&](uint32_t object, uint32_t primitive, const InstancerScene* instancer, uint32_t copy) {
+        if (instancer == nullptr) {
+          hit = parts_.objects[object]->meet(ray, primitive);
+        } else {
+          const CopyPose pose = instancer->pose(copy, ray.time);
+          hit = parts_.objects[object]->meet(ray, primitive, &pose);
+        }
+        if (hit) hit->object = object;
+        if (hit) hit->copy = copy;
+        return hit.has_value();
+      });
   return hit;
 }
 
 bool EmbreeWorld::nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const {
   return find_nearest(
-      ray, kind, [&](uint32_t object, uint32_t primitive, const SwarmScene* swarm, uint32_t copy) {
-        if (swarm == nullptr) {
+      ray, kind,
+      [&](uint32_t object, uint32_t primitive, const InstancerScene* instancer, uint32_t copy) {
+        if (instancer == nullptr) {
           if (!parts_.objects[object]->meet(ray, primitive, point)) return false;
         } else {
-          const CopyPose pose = swarm->pose(copy, ray.time);
+          const CopyPose pose = instancer->pose(copy, ray.time);
           if (!parts_.objects[object]->meet(ray, primitive, point, &pose)) return false;
         }
         point.object = object;
@@ -139,7 +142,8 @@ bool EmbreeWorld::occluded(const Ray& ray) const {
 
 SurfacePoint EmbreeWorld::surface(const Ray& ray, const Hit& hit) const {
   std::optional<CopyPose> pose;
-  if (const SwarmScene* swarm = swarm_of(hit.object)) pose = swarm->pose(hit.copy, ray.time);
+  if (const InstancerScene* instancer = instancer_of(hit.object))
+    pose = instancer->pose(hit.copy, ray.time);
   SurfacePoint p = parts_.objects[hit.object]->point(ray, hit, pose ? &*pose : nullptr);
   p.object = hit.object;
   return p;
@@ -148,7 +152,7 @@ SurfacePoint EmbreeWorld::surface(const Ray& ray, const Hit& hit) const {
 SurfacePoint EmbreeWorld::triangle_point(uint32_t object, uint32_t primitive, float u, float v,
                                          float time) const {
   std::optional<CopyPose> pose;
-  if (const SwarmScene* swarm = swarm_of(object)) pose = swarm->pose(0, time);
+  if (const InstancerScene* instancer = instancer_of(object)) pose = instancer->pose(0, time);
   SurfacePoint p =
       parts_.objects[object]->mesh_point(primitive, u, v, time, pose ? &*pose : nullptr);
   p.object = object;
@@ -162,7 +166,8 @@ SurfacePoint EmbreeWorld::quadric_point(uint32_t object, const Vec3& near, float
 }
 
 Mat4 EmbreeWorld::transform_at(uint32_t object, float time) const {
-  if (const SwarmScene* swarm = swarm_of(object)) return swarm->motion().at(time).to_mat4();
+  if (const InstancerScene* instancer = instancer_of(object))
+    return instancer->motion().at(time).to_mat4();
   const PlacedObject& placed = *parts_.objects[object];
   return placed.motion().still() ? placed.placement().to_world[0]
                                  : placed.motion().at(time).to_mat4();
@@ -172,19 +177,20 @@ const Placement& EmbreeWorld::placement(uint32_t object) const {
   return parts_.objects[object]->placement();
 }
 
-const SwarmScene* EmbreeWorld::swarm_of(uint32_t object) const {
-  for (const PlacedSwarm& swarm : parts_.swarms) {
-    if (object >= swarm.first && object - swarm.first < swarm.scene->inner().placement_count()) {
-      return swarm.scene.get();
+const InstancerScene* EmbreeWorld::instancer_of(uint32_t object) const {
+  for (const PlacedInstancer& instancer : parts_.instancers) {
+    if (object >= instancer.first &&
+        object - instancer.first < instancer.scene->inner().placement_count()) {
+      return instancer.scene.get();
     }
   }
   return nullptr;
 }
 
 Bounds EmbreeWorld::bounds_of(uint32_t object) const {
-  const SwarmScene* swarm = swarm_of(object);
+  const InstancerScene* instancer = instancer_of(object);
   const Bounds own = parts_.objects[object]->bounds();
-  return swarm == nullptr ? own : swarm->bounds_of(own);
+  return instancer == nullptr ? own : instancer->bounds_of(own);
 }
 
 uint32_t EmbreeWorld::placement_count() const {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/geometry/geometry_cache.h"
-#include "core/geometry/swarm_scene.h"
+#include "core/geometry/instancer_scene.h"
 #include "core/geometry/world.h"
 
 namespace hyades::core {
@@ -17,13 +17,13 @@ struct WorldParts {
   std::vector<std::shared_ptr<const PlacedObject>> objects;
   std::vector<std::shared_ptr<const MeshScene>> mesh_scenes;  ///< distinct, in use
   std::shared_ptr<const StillScene> still;                    ///< null: all is in `top`
-  std::vector<PlacedSwarm> swarms;
+  std::vector<PlacedInstancer> instancers;
   std::shared_ptr<const EmbreeScene> top;
 };
 
 /// The world over one Embree scene. Geometry numbers in `top` are numbers of placements, but for
 /// the still scene, an instance with the number after the last, and the
-/// swarms, instances with the numbers after that.
+/// instancers, instances with the numbers after that.
 class EmbreeWorld final : public World {
  public:
   explicit EmbreeWorld(WorldParts parts);
@@ -44,7 +44,7 @@ class EmbreeWorld final : public World {
   Bounds bounds_of(uint32_t object) const override;
 
   RTCScene scene() const { return scene_; }
-  /// The placement that Embree's numbers of a hit name, in a world without swarms.
+  /// The placement that Embree's numbers of a hit name, in a world without instancers.
   uint32_t object_of(const RTCHit& hit) const {
     const uint32_t instance = hit.instID[0];
     return instance == RTC_INVALID_GEOMETRY_ID || instance == still_number_ ? hit.geomID : instance;
@@ -54,12 +54,12 @@ class EmbreeWorld final : public World {
  private:
   bool usable(const Ray& ray) const;
 
-  /// The swarm that placement `object` belongs to; null: none.
-  const SwarmScene* swarm_of(uint32_t object) const;
+  /// The instancer that placement `object` belongs to; null: none.
+  const InstancerScene* instancer_of(uint32_t object) const;
 
-  /// Hands what Embree finds along the ray to `take(placement, primitive, swarm, copy)`, the swarm
-  /// null where the placement stands in the world itself, until it returns true;
-  /// false where it never does.
+  /// Hands what Embree finds along the ray to `take(placement, primitive, instancer, copy)`, the
+  /// instancer null where the placement stands in the world itself, until it returns true; false
+  /// where it never does.
   template <class Take>
   bool find_nearest(const Ray& ray, RayKind kind, Take&& take) const;
 

@@ -13,7 +13,7 @@
 
 namespace hyades::core {
 
-class SwarmScene;
+class InstancerScene;
 
 /// A mesh in its object space: what instances refer to.
 struct MeshScene {
@@ -49,7 +49,7 @@ struct GeometryCache::State {
   std::mutex mutex;  // guards all that follows
   std::map<MeshKey, std::weak_ptr<const MeshScene>> meshes;
   std::weak_ptr<const StillScene> still;
-  std::vector<std::weak_ptr<const SwarmScene>> swarms;
+  std::vector<std::weak_ptr<const InstancerScene>> instancers;
   /// What the last world used, so that it outlives that world.
   std::vector<std::shared_ptr<const void>> recent;
 };

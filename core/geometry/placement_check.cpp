@@ -110,22 +110,23 @@ bool in_reach(const Bounds& b) {
          largest_coordinate(b.upper) <= kLargestCoordinate;
 }
 
-/// Of a member of a swarm, in all of its copies.
-Status check_swarm(const Placement& p, const Bounds& box) {
-  const Swarm& swarm = *p.swarm;
-  if (swarm.places == nullptr || swarm.places->empty()) return Error{"its swarm has no places"};
-  if (Status s = check_matrices(swarm.to_world); !s) return s;
+/// Of a member of a instancer, in all of its copies.
+Status check_instancer(const Placement& p, const Bounds& box) {
+  const PointInstancer& instancer = *p.instancer;
+  if (instancer.places == nullptr || instancer.places->empty())
+    return Error{"its instancer has no places"};
+  if (Status s = check_matrices(instancer.to_world); !s) return s;
   Bounds inner;
   for (const Mat4& m : p.to_world) inner.include(transform_bounds(Affine(m), box));
   if (!box.empty() && !in_reach(inner)) return Error{"it reaches beyond a distance of 1e12 m"};
   const auto complain = [&](size_t copy, const char* what) {
-    return Error{"copy " + std::to_string(copy) + " of " + swarm.name + " " + what};
+    return Error{"copy " + std::to_string(copy) + " of " + instancer.name + " " + what};
   };
-  for (size_t i = 0; i < swarm.places->size(); ++i) {
-    const Mat4 place = place_matrix((*swarm.places)[i]);
+  for (size_t i = 0; i < instancer.places->size(); ++i) {
+    const Mat4 place = place_matrix((*instancer.places)[i]);
     if (!all_finite(place)) return complain(i, "stands nowhere: its matrix is not finite");
     Placement copy;
-    for (const Mat4& m : swarm.to_world) copy.to_world.push_back(m * place);
+    for (const Mat4& m : instancer.to_world) copy.to_world.push_back(m * place);
     copy.to_world.erase(copy.to_world.begin());
     if (!can_be_instanced(copy)) {
       return complain(i,
@@ -147,7 +148,7 @@ Status check_placement(const Placement& p) {
   if (Status s = check_shape(p.shape); !s) return s;
   if (Status s = check_matrices(p.to_world); !s) return s;
   const Bounds box = bounds_of(p.shape);
-  if (p.swarm != nullptr) return check_swarm(p, box);
+  if (p.instancer != nullptr) return check_instancer(p, box);
   if (box.empty()) return {};
   for (const Mat4& m : p.to_world) {
     const Bounds b = transform_bounds(Affine(m), box);

@@ -8,11 +8,11 @@
 #include "core/base/assets.h"
 #include "core/base/bytes.h"
 #include "core/base/result.h"
-#include "core/geometry/swarm.h"
+#include "core/geometry/point_instancer.h"
 
 namespace hyades::core {
 
-/// About what a copy of a swarm takes while a scene is made, its place and Embree's hierarchy.
+/// About what a copy of a instancer takes while a scene is made, its place and Embree's hierarchy.
 inline constexpr size_t kBytesPerCopy = 192;
 
 /// Reads the places of copies: the vertices of a PLY file (text or binary, perhaps packed by gzip),

@@ -7,9 +7,9 @@
 
 #include "core/base/ray.h"
 #include "core/base/result.h"
+#include "core/geometry/point_instancer.h"
 #include "core/geometry/shape.h"
 #include "core/geometry/surface_point.h"
-#include "core/geometry/swarm.h"
 
 namespace hyades::core {
 
@@ -28,9 +28,10 @@ struct Placement {
   /// apart from the geometry that frames share. Decided by the job alone, never by which frames
   /// were built before, so that a frame's bits do not depend on them.
   bool changes_between_frames = false;
-  /// Null: it stands once in the world. Else `to_world` leads into the space of the swarm's copies,
-  /// each of which holds this and all neighbours in the list of placements with the same swarm.
-  std::shared_ptr<const Swarm> swarm;
+  /// Null: it stands once in the world. Else `to_world` leads into the space of the instancer's
+  /// copies, each of which holds this and all neighbours in the list of placements with the same
+  /// instancer.
+  std::shared_ptr<const PointInstancer> instancer;
 };
 
 /// Whether both put the same things into the world, by address.
@@ -40,7 +41,7 @@ bool same_placement(const Placement& a, const Placement& b);
 struct Hit {
   uint32_t object = 0;  ///< index of the placement
   uint32_t primitive = 0;
-  uint32_t copy = 0;  ///< index in Swarm::places; 0 where there is no swarm
+  uint32_t copy = 0;  ///< index in PointInstancer::places; 0 where there is no instancer
   float t = 0.0F;     ///< recomputed with exact divisions: the same bits on every CPU
   float u = 0.0F;     ///< barycentric of vertex 1 (meshes)
   float v = 0.0F;     ///< barycentric of vertex 2 (meshes)
@@ -80,7 +81,7 @@ class World {
   /// for less work. False, and `point` is unchanged, where there is none.
   virtual bool nearest(const Ray& ray, RayKind kind, SurfacePoint& point) const = 0;
 
-  /// The surface point of placement `object` (of a swarm: in its first copy) at triangle
+  /// The surface point of placement `object` (of a instancer: in its first copy) at triangle
   /// `primitive`, barycentrics (u, v), shutter
   /// time `time`: what light sampling on a mesh needs.
   virtual SurfacePoint triangle_point(uint32_t object, uint32_t primitive, float u, float v,
@@ -90,8 +91,8 @@ class World {
   /// space) at shutter time `time`: what light sampling on a quadric needs.
   virtual SurfacePoint quadric_point(uint32_t object, const Vec3& near, float time) const = 0;
 
-  /// Object-to-world matrix of placement `object` at shutter time `time`; of a swarm's members that
-  /// of the swarm as a whole.
+  /// Object-to-world matrix of placement `object` at shutter time `time`; of a instancer's members
+  /// that of the instancer as a whole.
   virtual Mat4 transform_at(uint32_t object, float time) const = 0;
 
   virtual const Placement& placement(uint32_t object) const = 0;

@@ -8,8 +8,8 @@
 #include "core/geometry/world.h"
 #include "core/image/image.h"
 #include "core/lights/environment_map.h"
+#include "core/lights/gobo.h"
 #include "core/lights/light.h"
-#include "core/lights/slide.h"
 #include "core/lights/surface_emission.h"
 
 /// One maker per kind of light.
@@ -46,12 +46,12 @@ LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb&
 LightPtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rgb& power,
                                 std::shared_ptr<const EnvironmentMap> map);
 
-/// As a point light of that power, but only through `slide`, whose colours it takes: white is the
-/// point light itself. `fov` [radians, in (0, pi)] is the angle across the slide's shorter side.
-/// The columns of `axes`, orthonormal and possibly mirrored, lead to the slide's right and upper
+/// As a point light of that power, but only through `gobo`, whose colours it takes: white is the
+/// point light itself. `fov` [radians, in (0, pi)] is the angle across the gobo's shorter side.
+/// The columns of `axes`, orthonormal and possibly mirrored, lead to the gobo's right and upper
 /// sides and through its middle.
 LightPtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power, float fov,
-                              std::shared_ptr<const Slide> slide);
+                              std::shared_ptr<const Gobo> gobo);
 
 /// Sun: light travelling along unit `direction`, irradiance [W/m^2] on a facing surface, from a
 /// disc of angular diameter `angle` [radians, at most pi] and uniform radiance; less than 1e-4

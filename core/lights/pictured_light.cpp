@@ -43,14 +43,14 @@ class GoniometricLight final : public TurnedSource {
   std::shared_ptr<const EnvironmentMap> map_;
 };
 
-/// The slide stands at z = 1 before the light.
+/// The gobo stands at z = 1 before the light.
 class ProjectorLight final : public TurnedSource {
  public:
   ProjectorLight(const Vec3& position, const Mat3& axes, const Rgb& power, float tan_half_fov,
-                 std::shared_ptr<const Slide> slide)
+                 std::shared_ptr<const Gobo> gobo)
       : TurnedSource(position, axes, power),
-        slide_(std::move(slide)),
-        half_(tan_half_fov * slide_->half_size()),
+        gobo_(std::move(gobo)),
+        half_(tan_half_fov * gobo_->half_size()),
         power_(luminance(intensity() * integral())) {}
 
   float power() const override { return power_; }
@@ -58,23 +58,23 @@ class ProjectorLight final : public TurnedSource {
  private:
   /// The solid angle of the picture, each part times its colour [sr].
   Rgb integral() const {
-    const std::vector<Rgb>& cells = slide_->overview();
-    const double width = 2.0 * static_cast<double>(half_.x) / Slide::kOverview;
-    const double height = 2.0 * static_cast<double>(half_.y) / Slide::kOverview;
+    const std::vector<Rgb>& cells = gobo_->overview();
+    const double width = 2.0 * static_cast<double>(half_.x) / Gobo::kOverview;
+    const double height = 2.0 * static_cast<double>(half_.y) / Gobo::kOverview;
     Vec3d sum(0.0);
-    for (int row = 0; row < Slide::kOverview; ++row) {
+    for (int row = 0; row < Gobo::kOverview; ++row) {
       const double y = static_cast<double>(half_.y) - height * (row + 0.5);
-      for (int column = 0; column < Slide::kOverview; ++column) {
+      for (int column = 0; column < Gobo::kOverview; ++column) {
         const double x = width * (column + 0.5) - static_cast<double>(half_.x);
         const double distance2 = 1.0 + x * x + y * y;
-        sum += Vec3d(cells[static_cast<size_t>(row * Slide::kOverview + column)]) /
+        sum += Vec3d(cells[static_cast<size_t>(row * Gobo::kOverview + column)]) /
                (distance2 * std::sqrt(distance2));
       }
     }
     return Rgb(sum * width * height);
   }
 
-  /// Where a direction goes through the slide, in lengths from its middle; nothing beside it.
+  /// Where a direction goes through the gobo, in lengths from its middle; nothing beside it.
   std::optional<Vec2> through(const Vec3& direction) const {
     const Vec3 own = to_own(direction);
     if (!(own.z > 0.0F)) return std::nullopt;
@@ -83,8 +83,8 @@ class ProjectorLight final : public TurnedSource {
     return at;
   }
 
-  Slide::View view(const Vec2& at) const {
-    return slide_->view({0.5F + 0.5F * at.x / half_.x, 0.5F - 0.5F * at.y / half_.y});
+  Gobo::View view(const Vec2& at) const {
+    return gobo_->view({0.5F + 0.5F * at.x / half_.x, 0.5F - 0.5F * at.y / half_.y});
   }
 
   Rgb value(const Vec3& direction) const override {
@@ -95,7 +95,7 @@ class ProjectorLight final : public TurnedSource {
   float pdf(const Vec3& direction) const override {
     const auto at = through(direction);
     if (!at) return 0.0F;
-    // Of the unit square to the slide to the sphere: a length 1 away, seen at an angle whose cosine
+    // Of the unit square to the gobo to the sphere: a length 1 away, seen at an angle whose cosine
     // is 1 / distance, and farther away by that.
     const float distance2 = 1.0F + glm::dot(*at, *at);
     const float solid_angle = 4.0F * half_.x * half_.y / (distance2 * std::sqrt(distance2));
@@ -103,7 +103,7 @@ class ProjectorLight final : public TurnedSource {
   }
 
   Vec3 choose(const Vec2& u) const override {
-    const Vec2 place = slide_->sample(u);
+    const Vec2 place = gobo_->sample(u);
     return to_world(glm::normalize(
         Vec3((2.0F * place.x - 1.0F) * half_.x, (1.0F - 2.0F * place.y) * half_.y, 1.0F)));
   }
@@ -112,7 +112,7 @@ class ProjectorLight final : public TurnedSource {
     return {to_world({0.0F, 0.0F, 1.0F}), 1.0F / std::sqrt(1.0F + glm::dot(half_, half_))};
   }
 
-  std::shared_ptr<const Slide> slide_;
+  std::shared_ptr<const Gobo> gobo_;
   Vec2 half_;
   float power_;
 };
@@ -125,10 +125,10 @@ LightPtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rg
 }
 
 LightPtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power, float fov,
-                              std::shared_ptr<const Slide> slide) {
+                              std::shared_ptr<const Gobo> gobo) {
   const SinCos half = sin_cos(0.5F * fov);
   return std::make_shared<ProjectorLight>(position, axes, power, half.sin / half.cos,
-                                          std::move(slide));
+                                          std::move(gobo));
 }
 
 }  // namespace hyades::core

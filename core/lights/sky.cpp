@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/base/elementary.h"
-#include "core/lights/air.h"
+#include "core/lights/sky_model.h"
 
 namespace hyades::core {
 namespace {
@@ -27,13 +27,13 @@ void put(Image& image, int x, int y, const Rgb& value) {
 }  // namespace
 
 Sky make_sky(const SkySettings& settings) {
-  const Air air(settings.turbidity, settings.ground_albedo);
+  const SkyModel model(settings.turbidity, settings.ground_albedo);
   const SinCos height = sin_cos(settings.elevation);
   const Vec3 sun(height.cos, height.sin, 0.0F);
   Sky sky;
   // A sun that sets: what is left of it shines along the horizon.
   const float share = share_above(settings.elevation, settings.sun_radius);
-  sky.sun = air.transmittance(std::max(height.sin, 0.0F)) * share;
+  sky.sun = model.transmittance(std::max(height.sin, 0.0F)) * share;
 
   auto image = std::make_shared<Image>(make_image(kWidth, kHeight, {"R", "G", "B"}));
   Rgb from_above(0.0F);  // irradiance of the sky on the ground
@@ -47,7 +47,7 @@ Sky make_sky(const SkySettings& settings) {
     for (int x = 0; x < kWidth / 2; ++x) {  // both halves are alike
       const SinCos turn = sin_cos(2.0F * kPi * ((static_cast<float>(x) + 0.5F) / kWidth - 0.5F));
       const Vec3 direction(down.sin * turn.cos, down.cos, down.sin * turn.sin);
-      Rgb radiance = air.radiance(direction, sun);
+      Rgb radiance = model.radiance(direction, sun);
       if (y < kHeight / 2) {
         from_above += radiance * (2.0F * cell * down.cos);
       } else {

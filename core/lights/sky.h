@@ -10,7 +10,7 @@ namespace hyades::core {
 /// What decides a clear sky's picture, all but the direction of the compass.
 struct SkySettings {
   float elevation = 0.5F;  ///< of the sun's middle above the horizon [rad]
-  float turbidity = 3.0F;  ///< as Air
+  float turbidity = 3.0F;  ///< as SkyModel
   Rgb ground_albedo{0.3F};
   float sun_radius = 0.0046F;  ///< angular [rad]: how much of the sun is above the horizon
 
@@ -24,7 +24,7 @@ struct Sky {
   Rgb sun{0.0F};  ///< irradiance of the sun's disc on a facing surface, on the ground
 };
 
-/// Finds all light of a sky (core/lights/air.h). Takes some tenths of a second.
+/// Finds all light of a sky (core/lights/sky_model.h). Takes some tenths of a second.
 Sky make_sky(const SkySettings& settings);
 
 /// How the radiance of the sun's disc falls off to its rim: as the power of the cosine of the angle

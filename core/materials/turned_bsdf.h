@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/materials/leaning.h"
 #include "core/materials/material.h"
+#include "core/materials/shading_normal_correction.h"
 
 namespace hyades::core {
 
@@ -11,28 +11,28 @@ class TurnedBsdf final : public Bsdf {
  public:
   /// `turn`: the inner frame's axes in outer local coordinates.
   TurnedBsdf(const Bsdf& inner, const Frame& turn)
-      : inner_(inner), leaning_(Vec3(0.0F, 0.0F, 1.0F), turn) {}
+      : inner_(inner), correction_(Vec3(0.0F, 0.0F, 1.0F), turn) {}
 
   Rgb evaluate(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
-    return leaning_.evaluate(inner_, wo, wi, mode);
+    return correction_.evaluate(inner_, wo, wi, mode);
   }
   Rgb evaluate_diffuse(const Vec3& wo, const Vec3& wi) const override {
-    return leaning_.evaluate_diffuse(inner_, wo, wi);
+    return correction_.evaluate_diffuse(inner_, wo, wi);
   }
   float pdf(const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
-    return leaning_.pdf(inner_, wo, wi, mode);
+    return correction_.pdf(inner_, wo, wi, mode);
   }
   std::optional<BsdfSample> sample(const Vec3& wo, float lobe, const Vec2& u,
                                    TransportMode mode) const override {
-    return leaning_.sample(inner_, wo, lobe, u, mode);
+    return correction_.sample(inner_, wo, lobe, u, mode);
   }
-  Rgb albedo(const Vec3& wo) const override { return leaning_.albedo(inner_, wo); }
+  Rgb albedo(const Vec3& wo) const override { return correction_.albedo(inner_, wo); }
   Spread spread(float outer) const override { return inner_.spread(outer); }
   bool has_smooth() const override { return inner_.has_smooth(); }
 
  private:
   const Bsdf& inner_;
-  Leaning leaning_;
+  ShadingNormalCorrection correction_;
 };
 
 /// The BSDF of a part of another material, which keeps its own frame `outer`.

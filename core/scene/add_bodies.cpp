@@ -20,24 +20,24 @@ Bounds bounds_in_world(const Placement& placement) {
   const Bounds local = bounds_of(placement.shape);
   Bounds bounds;
   for (const Mat4& m : placement.to_world) bounds.include(transformed(m, local));
-  if (placement.swarm == nullptr) return bounds;
+  if (placement.instancer == nullptr) return bounds;
   Bounds all;
-  for (const Mat4& m : placement.swarm->to_world) {
-    for (const PlaceMatrix& place : *placement.swarm->places) {
+  for (const Mat4& m : placement.instancer->to_world) {
+    for (const PlaceMatrix& place : *placement.instancer->places) {
       all.include(transformed(m * place_matrix(place), bounds));
     }
   }
   return all;
 }
 
-/// Of what the surface (of a swarm: its first copy) encloses when the shutter opens. The same
+/// Of what the surface (of a instancer: its first copy) encloses when the shutter opens. The same
 /// however it is turned, and less than that of a body around it.
 double volume_of(const Placement& placement, SceneCache& cache) {
   const Shape& shape = placement.shape;
   double scale = std::abs(Affine(placement.to_world[0]).determinant());
-  if (placement.swarm != nullptr) {
-    const Mat4 place = place_matrix(placement.swarm->places->front());
-    scale *= std::abs(Affine(placement.swarm->to_world[0] * place).determinant());
+  if (placement.instancer != nullptr) {
+    const Mat4 place = place_matrix(placement.instancer->places->front());
+    scale *= std::abs(Affine(placement.instancer->to_world[0] * place).determinant());
   }
   const double r = shape.radius;
   switch (shape.kind) {

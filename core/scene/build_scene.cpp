@@ -82,9 +82,9 @@ class SceneBuilder {
       placements.back().blocks_light = !(*material)->is_null() && !cutout;
       scene_->has_shells |= cutout;
       if (object.placement.shape.mesh) {
-        const auto& swarm = object.placement.swarm;
+        const auto& instancer = object.placement.instancer;
         scene_->triangles += object.placement.shape.mesh->triangles.size() *
-                             (swarm == nullptr ? 1 : swarm->places->size());
+                             (instancer == nullptr ? 1 : instancer->places->size());
       }
     }
     if (auto done = add_bodies(job_, *flat, looks_, *scene_, placements); !done) return done;
@@ -247,10 +247,10 @@ class SceneBuilder {
     motion->next_camera = make_sharp_camera(job_, job_.time_of(frame_ + 1));
     for (uint32_t i = 0; i < next->size(); ++i) {
       const Placement& then = (*next)[i].placement;
-      motion->to_world.push_back(then.swarm == nullptr ? then.to_world.front()
-                                                       : then.swarm->to_world.front());
+      motion->to_world.push_back(then.instancer == nullptr ? then.to_world.front()
+                                                           : then.instancer->to_world.front());
       const auto& mesh = scene_->world->placement(i).shape.mesh;
-      const bool deforms = then.swarm == nullptr && then.shape.mesh != mesh &&
+      const bool deforms = then.instancer == nullptr && then.shape.mesh != mesh &&
                            then.shape.mesh != nullptr && is_mesh_sequence((*next)[i].desc->mesh) &&
                            same_topology(*mesh, *then.shape.mesh);
       motion->meshes.push_back(deforms ? then.shape.mesh : nullptr);
@@ -268,7 +268,7 @@ class SceneBuilder {
       const std::string& path = scene_->objects[i].name;
       if (path != name && !path.starts_with(name + "/")) continue;
       const Placement& placement = scene_->world->placement(i);
-      bounds.include(placement.swarm != nullptr
+      bounds.include(placement.instancer != nullptr
                          ? scene_->world->bounds_of(i)
                          : transformed(scene_->world->transform_at(i, shutter_time),
                                        bounds_of(placement.shape)));

@@ -89,7 +89,7 @@ class Flattener {
     flat.body = flat_.size();
     flat.emit = emission_of(object, look);
     flat.placement.shape = *shape;
-    flat.placement.swarm = swarm_;
+    flat.placement.instancer = instancer_;
     flat.placement.visible_to_camera = visible;
     flat.placement.changes_between_frames = chain_is_animated() || size_changes(object) ||
                                             displacement_changes(job_, object) ||
@@ -106,22 +106,22 @@ class Flattener {
     const auto refuse = [&](const Error& error) {
       return at(object, error.in("object '" + name + "'"));
     };
-    if (swarm_ != nullptr) {
-      return refuse({"its copies would be copied in their turn by '" + swarm_->name +
+    if (instancer_ != nullptr) {
+      return refuse({"its copies would be copied in their turn by '" + instancer_->name +
                      "'; expected one file of places at most around an object"});
     }
     const auto places = cache_.places(object.places);
     if (!places) return refuse(places.error());
-    auto swarm = std::make_shared<Swarm>();
-    swarm->name = object.places;
-    swarm->places = *places;
-    swarm->to_world =
+    auto instancer = std::make_shared<PointInstancer>();
+    instancer->name = object.places;
+    instancer->places = *places;
+    instancer->to_world =
         shutter_matrices(job_, frame_, [&](const JobTime& time) { return chain_matrix(time); });
-    swarm_ = std::move(swarm);
+    instancer_ = std::move(instancer);
     inside_ = chain_.size();
     const size_t first = flat_.size();
     const Status added = add_all(group.objects, name + "/", material, visible);
-    swarm_ = nullptr;
+    instancer_ = nullptr;
     inside_ = 0;
     if (!added) return added;
     for (size_t i = first; i < flat_.size(); ++i) {
@@ -187,7 +187,7 @@ class Flattener {
       cap.placement.shape.kind = Shape::Kind::disk;
       cap.placement.shape.radius = object.radius.at(looks_.time());
       cap.placement.visible_to_camera = visible;
-      cap.placement.swarm = swarm_;
+      cap.placement.instancer = instancer_;
       cap.placement.changes_between_frames = chain_is_animated() || size_changes(object);
       Mat4 place(1.0F);
       if (top) {
@@ -213,12 +213,12 @@ class Flattener {
     });
   }
 
-  /// Object to world, through all enclosing groups, scaled to metres; within a swarm to the space
-  /// of its copies.
+  /// Object to world, through all enclosing groups, scaled to metres; within a instancer to the
+  /// space of its copies.
   Mat4 chain_matrix(const JobTime& time) const {
     Mat4 m(1.0F);
-    for (int i = 0; i < 3 && swarm_ == nullptr; ++i) m[i][i] = job_.units;
-    for (size_t i = swarm_ == nullptr ? 0 : inside_; i < chain_.size(); ++i)
+    for (int i = 0; i < 3 && instancer_ == nullptr; ++i) m[i][i] = job_.units;
+    for (size_t i = instancer_ == nullptr ? 0 : inside_; i < chain_.size(); ++i)
       m = m * transform_at(chain_[i]->transform, chain_[i]->at, time);
     return m;
   }
@@ -235,8 +235,8 @@ class Flattener {
   std::unordered_map<const ObjectDesc*, std::set<std::string>> overridden_;
   std::vector<const ObjectDesc*> chain_;  ///< from the outermost group to the object in hand
   std::vector<FlatObject> flat_;
-  std::shared_ptr<const Swarm> swarm_;  ///< whose copies hold what is added
-  size_t inside_ = 0;                   ///< of chain_, where its group begins
+  std::shared_ptr<const PointInstancer> instancer_;  ///< whose copies hold what is added
+  size_t inside_ = 0;                                ///< of chain_, where its group begins
 };
 
 }  // namespace

@@ -60,13 +60,13 @@ Result<LightPtr> point(const LightDesc& desc, const LightSetting& setting, Scene
 }
 
 Result<LightPtr> projector(const LightDesc& desc, const LightSetting& setting, SceneCache& cache) {
-  auto slide = cache.slide(desc.image);
-  if (!slide) return slide.error();
+  auto gobo = cache.gobo(desc.image);
+  if (!gobo) return gobo.error();
   const JobTime& time = setting.time;
   const CameraAxes view = axes_along(desc.look_at.at(time) - desc.at.at(time), desc.up.at(time));
   return make_projector_light(
       place_of(desc, setting), turned_axes(desc, Mat3(view.right, view.up, view.forward), setting),
-      power_of(desc, setting), desc.fov.at(time) * kRadians, std::move(*slide));
+      power_of(desc, setting), desc.fov.at(time) * kRadians, std::move(*gobo));
 }
 
 Result<LightPtr> spot(const LightDesc& desc, const LightSetting& setting, SceneCache& /*cache*/) {

@@ -128,11 +128,11 @@ Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const 
   });
 }
 
-Result<std::shared_ptr<const Slide>> SceneCache::slide(const std::string& file) {
-  return slides_.get(file, [&]() -> Result<std::shared_ptr<const Slide>> {
+Result<std::shared_ptr<const Gobo>> SceneCache::gobo(const std::string& file) {
+  return gobos_.get(file, [&]() -> Result<std::shared_ptr<const Gobo>> {
     auto picture = image(file, ColorSpace::automatic);
     if (!picture) return picture.error();
-    return std::make_shared<const Slide>(*picture);
+    return std::make_shared<const Gobo>(*picture);
   });
 }
 

@@ -14,8 +14,8 @@
 #include "core/geometry/world.h"
 #include "core/image/read_image.h"
 #include "core/lights/environment_map.h"
+#include "core/lights/gobo.h"
 #include "core/lights/sky.h"
-#include "core/lights/slide.h"
 #include "core/media/grid_fields.h"
 #include "core/media/majorant_grid.h"
 #include "core/scene/once_map.h"
@@ -76,7 +76,7 @@ class SceneCache {
   Result<std::shared_ptr<const TriangleMesh>> frame_mesh(const std::string& file,
                                                          const MeshUse& use);
 
-  /// Where the copies of a swarm stand.
+  /// Where the copies of a instancer stand.
   Result<std::shared_ptr<const std::vector<PlaceMatrix>>> places(const std::string& file);
 
   /// Whether there is such a file.
@@ -94,7 +94,7 @@ class SceneCache {
   Result<std::shared_ptr<const EnvironmentMap>> environment_map(const std::string& file);
 
   /// An image as a projector's picture, ready to be sampled.
-  Result<std::shared_ptr<const Slide>> slide(const std::string& file);
+  Result<std::shared_ptr<const Gobo>> gobo(const std::string& file);
 
   /// A clear sky; the previous one where the settings are the same.
   std::shared_ptr<const Sky> sky(const SkySettings& settings);
@@ -157,7 +157,7 @@ class SceneCache {
   OnceMap<std::pair<std::string, ImageUse>, ImagePyramid> pyramids_;
   OnceMap<std::string, std::vector<int>> udims_;
   OnceMap<std::string, EnvironmentMap> environment_maps_;
-  OnceMap<std::string, Slide> slides_;
+  OnceMap<std::string, Gobo> gobos_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<float>> vdb_numbers_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<Rgb>> vdb_colors_;
   OnceMap<std::pair<std::string, std::string>, VdbDensity> vdb_densities_;

@@ -62,7 +62,7 @@ class Walk {
   void add_light_maps(const Job& job) {
     for (const LightDesc& light : job.lights) {
       add_light_map(light.image,
-                    light.type == "projector" ? LightMap::slide : LightMap::surroundings,
+                    light.type == "projector" ? LightMap::gobo : LightMap::surroundings,
                     "light '" + light.name + "'", light.where);
     }
     if (!job.environment) return;
@@ -229,8 +229,8 @@ Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagn
       note(i, cache.pyramid(image.file, image.how), image.user, image.where);
     } else {
       const auto& map = files.light_maps[i - meshes - images];
-      if (map.how == LightMap::slide) {
-        note(i, cache.slide(map.file), map.user, map.where);
+      if (map.how == LightMap::gobo) {
+        note(i, cache.gobo(map.file), map.user, map.where);
       } else {
         note(i, cache.environment_map(map.file), map.user, map.where);
       }

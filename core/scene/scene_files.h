@@ -12,7 +12,7 @@
 namespace hyades::core {
 
 /// What a light makes of its picture.
-enum class LightMap { surroundings, slide };
+enum class LightMap { surroundings, gobo };
 
 /// A file as the cache is asked for it, and who asks first.
 template <class How>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/bytes.h"
-#include "core/geometry/swarm.h"
+#include "core/geometry/point_instancer.h"
 #include "import/gltf/made_meshes.h"
 #include "import/gltf/model.h"
 

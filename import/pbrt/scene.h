@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/geometry/swarm.h"
+#include "core/geometry/point_instancer.h"
 #include "import/pbrt/parameters.h"
 
 namespace hyades::core::pbrt {

@@ -104,7 +104,7 @@ TEST(LightBounds, HoldAllThatLightsGiveOff) {
   expect_bounded(*make_spot_light({1, 2, 3}, {0, 0, 1}, Rgb(4.0F), 0.2F, -0.6F));
   const auto white = std::make_shared<const Image>(Image{2, 1, {"Y"}, {1.0F, 1.0F}});
   expect_bounded(*make_projector_light({1, 2, 3}, Mat3(1.0F), Rgb(4.0F), 1.0F,
-                                       std::make_shared<const Slide>(white)));
+                                       std::make_shared<const Gobo>(white)));
   expect_bounded(*make_goniometric_light({1, 2, 3}, Mat3(1.0F), Rgb(4.0F),
                                          std::make_shared<const EnvironmentMap>(white)));
 }

@@ -23,8 +23,8 @@ std::shared_ptr<const Image> picture(int width, int height, std::vector<float> v
 }
 
 /// Red, green over blue, white.
-std::shared_ptr<const Slide> four_colors() {
-  return std::make_shared<const Slide>(picture(2, 2, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}));
+std::shared_ptr<const Gobo> four_colors() {
+  return std::make_shared<const Gobo>(picture(2, 2, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}));
 }
 
 /// What arrives one length from the light, in `direction` of it.
@@ -60,12 +60,12 @@ TEST(Projector, ItsAngleIsAcrossTheShorterSide) {
   const float half = std::tan(0.5F * fov);
   const std::vector<float> white(6, 1.0F);
   const LightPtr wide = make_projector_light(kAt, kAhead, kPower, fov,
-                                             std::make_shared<const Slide>(picture(2, 1, white)));
+                                             std::make_shared<const Gobo>(picture(2, 1, white)));
   EXPECT_TRUE(near(arriving(*wide, {1.99F * half, 0, -1}), Rgb(1.0F)));
   EXPECT_EQ(arriving(*wide, {2.01F * half, 0, -1}), Rgb(0.0F));
   EXPECT_EQ(arriving(*wide, {0, 1.01F * half, -1}), Rgb(0.0F));
   const LightPtr high = make_projector_light(kAt, kAhead, kPower, fov,
-                                             std::make_shared<const Slide>(picture(1, 2, white)));
+                                             std::make_shared<const Gobo>(picture(1, 2, white)));
   EXPECT_TRUE(near(arriving(*high, {0, 1.99F * half, -1}), Rgb(1.0F)));
   EXPECT_EQ(arriving(*high, {1.01F * half, 0, -1}), Rgb(0.0F));
 }
@@ -82,7 +82,7 @@ TEST(Projector, FallsOffWithTheSquareOfTheDistance) {
 
 /// A white one of 90 degrees lights a sixth of the sphere: a side of a cube.
 TEST(Projector, PowerIsThatOfItsSolidAngle) {
-  const auto white = std::make_shared<const Slide>(
+  const auto white = std::make_shared<const Gobo>(
       std::make_shared<const Image>(Image{64, 64, {"Y"}, std::vector<float>(64 * 64, 1.0F)}));
   EXPECT_NEAR(make_projector_light(kAt, kAhead, kPower, 0.5F * kPi, white)->power(),
               4.0F * kPi / 6.0F, 1e-3F);
@@ -126,11 +126,11 @@ std::vector<Case> cases() {
   const Rgb power(40, 20, 10);
   return {
       {"narrow", make_projector_light(kAt, axes, power, 0.3F,
-                                      std::make_shared<const Slide>(noise(5, 3, 0.2F)))},
+                                      std::make_shared<const Gobo>(noise(5, 3, 0.2F)))},
       {"wide and mirrored", make_projector_light(kAt, mirrored, power, 2.2F,
-                                                 std::make_shared<const Slide>(noise(3, 4, 0.5F)))},
+                                                 std::make_shared<const Gobo>(noise(3, 4, 0.5F)))},
       {"one pixel", make_projector_light(kAt, axes, power, 1.0F,
-                                         std::make_shared<const Slide>(noise(1, 1, 0.0F)))},
+                                         std::make_shared<const Gobo>(noise(1, 1, 0.0F)))},
       {"goniometric",
        make_goniometric_light(kAt, mirrored, power,
                               std::make_shared<const EnvironmentMap>(noise(8, 5, 0.3F)))},
@@ -188,7 +188,7 @@ TEST(PicturedLights, WithoutLightThereIsNone) {
   test::Random random(41);
   const auto black = picture(2, 1, std::vector<float>(6, 0.0F));
   const LightPtr lights[] = {
-      make_projector_light(kAt, kAhead, kPower, 1.0F, std::make_shared<const Slide>(black)),
+      make_projector_light(kAt, kAhead, kPower, 1.0F, std::make_shared<const Gobo>(black)),
       make_goniometric_light(kAt, kAhead, kPower, std::make_shared<const EnvironmentMap>(black)),
       make_projector_light(kAt, kAhead, Rgb(0.0F), 1.0F, four_colors())};
   for (const LightPtr& light : lights) {

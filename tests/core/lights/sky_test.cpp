@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/base/elementary.h"
-#include "core/lights/air.h"
 #include "core/lights/make_light.h"
+#include "core/lights/sky_model.h"
 #include "tests/core/lights/sky_checks.h"
 
 namespace hyades::core {
@@ -48,21 +48,21 @@ double sky_on_ground(const Sky& sky) {
   return sum;
 }
 
-TEST(Air, LetsThroughWhatItsThicknessSays) {
-  const Air air(3.0F, Rgb(0.0F));
+TEST(SkyModel, LetsThroughWhatItsThicknessSays) {
+  const SkyModel model(3.0F, Rgb(0.0F));
   // Vertical thickness: molecules, twice as much haze (turbidity 3), ozone (a triangle).
   const Rgb rayleigh = Rgb(5.802e-6F, 13.558e-6F, 33.1e-6F) * 8000.0F;
   const Rgb haze = Rgb(0.759F, 1.0F, 1.337F) * (2.0F * rayleigh.y);
   const Rgb ozone = Rgb(0.650e-6F, 1.881e-6F, 0.085e-6F) * 15e3F;
-  const Rgb zenith = air.transmittance(1.0F);
+  const Rgb zenith = model.transmittance(1.0F);
   // Two relative air masses: Kasten & Young 1989 have 1.994 at 30 degrees.
-  const Rgb half = air.transmittance(0.5F);
+  const Rgb half = model.transmittance(0.5F);
   for (int c = 0; c < 3; ++c) {
     const float thickness = rayleigh[c] + haze[c] + ozone[c];
     EXPECT_NEAR(-log(zenith[c]), thickness, 0.01F * thickness) << c;
     EXPECT_NEAR(-log(half[c]), 1.994F * thickness, 0.015F * thickness) << c;
   }
-  EXPECT_EQ(air.transmittance(-0.1F), Rgb(0.0F));
+  EXPECT_EQ(model.transmittance(-0.1F), Rgb(0.0F));
 }
 
 /// Zenith luminance of the CIE's clear sky in units of the sun's irradiance above the air, as

@@ -111,7 +111,7 @@ TEST(Mix, PartsKeepTheirBumps) {
 }
 
 // Where a part's own normal looks away from wo, that part is seen in the upright mirror behind it
-// (leaning.h), even if it transmits.
+// (shading_normal_correction.h), even if it transmits.
 TEST(Mix, PartsSeenFromBehindTheirNormalShowTheirFronts) {
   const MaterialPtr glass = make_rough_dielectric(1.5F, Rgb(1.0F), Rgb(1.0F), number(0.5F));
   const BsdfUnderTest mix(make_mix(make_lambert(color_of(Rgb(0.5F))),

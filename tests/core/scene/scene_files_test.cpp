@@ -116,7 +116,7 @@ environment: {image: sky.hdr}
                                         Asked("bark.png", ImageUse{ColorSpace::linear}),
                                         Asked("bump.png", ImageUse{})));
   EXPECT_THAT(files.light_maps, ElementsAre(Asked("lamp.exr", LightMap::surroundings),
-                                            Asked("film.png", LightMap::slide),
+                                            Asked("film.png", LightMap::gobo),
                                             Asked("sky.hdr", LightMap::surroundings)));
 }
 

@@ -1,4 +1,4 @@
-#include "core/geometry/swarm_scene.h"
+#include "core/geometry/instancer_scene.h"
 
 #include <algorithm>
 #include <bit>
@@ -33,15 +33,16 @@ RTCRay transformed(const RTCRay& ray, const Affine& to_copy) {
 
 }  // namespace
 
-SwarmScene::SwarmScene(std::shared_ptr<const Swarm> swarm, std::vector<Placement> members,
-                       std::shared_ptr<const EmbreeWorld> inner)
-    : swarm_(std::move(swarm)),
+InstancerScene::InstancerScene(std::shared_ptr<const PointInstancer> instancer,
+                               std::vector<Placement> members,
+                               std::shared_ptr<const EmbreeWorld> inner)
+    : instancer_(std::move(instancer)),
       members_(std::move(members)),
       inner_(std::move(inner)),
-      motion_(swarm_->to_world) {}
+      motion_(instancer_->to_world) {}
 
-Status SwarmScene::build() {
-  const size_t copies = swarm_->places->size();
+Status InstancerScene::build() {
+  const size_t copies = instancer_->places->size();
   SceneBuilder builder;
   RTCGeometry geometry = rtcNewGeometry(builder.device(), RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(copies));
@@ -59,8 +60,8 @@ Status SwarmScene::build() {
   return {};
 }
 
-Bounds SwarmScene::bounds_of(const Bounds& inner) const {
-  const size_t copies = swarm_->places->size();
+Bounds InstancerScene::bounds_of(const Bounds& inner) const {
+  const size_t copies = instancer_->places->size();
   std::vector<Bounds> parts(chunk_count(copies));
   for_chunks(copies, [&](size_t begin, size_t end) {
     Bounds b;
@@ -76,48 +77,50 @@ Bounds SwarmScene::bounds_of(const Bounds& inner) const {
   return all;
 }
 
-bool SwarmScene::is_of(const Swarm& swarm, const std::vector<Placement>& members) const {
-  return swarm.places == swarm_->places && swarm.to_world == swarm_->to_world &&
+bool InstancerScene::is_of(const PointInstancer& instancer,
+                           const std::vector<Placement>& members) const {
+  return instancer.places == instancer_->places && instancer.to_world == instancer_->to_world &&
          std::equal(members.begin(), members.end(), members_.begin(), members_.end(),
                     [](const Placement& a, const Placement& b) { return same_placement(a, b); });
 }
 
-CopyPose SwarmScene::pose(uint32_t copy, float time) const {
-  const Affine place = affine_of((*swarm_->places)[copy]);
+CopyPose InstancerScene::pose(uint32_t copy, float time) const {
+  const Affine place = affine_of((*instancer_->places)[copy]);
   const Affine to_world = motion_.at(time) * place;
   return {to_world, to_world.inverse()};
 }
 
-Bounds SwarmScene::bounds_of_copy(uint32_t copy, size_t step, const Bounds& inner) const {
-  const Affine to_world = motion_.steps()[step] * affine_of((*swarm_->places)[copy]);
+Bounds InstancerScene::bounds_of_copy(uint32_t copy, size_t step, const Bounds& inner) const {
+  const Affine to_world = motion_.steps()[step] * affine_of((*instancer_->places)[copy]);
   return transform_bounds(to_world, inner);
 }
 
-size_t SwarmScene::memory() const {
-  return swarm_->places->capacity() * sizeof(PlaceMatrix) + scene_->memory() + inner_->memory();
+size_t InstancerScene::memory() const {
+  return instancer_->places->capacity() * sizeof(PlaceMatrix) + scene_->memory() + inner_->memory();
 }
 
-void SwarmScene::bounds_callback(const RTCBoundsFunctionArguments* args) {
-  const auto& swarm = *static_cast<const SwarmScene*>(args->geometryUserPtr);
-  const Bounds b = swarm.bounds_of_copy(args->primID, args->timeStep, swarm.inner_->bounds());
+void InstancerScene::bounds_callback(const RTCBoundsFunctionArguments* args) {
+  const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
+  const Bounds b =
+      instancer.bounds_of_copy(args->primID, args->timeStep, instancer.inner_->bounds());
   *args->bounds_o = {b.lower.x, b.lower.y, b.lower.z, 0.0F, b.upper.x, b.upper.y, b.upper.z, 0.0F};
 }
 
 // Rays come one at a time here (rtcIntersect1, rtcOccluded1), so N is 1.
-void SwarmScene::intersect_callback(const RTCIntersectFunctionNArguments* args) {
+void InstancerScene::intersect_callback(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   auto& found = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-  const auto& swarm = *static_cast<const SwarmScene*>(args->geometryUserPtr);
+  const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
   RTCRayHit query;
-  query.ray = transformed(found.ray, swarm.pose(args->primID, found.ray.time).to_copy);
+  query.ray = transformed(found.ray, instancer.pose(args->primID, found.ray.time).to_copy);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  trace_nearest(swarm.inner_->scene(), query);
+  trace_nearest(instancer.inner_->scene(), query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
   found.ray.tfar = query.ray.tfar;
   // Which copy and which of its objects travel where the normal would, which nobody reads.
   found.hit.Ng_x = std::bit_cast<float>(args->primID);
-  found.hit.Ng_y = std::bit_cast<float>(swarm.inner_->object_of(query.hit));
+  found.hit.Ng_y = std::bit_cast<float>(instancer.inner_->object_of(query.hit));
   found.hit.u = 0.0F;
   found.hit.v = 0.0F;
   found.hit.primID = query.hit.primID;
@@ -125,12 +128,12 @@ void SwarmScene::intersect_callback(const RTCIntersectFunctionNArguments* args) 
   found.hit.instID[0] = args->context->instID[0];
 }
 
-void SwarmScene::occluded_callback(const RTCOccludedFunctionNArguments* args) {
+void InstancerScene::occluded_callback(const RTCOccludedFunctionNArguments* args) {
   if (args->valid[0] == 0) return;
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-  const auto& swarm = *static_cast<const SwarmScene*>(args->geometryUserPtr);
-  RTCRay query = transformed(ray, swarm.pose(args->primID, ray.time).to_copy);
-  trace_any(swarm.inner_->scene(), query);
+  const auto& instancer = *static_cast<const InstancerScene*>(args->geometryUserPtr);
+  RTCRay query = transformed(ray, instancer.pose(args->primID, ray.time).to_copy);
+  trace_any(instancer.inner_->scene(), query);
   if (query.tfar < 0.0F) ray.tfar = -std::numeric_limits<float>::infinity();
 }
 

@@ -7,7 +7,7 @@
 #include "core/geometry/affine.h"
 #include "core/geometry/embree.h"
 #include "core/geometry/placed_object.h"
-#include "core/geometry/swarm.h"
+#include "core/geometry/point_instancer.h"
 #include "core/geometry/world.h"
 
 namespace hyades::core {
@@ -18,16 +18,16 @@ class EmbreeWorld;
 /// that comes near one is transformed, and traced in the world that is copied. Debian's Embree has
 /// one level of instances, of half a kilobyte each; this takes a fifth of that, and what is copied
 /// may hold instances in its turn.
-class SwarmScene {
+class InstancerScene {
  public:
-  /// `members` are the placements of `swarm`, in their order; `inner` is the world of them.
-  SwarmScene(std::shared_ptr<const Swarm> swarm, std::vector<Placement> members,
-             std::shared_ptr<const EmbreeWorld> inner);
+  /// `members` are the placements of `instancer`, in their order; `inner` is the world of them.
+  InstancerScene(std::shared_ptr<const PointInstancer> instancer, std::vector<Placement> members,
+                 std::shared_ptr<const EmbreeWorld> inner);
 
   /// Builds Embree's scene. Once.
   Status build();
 
-  bool is_of(const Swarm& swarm, const std::vector<Placement>& members) const;
+  bool is_of(const PointInstancer& instancer, const std::vector<Placement>& members) const;
 
   CopyPose pose(uint32_t copy, float time) const;
   const EmbreeWorld& inner() const { return *inner_; }
@@ -45,21 +45,21 @@ class SwarmScene {
   static void intersect_callback(const RTCIntersectFunctionNArguments* args);
   static void occluded_callback(const RTCOccludedFunctionNArguments* args);
 
-  std::shared_ptr<const Swarm> swarm_;
+  std::shared_ptr<const PointInstancer> instancer_;
   std::vector<Placement> members_;
   std::shared_ptr<const EmbreeWorld> inner_;
-  Motion motion_;  ///< of the swarm as a whole
+  Motion motion_;  ///< of the instancer as a whole
   std::shared_ptr<const EmbreeScene> scene_;
   Bounds bounds_;
 };
 
-/// A swarm in a world: its members are the placements from `first` on.
-struct PlacedSwarm {
+/// A instancer in a world: its members are the placements from `first` on.
+struct PlacedInstancer {
   uint32_t first = 0;
-  std::shared_ptr<const SwarmScene> scene;
+  std::shared_ptr<const InstancerScene> scene;
 };
 
-/// What a swarm's hit says besides Embree's numbers: which copy, and which of its objects.
+/// What a instancer's hit says besides Embree's numbers: which copy, and which of its objects.
 struct CopyHit {
   uint32_t copy = 0;
   uint32_t object = 0;

@@ -1,4 +1,4 @@
-#include "core/lights/slide.h"
+#include "core/lights/gobo.h"
 
 #include <gtest/gtest.h>
 
@@ -18,9 +18,9 @@ std::shared_ptr<const Image> random_picture(int width, int height, uint64_t seed
   return image;
 }
 
-TEST(Slide, ShowsItsPixelsAtTheirCentresAndTheirMeanBetween) {
+TEST(Gobo, ShowsItsPixelsAtTheirCentresAndTheirMeanBetween) {
   const auto image = random_picture(4, 3, 2);
-  const Slide slide(image);
+  const Gobo gobo(image);
   const auto pixel = [&](int x, int y) {
     return Rgb(image->at(x, y, 0), image->at(x, y, 1), image->at(x, y, 2));
   };
@@ -31,21 +31,21 @@ TEST(Slide, ShowsItsPixelsAtTheirCentresAndTheirMeanBetween) {
     for (int x = 0; x < 4; ++x) {
       const Vec2 middle((static_cast<float>(x) + 0.5F) / 4.0F,
                         (static_cast<float>(y) + 0.5F) / 3.0F);
-      EXPECT_TRUE(near(slide.view(middle).value, pixel(x, y))) << x << ", " << y;
+      EXPECT_TRUE(near(gobo.view(middle).value, pixel(x, y))) << x << ", " << y;
       if (x == 3) continue;
-      EXPECT_TRUE(near(slide.view(middle + Vec2(0.125F, 0.0F)).value,
+      EXPECT_TRUE(near(gobo.view(middle + Vec2(0.125F, 0.0F)).value,
                        0.5F * (pixel(x, y) + pixel(x + 1, y))));
     }
   }
-  EXPECT_TRUE(near(slide.view({0.0F, 0.0F}).value, pixel(0, 0)));
-  EXPECT_TRUE(near(slide.view({1.0F, 1.0F}).value, pixel(3, 2)));
-  EXPECT_EQ(slide.half_size(), Vec2(4.0F / 3.0F, 1.0F));
+  EXPECT_TRUE(near(gobo.view({0.0F, 0.0F}).value, pixel(0, 0)));
+  EXPECT_TRUE(near(gobo.view({1.0F, 1.0F}).value, pixel(3, 2)));
+  EXPECT_EQ(gobo.half_size(), Vec2(4.0F / 3.0F, 1.0F));
 }
 
-TEST(Slide, PlacesFollowTheirDensity) {
+TEST(Gobo, PlacesFollowTheirDensity) {
   for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {5, 7}, {64, 3}}) {
     SCOPED_TRACE(width);
-    const Slide slide(random_picture(width, height, 5));
+    const Gobo gobo(random_picture(width, height, 5));
     // Cells of 24 x 24, each with the integral of the density over it.
     constexpr int kSide = 24;
     constexpr int kParts = 12;
@@ -57,7 +57,7 @@ TEST(Slide, PlacesFollowTheirDensity) {
           const Vec2 place(
               (static_cast<float>(i) + (static_cast<float>(k % kParts) + 0.5F) / kParts) / kSide,
               (static_cast<float>(j) + (static_cast<float>(k / kParts) + 0.5F) / kParts) / kSide);
-          sum += static_cast<double>(slide.view(place).pdf);
+          sum += static_cast<double>(gobo.view(place).pdf);
         }
         shares.push_back(sum / (kParts * kParts * kSide * kSide));
       }
@@ -69,7 +69,7 @@ TEST(Slide, PlacesFollowTheirDensity) {
     std::vector<double> observed(shares.size(), 0.0);
     test::Random random(7);
     for (int n = 0; n < kCount; ++n) {
-      const Vec2 place = slide.sample(random.uniform2());
+      const Vec2 place = gobo.sample(random.uniform2());
       ASSERT_TRUE(place.x >= 0.0F && place.x <= 1.0F && place.y >= 0.0F && place.y <= 1.0F);
       const int i = std::min(static_cast<int>(place.x * kSide), kSide - 1);
       const int j = std::min(static_cast<int>(place.y * kSide), kSide - 1);
@@ -80,25 +80,25 @@ TEST(Slide, PlacesFollowTheirDensity) {
   }
 }
 
-TEST(Slide, TakesWhatIsNoLightForBlack) {
+TEST(Gobo, TakesWhatIsNoLightForBlack) {
   auto image = std::make_shared<Image>(make_image(2, 1, {"Y"}));
   image->data = {-3.0F, std::numeric_limits<float>::quiet_NaN()};
-  const Slide dark(image);
+  const Gobo dark(image);
   EXPECT_EQ(dark.view({0.25F, 0.5F}).value, Rgb(0.0F));
   EXPECT_EQ(dark.view({0.75F, 0.5F}).pdf, 0.0F);
 }
 
-TEST(Slide, LooksItselfOver) {
+TEST(Gobo, LooksItselfOver) {
   auto image = std::make_shared<Image>(make_image(130, 65, {"Y"}));
   for (int y = 0; y < 65; ++y) {
     for (int x = 0; x < 130; ++x) image->at(x, y, 0) = x < 65 ? 1.0F : 3.0F;
   }
-  const Slide slide(image);
-  const std::vector<Rgb>& seen = slide.overview();
+  const Gobo gobo(image);
+  const std::vector<Rgb>& seen = gobo.overview();
   ASSERT_EQ(seen.size(), size_t{64} * 64);
   EXPECT_FLOAT_EQ(seen.front().x, 1.0F);
   EXPECT_FLOAT_EQ(seen.back().z, 3.0F);
-  const Slide small(random_picture(3, 2, 9));
+  const Gobo small(random_picture(3, 2, 9));
   for (const Rgb& value : small.overview()) {
     EXPECT_TRUE(min_component(value) >= 0.0F && max_component(value) <= 1.0F);
   }

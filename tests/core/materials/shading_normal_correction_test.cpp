@@ -1,4 +1,4 @@
-#include "core/materials/leaning.h"
+#include "core/materials/shading_normal_correction.h"
 
 #include <gtest/gtest.h>
 
@@ -48,7 +48,7 @@ std::vector<BsdfCase> white_cases() {
 
 // T4 for bumps: single-sided clipping left 0.53 of a white metal's light, and of a mirror nothing
 // where it throws its light below the horizon.
-TEST(Leaning, WhiteSurfacesKeepAllLightHoweverFarTheyLean) {
+TEST(ShadingNormalCorrection, WhiteSurfacesKeepAllLightHoweverFarTheyLean) {
   for (const BsdfCase& c : white_cases()) {
     for (const float degrees : {0.0F, 20.0F, 40.0F, 60.0F, 80.0F}) {
       const SurfacePoint p = leaning_by(degrees);
@@ -81,7 +81,7 @@ TEST(Leaning, WhiteSurfacesKeepAllLightHoweverFarTheyLean) {
 }
 
 // Exact: importance is what radiance is seen from the other end.
-TEST(Leaning, ImportanceIsTheAdjointOfRadiance) {
+TEST(ShadingNormalCorrection, ImportanceIsTheAdjointOfRadiance) {
   test::Random random(17);
   for (const BsdfCase& c : smooth_cases()) {
     if (!c.reciprocal) continue;
@@ -107,7 +107,7 @@ TEST(Leaning, ImportanceIsTheAdjointOfRadiance) {
 }
 
 // Weights are exact on every sample, and directions follow the density.
-TEST(Leaning, SamplesFollowTheirDensityInBothModes) {
+TEST(ShadingNormalCorrection, SamplesFollowTheirDensityInBothModes) {
   const SurfacePoint p = leaning_by(65.0F);
   for (const BsdfCase& c : smooth_cases()) {
     if (c.name != "conductor_rough_03" && c.name != "rough_glass_06") continue;
@@ -146,7 +146,7 @@ TEST(Leaning, SamplesFollowTheirDensityInBothModes) {
 
 // What a mirror does to importance adds up to what it does to radiance, though each is a delta: the
 // light that a wide beam leaves in the upper half as seen by all eyes.
-TEST(Leaning, MirrorsSendLightPathsWhereEyePathsFindThem) {
+TEST(ShadingNormalCorrection, MirrorsSendLightPathsWhereEyePathsFindThem) {
   const SurfacePoint p = leaning_by(50.0F);
   BsdfArena arena;
   const auto cases = white_cases();

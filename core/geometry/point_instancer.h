@@ -12,10 +12,10 @@ namespace hyades::core {
 using PlaceMatrix = glm::mat4x3;
 
 /// Many copies of the same placements. A copy takes 48 bytes here, and as much again in Embree.
-struct Swarm {
+struct PointInstancer {
   std::string name;                                        ///< of the file, for messages
   std::shared_ptr<const std::vector<PlaceMatrix>> places;  ///< at least one
-  /// The swarm as a whole, over the shutter interval as Placement::to_world. A copy's matrix is
+  /// The instancer as a whole, over the shutter interval as Placement::to_world. A copy's matrix is
   /// one of these, times its place, times Placement::to_world.
   std::vector<Mat4> to_world{Mat4(1.0F)};
 };

@@ -23,10 +23,10 @@ namespace hyades::core {
 /// Radiance is scattered so; importance by the adjoint of it per projected solid angle of the
 /// surface (Veach 1997, section 5.3), for f (o, i) |i n| is not symmetric. All directions that come
 /// and go are in the coordinates of n, ng and the frame, and unit.
-class Leaning {
+class ShadingNormalCorrection {
  public:
   /// `frame`: that of the BSDF, around n.
-  Leaning(const Vec3& ng, const Frame& frame)
+  ShadingNormalCorrection(const Vec3& ng, const Frame& frame)
       : ng_(ng), frame_(frame), c_(glm::dot(ng, frame.n)), wall_(frame.n - c_ * ng) {
     const float length2 = glm::dot(wall_, wall_);
     leans_ = length2 > 0.0F;
@@ -59,7 +59,7 @@ class Leaning {
  private:
   /// With the surface's and with the BSDF's normal.
   struct Cosines {
-    Cosines(const Leaning& of, const Vec3& w)
+    Cosines(const ShadingNormalCorrection& of, const Vec3& w)
         : surface(glm::dot(w, of.ng_)), bsdf(glm::dot(w, of.frame_.n)) {}
     bool agree() const { return surface * bsdf > 0.0F; }
     float surface;

@@ -1,5 +1,5 @@
 // Copies of a group at many places: what rays find is what they find of placements one by one.
-#include "core/geometry/swarm.h"
+#include "core/geometry/point_instancer.h"
 
 #include <gtest/gtest.h>
 
@@ -34,15 +34,15 @@ std::vector<Mat4> some_places(size_t count, float reach) {
   return places;
 }
 
-std::shared_ptr<const Swarm> swarm_of(const std::vector<Mat4>& places,
-                                      std::vector<Mat4> to_world = {Mat4(1.0F)}) {
+std::shared_ptr<const PointInstancer> instancer_of(const std::vector<Mat4>& places,
+                                                   std::vector<Mat4> to_world = {Mat4(1.0F)}) {
   auto matrices = std::make_shared<std::vector<PlaceMatrix>>();
   for (const Mat4& m : places) matrices->push_back(place_of(m));
-  auto swarm = std::make_shared<Swarm>();
-  swarm->name = "places.ply";
-  swarm->places = std::move(matrices);
-  swarm->to_world = std::move(to_world);
-  return swarm;
+  auto instancer = std::make_shared<PointInstancer>();
+  instancer->name = "places.ply";
+  instancer->places = std::move(matrices);
+  instancer->to_world = std::move(to_world);
+  return instancer;
 }
 
 /// A ball of triangles beside a sphere and a tube.
@@ -60,8 +60,9 @@ std::vector<Placement> members() {
   return all;
 }
 
-std::vector<Placement> in_swarm(std::vector<Placement> all, const std::shared_ptr<const Swarm>& s) {
-  for (Placement& p : all) p.swarm = s;
+std::vector<Placement> in_instancer(std::vector<Placement> all,
+                                    const std::shared_ptr<const PointInstancer>& s) {
+  for (Placement& p : all) p.instancer = s;
   return all;
 }
 
@@ -73,14 +74,14 @@ Ray some_ray(Random& random, float reach) {
   return ray;
 }
 
-TEST(Swarm, RaysFindWhatTheyFindOfPlacementsOneByOne) {
+TEST(PointInstancer, RaysFindWhatTheyFindOfPlacementsOneByOne) {
   const FpMode mode;
   for (const bool moves : {false, true}) {
     std::vector<Mat4> outer = {test::translation({0.2F, -0.1F, 0.3F})};
     if (moves) outer.push_back(outer[0] * test::translation({0.5F, 0.2F, -0.3F}));
     const std::vector<Mat4> places = some_places(200, 6.0F);
     std::vector<Placement> mixed = {test::place(test::make_ball(1))};
-    const auto copied = in_swarm(members(), swarm_of(places, outer));
+    const auto copied = in_instancer(members(), instancer_of(places, outer));
     mixed.insert(mixed.end(), copied.begin(), copied.end());
     mixed.push_back(test::place(Shape::Kind::sphere, 0.5F, 1.0F, {test::translation({3, 3, 3})}));
     std::vector<Placement> single = {mixed.front()};
@@ -141,7 +142,7 @@ TEST(Swarm, RaysFindWhatTheyFindOfPlacementsOneByOne) {
   }
 }
 
-TEST(Swarm, RaysLeaveTheirSurface) {
+TEST(PointInstancer, RaysLeaveTheirSurface) {
   const FpMode mode;
   // Far from each other, far from the middle of the world, and large.
   std::vector<Mat4> places;
@@ -153,7 +154,7 @@ TEST(Swarm, RaysLeaveTheirSurface) {
   std::vector<Placement> all = {
       test::place(test::make_ball(3)),
       test::place(Shape::Kind::sphere, 0.5F, 1.0F, {test::translation({5.0F, 0.0F, 0.0F})})};
-  const auto world = test::build(in_swarm(all, swarm_of(places)));
+  const auto world = test::build(in_instancer(all, instancer_of(places)));
   int met = 0;
   for (int i = 0; i < 40'000; ++i) {
     const Mat4& place = places[test::pick(random, places.size())];
@@ -172,7 +173,7 @@ TEST(Swarm, RaysLeaveTheirSurface) {
   EXPECT_GT(met, 20'000);
 }
 
-TEST(Swarm, RaysLeaveWhatIsFarFromTheMiddleOfItsCopy) {
+TEST(PointInstancer, RaysLeaveWhatIsFarFromTheMiddleOfItsCopy) {
   const FpMode mode;
   const Vec3 far(2e4F, -1e4F, 3e4F);
   Random random(6);
@@ -184,7 +185,7 @@ TEST(Swarm, RaysLeaveWhatIsFarFromTheMiddleOfItsCopy) {
   const std::vector<Placement> all = {
       test::place(test::make_ball(3), {test::translation(far)}),
   };
-  const auto world = test::build(in_swarm(all, swarm_of(places)));
+  const auto world = test::build(in_instancer(all, instancer_of(places)));
   int met = 0;
   for (int i = 0; i < 40'000; ++i) {
     const Vec3 middle(3.0F * static_cast<float>(test::pick(random, places.size())), 0.0F, 0.0F);
@@ -201,23 +202,23 @@ TEST(Swarm, RaysLeaveWhatIsFarFromTheMiddleOfItsCopy) {
   EXPECT_GT(met, 30'000);
 }
 
-TEST(Swarm, SeesTheMasksOfItsMembers) {
+TEST(PointInstancer, SeesTheMasksOfItsMembers) {
   const FpMode mode;
   std::vector<Placement> all = {test::place(test::make_ball(2))};
   all[0].visible_to_camera = false;
   all[0].blocks_light = false;
   const auto world =
-      test::build(in_swarm(all, swarm_of({Mat4(1.0F), test::translation({5, 0, 0})})));
+      test::build(in_instancer(all, instancer_of({Mat4(1.0F), test::translation({5, 0, 0})})));
   const Ray ray{{5.0F, 0.1F, 5.0F}, {0.0F, 0.0F, -1.0F}, kInfinity, 0.0F};
   EXPECT_FALSE(world->intersect(ray, RayKind::camera));
   EXPECT_TRUE(world->intersect(ray, RayKind::other));
   EXPECT_FALSE(world->occluded(ray));
 }
 
-TEST(Swarm, FramesShareIt) {
+TEST(PointInstancer, FramesShareIt) {
   GeometryCache cache;
-  const auto swarm = swarm_of(some_places(100, 5.0F));
-  std::vector<Placement> all = in_swarm(members(), swarm);
+  const auto instancer = instancer_of(some_places(100, 5.0F));
+  std::vector<Placement> all = in_instancer(members(), instancer);
   all.push_back(test::place(Shape::Kind::sphere, 1.0F, 1.0F));
   const auto first = build_world(all, cache);
   ASSERT_TRUE(first);
@@ -229,7 +230,7 @@ TEST(Swarm, FramesShareIt) {
   EXPECT_EQ(&(*first)->placement(0), &(*second)->placement(0));
 }
 
-TEST(Swarm, OnesThatDifferAreNotShared) {
+TEST(PointInstancer, OnesThatDifferAreNotShared) {
   const FpMode mode;
   GeometryCache cache;
   const auto height_at = [&](const std::vector<Placement>& all) {
@@ -242,18 +243,19 @@ TEST(Swarm, OnesThatDifferAreNotShared) {
   const auto ball = test::place(Shape::Kind::sphere, 1.0F, 1.0F);
   auto large = ball;
   large.shape.radius = 2.0F;
-  const auto here = swarm_of({Mat4(1.0F)});
-  const auto above = swarm_of({test::translation({0.0F, 5.0F, 0.0F})});
-  EXPECT_FLOAT_EQ(height_at(in_swarm({ball}, here)), 1.0F);
-  EXPECT_FLOAT_EQ(height_at(in_swarm({large}, here)), 2.0F);
-  EXPECT_FLOAT_EQ(height_at(in_swarm({ball}, above)), 6.0F);
+  const auto here = instancer_of({Mat4(1.0F)});
+  const auto above = instancer_of({test::translation({0.0F, 5.0F, 0.0F})});
+  EXPECT_FLOAT_EQ(height_at(in_instancer({ball}, here)), 1.0F);
+  EXPECT_FLOAT_EQ(height_at(in_instancer({large}, here)), 2.0F);
+  EXPECT_FLOAT_EQ(height_at(in_instancer({ball}, above)), 6.0F);
   EXPECT_FLOAT_EQ(height_at({ball}), 1.0F);
 }
 
-TEST(Swarm, PlacesThatLeadNowhereAreRefused) {
+TEST(PointInstancer, PlacesThatLeadNowhereAreRefused) {
   const auto complaint = [](const Mat4& place) {
     GeometryCache cache;
-    const auto world = build_world(in_swarm(members(), swarm_of({Mat4(1.0F), place})), cache);
+    const auto world =
+        build_world(in_instancer(members(), instancer_of({Mat4(1.0F), place})), cache);
     return world ? std::string("none") : world.error().message;
   };
   Mat4 nowhere(1.0F);

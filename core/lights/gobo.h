@@ -9,14 +9,14 @@
 
 namespace hyades::core {
 
-/// The picture in a projector, looked up bilinearly, with what it takes to choose places in
+/// The picture that a projector throws, looked up bilinearly, with what it takes to choose places in
 /// proportion to luminance. Places are (u, v) in [0, 1]^2 from its top left corner; the outermost
 /// half pixels keep their value up to the border. Immutable and thread-safe; takes 4 bytes per
 /// pixel on top of the image.
-class Slide {
+class Gobo {
  public:
   /// `image` as LightPicture takes it.
-  explicit Slide(std::shared_ptr<const Image> image);
+  explicit Gobo(std::shared_ptr<const Image> image);
 
   /// What is at a place.
   struct View {

@@ -20,10 +20,10 @@ namespace hyades::core {
 /// Analytic Model for Daylight", appendix A).
 ///
 /// Immutable and thread-safe. Making one takes about a tenth of a second.
-class Air {
+class SkyModel {
  public:
   /// `turbidity` >= 1: 1 is pure air, 2 a clear day, 3 usual, 6 hazy. `ground_albedo` 0..1.
-  Air(float turbidity, const Rgb& ground_albedo);
+  SkyModel(float turbidity, const Rgb& ground_albedo);
 
   /// What is left of light that comes in from a direction `sine` above the horizon (the sine of the
   /// elevation), on the ground. Black below the horizon.

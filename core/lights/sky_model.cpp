@@ -1,4 +1,4 @@
-#include "core/lights/air.h"
+#include "core/lights/sky_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +71,7 @@ constexpr float kIsotropic = 0.25F * kInvPi;
 
 }  // namespace
 
-Air::Air(float turbidity, const Rgb& ground_albedo) : ground_albedo_(ground_albedo) {
+SkyModel::SkyModel(float turbidity, const Rgb& ground_albedo) : ground_albedo_(ground_albedo) {
   const float thickness = kRayleigh.y * kRayleighHeight * std::max(turbidity - 1.0F, 0.0F);
   mie_extinction_ = kHazeColor * (thickness / kMieHeight);
   mie_scattering_ = mie_extinction_ * kMieAlbedo;
@@ -79,7 +79,7 @@ Air::Air(float turbidity, const Rgb& ground_albedo) : ground_albedo_(ground_albe
   tabulate_multiple();
 }
 
-Air::Matter Air::matter(float height) const {
+SkyModel::Matter SkyModel::matter(float height) const {
   const float air = exp(-height / kRayleighHeight);
   const float haze = exp(-height / kMieHeight);
   const float ozone = std::max(1.0F - std::abs(height - kOzoneMiddle) / kOzoneHalfWidth, 0.0F);
@@ -90,7 +90,7 @@ Air::Matter Air::matter(float height) const {
   return m;
 }
 
-Rgb Air::integrate_to_space(float radius, float mu) const {
+Rgb SkyModel::integrate_to_space(float radius, float mu) const {
   constexpr int kSteps = 64;
   const float length = way_out(radius, mu, kTop);
   Rgb thickness(0.0F);
@@ -105,7 +105,7 @@ Rgb Air::integrate_to_space(float radius, float mu) const {
   return exp3(-thickness);
 }
 
-void Air::tabulate_transmittance() {
+void SkyModel::tabulate_transmittance() {
   transmittance_.resize(size_t{kTransmittanceWidth} * kTransmittanceHeight);
   const float horizon = root(kTop * kTop - kGround * kGround);
   for (int y = 0; y < kTransmittanceHeight; ++y) {
@@ -123,7 +123,7 @@ void Air::tabulate_transmittance() {
   }
 }
 
-Rgb Air::to_space(float radius, float mu) const {
+Rgb SkyModel::to_space(float radius, float mu) const {
   const float horizon = root(kTop * kTop - kGround * kGround);
   const float rho = root(radius * radius - kGround * kGround);
   const float nearest = kTop - radius;
@@ -133,12 +133,12 @@ Rgb Air::to_space(float radius, float mu) const {
                  x * (kTransmittanceWidth - 1), rho / horizon * (kTransmittanceHeight - 1));
 }
 
-Rgb Air::sunlight(float radius, float mu) const {
+Rgb SkyModel::sunlight(float radius, float mu) const {
   return meets_ground(radius, mu) ? Rgb(0.0F) : to_space(radius, mu);
 }
 
-Air::Gathered Air::gather(float radius, const Vec3& direction, const Vec3& sun, int steps,
-                          Phases phases) const {
+SkyModel::Gathered SkyModel::gather(float radius, const Vec3& direction, const Vec3& sun, int steps,
+                                    Phases phases) const {
   Gathered out;
   const float mu = direction.y;
   const bool ground = meets_ground(radius, mu);
@@ -177,7 +177,7 @@ Air::Gathered Air::gather(float radius, const Vec3& direction, const Vec3& sun, 
   return out;
 }
 
-void Air::tabulate_multiple() {
+void SkyModel::tabulate_multiple() {
   constexpr int kDirections = 8;  // squared
   constexpr int kSteps = 20;
   multiple_.resize(size_t{kMultipleWidth} * kMultipleHeight);
@@ -208,15 +208,15 @@ void Air::tabulate_multiple() {
   }
 }
 
-Rgb Air::multiple(float radius, float mu_sun) const {
+Rgb SkyModel::multiple(float radius, float mu_sun) const {
   const float y = (radius - kGround) / (kTop - kGround) * (kMultipleHeight - 1);
   const float x = 0.5F * (mu_sun + 1.0F) * (kMultipleWidth - 1);
   return look_up(multiple_, kMultipleWidth, kMultipleHeight, x, y);
 }
 
-Rgb Air::transmittance(float sine) const { return sunlight(kGround + kEye, sine); }
+Rgb SkyModel::transmittance(float sine) const { return sunlight(kGround + kEye, sine); }
 
-Rgb Air::radiance(const Vec3& direction, const Vec3& sun) const {
+Rgb SkyModel::radiance(const Vec3& direction, const Vec3& sun) const {
   constexpr int kSteps = 40;
   return gather(kGround + kEye, direction, sun, kSteps, Phases::real).light;
 }

@@ -1,8 +1,9 @@
-#include "core/materials/leaning.h"
+#include "core/materials/shading_normal_correction.h"
 
 namespace hyades::core {
 
-float Leaning::pdf(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, TransportMode mode) const {
+float ShadingNormalCorrection::pdf(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi,
+                                   TransportMode mode) const {
   const bool radiance = mode == TransportMode::radiance;
   // One of the two arguments has sources, the other is looked from.
   const Vec3& looking = radiance ? wo : wi;
@@ -21,22 +22,25 @@ float Leaning::pdf(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, TransportMo
   return cosines > 0.0F ? sum / (cosines * onlookers(eye)) : 0.0F;
 }
 
-std::optional<BsdfSample> Leaning::sample(const Bsdf& bsdf, const Vec3& wo, float lobe,
-                                          const Vec2& u, TransportMode mode) const {
+std::optional<BsdfSample> ShadingNormalCorrection::sample(const Bsdf& bsdf, const Vec3& wo,
+                                                          float lobe, const Vec2& u,
+                                                          TransportMode mode) const {
   return mode == TransportMode::radiance ? sample_radiance(bsdf, wo, lobe, u)
                                          : sample_importance(bsdf, wo, lobe, u);
 }
 
-std::optional<BsdfSample> Leaning::weighed(const Bsdf& bsdf, const Vec3& wo, BsdfSample sample,
-                                           TransportMode mode) const {
+std::optional<BsdfSample> ShadingNormalCorrection::weighed(const Bsdf& bsdf, const Vec3& wo,
+                                                           BsdfSample sample,
+                                                           TransportMode mode) const {
   sample.pdf = pdf(bsdf, wo, sample.wi, mode);
   if (!(sample.pdf > 0.0F)) return std::nullopt;
   sample.weight = evaluate(bsdf, wo, sample.wi, mode) / sample.pdf;
   return sample;
 }
 
-std::optional<BsdfSample> Leaning::sample_radiance(const Bsdf& bsdf, const Vec3& wo, float lobe,
-                                                   const Vec2& u) const {
+std::optional<BsdfSample> ShadingNormalCorrection::sample_radiance(const Bsdf& bsdf, const Vec3& wo,
+                                                                   float lobe,
+                                                                   const Vec2& u) const {
   const Vec3 o = seen(wo, Cosines(*this, wo));
   auto s = bsdf.sample(o, lobe, u, TransportMode::radiance);
   if (!s) return std::nullopt;
@@ -53,8 +57,9 @@ std::optional<BsdfSample> Leaning::sample_radiance(const Bsdf& bsdf, const Vec3&
   return weighed(bsdf, wo, *s, TransportMode::radiance);
 }
 
-std::optional<BsdfSample> Leaning::sample_importance(const Bsdf& bsdf, const Vec3& wo, float lobe,
-                                                     const Vec2& u) const {
+std::optional<BsdfSample> ShadingNormalCorrection::sample_importance(const Bsdf& bsdf,
+                                                                     const Vec3& wo, float lobe,
+                                                                     const Vec2& u) const {
   const Sources sources = sources_of(wo);
   if (sources.count == 0) return std::nullopt;
   int n = 0;

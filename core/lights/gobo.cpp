@@ -1,4 +1,4 @@
-#include "core/lights/slide.h"
+#include "core/lights/gobo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ int cell_at(float x, int pixels, float& within) {
 
 }  // namespace
 
-Slide::Slide(std::shared_ptr<const Image> image) : picture_(std::move(image)) {
+Gobo::Gobo(std::shared_ptr<const Image> image) : picture_(std::move(image)) {
   const Vec2 size(static_cast<float>(picture_.width()), static_cast<float>(picture_.height()));
   half_size_ = size / std::min(size.x, size.y);
   const int columns = picture_.width() + 1;
@@ -40,7 +40,7 @@ Slide::Slide(std::shared_ptr<const Image> image) : picture_(std::move(image)) {
   look_over();
 }
 
-void Slide::look_over() {
+void Gobo::look_over() {
   // As many looks at each pixel, or more, as there are cells.
   const int across = (kOverview + picture_.width() - 1) / picture_.width() * picture_.width();
   const int down = (kOverview + picture_.height() - 1) / picture_.height() * picture_.height();
@@ -62,7 +62,7 @@ void Slide::look_over() {
   }
 }
 
-Slide::View Slide::view(const Vec2& place) const {
+Gobo::View Gobo::view(const Vec2& place) const {
   const Place at = locate(place);
   const BilinearCell c = cell(at.column, at.row);
   View view;
@@ -82,7 +82,7 @@ Slide::View Slide::view(const Vec2& place) const {
   return view;
 }
 
-Vec2 Slide::sample(const Vec2& u) const {
+Vec2 Gobo::sample(const Vec2& u) const {
   const Distribution2D::Point chosen = cells_.sample(u);
   const auto column = static_cast<int>(chosen.x);
   const auto row = static_cast<int>(chosen.y);
@@ -96,7 +96,7 @@ Vec2 Slide::sample(const Vec2& u) const {
               static_cast<float>(picture_.height())};
 }
 
-Slide::Place Slide::locate(const Vec2& place) const {
+Gobo::Place Gobo::locate(const Vec2& place) const {
   Place at;
   at.column =
       cell_at(place.x * static_cast<float>(picture_.width()), picture_.width(), at.within.x);
@@ -104,7 +104,7 @@ Slide::Place Slide::locate(const Vec2& place) const {
   return at;
 }
 
-BilinearCell Slide::cell(int column, int row) const {
+BilinearCell Gobo::cell(int column, int row) const {
   const int left = std::max(column - 1, 0);
   const int right = std::min(column, picture_.width() - 1);
   const int top = std::max(row - 1, 0);
