@@ -55,7 +55,7 @@ class ImportingResolver::Sources : public AssetResolver {
     return open_anywhere(reference, from);
   }
 
-  /// The same for jobs, which may name what they like.
+  /// Opens what a job names, which may be any file.
   Result<Bytes> open_anywhere(const std::string& reference, const std::string& from) {
     const std::string resolved = resolve_reference(reference, from);
     auto bytes = files_.open(reference, from);

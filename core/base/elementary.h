@@ -35,7 +35,7 @@ inline SinCos sin_cos(float x) {
 inline float sin(float x) { return sin_cos(x).sin; }  ///< as sin_cos
 inline float cos(float x) { return sin_cos(x).cos; }  ///< as sin_cos
 
-/// As sin_cos.
+/// The tangent of `x` [radians], as exact as sin_cos.
 inline float tan(float x) {
   const elementary::Quadrant q = elementary::reduce_quadrant(x);
   const double s = elementary::sin_reduced(q.r);

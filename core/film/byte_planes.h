@@ -47,7 +47,7 @@ void append_number(std::vector<std::byte>& out, const T& value) {
 /// `numbers`.
 void append_planes(std::vector<std::byte>& out, std::span<const std::byte> numbers, size_t width);
 
-/// The inverse: fills `numbers`. Returns false where the bytes are damaged.
+/// Fills `numbers` with what append_planes() wrote. Returns false where the bytes are damaged.
 bool read_planes(ByteReader& in, std::span<std::byte> numbers, size_t width);
 
 }  // namespace hyades::core

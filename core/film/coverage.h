@@ -42,8 +42,8 @@ class Coverage {
   /// in those the runs of batches, each as long as possible.
   std::vector<CoverageBox> canonical() const;
 
-  /// The inverse, for readers of files: refuses boxes that are not a canonical form, in time
-  /// proportional to their number (but for sorting).
+  /// The set whose canonical() is `boxes`, for readers of files: refuses what is no canonical form,
+  /// in time proportional to their number (but for sorting).
   static Result<Coverage> from_canonical(const std::vector<CoverageBox>& boxes);
 
  private:

@@ -53,7 +53,7 @@ class Film {
   /// Adds what the light paths of a batch brought that deposit() adds as well. Only for films with
   /// splats.
   void deposit_splats(std::vector<PixelSplat> splats);
-  /// The same of one part of light.
+  /// Adds what the light paths of a batch brought of one part of light.
   void deposit_splats(size_t part, std::vector<PixelSplat> splats);
 
   /// Adds all of `other`, whose window lies inside this one's. Refused, with nothing changed, where

@@ -21,8 +21,9 @@ struct FilmLimits {
 /// docs/film.md describes the format.
 std::vector<std::byte> encode_film(const Film& film);
 
-/// The inverse; refuses anything damaged, truncated or absurd with a reason. Takes memory for at
-/// most 64 MiB + 4096 times the bytes given, and never more than the limits say.
+/// The film of bytes of encode_film(); refuses anything damaged, truncated or absurd with a reason.
+/// Takes memory for at most 64 MiB + 4096 times the bytes given, and never more than the limits
+/// say.
 Result<Film> decode_film(std::span<const std::byte> bytes, const FilmLimits& limits = {});
 
 }  // namespace hyades::core

@@ -27,7 +27,7 @@ Status write_film_exr(const std::string& path, const FilmFile& file,
 /// with a reason; memory stays bounded by what the file really holds.
 Result<FilmFile> read_film_exr(const std::string& path);
 
-/// The same for a file's bytes; `name` is used in errors only.
+/// Reads a film file from its bytes, as read_film_exr(path) does; `name` is used in errors only.
 Result<FilmFile> read_film_exr(const Bytes& bytes, const std::string& name);
 
 /// What a film file belongs to, without its pixels, which are not looked at.

@@ -29,8 +29,8 @@ struct FilmHeader {
 /// A text of one fact per line, for the header of a file: readable with any EXR tool, and exact.
 std::string write_film_header(const FilmFile& file);
 
-/// The inverse. Strict: every line in its place, nothing else; window, crop, size and coverage must
-/// fit each other. A newer version is named as such.
+/// Reads a text of write_film_header(). Strict: every line in its place, nothing else; window,
+/// crop, size and coverage must fit each other. A newer version is named as such.
 Result<FilmHeader> parse_film_header(std::string_view text);
 
 /// Whether window, crop and frame fit into each other and none is empty.

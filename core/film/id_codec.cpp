@@ -8,7 +8,7 @@ namespace {
 
 /// Memory that a pair of pixel and id takes while it is read, at most; see id_memory.
 constexpr uint64_t kEntryMemory = 48;
-/// The same of a name, besides its length.
+/// Memory that a name takes while it is read, besides its length.
 constexpr uint64_t kNameMemory = 128;
 
 }  // namespace

@@ -17,8 +17,8 @@ constexpr uint64_t id_memory(uint64_t entries) { return 48 * entries + (uint64_t
 /// Appends what the pixels hold, and the names.
 void append_ids(std::vector<std::byte>& out, const IdLayer& layer);
 
-/// The inverse, into an empty layer. Takes at most `left` bytes of memory, and leaves there what it
-/// has not taken.
+/// Reads what append_ids() wrote into an empty layer. Takes at most `left` bytes of memory, and
+/// leaves there what it has not taken.
 Status read_ids(ByteReader& in, IdLayer& layer, uint64_t& left);
 
 }  // namespace hyades::core

@@ -68,7 +68,7 @@ struct LayerSet {
 /// The layers of `set`, splats too, in a fixed order: "depth, normal, light_group:key".
 std::string layers_text(const LayerSet& set);
 
-/// The inverse of layers_text; refuses what it would not write.
+/// The layers that layers_text() names by `text`; refuses what it would not write.
 Result<LayerSet> parse_layers(std::string_view text);
 
 /// The oldest version of film files and film bytes that can hold such layers: 1; 2: splats; 3: any.
@@ -115,7 +115,8 @@ std::string group_channel(std::string_view name);
 /// Bytes that the sums of a film take in memory at most, splats being those of its window's pixels.
 /// Ids are counted as four of each kind per pixel.
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window);
-/// The same where the splats are those of all of `region`, which contains the window.
+/// Bytes that the sums of a film take in memory at most where its splats are those of all of
+/// `region`, which contains the window.
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window, const PixelRect& region);
 
 }  // namespace hyades::core

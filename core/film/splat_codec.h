@@ -18,7 +18,7 @@ constexpr uint64_t splat_memory(uint64_t pixels) { return 320 * pixels; }
 template <class Sums>
 void append_splats(std::vector<std::byte>& out, const BasicSplatLayer<Sums>& layer);
 
-/// The inverse, into an empty layer; `count` as it was.
+/// Reads what append_splats() wrote of `count` pixels into an empty layer.
 template <class Sums>
 Status read_splats(ByteReader& in, uint32_t count, BasicSplatLayer<Sums>& layer);
 

@@ -12,7 +12,7 @@ namespace {
 
 /// A layer that touches more than one pixel in so many takes about as much memory with all of them.
 constexpr size_t kSparse = 2;
-/// The same for layers to which others are added: each time costs as much as there are entries.
+/// kSparse of layers to which others are added: each time costs as much as there are entries.
 constexpr size_t kSparseSum = 16;
 
 constexpr size_t kEntriesPerPiece = 4096;

@@ -35,7 +35,8 @@ struct SplatSums {
   bool valid() const;
 };
 
-/// The same of what light is told apart into (FilmLayout::part_names), whose variance nobody asks.
+/// What splats leave in a pixel of one part of light (FilmLayout::part_names), whose variance
+/// nobody asks.
 struct PartSums {
   std::array<Fixed128, 3> value{};
   friend bool operator==(const PartSums&, const PartSums&) = default;

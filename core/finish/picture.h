@@ -50,7 +50,7 @@ inline bool shows_beauty(const OutputDesc& output) {
   return output.layers.empty() || output.layers.front() == "beauty";
 }
 
-/// The same by `display` in place of a curve.
+/// Beauty as display values R, G, B and A, by `display` in place of a curve.
 Result<Image> display_picture(const Image& normalised, const DisplayTransform& display,
                               float exposure, bool transparent);
 

@@ -23,7 +23,7 @@ struct Affine {
   Affine operator*(const Affine& o) const { return {linear * o.linear, point(o.offset)}; }
   double determinant() const { return glm::determinant(linear); }
 
-  /// The inverse; all zeros where there is none.
+  /// The map back; all zeros where there is none.
   Affine inverse() const {
     const Vec3d a = linear[0];
     const Vec3d b = linear[1];

@@ -28,8 +28,9 @@ inline constexpr uint32_t kMaxCorners = 1U << 14;
 void triangulate(const std::vector<Vec3>& positions, std::span<const uint32_t> polygon,
                  std::vector<std::array<uint32_t, 3>>& out);
 
-/// The same of all polygons, whose corners stand one after the other and of which there are
-/// `sizes`: in parallel, and in the same order whatever the number of threads.
+/// Cuts all polygons into triangles, as triangulate() does; their corners stand one after the other
+/// and of which there are `sizes`: in parallel, and in the same order whatever the number of
+/// threads.
 void triangulate_all(const std::vector<Vec3>& positions, std::span<const uint32_t> corners,
                      std::span<const uint32_t> sizes, std::vector<std::array<uint32_t, 3>>& out);
 
@@ -49,7 +50,7 @@ inline constexpr const char* kNoMesh = "it is no mesh file that is known; expect
 Result<std::shared_ptr<TriangleMesh>> read_ply(std::span<const char> bytes);
 Result<std::shared_ptr<TriangleMesh>> read_obj(std::span<const char> bytes);
 
-/// The same, cut into its materials.
+/// Reads an OBJ file, cut into its materials.
 Result<MeshParts> read_obj_parts(std::span<const char> bytes);
 
 }  // namespace hyades::core

@@ -219,7 +219,7 @@ Vec3d PlacedObject::mesh_normal(const std::array<uint32_t, 3>& vertices, double 
   return here * (1.0 - f) + between(*shape.next) * f;
 }
 
-/// The same of tangents.
+/// The tangent of a deforming mesh at `time`, between those of the triangle's corners.
 Vec3d PlacedObject::mesh_tangent(uint32_t primitive, double u, double v, float time) const {
   const Shape& shape = buffers_->shape;
   const auto between = [&](const TriangleMesh& mesh) {

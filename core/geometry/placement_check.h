@@ -21,7 +21,7 @@ Status check_placement(const Placement& p);
 /// nowhere comes near to being singular. If not, its vertices are transformed instead.
 bool can_be_instanced(const Placement& p);
 
-/// The same of one that stands still.
+/// Whether rays can be transformed by `to_world`, of what stands still, into the object's space.
 bool can_be_instanced(const Mat4& to_world);
 
 /// "object 3 (bunny.obj)", for messages.

@@ -25,7 +25,7 @@ inline const char* scan_float(const char* at, const char* end, float& value) {
   return after;
 }
 
-/// The same for integers.
+/// Reads an integer as scan_float() reads a number.
 template <class Integer>
 const char* scan_integer(const char* at, const char* end, Integer& value) {
   if (at < end && *at == '+') ++at;

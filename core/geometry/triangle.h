@@ -82,8 +82,8 @@ inline double triangle_error(const Vec3d& v0, const Vec3d& v1, const Vec3d& v2, 
   return kRoundoff * std::min(moved + 4.0 * tilted, 256.0 * size);
 }
 
-/// The same for every point of the triangle with corners a, b, c, its largest: the bound is convex
-/// in the point, so that is at a corner. Grown by what rounding it to float may take.
+/// The largest triangle_error() of all points of the triangle with corners a, b, c: the bound is
+/// convex in the point, so that is at a corner. Grown by what rounding it to float may take.
 inline float largest_triangle_error(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const Vec3d cross = glm::cross(b - a, c - a);
   const double area2 = glm::dot(cross, cross);

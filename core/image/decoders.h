@@ -43,7 +43,7 @@ void ignore_empty_alpha(Image& image);
 /// Linear value of 8-bit code `code`, read as sRGB or as linear. 0..255 -> 0..1.
 const float* linear_of_8_bits(bool srgb);
 
-/// The same for 16-bit codes, 65536 entries.
+/// Linear values of all 65536 16-bit codes, read as sRGB or as linear.
 const float* linear_of_16_bits(bool srgb);
 
 }  // namespace hyades::core

@@ -30,7 +30,7 @@ struct CodeOptions {
 Status write_exr(const std::string& path, const Image& image, const ImageMetadata& metadata = {},
                  bool half = false);
 
-/// The same file in memory.
+/// The file of write_exr() in memory.
 Result<Bytes> encode_exr(const Image& image, const ImageMetadata& metadata = {}, bool half = false);
 
 /// Writes a PNG of channels R, G, B and, where there, A (straight), or else of Y; other channels
@@ -40,17 +40,17 @@ Result<Bytes> encode_exr(const Image& image, const ImageMetadata& metadata = {},
 Status write_png(const std::string& path, const Image& image, const ImageMetadata& metadata = {},
                  const CodeOptions& options = {});
 
-/// The same file in memory.
+/// The file of write_png() in memory.
 Result<Bytes> encode_png(const Image& image, const ImageMetadata& metadata = {},
                          const CodeOptions& options = {});
 
-/// As write_png, a TIFF: deflate with differences, in strips; an ICC profile tells the colour
-/// space.
+/// Writes a TIFF of the channels and values that write_png() takes: deflate with differences, in
+/// strips; an ICC profile tells the colour space.
 Status write_tiff(const std::string& path, const Image& image, const ImageMetadata& metadata = {},
                   const CodeOptions& options = {});
 
-/// As write_png, JPEG of quality 1..100, without alpha; full colour resolution from quality 90 on.
-/// An ICC profile tells the colour space.
+/// Writes a JPEG of quality 1..100 of the channels and values that write_png() takes, without
+/// alpha; full colour resolution from quality 90 on. An ICC profile tells the colour space.
 Status write_jpeg(const std::string& path, const Image& image, int quality = 92,
                   const ImageMetadata& metadata = {}, ColorTag color = ColorTag::srgb);
 

@@ -16,8 +16,8 @@ Rgb visible_share(const Scene& scene, const Ray& shadow, const MediumStack& arou
 Ray shadow_ray(const SurfacePoint& from, const LightSample& to);
 Ray shadow_ray(const Vec3& from, const LightSample& to, float time);
 
-/// The same as visible_share for a ray from the camera, which sees other objects than shadow rays
-/// do.
+/// An unbiased estimate of the share of light that comes along `ray`, one from the camera, which
+/// sees other objects than shadow rays do.
 Rgb visible_share_from_camera(const Scene& scene, const Ray& ray, MediaNumbers numbers,
                               Workspace& work);
 

@@ -50,7 +50,8 @@ class AreaLight : public Light {
   std::optional<LightSample> seen_from(const Vec3& from, const Vec3& position, const Vec3& ng,
                                        float clearance, float pdf_area) const;
 
-  /// The same of `place`, with the radiance that it has there.
+  /// What `from` gets from `place`, with the radiance that it has there; nothing where it sends no
+  /// light to `from`.
   std::optional<LightSample> seen_from(const Vec3& from, const Place& place) const;
 
   const SurfaceEmission& emission() const { return emission_; }

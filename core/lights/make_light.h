@@ -23,8 +23,8 @@ using LightPtr = std::shared_ptr<const Light>;
 /// zero area give no light. `world` must outlive the light.
 LightPtr make_area_light(const World& world, uint32_t object, const SurfaceEmission& emission);
 
-/// The same for the parts of one shape. With `power` [W, luminance] the emission's radiance is
-/// scaled so that all that they give off together is that.
+/// The area lights of the parts of one shape, as make_area_light() makes them. With `power` [W,
+/// luminance] the emission's radiance is scaled so that all that they give off together is that.
 std::vector<LightPtr> make_area_lights(const World& world, std::span<const uint32_t> parts,
                                        const SurfaceEmission& emission, std::optional<float> power);
 
@@ -34,22 +34,22 @@ double surface_area(const World& world, uint32_t object);
 /// Isotropic point of total flux `power` [W] per channel: intensity power / (4 pi) [W/sr].
 LightPtr make_point_light(const Vec3& position, const Rgb& power);
 
-/// As a point light of that power (the cone takes light away, it does not gather it), but only
-/// within the cosine `cos_outer` of unit `direction`: full inside `cos_inner`, with the smooth step
-/// 3 t^2 - 2 t^3 of the cosine in between.
+/// A spot light, as bright as a point light of flux `power` (the cone takes light away, it does not
+/// gather it), but only within the cosine `cos_outer` of unit `direction`: full inside `cos_inner`,
+/// with the smooth step 3 t^2 - 2 t^3 of the cosine in between.
 LightPtr make_spot_light(const Vec3& position, const Vec3& direction, const Rgb& power,
                          float cos_inner, float cos_outer);
 
-/// As a point light of that power, times what `map` has in each direction: 1 there is the point
-/// light itself. The columns of `axes`, orthonormal and possibly mirrored, are the map's x, y (its
-/// top) and z in the world.
+/// A goniometric light: a point light of flux `power`, times what `map` has in each direction: 1
+/// there is the point light itself. The columns of `axes`, orthonormal and possibly mirrored, are
+/// the map's x, y (its top) and z in the world.
 LightPtr make_goniometric_light(const Vec3& position, const Mat3& axes, const Rgb& power,
                                 std::shared_ptr<const EnvironmentMap> map);
 
-/// As a point light of that power, but only through `gobo`, whose colours it takes: white is the
-/// point light itself. `fov` [radians, in (0, pi)] is the angle across the gobo's shorter side.
-/// The columns of `axes`, orthonormal and possibly mirrored, lead to the gobo's right and upper
-/// sides and through its middle.
+/// A projector: a point light of flux `power`, but only through `gobo`, whose colours it takes:
+/// white is the point light itself. `fov` [radians, in (0, pi)] is the angle across the gobo's
+/// shorter side. The columns of `axes`, orthonormal and possibly mirrored, lead to the gobo's right
+/// and upper sides and through its middle.
 LightPtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb& power, float fov,
                               std::shared_ptr<const Gobo> gobo);
 
@@ -59,7 +59,7 @@ LightPtr make_projector_light(const Vec3& position, const Mat3& axes, const Rgb&
 LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle,
                         float world_radius);
 
-/// The same with a disc that is darker at its rim: radiance in proportion to the power `limb` of
+/// A sun with a disc that is darker at its rim: radiance in proportion to the power `limb` of
 /// the cosine of the angle between the view and the normal of the sun's surface.
 LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angle, const Rgb& limb,
                         float world_radius);
@@ -72,7 +72,8 @@ LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angl
 LightPtr make_environment_light(std::shared_ptr<const Image> image, float rotate_y,
                                 const Rgb& scale, float world_radius);
 
-/// The same with a map that is ready: maps take time to make and can be shared between frames.
+/// An environment light of a map that is ready: maps take time to make and can be shared between
+/// frames.
 LightPtr make_environment_map_light(std::shared_ptr<const EnvironmentMap> map, float rotate_y,
                                     const Rgb& scale, float world_radius);
 

@@ -59,7 +59,7 @@ class RectangleLight : public AreaLight {
   /// Where the emission varies: the place at (a, b) with the density of its being chosen.
   Place place_on(const Vec2& at, float time) const;
 
-  /// As sample_direct, where the emission varies.
+  /// A place seen from `from`, as sample_direct() chooses one, where the emission varies.
   std::optional<LightSample> sample_bright(const Vec3& from, float time,
                                            const std::optional<SphericalRectangle>& seen,
                                            const Vec2& u) const;

@@ -21,7 +21,7 @@ class AnisotropicTable {
     return look_up(reflectance_, w, along_x);
   }
 
-  /// The same of facets that reflect (1 - cosine)^5, as dielectrics do at their edge.
+  /// The reflectance of facets that reflect (1 - cosine)^5, as dielectrics do at their edge.
   float edge(const Vec3& w, float along_x) const;
 
   /// The mean over the hemisphere of 1 - E, weighed with the cosine.
@@ -44,8 +44,9 @@ class AnisotropicTable {
   std::array<float, kMeans> mean_loss_;
 };
 
-/// The same for any facets, interpolated between tables at fixed ratios, each made at first use.
-/// Facets that are alike in all directions have FacetEnergy's. Cheap to make; thread-safe.
+/// What AnisotropicTable tells for any facets, interpolated between tables at fixed ratios, each
+/// made at first use. Facets that are alike in all directions have FacetEnergy's. Cheap to make;
+/// thread-safe.
 class AnisotropicEnergy {
  public:
   /// Facets of which neither width is more than ten times the other; beyond, it is as there.

@@ -10,7 +10,8 @@ namespace hyades::core {
 const Bsdf* smooth_dielectric_bsdf(float ior, const Rgb& transmission, const Rgb& reflection,
                                    BsdfArena& arena);
 
-/// The same of GGX facets; smooth where alpha is below Ggx::kLeastAlpha.
+/// An interface of GGX facets, other arguments as of smooth_dielectric_bsdf(); smooth where alpha
+/// is below Ggx::kLeastAlpha.
 const Bsdf* dielectric_bsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection,
                             FacetScattering scattering, BsdfArena& arena);
 

@@ -31,7 +31,7 @@ struct EvenWidth {
   Vec3 stretched(const Vec3& w) const { return {alpha * w.x, alpha * w.y, w.z}; }
 };
 
-/// The same with widths along x and y (Heitz 2014, equations 85 and 87).
+/// Facets with a width each along x and y (Heitz 2014, equations 85 and 87).
 struct TwoWidths {
   float along_x = 1.0F;  ///< kLeastAlpha .. 1
   float along_y = 1.0F;

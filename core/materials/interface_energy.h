@@ -27,7 +27,8 @@ class InterfaceTable {
   std::array<float, kRows> mean_rest_;
 };
 
-/// The same for any index, interpolated between tables that are made at first use. Cheap to make.
+/// What InterfaceTable tells for any index, interpolated between tables that are made at first use.
+/// Cheap to make.
 class InterfaceEnergy {
  public:
   explicit InterfaceEnergy(float eta);

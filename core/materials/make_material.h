@@ -37,7 +37,7 @@ enum class FacetScattering {
   multiple,  ///< it is given back (Kulla and Conty 2017): white metal, clear glass keep everything
 };
 
-/// The same with facets of GGX, alpha = roughness^2 (roughness 0: make_dielectric).
+/// A dielectric with facets of GGX, alpha = roughness^2 (roughness 0: make_dielectric).
 MaterialPtr make_rough_dielectric(float ior, const Rgb& transmission, const Rgb& reflection,
                                   const ScalarParam& roughness,
                                   FacetScattering scattering = FacetScattering::single);

@@ -144,8 +144,8 @@ Rgb PrincipledBsdf::metal_reflectance(float cosine) const {
   return glm::clamp(f, Rgb(0.0F), Rgb(1.0F));
 }
 
-/// The same over the hemisphere, weighed with the cosine: 2 integral of (1 - mu)^5 mu is 1/21, of
-/// mu (1 - mu)^6 mu 1/126.
+/// The mean of metal_reflectance() over the hemisphere, weighed with the cosine: 2 integral of (1 -
+/// mu)^5 mu is 1/21, of mu (1 - mu)^6 mu 1/126.
 Rgb PrincipledBsdf::mean_metal_reflectance() const {
   const Rgb f = parts_.metal + (Rgb(1.0F) - parts_.metal) / 21.0F - metal_bend_ / 126.0F;
   return glm::clamp(f, Rgb(0.0F), Rgb(1.0F));

@@ -141,9 +141,9 @@ class RoughDielectricBsdf final : public Bsdf {
   Rgb reflection_;
 };
 
-/// The same with the light given back that it loses to second facets. How much of that goes where
-/// depends on (1 - E) cos: nearly on the cosine where much is lost, and nearly on nothing where
-/// little is. Half of the samples of its lobes do each.
+/// A rough dielectric that gives back the light that it loses to second facets. How much of that
+/// goes where depends on (1 - E) cos: nearly on the cosine where much is lost, and nearly on
+/// nothing where little is. Half of the samples of its lobes do each.
 class FullDielectricBsdf final : public Bsdf {
  public:
   FullDielectricBsdf(float ior, float alpha, const Rgb& transmission, const Rgb& reflection)

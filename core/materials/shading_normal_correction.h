@@ -40,7 +40,7 @@ class ShadingNormalCorrection {
     return mode == TransportMode::radiance ? scattered(wo, wi, value) : gathered(wo, wi, value);
   }
 
-  /// Of radiance.
+  /// The diffuse part of evaluate() of radiance.
   Rgb evaluate_diffuse(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi) const {
     return scattered(wo, wi,
                      [&](const Vec3& o, const Vec3& i) { return bsdf.evaluate_diffuse(o, i); });
@@ -48,7 +48,8 @@ class ShadingNormalCorrection {
 
   float pdf(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, TransportMode mode) const;
 
-  /// As Bsdf::sample().
+  /// Chooses a direction for `wo` as Bsdf::sample() does, with its weight and density after the
+  /// correction.
   std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3& wo, float lobe, const Vec2& u,
                                    TransportMode mode) const;
 

@@ -59,7 +59,7 @@ class ThinDielectricBsdf final : public DeltaBsdf {
   Rgb reflection_;
 };
 
-/// The same sheet of GGX facets. What each facet transmits leaves as what it reflects does, on the
+/// A thin sheet of GGX facets. What each facet transmits leaves as what it reflects does, on the
 /// other side; what facets throw onto each other comes out nearly diffuse on both (LostLight), on
 /// each as much as smooth sheets reflect and transmit of diffuse light. Each further facet keeps
 /// what it does of both tints.

@@ -7,7 +7,7 @@
 namespace hyades::core {
 namespace {
 
-/// The inverse; where there is none, a matrix that takes everything to one place far away.
+/// The inverse of `m`; where there is none, a matrix that takes everything to one place far away.
 Mat4 inverse(const Mat4& m) {
   const Mat4 inverted = glm::inverse(m);
   bool finite = true;

@@ -22,7 +22,8 @@ MediumPtr make_homogeneous(const Rgb& absorption, const Rgb& scattering, const R
 MediumPtr make_varying(std::shared_ptr<const Volume> volume, const FieldPlace& place,
                        const Coefficients& per_density, const Phase& phase);
 
-/// The same found by marching in steps of about `step` metres (above 0): biased, for comparison.
+/// The medium of make_varying(), found by marching in steps of about `step` metres (above 0):
+/// biased, for comparison.
 MediumPtr make_marching(std::shared_ptr<const Volume> volume, const FieldPlace& place,
                         const Coefficients& per_density, const Phase& phase, float step);
 

@@ -20,7 +20,7 @@ namespace hyades::core {
 Result<std::shared_ptr<const VdbGrid<float>>> read_nanovdb_numbers(const Bytes& bytes,
                                                                    const std::string& name);
 
-/// The same of a grid of vectors (Vec3f): linear Rec.709.
+/// Reads grid `name` of vectors (Vec3f), linear Rec.709, as read_nanovdb_numbers() reads numbers.
 Result<std::shared_ptr<const VdbGrid<Rgb>>> read_nanovdb_colors(const Bytes& bytes,
                                                                 const std::string& name);
 

@@ -28,7 +28,7 @@ inline constexpr size_t kMostVdbBytes = size_t{8} << 30U;
 Result<std::shared_ptr<const VdbGrid<float>>> read_vdb_numbers(const Bytes& bytes,
                                                                const std::string& name);
 
-/// The same of a grid of vectors of three: linear Rec.709.
+/// Reads grid `name` of vectors of three, linear Rec.709, as read_vdb_numbers() reads numbers.
 Result<std::shared_ptr<const VdbGrid<Rgb>>> read_vdb_colors(const Bytes& bytes,
                                                             const std::string& name);
 

@@ -34,7 +34,7 @@ class FrameRenderer {
  public:
   FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                 const LayerSet& layers);
-  /// The same with an integrator that no job names.
+  /// A renderer with an integrator that no job names.
   FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job, int32_t frame,
                 const LayerSet& layers, std::unique_ptr<Integrator> integrator);
 

@@ -18,7 +18,7 @@ using CenterOf = std::function<Vec3(const std::string& object, float shutter_tim
 Result<std::unique_ptr<Camera>> make_camera(const Job& job, int32_t frame,
                                             const CenterOf& center_of);
 
-/// The same at one moment, with a lens of no size.
+/// The camera of `job` at one moment, with a lens of no size.
 std::unique_ptr<Camera> make_sharp_camera(const Job& job, const JobTime& time);
 
 }  // namespace hyades::core

@@ -25,7 +25,7 @@ Vec3 moved(const LightDesc& desc, const Vec3& place, const LightSetting& setting
   return Vec3(matrix * Vec4(place, 1.0F));
 }
 
-/// The same of a direction.
+/// What the light's transform makes of a direction.
 Vec3 turned(const LightDesc& desc, const Vec3& direction, const LightSetting& setting) {
   if (desc.transform.empty()) return direction;
   const Mat4 matrix = transform_at(desc.transform, Animated<Vec3>(Vec3(0.0F)), setting.time);

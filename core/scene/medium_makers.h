@@ -15,8 +15,8 @@ Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float 
 /// job.
 MediumPtr make_medium(const MediumDesc& desc, const JobTime& time, float units);
 
-/// The same of a medium that varies as `volume` in a body, which is put into the world by
-/// `body_to_world` as placements are.
+/// The medium that `desc` describes at `time`, in metres, which varies as `volume` in a body, which
+/// is put into the world by `body_to_world` as placements are.
 MediumPtr make_medium_in(const MediumDesc& desc, const JobTime& time, float units,
                          const PlacedVolume& volume, const std::vector<Mat4>& body_to_world);
 

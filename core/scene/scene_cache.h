@@ -71,7 +71,7 @@ class SceneCache {
 
   Result<std::shared_ptr<const TriangleMesh>> mesh(const std::string& file, const MeshUse& use);
 
-  /// The same of a file that some frames look at only: kept as long as somebody uses the mesh, so
+  /// A mesh of a file that some frames look at only: kept as long as somebody uses the mesh, so
   /// that frames leave nothing behind.
   Result<std::shared_ptr<const TriangleMesh>> frame_mesh(const std::string& file,
                                                          const MeshUse& use);

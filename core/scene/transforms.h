@@ -27,8 +27,8 @@ using ShutterMatrix = std::function<Mat4(float)>;
 /// n^2 times that. One matrix where nothing moves.
 std::vector<Mat4> sampled_matrices(const ShutterMatrix& matrix_at);
 
-/// The same of `matrix_of(JobTime)` over the shutter interval of `frame`. One where the shutter is
-/// closed.
+/// sampled_matrices() of `matrix_of(JobTime)` over the shutter interval of `frame`. One where the
+/// shutter is closed.
 template <class MatrixOf>
 std::vector<Mat4> shutter_matrices(const Job& job, int32_t frame, const MatrixOf& matrix_of);
 

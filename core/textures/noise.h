@@ -44,8 +44,8 @@ class FractalNoise {
   /// The value of fbm(p): the same bits.
   float value(const Vec4& p) const;
 
-  /// The same where only what is between `low` and `high` >= `low` matters: of values certain to be
-  /// below or above, -1 or 1 may stand for it, found from fewer octaves.
+  /// The value of fbm(p) where only what is between `low` and `high` >= `low` matters: of values
+  /// certain to be below or above, -1 or 1 may stand for it, found from fewer octaves.
   float value_between(const Vec4& p, float low, float high) const;
 
  private:

@@ -14,7 +14,7 @@ struct NoiseBounds {
 /// perlin itself, for which there is a margin).
 NoiseBounds perlin_bounds(const Vec4& lower, const Vec4& upper);
 
-/// The same of fbm().
+/// Values between which fbm() stays over the box lower..upper, as perlin_bounds() tells them.
 NoiseBounds fbm_bounds(const Vec4& lower, const Vec4& upper, int octaves, float lacunarity,
                        float gain);
 

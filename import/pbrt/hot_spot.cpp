@@ -32,7 +32,7 @@ double luminance_of_peak_one(double kelvin) {
   return sum;
 }
 
-/// The same from a table: grids have millions of points.
+/// luminance_of_peak_one() from a table: grids have millions of points.
 double tabulated_luminance(double kelvin) {
   static const std::vector<double> table = [] {
     std::vector<double> values;

@@ -23,7 +23,7 @@ class Materials {
   /// That of a shape.
   const WrittenMaterial& of(const ShapeEntity& shape);
 
-  /// The same with an opacity; `opacity` is a number or the name of a texture.
+  /// The name of `material` with an opacity; `opacity` is a number or the name of a texture.
   std::string cut_out(const WrittenMaterial& material, const YamlPtr& opacity);
 
  private:

@@ -18,7 +18,7 @@ Status check_mesh(const ShapeEntity& shape, Report& report);
 /// The triangles that "loopsubdiv" begins with, without normals and uvs.
 Result<TriangleMesh> control_mesh(const ShapeEntity& shape, Report& report);
 
-/// The same surface turned inside out.
+/// Turns the surface inside out.
 void reverse(TriangleMesh& mesh);
 
 }  // namespace hyades::core::pbrt

@@ -27,7 +27,8 @@ struct Layer {
 Status load_picture(const LoadedScene& scene, const Entity& light, const std::string& file,
                     Layer& layer);
 
-/// The same of a picture of all directions, which is square.
+/// Sets the picture of `layer` to `file`, one of all directions, which is square. The error names
+/// the place of `light`.
 Status load_sphere(const LoadedScene& scene, const Entity& light, const std::string& file,
                    Layer& layer);
 

@@ -27,7 +27,7 @@ Result<Spectrum> read_spd(std::string_view text);
 /// 0), as the CIE 1931 observer sees it. Black where there is none.
 Rgb light_color(const Spectrum& spectrum);
 
-/// The same of a black body of `kelvin` (at least 1), by Planck's law.
+/// The colour of light of a black body of `kelvin` (at least 1), of luminance 1, by Planck's law.
 Rgb blackbody_light(double kelvin);
 
 /// What a surface of this reflectance, or a medium of this coefficient, is per channel: the mean of

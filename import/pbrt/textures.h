@@ -11,7 +11,7 @@ class Textures {
 
   /// The value of parameter `name`, a colour or the name of a texture.
   YamlPtr color(ParameterReader& reader, const char* name, const Rgb& otherwise);
-  /// The same, null where the parameter is not there.
+  /// The value of parameter `name`, a colour or the name of a texture; null where it is not there.
   YamlPtr color_if(ParameterReader& reader, const char* name);
 
   /// A number or the name of a texture.
