@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <limits>
 #include <utility>
+
+#include "core/base/ray.h"
 
 namespace hyades::core {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Minima are compared as integers that order like the floats, so that neither DAZ nor signed
 /// zeros can make the result depend on the order of merging.

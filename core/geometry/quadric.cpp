@@ -1,13 +1,12 @@
 #include "core/geometry/quadric.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "core/base/elementary.h"
 
 namespace hyades::core {
 namespace {
-
-constexpr double kPiD = 3.14159265358979323846;
 
 /// Both t at which a line crosses a circle or sphere around the origin, in order.
 struct Roots {
@@ -50,8 +49,8 @@ QuadricPoint sphere_point(const Quadric& q, const Vec3d& near) {
   const float from_below = atan2(static_cast<float>(rho), static_cast<float>(-p.y));
   QuadricPoint out{p, n, {turn(p.x, p.z), from_below * kInvPi}, Vec3d(0.0), Vec3d(0.0)};
   if (rho > 0.0) {
-    out.dpdu = 2.0 * kPiD * Vec3d(p.z, 0.0, -p.x);
-    out.dpdv = kPiD * Vec3d(-p.y * p.x / rho, rho, -p.y * p.z / rho);
+    out.dpdu = 2.0 * std::numbers::pi * Vec3d(p.z, 0.0, -p.x);
+    out.dpdv = std::numbers::pi * Vec3d(-p.y * p.x / rho, rho, -p.y * p.z / rho);
   }
   return out;
 }
@@ -64,7 +63,7 @@ QuadricPoint disk_point(const Quadric& q, const Vec3d& near) {
                    Vec3d(0.0),
                    Vec3d(0.0)};
   if (rho > 0.0) {
-    out.dpdu = 2.0 * kPiD * Vec3d(near.z, 0.0, -near.x);
+    out.dpdu = 2.0 * std::numbers::pi * Vec3d(near.z, 0.0, -near.x);
     out.dpdv = q.radius / rho * Vec3d(near.x, 0.0, near.z);
   }
   return out;
@@ -77,7 +76,7 @@ QuadricPoint cylinder_point(const Quadric& q, const Vec3d& near) {
   return {p,
           n,
           {turn(p.x, p.z), static_cast<float>(near.y / q.height)},
-          2.0 * kPiD * Vec3d(p.z, 0.0, -p.x),
+          2.0 * std::numbers::pi * Vec3d(p.z, 0.0, -p.x),
           {0.0, q.height, 0.0}};
 }
 

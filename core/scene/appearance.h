@@ -2,18 +2,34 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "core/base/result.h"
+#include "core/cameras/camera.h"
 #include "core/job/job.h"
 #include "core/materials/make_material.h"
 #include "core/media/make_medium.h"
-#include "core/scene/camera_view.h"
 #include "core/scene/scene_cache.h"
 #include "core/scene/volume_makers.h"
 
 namespace hyades::core {
+
+/// The camera of a scene as its textures see it. Textures are made first, for a camera may focus on
+/// an object; until there is a camera, surfaces are seen from nowhere: places are points.
+class CameraView final : public PixelView {
+ public:
+  /// Once, before the scene is rendered.
+  void set(std::shared_ptr<const Camera> camera) { camera_ = std::move(camera); }
+
+  PixelCone pixel_at(const Vec3& point, float time) const override {
+    return camera_ ? camera_->pixel_at(point, time) : PixelCone{};
+  }
+
+ private:
+  std::shared_ptr<const Camera> camera_;
+};
 
 /// The textures, materials and media of a job at one moment, made on first use and shared
 /// afterwards. What the kinds are made of stands in make_texture.h and make_material.h, which ask

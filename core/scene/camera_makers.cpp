@@ -8,11 +8,11 @@
 
 #include "core/base/elementary.h"
 #include "core/cameras/make_camera.h"
+#include "core/scene/transforms.h"
 
 namespace hyades::core {
 namespace {
 
-constexpr float kRadians = kPi / 180.0F;
 /// m, the short side of a 35 mm frame: what f-stops refer to.
 constexpr float kSensorHeight = 0.024F;
 

@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "core/base/elementary.h"
+#include "core/scene/transforms.h"
 
 namespace hyades::core {
 namespace {
 
-constexpr float kRadians = kPi / 180.0F;
 constexpr const char* kSky = "environment";
 
 /// Towards the sun: where it stands above the horizon and counter-clockwise from -z [rad].

@@ -10,8 +10,6 @@
 namespace hyades::core {
 namespace {
 
-constexpr float kRadians = kPi / 180.0F;
-
 /// `v` at length 1; down where it has none.
 Vec3 direction_of(const Vec3& v) {
   const float length = std::sqrt(glm::dot(v, v));

@@ -9,8 +9,6 @@
 namespace hyades::core {
 namespace {
 
-constexpr float kRadians = kPi / 180.0F;
-
 /// Rotation by `degrees` around `axis` (Rodrigues), counter-clockwise seen against the axis.
 Mat4 rotation(const Vec3& axis, float degrees) {
   const float length = std::sqrt(glm::dot(axis, axis));

@@ -3,8 +3,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
+#include "core/base/ray.h"
 #include "core/textures/noise_octaves.h"
 
 namespace hyades::core {
@@ -235,10 +235,7 @@ FractalNoise::FractalNoise(int octaves, float lacunarity, float gain) {
   }
 }
 
-float FractalNoise::value(const Vec4& p) const {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  return value_between(p, -kInfinity, kInfinity);
-}
+float FractalNoise::value(const Vec4& p) const { return value_between(p, -kInfinity, kInfinity); }
 
 float FractalNoise::value_between(const Vec4& p, float low, float high) const {
   constexpr float kMargin = 1e-5F;  // for the rounding of sums

@@ -3,15 +3,49 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <string_view>
+#include <vector>
 
-#include "import/pbrt/lens.h"
 #include "import/pbrt/motion.h"
+#include "import/pbrt/read_parameters.h"
 #include "import/pbrt/render_sections.h"
 
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// The focal length, mm, of a file of lens elements from front to back: rows of radius [mm], way to
+/// the next [mm], index behind and diameter [mm]; radius 0 is the stop. By rays near the axis.
+/// Errors: no such rows, or a lens that does not gather light.
+Result<double> focal_length(std::string_view lens_file) {
+  Tokenizer tokens(lens_file, {});
+  std::vector<double> numbers;
+  for (Token token = tokens.next(); token.kind != Token::Kind::end; token = tokens.next()) {
+    const auto number = token.kind == Token::Kind::word ? number_of(token.text) : std::nullopt;
+    if (!number) return Error{"the lens file holds something other than numbers"};
+    numbers.push_back(*number);
+  }
+  if (numbers.empty() || numbers.size() % 4 != 0) {
+    return Error{"the lens file has not four numbers for each element"};
+  }
+  // A ray parallel to the axis, one away from it.
+  double height = 1.0;
+  double slope = 0.0;
+  double index = 1.0;
+  for (size_t i = 0; i < numbers.size(); i += 4) {
+    const double radius = numbers[i];
+    if (radius != 0.0) {
+      const double behind = numbers[i + 2] > 0.0 ? numbers[i + 2] : 1.0;
+      slope = (index * slope - height * (behind - index) / radius) / behind;
+      index = behind;
+    }
+    height += slope * numbers[i + 1];
+  }
+  if (!(slope < 0.0)) return Error{"the lens does not gather light"};
+  return -1.0 / slope;
+}
 
 /// What of the plane at distance 1 the film shows (perspective), or of the camera's plane.
 struct Window {

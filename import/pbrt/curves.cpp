@@ -1,4 +1,4 @@
-#include "import/pbrt/curves.h"
+#include "import/pbrt/made_meshes.h"
 
 #include <algorithm>
 #include <cmath>

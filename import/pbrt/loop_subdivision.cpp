@@ -1,4 +1,4 @@
-#include "import/pbrt/loop_subdivision.h"
+#include "import/pbrt/made_meshes.h"
 
 #include <algorithm>
 #include <tuple>

@@ -6,9 +6,7 @@
 #include <utility>
 
 #include "core/base/text.h"
-#include "import/pbrt/curves.h"
-#include "import/pbrt/loop_subdivision.h"
-#include "import/pbrt/tessellated.h"
+#include "import/pbrt/made_meshes.h"
 
 namespace hyades::core::pbrt {
 namespace {

@@ -1,13 +1,13 @@
-#include "import/pbrt/tessellated.h"
+#include "import/pbrt/made_meshes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kPiExact = 3.14159265358979323846;
 constexpr int kAround = 128;
 
 struct Surface {
@@ -60,8 +60,8 @@ Extent extent_of(const ShapeEntity& shape, Report& report) {
   const float high = reader.number("zmax", ball ? radius : 1.0F);
   e.low = static_cast<double>(std::min(low, high));
   e.high = static_cast<double>(std::max(low, high));
-  e.turn = std::clamp(static_cast<double>(reader.number("phimax", 360.0F)), 0.0, 360.0) * kPiExact /
-           180.0;
+  e.turn = std::clamp(static_cast<double>(reader.number("phimax", 360.0F)), 0.0, 360.0) *
+           std::numbers::pi / 180.0;
   e.inner = static_cast<double>(reader.number("innerradius", 0.0F));
   if (shape.type == "disk") e.low = static_cast<double>(reader.number("height", 0.0F));
   return e;
@@ -73,7 +73,7 @@ bool needs_tessellation(const ShapeEntity& shape) {
   if (shape.type != "sphere" && shape.type != "disk" && shape.type != "cylinder") return false;
   Report unheard;
   const Extent e = extent_of(shape, unheard);
-  if (e.turn < 2.0 * kPiExact - 1e-9) return true;
+  if (e.turn < 2.0 * std::numbers::pi - 1e-9) return true;
   if (shape.type == "disk") return e.inner > 0.0;
   if (shape.type == "cylinder") return shape.reversed;
   return shape.reversed || e.low > -e.radius || e.high < e.radius;
@@ -83,7 +83,8 @@ Result<TriangleMesh> tessellated_mesh(const ShapeEntity& shape, Report& report) 
   const Extent e = extent_of(shape, report);
   if (!(e.radius > 0.0)) return shape.place.error("the radius is not above 0");
   if (!(e.turn > 0.0)) return shape.place.error("phimax is not above 0");
-  const int columns = std::max(1, static_cast<int>(std::ceil(kAround * e.turn / (2 * kPiExact))));
+  const int columns =
+      std::max(1, static_cast<int>(std::ceil(kAround * e.turn / (2 * std::numbers::pi))));
   if (shape.type == "sphere") {
     const double first = std::acos(std::clamp(e.low / e.radius, -1.0, 1.0));
     const double last = std::acos(std::clamp(e.high / e.radius, -1.0, 1.0));

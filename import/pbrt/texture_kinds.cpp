@@ -272,7 +272,7 @@ YamlPtr TextureKinds::marble() {
                 {"octaves", yaml_integer(octaves)},
                 {"gain", yaml_number(roughness)},
                 {"distortion", yaml_number(variation)},
-                {"scale", yaml_number(scale / 3.14159265F)}};
+                {"scale", yaml_number(scale / kPi)}};
   put_space_mapping(noise);
   const YamlPtr stops = YamlMap{{"0", yaml_vector(Rgb(0.58F, 0.58F, 0.6F))},
                                 {"0.4", yaml_vector(Rgb(0.5F, 0.5F, 0.5F))},

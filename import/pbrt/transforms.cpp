@@ -2,11 +2,12 @@
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kDegrees = 3.14159265358979323846 / 180.0;
+constexpr double kDegrees = std::numbers::pi / 180.0;
 
 }  // namespace
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/geometry/mesh.h"
+#include "import/pbrt/scene.h"
+
+/// Shapes that the job language has not, as triangles.
+namespace hyades::core::pbrt {
+
+/// A "curve" as triangles: of type cylinder a tube of six sides, of type ribbon a band across its
+/// normals, of type flat, which would turn to whoever looks, a tube, too.
+Result<TriangleMesh> curve_mesh(const ShapeEntity& shape, Report& report);
+
+/// Whether curve_mesh() can make it.
+Status check_curve(const ShapeEntity& shape, Report& report);
+
+/// A "loopsubdiv": its triangles subdivided `levels` times (Loop 1987), brought to the limit
+/// surface, with its normals. Errors: what is wrong with the lists, a mesh whose edges have more
+/// than two triangles, and more than 2^26 triangles.
+Result<TriangleMesh> subdivided_mesh(const ShapeEntity& shape, Report& report);
+
+/// Whether subdivided_mesh() can make it, told before memory is taken.
+Status check_subdivision(const ShapeEntity& shape, Report& report);
+
+/// Whether a sphere, disk or cylinder is only a part of one, or looks inwards, so that the job
+/// language has no shape for it.
+bool needs_tessellation(const ShapeEntity& shape);
+
+/// Such a part as triangles: 128 around a full turn, with smooth normals and pbrt's uvs.
+Result<TriangleMesh> tessellated_mesh(const ShapeEntity& shape, Report& report);
+
+}  // namespace hyades::core::pbrt
