@@ -9,10 +9,10 @@
 
 namespace hyades::core {
 
-/// The picture that a projector throws, looked up bilinearly, with what it takes to choose places in
-/// proportion to luminance. Places are (u, v) in [0, 1]^2 from its top left corner; the outermost
-/// half pixels keep their value up to the border. Immutable and thread-safe; takes 4 bytes per
-/// pixel on top of the image.
+/// The picture that a projector throws, looked up bilinearly, with what it takes to choose places
+/// in proportion to luminance. Places are (u, v) in [0, 1]^2 from its top left corner; the
+/// outermost half pixels keep their value up to the border. Immutable and thread-safe; takes 4
+/// bytes per pixel on top of the image.
 class Gobo {
  public:
   /// `image` as LightPicture takes it.
