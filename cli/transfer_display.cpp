@@ -5,19 +5,18 @@
 
 #include <fmt/format.h>
 
+#include "core/base/duration.h"
 #include "core/base/text.h"
 
 namespace hyades::cli {
+using core::seconds;
+
 namespace {
 
 constexpr auto kPlainEvery = std::chrono::seconds(10);
 /// The rate is that of so long a time, looked at so often.
 constexpr auto kLately = std::chrono::seconds(10);
 constexpr auto kLook = std::chrono::milliseconds(250);
-
-double seconds(TransferDisplay::Clock::duration d) {
-  return std::chrono::duration<double>(d).count();
-}
 
 }  // namespace
 

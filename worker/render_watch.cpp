@@ -4,15 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "core/base/duration.h"
+
 namespace hyades::worker {
 namespace {
 
 /// Jobs whose pace is remembered.
 constexpr size_t kMostSteps = 1000;
-
-double in_seconds(RenderWatch::Duration time) {
-  return std::chrono::duration<double>(time).count();
-}
 
 }  // namespace
 
@@ -85,15 +83,16 @@ std::optional<RenderWatch::Hang> RenderWatch::tick(TimePoint now) {
   if (!hang.tokens.empty()) {
     hang.reason = fmt::format("{} {:.3g} s and was killed",
                               only_loads ? "was loading a scene for" : "had no sample done in",
-                              in_seconds(longest));
+                              core::seconds(longest));
   } else if ((awaited_ || !tasks_.empty()) && time - heard_ >= limit_) {
     for (const auto& [token, task] : tasks_) {
       if (task.phase != Phase::queued) hang.tokens.insert(token);
     }
-    hang.reason =
-        fmt::format("gave no sign of life for {:.3g} s and was killed", in_seconds(time - heard_));
+    hang.reason = fmt::format("gave no sign of life for {:.3g} s and was killed",
+                              core::seconds(time - heard_));
   } else if (time - busy_ >= kLoading * limit_) {
-    hang.reason = fmt::format("began nothing in {:.3g} s and was killed", in_seconds(time - busy_));
+    hang.reason =
+        fmt::format("began nothing in {:.3g} s and was killed", core::seconds(time - busy_));
   } else {
     return std::nullopt;
   }

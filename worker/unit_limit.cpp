@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/duration.h"
 #include "core/base/text.h"
 
 namespace hyades::worker {
@@ -29,7 +30,7 @@ UnitLimit::Overdue UnitLimit::tick(TimePoint now) {
 
 std::string UnitLimit::reason() const {
   return fmt::format("took longer than {} (--unit-time-limit of the worker)",
-                     core::format_duration(std::chrono::duration<double>(limit_).count()));
+                     core::format_duration(core::seconds(limit_)));
 }
 
 }  // namespace hyades::worker

@@ -1,6 +1,10 @@
 #include "coordinator/meters/meters.h"
 
+#include "core/base/duration.h"
+
 namespace hyades::coordinator {
+using core::seconds;
+
 namespace {
 
 using prometheus::Counter;
@@ -28,8 +32,6 @@ Family<Counter>& counters(prometheus::Registry& registry, const char* name, cons
 Family<Histogram>& histograms(prometheus::Registry& registry, const char* name, const char* help) {
   return prometheus::BuildHistogram().Name(name).Help(help).Register(registry);
 }
-
-double seconds(Meters::Time time) { return std::chrono::duration<double>(time).count(); }
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <string_view>
 
 #include "core/base/result.h"
@@ -10,5 +11,11 @@ namespace hyades::core {
 /// "1.5h", "30d"), several in falling order ("1h30m"), or a number alone, which is seconds. At most
 /// a thousand years; anything else, also a negative one, is an error that says what was expected.
 Result<double> parse_duration(std::string_view text);
+
+/// How many seconds `time` has.
+template <class Rep, class Period>
+constexpr double seconds(std::chrono::duration<Rep, Period> time) {
+  return std::chrono::duration<double>(time).count();
+}
 
 }  // namespace hyades::core
