@@ -4,31 +4,31 @@
 
 namespace hyades::coordinator {
 
-RetryQueue::RetryQueue(size_t threads) {
+RetryQueue::RetryQueue(size_t threads, std::chrono::nanoseconds pause) : pause_(pause) {
   for (size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
 }
 
 RetryQueue::~RetryQueue() { end(); }
 
-void RetryQueue::add(uint64_t owner, Task task) {
-  const std::lock_guard lock(mutex_);
+void RetryQueue::add(uint64_t key, Task task) {
+  const core::MutexLock lock(mutex_);
   if (ended_) return;
-  const auto [queue, fresh] = background_.try_emplace(owner);
+  const auto [queue, fresh] = tasks_.try_emplace(key);
   queue->second.push_back(std::move(task));
   if (!fresh) return;
-  ready_.push_back(owner);
+  ready_.push_back(key);
   wake_.notify_one();
 }
 
 void RetryQueue::end() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     end_ = true;
     wake_.notify_all();
   }
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   ended_ = true;
 }
 
@@ -40,22 +40,22 @@ void RetryQueue::wake_due(Time now) {
 }
 
 void RetryQueue::work() {
-  std::unique_lock lock(mutex_);
+  core::MutexLock lock(mutex_);
   for (;;) {
     wake_due(std::chrono::steady_clock::now());
     if (ready_.empty()) {
       // One that is in work may leave others.
       if (end_ && in_work_ == 0) return;
       if (put_off_.empty()) {
-        wake_.wait(lock);
+        wake_.wait(mutex_);
       } else {
-        wake_.wait_until(lock, Time(put_off_.begin()->first));
+        wake_.wait_until(mutex_, Time(put_off_.begin()->first));
       }
       continue;
     }
-    const uint64_t owner = ready_.front();
+    const uint64_t key = ready_.front();
     ready_.pop_front();
-    const auto queue = background_.find(owner);
+    const auto queue = tasks_.find(key);
     Task task = std::move(queue->second.front());
     ++in_work_;
     lock.unlock();
@@ -71,11 +71,11 @@ void RetryQueue::work() {
       queue->second.front() = std::move(task);
     }
     if (queue->second.empty()) {
-      background_.erase(queue);
+      tasks_.erase(queue);
     } else if (done) {
-      ready_.push_back(owner);
+      ready_.push_back(key);
     } else {
-      put_off_.emplace(std::chrono::steady_clock::now() + kAgain, owner);
+      put_off_.emplace(std::chrono::steady_clock::now() + pause_, key);
     }
     wake_.notify_all();
   }

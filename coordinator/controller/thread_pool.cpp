@@ -10,7 +10,7 @@ ThreadPool::ThreadPool(size_t threads, size_t most_waiting) : most_waiting_(most
 
 ThreadPool::~ThreadPool() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     end_ = true;
     wake_.notify_all();
   }
@@ -18,7 +18,7 @@ ThreadPool::~ThreadPool() {
 }
 
 bool ThreadPool::submit(std::function<void()> what) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   if (waiting_.size() >= most_waiting_) return false;
   waiting_.push_back(std::move(what));
   wake_.notify_one();
@@ -26,9 +26,9 @@ bool ThreadPool::submit(std::function<void()> what) {
 }
 
 void ThreadPool::work() {
-  std::unique_lock lock(mutex_);
+  core::MutexLock lock(mutex_);
   for (;;) {
-    wake_.wait(lock, [&] { return end_ || !waiting_.empty(); });
+    while (!end_ && waiting_.empty()) wake_.wait(mutex_);
     if (waiting_.empty()) return;
     std::function<void()> what = std::move(waiting_.front());
     waiting_.pop_front();

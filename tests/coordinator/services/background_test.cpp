@@ -65,6 +65,21 @@ TEST(RetryQueue, AreTriedOnceMoreInTheEnd) {
   EXPECT_EQ(done, 8);
 }
 
+TEST(RetryQueue, WhatIsNeverDoneComesAgainUntilTheEnd) {
+  std::atomic<int> rounds{0};
+  std::promise<void> third;
+  RetryQueue queue(1, std::chrono::milliseconds(1));
+  queue.add(1, [&] {
+    if (++rounds == 3) third.set_value();
+    return false;
+  });
+  ASSERT_EQ(third.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  queue.end();
+  const int last = rounds;
+  queue.add(1, [&] { return ++rounds > 0; });
+  EXPECT_EQ(rounds, last) << "nothing is done after the end";
+}
+
 TEST(RetryQueueDeathTest, WithoutMemoryTheProcessSaysSoAndEnds) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_DEATH(
