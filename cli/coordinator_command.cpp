@@ -172,7 +172,7 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
   options.audit_folder = arguments.controller.folder;
   options.plain = arguments.listen.cert_file.empty();
   options.tell_unguarded = [&controller](const std::string& how) {
-    controller.set_unguarded(how);
+    controller.farm().set_unguarded(how);
     if (!how.empty()) {
       hyades::farm::log(LogLevel::warning, how);
     }
@@ -247,7 +247,7 @@ int serve(const Arguments& arguments) {
       return 1;
     }
     note_address(arguments.controller.folder + "/address", (*server)->address() + "\n");
-    if (const grpc::Status room = (*controller)->admit(0); !room.ok()) {
+    if (const grpc::Status room = (*controller)->disk().admit(0); !room.ok()) {
       hyades::farm::log(LogLevel::error, room.error_message());
     }
     auto http = open_http(arguments, **controller, **authority);

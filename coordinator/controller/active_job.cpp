@@ -105,6 +105,10 @@ int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splat
   return samples < kManySamples && pieces >= kEnoughPieces ? kLargeTile : kSmallTile;
 }
 
+int32_t tile_size_of(const ActiveJob& job) {
+  return tile_size_of(job.region, job.read.job.sampling.samples, job.layout.layers.splats);
+}
+
 void Speed::note(uint64_t done, TimePoint now) {
   if (last_ != TimePoint{}) {
     const double passed = std::chrono::duration<double>(now - last_).count();

@@ -93,8 +93,8 @@ struct ActiveJob {
   TimePoint core_stored;         ///< when that was looked at
   std::set<WorkerId> gave_back;  ///< whose reason for giving units back is in the log
   bool making_videos = false;    ///< all frames are done, and the scheduler has let go of it; its
-                               ///< videos are being made, or wait for their turn
-  bool ending = false;  ///< the scheduler has let go of it, and its end is being stored
+                                 ///< videos are being made, or wait for their turn
+  bool ending = false;           ///< the scheduler has let go of it, and its end is being stored
 
   FrameNote& touch(int32_t frame);
   void touch() { ++version; }
@@ -121,6 +121,8 @@ struct ActiveJob {
 /// these are few, if the frame is still cut into enough pieces for many threads; else 32. Where
 /// films have `splats`: kSplatTile.
 int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats);
+
+int32_t tile_size_of(const ActiveJob& job);
 
 /// A stored job as the wire shows it.
 v1::Job describe(const StoredJob& job);

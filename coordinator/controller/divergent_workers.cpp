@@ -1,15 +1,15 @@
-// Workers that are found odd, and finished frames that they had a part in.
+#include "coordinator/controller/divergent_workers.h"
+
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/controller.h"
+#include "coordinator/controller/wall_clock.h"
 
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint64_t kWorkersKey = 0;  // no job has this number
 /// Moments that are remembered of a worker; fewer mean that more frames are doubted.
 constexpr size_t kMostMoments = 8;
 /// Frames of a job that begin again at once.
@@ -17,26 +17,23 @@ constexpr size_t kDoubtedAtOnce = 100;
 
 }  // namespace
 
-/// What workers call themselves; nothing for those who are not known any more. With the lock.
-std::vector<std::string> Controller::names_of(const std::vector<WorkerId>& workers) const {
-  std::vector<std::string> names;
-  for (const WorkerId worker : workers) {
-    const auto session = sessions_.find(worker);
-    names.push_back(session == sessions_.end() ? std::string() : session->second.hello.worker_id());
-  }
-  return names;
+core::Status DivergentWorkers::load() {
+  const auto trusted = shared_.store->trusted();
+  if (!trusted) return trusted.error();
+  const StateLock lock(shared_.mutex);
+  for (const StoredTrust& kept : *trusted) trust_[kept.worker] = {kept.moment};
+  return {};
 }
 
 /// The worker rendered a unit of the frame rightly, after the frame was begun: what was finished
-/// before that shows nothing wrong of it. (Not after: its film may have come long ago.) With the
-/// lock.
-void Controller::confirmed(const Confirmed& sure) {
-  ActiveJob* active = active_job(sure.job);
-  const auto session = sessions_.find(sure.worker);
-  if (active == nullptr || session == sessions_.end()) return;
+/// before that shows nothing wrong of it. (Not after: its film may have come long ago.)
+void DivergentWorkers::confirmed(const Confirmed& sure) {
+  ActiveJob* active = jobs_.find(sure.job);
+  const WorkerSession* session = workers_.find(sure.worker);
+  if (active == nullptr || session == nullptr) return;
   const uint64_t begun = active->frames[sure.frame].begun;
   if (begun == 0) return;
-  const std::string& name = session->second.hello.worker_id();
+  const std::string& name = session->hello.worker_id();
   std::vector<uint64_t>& moments = trust_[name];
   if (!moments.empty() && moments.back() >= begun) return;
   if (moments.size() == kMostMoments) moments.erase(moments.begin() + 1);
@@ -48,13 +45,13 @@ void Controller::confirmed(const Confirmed& sure) {
   }
   trust_to_store_.insert(name);
   if (std::exchange(storing_trust_, true)) return;
-  background_.add(kWorkersKey, [this] { return store_trust(); });
+  shared_.background.add(Shared::kWorkersKey, [this] { return store_trust(); });
 }
 
-bool Controller::store_trust() {
+bool DivergentWorkers::store_trust() {
   std::vector<StoredTrust> workers;
   {
-    const std::lock_guard lock(mutex_);
+    const StateLock lock(shared_.mutex);
     for (const std::string& name : trust_to_store_) {
       if (const auto kept = trust_.find(name); kept != trust_.end()) {
         workers.push_back({name, kept->second.back()});
@@ -64,21 +61,20 @@ bool Controller::store_trust() {
     storing_trust_ = false;
   }
   // Where it is lost more is doubted.
-  (void)store_->trust(workers);
+  (void)shared_.store->trust(workers);
   return true;
 }
 
 /// That a worker is odd is stored with the doubt about all finished frames that it had a part in
-/// since it could last be trusted. With the lock.
-void Controller::keep_divergent(RecordId record, const WorkerOddRecord& odd) {
-  const auto session = sessions_.find(odd.worker);
-  ActiveJob* active = active_job(odd.job);
-  DivergentWorker kept;
+/// since it could last be trusted.
+void DivergentWorkers::keep(RecordId record, const WorkerOddRecord& odd) {
+  const WorkerSession* session = workers_.find(odd.worker);
+  ActiveJob* active = jobs_.find(odd.job);
+  Found kept;
   kept.record = record;
-  kept.worker = {session == sessions_.end() ? std::string() : session->second.hello.worker_id(),
-                 odd.reason};
+  kept.worker = {session == nullptr ? std::string() : session->hello.worker_id(), odd.reason};
   kept.line = {wall_ms(), v1::LOG_LEVEL_WARNING, std::nullopt,
-               session == sessions_.end() ? std::string() : session->second.hello.name(),
+               session == nullptr ? std::string() : session->hello.name(),
                "was found odd after it had a part in finished frames, which are in doubt: "};
   // What it rendered wrongly came after this frame was begun.
   const uint64_t begun = active == nullptr ? 0 : active->frames[odd.frame].begun;
@@ -88,46 +84,41 @@ void Controller::keep_divergent(RecordId record, const WorkerOddRecord& odd) {
     }
   }
   if (active != nullptr && kept.worker.worker.empty()) {
-    note(
+    jobs_.note(
         *active, v1::LOG_LEVEL_WARNING, odd.frame, {},
         "an odd worker has been gone for so long that it is not known which finished frames it had "
         "a part in");
   }
-  background_.add(kWorkersKey, [this, kept = std::move(kept)] { return store_divergent(kept); });
+  shared_.background.add(Shared::kWorkersKey,
+                         [this, kept = std::move(kept)] { return store(kept); });
 }
 
-bool Controller::store_divergent(const DivergentWorker& odd) {
+bool DivergentWorkers::store(const Found& odd) {
   core::Result<std::vector<JobFrames>> doubted{std::vector<JobFrames>()};
-  if (!odd.worker.worker.empty()) doubted = store_->found_odd(odd.worker, odd.since, odd.line);
+  if (!odd.worker.worker.empty())
+    doubted = shared_.store->found_odd(odd.worker, odd.since, odd.line);
   if (!doubted) return false;
-  std::vector<Action> later;
-  {
-    const std::lock_guard lock(mutex_);
-    for (JobFrames& job : *doubted) {
-      background_.add(job.job, [this, job = std::move(job)] { return doubt_frames(job); });
-    }
-    later = tell(Persisted{odd.record});
+  Turn turn(dispatcher_);
+  for (JobFrames& job : *doubted) {
+    shared_.background.add(job.job, [this, job = std::move(job)] { return doubt_frames(job); });
   }
-  carry_out(later);
+  turn.tell(Persisted{odd.record});
   return true;
 }
 
 /// Doubtful frames of an open job begin again, some at a time; for the job's tasks.
-bool Controller::doubt_frames(const JobFrames& doubted) {
-  std::vector<Action> later;
-  {
-    const std::lock_guard lock(mutex_);
-    ActiveJob* active = active_job(doubted.job);
-    if (active == nullptr || active->ending) return true;
-    const size_t now = std::min(kDoubtedAtOnce, doubted.frames.size());
-    const auto cut = doubted.frames.begin() + static_cast<ptrdiff_t>(now);
-    if (cut != doubted.frames.end()) {
-      JobFrames rest{doubted.job, {cut, doubted.frames.end()}};
-      background_.add(doubted.job, [this, rest = std::move(rest)] { return doubt_frames(rest); });
-    }
-    later = tell(FramesDoubted{active->id, {doubted.frames.begin(), cut}});
+bool DivergentWorkers::doubt_frames(const JobFrames& doubted) {
+  Turn turn(dispatcher_);
+  ActiveJob* active = jobs_.find(doubted.job);
+  if (active == nullptr || active->ending) return true;
+  const size_t now = std::min(kDoubtedAtOnce, doubted.frames.size());
+  const auto cut = doubted.frames.begin() + static_cast<ptrdiff_t>(now);
+  if (cut != doubted.frames.end()) {
+    JobFrames rest{doubted.job, {cut, doubted.frames.end()}};
+    shared_.background.add(doubted.job,
+                           [this, rest = std::move(rest)] { return doubt_frames(rest); });
   }
-  carry_out(later);
+  turn.tell(FramesDoubted{active->id, {doubted.frames.begin(), cut}});
   return true;
 }
 

@@ -3,14 +3,17 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/controller.h"
 #include "coordinator/controller/counted.h"
+#include "coordinator/controller/diagnosis.h"
+#include "coordinator/controller/lease_renewal.h"
 #include "core/base/text.h"
 
 namespace hyades::coordinator {
 namespace {
 
 constexpr size_t kMostNamed = 8;
+/// That are told of at once.
+constexpr size_t kMostStillUnits = 8;
 
 bool has_tag(const v1::Hello& hello, const std::string& tag) {
   return std::find(hello.tags().begin(), hello.tags().end(), tag) != hello.tags().end();
@@ -24,13 +27,13 @@ bool has_memory(const v1::Hello& hello, uint64_t bytes) {
 
 /// Why none of the workers that could take units may take this job's; nothing where one may, or
 /// where it asks for nothing.
-std::string Controller::unmet_needs(const StoredJob& job) const {
+std::string Diagnosis::unmet_needs(const StoredJob& job) const {
   if (job.tags.empty() && job.memory == 0) return {};
   uint64_t most_memory = 0;
   bool enough_memory = false;
   bool suits = false;
   std::vector<std::string> missing = job.tags;
-  for (const auto& entry : sessions_) {
+  for (const auto& entry : workers_.all()) {
     const WorkerSession& session = entry.second;
     if (!session.joined || session.state != v1::WORKER_STATE_ACTIVE) continue;
     std::erase_if(missing, [&](const std::string& tag) { return has_tag(session.hello, tag); });
@@ -57,10 +60,10 @@ std::string Controller::unmet_needs(const StoredJob& job) const {
 }
 
 /// Workers that are there and get nothing, and why; the first few.
-std::vector<std::string> Controller::barred_workers() const {
+std::vector<std::string> Diagnosis::barred_workers() const {
   std::vector<std::string> words;
   size_t others = 0;
-  for (const auto& [worker, session] : sessions_) {
+  for (const auto& [worker, session] : workers_.all()) {
     if (!session.joined || session.state == v1::WORKER_STATE_ACTIVE) continue;
     if (words.size() == kMostNamed) {
       ++others;
@@ -80,7 +83,7 @@ std::vector<std::string> Controller::barred_workers() const {
 
 /// What workers last said of the units that they have of the job, in one line; nothing where they
 /// have none.
-std::vector<std::string> Controller::where_units_are(JobId job) const {
+std::vector<std::string> Diagnosis::where_units_are(JobId job) const {
   uint32_t rendering = 0;
   uint32_t loading = 0;
   uint32_t waiting = 0;
@@ -88,10 +91,10 @@ std::vector<std::string> Controller::where_units_are(JobId job) const {
   uint32_t rendered = 0;
   uint32_t away = 0;
   uint32_t silent = 0;
-  const auto units = scheduler_.units_of(job);
+  const auto units = dispatcher_.scheduler().units_of(job);
   for (const auto& [worker, held] : units) {
-    const auto session = sessions_.find(worker);
-    if (session == sessions_.end() || !session->second.link) {
+    const auto session = workers_.all().find(worker);
+    if (session == workers_.all().end() || !session->second.link) {
       ++away;
       continue;
     }
@@ -131,6 +134,27 @@ std::vector<std::string> Controller::where_units_are(JobId job) const {
   add(silent, "of which nothing is known yet");
   return {
       fmt::format("{} with workers: {}", counted(units.size(), "unit"), fmt::join(parts, ", "))};
+}
+
+/// Units of the job that get no further, in words.
+std::vector<std::string> Diagnosis::still_units(JobId job) const {
+  std::vector<std::string> words;
+  for (const auto& [id, session] : workers_.all()) {
+    for (const auto& [lease, progress] : session.progress) {
+      const auto patience = lease_patience(progress.stage, shared_.options.stall_time);
+      if (!patience || progress.still < *patience / 4) continue;
+      for (const UnitInHand& held : dispatcher_.scheduler().units_of(id, lease)) {
+        if (held.job != job || words.size() == kMostStillUnits) continue;
+        words.push_back(fmt::format(
+            "worker {} has made no progress for {:.3g} s with tile {},{} of frame {}; after {:.3g} "
+            "s it is taken from it",
+            session.hello.name(), std::chrono::duration<double>(progress.still).count(),
+            held.unit.tile.x0, held.unit.tile.y0, held.unit.frame,
+            std::chrono::duration<double>(*patience).count()));
+      }
+    }
+  }
+  return words;
 }
 
 }  // namespace hyades::coordinator

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "core/film/unit.h"
 #include "hyades/v1/jobs.pb.h"
 
@@ -27,10 +28,11 @@ struct TimedStep {
 };
 
 /// What was done where and when, for the jobs that last had something done: in memory only, for
-/// those who look for what takes long. Not thread-safe.
+/// those who look for what takes long. Thread-safe.
 class Timelines {
  public:
-  void note(uint64_t job, TimedStep step) {
+  void note(uint64_t job, TimedStep step) HYADES_EXCLUDES(mutex_) {
+    const core::MutexLock lock(mutex_);
     OfJob& timeline = jobs_[job];
     // Greater than any before, of an earlier run of the coordinator too.
     const auto now = static_cast<uint64_t>(std::max<int64_t>(step.ended_us, 1));
@@ -47,7 +49,10 @@ class Timelines {
     });
     jobs_.erase(oldest);
   }
-  void forget(uint64_t job) { jobs_.erase(job); }
+  void forget(uint64_t job) HYADES_EXCLUDES(mutex_) {
+    const core::MutexLock lock(mutex_);
+    jobs_.erase(job);
+  }
 
   struct Page {
     std::vector<TimedStep> steps;
@@ -55,7 +60,8 @@ class Timelines {
     uint64_t dropped = 0;  ///< older ones that are not kept
   };
   /// Steps above number `after`, at most `limit`; none where nothing is known.
-  Page page(uint64_t job, uint64_t after, size_t limit) const {
+  Page page(uint64_t job, uint64_t after, size_t limit) const HYADES_EXCLUDES(mutex_) {
+    const core::MutexLock lock(mutex_);
     const auto found = jobs_.find(job);
     if (found == jobs_.end()) return {};
     const auto& steps = found->second.steps;
@@ -75,7 +81,8 @@ class Timelines {
   };
   static constexpr size_t kMostSteps = 40'000;
   static constexpr size_t kMostJobs = 32;
-  std::map<uint64_t, OfJob> jobs_;
+  mutable core::Mutex mutex_;
+  std::map<uint64_t, OfJob> jobs_ HYADES_GUARDED_BY(mutex_);
 };
 
 }  // namespace hyades::coordinator

@@ -26,7 +26,7 @@ uint64_t newest_job(Controller& controller) {
   request.set_ended(true);
   request.set_limit(1);
   v1::ListJobsResponse response;
-  const bool known = controller.list(request, response).ok() && response.jobs_size() > 0;
+  const bool known = controller.queries().list(request, response).ok() && response.jobs_size() > 0;
   return known ? response.jobs(0).id() : 0;
 }
 
@@ -72,7 +72,7 @@ void Notifier::look() {
       continue;
     }
     v1::GetJobResponse got;
-    const grpc::Status status = controller_.get(seen->first, INT32_MAX, got);
+    const grpc::Status status = controller_.queries().get(seen->first, INT32_MAX, got);
     if (status.error_code() == grpc::StatusCode::UNAVAILABLE) {
       ++seen;  // again with the next look
       continue;
@@ -99,7 +99,7 @@ void Notifier::look_at(const v1::Job& job, Clock::time_point now) {
   before.told = true;
   v1::ExplainResponse why;
   News news{News::Kind::stalled, job};
-  if (controller_.explain(job.id(), why).ok()) {
+  if (controller_.diagnosis().explain(job.id(), why).ok()) {
     news.reasons.assign(why.reasons().begin(), why.reasons().end());
   }
   tell(news);
@@ -112,7 +112,7 @@ void Notifier::tell_of_ended() {
   v1::ListJobsResponse response;
   request.set_limit(100);
   if (newest_job(controller_) <= newest_) return;
-  if (!controller_.list(request, response).ok()) return;
+  if (!controller_.queries().list(request, response).ok()) return;
   // From the oldest on: one that is open and was not seen yet is looked at next time.
   for (auto job = response.jobs().rbegin(); job != response.jobs().rend(); ++job) {
     if (job->id() <= newest_) continue;

@@ -88,7 +88,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
       return grpc::Status::OK;
     }
     const uint64_t begun = std::min(store_.begun(name), part.size());
-    if (grpc::Status room = controller_.admit(part.size() - begun); !room.ok()) return room;
+    if (grpc::Status room = controller_.disk().admit(part.size() - begun); !room.ok()) return room;
     auto writer = store_.write(name, part.size());
     if (!writer) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
@@ -123,9 +123,9 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     if (data.size() > writer_->size() - writer_->offset()) {
       return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
     }
-    if (controller_.disk_is_full()) {
+    if (controller_.disk().is_full()) {
       // What has come stays for a later upload to go on with.
-      if (grpc::Status room = controller_.admit(0); !room.ok()) return room;
+      if (grpc::Status room = controller_.disk().admit(0); !room.ok()) return room;
     }
     if (auto written = writer_->append(data); !written) {
       return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, written.error().message,
@@ -133,7 +133,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     }
     if (writer_->offset() < writer_->size()) return grpc::Status::OK;
     if (auto whole = writer_->commit(); !whole) {
-      if (grpc::Status room = controller_.admit(0); !room.ok()) return room;
+      if (grpc::Status room = controller_.disk().admit(0); !room.ok()) return room;
       return {grpc::StatusCode::DATA_LOSS, whole.error().message};
     }
     done_ = true;

@@ -8,7 +8,7 @@ grpc::ServerUnaryReactor* FarmService::Info(Context* context, const Bytes* asked
   return answer<v1::InfoRequest, v1::InfoResponse>(
       {admission_, "Farm/Info", context, asked, said},
       [this](const v1::InfoRequest&, v1::InfoResponse& response) {
-        controller_.info(response);
+        controller_.farm().info(response);
         return grpc::Status::OK;
       });
 }
@@ -17,7 +17,7 @@ grpc::ServerUnaryReactor* FarmService::Workers(Context* context, const Bytes* as
   return answer<v1::WorkersRequest, v1::WorkersResponse>(
       {admission_, "Farm/Workers", context, asked, said},
       [this](const v1::WorkersRequest& request, v1::WorkersResponse& response) {
-        controller_.workers(request, response);
+        controller_.farm().workers(request, response);
         return grpc::Status::OK;
       });
 }
@@ -27,7 +27,7 @@ grpc::ServerUnaryReactor* FarmService::DrainWorker(Context* context, const Bytes
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
       {admission_, "Farm/DrainWorker", context, asked, said},
       [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
-        return controller_.drain_worker(request, *response.mutable_worker());
+        return controller_.farm().drain_worker(request, *response.mutable_worker());
       });
 }
 
@@ -36,7 +36,7 @@ grpc::ServerUnaryReactor* FarmService::QuarantineWorker(Context* context, const 
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
       {admission_, "Farm/QuarantineWorker", context, asked, said},
       [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
-        return controller_.quarantine_worker(request, *response.mutable_worker());
+        return controller_.farm().quarantine_worker(request, *response.mutable_worker());
       });
 }
 
@@ -45,7 +45,7 @@ grpc::ServerUnaryReactor* FarmService::ReleaseWorker(Context* context, const Byt
   return answer<v1::WorkerRequest, v1::WorkerResponse>(
       {admission_, "Farm/ReleaseWorker", context, asked, said},
       [this](const v1::WorkerRequest& request, v1::WorkerResponse& response) {
-        return controller_.release_worker(request, *response.mutable_worker());
+        return controller_.farm().release_worker(request, *response.mutable_worker());
       });
 }
 

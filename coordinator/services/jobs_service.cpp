@@ -20,7 +20,7 @@ grpc::ServerUnaryReactor* JobsService::Submit(Context* context, const Bytes* ask
       [this](v1::SubmitRequest& request, v1::SubmitResponse& response, const Caller& caller) {
         bool proven = false;
         const grpc::Status owned = name_owner(caller, request, proven);
-        return owned.ok() ? controller_.submit(request, proven, response) : owned;
+        return owned.ok() ? controller_.jobs().submit(request, proven, response) : owned;
       },
       farm::kMaxMessageBytes);
 }
@@ -29,10 +29,10 @@ grpc::ServerUnaryReactor* JobsService::List(Context* context, const Bytes* asked
   return answer_or_by<v1::ListJobsRequest, v1::ListJobsResponse>(
       executors_.rows, {admission_, "Jobs/List", context, asked, said},
       [this](const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
-        return controller_.list_open(request, response);
+        return controller_.queries().list_open(request, response);
       },
       [this](const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
-        return controller_.list(request, response);
+        return controller_.queries().list(request, response);
       });
 }
 
@@ -40,10 +40,11 @@ grpc::ServerUnaryReactor* JobsService::Get(Context* context, const Bytes* asked,
   return answer_or_by<v1::GetJobRequest, v1::GetJobResponse>(
       executors_.rows, {admission_, "Jobs/Get", context, asked, said},
       [this](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
-        return controller_.get_open(request.job(), after(request), response, request.state());
+        return controller_.queries().get_open(request.job(), after(request), response,
+                                              request.state());
       },
       [this](const v1::GetJobRequest& request, v1::GetJobResponse& response) {
-        return controller_.get(request.job(), after(request), response, request.state());
+        return controller_.queries().get(request.job(), after(request), response, request.state());
       });
 }
 
@@ -51,10 +52,10 @@ grpc::ServerUnaryReactor* JobsService::Explain(Context* context, const Bytes* as
   return answer_or_by<v1::JobRequest, v1::ExplainResponse>(
       executors_.rows, {admission_, "Jobs/Explain", context, asked, said},
       [this](const v1::JobRequest& request, v1::ExplainResponse& response) {
-        return controller_.explain_open(request.job(), response);
+        return controller_.diagnosis().explain_open(request.job(), response);
       },
       [this](const v1::JobRequest& request, v1::ExplainResponse& response) {
-        return controller_.explain(request.job(), response);
+        return controller_.diagnosis().explain(request.job(), response);
       });
 }
 
@@ -63,13 +64,13 @@ grpc::ServerUnaryReactor* JobsService::ListTimeline(Context* context, const Byte
   return answer_by<v1::ListTimelineRequest, v1::ListTimelineResponse>(
       executors_.rows, {admission_, "Jobs/ListTimeline", context, asked, said},
       [this](const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response) {
-        return controller_.timeline(request, response);
+        return controller_.queries().timeline(request, response);
       });
 }
 
 template <class Request>
-grpc::ServerUnaryReactor* JobsService::steer(Call call, void (*what)(Controller&, const Request&,
-                                                                     Controller::JobReply)) {
+grpc::ServerUnaryReactor* JobsService::steer(Call call,
+                                             void (*what)(Controller&, const Request&, JobReply)) {
   Request request;
   grpc::Status status = call.admit();
   if (status.ok()) status = parse(*call.asked, farm::kMaxRequestBytes, request);
@@ -93,24 +94,24 @@ grpc::ServerUnaryReactor* JobsService::steer(Call call, void (*what)(Controller&
 grpc::ServerUnaryReactor* JobsService::Pause(Context* context, const Bytes* asked, Bytes* said) {
   return steer<v1::JobRequest>(
       {admission_, "Jobs/Pause", context, asked, said},
-      [](Controller& controller, const v1::JobRequest& request, Controller::JobReply then) {
-        controller.pause(request.job(), std::move(then));
+      [](Controller& controller, const v1::JobRequest& request, JobReply then) {
+        controller.steering().pause(request.job(), std::move(then));
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::Resume(Context* context, const Bytes* asked, Bytes* said) {
   return steer<v1::JobRequest>(
       {admission_, "Jobs/Resume", context, asked, said},
-      [](Controller& controller, const v1::JobRequest& request, Controller::JobReply then) {
-        controller.resume(request.job(), std::move(then));
+      [](Controller& controller, const v1::JobRequest& request, JobReply then) {
+        controller.steering().resume(request.job(), std::move(then));
       });
 }
 
 grpc::ServerUnaryReactor* JobsService::Cancel(Context* context, const Bytes* asked, Bytes* said) {
   return steer<v1::JobRequest>(
       {admission_, "Jobs/Cancel", context, asked, said},
-      [](Controller& controller, const v1::JobRequest& request, Controller::JobReply then) {
-        controller.cancel(request.job(), std::move(then));
+      [](Controller& controller, const v1::JobRequest& request, JobReply then) {
+        controller.steering().cancel(request.job(), std::move(then));
       });
 }
 
@@ -118,8 +119,8 @@ grpc::ServerUnaryReactor* JobsService::SetPriority(Context* context, const Bytes
                                                    Bytes* said) {
   return steer<v1::SetPriorityRequest>(
       {admission_, "Jobs/SetPriority", context, asked, said},
-      [](Controller& controller, const v1::SetPriorityRequest& request, Controller::JobReply then) {
-        controller.set_priority(request.job(), request.priority(), std::move(then));
+      [](Controller& controller, const v1::SetPriorityRequest& request, JobReply then) {
+        controller.steering().set_priority(request.job(), request.priority(), std::move(then));
       });
 }
 
@@ -128,7 +129,7 @@ grpc::ServerUnaryReactor* JobsService::Retry(Context* context, const Bytes* aske
       executors_.files, {admission_, "Jobs/Retry", context, asked, said},
       [this](const v1::JobRequest& request, v1::JobResponse& response, const Caller& caller) {
         const grpc::Status his = may_steer(controller_, caller, request.job());
-        return his.ok() ? controller_.retry(request.job(), *response.mutable_job()) : his;
+        return his.ok() ? controller_.jobs().retry(request.job(), *response.mutable_job()) : his;
       });
 }
 
@@ -137,7 +138,7 @@ grpc::ServerUnaryReactor* JobsService::Delete(Context* context, const Bytes* ask
       executors_.files, {admission_, "Jobs/Delete", context, asked, said},
       [this](const v1::JobRequest& request, v1::DeleteJobResponse&, const Caller& caller) {
         const grpc::Status his = may_steer(controller_, caller, request.job());
-        return his.ok() ? controller_.remove(request.job()) : his;
+        return his.ok() ? controller_.jobs().remove(request.job()) : his;
       });
 }
 

@@ -50,8 +50,7 @@ class JobsService final : public RawJobs {
  private:
   /// What a method does that takes a job and answers with how it is now.
   template <class Request>
-  grpc::ServerUnaryReactor* steer(Call call,
-                                  void (*what)(Controller&, const Request&, Controller::JobReply));
+  grpc::ServerUnaryReactor* steer(Call call, void (*what)(Controller&, const Request&, JobReply));
 
   Controller& controller_;
   const Admission& admission_;

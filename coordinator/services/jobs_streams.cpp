@@ -46,20 +46,20 @@ class Follower : public Producer<Message> {
   Follower(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
            uint64_t job)
       : Producer<Message>(context, pool), controller_(controller), job_(job) {
-    watch_ = controller.watch(job, [poker = this->poker()] { poker->poke(); });
+    watch_ = controller.watchers().watch(job, [poker = this->poker()] { poker->poke(); });
   }
-  void over() override { controller_.unwatch(watch_); }
+  void over() override { controller_.watchers().unwatch(watch_); }
 
   /// Whether nothing can come any more, or why the job cannot be followed.
   grpc::Status ended(bool& ended) {
     v1::WatchEvent event;
     told_.version = std::max<uint64_t>(told_.version, 1);
-    return controller_.changes(job_, told_, event, ended);
+    return controller_.queries().changes(job_, told_, event, ended);
   }
 
   Controller& controller_;
   const uint64_t job_;
-  Controller::ChangeCursor told_;
+  ChangeCursor told_;
 
  private:
   uint64_t watch_ = 0;
@@ -74,11 +74,11 @@ class Watching final : public Follower<v1::WatchEvent> {
  private:
   Step next(v1::WatchEvent& event, grpc::Status& status, bool may_wait) override {
     if (ended_) return Step::end;
-    const Controller::ChangeCursor before = told_;
+    const ChangeCursor before = told_;
     bool over = false;
-    if (!controller_.changes_of_open(job_, told_, event)) {
+    if (!controller_.queries().changes_of_open(job_, told_, event)) {
       if (!may_wait) return Step::hand;
-      status = controller_.changes(job_, told_, event, over);
+      status = controller_.queries().changes(job_, told_, event, over);
       if (!status.ok()) return Step::end;
     }
     ended_ = over && !event.more();
@@ -131,7 +131,7 @@ class OutputList final : public Follower<v1::OutputFile> {
       if (!all) seen_ = outputs->back().number;
       for (const StoredOutput& output : *outputs) {
         // Those for a video go when it is made, and are of use only where it never will be.
-        if (!over && controller_.is_for_video(job_, output.path)) {
+        if (!over && controller_.queries().is_for_video(job_, output.path)) {
           passed_over_.insert(output.path);
         } else if (!again_ || passed_over_.contains(output.path)) {
           ready_.push_back(output);
@@ -233,7 +233,7 @@ class FilmStream final : public Producer<v1::FilmPart> {
 
   /// The stream may be over before the film is found.
   void ask() {
-    const grpc::Status asked = controller_.film(
+    const grpc::Status asked = controller_.queries().film(
         request_.job(), request_.frame(),
         [found = found_, poker = poker()](const grpc::Status& said, const core::FilmInfo& info,
                                           std::shared_ptr<const core::Film> film) {

@@ -18,7 +18,8 @@ bool steers_all(const Caller& caller) {
 grpc::Status may_steer(Controller& controller, const Caller& caller, uint64_t job) {
   if (steers_all(caller)) return grpc::Status::OK;
   v1::GetJobResponse got;
-  if (const grpc::Status known = controller.get(job, INT32_MAX, got); !known.ok()) return known;
+  if (const grpc::Status known = controller.queries().get(job, INT32_MAX, got); !known.ok())
+    return known;
   return allow_steering(caller, job, got.job().owner(), got.job().owner_proven());
 }
 

@@ -93,7 +93,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   }
   std::unique_ptr<Server> server(new Server(std::move(parts)));
   server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
-  controller.listens_at(server->address_);
+  controller.farm().listens_at(server->address_);
   return server;
 }
 

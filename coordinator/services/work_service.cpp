@@ -157,14 +157,15 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
     }
     if (!attached_) {
       grpc::Status status{grpc::StatusCode::INVALID_ARGUMENT, "a stream begins with Hello"};
-      if (message.has_hello()) status = controller_.attach(message.hello(), link_, worker_, token_);
+      if (message.has_hello())
+        status = controller_.workers().attach(message.hello(), link_, worker_, token_);
       if (!status.ok()) {
         link_->close(status);
         return;
       }
       attached_ = true;
     } else {
-      controller_.receive(worker_, link_.get(), message);
+      controller_.workers().receive(worker_, link_.get(), message);
     }
     StartRead(&bytes_);
   }
@@ -174,7 +175,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
   void OnDone() override {
     visit_.reset();
     link_->detach();
-    if (attached_) controller_.detach(worker_, link_.get());
+    if (attached_) controller_.workers().detach(worker_, link_.get());
     delete this;
   }
 

@@ -95,9 +95,9 @@ WebReply AssetsApi::take(const Caller& caller, const std::string& name, uint64_t
   if (controller_.assets().contains(name, size)) {
     return json_reply({{"offset", size}, {"complete", true}});
   }
-  if (controller_.disk_is_full()) {
+  if (controller_.disk().is_full()) {
     // What has come stays for a later upload to go on with.
-    if (const grpc::Status room = controller_.admit(0); !room.ok()) return error_reply(room);
+    if (const grpc::Status room = controller_.disk().admit(0); !room.ok()) return error_reply(room);
   }
   {
     const std::lock_guard lock(mutex_);
@@ -144,7 +144,7 @@ WebReply AssetsApi::append(farm::ContentWriter& writer, uint64_t offset, const s
     return json_reply({{"offset", writer.offset()}, {"complete", false}});
   }
   if (auto whole = writer.commit(); !whole) {
-    if (const grpc::Status room = controller_.admit(0); !room.ok()) return error_reply(room);
+    if (const grpc::Status room = controller_.disk().admit(0); !room.ok()) return error_reply(room);
     return error_reply({grpc::StatusCode::DATA_LOSS, whole.error().message});
   }
   return json_reply({{"offset", size}, {"complete", true}});
@@ -163,7 +163,8 @@ AssetsApi::Taken AssetsApi::take_writer(const Caller& caller, const std::string&
     }
   }
   const uint64_t begun = std::min(controller_.assets().begun(name), size);
-  if (grpc::Status room = controller_.admit(size - begun); !room.ok()) return {nullptr, room};
+  if (grpc::Status room = controller_.disk().admit(size - begun); !room.ok())
+    return {nullptr, room};
   auto writer = controller_.assets().write(name, size);
   if (!writer) {
     return {nullptr, farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,

@@ -7,7 +7,7 @@
 namespace hyades::coordinator {
 namespace {
 
-using Steer = grpc::Status (Controller::*)(const v1::WorkerRequest&, v1::Worker&);
+using Steer = grpc::Status (FarmControl::*)(const v1::WorkerRequest&, v1::Worker&);
 
 /// The reason that a body may give; nothing where it is no such body.
 std::optional<std::string> reason_in(const std::string& body) {
@@ -43,7 +43,7 @@ void FarmApi::add_routes(Router& router) {
   });
   router.add("GET", "/readyz", [this](const WebRequest&, const Answer& answer) {
     answer_by(executors_.files, answer, [this] {
-      const grpc::Status room = controller_.admit(0);
+      const grpc::Status room = controller_.disk().admit(0);
       WebReply reply = text_reply(room.ok() ? "ready\n" : room.error_message() + "\n",
                                   "text/plain; charset=utf-8");
       if (!room.ok()) reply.status = 503;
@@ -57,7 +57,7 @@ void FarmApi::add_routes(Router& router) {
   });
   router.add("GET", "/api/v1/info", [this](const WebRequest&, const Answer& answer) {
     v1::InfoResponse info;
-    controller_.info(info);
+    controller_.farm().info(info);
     answer(json_reply(to_json(info)));
   });
   router.add("GET", "/api/v1/workers", [this](const WebRequest&, const Answer& answer) {
@@ -68,9 +68,9 @@ void FarmApi::add_routes(Router& router) {
       return json_reply({{"workers", std::move(workers)}});
     });
   });
-  const std::pair<const char*, Steer> steers[] = {{"drain", &Controller::drain_worker},
-                                                  {"quarantine", &Controller::quarantine_worker},
-                                                  {"release", &Controller::release_worker}};
+  const std::pair<const char*, Steer> steers[] = {{"drain", &FarmControl::drain_worker},
+                                                  {"quarantine", &FarmControl::quarantine_worker},
+                                                  {"release", &FarmControl::release_worker}};
   for (const auto& [name, what] : steers) {
     router.add("POST", std::string("/api/v1/workers/{worker}/") + name,
                [this, steer = what](const WebRequest& request, const Answer& answer) {
@@ -85,7 +85,7 @@ void FarmApi::add_routes(Router& router) {
                  asked.set_reason(*reason);
                  answer_by(executors_.rows, answer, [this, steer, asked] {
                    v1::Worker now;
-                   const grpc::Status done = (controller_.*steer)(asked, now);
+                   const grpc::Status done = (controller_.farm().*steer)(asked, now);
                    return done.ok() ? json_reply(farm::to_json(now)) : error_reply(done);
                  });
                });

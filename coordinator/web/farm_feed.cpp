@@ -95,7 +95,7 @@ void FarmFeed::step() {
   }
   farm::Json change = farm::Json::object();
   v1::InfoResponse asked;
-  controller_.info(asked);
+  controller_.farm().info(asked);
   farm::Json info = to_json(asked);
   if (info != info_) change["info"] = info;
   info_ = std::move(info);
@@ -144,7 +144,7 @@ farm::Json FarmFeed::tell_jobs(LiveRows::Rows& jobs) {
   jobs_.each([&](uint64_t id, const farm::Json& job) {
     if (jobs.contains(id)) return;
     v1::GetJobResponse got;
-    const grpc::Status status = controller_.get(id, INT32_MAX, got);
+    const grpc::Status status = controller_.queries().get(id, INT32_MAX, got);
     if (status.ok()) {
       ended.push_back(farm::to_json(got.job()));
     } else if (status.error_code() != grpc::StatusCode::NOT_FOUND) {

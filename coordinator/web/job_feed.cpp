@@ -7,7 +7,7 @@
 namespace hyades::coordinator {
 
 JobFeed::~JobFeed() {
-  if (watch_ != 0) controller_.unwatch(watch_);
+  if (watch_ != 0) controller_.watchers().unwatch(watch_);
 }
 
 void JobFeed::join(std::weak_ptr<LiveReader> reader) {
@@ -15,7 +15,8 @@ void JobFeed::join(std::weak_ptr<LiveReader> reader) {
     const std::lock_guard lock(mutex_);
     readers_.add(std::move(reader));
   }
-  if (watch_ == 0) watch_ = controller_.watch(job_, [changed = changed_] { *changed = true; });
+  if (watch_ == 0)
+    watch_ = controller_.watchers().watch(job_, [changed = changed_] { *changed = true; });
   *changed_ = true;
   tick();
 }
@@ -58,7 +59,7 @@ void JobFeed::step() {
   grpc::Status status;
   if (begun_) status = changes(told_, change, ended);
   if (status.ok() && !fresh.empty()) {
-    Controller::ChangeCursor all;
+    ChangeCursor all;
     status = changes(all, snapshot, ended_for_fresh);
     if (status.ok() && !std::exchange(begun_, true)) told_ = all;
   }
@@ -91,11 +92,11 @@ void JobFeed::step() {
 }
 
 /// All pages of what has changed, as one.
-grpc::Status JobFeed::changes(Controller::ChangeCursor& told, farm::Json& change, bool& ended) {
+grpc::Status JobFeed::changes(ChangeCursor& told, farm::Json& change, bool& ended) {
   farm::Json frames = farm::Json::array();
   for (;;) {
     v1::WatchEvent event;
-    const grpc::Status status = controller_.changes(job_, told, event, ended);
+    const grpc::Status status = controller_.queries().changes(job_, told, event, ended);
     if (!status.ok()) return status;
     for (const v1::Frame& frame : event.changed()) frames.push_back(farm::to_json(frame));
     if (event.more()) continue;

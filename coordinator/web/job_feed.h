@@ -29,7 +29,7 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
 
  private:
   void step();
-  grpc::Status changes(Controller::ChangeCursor& told, farm::Json& change, bool& ended);
+  grpc::Status changes(ChangeCursor& told, farm::Json& change, bool& ended);
 
   Controller& controller_;
   Executors& executors_;
@@ -39,8 +39,8 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
   std::atomic<bool> stepping_{false};
   std::mutex mutex_;  ///< guards readers_
   LiveReaders readers_;
-  Controller::ChangeCursor told_;  ///< to those who know; of the thread that steps
-  bool begun_ = false;             ///< told_ means something
+  ChangeCursor told_;   ///< to those who know; of the thread that steps
+  bool begun_ = false;  ///< told_ means something
 };
 
 }  // namespace hyades::coordinator

@@ -83,7 +83,8 @@ void JobsApi::add_questions(Router& router) {
                if (!query_number_if_any(request, "after", after, answer)) return;
                answer_by(executors_.rows, answer, [this, job, after] {
                  v1::GetJobResponse got;
-                 return reply_with(controller_.get(job, after, got), got, job_with_frames);
+                 return reply_with(controller_.queries().get(job, after, got), got,
+                                   job_with_frames);
                });
              }));
   router.add("GET", "/api/v1/jobs/{job}/frames",
@@ -94,12 +95,13 @@ void JobsApi::add_questions(Router& router) {
                if (!only) return;
                answer_by(executors_.rows, answer, [this, job, after, only = *only] {
                  v1::GetJobResponse got;
-                 return reply_with(controller_.get(job, after, got, only), got, frames_alone);
+                 return reply_with(controller_.queries().get(job, after, got, only), got,
+                                   frames_alone);
                });
              }));
   router.add("GET", "/api/v1/jobs/{job}/explain", of_job_by(executors_.rows, [this](uint64_t job) {
                v1::ExplainResponse why;
-               return reply_with(controller_.explain(job, why), why, reasons);
+               return reply_with(controller_.diagnosis().explain(job, why), why, reasons);
              }));
   router.add("GET", "/api/v1/jobs/{job}/logs",
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
@@ -140,7 +142,7 @@ void JobsApi::add_steering(Router& router) {
       v1::SubmitResponse response;
       bool proven = false;
       grpc::Status done = name_owner(caller, *asked, proven);
-      if (done.ok()) done = controller_.submit(*asked, proven, response);
+      if (done.ok()) done = controller_.jobs().submit(*asked, proven, response);
       if (!done.ok()) return error_reply(done);
       WebReply reply =
           json_reply({{"job", farm::to_json(response.job())}, {"existed", response.existed()}});
@@ -148,10 +150,10 @@ void JobsApi::add_steering(Router& router) {
       return reply;
     });
   });
-  using Steer = void (Controller::*)(uint64_t, Controller::JobReply);
-  const std::pair<const char*, Steer> steers[] = {{"pause", &Controller::pause},
-                                                  {"resume", &Controller::resume},
-                                                  {"cancel", &Controller::cancel}};
+  using Steer = void (JobSteering::*)(uint64_t, JobReply);
+  const std::pair<const char*, Steer> steers[] = {{"pause", &JobSteering::pause},
+                                                  {"resume", &JobSteering::resume},
+                                                  {"cancel", &JobSteering::cancel}};
   const auto told = [](const Answer& answer) {
     return [answer](const grpc::Status& done, const v1::Job& now) {
       answer(done.ok() ? json_reply(farm::to_json(now)) : error_reply(done));
@@ -164,7 +166,8 @@ void JobsApi::add_steering(Router& router) {
                  const bool taken = executors_.rows.submit(
                      [this, told, steer, answer, job, caller = request.caller] {
                        const grpc::Status his = may_steer(controller_, caller, job);
-                       his.ok() ? (controller_.*steer)(job, told(answer)) : told(answer)(his, {});
+                       his.ok() ? (controller_.steering().*steer)(job, told(answer))
+                                : told(answer)(his, {});
                      });
                  if (!taken) answer(error_reply(crowded()));
                }));
@@ -180,12 +183,12 @@ void JobsApi::add_steering(Router& router) {
                                      "expected {\"priority\": a whole number}"}));
                  return;
                }
-               const bool taken = executors_.rows.submit(
-                   [this, told, answer, job, priority, caller = request.caller] {
-                     const grpc::Status his = may_steer(controller_, caller, job);
-                     if (!his.ok()) return told(answer)(his, {});
-                     controller_.set_priority(job, static_cast<int>(priority), told(answer));
-                   });
+               const bool taken = executors_.rows.submit([this, told, answer, job, priority,
+                                                          caller = request.caller] {
+                 const grpc::Status his = may_steer(controller_, caller, job);
+                 if (!his.ok()) return told(answer)(his, {});
+                 controller_.steering().set_priority(job, static_cast<int>(priority), told(answer));
+               });
                if (!taken) answer(error_reply(crowded()));
              }));
   router.add("POST", "/api/v1/jobs/{job}/retry",
@@ -193,7 +196,7 @@ void JobsApi::add_steering(Router& router) {
                answer_by(executors_.files, answer, [this, job, caller = request.caller] {
                  v1::Job now;
                  grpc::Status done = may_steer(controller_, caller, job);
-                 if (done.ok()) done = controller_.retry(job, now);
+                 if (done.ok()) done = controller_.jobs().retry(job, now);
                  return reply_with(done, now, [](const v1::Job& j) { return farm::to_json(j); });
                });
              }));
@@ -201,7 +204,7 @@ void JobsApi::add_steering(Router& router) {
              of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
                answer_by(executors_.files, answer, [this, job, caller = request.caller] {
                  grpc::Status done = may_steer(controller_, caller, job);
-                 if (done.ok()) done = controller_.remove(job);
+                 if (done.ok()) done = controller_.jobs().remove(job);
                  return done.ok() ? empty_reply(204) : error_reply(done);
                });
              }));
@@ -209,9 +212,9 @@ void JobsApi::add_steering(Router& router) {
 
 WebReply JobsApi::list(const v1::ListJobsRequest& request) {
   v1::ListJobsResponse response;
-  const grpc::Status status = controller_.list_open(request, response)
+  const grpc::Status status = controller_.queries().list_open(request, response)
                                   ? grpc::Status::OK
-                                  : controller_.list(request, response);
+                                  : controller_.queries().list(request, response);
   if (!status.ok()) return error_reply(status);
   farm::Json jobs = farm::Json::array();
   for (const v1::Job& job : response.jobs()) jobs.push_back(farm::to_json(job));
@@ -227,7 +230,7 @@ WebReply JobsApi::timeline(v1::ListTimelineRequest asked) {
   for (uint32_t left = wanted;;) {
     asked.set_limit(left);
     page.Clear();
-    const grpc::Status known = controller_.timeline(asked, page);
+    const grpc::Status known = controller_.queries().timeline(asked, page);
     if (!known.ok()) return error_reply(known);
     for (const v1::TimelineStep& step : page.steps()) {
       const bool unit = step.kind() == v1::TimelineStep::KIND_RENDER;

@@ -36,7 +36,7 @@ void LiveApi::add_routes(Router& router) {
                // Whether there is such a job is known before the stream begins.
                const bool taken = executors_.rows.submit([this, job, answer] {
                  v1::GetJobResponse got;
-                 const grpc::Status status = controller_.get(job, INT32_MAX, got);
+                 const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
                  if (!status.ok()) return answer(error_reply(status));
                  outlet_->post([this, job, answer] { answer(live(feed_of(job))); });
                });

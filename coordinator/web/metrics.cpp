@@ -143,7 +143,7 @@ void add_jobs(Page& page, const std::vector<v1::Job>& jobs) {
 
 std::string metrics_text(Controller& controller) {
   v1::InfoResponse info;
-  controller.info(info);
+  controller.farm().info(info);
   Page page;
   page.gauge("hyades_build_info", "1, with the version", 1, {{"version", info.version()}});
   page.gauge("hyades_start_time_seconds", "When the coordinator started, since 1970",

@@ -65,7 +65,8 @@ core::Result<OutputsPage> finished_files(Controller& controller, uint64_t job, u
     if (!page.more) break;
     page.after = outputs->back().number;
     for (StoredOutput& output : *outputs) {
-      if (!controller.is_for_video(job, output.path)) page.outputs.push_back(std::move(output));
+      if (!controller.queries().is_for_video(job, output.path))
+        page.outputs.push_back(std::move(output));
     }
   }
   return page;
@@ -109,7 +110,7 @@ WebReply OutputsApi::list(const ListAsked& asked) {
     if (!outputs) return error_reply(farm::unavailable(outputs.error()));
     page.outputs = std::move(*outputs);
     std::erase_if(page.outputs, [&](const StoredOutput& output) {
-      return controller_.is_for_video(asked.job, output.path);
+      return controller_.queries().is_for_video(asked.job, output.path);
     });
   } else {
     auto found = finished_files(controller_, asked.job, asked.after, asked.limit);

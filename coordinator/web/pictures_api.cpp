@@ -47,7 +47,7 @@ struct Shot {
 };
 
 /// The picture that `asked` means.
-WebReply show(const PicturesApi::Asked& asked, const Controller::FrameNow& now, const Shot& shot,
+WebReply show(const PicturesApi::Asked& asked, const FrameNow& now, const Shot& shot,
               const std::string& tag) {
   const core::Image& image = shot.image;
   const auto layer = take_layer(image, asked.layer);
@@ -122,8 +122,9 @@ void PicturesApi::add_routes(Router& router) {
 }
 
 void PicturesApi::answer_picture(const Asked& asked, const Answer& answer) {
-  Controller::FrameNow now;
-  if (const grpc::Status known = controller_.frame_now(asked.job, asked.frame, now); !known.ok()) {
+  FrameNow now;
+  if (const grpc::Status known = controller_.queries().frame_now(asked.job, asked.frame, now);
+      !known.ok()) {
     answer(error_reply(known));
   } else if (is_over(now.frame)) {
     answer(in_memory([&] { return of_file(asked, now); }));
@@ -134,7 +135,7 @@ void PicturesApi::answer_picture(const Asked& asked, const Answer& answer) {
   }
 }
 
-WebReply PicturesApi::of_file(const Asked& asked, const Controller::FrameNow& now) {
+WebReply PicturesApi::of_file(const Asked& asked, const FrameNow& now) {
   const auto outputs = controller_.store().outputs_of(asked.job, asked.frame);
   if (!outputs) return error_reply(farm::unavailable(outputs.error()));
   const StoredOutput* best = nullptr;
@@ -153,7 +154,7 @@ WebReply PicturesApi::of_file(const Asked& asked, const Controller::FrameNow& no
     return error_reply(
         {grpc::StatusCode::DATA_LOSS, best->path + " is damaged on the coordinator's disk"});
   }
-  Controller::FrameNow plain = now;
+  FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
   WebReply reply = show(asked, plain, {std::move(*image), {}, best->path.ends_with(".exr")}, tag);
@@ -194,10 +195,10 @@ void PicturesApi::begin_some() {
 
 void PicturesApi::take_film(FrameId id) {
   // As of before the film, so that the picture never claims more than it shows.
-  Controller::FrameNow now;
-  grpc::Status status = controller_.frame_now(id.first, id.second, now);
+  FrameNow now;
+  grpc::Status status = controller_.queries().frame_now(id.first, id.second, now);
   if (status.ok()) {
-    status = controller_.film(
+    status = controller_.queries().film(
         id.first, id.second,
         [this, gate = gate_, id, now](const grpc::Status& found, const core::FilmInfo&,
                                       std::shared_ptr<const core::Film> film) {
@@ -218,7 +219,7 @@ void PicturesApi::take_film(FrameId id) {
   end(id, [&](const Asked&) { return error_reply(status); });
 }
 
-void PicturesApi::make_all(FrameId id, const Controller::FrameNow& now, const grpc::Status& found,
+void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& found,
                            const core::Film* film) {
   Shot shot;
   const grpc::Status made = !found.ok() ? found : within_memory([&] {

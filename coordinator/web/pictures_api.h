@@ -66,12 +66,11 @@ class PicturesApi {
   };
 
   void answer_picture(const Asked& asked, const Answer& answer);
-  WebReply of_file(const Asked& asked, const Controller::FrameNow& now);
+  WebReply of_file(const Asked& asked, const FrameNow& now);
   void want(const Asked& asked, const Answer& answer);
   void begin_some();
   void take_film(FrameId id);
-  void make_all(FrameId id, const Controller::FrameNow& now, const grpc::Status& found,
-                const core::Film* film);
+  void make_all(FrameId id, const FrameNow& now, const grpc::Status& found, const core::Film* film);
   void end(FrameId id, const std::function<WebReply(const Asked&)>& reply);
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
   void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply);

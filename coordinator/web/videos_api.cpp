@@ -63,7 +63,7 @@ void VideosApi::add_routes(Router& router) {
 
 WebReply VideosApi::list(uint64_t job) {
   std::vector<AskedVideo> videos;
-  if (const grpc::Status known = controller_.asked_videos(job, videos); !known.ok()) {
+  if (const grpc::Status known = controller_.videos().asked(job, videos); !known.ok()) {
     return error_reply(known);
   }
   farm::Json all = farm::Json::array();
@@ -75,7 +75,7 @@ WebReply VideosApi::ask(const Caller& caller, uint64_t job, const VideoWish& wis
   if (const grpc::Status his = may_steer(controller_, caller, job); !his.ok())
     return error_reply(his);
   AskedVideo video;
-  const grpc::Status taken = controller_.ask_for_video(job, wish, video);
+  const grpc::Status taken = controller_.videos().ask(job, wish, video);
   if (!taken.ok()) return error_reply(taken);
   WebReply reply = json_reply(to_json(video));
   reply.status = 202;

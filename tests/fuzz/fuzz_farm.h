@@ -56,7 +56,7 @@ struct Farm {
     const bool written =
         writer.append(std::as_bytes(std::span(kDocument))).ok() && writer.commit().ok();
     v1::SubmitResponse made;
-    if (!written || !controller->submit(submission(), false, made).ok()) {
+    if (!written || !controller->jobs().submit(submission(), false, made).ok()) {
       std::fprintf(stderr, "no farm: its job cannot be made\n");
       std::exit(1);
     }

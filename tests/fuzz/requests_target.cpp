@@ -15,6 +15,7 @@ namespace hyades::fuzz {
 namespace {
 
 using coordinator::Controller;
+using coordinator::JobReply;
 
 Farm& farm() {
   static Farm one;
@@ -37,15 +38,15 @@ grpc::Status told(Order order) {
 bool try_submission(const v1::SubmitRequest& request) {
   Controller& controller = *farm().controller;
   v1::SubmitResponse response;
-  if (!controller.submit(request, false, response).ok()) return false;
+  if (!controller.jobs().submit(request, false, response).ok()) return false;
   const uint64_t job = response.job().id();
   v1::GetJobResponse got;
-  if (!controller.get(job, std::nullopt, got).ok()) std::abort();
+  if (!controller.queries().get(job, std::nullopt, got).ok()) std::abort();
   (void)farm::to_json(got.job());
   if (response.existed() || job == farm().job) return true;
-  if (!told([&](Controller::JobReply then) { controller.cancel(job, std::move(then)); }).ok())
+  if (!told([&](JobReply then) { controller.steering().cancel(job, std::move(then)); }).ok())
     return true;
-  (void)controller.remove(job);
+  (void)controller.jobs().remove(job);
   return true;
 }
 
@@ -53,21 +54,21 @@ bool try_orders(const v1::JobRequest& request) {
   Controller& controller = *farm().controller;
   const uint64_t job = request.job();
   const bool paused =
-      told([&](Controller::JobReply then) { controller.pause(job, std::move(then)); }).ok();
+      told([&](JobReply then) { controller.steering().pause(job, std::move(then)); }).ok();
   if (paused &&
-      !told([&](Controller::JobReply then) { controller.resume(job, std::move(then)); }).ok()) {
+      !told([&](JobReply then) { controller.steering().resume(job, std::move(then)); }).ok()) {
     std::abort();
   }
   v1::ExplainResponse why;
-  return controller.explain(job, why).ok() && paused;
+  return controller.diagnosis().explain(job, why).ok() && paused;
 }
 
 bool try_worker_orders(const v1::WorkerRequest& request) {
   Controller& controller = *farm().controller;
   v1::Worker now;
-  const bool drained = controller.drain_worker(request, now).ok();
-  const bool barred = controller.quarantine_worker(request, now).ok();
-  const bool freed = controller.release_worker(request, now).ok();
+  const bool drained = controller.farm().drain_worker(request, now).ok();
+  const bool barred = controller.farm().quarantine_worker(request, now).ok();
+  const bool freed = controller.farm().release_worker(request, now).ok();
   return drained || barred || freed;
 }
 
@@ -100,13 +101,15 @@ bool try_worker(const v1::WorkerMessage& message) {
   hello.set_threads(1);
   hello.set_want(2);
   coordinator::WorkerId worker{};
-  if (!controller.attach(message.has_hello() ? message.hello() : hello, link, worker).ok())
+  if (!controller.workers()
+           .attach(message.has_hello() ? message.hello() : hello, link, worker)
+           .ok())
     return false;
-  if (!message.has_hello()) controller.receive(worker, link.get(), message);
+  if (!message.has_hello()) controller.workers().receive(worker, link.get(), message);
   v1::WorkersResponse all;
-  controller.workers({}, all);
+  controller.farm().workers({}, all);
   for (const v1::Worker& one : all.workers()) (void)farm::to_json(one);
-  controller.detach(worker, link.get());
+  controller.workers().detach(worker, link.get());
   return true;
 }
 
@@ -189,31 +192,32 @@ bool try_input(std::string_view input) {
       return parsed<v1::GetJobRequest>(bytes, [&](const v1::GetJobRequest& request) {
         v1::GetJobResponse got;
         const auto after = request.has_after() ? std::optional(request.after()) : std::nullopt;
-        return controller.get(request.job(), after, got, request.state()).ok();
+        return controller.queries().get(request.job(), after, got, request.state()).ok();
       });
     case 'l':
       return parsed<v1::ListJobsRequest>(bytes, [&](const v1::ListJobsRequest& request) {
         v1::ListJobsResponse open;
         v1::ListJobsResponse all;
-        (void)controller.list_open(request, open);
-        return controller.list(request, all).ok();
+        (void)controller.queries().list_open(request, open);
+        return controller.queries().list(request, all).ok();
       });
     case 't':
       return parsed<v1::ListTimelineRequest>(bytes, [&](const v1::ListTimelineRequest& request) {
         v1::ListTimelineResponse steps;
-        return controller.timeline(request, steps).ok();
+        return controller.queries().timeline(request, steps).ok();
       });
     case 'p':
       return parsed<v1::SetPriorityRequest>(bytes, [&](const v1::SetPriorityRequest& request) {
-        return told([&](Controller::JobReply then) {
-                 controller.set_priority(request.job(), request.priority(), std::move(then));
+        return told([&](JobReply then) {
+                 controller.steering().set_priority(request.job(), request.priority(),
+                                                    std::move(then));
                })
             .ok();
       });
     case 'w':
       return parsed<v1::WorkersRequest>(bytes, [&](const v1::WorkersRequest& request) {
         v1::WorkersResponse all;
-        controller.workers(request, all);
+        controller.farm().workers(request, all);
         return true;
       });
     case 'd':

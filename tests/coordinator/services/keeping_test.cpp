@@ -291,7 +291,7 @@ TEST(Keeping, UploadsThatNobodyGoesOnWithDoNotHoldTheFarmUp) {
   }
   const auto left = [&] { return std::distance(std::filesystem::directory_iterator(folder), {}); };
   ASSERT_TRUE(eventually([&] { return left() < kLeft; })) << "the farm stands still for days";
-  EXPECT_TRUE(eventually([&] { return world.controller->admit(0).ok(); }));
+  EXPECT_TRUE(eventually([&] { return world.controller->disk().admit(0).ok(); }));
   std::this_thread::sleep_for(1500ms);
   // Others write to this disk, too, and that is taken for the farm's.
   EXPECT_GT(left(), kLeft / 2) << "no more goes than has to";
@@ -316,7 +316,7 @@ TEST(Keeping, FilmsWaitWithTheirWorkersWhileTheDiskIsFull) {
     if (self.acknowledged() < 3 || filled.exchange(true)) return true;
     const core::Descriptor file(::open(ballast.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
     EXPECT_EQ(::posix_fallocate(file.get(), 0, kBudget), 0);
-    EXPECT_TRUE(eventually([&] { return world.controller->disk_is_full(); }));
+    EXPECT_TRUE(eventually([&] { return world.controller->disk().is_full(); }));
     return true;
   };
   const ScriptedWorker worker(world.address, script);

@@ -163,7 +163,7 @@ TEST_F(Limits, OfAnAnswerThatTellsOfAllWorkers) {
       hello.add_tags(std::to_string(100 + tag) + std::string(37, 't'));
     }
     WorkerId worker{};
-    ASSERT_TRUE(world.controller->attach(hello, link, worker).ok());
+    ASSERT_TRUE(world.controller->workers().attach(hello, link, worker).ok());
   }
   v1::WorkersRequest request;
   uint64_t seen = 0;

@@ -10,7 +10,7 @@ using testing::HasSubstr;
 
 std::string explain(FarmWorld& world, uint64_t job) {
   v1::ExplainResponse response;
-  EXPECT_TRUE(world.controller->explain(job, response).ok());
+  EXPECT_TRUE(world.controller->diagnosis().explain(job, response).ok());
   std::string text;
   for (const std::string& reason : response.reasons()) text += reason + "\n";
   return text;
@@ -62,7 +62,7 @@ TEST(Needs, ThatMakeNoSenseAreRefused) {
     v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1));
     change(request);
     v1::SubmitResponse response;
-    const grpc::Status status = world.controller->submit(request, false, response);
+    const grpc::Status status = world.controller->jobs().submit(request, false, response);
     EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
     return status.error_message();
   };

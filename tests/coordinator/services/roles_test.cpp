@@ -327,7 +327,7 @@ TEST_F(Roles, StrangersWhoMayListenAreToldOf) {
   EXPECT_EQ(how({.beyond = false, .plain = true}), "");
   EXPECT_EQ(how({.beyond = true, .plain = false}), "");
   EXPECT_NE(how({.beyond = true, .plain = true}).find("plain text"), std::string::npos);
-  world.controller->set_unguarded("anybody may");
+  world.controller->farm().set_unguarded("anybody may");
   v1::InfoResponse info;
   ASSERT_TRUE(world.farm_->Info(world.context().get(), {}, &info).ok());
   EXPECT_EQ(info.unguarded(), "anybody may");

@@ -1,0 +1,182 @@
+#include "coordinator/controller/controller.h"
+
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/action_executor.h"
+#include "coordinator/controller/divergent_workers.h"
+#include "coordinator/controller/frame_finisher.h"
+#include "coordinator/controller/frame_progress.h"
+#include "coordinator/controller/job_films.h"
+#include "coordinator/controller/job_records.h"
+#include "coordinator/controller/job_recovery.h"
+#include "coordinator/controller/sweeper.h"
+#include "coordinator/meters/meters.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr Duration kClock = std::chrono::milliseconds(50);
+constexpr Duration kPokeEvery = std::chrono::milliseconds(200);
+
+SchedulerOptions scheduler_options(const ControllerOptions& options, uint64_t incarnation) {
+  SchedulerOptions scheduler;
+  scheduler.incarnation = incarnation;
+  scheduler.unit_time = options.unit_time;
+  scheduler.lease_time = options.lease_time;
+  scheduler.copy_after = options.copy_after;
+  scheduler.class_patience = options.class_patience;
+  scheduler.film_memory = options.film_memory;
+  return scheduler;
+}
+
+/// Makes the folder with its parts, and empties the one for what is temporary.
+core::Status make_folders(const std::string& folder) {
+  std::error_code failed;
+  for (const char* part : {"", "/films", "/outputs", "/tmp"}) {
+    std::filesystem::create_directories(folder + part, failed);
+    if (failed) return core::Error{folder + part + ": " + failed.message()};
+  }
+  for (const auto& left : std::filesystem::directory_iterator(folder + "/tmp", failed)) {
+    std::filesystem::remove_all(left.path(), failed);
+  }
+  return {};
+}
+
+}  // namespace
+
+/// The parts, each after those that it needs.
+struct Controller::Parts {
+  Parts(const ControllerOptions& options, std::unique_ptr<JobStore> store,
+        std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation)
+      : shared(options, std::move(store), std::move(assets), incarnation),
+        dispatcher(shared.mutex, scheduler_options(options, incarnation)) {
+    dispatcher.set_executor(executor);
+  }
+
+  void tick() HYADES_EXCLUDES(state_lock);
+
+  Shared shared;
+  Timelines timelines;
+  Dispatcher dispatcher;
+  JobTable jobs{shared.mutex};
+  WorkerTable workers{shared, jobs};
+  Watchers watchers{shared, jobs};
+  DiskWatch disk{shared, dispatcher, jobs};
+  WorkerSessions sessions{shared, dispatcher, jobs, workers, disk};
+  FarmControl farm{shared, dispatcher, jobs, workers, disk};
+  DivergentWorkers divergent{shared, dispatcher, jobs, workers};
+  JobQueries queries{shared, dispatcher, jobs, disk, timelines};
+  JobRecords records{shared, jobs, queries, watchers};
+  JobFilms films{shared, dispatcher, jobs, divergent};
+  FrameFinisher finisher{shared, dispatcher, jobs, disk, timelines};
+  FrameProgress frames{shared, jobs, workers, finisher, timelines};
+  VideoMaker videos{shared, jobs, records, disk, timelines};
+  JobRecovery recovery{shared, dispatcher, jobs, films};
+  Sweeper sweeper{shared};
+  JobIntake intake{shared, dispatcher, jobs, queries, recovery, disk, sweeper, timelines};
+  JobSteering steering{shared, dispatcher, jobs, records, videos};
+  Diagnosis diagnosis{shared, dispatcher, jobs, workers, sessions, disk, videos};
+  ActionExecutor executor{shared, jobs,      workers, sessions, films,
+                          frames, divergent, records, videos};
+  TimePoint last_poke;  ///< of the clock
+  RetryQueue clock{1, kClock};
+};
+
+core::Result<std::unique_ptr<Controller>> Controller::open(const ControllerOptions& options,
+                                                           std::unique_ptr<JobStore> store) {
+  if (auto made = make_folders(options.folder); !made) return made.error();
+  if (!store) {
+    auto opened = open_sqlite_job_store(options.folder + "/state.db");
+    if (!opened) return opened.error();
+    store = std::move(*opened);
+  }
+  auto assets = farm::ContentStore::open({options.folder + "/assets", 0});
+  if (!assets) return assets.error();
+  const auto incarnation = store->next_incarnation();
+  if (!incarnation) return incarnation.error();
+  std::unique_ptr<Controller> controller(new Controller(
+      std::make_unique<Parts>(options, std::move(store), std::move(*assets), *incarnation)));
+  Parts& parts = *controller->parts_;
+  if (auto loaded = parts.workers.load(); !loaded) return loaded.error();
+  if (auto loaded = parts.divergent.load(); !loaded) return loaded.error();
+  {
+    const StateLock lock(parts.shared.mutex);
+    parts.jobs.begin_moments(*incarnation << 32U);
+  }
+  if (auto recovered = parts.recovery.recover_all(); !recovered) return recovered.error();
+  {
+    const StateLock lock(parts.shared.mutex);
+    // From here on workers can come: to recover many jobs may take longer than they are given.
+    // Where no job is open nobody holds anything.
+    if (*incarnation > 1 && !parts.jobs.all().empty()) parts.sessions.begin_adoption();
+  }
+  parts.clock.add(0, [&parts] {
+    if (!parts.shared.stop) parts.tick();
+    return parts.shared.stop.load();
+  });
+  parts.sweeper.start();
+  parts.disk.start();
+  return controller;
+}
+
+Controller::Controller(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+
+/// What goes on beside the calls of workers and clients.
+void Controller::Parts::tick() {
+  const TimePoint now = std::chrono::steady_clock::now();
+  records.answer_late(now);
+  Turn turn(dispatcher);
+  if (const auto wake = dispatcher.scheduler().next_wake(); wake && *wake <= now) {
+    turn.tell(Tick{});
+  }
+  sessions.look_after(turn);
+  if (now - last_poke < kPokeEvery) return;
+  last_poke = now;
+  workers.note_speeds(now);
+  records.look_after(now, disk.is_full());
+  watchers.poke_changed();
+}
+
+void Controller::stop() {
+  parts_->shared.stop = true;
+  parts_->records.answer_late({});
+  parts_->jobs.wake();
+  parts_->videos.stop();
+  parts_->sessions.close({grpc::StatusCode::UNAVAILABLE, "the coordinator stops"});
+}
+
+Controller::~Controller() {
+  stop();
+  parts_->clock.end();
+  parts_->finisher.end();
+  parts_->videos.end();
+  parts_->sweeper.end();
+  parts_->disk.end();
+  // Others leave it some tasks.
+  parts_->shared.background.end();
+  parts_->jobs.clear();
+}
+
+WorkerSessions& Controller::workers() { return parts_->sessions; }
+FarmControl& Controller::farm() { return parts_->farm; }
+JobIntake& Controller::jobs() { return parts_->intake; }
+JobSteering& Controller::steering() { return parts_->steering; }
+JobQueries& Controller::queries() { return parts_->queries; }
+Diagnosis& Controller::diagnosis() { return parts_->diagnosis; }
+VideoMaker& Controller::videos() { return parts_->videos; }
+Watchers& Controller::watchers() { return parts_->watchers; }
+DiskWatch& Controller::disk() { return parts_->disk; }
+
+Meters& Controller::meters() { return *parts_->shared.meters; }
+farm::ContentStore& Controller::assets() { return *parts_->shared.assets; }
+JobStore& Controller::store() { return *parts_->shared.store; }
+
+std::string Controller::output_folder(uint64_t job) const {
+  return parts_->shared.output_folder(job);
+}
+
+}  // namespace hyades::coordinator

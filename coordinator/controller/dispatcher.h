@@ -1,0 +1,64 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "coordinator/controller/state_lock.h"
+#include "coordinator/scheduler/scheduler.h"
+
+namespace hyades::coordinator {
+
+struct Delivery;
+class Turn;
+
+/// Actions that are carried out after the state lock is let go of, in their order.
+using DeferredAction = std::variant<Merge, FinishFrame, FrameDone, FrameFailed, FrameRestarted,
+                                    TileVoided, FrameReopened, JobEnded>;
+
+/// The scheduler, and who does what it wants done. Events reach it by a Turn.
+class Dispatcher {
+ public:
+  /// Does what the scheduler wants done.
+  class Executor {
+   public:
+    virtual ~Executor() = default;
+    /// Does at once what others have to hear of in order; the rest is deferred by `turn`.
+    /// `delivery` came with the event, if it is a result.
+    virtual void act(const std::vector<Action>& actions, Turn& turn, Delivery* delivery)
+        HYADES_REQUIRES(state_lock) = 0;
+    virtual void carry_out(const DeferredAction& action) HYADES_EXCLUDES(state_lock) = 0;
+  };
+
+  Dispatcher(StateMutex& mutex, const SchedulerOptions& options)
+      : mutex_(mutex), scheduler_(options) {}
+  /// Before the first event.
+  void set_executor(Executor& executor) { executor_ = &executor; }
+  const Scheduler& scheduler() const HYADES_REQUIRES(state_lock) { return scheduler_; }
+
+ private:
+  friend class Turn;
+  StateMutex& mutex_;
+  Executor* executor_ = nullptr;
+  Scheduler scheduler_ HYADES_GUARDED_BY(state_lock);
+};
+
+/// Holds the state lock for as long as it lives and tells the scheduler of events. What follows and
+/// has to wait for the lock is carried out at its end.
+class HYADES_SCOPED_CAPABILITY Turn {
+ public:
+  explicit Turn(Dispatcher& dispatcher) HYADES_ACQUIRE(state_lock);
+  ~Turn() HYADES_RELEASE();
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+  void tell(const Event& event, Delivery* delivery = nullptr) HYADES_REQUIRES(state_lock);
+  /// For Executor::act.
+  void defer(DeferredAction action) { deferred_.push_back(std::move(action)); }
+
+ private:
+  Dispatcher& dispatcher_;
+  StateLock lock_;
+  std::vector<DeferredAction> deferred_;
+};
+
+}  // namespace hyades::coordinator

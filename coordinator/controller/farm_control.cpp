@@ -1,0 +1,153 @@
+#include "coordinator/controller/farm_control.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/disk_watch.h"
+#include "core/base/version.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// Of an answer: twenty thousand workers with long names and many tags would make forty megabytes.
+constexpr size_t kMostWorkerBytes = size_t{1} << 20U;
+constexpr size_t kMostWorkTold = 16;
+
+}  // namespace
+
+void FarmControl::info(v1::InfoResponse& response) {
+  const StateLock lock(shared_.mutex);
+  response.set_protocol(farm::kProtocol);
+  response.set_oldest_protocol(farm::kOldestProtocol);
+  response.set_version(core::kVersion);
+  response.set_incarnation(shared_.incarnation);
+  response.set_started_ms(shared_.started_ms);
+  for (const auto& [id, session] : workers_.all()) {
+    if (!session.joined) continue;
+    response.set_workers(response.workers() + 1);
+    response.set_threads(response.threads() + session.hello.threads());
+  }
+  response.set_jobs(static_cast<uint32_t>(jobs_.all().size()));
+  response.set_grpc_address(grpc_address_);
+  response.set_price_per_core_hour(shared_.options.price.per_core_hour);
+  response.set_currency(shared_.options.price.currency);
+  response.set_unguarded(unguarded_);
+  response.set_trouble(disk_.reason());
+  for (const auto& [id, active] : jobs_.all()) {
+    if (!active->row_trouble.empty()) response.set_trouble(active->row_trouble);
+    if (!active->trouble.empty()) response.set_trouble(active->trouble);
+  }
+}
+
+void FarmControl::listens_at(const std::string& address) {
+  const StateLock lock(shared_.mutex);
+  grpc_address_ = address;
+}
+
+/// What the units that are out with the worker belong to, the most first.
+std::vector<v1::WorkInHand> FarmControl::work_of(WorkerId worker) const {
+  std::map<std::pair<JobId, int32_t>, uint32_t> counts;
+  for (const UnitInHand& held : dispatcher_.scheduler().units_of(worker))
+    ++counts[{held.job, held.unit.frame}];
+  std::vector<v1::WorkInHand> work;
+  for (const auto& [what, units] : counts) {
+    v1::WorkInHand& one = work.emplace_back();
+    one.set_job(static_cast<uint64_t>(what.first));
+    one.set_frame(what.second);
+    one.set_units(units);
+  }
+  std::stable_sort(work.begin(), work.end(),
+                   [](const auto& a, const auto& b) { return a.units() > b.units(); });
+  if (work.size() > kMostWorkTold) work.resize(kMostWorkTold);
+  return work;
+}
+
+void FarmControl::set_unguarded(const std::string& how) {
+  const StateLock lock(shared_.mutex);
+  unguarded_ = how;
+}
+
+v1::Worker FarmControl::describe(const WorkerSession& session) const {
+  v1::Worker wire;
+  wire.set_id(static_cast<uint64_t>(session.id));
+  wire.set_name(session.hello.name());
+  wire.set_host(session.hello.host());
+  wire.set_worker_class(session.hello.worker_class());
+  wire.set_build(session.hello.build());
+  wire.set_threads(session.hello.threads());
+  wire.set_state(session.state);
+  wire.set_reason(session.reason);
+  wire.set_leased(dispatcher_.scheduler().leased_units(session.id));
+  wire.set_units_done(session.units_done);
+  wire.set_units_failed(session.units_failed);
+  wire.set_samples_done(session.samples_done);
+  wire.set_joined_ms(session.joined_ms);
+  wire.set_heard_ms(session.heard_ms);
+  wire.set_memory_bytes(session.memory);
+  wire.set_memory_limit_bytes(session.hello.memory_bytes());
+  *wire.mutable_tags() = session.hello.tags();
+  for (v1::WorkInHand& work : work_of(session.id)) *wire.add_work() = std::move(work);
+  wire.set_cache_bytes(session.cache);
+  wire.set_cache_limit_bytes(session.cache_limit);
+  wire.set_cache_hits(session.cache_hits);
+  wire.set_cache_misses(session.cache_misses);
+  if (session.joined) wire.set_samples_per_second(session.speed.per_second());
+  return wire;
+}
+
+void FarmControl::workers(const v1::WorkersRequest& request, v1::WorkersResponse& response) {
+  const StateLock lock(shared_.mutex);
+  size_t bytes = 0;
+  for (auto session = workers_.all().upper_bound(WorkerId{request.after()});
+       session != workers_.all().end(); ++session) {
+    if (bytes > kMostWorkerBytes) {
+      response.set_next_after(response.workers().rbegin()->id());
+      return;
+    }
+    v1::Worker worker = describe(session->second);
+    bytes += worker.ByteSizeLong();
+    *response.add_workers() = std::move(worker);
+  }
+}
+
+grpc::Status FarmControl::drain_worker(const v1::WorkerRequest& request, v1::Worker& now) {
+  return steer(request, now, [&](WorkerSession& session, Turn& turn) HYADES_REQUIRES(state_lock) {
+    v1::CoordinatorMessage message;
+    message.mutable_drain()->set_reason(farm::wire_text(request.reason()));
+    workers_.send(session.id, std::move(message));
+    if (session.state == v1::WORKER_STATE_ACTIVE) session.state = v1::WORKER_STATE_DRAINING;
+    turn.tell(WorkerBarred{session.id, true});
+  });
+}
+
+grpc::Status FarmControl::quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now) {
+  return steer(request, now, [&](WorkerSession& session, Turn& turn) HYADES_REQUIRES(state_lock) {
+    workers_.set_quarantine(session, session.reason);
+    turn.tell(WorkerBarred{session.id, true});
+  });
+}
+
+grpc::Status FarmControl::release_worker(const v1::WorkerRequest& request, v1::Worker& now) {
+  return steer(request, now, [&](WorkerSession& session, Turn& turn) HYADES_REQUIRES(state_lock) {
+    if (session.state != v1::WORKER_STATE_QUARANTINED) return;
+    workers_.end_quarantine(session);
+    turn.tell(WorkerBarred{session.id, false});
+  });
+}
+
+grpc::Status FarmControl::steer(const v1::WorkerRequest& request, v1::Worker& now,
+                                const std::function<void(WorkerSession&, Turn&)>& what) {
+  Turn turn(dispatcher_);
+  grpc::Status status;
+  WorkerSession* session = workers_.find(request.worker(), status);
+  if (session == nullptr) return status;
+  session->reason = farm::wire_text(request.reason());
+  what(*session, turn);
+  now = describe(*session);
+  return status;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,164 @@
+#include "coordinator/controller/job_films.h"
+
+#include <utility>
+
+#include "coordinator/controller/divergent_workers.h"
+#include "coordinator/meters/meters.h"
+#include "core/base/overloaded.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;
+
+}  // namespace
+
+/// Reports what becomes of one job's films.
+class JobFilms::Owner final : public FilmStore::Owner {
+ public:
+  Owner(JobFilms& films, JobId job) : films_(films), job_(job) {}
+
+  void persisted(RecordId record) override { films_.persisted(job_, record); }
+  void not_persisted(RecordId record, const std::string& reason) override {
+    films_.not_persisted(job_, record, reason);
+  }
+  void try_again() override {}  // the controller's clock ticks anyway
+  void storage_failed(const std::string& reason) override { films_.storage_failed(job_, reason); }
+  void drained() override {}
+
+ private:
+  JobFilms& films_;
+  JobId job_;
+};
+
+void JobFilms::persist(const Persist& persist, Delivery* delivery) {
+  if (const auto* odd = std::get_if<WorkerOddRecord>(&persist.record)) {
+    return divergent_.keep(persist.id, *odd);
+  }
+  const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
+  ActiveJob* active = jobs_.find(job);
+  if (active == nullptr) return;
+  const RecordId id = persist.id;
+  std::visit(core::Overloaded{
+                 [&](const UnitRecord& unit) HYADES_REQUIRES(state_lock) {
+                   delivery->settled = true;
+                   active->films_under_way[id] = std::move(delivery->rendered);
+                   of(*active).keep_delivered(id, unit.accepted, std::move(delivery->film),
+                                              std::move(delivery->record));
+                 },
+                 [&](const FrameFinishedRecord& done)
+                     HYADES_REQUIRES(state_lock) { of(*active).keep_finished(id, done.frame); },
+                 [&](const FrameFailedRecord& failed)
+                     HYADES_REQUIRES(state_lock) { fail_frame(*active, id, failed.failed); },
+                 [&](const FrameRestartedRecord& again)
+                     HYADES_REQUIRES(state_lock) { restart_frame(job, id, again.frame); },
+                 [&](const TileVoidedRecord& voided) HYADES_REQUIRES(state_lock) {
+                   of(*active).void_tile(id, voided.frame, voided.tile);
+                 },
+                 [&](const DisputeRecord& dispute)
+                     HYADES_REQUIRES(state_lock) { of(*active).keep_dispute(id, dispute.open); },
+                 [](const WorkerOddRecord&) {},  // above: it is of all jobs
+             },
+             persist.record);
+}
+
+void JobFilms::restart_frame(JobId job, RecordId record, int32_t frame) {
+  shared_.background.add(static_cast<uint64_t>(job), [this, job, record, frame] {
+    const core::Status forgotten = shared_.store->forget_frame(static_cast<uint64_t>(job), frame);
+    const StateLock lock(shared_.mutex);
+    ActiveJob* still = jobs_.find(job);
+    if (still == nullptr || still->ending) return true;
+    if (forgotten) of(*still).begin_again(record, frame);
+    return forgotten.ok();
+  });
+}
+
+void JobFilms::fail_frame(ActiveJob& active, RecordId record, const FailedFrame& failed) {
+  const FrameNote& note = active.frames[failed.frame];
+  StoredFrame frame{failed.frame, false, failed.reason, note.worker_class, note.restarts};
+  shared_.background.add(active.stored.id, [this, job = active.id, record, frame] {
+    const core::Status stored = shared_.store->frame_over(static_cast<uint64_t>(job), frame, {});
+    const StateLock lock(shared_.mutex);
+    ActiveJob* still = jobs_.find(job);
+    if (still == nullptr) return true;
+    // Where it could not be stored the frame fails again after a restart, if it must.
+    if (!stored) still->trouble = stored.error().message;
+    of(*still).keep_failed(record);
+    return true;
+  });
+}
+
+/// A store of the job's films, not opened yet.
+std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
+  const uint32_t samples = active.read.job.sampling.samples;
+  FilmSet films{active.numbers, active.region, samples, core::batch_count(samples)};
+  FilmStoreOptions place;
+  place.max_waiting_bytes = kWaitingBytes;
+  place.folder = shared_.films_folder(active.stored.id);
+  place.frame_key = [key = active.key](int32_t) { return key; };
+  place.resume = resume;
+  place.compact_bytes = shared_.options.compact_bytes;
+  place.on_sync = [meters = shared_.meters.get()](std::chrono::nanoseconds took) {
+    meters->synced(took);
+  };
+  if (!active.owner) active.owner = std::make_unique<Owner>(*this, active.id);
+  return std::make_unique<FilmStore>(std::move(films), std::move(place), *active.owner);
+}
+
+/// A job gets its log and threads with its first film, so that those that wait cost little. The
+/// store takes what it is given from now on; its log is opened by the job's tasks.
+FilmStore& JobFilms::of(ActiveJob& active) {
+  if (!active.film_store) {
+    active.film_store = make(active, false);
+    shared_.background.add(active.stored.id, [this, job = active.id] { return open(job); });
+  }
+  return *active.film_store;
+}
+
+/// The job stays in memory while its tasks do.
+bool JobFilms::open(JobId job) {
+  FilmStore* film_store = nullptr;
+  int32_t tile_size = 0;
+  {
+    const StateLock lock(shared_.mutex);
+    ActiveJob* active = jobs_.find(job);
+    if (active == nullptr || active->ending) return true;  // or its end would wait for this
+    film_store = active->film_store.get();
+    tile_size = tile_size_of(*active);
+  }
+  core::Status opened;
+  if (const auto contents = film_store->open(); !contents) opened = contents.error();
+  if (opened) opened = film_store->start(tile_size);
+  if (!opened) storage_failed(job, opened.error().message);
+  return opened.ok();
+}
+
+void JobFilms::persisted(JobId job, RecordId record) {
+  Turn turn(dispatcher_);
+  if (ActiveJob* active = jobs_.find(job); active != nullptr && !active->trouble.empty()) {
+    active->trouble.clear();
+    active->touch();
+  }
+  turn.tell(Persisted{record});
+}
+
+void JobFilms::not_persisted(JobId job, RecordId record, const std::string& reason) {
+  Turn turn(dispatcher_);
+  if (ActiveJob* active = jobs_.find(job)) {
+    active->films_under_way.erase(record);
+    active->trouble = "films cannot be stored: " + reason;
+    active->touch();
+  }
+  turn.tell(PersistFailed{record, reason});
+}
+
+void JobFilms::storage_failed(JobId job, const std::string& reason) {
+  const StateLock lock(shared_.mutex);
+  if (ActiveJob* active = jobs_.find(job)) {
+    active->trouble = "films cannot be stored: " + reason;
+    active->touch();
+    jobs_.note(*active, v1::LOG_LEVEL_ERROR, std::nullopt, {}, active->trouble);
+  }
+}
+
+}  // namespace hyades::coordinator

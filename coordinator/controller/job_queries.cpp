@@ -1,0 +1,326 @@
+#include "coordinator/controller/job_queries.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/disk_watch.h"
+#include "coordinator/controller/not_there.h"
+#include "core/film/film_exr.h"
+#include "core/job/output_path.h"
+#include "core/job/video.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kMostListed = 1000;
+/// Answers to those who read slowly, or never, lie in memory: they are kept short.
+constexpr size_t kMostFrameBytes = size_t{64} << 10U;
+constexpr uint32_t kMostFramesAtOnce = 2000;
+
+constexpr uint32_t kMostSteps = 2000;
+
+v1::TimelineStep to_wire(const TimedStep& step) {
+  v1::TimelineStep wire;
+  wire.set_number(step.number);
+  wire.set_kind(step.kind);
+  wire.set_worker(step.worker);
+  wire.set_thread(step.thread);
+  *wire.mutable_unit() = farm::to_wire(step.unit);
+  wire.set_begun_us(step.begun_us);
+  wire.set_ended_us(step.ended_us);
+  return wire;
+}
+
+v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
+  v1::Frame wire;
+  wire.set_frame(frame.frame);
+  wire.set_state(frame.done ? v1::FRAME_STATE_DONE : v1::FRAME_STATE_FAILED);
+  wire.set_samples(job.frames > 0 ? job.samples / job.frames : 0);
+  wire.set_samples_done(frame.done ? wire.samples() : 0);
+  wire.set_reason(frame.reason);
+  wire.set_worker_class(frame.worker_class);
+  wire.set_restarts(frame.restarts);
+  wire.set_doubtful(frame.doubtful);
+  return wire;
+}
+
+/// Frames as far as they fit into one message.
+class FramePage {
+ public:
+  explicit FramePage(google::protobuf::RepeatedPtrField<v1::Frame>& frames) : frames_(frames) {}
+  bool full() const { return bytes_ > kMostFrameBytes; }
+  void add(const v1::Frame& frame) {
+    bytes_ += frame.ByteSizeLong() + kEnvelope;
+    *frames_.Add() = frame;
+  }
+
+ private:
+  google::protobuf::RepeatedPtrField<v1::Frame>& frames_;
+  static constexpr size_t kEnvelope = 3;  // tag and length
+  size_t bytes_ = 0;
+};
+
+bool is_wanted(v1::FrameState state, v1::FrameState only) {
+  return only == v1::FRAME_STATE_UNSPECIFIED || state == only;
+}
+
+uint32_t most_listed(const v1::ListJobsRequest& request) {
+  return request.limit() == 0 ? kMostListed : std::min(request.limit(), kMostListed);
+}
+
+std::map<int32_t, FrameNote>::const_iterator above(const std::map<int32_t, FrameNote>& frames,
+                                                   std::optional<int32_t> after) {
+  return after ? frames.upper_bound(*after) : frames.begin();
+}
+
+}  // namespace
+
+v1::Job JobQueries::describe(const ActiveJob& active) const {
+  v1::Job job = active.describe(dispatcher_.scheduler().leased_units(active.id));
+  // Until its end is stored, it has not ended for anybody.
+  if (active.ending) job.set_state(v1::JOB_STATE_RUNNING);
+  if (job.reason().empty()) job.set_reason(disk_.reason());
+  count_cost(job);
+  return job;
+}
+
+v1::Job JobQueries::describe(const StoredJob& stored) const {
+  v1::Job job = coordinator::describe(stored);
+  count_cost(job);
+  return job;
+}
+
+void JobQueries::count_cost(v1::Job& job) const {
+  job.set_cost(job.core_seconds() / 3600 * shared_.options.price.per_core_hour);
+}
+
+bool JobQueries::list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
+  if (request.ended()) return false;
+  const int limit = static_cast<int>(most_listed(request));
+  const StateLock lock(shared_.mutex);
+  const bool all = request.before() == 0;
+  auto active = all ? jobs_.all().end() : jobs_.all().lower_bound(JobId{request.before()});
+  auto waiting = all ? jobs_.waiting().end() : jobs_.waiting().lower_bound(request.before());
+  while (active != jobs_.all().begin() || waiting != jobs_.waiting().begin()) {
+    // The newest of both.
+    const bool taken_up = waiting == jobs_.waiting().begin() ||
+                          (active != jobs_.all().begin() &&
+                           std::prev(active)->second->stored.id > std::prev(waiting)->first);
+    const StoredJob& stored = taken_up ? (--active)->second->stored : (--waiting)->second;
+    if (!request.owner().empty() && stored.owner != request.owner()) continue;
+    // One that waits is open already, for an instant, while it is taken up.
+    if (!taken_up && jobs_.all().contains(JobId{stored.id})) continue;
+    *response.add_jobs() = taken_up ? describe(*active->second) : describe(stored);
+    if (response.jobs_size() < limit) continue;
+    response.set_next_before(stored.id);
+    break;
+  }
+  return true;
+}
+
+grpc::Status JobQueries::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
+  const uint32_t limit = most_listed(request);
+  const auto jobs = shared_.store->list(request.ended(), request.owner(), request.before(), limit);
+  if (!jobs) return farm::unavailable(jobs.error());
+  const StateLock lock(shared_.mutex);
+  for (const StoredJob& job : *jobs) {
+    const ActiveJob* active = jobs_.find(job.id);
+    *response.add_jobs() = active != nullptr ? describe(*active) : describe(job);
+  }
+  if (jobs->size() == limit) response.set_next_before(jobs->back().id);
+  return grpc::Status::OK;
+}
+
+bool JobQueries::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response,
+                          v1::FrameState only) {
+  const StateLock lock(shared_.mutex);
+  const ActiveJob* active = jobs_.find(id);
+  if (active == nullptr) return false;
+  FramePage page(*response.mutable_frames());
+  *response.mutable_job() = describe(*active);
+  for (auto it = above(active->frames, after); it != active->frames.end(); ++it) {
+    if (!is_wanted(it->second.state, only)) continue;
+    response.set_more(page.full());
+    if (page.full()) break;
+    page.add(active->describe_frame(it->first, it->second));
+  }
+  return true;
+}
+
+grpc::Status JobQueries::get(uint64_t id, std::optional<int32_t> after,
+                             v1::GetJobResponse& response, v1::FrameState only) {
+  if (get_open(id, after, response, only)) return grpc::Status::OK;
+  FramePage page(*response.mutable_frames());
+  const auto stored = shared_.store->job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!*stored) return no_job(id);
+  *response.mutable_job() = describe(**stored);
+  for (;;) {
+    const auto frames = shared_.store->frames(id, after, kMostFramesAtOnce);
+    if (!frames) return farm::unavailable(frames.error());
+    for (const StoredFrame& row : *frames) {
+      const v1::Frame frame = describe_over(row, **stored);
+      after = row.frame;
+      if (!is_wanted(frame.state(), only)) continue;
+      if (page.full()) {
+        response.set_more(true);
+        return grpc::Status::OK;
+      }
+      page.add(frame);
+    }
+    const bool last = frames->size() < kMostFramesAtOnce;
+    // Of some states there may be few: then it is looked for more of them.
+    response.set_more(!last);
+    if (last || only == v1::FRAME_STATE_UNSPECIFIED) return grpc::Status::OK;
+  }
+}
+
+bool JobQueries::changes_of_open(uint64_t id, ChangeCursor& cursor, v1::WatchEvent& event) {
+  const StateLock lock(shared_.mutex);
+  const ActiveJob* active = jobs_.find(id);
+  if (active == nullptr) return false;
+  *event.mutable_job() = describe(*active);
+  if (!cursor.after) cursor.next_version = active->version;
+  FramePage page(*event.mutable_changed());
+  for (auto it = above(active->frames, cursor.after); it != active->frames.end(); ++it) {
+    if (cursor.version != 0 && it->second.version <= cursor.version) continue;
+    if (page.full()) {
+      event.set_more(true);
+      return true;
+    }
+    page.add(active->describe_frame(it->first, it->second));
+    cursor.after = it->first;
+  }
+  cursor.version = cursor.next_version;
+  cursor.after.reset();
+  return true;
+}
+
+grpc::Status JobQueries::changes(uint64_t id, ChangeCursor& cursor, v1::WatchEvent& event,
+                                 bool& ended) {
+  ended = false;
+  if (changes_of_open(id, cursor, event)) return grpc::Status::OK;
+  if (!std::exchange(cursor.over, true)) cursor.after.reset();
+  v1::GetJobResponse over;
+  const grpc::Status status = get(id, cursor.after, over);
+  if (!status.ok()) return status;
+  if (over.frames_size() > 0) cursor.after = over.frames().rbegin()->frame();
+  event.set_more(over.more());
+  event.mutable_job()->Swap(over.mutable_job());
+  event.mutable_changed()->Swap(over.mutable_frames());
+  ended = true;
+  return grpc::Status::OK;
+}
+
+grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
+  {
+    const StateLock lock(shared_.mutex);
+    if (const ActiveJob* active = jobs_.find(id)) {
+      const auto noted = active->frames.find(frame);
+      if (noted == active->frames.end()) return no_frame(id, frame);
+      now.frame = active->describe_frame(frame, noted->second);
+      now.tag = fmt::format("\"{}.{}.{}\"", shared_.started_ms, shared_.incarnation,
+                            noted->second.version);
+      for (const core::OutputDesc& output : active->read.job.outputs) {
+        if (output.file.ends_with(".exr")) continue;
+        now.tone_map = output.tone_map;
+        now.exposure = output.exposure;
+        break;
+      }
+      return grpc::Status::OK;
+    }
+  }
+  const auto stored = shared_.store->job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!*stored) return no_job(id);
+  const auto before = frame == INT32_MIN ? std::nullopt : std::optional(frame - 1);
+  const auto frames = shared_.store->frames(id, before, 1);
+  if (!frames) return farm::unavailable(frames.error());
+  if (frames->empty() || frames->front().frame != frame) return no_frame(id, frame);
+  now.frame = describe_over(frames->front(), **stored);
+  return grpc::Status::OK;
+}
+
+/// Of a frame that is done.
+grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
+  const auto stored = shared_.store->job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!*stored) return no_job(id);
+  const auto outputs = shared_.store->outputs(id, 0, UINT32_MAX);
+  if (!outputs) return farm::unavailable(outputs.error());
+  for (const StoredOutput& output : *outputs) {
+    if (output.frame != frame || !output.path.ends_with(".film.exr")) continue;
+    auto file = core::read_film_exr(shared_.output_folder(id) + "/" + output.path);
+    if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
+    then(grpc::Status::OK, file->info, std::make_shared<const core::Film>(std::move(file->film)));
+    return grpc::Status::OK;
+  }
+  return {grpc::StatusCode::FAILED_PRECONDITION,
+          fmt::format("there is no film of frame {} any more; 'keep_films: true' in the job keeps "
+                      "those of finished frames",
+                      frame)};
+}
+
+grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
+  StateLock lock(shared_.mutex);
+  ActiveJob* active = jobs_.find(id);
+  if (active == nullptr || active->ending) {
+    lock.unlock();
+    return kept_film(id, frame, then);
+  }
+  const auto noted = active->frames.find(frame);
+  if (noted == active->frames.end()) {
+    return no_frame(id, frame);
+  }
+  if (noted->second.state == v1::FRAME_STATE_DONE) {
+    lock.unlock();
+    return kept_film(id, frame, then);
+  }
+  if (!active->film_store) {
+    return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "nothing of the frame is there yet",
+                             std::chrono::seconds(1));
+  }
+  core::FilmInfo info = active->film_info(frame);
+  info.worker_class = noted->second.worker_class;
+  // The film store's thread copies, as only it may look at films while they grow.
+  active->film_store->call(
+      [film_store = active->film_store.get(), frame, info, then = std::move(then)] {
+        const auto film = film_store->film(frame);
+        const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
+        then(copy ? grpc::Status::OK
+                  : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                                      "nothing of the frame is there yet", std::chrono::seconds(1)),
+             info, copy);
+      });
+  return grpc::Status::OK;
+}
+
+grpc::Status JobQueries::timeline(const v1::ListTimelineRequest& request,
+                                  v1::ListTimelineResponse& response) {
+  const auto known = shared_.store->state(request.job());
+  if (!known) return farm::unavailable(known.error());
+  if (!*known) return no_job(request.job());
+  const uint32_t limit = request.limit() == 0 ? kMostSteps : std::min(request.limit(), kMostSteps);
+  const Timelines::Page page = timelines_.page(request.job(), request.after(), limit);
+  for (const TimedStep& step : page.steps) *response.add_steps() = to_wire(step);
+  response.set_more(page.more);
+  response.set_dropped(page.dropped);
+  return grpc::Status::OK;
+}
+
+bool JobQueries::is_for_video(uint64_t job, const std::string& path) const {
+  const StateLock lock(shared_.mutex);
+  const ActiveJob* active = jobs_.find(job);
+  if (active == nullptr) return false;
+  const std::vector<core::VideoDesc>& videos = active->videos();
+  return std::any_of(videos.begin(), videos.end(), [&](const core::VideoDesc& video) {
+    return path.starts_with(core::video_folder(video) + "/");
+  });
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,203 @@
+#include "coordinator/controller/job_records.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/job_queries.h"
+#include "coordinator/controller/wall_clock.h"
+#include "coordinator/controller/watchers.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// After this somebody who waits for a change to be stored is told to come again.
+constexpr Duration kStorePatience = std::chrono::milliseconds(500);
+/// For the last lines of a job that has ended, a second apart.
+constexpr int kMostTries = 20;
+constexpr Duration kLinesAgain = std::chrono::seconds(1);
+/// How far the account of a job may lag behind in the store.
+constexpr Duration kStoreCoreEvery = std::chrono::seconds(10);
+
+grpc::Status not_stored(const std::string& why) {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                           "it is so now, but not stored yet" + (why.empty() ? why : ": " + why),
+                           std::chrono::seconds(1));
+}
+
+}  // namespace
+
+void JobRecords::when_stored(uint64_t job, JobReply then) {
+  replies_.push_back(
+      {next_reply_++, job, std::chrono::steady_clock::now() + kStorePatience, std::move(then)});
+}
+
+/// Stores what has changed of an open job. All of a job's rows are stored by its tasks, one after
+/// the other, and each as the job is then: what is stored last is what was last.
+void JobRecords::store(ActiveJob& active) {
+  if (std::exchange(active.storing_row, true)) return;
+  shared_.background.add(active.stored.id, [this, id = active.stored.id] { return store_now(id); });
+}
+
+bool JobRecords::store_now(uint64_t id) {
+  StoredJob job;
+  uint64_t before = 0;
+  {
+    const StateLock lock(shared_.mutex);
+    ActiveJob* active = jobs_.find(id);
+    if (active == nullptr || active->ending) return true;  // its end will be stored
+    active->storing_row = false;
+    job = active->stored;
+    before = next_reply_;
+  }
+  const core::Status done = shared_.store->update_job(job);
+  std::vector<PendingReply> told;
+  v1::Job now;
+  {
+    const StateLock lock(shared_.mutex);
+    ActiveJob* active = jobs_.find(id);
+    if (active == nullptr) return true;
+    if (!done) {
+      active->storing_row = true;
+      active->row_trouble = "a change cannot be stored: " + done.error().message;
+      active->touch();
+      return false;
+    }
+    active->core_ns_stored = job.core_ns;
+    if (!active->row_trouble.empty()) active->touch();
+    active->row_trouble.clear();
+    now = queries_.describe(*active);
+    told = take_replies([&](const PendingReply& r) { return r.job == id && r.number < before; });
+  }
+  for (const PendingReply& reply : told) reply.then(grpc::Status::OK, now);
+  return true;
+}
+
+std::vector<JobRecords::PendingReply> JobRecords::take_replies(
+    const std::function<bool(const PendingReply&)>& which) {
+  std::vector<PendingReply> taken;
+  std::erase_if(replies_, [&](PendingReply& reply) {
+    if (!which(reply)) return false;
+    taken.push_back(std::move(reply));
+    return true;
+  });
+  return taken;
+}
+
+/// Those who have waited for long enough are let go.
+void JobRecords::answer_late(TimePoint now) {
+  std::vector<std::pair<PendingReply, std::string>> late;
+  {
+    const StateLock lock(shared_.mutex);
+    for (PendingReply& reply :
+         take_replies([&](const PendingReply& r) { return shared_.stop || r.give_up <= now; })) {
+      const ActiveJob* active = jobs_.find(reply.job);
+      late.emplace_back(std::move(reply), active != nullptr ? active->row_trouble : std::string());
+    }
+  }
+  for (const auto& [reply, why] : late) reply.then(not_stored(why), {});
+}
+
+void JobRecords::look_after(TimePoint now, bool disk_full) {
+  for (const auto& [id, active] : jobs_.all()) {
+    active->speed.note(active->samples_done, now);
+    if (active->ending || disk_full) continue;
+    if (active->stored.core_ns != active->core_ns_stored &&
+        now - active->core_stored >= kStoreCoreEvery) {
+      active->core_stored = now;
+      store(*active);
+    }
+    if (active->lines.empty() || active->storing_lines || now < active->lines_again) continue;
+    active->storing_lines = true;
+    shared_.background.add(active->stored.id, [this, id = active->id] { return store_lines(id); });
+  }
+}
+
+/// Where they cannot be stored they wait in memory, and hold up none of the job's tasks.
+bool JobRecords::store_lines(JobId id) {
+  std::vector<StoredLine> lines;
+  {
+    const StateLock lock(shared_.mutex);
+    ActiveJob* active = jobs_.find(id);
+    if (active == nullptr) return true;
+    if (!active->lines.empty()) lines = active->take_lines();
+  }
+  const core::Status stored = shared_.store->add_lines(static_cast<uint64_t>(id), lines);
+  const StateLock lock(shared_.mutex);
+  ActiveJob* still = jobs_.find(id);
+  if (still == nullptr) return true;
+  still->storing_lines = false;
+  if (stored) return true;
+  still->put_back(std::move(lines));
+  still->lines_again = std::chrono::steady_clock::now() + kLinesAgain;
+  return true;
+}
+
+void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) {
+  active.ending = true;
+  StoredJob& stored = active.stored;
+  stored.state = cancelled                                  ? StoredState::cancelled
+                 : stored.frames_failed > 0 || !why.empty() ? StoredState::failed
+                                                            : StoredState::done;
+  stored.ended_ms = wall_ms();
+  stored.reason = farm::wire_text(why);
+  for (const auto& [number, frame] : active.frames) {
+    if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
+      stored.reason = fmt::format("frame {} failed: {}", number, frame.reason);
+    }
+  }
+  jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
+             fmt::format("ended: {} frames done, {} failed{}", stored.frames_done,
+                         stored.frames_failed, cancelled ? ", cancelled" : ""));
+  shared_.background.add(stored.id, [this, id = stored.id] { return store_end(id); });
+}
+
+bool JobRecords::store_end(uint64_t id) {
+  StoredJob job;
+  {
+    const StateLock lock(shared_.mutex);
+    job = jobs_.find(id)->stored;
+  }
+  // The end first: on a full disk there may be room for it alone.
+  const core::Status done = shared_.store->update_job(job);
+  std::vector<StoredLine> lines;
+  {
+    const StateLock lock(shared_.mutex);
+    ActiveJob* over = jobs_.find(id);
+    if (!done) {
+      over->row_trouble = "its end cannot be stored: " + done.error().message;
+      over->touch();
+      return false;
+    }
+    lines = over->take_lines();
+  }
+  if (!lines.empty() && !shared_.store->add_lines(id, lines)) {
+    // The job is over for whoever waits for it; its last words come as long as there is hope.
+    shared_.background.add(id, [this, id, lines = std::move(lines), tries = 0]() mutable {
+      const auto still = shared_.store->state(id);
+      const bool deleted = still && !*still;
+      return deleted || shared_.store->add_lines(id, lines).ok() || ++tries == kMostTries;
+    });
+  }
+  std::unique_ptr<ActiveJob> over;
+  std::vector<PendingReply> told;
+  {
+    const StateLock lock(shared_.mutex);
+    over = jobs_.take_out(id);
+    told = take_replies([&](const PendingReply& reply) { return reply.job == id; });
+    watchers_.poke(id);
+  }
+  for (const PendingReply& reply : told) reply.then(grpc::Status::OK, queries_.describe(job));
+  over.reset();  // waits for the film store's thread
+  // Films of frames that failed stay, should they be taken up again.
+  std::error_code ignored;
+  if (job.state == StoredState::done)
+    std::filesystem::remove_all(shared_.films_folder(id), ignored);
+  jobs_.left(id);
+  return true;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,331 @@
+#include "coordinator/controller/job_recovery.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "coordinator/controller/job_films.h"
+#include "coordinator/controller/wall_clock.h"
+#include "core/job/output_path.h"
+#include "core/job/video.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr std::chrono::seconds kPatience{2};
+
+/// Films of a progressive job that may be in memory together, and frames that may be.
+constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
+constexpr uint64_t kMostAtOnce = 256;
+
+/// How many frames of a job may be in work together: no more than half of `film_memory` holds, or
+/// one.
+uint32_t frames_at_once(const ActiveJob& active, uint64_t film_memory) {
+  const uint64_t film = std::max<uint64_t>(active.film_bytes, 1);
+  const uint64_t wanted = active.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE
+                              ? std::clamp<uint64_t>(kProgressiveBytes / film, 3, kMostAtOnce)
+                              : JobPlan{}.frames_in_flight;
+  return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
+}
+
+/// Whether a job can never be taken up as it is: its record is damaged, its files are gone, or what
+/// they say is not allowed here. All else (a full disk, one that does not answer) may pass.
+bool lasting_obstacle(JobStore& store, farm::ContentStore& assets, uint64_t id,
+                      uint64_t film_memory) {
+  const auto stored = store.job(id);
+  if (!stored) return false;
+  if (!*stored) return true;
+  v1::JobSpec spec;
+  if (!spec.ParseFromString((*stored)->spec)) return true;
+  for (const v1::JobFile& file : spec.files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (!digest) return true;
+    const std::string name = core::to_hex(*digest);
+    if (assets.missing(name)) return true;
+    // One that is damaged is gone once it was read.
+    if (!assets.read(name)) return assets.missing(name);
+  }
+  return !make_active_job(**stored, spec, assets, film_memory);
+}
+
+}  // namespace
+
+bool is_stored(const v1::JobFile& file, farm::ContentStore& assets) {
+  const auto digest = farm::digest_from_wire(file.sha256());
+  return digest && assets.contains(core::to_hex(*digest), file.size());
+}
+
+core::Status JobRecovery::recover_all() {
+  const auto ids = shared_.store->open_jobs();
+  if (!ids) return ids.error();
+  for (const uint64_t id : *ids) {
+    core::Status taken = recover(id);
+    if (taken) continue;
+    if (!lasting_obstacle(*shared_.store, *shared_.assets, id, shared_.options.film_memory)) {
+      // Perhaps the disk is full, or did not answer: the job waits, and says why.
+      StoredJob waiting;
+      if (auto stored = shared_.store->job(id); stored && *stored) waiting = std::move(**stored);
+      waiting.id = id;
+      waiting.reason = "waits to be taken up again: " + taken.error().message;
+      if (!waiting.spec.empty()) (void)shared_.store->update_job(waiting);
+      const StateLock lock(shared_.mutex);
+      jobs_.wait_for_recovery(std::move(waiting));
+      shared_.background.add(id, [this, id] { return recover_later(id); });
+      continue;
+    }
+    if (core::Status noted = give_up(id, taken.error()); !noted) {
+      shared_.background.add(id, [this, id] { return recover_later(id); });
+    }
+  }
+  return {};
+}
+
+/// Whether there is nothing left to try; for the job's tasks.
+bool JobRecovery::recover_later(uint64_t id) {
+  if (!try_to_recover(id)) return false;
+  const StateLock lock(shared_.mutex);
+  jobs_.no_longer_waits(id);
+  return true;
+}
+
+bool JobRecovery::try_to_recover(uint64_t id) {
+  if (shared_.stop) return true;
+  // Not while somebody deletes it, or unused files are swept.
+  const std::unique_lock one(shared_.submissions, kPatience);
+  if (!one) return false;
+  const auto stored = shared_.store->job(id);
+  if (!stored) return false;
+  if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
+  const core::Status taken = recover(id);
+  if (taken) return true;
+  return lasting_obstacle(*shared_.store, *shared_.assets, id, shared_.options.film_memory) &&
+         give_up(id, taken.error()).ok();
+}
+
+/// The job fails alone, with the reason kept; `retry` takes it up again.
+core::Status JobRecovery::give_up(uint64_t id, const core::Error& why) {
+  auto stored = shared_.store->job(id);
+  if (!stored) return stored.error();
+  if (!*stored) return {};
+  (*stored)->state = StoredState::failed;
+  (*stored)->ended_ms = wall_ms();
+  (*stored)->reason = "could not be taken up again: " + why.message;
+  return shared_.store->update_job(**stored);
+}
+
+core::Status JobRecovery::recover(uint64_t id) {
+  auto stored = shared_.store->job(id);
+  if (!stored) return stored.error();
+  if (!*stored) return core::Error{"it is not there"};
+  v1::JobSpec spec;
+  if (!spec.ParseFromString((*stored)->spec)) return core::Error{"its record is damaged"};
+  for (const v1::JobFile& file : spec.files()) {
+    if (is_stored(file, *shared_.assets)) continue;
+    return core::Error{file.path() +
+                       " is gone or damaged on the coordinator's disk: submit the job (or the "
+                       "file with another) again, then 'retry' takes this one up"};
+  }
+  auto active = make_active_job(**stored, spec, *shared_.assets, shared_.options.film_memory);
+  if (!active) return active.error();
+  (*active)->id = JobId{id};
+  RestoredJob restored;
+  const auto frames = shared_.store->frames(id);
+  if (!frames) return frames.error();
+  const auto repeated = frames_to_repeat(**active, *frames);
+  if (!repeated) return repeated.error();
+  (*active)->stored.preview.reset();  // it may be rendered again
+  for (const StoredFrame& frame : *frames) {
+    FrameNote& note = (*active)->frames[frame.frame];
+    if (repeated->contains(frame.frame)) {
+      if (auto gone = shared_.store->forget_frame(id, frame.frame); !gone) return gone;
+      note.restarts = frame.restarts + 1;
+      jobs_.note(
+          **active, v1::LOG_LEVEL_WARNING, frame.frame, {},
+          frame.doubtful
+              ? "a worker that had a part in it was found odd: it is rendered again"
+              : "its outputs are gone or damaged, or went into a video that is made anew: it is "
+                "rendered again");
+      continue;
+    }
+    note.worker_class = frame.worker_class;
+    note.restarts = frame.restarts;
+    if (frame.done) {
+      restored.finished.push_back(frame.frame);
+      (*active)->stored.preview = frame.frame;
+      note.state = v1::FRAME_STATE_DONE;
+      note.samples_done = (*active)->samples_per_frame;
+      (*active)->samples_done += note.samples_done;
+    } else {
+      restored.failed.push_back({frame.frame, frame.reason});
+      note.state = v1::FRAME_STATE_FAILED;
+      note.reason = frame.reason;
+    }
+  }
+  (*active)->core_ns_stored = (*active)->stored.core_ns;
+  (*active)->stored.frames_done = static_cast<uint32_t>(restored.finished.size());
+  (*active)->stored.frames_failed = static_cast<uint32_t>(restored.failed.size());
+  return start(std::move(*active), std::move(restored));
+}
+
+/// Outputs that are missing or have another size than when they were written.
+core::Result<std::vector<StoredOutput>> JobRecovery::lost_outputs(uint64_t id) const {
+  const auto outputs = shared_.store->outputs(id, 0, UINT32_MAX);
+  if (!outputs) return outputs.error();
+  std::vector<StoredOutput> lost;
+  for (const StoredOutput& output : *outputs) {
+    std::error_code failed;
+    const std::string path = shared_.output_folder(id) + "/" + output.path;
+    const auto size = std::filesystem::file_size(path, failed);
+    // What cannot be looked at now may be as it should.
+    if (failed && failed != std::errc::no_such_file_or_directory &&
+        failed != std::errc::not_a_directory) {
+      return core::Error{path + ": " + failed.message()};
+    }
+    if (failed || size != output.size) lost.push_back(output);
+  }
+  return lost;
+}
+
+/// Where a video is missing, or one of the frames is `repeated`, it is made anew, of all frames:
+/// those of the `done` ones whose pictures went when it was made are repeated too.
+core::Status JobRecovery::repeat_for_videos(const ActiveJob& active,
+                                            const std::vector<int32_t>& done,
+                                            std::set<int32_t>& repeated) {
+  const uint64_t id = active.stored.id;
+  const auto outputs = shared_.store->outputs(id, 0, UINT32_MAX);
+  if (!outputs) return outputs.error();
+  std::set<std::string> paths;
+  for (const StoredOutput& output : *outputs) paths.insert(output.path);
+  // What one video repeats costs the others too.
+  for (size_t before = repeated.size() + 1; before != repeated.size();) {
+    before = repeated.size();
+    for (const core::VideoDesc& video : active.videos()) {
+      if (repeated.empty() && paths.contains(video.file)) continue;
+      if (core::Status gone = shared_.store->change_outputs(id, {video.file}, {}); !gone)
+        return gone;
+      paths.erase(video.file);
+      for (const int32_t number : done) {
+        if (!paths.contains(core::output_path(video.pictures, number))) repeated.insert(number);
+      }
+    }
+  }
+  return {};
+}
+
+/// Of the frames that are over, those that are rendered again: they are in doubt, or of what they
+/// have written something is gone.
+core::Result<std::set<int32_t>> JobRecovery::frames_to_repeat(
+    const ActiveJob& active, const std::vector<StoredFrame>& frames) {
+  const uint64_t id = active.stored.id;
+  const auto lost = lost_outputs(id);
+  if (!lost) return lost.error();
+  std::set<int32_t> repeated;
+  for (const StoredOutput& output : *lost) {
+    const bool video = std::any_of(active.videos().begin(), active.videos().end(),
+                                   [&](const core::VideoDesc& v) { return v.file == output.path; });
+    if (!video) {
+      repeated.insert(output.frame);
+    } else if (core::Status gone = shared_.store->change_outputs(id, {output.path}, {}); !gone) {
+      return gone.error();
+    }
+  }
+  std::vector<int32_t> done;
+  for (const StoredFrame& frame : frames) {
+    if (frame.done) done.push_back(frame.frame);
+    if (frame.doubtful) repeated.insert(frame.frame);
+  }
+  if (core::Status told = repeat_for_videos(active, done, repeated); !told) return told.error();
+  return repeated;
+}
+
+/// What of the films in a job's log counts.
+void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
+                                RestoredJob& restored) {
+  for (const std::string& problem : contents.problems) {
+    jobs_.note(active, v1::LOG_LEVEL_WARNING, std::nullopt, {}, "films: " + problem);
+  }
+  restored.disputed = contents.disputed;
+  if (contents.disputed) {
+    jobs_.note(
+        active, v1::LOG_LEVEL_WARNING, std::nullopt, {},
+        "workers had rendered a unit differently when the coordinator stopped: frames that are not "
+        "done are rendered again from their beginning");
+  }
+  for (const auto& [number, units] : contents.units) {
+    FrameNote& frame = active.frames[number];
+    // The row may be of outputs that were made while a film was in doubt: the log has the last
+    // word.
+    if (frame.state == v1::FRAME_STATE_DONE && contents.disputed) {
+      frame.state = v1::FRAME_STATE_WAITING;
+      active.samples_done -= std::exchange(frame.samples_done, 0);
+      --active.stored.frames_done;
+      std::erase(restored.finished, number);
+    }
+    if (frame.state != v1::FRAME_STATE_WAITING) {
+      active.film_store->forget(number, frame.state == v1::FRAME_STATE_DONE);
+      continue;
+    }
+    frame.state = v1::FRAME_STATE_RENDERING;
+    active.in_work.insert(number);
+    frame.worker_class = units.front().worker_class;
+    for (const AcceptedUnit& unit : units) {
+      frame.samples_done +=
+          core::samples_in(unit.unit.tile, unit.unit.batches, active.read.job.sampling.samples);
+      restored.accepted.push_back(unit);
+    }
+    active.samples_done += frame.samples_done;
+    // Will be finished at once, by another thread than the film store's, which runs by then.
+    if (frame.samples_done == active.samples_per_frame) {
+      active.complete[number] = active.film_store->film(number);
+    }
+  }
+  for (const auto& [frame, finished] : contents.finished) {
+    if (active.frames[frame].state != v1::FRAME_STATE_DONE) active.film_store->reopen(frame);
+  }
+}
+
+/// Reads the films that are there, and hands the job to the scheduler.
+core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob restored) {
+  ActiveJob& active = *owned;
+  int32_t tile_size = tile_size_of(active);
+  std::error_code unknown;
+  const bool films = std::filesystem::exists(shared_.films_folder(active.stored.id), unknown);
+  if (unknown)
+    return core::Error{shared_.films_folder(active.stored.id) + ": " + unknown.message()};
+  if (films) {
+    active.film_store = films_.make(active, true);
+    auto contents = active.film_store->open();
+    if (!contents) return contents.error();
+    if (contents->cut.tile_size > 0) tile_size = contents->cut.tile_size;
+    restore_films(active, *contents, restored);
+    if (auto started = active.film_store->start(tile_size); !started) return started;
+  }
+  JobAdded added;
+  added.job = active.id;
+  added.plan.frames = active.numbers;
+  added.plan.region = active.region;
+  added.plan.tile_size = tile_size;
+  added.plan.batches = core::batch_count(active.read.job.sampling.samples);
+  added.plan.priority = active.stored.priority;
+  added.plan.owner = active.stored.owner;
+  added.plan.max_workers = active.stored.max_workers;
+  added.plan.max_attempts = active.stored.max_attempts;
+  added.plan.needs = {active.stored.tags, active.stored.memory};
+  if (active.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE) {
+    added.plan.order = FrameOrder::progressive;
+  }
+  added.plan.whole_frames = active.layout.layers.splats;
+  added.plan.film_bytes = active.film_bytes;
+  added.plan.frames_in_flight = frames_at_once(active, shared_.options.film_memory);
+  added.restored = std::move(restored);
+  Turn turn(dispatcher_);
+  const JobId id = active.id;
+  const bool paused = active.stored.state == StoredState::paused;
+  jobs_.add(std::move(owned));
+  turn.tell(added);
+  if (paused) turn.tell(JobPaused{id});
+  return {};
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,131 @@
+#include "coordinator/controller/job_steering.h"
+
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/video_maker.h"
+#include "coordinator/controller/wall_clock.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr int kMostPriority = 1'000'000;
+constexpr std::chrono::seconds kPatience{2};
+
+}  // namespace
+
+grpc::Status check_priority(int priority) {
+  if (std::abs(int64_t{priority}) <= kMostPriority) return grpc::Status::OK;
+  return {grpc::StatusCode::INVALID_ARGUMENT, "priority: expected -1000000 to 1000000"};
+}
+
+void JobSteering::pause(uint64_t id, JobReply then) { set_paused(id, true, std::move(then)); }
+
+void JobSteering::resume(uint64_t id, JobReply then) { set_paused(id, false, std::move(then)); }
+
+void JobSteering::set_paused(uint64_t id, bool paused, JobReply then) {
+  change(id, std::move(then), [&](ActiveJob& active, Turn& turn) HYADES_REQUIRES(state_lock) {
+    const StoredState wanted = paused ? StoredState::paused : StoredState::running;
+    if (active.stored.state == wanted) return;
+    active.stored.state = wanted;
+    jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, paused ? "paused" : "resumed");
+    turn.tell(paused ? Event(JobPaused{active.id}) : Event(JobResumed{active.id}));
+  });
+}
+
+void JobSteering::set_priority(uint64_t id, int priority, JobReply then) {
+  if (const grpc::Status sane = check_priority(priority); !sane.ok()) return then(sane, {});
+  change(id, std::move(then), [&](ActiveJob& active, Turn& turn) HYADES_REQUIRES(state_lock) {
+    if (active.stored.priority == priority) return;
+    active.stored.priority = priority;
+    jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {}, fmt::format("priority {}", priority));
+    turn.tell(JobReprioritised{active.id, priority});
+  });
+}
+
+/// Changes an open job; `then` is called once that is stored.
+void JobSteering::change(uint64_t id, JobReply then,
+                         const std::function<void(ActiveJob&, Turn&)>& what) {
+  bool open = false;
+  {
+    Turn turn(dispatcher_);
+    ActiveJob* active = jobs_.find(id);
+    open = active != nullptr && !active->ending;
+    if (open) {
+      what(*active, turn);
+      records_.when_stored(id, then);
+      records_.store(*active);
+    }
+  }
+  if (shared_.stop) records_.answer_late({});
+  if (!open) then(why_not_open(*shared_.store, id), {});
+}
+
+void JobSteering::cancel(uint64_t id, JobReply then) {
+  bool open = false;
+  {
+    Turn turn(dispatcher_);
+    ActiveJob* active = jobs_.find(id);
+    open = active != nullptr;
+    if (open) {
+      // The end is stored by the job's tasks; to answer is to promise.
+      records_.when_stored(id, then);
+      if (active->making_videos) {
+        videos_.cancel(*active);
+      } else {
+        turn.tell(JobCancelled{active->id});
+      }
+    }
+  }
+  if (shared_.stop) records_.answer_late({});
+  if (open) return;
+  v1::Job now;
+  const grpc::Status status = cancel_waiting(id, now);
+  then(status, now);
+}
+
+/// A job that waits to be taken up ends without; any other is why_not_open().
+grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
+  const auto waits = [&] {
+    const StateLock lock(shared_.mutex);
+    return jobs_.waiting().contains(id) && jobs_.find(id) == nullptr;
+  };
+  if (!waits()) return why_not_open(*shared_.store, id);
+  // Nobody takes it up meanwhile.
+  const std::unique_lock one(shared_.submissions, kPatience);
+  auto stored = shared_.store->job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!one || !waits() || !*stored || has_ended((*stored)->state)) {
+    return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                             fmt::format("job {} is just being taken up", id),
+                             std::chrono::seconds(1));
+  }
+  (*stored)->state = StoredState::cancelled;
+  (*stored)->ended_ms = wall_ms();
+  (*stored)->reason.clear();
+  if (const core::Status done = shared_.store->update_job(**stored); !done)
+    return farm::unavailable(done.error());
+  now = coordinator::describe(**stored);
+  const StateLock lock(shared_.mutex);
+  jobs_.no_longer_waits(id);
+  return grpc::Status::OK;
+}
+
+grpc::Status why_not_open(JobStore& store, uint64_t id) {
+  const auto stored = store.job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  if (!has_ended((*stored)->state)) {
+    return farm::retry_later(
+        grpc::StatusCode::UNAVAILABLE,
+        fmt::format("job {} {}", id,
+                    (*stored)->reason.empty() ? "is being taken up" : (*stored)->reason),
+        std::chrono::seconds(1));
+  }
+  return {grpc::StatusCode::FAILED_PRECONDITION, fmt::format("job {} has ended", id)};
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include <grpcpp/support/status.h>
+
+#include "coordinator/controller/dispatcher.h"
+#include "coordinator/controller/job_records.h"
+
+namespace hyades::coordinator {
+
+class VideoMaker;
+
+/// INVALID_ARGUMENT for one that no job may have.
+grpc::Status check_priority(int priority);
+
+/// Why a job that is not in memory is not open: NOT_FOUND, FAILED_PRECONDITION for one that has
+/// ended, UNAVAILABLE for one that is being recovered.
+grpc::Status why_not_open(JobStore& store, uint64_t job);
+
+/// What clients want of open jobs. Each function calls `then` exactly once, perhaps by another
+/// thread and at the latest when the controller stops: when the change is stored, or after half a
+/// second with UNAVAILABLE (it holds, and will be stored). For a job that is not open they may wait
+/// for the store. Thread-safe.
+class JobSteering {
+ public:
+  JobSteering(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, JobRecords& records,
+              VideoMaker& videos)
+      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), records_(records), videos_(videos) {}
+
+  void pause(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  void resume(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  void cancel(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  void set_priority(uint64_t job, int priority, JobReply then) HYADES_EXCLUDES(state_lock);
+
+ private:
+  void set_paused(uint64_t job, bool paused, JobReply then) HYADES_EXCLUDES(state_lock);
+  void change(uint64_t job, JobReply then, const std::function<void(ActiveJob&, Turn&)>& what)
+      HYADES_EXCLUDES(state_lock);
+  grpc::Status cancel_waiting(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);
+
+  Shared& shared_;
+  Dispatcher& dispatcher_;
+  JobTable& jobs_;
+  JobRecords& records_;
+  VideoMaker& videos_;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "coordinator/controller/active_job.h"
+#include "coordinator/controller/state_lock.h"
+
+namespace hyades::coordinator {
+
+/// The jobs that have not ended, and the logs of what happens to them.
+class JobTable {
+ public:
+  using Jobs = std::map<JobId, std::unique_ptr<ActiveJob>>;
+
+  explicit JobTable(StateMutex& mutex) : mutex_(mutex) {}
+
+  /// Null where the job has ended, or waits to be recovered.
+  ActiveJob* find(JobId job) HYADES_REQUIRES(state_lock);
+  ActiveJob* find(uint64_t job) HYADES_REQUIRES(state_lock) { return find(JobId{job}); }
+  const Jobs& all() const HYADES_REQUIRES(state_lock) { return jobs_; }
+  void add(std::unique_ptr<ActiveJob> job) HYADES_REQUIRES(state_lock);
+  /// Takes the job out; until left() it is on its way out.
+  std::unique_ptr<ActiveJob> take_out(uint64_t job) HYADES_REQUIRES(state_lock);
+  void left(uint64_t job) HYADES_EXCLUDES(state_lock);
+  /// Waits until nothing is left of a job whose end is being stored, or `time` has come, or `stop`;
+  /// whether it was awaited.
+  bool wait_until_left(uint64_t job, TimePoint time, const std::atomic<bool>& stop)
+      HYADES_EXCLUDES(state_lock);
+  /// Wakes those who wait for jobs to leave.
+  void wake() { left_.notify_all(); }
+  /// Drops all of them.
+  void clear() HYADES_EXCLUDES(state_lock);
+
+  /// Jobs that are open, but could not be recovered yet, with the reason.
+  const std::map<uint64_t, StoredJob>& waiting() const HYADES_REQUIRES(state_lock) {
+    return waiting_;
+  }
+  void wait_for_recovery(StoredJob job) HYADES_REQUIRES(state_lock);
+  void no_longer_waits(uint64_t job) HYADES_REQUIRES(state_lock) { waiting_.erase(job); }
+
+  /// Frames are finished one after the other, over all jobs and runs of the coordinator: the number
+  /// of the last one.
+  uint64_t moment() const HYADES_REQUIRES(state_lock) { return moment_; }
+  uint64_t next_moment() HYADES_REQUIRES(state_lock) { return ++moment_; }
+  void begin_moments(uint64_t moment) HYADES_REQUIRES(state_lock) { moment_ = moment; }
+
+  /// A line for the job's log, and for the coordinator's. `job` is in the table, or nobody else
+  /// knows it yet.
+  static void note(ActiveJob& job, v1::LogLevel level, std::optional<int32_t> frame,
+                   const std::string& worker, const std::string& text,
+                   const core::Unit* unit = nullptr);
+
+ private:
+  StateMutex& mutex_;
+  Jobs jobs_ HYADES_GUARDED_BY(state_lock);
+  std::map<uint64_t, StoredJob> waiting_ HYADES_GUARDED_BY(state_lock);
+  std::set<uint64_t> leaving_
+      HYADES_GUARDED_BY(state_lock);  ///< taken out, but their log is still open
+  core::CondVar left_;
+  uint64_t moment_ HYADES_GUARDED_BY(state_lock) = 0;
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,109 @@
+#include "coordinator/controller/sweeper.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <unordered_set>
+#include <utility>
+
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint32_t kPage = 64;  // jobs whose files are looked at without a pause for others
+constexpr Duration kShortestRound = std::chrono::milliseconds(100);
+constexpr Duration kLongestRound = std::chrono::minutes(10);
+
+/// The jobs that have a folder in `folder`.
+std::vector<uint64_t> numbered_folders(const std::string& folder) {
+  std::vector<uint64_t> ids;
+  std::error_code failed;
+  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
+    const std::string name = at->path().filename().string();
+    uint64_t id = 0;
+    const auto read = std::from_chars(name.data(), name.data() + name.size(), id);
+    if (read.ec == std::errc() && read.ptr == name.data() + name.size()) ids.push_back(id);
+  }
+  return ids;
+}
+
+}  // namespace
+
+/// Folders of jobs that are deleted, and films of jobs that are done: a crash came between.
+void Sweeper::sweep_folders() {
+  for (const uint64_t id : numbered_folders(shared_.options.folder + "/films")) {
+    const auto state = shared_.store->state(id);
+    if (shared_.stop || !state) return;
+    std::error_code ignored;
+    if (!*state || **state == StoredState::done) fs::remove_all(shared_.films_folder(id), ignored);
+  }
+  for (const uint64_t id : numbered_folders(shared_.options.folder + "/outputs")) {
+    const auto state = shared_.store->state(id);
+    if (shared_.stop || !state) return;
+    std::error_code ignored;
+    if (!*state) fs::remove_all(shared_.output_folder(id), ignored);
+  }
+}
+
+/// Takes the files of all jobs with ids above `after`, which becomes the last one's, out of
+/// `names`.
+core::Status Sweeper::spare_needed(std::unordered_set<std::string>& names, uint64_t& after) {
+  while (!names.empty() && !shared_.stop) {
+    const auto page = shared_.store->specs(after, kPage);
+    if (!page) return page.error();
+    for (const StoredSpec& stored : *page) {
+      v1::JobSpec spec;
+      if (!spec.ParseFromString(stored.spec)) {
+        return core::Error{"a job's record is damaged: nobody knows which files it needs"};
+      }
+      for (const v1::JobFile& file : spec.files()) {
+        if (const auto digest = farm::digest_from_wire(file.sha256())) {
+          names.erase(core::to_hex(*digest));
+        }
+      }
+      after = stored.id;
+    }
+    if (page->size() < kPage) return {};
+  }
+  return {};
+}
+
+/// Removes the assets that no job needs and that nobody has used for `grace`.
+core::Status Sweeper::sweep_assets(Duration grace) {
+  const uint64_t changes = changes_ + shared_.assets->commits();
+  if (changes == swept_changes_) return {};
+  std::unordered_set<std::string> names;
+  for (std::string& name : shared_.assets->names()) names.insert(std::move(name));
+  uint64_t seen = 0;
+  if (core::Status spared = spare_needed(names, seen); !spared) return spared;
+  bool all = !shared_.stop;
+  if (!names.empty()) {
+    // No submission comes between the last look and the removal: it finds its files here, or not.
+    const std::lock_guard one(shared_.submissions);
+    if (core::Status spared = spare_needed(names, seen); !spared) return spared;
+    for (const std::string& name : names) {
+      if (shared_.stop) return {};
+      all = shared_.assets->remove_unused(name, grace) && all;
+    }
+  }
+  if (all) swept_changes_ = changes;
+  return {};
+}
+
+Sweeper::Sweeper(Shared& shared)
+    : shared_(shared),
+      rounds_(1, std::clamp(shared.options.asset_grace / 4, kShortestRound, kLongestRound)) {}
+
+void Sweeper::start() {
+  rounds_.add(0, [this] {
+    if (!std::exchange(folders_swept_, true)) sweep_folders();
+    // What fails now (a full disk, a damaged record) is tried again; nothing was removed wrongly.
+    if (!shared_.stop) (void)sweep_assets(shared_.options.asset_grace);
+    return shared_.stop.load();
+  });
+}
+
+}  // namespace hyades::coordinator

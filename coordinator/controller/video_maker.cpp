@@ -1,0 +1,285 @@
+#include "coordinator/controller/video_maker.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/counted.h"
+#include "coordinator/controller/disk_watch.h"
+#include "coordinator/controller/job_records.h"
+#include "coordinator/controller/not_there.h"
+#include "coordinator/controller/wall_clock.h"
+#include "coordinator/finisher/finish_process.h"
+#include "core/base/failpoint.h"
+#include "core/job/output_path.h"
+#include "core/job/video.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr size_t kMostWaiting = 16;
+/// That are remembered, with what became of them.
+constexpr size_t kMostKept = 200;
+constexpr uint32_t kRowsAtOnce = 1000;
+
+bool is_over(const AskedVideo& video) {
+  return video.state == AskedVideo::State::done || video.state == AskedVideo::State::failed;
+}
+
+/// The paths of all outputs of a job.
+core::Result<std::vector<std::string>> output_paths(JobStore& store, uint64_t job) {
+  std::vector<std::string> paths;
+  for (uint64_t seen = 0;;) {
+    auto outputs = store.outputs(job, seen, kRowsAtOnce);
+    if (!outputs) return outputs.error();
+    if (outputs->empty()) return paths;
+    seen = outputs->back().number;
+    for (StoredOutput& output : *outputs) paths.push_back(std::move(output.path));
+  }
+}
+
+std::string in_words(const std::vector<core::VideoDesc>& videos) {
+  std::string names;
+  for (const core::VideoDesc& video : videos) names += (names.empty() ? "" : ", ") + video.file;
+  return names;
+}
+
+std::vector<StoredOutput> to_outputs(const std::vector<FinishedFile>& files, int32_t last_frame) {
+  std::vector<StoredOutput> outputs;
+  for (const FinishedFile& file : files) {
+    const auto digest = farm::digest_from_hex(file.sha256);
+    outputs.push_back(
+        {file.path, last_frame, file.size, digest ? farm::to_wire(*digest) : std::string()});
+  }
+  return outputs;
+}
+
+}  // namespace
+
+void VideoMaker::begin(ActiveJob& active) {
+  active.making_videos = true;
+  jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
+             fmt::format("all frames are done; to be made of them: {}", in_words(active.videos())));
+  due_.push_back(active.id);
+  queue_.add(0, [this] { return make_next(); });
+}
+
+void VideoMaker::cancel(ActiveJob& active) {
+  std::erase(due_, active.id);
+  if (in_work_ == active.id) stop_ = true;
+  active.making_videos = false;
+  records_.end(active, true, {});
+}
+
+void VideoMaker::stop() { stop_ = true; }
+
+/// Jobs' own videos come before those that somebody asked for. False: a job's wait, to be tried
+/// again.
+bool VideoMaker::make_next() {
+  std::optional<JobId> job;
+  {
+    const StateLock lock(shared_.mutex);
+    if (shared_.stop) return true;
+    in_work_.reset();
+    if (!due_.empty()) {
+      job = due_.front();
+      due_.pop_front();
+    }
+  }
+  if (job) return make_of_job(*job);
+  make_asked();
+  return true;
+}
+
+bool VideoMaker::make_of_job(JobId job) {
+  const auto id = static_cast<uint64_t>(job);
+  std::vector<core::VideoDesc> videos;
+  core::VideoFrames frames;
+  {
+    const StateLock lock(shared_.mutex);
+    const ActiveJob* active = jobs_.find(job);
+    if (active == nullptr || !active->making_videos) return true;
+    in_work_ = job;
+    stop_ = shared_.stop.load();
+    videos = active->videos();
+    frames = core::video_frames(active->read.job, shared_.output_folder(id), active->numbers);
+  }
+  const core::Status made = make_all(id, videos, frames);
+  disk_.measure();
+  const StateLock lock(shared_.mutex);
+  ActiveJob* active = jobs_.find(job);
+  // Cancelled, and perhaps recovered since; or the controller ends.
+  if (shared_.stop || stop_ || active == nullptr) return true;
+  if (!made && disk_.level() != DiskLevel::roomy) {
+    active->trouble = "its video waits for room on the disk: " + made.error().message;
+    active->touch();
+    due_.push_back(job);
+    return false;
+  }
+  active->making_videos = false;
+  active->trouble.clear();
+  if (made) {
+    jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
+               fmt::format("{} made of {} frames", in_words(videos), frames.numbers.size()));
+    records_.end(*active, false, {});
+  } else {
+    const std::string why =
+        made.error().message + "; 'fetch' brings the frames' pictures, 'retry' tries again";
+    jobs_.note(*active, v1::LOG_LEVEL_ERROR, std::nullopt, {}, why);
+    records_.end(*active, false, why);
+  }
+  return true;
+}
+
+/// Those that are not there yet.
+core::Status VideoMaker::make_all(uint64_t id, const std::vector<core::VideoDesc>& videos,
+                                  const core::VideoFrames& frames) {
+  for (const core::VideoDesc& video : videos) {
+    const auto there = shared_.store->output(id, video.file);
+    if (!there) return there.error();
+    if (!*there) {
+      if (core::Status made = make(id, video, frames); !made) return made;
+    }
+    // The pictures are not told any more: what an earlier run left goes too.
+    std::error_code ignored;
+    std::filesystem::remove_all(shared_.output_folder(id) + "/" + core::video_folder(video),
+                                ignored);
+  }
+  return {};
+}
+
+core::Status VideoMaker::make(uint64_t id, const core::VideoDesc& video,
+                              const core::VideoFrames& frames) {
+  const int64_t begun_us = wall_us();
+  const auto files = run_video_maker(shared_.options.finisher,
+                                     fmt::format("{}/tmp/{}-video", shared_.options.folder, id),
+                                     {video, frames}, stop_);
+  if (!files) return files.error();
+  core::failpoint("video-made");
+  core::Status stored = shared_.store->change_outputs(id, {core::video_folder(video)},
+                                                      to_outputs(*files, frames.numbers.back()));
+  core::failpoint("video-stored");
+  timelines_.note(id, {v1::TimelineStep::KIND_VIDEO, {}, 0, {}, begun_us, wall_us()});
+  return stored;
+}
+
+grpc::Status VideoMaker::ask(uint64_t id, const VideoWish& wish, AskedVideo& asked) {
+  if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
+  const auto stored = shared_.store->job(id);
+  if (!stored) return farm::unavailable(stored.error());
+  if (!*stored) return no_job(id);
+  v1::JobSpec spec;
+  if (!spec.ParseFromString((*stored)->spec)) {
+    return {grpc::StatusCode::DATA_LOSS, "the job's record is damaged"};
+  }
+  const auto read = make_active_job(**stored, spec, *shared_.assets, UINT64_MAX);
+  if (!read) return {grpc::StatusCode::FAILED_PRECONDITION, read.error().message};
+  const auto frames = shared_.store->frames(id);
+  if (!frames) return farm::unavailable(frames.error());
+  const auto paths = output_paths(*shared_.store, id);
+  if (!paths) return farm::unavailable(paths.error());
+  std::vector<int32_t> done;
+  for (const StoredFrame& frame : *frames) {
+    if (frame.done) done.push_back(frame.frame);
+  }
+  auto plan = plan_video((*read)->read.job, wish, std::move(done), *paths);
+  if (!plan) return {grpc::StatusCode::FAILED_PRECONDITION, plan.error().message};
+  plan->job = id;
+  plan->frames.folder = shared_.output_folder(id);
+  const StateLock lock(shared_.mutex);
+  size_t waiting = 0;
+  for (const AskedVideo& other : asked_) {
+    waiting += is_over(other) ? 0 : 1;
+    if (other.job != id || other.video.file != plan->video.file || is_over(other)) continue;
+    asked = other;  // somebody was quicker, or asked twice
+    return grpc::Status::OK;
+  }
+  if (waiting >= kMostWaiting) {
+    return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                             "more videos wait to be made than may", std::chrono::seconds(30));
+  }
+  plan->number = next_asked_++;
+  asked_.push_back(*plan);
+  if (asked_.size() > kMostKept) {
+    const auto oldest = std::find_if(asked_.begin(), asked_.end(), is_over);
+    if (oldest != asked_.end()) asked_.erase(oldest);
+  }
+  asked = std::move(*plan);
+  queue_.add(0, [this] { return make_next(); });
+  return grpc::Status::OK;
+}
+
+grpc::Status VideoMaker::asked(uint64_t id, std::vector<AskedVideo>& videos) {
+  const auto known = shared_.store->state(id);
+  if (!known) return farm::unavailable(known.error());
+  if (!*known) return no_job(id);
+  const StateLock lock(shared_.mutex);
+  for (const AskedVideo& video : asked_) {
+    if (video.job == id) videos.push_back(video);
+  }
+  return grpc::Status::OK;
+}
+
+/// The first of those that were asked for and wait.
+void VideoMaker::make_asked() {
+  AskedVideo video;
+  {
+    const StateLock lock(shared_.mutex);
+    const auto found = std::find_if(asked_.begin(), asked_.end(), [](const AskedVideo& asked) {
+      return asked.state == AskedVideo::State::waiting;
+    });
+    if (found == asked_.end()) return;
+    found->state = AskedVideo::State::making;
+    video = *found;
+    stop_ = shared_.stop.load();
+  }
+  const int64_t begun_us = wall_us();
+  const auto files =
+      run_video_maker(shared_.options.finisher,
+                      fmt::format("{}/tmp/{}-asked-video", shared_.options.folder, video.job),
+                      {video.video, video.frames}, stop_);
+  core::Status done;
+  if (files) {
+    done = shared_.store->change_outputs(video.job, {},
+                                         to_outputs(*files, video.frames.numbers.back()));
+    if (!done) {  // the job is deleted, perhaps
+      std::error_code ignored;
+      std::filesystem::remove(video.frames.folder + "/" + video.video.file, ignored);
+    }
+  } else {
+    done = files.error();
+  }
+  disk_.measure();
+  if (done) {
+    timelines_.note(video.job, {v1::TimelineStep::KIND_VIDEO, {}, 0, {}, begun_us, wall_us()});
+  }
+  asked_is_over(video, done);
+}
+
+void VideoMaker::asked_is_over(const AskedVideo& video, const core::Status& done) {
+  StoredLine line{wall_ms(),
+                  done ? v1::LOG_LEVEL_INFO : v1::LOG_LEVEL_ERROR,
+                  std::nullopt,
+                  {},
+                  done ? fmt::format("{} made of {}, as somebody asked", video.video.file,
+                                     counted(video.frames.numbers.size(), "frame"))
+                       : video.video.file + " could not be made: " + done.error().message};
+  line.text = farm::wire_text(line.text);
+  {
+    const StateLock lock(shared_.mutex);
+    for (AskedVideo& kept : asked_) {
+      if (kept.number != video.number) continue;
+      kept.state = done ? AskedVideo::State::done : AskedVideo::State::failed;
+      if (!done) kept.reason = farm::wire_text(done.error().message);
+    }
+    if (shared_.stop) return;
+    if (ActiveJob* active = jobs_.find(video.job)) return active->note(std::move(line));
+  }
+  (void)shared_.store->add_lines(video.job, {line});
+}
+
+}  // namespace hyades::coordinator

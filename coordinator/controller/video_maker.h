@@ -1,0 +1,71 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include <grpcpp/support/status.h>
+
+#include "coordinator/controller/asked_video.h"
+#include "coordinator/controller/job_table.h"
+#include "coordinator/controller/shared.h"
+#include "coordinator/controller/timeline.h"
+
+namespace hyades::coordinator {
+
+class DiskWatch;
+class JobRecords;
+
+/// Makes videos of finished frames, one after the other and beside all else, as that takes minutes:
+/// a job's own before it ends, and those that somebody asks for. Thread-safe.
+class VideoMaker {
+ public:
+  VideoMaker(Shared& shared, JobTable& jobs, JobRecords& records, DiskWatch& disk,
+             Timelines& timelines)
+      : shared_(shared), jobs_(jobs), records_(records), disk_(disk), timelines_(timelines) {}
+  /// Breaks off the video in work.
+  void stop();
+  void end() { queue_.end(); }
+
+  /// Has a video made of the pictures of the job's finished frames, also of a job that has ended or
+  /// has none of its own; it is among the outputs once it is there. May wait for the store.
+  /// FAILED_PRECONDITION where there is nothing to make it of, RESOURCE_EXHAUSTED where too many
+  /// wait already.
+  grpc::Status ask(uint64_t job, const VideoWish& wish, AskedVideo& asked)
+      HYADES_EXCLUDES(state_lock);
+  /// Those that were asked for since the coordinator started, the last ones; may wait for the
+  /// store.
+  grpc::Status asked(uint64_t job, std::vector<AskedVideo>& videos) HYADES_EXCLUDES(state_lock);
+
+  /// Makes the videos of a job whose frames are all done; then it ends.
+  void begin(ActiveJob& active) HYADES_REQUIRES(state_lock);
+  /// The job, whose videos are being made or wait, ends without them.
+  void cancel(ActiveJob& active) HYADES_REQUIRES(state_lock);
+  bool is_making(JobId job) const HYADES_REQUIRES(state_lock) { return in_work_ == job; }
+
+ private:
+  bool make_next() HYADES_EXCLUDES(state_lock);
+  bool make_of_job(JobId job) HYADES_EXCLUDES(state_lock);
+  core::Status make_all(uint64_t id, const std::vector<core::VideoDesc>& videos,
+                        const core::VideoFrames& frames);
+  core::Status make(uint64_t id, const core::VideoDesc& video, const core::VideoFrames& frames);
+  void make_asked() HYADES_EXCLUDES(state_lock);
+  void asked_is_over(const AskedVideo& video, const core::Status& done) HYADES_EXCLUDES(state_lock);
+
+  Shared& shared_;
+  JobTable& jobs_;
+  JobRecords& records_;
+  DiskWatch& disk_;
+  Timelines& timelines_;
+  std::deque<JobId> due_ HYADES_GUARDED_BY(state_lock);
+  std::optional<JobId> in_work_ HYADES_GUARDED_BY(state_lock);
+  /// The oldest first; those that are over too.
+  std::deque<AskedVideo> asked_ HYADES_GUARDED_BY(state_lock);
+  uint64_t next_asked_ HYADES_GUARDED_BY(state_lock) = 1;
+  std::atomic<bool> stop_{false};  ///< ends the video in work
+  RetryQueue queue_{1};
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,266 @@
+// What workers say, and what they are told.
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/controller/disk_watch.h"
+#include "coordinator/controller/lease_renewal.h"
+#include "coordinator/controller/result_check.h"
+#include "coordinator/controller/to_wire.h"
+#include "coordinator/controller/wall_clock.h"
+#include "coordinator/controller/wire_ids.h"
+#include "coordinator/controller/worker_sessions.h"
+#include "coordinator/meters/meters.h"
+#include "farm/wire.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr int kMostNotes = 8;
+constexpr uint32_t kCrowdedRetryMs = 500;
+constexpr uint32_t kFullRetryMs = 2000;
+/// What a unit can have taken: no worker makes a job more expensive than that.
+constexpr uint64_t kLongestRendering = 7ULL * 24 * 3600 * 1'000'000'000;  // ns
+
+/// Of results that the scheduler is not told of.
+const char* verdict_of(v1::Rejected::Reason reason) {
+  switch (reason) {
+    case v1::Rejected::REASON_DAMAGED:
+      return "damaged";
+    case v1::Rejected::REASON_MALFORMED:
+      return "malformed";
+    case v1::Rejected::REASON_NOT_NOW:
+      return "not_now";
+    default:
+      return "unknown";
+  }
+}
+
+}  // namespace
+
+void WorkerSessions::receive(WorkerId worker, const WorkerLink* link,
+                             const v1::WorkerMessage& message) {
+  if (message.has_result()) return on_result(worker, link, message.result());
+  Turn turn(dispatcher_);
+  WorkerSession* session = workers_.find(worker, link);
+  if (session == nullptr) return;
+  session->heard = std::chrono::steady_clock::now();
+  session->heard_ms = wall_ms();
+  if (message.has_request()) {
+    want(*session, message.request().units(), turn);
+  } else if (message.has_heartbeat()) {
+    on_heartbeat(*session, message.heartbeat(), turn);
+  } else if (message.has_failure()) {
+    on_failure(*session, message.failure(), turn);
+  } else if (message.has_returned()) {
+    on_returned(*session, message.returned(), turn);
+  } else if (message.has_leaving()) {
+    on_leaving(*session, message.leaving(), turn);
+  }
+}
+
+void WorkerSessions::on_heartbeat(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn) {
+  session.memory = beat.memory_bytes();
+  session.cache = beat.cache_bytes();
+  session.cache_limit = beat.cache_limit_bytes();
+  session.cache_hits = beat.cache_hits();
+  session.cache_misses = beat.cache_misses();
+  renew_leases(session, beat, turn);
+  v1::CoordinatorMessage echo;
+  echo.mutable_echo()->set_number(beat.number());
+  session.link->send(std::move(echo));
+}
+
+void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& failure,
+                                Turn& turn) {
+  const auto unit = farm::from_wire(failure.unit().unit());
+  if (unit) {
+    const JobId job{failure.unit().job()};
+    ++session.units_failed;
+    shared_.meters->lost("failed");
+    if (ActiveJob* active = jobs_.find(job)) {
+      jobs_.note(*active, v1::LOG_LEVEL_WARNING, unit->frame, session.hello.name(),
+                 fmt::format("tile {},{} batches {}-{} failed: {}", unit->tile.x0, unit->tile.y0,
+                             unit->batches.first, unit->batches.end() - 1,
+                             farm::wire_text(failure.reason())),
+                 &*unit);
+    }
+    turn.tell(UnitFailed{session.id, lease_from_wire(failure.unit().lease()), job, *unit,
+                         farm::wire_text(failure.reason())});
+  }
+  want(session, failure.want(), turn);
+}
+
+void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned& message,
+                                 Turn& turn) {
+  for (const v1::LeasedUnit& returned : message.units()) {
+    const auto unit = farm::from_wire(returned.unit());
+    if (!unit) continue;
+    const JobId job{returned.job()};
+    shared_.meters->lost("returned");
+    // Why a worker that stays gives units back, in the job's log: once, for it may go on so.
+    ActiveJob* active = session.leaving || message.reason().empty() ? nullptr : jobs_.find(job);
+    if (active != nullptr && active->gave_back.insert(session.id).second) {
+      jobs_.note(*active, v1::LOG_LEVEL_WARNING, {}, session.hello.name(),
+                 "gives units back: " + farm::wire_text(message.reason()));
+    }
+    turn.tell(UnitReturned{session.id, lease_from_wire(returned.lease()), job, *unit});
+  }
+}
+
+void WorkerSessions::on_leaving(WorkerSession& session, const v1::Leaving& leaving, Turn& turn) {
+  session.held_wish = 0;
+  session.reason = farm::wire_text(leaving.reason());
+  if (!std::exchange(session.leaving, true)) {
+    // In the logs of the jobs that it has units of; whether they go to others is told later.
+    std::set<JobId> jobs;
+    for (const UnitInHand& held : dispatcher_.scheduler().units_of(session.id)) {
+      jobs.insert(held.job);
+    }
+    for (const JobId job : jobs) {
+      if (ActiveJob* active = jobs_.find(job)) {
+        jobs_.note(*active, v1::LOG_LEVEL_INFO, {}, session.hello.name(),
+                   "is leaving: " + session.reason);
+      }
+    }
+  }
+  if (session.state == v1::WORKER_STATE_ACTIVE) session.state = v1::WORKER_STATE_DRAINING;
+  turn.tell(WorkerBarred{session.id, true});
+}
+
+void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link,
+                               const v1::UnitResult& result) {
+  shared_.meters->film_bytes(result.film().size());
+  std::optional<ExpectedFilm> expected;
+  std::string worker_class;
+  const TimePoint came = std::chrono::steady_clock::now();
+  {
+    const StateLock lock(shared_.mutex);
+    WorkerSession* session = workers_.find(worker, link);
+    if (session == nullptr) return;
+    session->heard = came;
+    session->heard_ms = wall_ms();
+    worker_class = session->hello.worker_class();
+    if (const ActiveJob* active = jobs_.find(result.job())) {
+      expected = {active->layout, active->region, active->key};
+    }
+  }
+  auto checked = check_result(result, expected, worker_class);
+  Turn turn(dispatcher_);
+  WorkerSession* session = workers_.find(worker, link);
+  if (session == nullptr) return;
+  std::optional<ResultRefusal> refusal;
+  if (auto* delivery = std::get_if<Delivery>(&checked)) {
+    delivery->rendered.came = came;
+    refusal = deliver(*session, result, *delivery, turn);
+  } else {
+    refusal = std::get<ResultRefusal>(std::move(checked));
+  }
+  if (refusal) refuse(*session, result, *refusal, turn);
+  want(*session, result.want(), turn);
+}
+
+/// The scheduler hears of the film, unless it cannot be taken now.
+std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
+                                                     const v1::UnitResult& result,
+                                                     Delivery& delivery, Turn& turn) {
+  using Rejected = v1::Rejected;
+  ActiveJob* active = jobs_.find(result.job());
+  if (session.state == v1::WORKER_STATE_QUARANTINED) {
+    return ResultRefusal{Rejected::REASON_UNKNOWN, "the worker is quarantined"};
+  }
+  if (disk_.level() == DiskLevel::full) {
+    return ResultRefusal{Rejected::REASON_NOT_NOW, "the coordinator's disk is full", kFullRetryMs};
+  }
+  if (active != nullptr && active->film_store && active->film_store->crowded()) {
+    return ResultRefusal{Rejected::REASON_NOT_NOW, "more films wait for the disk than may",
+                         kCrowdedRetryMs};
+  }
+  const core::Unit& unit = delivery.unit.unit;
+  delivery.rendered.worker = session.id;
+  delivery.rendered.name = session.hello.name();
+  delivery.rendered.thread = result.thread();
+  delivery.rendered.render_ns = std::min(result.render_ns(), kLongestRendering);
+  delivery.rendered.came_us = wall_us();
+  for (int i = 0; active != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
+    jobs_.note(*active, v1::LOG_LEVEL_WARNING, unit.frame, session.hello.name(),
+               farm::wire_text(result.notes(i)), &unit);
+  }
+  const Duration took{static_cast<int64_t>(std::min<uint64_t>(result.render_ns(), INT64_MAX))};
+  const Digest digest = delivery.unit.digest;
+  turn.tell(ResultArrived{session.id, lease_from_wire(result.lease()), JobId{result.job()}, unit,
+                          digest, took},
+            &delivery);
+  if (!delivery.settled) shared_.meters->result("waits");
+  return std::nullopt;
+}
+
+void WorkerSessions::refuse(WorkerSession& session, const v1::UnitResult& result,
+                            const ResultRefusal& refusal, Turn& turn) {
+  v1::CoordinatorMessage message;
+  v1::Rejected& rejected = *message.mutable_rejected();
+  *rejected.mutable_unit()->mutable_lease() = result.lease();
+  rejected.mutable_unit()->set_job(result.job());
+  *rejected.mutable_unit()->mutable_unit() = result.unit();
+  rejected.set_reason(refusal.reason);
+  rejected.set_text(refusal.text);
+  rejected.set_retry_after_ms(refusal.retry_after_ms);
+  session.link->send(std::move(message));
+  shared_.meters->result(verdict_of(refusal.reason));
+  if (refusal.reason == v1::Rejected::REASON_NOT_NOW) return;
+  const auto unit = farm::from_wire(result.unit());
+  if (ActiveJob* active = jobs_.find(result.job())) {
+    jobs_.note(*active, v1::LOG_LEVEL_WARNING, result.unit().frame(), session.hello.name(),
+               "a film was refused: " + refusal.text, unit ? &*unit : nullptr);
+  }
+  if (unit) {
+    turn.tell(
+        UnitReturned{session.id, lease_from_wire(result.lease()), JobId{result.job()}, *unit});
+  }
+}
+
+void WorkerSessions::send_lease(const Lease& lease) {
+  WorkerSession* session = workers_.find(lease.worker);
+  ActiveJob* active = jobs_.find(lease.job);
+  if (session == nullptr || active == nullptr) return;
+  if (session->spec_sent.insert(lease.job).second) {
+    v1::CoordinatorMessage message;
+    v1::JobBrief& brief = *message.mutable_job();
+    brief.set_job(static_cast<uint64_t>(lease.job));
+    *brief.mutable_spec() = active->spec;
+    brief.set_key(farm::to_wire(active->key));
+    workers_.send(lease.worker, std::move(message));
+  }
+  v1::CoordinatorMessage message;
+  v1::Lease& wire = *message.mutable_lease();
+  *wire.mutable_lease() = to_wire(lease.lease);
+  wire.set_job(static_cast<uint64_t>(lease.job));
+  for (const core::Unit& unit : lease.units) *wire.add_units() = farm::to_wire(unit);
+  wire.set_adopted(lease.adopted);
+  wire.set_deadline_ms(static_cast<uint64_t>(
+      std::chrono::duration_cast<std::chrono::milliseconds>(shared_.options.lease_time).count()));
+  workers_.send(lease.worker, std::move(message));
+  shared_.meters->leased(lease.units.size(), lease.adopted);
+
+  const int32_t number = lease.units.front().frame;
+  FrameNote& frame = active->touch(number);
+  if (frame.state == v1::FRAME_STATE_WAITING) {
+    frame.state = v1::FRAME_STATE_RENDERING;
+    frame.begun = jobs_.moment();
+    jobs_.note(*active, v1::LOG_LEVEL_INFO, number, session->hello.name(), "begun");
+  }
+  if (frame.worker_class.empty()) frame.worker_class = session->hello.worker_class();
+}
+
+void WorkerSessions::send_over(JobId job) {
+  for (auto& [id, session] : workers_.all()) {
+    if (session.spec_sent.erase(job) == 0) continue;
+    v1::CoordinatorMessage message;
+    message.mutable_over()->set_job(static_cast<uint64_t>(job));
+    workers_.send(id, std::move(message));
+  }
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/controller/worker_table.h"
+#include "farm/token_term.h"
+
+namespace hyades::coordinator {
+
+class DiskWatch;
+struct ResultRefusal;
+
+/// Workers that come, speak and go: their streams, heartbeats and leases on the wire. Thread-safe.
+class WorkerSessions {
+ public:
+  WorkerSessions(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, WorkerTable& workers,
+                 const DiskWatch& disk)
+      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), workers_(workers), disk_(disk) {}
+
+  /// A worker's stream begins; `link` gets the Welcome. An older stream of the same worker is
+  /// closed, unless it is another process' that still speaks: ALREADY_EXISTS then. INVALID_ARGUMENT
+  /// for a Hello that makes no sense. The Welcome tells `token`, how long that of the worker holds.
+  grpc::Status attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
+                      WorkerId& worker, const farm::TokenTerm& token = {})
+      HYADES_EXCLUDES(state_lock);
+  /// What came on the stream; what comes on one that is not the worker's newest is ignored.
+  void receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMessage& message)
+      HYADES_EXCLUDES(state_lock);
+  /// The stream has ended.
+  void detach(WorkerId worker, const WorkerLink* link) HYADES_EXCLUDES(state_lock);
+  /// Ends all streams.
+  void close(const grpc::Status& why) HYADES_EXCLUDES(state_lock);
+
+  /// From now on no new units are leased for a while, so that workers can say what they hold.
+  void begin_adoption() HYADES_REQUIRES(state_lock);
+  bool is_adopting() const HYADES_REQUIRES(state_lock);
+  /// Workers that are gone, and wishes that waited for adoption; from time to time.
+  void look_after(Turn& turn) HYADES_REQUIRES(state_lock);
+
+  // For the scheduler's actions.
+
+  void send_lease(const Lease& lease) HYADES_REQUIRES(state_lock);
+  /// Its workers need not know the job any more.
+  void send_over(JobId job) HYADES_REQUIRES(state_lock);
+
+ private:
+  v1::CoordinatorMessage welcome(const v1::Hello& hello, const farm::TokenTerm& token) const;
+  bool has_room(Turn& turn) HYADES_REQUIRES(state_lock);
+  grpc::Status meet_twin(WorkerSession& session, const v1::Hello& hello)
+      HYADES_REQUIRES(state_lock);
+  void wait_for_more_holders() HYADES_REQUIRES(state_lock);
+  void want(WorkerSession& session, uint32_t units, Turn& turn) HYADES_REQUIRES(state_lock);
+
+  // What workers say (worker_messages.cpp, lease_renewal.cpp).
+  void on_heartbeat(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn)
+      HYADES_REQUIRES(state_lock);
+  void renew_leases(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn)
+      HYADES_REQUIRES(state_lock);
+  void take_back(WorkerSession& session, const LeaseId& lease, const LeaseProgress& progress,
+                 std::vector<Event>& events) HYADES_REQUIRES(state_lock);
+  void on_failure(WorkerSession& session, const v1::UnitFailure& failure, Turn& turn)
+      HYADES_REQUIRES(state_lock);
+  void on_returned(WorkerSession& session, const v1::UnitsReturned& message, Turn& turn)
+      HYADES_REQUIRES(state_lock);
+  void on_leaving(WorkerSession& session, const v1::Leaving& leaving, Turn& turn)
+      HYADES_REQUIRES(state_lock);
+  void on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result)
+      HYADES_EXCLUDES(state_lock);
+  std::optional<ResultRefusal> deliver(WorkerSession& session, const v1::UnitResult& result,
+                                       Delivery& delivery, Turn& turn) HYADES_REQUIRES(state_lock);
+  void refuse(WorkerSession& session, const v1::UnitResult& result, const ResultRefusal& refusal,
+              Turn& turn) HYADES_REQUIRES(state_lock);
+
+  Shared& shared_;
+  Dispatcher& dispatcher_;
+  JobTable& jobs_;
+  WorkerTable& workers_;
+  const DiskWatch& disk_;
+  TimePoint adopting_until_ HYADES_GUARDED_BY(state_lock);
+  TimePoint adopting_at_most_ HYADES_GUARDED_BY(state_lock);
+};
+
+}  // namespace hyades::coordinator
