@@ -15,7 +15,7 @@ TEST(Dragons, RenderInGlassAndGoldUnderAMeasuredSky) {
   std::ifstream file("tests/jobs/dragons.yaml");
   std::stringstream text;
   text << file.rdbuf();
-  std::string yaml = text.str();
+  std::string yaml = with_shared_folder(text.str());
   yaml.replace(yaml.find("samples: 256"), 12, "samples: 16");
   const YamlScene scene(yaml, 1, {.depth = true}, "tests/jobs");
   EXPECT_GE(scene.renderer().scene().triangles, 200'024U);

@@ -1,4 +1,4 @@
-// T14 by pictures: a town of ten thousand lamps converges about as fast as a hamlet of ten.
+// T14 by pictures: a town of ten thousand lamps has 2.5 times the error of a hamlet of ten.
 
 #include <gtest/gtest.h>
 
@@ -64,21 +64,25 @@ double relative_error(const YamlScene& scene) {
   return std::sqrt(sum / static_cast<double>(runs.blocks.size()));
 }
 
-TEST(ManyLights, TenThousandConvergeAboutAsFastAsTen) {
+// The same seeds give the same bits, and so the same ratio: 2.52 without a sky and 2.46 with one.
+// Lamps chosen evenly would make it some 30, the root of a thousand.
+constexpr double kMostOfTen = 2.8;
+
+TEST(ManyLights, TenThousandHaveLessThanThreeTimesTheErrorOfTen) {
   const double ten = relative_error(town(10, ""));
   const double ten_thousand = relative_error(town(10'000, ""));
   RecordProperty("error_of_ten", std::to_string(ten));
   RecordProperty("error_of_ten_thousand", std::to_string(ten_thousand));
-  EXPECT_LT(ten_thousand / ten, 3.0);
+  EXPECT_LT(ten_thousand / ten, kMostOfTen);
 }
 
-TEST(ManyLights, UnderAFaintSkyTooTenThousandConvergeAboutAsFastAsTen) {
+TEST(ManyLights, UnderAFaintSkyTooTenThousandHaveLessThanThreeTimesTheErrorOfTen) {
   const std::string sky = "environment: {color: 0.001}\n";
   const double ten = relative_error(town(10, sky));
   const double ten_thousand = relative_error(town(10'000, sky));
   RecordProperty("error_of_ten", std::to_string(ten));
   RecordProperty("error_of_ten_thousand", std::to_string(ten_thousand));
-  EXPECT_LT(ten_thousand / ten, 3.0);
+  EXPECT_LT(ten_thousand / ten, kMostOfTen);
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST_P(References, Agree) {
   if (yaml.str().find("shared/assets") != std::string::npos && shared_folder().empty()) {
     GTEST_SKIP() << reference.name << " needs ../shared/assets, which is not here";
   }
-  std::string text = yaml.str();
+  std::string text = with_shared_folder(yaml.str());
   text.replace(text.find("samples: 512"), 12, "samples: " + std::to_string(reference.samples));
   const YamlScene scene(text, 1, {}, "tests/references");
   const core::RenderedFrame frame = scene.render();

@@ -32,6 +32,18 @@ core::RenderedFrame YamlScene::render(const core::RenderFrameOptions& options) c
                             frame_, options);
 }
 
+core::RenderedFrame YamlScene::render_by(const core::IntegratorDesc& integrator) const {
+  core::Job job = job_;
+  job.integrator = integrator;
+  core::LayerSet layers = renderer_->layout().layers;
+  layers.splats = core::makes_splats(job.integrator);
+  // The scene outlives the renderer.
+  const std::shared_ptr<const core::Scene> shared(std::shared_ptr<void>(), &renderer_->scene());
+  const core::FrameRenderer renderer(shared, job, frame_, layers);
+  return core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, frame_,
+                            {.threads = 2});
+}
+
 PictureMean picture_mean(const core::Film& film) {
   const core::Image picture = film.normalised();
   const int variance = picture.find_channel("variance.R");
@@ -52,9 +64,10 @@ PictureMean picture_mean(const core::Film& film) {
   return result;
 }
 
-void expect_picture_mean(const YamlScene& scene, const core::Vec3d& expected,
-                         const Promise& promise) {
-  const PictureMean picture = picture_mean(scene.render().film);
+namespace {
+
+void expect_film_mean(const core::Film& film, const core::Vec3d& expected, const Promise& promise) {
+  const PictureMean picture = picture_mean(film);
   const double alpha = sidak(promise.significance, promise.tests);
   for (int c = 0; c < 3; ++c) {
     const double variance = picture.sigma[c] * picture.sigma[c];
@@ -69,10 +82,35 @@ void expect_picture_mean(const YamlScene& scene, const core::Vec3d& expected,
   }
 }
 
+}  // namespace
+
+void expect_picture_mean(const YamlScene& scene, const core::Vec3d& expected,
+                         const Promise& promise) {
+  expect_film_mean(scene.render().film, expected, promise);
+}
+
+void expect_mean_by_path_and_bdpt(const YamlScene& scene, const core::Vec3d& expected,
+                                  const Promise& promise) {
+  for (const char* type : {"path", "bdpt"}) {
+    SCOPED_TRACE(type);
+    core::IntegratorDesc integrator = scene.job().integrator;
+    integrator.type = type;
+    expect_film_mean(scene.render_by(integrator).film, expected, promise);
+  }
+}
+
 std::string shared_folder() {
   const char* named = std::getenv("HYADES_SHARED");
   const std::filesystem::path folder = named != nullptr ? named : "../shared";
   return std::filesystem::exists(folder / "assets") ? folder.string() : "";
+}
+
+std::string with_shared_folder(std::string text) {
+  const std::string written = "../../../shared/";
+  const std::string there = std::filesystem::absolute(shared_folder()).string() + "/";
+  for (size_t at = 0; (at = text.find(written, at)) != std::string::npos; at += there.size())
+    text.replace(at, written.size(), there);
+  return text;
 }
 
 }  // namespace hyades::test

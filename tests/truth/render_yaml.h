@@ -21,6 +21,9 @@ class YamlScene {
   /// All of the job's window.
   core::RenderedFrame render(const core::RenderFrameOptions& options = {.threads = 2}) const;
 
+  /// All of the job's window by another integrator than the job's.
+  core::RenderedFrame render_by(const core::IntegratorDesc& integrator) const;
+
   /// The whole frame whatever the job's crop is.
   const core::Job& job() const { return job_; }
   const core::FrameRenderer& renderer() const { return *renderer_; }
@@ -46,7 +49,15 @@ PictureMean picture_mean(const core::Film& film);
 void expect_picture_mean(const YamlScene& scene, const core::Vec3d& expected,
                          const Promise& promise);
 
-/// The folder of real-world inputs beside the repository; empty where it is absent.
+/// As expect_picture_mean, by `path` and by `bdpt`, whatever the job's integrator is.
+void expect_mean_by_path_and_bdpt(const YamlScene& scene, const core::Vec3d& expected,
+                                  const Promise& promise);
+
+/// The folder of real-world inputs, beside the repository or where HYADES_SHARED names it; empty
+/// where it is absent.
 std::string shared_folder();
+
+/// A job's text with that folder in place of ../../../shared.
+std::string with_shared_folder(std::string text);
 
 }  // namespace hyades::test

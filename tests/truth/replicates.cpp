@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 namespace hyades::test {
 
@@ -28,6 +29,7 @@ Replicates render_replicates(const YamlScene& scene, const core::IntegratorDesc&
     const int columns = (picture.width + block - 1) / block;
     const int rows = (picture.height + block - 1) / block;
     result.blocks.resize(static_cast<size_t>(columns * rows));
+    result.pixels.resize(static_cast<size_t>(picture.width * picture.height));
     std::vector<std::array<double, 3>> sums(result.blocks.size());
     std::vector<double> counts(result.blocks.size());
     std::array<double, 3> total{};
@@ -36,8 +38,11 @@ Replicates render_replicates(const YamlScene& scene, const core::IntegratorDesc&
         const auto i = static_cast<size_t>(y / block * columns + x / block);
         counts[i] += 1.0;
         for (int c = 0; c < 3; ++c) {
-          sums[i][static_cast<size_t>(c)] += static_cast<double>(picture.at(x, y, c));
-          total[static_cast<size_t>(c)] += static_cast<double>(picture.at(x, y, c));
+          const auto channel = static_cast<size_t>(c);
+          const auto value = static_cast<double>(picture.at(x, y, c));
+          sums[i][channel] += value;
+          total[channel] += value;
+          result.pixels[static_cast<size_t>(y * picture.width + x)][channel].add(value);
         }
       }
     }
@@ -47,6 +52,16 @@ Replicates render_replicates(const YamlScene& scene, const core::IntegratorDesc&
     }
   }
   return result;
+}
+
+void expect_mean_of_runs(const YamlScene& scene, int runs, const core::Vec3d& expected,
+                         const Promise& promise) {
+  const Replicates found = render_replicates(scene, runs, scene.job().film.width);
+  EXPECT_EQ(found.bad_samples, 0U);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_TRUE(mean_is(found.picture[static_cast<size_t>(c)], expected[c], promise))
+        << "channel " << c;
+  }
 }
 
 void expect_same_picture(const Replicates& a, const Replicates& b, const Promise& promise) {
@@ -71,6 +86,30 @@ void expect_same_picture(const Replicates& a, const Replicates& b, const Promise
   const Moments& of_b = b.blocks[worst / 3][worst % 3];
   EXPECT_GE(least, alpha) << "block " << worst / 3 << " channel " << worst % 3 << ": "
                           << of_a.mean() << " and " << of_b.mean();
+}
+
+void expect_same_pixels(const Replicates& a, const Replicates& b, double relative_error) {
+  const size_t values = 3 * a.pixels.size();
+  const double alpha = sidak(0.01, static_cast<int>(values));
+  std::vector<double> noticed;  // by the test of each value, relative to the picture's mean
+  size_t failed = 0;
+  std::string told;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) {
+      const Moments& of_a = a.pixels[i][c];
+      const Moments& of_b = b.pixels[i][c];
+      const double variance = of_a.variance_of_mean() + of_b.variance_of_mean();
+      noticed.push_back(detectable_effect(variance, alpha, 0.99) / a.picture[c].mean());
+      if (t_test(of_a, of_b) >= alpha) continue;
+      if (++failed <= 5) {
+        told += "\n  pixel " + std::to_string(i) + " channel " + std::to_string(c) + ": " +
+                std::to_string(of_a.mean()) + " and " + std::to_string(of_b.mean());
+      }
+    }
+  }
+  EXPECT_LE(static_cast<double>(failed), 0.0025 * static_cast<double>(values)) << told;
+  std::sort(noticed.begin(), noticed.end());
+  EXPECT_LE(noticed[noticed.size() / 2], relative_error) << "underpowered";
 }
 
 }  // namespace hyades::test

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "tests/truth/replicates.h"
 
@@ -57,6 +59,18 @@ void expect_strategies_agree(const YamlScene& scene, int events, int first, int 
   }
 }
 
+/// Red, green and blue of each pixel.
+std::vector<double> picture_of(const YamlScene& scene, const core::IntegratorDesc& integrator) {
+  const core::Image picture = scene.render_by(integrator).film.normalised();
+  std::vector<double> values;
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      for (int c = 0; c < 3; ++c) values.push_back(double{picture.at(x, y, c)});
+    }
+  }
+  return values;
+}
+
 TEST(Strategies, EachFindsAllLightBetweenSurfaces) {
   const YamlScene scene(scene_with(
       "  wall: {shape: rectangle, size: [1.4, 1], transform: [{rotate_z: -90}], at: [-1.2, "
@@ -81,6 +95,26 @@ TEST(Strategies, EachFindsAllLightOnSmoothedMeshes) {
       .significance = 0.005, .tests = 3 * (4 + 4), .relative_error = 0.16, .power = 0.99};
   expect_strategies_agree(scene, 1, 0, 2, promise);
   expect_strategies_agree(scene, 2, 1, 3, promise);
+}
+
+// The very samples of the picture, cut by strategy: what is left is rounding. Were the weights of a
+// path's strategies not to add up to 1 by a thousandth, this would notice.
+TEST(Strategies, WeightedPartsAddUpToThePicture) {
+  const YamlScene scene(
+      scene_with("  ball: {shape: sphere, radius: 0.3, at: [0.3, 0.8, 0], material: satin}\n"));
+  core::IntegratorDesc desc = only(scene.job().integrator, 2);
+  const std::vector<double> whole = picture_of(scene, desc);
+  std::vector<double> sum(whole.size());
+  for (int s = 0; s <= 3; ++s) {
+    desc.light_vertices = s;
+    desc.camera_vertices = 4 - s;
+    const std::vector<double> part = picture_of(scene, desc);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
+  }
+  const double mean = std::accumulate(whole.begin(), whole.end(), 0.0) / double(whole.size());
+  EXPECT_GT(mean, 0.001);
+  for (size_t i = 0; i < sum.size(); ++i)
+    ASSERT_NEAR(sum[i], whole[i], 1e-4 * (whole[i] + mean)) << "value " << i;
 }
 
 // Places in a medium may come as near to each other as they like: of what joins them alone only

@@ -113,7 +113,7 @@ environment: {color: [1, 2, 3]}
   };
   const std::string density = "density: {vdb: smoke.vdb, place: native}";
   const double passed = 0.25 * (6 * 0.5 + 6 * 1.0);
-  expect_picture_mean(
+  expect_mean_by_path_and_bdpt(
       YamlScene(job_of("absorption: [0.2, 0.5, 1], " + density), 1, {}, folder.path().string()),
       {std::exp(-0.2 * passed), 2.0 * std::exp(-0.5 * passed), 3.0 * std::exp(-1.0 * passed)},
       kPromise);
@@ -125,7 +125,7 @@ environment: {color: [1, 2, 3]}
     glow += 2.0 * 0.1 / 1000.0 * std::pow(2.0 * t, 4.0) *
             Vec3d(core::blackbody_color(static_cast<float>(3000.0 * t)));
   }
-  expect_picture_mean(
+  expect_mean_by_path_and_bdpt(
       YamlScene(job_of("emission: {temperature: heat, kelvin: 3000, strength: 0.05}, " + density),
                 1, {}, folder.path().string()),
       Vec3d(1.0, 2.0, 3.0) + 0.05 * glow, kPromise);
