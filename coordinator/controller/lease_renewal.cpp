@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "coordinator/controller/to_wire.h"
-#include "coordinator/controller/wire_ids.h"
 #include "coordinator/controller/worker_sessions.h"
 #include "coordinator/meters/meters.h"
 #include "farm/wire.h"
@@ -46,7 +45,7 @@ void WorkerSessions::renew_leases(WorkerSession& session, const v1::Heartbeat& b
   WorkerAlive alive{session.id, {}};
   std::map<LeaseId, LeaseProgress> renewed;  // of those that are named
   for (const Progress& told : beat.leases()) {
-    const LeaseId lease = lease_from_wire(told.lease());
+    const LeaseId lease = from_wire(told.lease());
     const auto old = session.progress.find(lease);
     LeaseProgress progress{told.stage(), told.samples_done(), Duration(0)};
     if (old != session.progress.end() && old->second.stage == progress.stage &&

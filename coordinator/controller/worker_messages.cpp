@@ -10,7 +10,6 @@
 #include "coordinator/controller/result_check.h"
 #include "coordinator/controller/to_wire.h"
 #include "coordinator/controller/wall_clock.h"
-#include "coordinator/controller/wire_ids.h"
 #include "coordinator/controller/worker_sessions.h"
 #include "coordinator/meters/meters.h"
 #include "farm/wire.h"
@@ -87,7 +86,7 @@ void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& f
                              farm::wire_text(failure.reason())),
                  &*unit);
     }
-    turn.tell(UnitFailed{session.id, lease_from_wire(failure.unit().lease()), job, *unit,
+    turn.tell(UnitFailed{session.id, from_wire(failure.unit().lease()), job, *unit,
                          farm::wire_text(failure.reason())});
   }
   want(session, failure.want(), turn);
@@ -106,7 +105,7 @@ void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned
       jobs_.note(*active, v1::LOG_LEVEL_WARNING, {}, session.hello.name(),
                  "gives units back: " + farm::wire_text(message.reason()));
     }
-    turn.tell(UnitReturned{session.id, lease_from_wire(returned.lease()), job, *unit});
+    turn.tell(UnitReturned{session.id, from_wire(returned.lease()), job, *unit});
   }
 }
 
@@ -190,9 +189,9 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
   }
   const Duration took{static_cast<int64_t>(std::min<uint64_t>(result.render_ns(), INT64_MAX))};
   const Digest digest = delivery.unit.digest;
-  turn.tell(ResultArrived{session.id, lease_from_wire(result.lease()), JobId{result.job()}, unit,
-                          digest, took},
-            &delivery);
+  turn.tell(
+      ResultArrived{session.id, from_wire(result.lease()), JobId{result.job()}, unit, digest, took},
+      &delivery);
   if (!delivery.settled) shared_.meters->result("waits");
   return std::nullopt;
 }
@@ -216,8 +215,7 @@ void WorkerSessions::refuse(WorkerSession& session, const v1::UnitResult& result
                "a film was refused: " + refusal.text, unit ? &*unit : nullptr);
   }
   if (unit) {
-    turn.tell(
-        UnitReturned{session.id, lease_from_wire(result.lease()), JobId{result.job()}, *unit});
+    turn.tell(UnitReturned{session.id, from_wire(result.lease()), JobId{result.job()}, *unit});
   }
 }
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "coordinator/controller/counted.h"
+#include "coordinator/controller/to_wire.h"
 #include "coordinator/controller/wall_clock.h"
-#include "coordinator/controller/wire_ids.h"
 #include "coordinator/meters/meters.h"
 #include "core/base/version.h"
 #include "farm/log.h"
@@ -19,6 +19,8 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr size_t kMostWorkers = 20'000;
+/// That one worker may have.
+constexpr uint32_t kMostThreads = 4096;
 /// In the time that a lease lasts.
 constexpr int kHeartbeats = 6;
 /// By which a heartbeat may be late.
@@ -103,7 +105,7 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
   for (const v1::LeasedUnit& held : hello.in_hand()) {
     const auto unit = farm::from_wire(held.unit());
     if (!unit) return {grpc::StatusCode::INVALID_ARGUMENT, unit.error().message};
-    joined.in_hand.push_back({lease_from_wire(held.lease()), JobId{held.job()}, *unit});
+    joined.in_hand.push_back({from_wire(held.lease()), JobId{held.job()}, *unit});
   }
   Turn turn(dispatcher_);
   if (!workers_.knows(hello.worker_id()) && !has_room(turn)) {
