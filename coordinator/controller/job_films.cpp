@@ -43,47 +43,49 @@ void JobFilms::persist(const Persist& persist, Delivery* delivery) {
                  [&](const UnitRecord& unit) HYADES_REQUIRES(state_lock) {
                    delivery->settled = true;
                    active->films_under_way[id] = std::move(delivery->rendered);
-                   of(*active).keep_delivered(id, unit.accepted, std::move(delivery->film),
-                                              std::move(delivery->record));
+                   of(*active).append(id, unit, std::move(delivery->film),
+                                      std::move(delivery->record));
                  },
                  [&](const FrameFinishedRecord& done)
-                     HYADES_REQUIRES(state_lock) { of(*active).keep_finished(id, done.frame); },
+                     HYADES_REQUIRES(state_lock) { of(*active).append(id, done); },
                  [&](const FrameFailedRecord& failed)
-                     HYADES_REQUIRES(state_lock) { fail_frame(*active, id, failed.failed); },
+                     HYADES_REQUIRES(state_lock) { fail_frame(*active, id, failed); },
                  [&](const FrameRestartedRecord& again)
-                     HYADES_REQUIRES(state_lock) { restart_frame(job, id, again.frame); },
-                 [&](const TileVoidedRecord& voided) HYADES_REQUIRES(state_lock) {
-                   of(*active).void_tile(id, voided.frame, voided.tile);
-                 },
+                     HYADES_REQUIRES(state_lock) { restart_frame(id, again); },
+                 [&](const TileVoidedRecord& voided)
+                     HYADES_REQUIRES(state_lock) { of(*active).append(id, voided); },
                  [&](const DisputeRecord& dispute)
-                     HYADES_REQUIRES(state_lock) { of(*active).keep_dispute(id, dispute.open); },
+                     HYADES_REQUIRES(state_lock) { of(*active).append(id, dispute); },
                  [](const WorkerOddRecord&) {},  // above: it is of all jobs
              },
              persist.record);
 }
 
-void JobFilms::restart_frame(JobId job, RecordId record, int32_t frame) {
-  shared_.background.add(static_cast<uint64_t>(job), [this, job, record, frame] {
-    const core::Status forgotten = shared_.store->forget_frame(static_cast<uint64_t>(job), frame);
+void JobFilms::restart_frame(RecordId id, const FrameRestartedRecord& again) {
+  const auto job = static_cast<uint64_t>(again.job);
+  shared_.background.add(job, [this, job, id, again] {
+    const core::Status forgotten = shared_.store->forget_frame(job, again.frame);
     const StateLock lock(shared_.mutex);
-    ActiveJob* still = jobs_.find(job);
+    ActiveJob* still = jobs_.find(again.job);
     if (still == nullptr || still->ending) return true;
-    if (forgotten) of(*still).begin_again(record, frame);
+    if (forgotten) of(*still).append(id, again);
     return forgotten.ok();
   });
 }
 
-void JobFilms::fail_frame(ActiveJob& active, RecordId record, const FailedFrame& failed) {
+void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecord& record) {
+  const FailedFrame& failed = record.failed;
   const FrameNote& note = active.frames[failed.frame];
   StoredFrame frame{failed.frame, false, failed.reason, note.worker_class, note.restarts};
-  shared_.background.add(active.stored.id, [this, job = active.id, record, frame] {
-    const core::Status stored = shared_.store->frame_over(static_cast<uint64_t>(job), frame, {});
+  shared_.background.add(active.stored.id, [this, id, record, frame] {
+    const core::Status stored =
+        shared_.store->frame_over(static_cast<uint64_t>(record.job), frame, {});
     const StateLock lock(shared_.mutex);
-    ActiveJob* still = jobs_.find(job);
+    ActiveJob* still = jobs_.find(record.job);
     if (still == nullptr) return true;
     // Where it could not be stored the frame fails again after a restart, if it must.
     if (!stored) still->trouble = stored.error().message;
-    of(*still).keep_failed(record);
+    of(*still).append(id, record);
     return true;
   });
 }

@@ -29,8 +29,8 @@ class JobFilms {
   class Owner;
   FilmStore& of(ActiveJob& active) HYADES_REQUIRES(state_lock);
   bool open(JobId job) HYADES_EXCLUDES(state_lock);
-  void restart_frame(JobId job, RecordId record, int32_t frame) HYADES_REQUIRES(state_lock);
-  void fail_frame(ActiveJob& active, RecordId record, const FailedFrame& failed)
+  void restart_frame(RecordId id, const FrameRestartedRecord& again) HYADES_REQUIRES(state_lock);
+  void fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecord& record)
       HYADES_REQUIRES(state_lock);
 
   // By the film stores' threads.

@@ -16,12 +16,9 @@ void LocalRun::carry_out(const std::vector<Action>& actions) {
 }
 
 void LocalRun::act(const Persist& persist) {
-  if (const auto* done = std::get_if<FrameFinishedRecord>(&persist.record)) {
-    film_store_.keep_finished(persist.id, done->frame);
-  } else if (std::holds_alternative<FrameFailedRecord>(persist.record)) {
-    film_store_.keep_failed(persist.id);
-  }
   // A unit's film is handed over by the thread that has it, see deliver().
+  if (std::holds_alternative<UnitRecord>(persist.record)) return;
+  film_store_.append(persist.id, persist.record);
 }
 
 void LocalRun::act(const Merge& merge) {

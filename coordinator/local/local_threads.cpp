@@ -71,18 +71,19 @@ std::optional<LocalRun::Task> LocalRun::next_task(int thread) {
 }
 
 void LocalRun::deliver(int thread, const Task& task, core::Film film, Duration render_time) {
-  std::optional<RecordId> record;
+  std::optional<Persist> persist;
   {
     const std::lock_guard lock(mutex_);
     for (const Action& action :
          tell_locked(ResultArrived{WorkerId{static_cast<uint64_t>(thread)}, task.lease, kJob,
                                    task.unit, Digest{}, render_time})) {
       // Or it is rejected, because the frame has failed meanwhile.
-      if (const auto* persist = std::get_if<Persist>(&action)) record = persist->id;
+      if (const auto* said = std::get_if<Persist>(&action)) persist = *said;
     }
-    if (record) count_locked(task.unit, true);
+    if (persist) count_locked(task.unit, true);
   }
-  if (record) film_store_.keep(*record, task.unit.frame, std::move(film));
+  if (!persist) return;
+  film_store_.append_rendered(persist->id, std::get<UnitRecord>(persist->record), std::move(film));
 }
 
 void LocalRun::load_loop() {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/scheduler/scheduler.h"
+#include "core/base/overloaded.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -191,13 +192,22 @@ void Scheduler::tile_voided(const TileVoidedRecord& record) {
 /// Whether a record that could not be made durable still says something: a tile that has begun
 /// again with its frame must not be voided once more, for its films are new.
 bool Scheduler::still_wanted(const Record& record) {
-  if (const auto* dispute = std::get_if<DisputeRecord>(&record)) return find_job(dispute->job);
-  const auto* voided = std::get_if<TileVoidedRecord>(&record);
-  if (voided == nullptr) return true;
-  JobState* job = find_job(voided->job);
-  const FrameSlot* slot = job ? job->slot(voided->frame) : nullptr;
-  return slot != nullptr && slot->phase == FramePhase::rendering &&
-         slot->books->in_doubt(*job->grid.index_of(voided->tile));
+  return std::visit(
+      core::Overloaded{
+          [](const UnitRecord&) { return true; },
+          [](const FrameFinishedRecord&) { return true; },
+          [](const FrameFailedRecord&) { return true; },
+          [](const FrameRestartedRecord&) { return true; },
+          [this](const TileVoidedRecord& voided) {
+            JobState* job = find_job(voided.job);
+            const FrameSlot* slot = job ? job->slot(voided.frame) : nullptr;
+            return slot != nullptr && slot->phase == FramePhase::rendering &&
+                   slot->books->in_doubt(*job->grid.index_of(voided.tile));
+          },
+          [this](const DisputeRecord& dispute) { return find_job(dispute.job) != nullptr; },
+          [](const WorkerOddRecord&) { return true; },
+      },
+      record);
 }
 
 /// The job's log says that its films may be wrong, until end_marks(): should the coordinator die

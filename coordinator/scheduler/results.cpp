@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/scheduler/scheduler.h"
+#include "core/base/overloaded.h"
 
 namespace hyades::coordinator {
 
@@ -168,31 +169,28 @@ void Scheduler::on(const Persisted& e) {
   if (it == pending_.end()) return;
   const Pending pending = std::move(it->second);
   pending_.erase(it);
-  if (const auto* unit = std::get_if<UnitRecord>(&pending.record)) {
-    return unit_persisted(*unit, pending, e.record);
-  }
-  const auto* finished = std::get_if<FrameFinishedRecord>(&pending.record);
-  const auto* failed = std::get_if<FrameFailedRecord>(&pending.record);
-  if (const auto* again = std::get_if<FrameRestartedRecord>(&pending.record)) {
-    JobState* job = find_job(again->job);
-    if (job != nullptr) frame_restarted(*job, *job->slot(again->frame));
-    return;
-  }
-  if (const auto* voided = std::get_if<TileVoidedRecord>(&pending.record)) {
-    return tile_voided(*voided);
-  }
-  if (const auto* dispute = std::get_if<DisputeRecord>(&pending.record)) {
-    if (JobState* job = find_job(dispute->job)) dispute_marked(*job, dispute->open);
-    return;
-  }
-  if (std::holds_alternative<WorkerOddRecord>(pending.record)) {
-    --odd_records_;
-    return;
-  }
-  JobState* job = find_job(finished ? finished->job : failed->job);
-  if (job == nullptr) return;
-  FrameSlot& slot = *job->slot(finished ? finished->frame : failed->failed.frame);
-  frame_over(*job, slot, finished ? FramePhase::done : FramePhase::failed);
+  const auto frame_over = [this](JobId id, int32_t frame, FramePhase phase) {
+    if (JobState* job = find_job(id)) this->frame_over(*job, *job->slot(frame), phase);
+  };
+  std::visit(core::Overloaded{
+                 [&](const UnitRecord& unit) { unit_persisted(unit, pending, e.record); },
+                 [&](const FrameFinishedRecord& finished) {
+                   frame_over(finished.job, finished.frame, FramePhase::done);
+                 },
+                 [&](const FrameFailedRecord& failed) {
+                   frame_over(failed.job, failed.failed.frame, FramePhase::failed);
+                 },
+                 [&](const FrameRestartedRecord& again) {
+                   JobState* job = find_job(again.job);
+                   if (job != nullptr) frame_restarted(*job, *job->slot(again.frame));
+                 },
+                 [&](const TileVoidedRecord& voided) { tile_voided(voided); },
+                 [&](const DisputeRecord& dispute) {
+                   if (JobState* job = find_job(dispute.job)) dispute_marked(*job, dispute.open);
+                 },
+                 [&](const WorkerOddRecord&) { --odd_records_; },
+             },
+             pending.record);
 }
 
 void Scheduler::unit_persisted(const UnitRecord& record, const Pending& pending, RecordId id) {

@@ -286,22 +286,22 @@ std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey
   return out;
 }
 
-std::vector<std::byte> encode_begun_again(int32_t frame) {
+std::vector<std::byte> encode(const FrameRestartedRecord& record) {
   std::vector<std::byte> out = begin(Kind::begun_again);
-  put(out, static_cast<uint32_t>(frame));
+  put(out, static_cast<uint32_t>(record.frame));
   return out;
 }
 
-std::vector<std::byte> encode_tile_voided(int32_t frame, const core::PixelRect& tile) {
+std::vector<std::byte> encode(const TileVoidedRecord& record) {
   std::vector<std::byte> out = begin(Kind::tile_voided);
-  put(out, static_cast<uint32_t>(frame));
-  put(out, tile);
+  put(out, static_cast<uint32_t>(record.frame));
+  put(out, record.tile);
   return out;
 }
 
-std::vector<std::byte> encode_dispute(bool open) {
+std::vector<std::byte> encode(const DisputeRecord& record) {
   std::vector<std::byte> out = begin(Kind::dispute);
-  put(out, open ? 1U : 0U);
+  put(out, record.open ? 1U : 0U);
   return out;
 }
 

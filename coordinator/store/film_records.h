@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/scheduler/actions.h"
 #include "coordinator/scheduler/job_plan.h"
 #include "coordinator/store/film_log.h"
 #include "core/base/hash.h"
@@ -42,16 +43,13 @@ struct FinishedRecord {
 std::vector<std::byte> encode_cut(const CutRecord& cut);
 /// A film of some tiles and batches of a frame.
 std::vector<std::byte> encode_unit(int32_t frame, const FrameKey& key, const core::Film& film);
-/// The same as a worker delivered it: `film` is its film as film_codec.h packs it. Of `unit` frame,
-/// digest and class are kept; the film says the rest.
+/// A film as a worker delivered it: `film` is what film_codec.h packed. Of `unit` frame, digest and
+/// class are kept; the film says the rest.
 std::vector<std::byte> encode_delivered(const AcceptedUnit& unit, const FrameKey& key,
                                         std::span<const std::byte> film);
-/// All films of the frame before this record are void.
-std::vector<std::byte> encode_begun_again(int32_t frame);
-/// All films of the frame's tile before this record are void.
-std::vector<std::byte> encode_tile_voided(int32_t frame, const core::PixelRect& tile);
-/// Whether films before this record may be wrong, because two renderings of a unit differ.
-std::vector<std::byte> encode_dispute(bool open);
+std::vector<std::byte> encode(const FrameRestartedRecord& record);
+std::vector<std::byte> encode(const TileVoidedRecord& record);
+std::vector<std::byte> encode(const DisputeRecord& record);
 std::vector<std::byte> encode_finished(int32_t frame, const FinishedRecord& finished);
 
 /// What a log holds.

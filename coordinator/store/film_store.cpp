@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/base/failpoint.h"
+#include "core/base/overloaded.h"
 #include "core/film/film_codec.h"
 
 namespace hyades::coordinator {
@@ -41,7 +42,7 @@ FilmStore::~FilmStore() {
   join();
   // Where it was never started somebody may wait still.
   for (const Item& item : queue_) {
-    if (item.kind == Item::Kind::call) item.call();
+    if (item.call) item.call();
   }
   log_.reset();
 }
@@ -133,60 +134,52 @@ void FilmStore::push(Item item, bool may_wait) {
   wake_.notify_one();
 }
 
-void FilmStore::keep(RecordId record, int32_t frame, core::Film film) {
+/// What the log holds of a record whose film is none. A failed frame and a divergent worker are
+/// rows of the job store: here they only come after what was handed over before.
+std::vector<std::byte> FilmStore::encoded(const Record& record) const {
+  if (!logs()) return {};
+  using Bytes = std::vector<std::byte>;
+  return std::visit(core::Overloaded{
+                        [](const UnitRecord&) { return Bytes(); },
+                        [&](const FrameFinishedRecord& done) {
+                          return encode_finished(done.frame, {key_of(done.frame), set_.region});
+                        },
+                        [](const FrameFailedRecord&) { return Bytes(); },
+                        [](const FrameRestartedRecord& restarted) { return encode(restarted); },
+                        [](const TileVoidedRecord& voided) { return encode(voided); },
+                        [](const DisputeRecord& dispute) { return encode(dispute); },
+                        [](const WorkerOddRecord&) { return Bytes(); },
+                    },
+                    record);
+}
+
+void FilmStore::append(RecordId id, Record record, core::Film film, std::vector<std::byte> packed) {
   Item item;
-  item.record = record;
-  item.frame = frame;
+  item.id = id;
+  item.bytes = encoded(record);
+  item.record = std::move(record);
+  if (std::holds_alternative<UnitRecord>(item.record)) {
+    if (logs()) item.bytes = std::move(packed);
+    item.memory = film.memory() + item.bytes.size();
+    item.film = std::move(film);
+  }
+  push(std::move(item), false);
+}
+
+void FilmStore::append_rendered(RecordId id, const UnitRecord& unit, core::Film film) {
+  Item item;
+  item.id = id;
+  item.record = unit;
   // Packing takes longer than anything else here and so is done by the thread that hands over.
+  const int32_t frame = unit.accepted.unit.frame;
   if (logs()) item.bytes = encode_unit(frame, key_of(frame), film);
   item.memory = film.memory() + item.bytes.size();
   item.film = std::move(film);
   push(std::move(item), true);
 }
 
-void FilmStore::keep_delivered(RecordId record, const AcceptedUnit& unit, core::Film film,
-                               std::vector<std::byte> bytes) {
-  Item item;
-  item.record = record;
-  item.frame = unit.unit.frame;
-  if (logs()) item.bytes = std::move(bytes);
-  item.memory = film.memory() + item.bytes.size();
-  item.film = std::move(film);
-  item.worker_class = unit.worker_class;
-  push(std::move(item), false);
-}
-
-void FilmStore::begin_again(RecordId record, int32_t frame) {
-  Item item;
-  item.record = record;
-  item.kind = Item::Kind::begun_again;
-  item.frame = frame;
-  if (logs()) item.bytes = encode_begun_again(frame);
-  push(std::move(item), false);
-}
-
-void FilmStore::void_tile(RecordId record, int32_t frame, const core::PixelRect& tile) {
-  Item item;
-  item.record = record;
-  item.kind = Item::Kind::tile_voided;
-  item.frame = frame;
-  item.tile = tile;
-  if (logs()) item.bytes = encode_tile_voided(frame, tile);
-  push(std::move(item), false);
-}
-
-void FilmStore::keep_dispute(RecordId record, bool open) {
-  Item item;
-  item.record = record;
-  item.kind = Item::Kind::dispute;
-  item.open = open;
-  if (logs()) item.bytes = encode_dispute(open);
-  push(std::move(item), false);
-}
-
 void FilmStore::call(std::function<void()> what) {
   Item item;
-  item.kind = Item::Kind::call;
   item.call = std::move(what);
   push(std::move(item), false);
 }
@@ -200,22 +193,6 @@ void FilmStore::make_room() {
 bool FilmStore::crowded() const {
   const std::lock_guard lock(mutex_);
   return waiting_bytes_ >= options_.max_waiting_bytes;
-}
-
-void FilmStore::keep_finished(RecordId record, int32_t frame) {
-  Item item;
-  item.record = record;
-  item.kind = Item::Kind::finished;
-  item.frame = frame;
-  if (logs()) item.bytes = encode_finished(frame, {key_of(frame), set_.region});
-  push(std::move(item), false);
-}
-
-void FilmStore::keep_failed(RecordId record) {
-  Item item;
-  item.record = record;
-  item.kind = Item::Kind::failed;
-  push(std::move(item), false);
 }
 
 void FilmStore::hurry() {
@@ -285,22 +262,24 @@ void FilmStore::run() {
 
 void FilmStore::append(std::deque<Item> items) {
   for (Item& item : items) {
-    if (item.kind == Item::Kind::call) {
+    if (item.call) {
       item.call();
       continue;
     }
-    if (log_ && item.kind != Item::Kind::failed) {
+    if (log_ && !item.bytes.empty()) {
       const uint64_t bytes = item.bytes.size();
       auto sequence = log_->append(std::move(item.bytes));
       if (!sequence) {
         release(item.memory);
-        owner_.not_persisted(item.record, sequence.error().message);
+        owner_.not_persisted(item.id, sequence.error().message);
         try_again_at_ = now() + kTryAgain;
         continue;
       }
       item.sequence = *sequence;
       log_bytes_ += bytes;
-      if (item.kind == Item::Kind::film) frame_bytes_[item.frame] += bytes;
+      if (const auto* unit = std::get_if<UnitRecord>(&item.record)) {
+        frame_bytes_[unit->accepted.unit.frame] += bytes;
+      }
     } else {
       item.sequence = appended_.empty() ? 0 : appended_.back().sequence;
     }
@@ -314,29 +293,43 @@ void FilmStore::settle(uint64_t durable) {
     appended_.pop_front();
     settling_ = &item;
     settled_sequence_ = std::max(settled_sequence_, item.sequence);
-    if (item.kind == Item::Kind::begun_again) {
-      films_.erase(item.frame);
-      classes_.erase(item.frame);
-      finished_.erase(item.frame);
-    }
-    if (item.kind == Item::Kind::tile_voided) {
-      if (const auto whole = films_.find(item.frame); whole != films_.end()) {
-        // Whoever looks at the film meanwhile keeps what was there.
-        if (whole->second.use_count() > 1) {
-          whole->second = std::make_shared<core::Film>(*whole->second);
-        }
-        whole->second->erase(item.tile);
-      }
-    }
-    if (item.kind == Item::Kind::dispute) disputed_ = item.open;
-    if (!item.worker_class.empty()) classes_[item.frame] = item.worker_class;
-    if (item.kind == Item::Kind::finished) {
-      finished_[item.frame] = {key_of(item.frame), set_.region};
-    }
-    owner_.persisted(item.record);
+    apply(item.record);
+    owner_.persisted(item.id);
     settling_ = nullptr;
     release(item.memory);
   }
+}
+
+/// What a record that is durable says of the films in memory. A unit's film waits for merge().
+void FilmStore::apply(const Record& record) {
+  std::visit(core::Overloaded{
+                 [&](const UnitRecord& unit) {
+                   const AcceptedUnit& accepted = unit.accepted;
+                   if (accepted.worker_class.empty()) return;
+                   classes_[accepted.unit.frame] = accepted.worker_class;
+                 },
+                 [&](const FrameFinishedRecord& done) {
+                   finished_[done.frame] = {key_of(done.frame), set_.region};
+                 },
+                 [](const FrameFailedRecord&) {},
+                 [&](const FrameRestartedRecord& restarted) {
+                   films_.erase(restarted.frame);
+                   classes_.erase(restarted.frame);
+                   finished_.erase(restarted.frame);
+                 },
+                 [&](const TileVoidedRecord& voided) {
+                   const auto whole = films_.find(voided.frame);
+                   if (whole == films_.end()) return;
+                   // Whoever looks at the film meanwhile keeps what was there.
+                   if (whole->second.use_count() > 1) {
+                     whole->second = std::make_shared<core::Film>(*whole->second);
+                   }
+                   whole->second->erase(voided.tile);
+                 },
+                 [&](const DisputeRecord& dispute) { disputed_ = dispute.open; },
+                 [](const WorkerOddRecord&) {},
+             },
+             record);
 }
 
 void FilmStore::release(uint64_t memory) {
@@ -346,10 +339,11 @@ void FilmStore::release(uint64_t memory) {
 }
 
 core::Status FilmStore::merge(RecordId record) {
-  if (settling_ == nullptr || settling_->record != record) {
-    return core::Error{"a film is to be merged that is not at hand"};
-  }
-  auto& whole = films_[settling_->frame];
+  const UnitRecord* unit = settling_ != nullptr && settling_->id == record
+                               ? std::get_if<UnitRecord>(&settling_->record)
+                               : nullptr;
+  if (unit == nullptr) return core::Error{"a film is to be merged that is not at hand"};
+  auto& whole = films_[unit->accepted.unit.frame];
   const core::Film& film = settling_->film;
   if (!whole) {
     whole = std::make_shared<core::Film>(film.layout(), set_.region, film.splats().region());
@@ -418,7 +412,7 @@ core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
   };
   const CutRecord cut{set_.region, tile_size_, set_.samples};
   core::Status status = put(encode_cut(cut));
-  if (status && disputed_) status = put(encode_dispute(true));
+  if (status && disputed_) status = put(encode(DisputeRecord{.open = true}));
   for (const auto& [frame, finished] : finished_) {
     if (status) status = put(encode_finished(frame, finished));
   }

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "coordinator/scheduler/ids.h"
+#include "coordinator/scheduler/actions.h"
 #include "coordinator/store/film_log.h"
 #include "coordinator/store/film_records.h"
 #include "coordinator/store/log_files.h"
@@ -83,21 +83,13 @@ class FilmStore {
 
   // Any thread, and before open() already: what is handed over then waits.
 
-  /// Takes a unit's film. Waits while too much waits for the disk already.
-  void keep(RecordId record, int32_t frame, core::Film film);
-  /// The same for a film that a worker has delivered, whose record is `bytes` (encode_delivered);
-  /// never waits.
-  void keep_delivered(RecordId record, const AcceptedUnit& unit, core::Film film,
-                      std::vector<std::byte> bytes);
-  /// All films of the frame that were handed over before are void.
-  void begin_again(RecordId record, int32_t frame);
-  /// All films of the frame's tile that were handed over before are void.
-  void void_tile(RecordId record, int32_t frame, const core::PixelRect& tile);
-  /// Films that were handed over before may be wrong, or are right after all.
-  void keep_dispute(RecordId record, bool open);
-  void keep_finished(RecordId record, int32_t frame);
-  void keep_failed(RecordId record);
-  /// From now on keep() does not wait any more.
+  /// Takes what is to be durable; never waits. `film` and `packed` (encode_delivered) belong to the
+  /// unit that a worker has delivered, where the record is one.
+  void append(RecordId id, Record record, core::Film film = {}, std::vector<std::byte> packed = {});
+  /// Takes a unit that the calling thread has rendered, and packs its film. Waits while too much
+  /// waits for the disk already.
+  void append_rendered(RecordId id, const UnitRecord& unit, core::Film film);
+  /// From now on append_rendered() does not wait any more.
   void hurry();
   /// No more will come: the thread makes durable what it has, and ends.
   void drain();
@@ -120,16 +112,11 @@ class FilmStore {
 
  private:
   struct Item {
-    enum class Kind : uint8_t { film, finished, failed, begun_again, tile_voided, dispute, call };
-    RecordId record{};
-    Kind kind = Kind::film;
-    int32_t frame = 0;
-    core::PixelRect tile;
-    bool open = false;  ///< of a dispute
-    core::Film film;
-    std::string worker_class;
-    std::vector<std::byte> bytes;
-    std::function<void()> call;
+    RecordId id{};
+    Record record;
+    core::Film film;               ///< of a unit
+    std::vector<std::byte> bytes;  ///< of the log; none where the record is not the log's
+    std::function<void()> call;    ///< instead of a record
     uint64_t memory = 0;
     uint64_t sequence = 0;
   };
@@ -138,10 +125,12 @@ class FilmStore {
   bool logs() const { return !options_.folder.empty(); }
   core::Status open_log(bool erase);
   FrameKey key_of(int32_t frame) const;
+  std::vector<std::byte> encoded(const Record& record) const;
   void push(Item item, bool may_wait);
   void run();
   void append(std::deque<Item> items);
   void settle(uint64_t durable);
+  void apply(const Record& record);
   void compact_if_worthwhile(bool room_wanted);
   core::Status write_snapshot(const FilmLog::Sink& sink);
   void release(uint64_t memory);

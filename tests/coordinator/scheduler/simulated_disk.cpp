@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/base/hash.h"
+#include "core/base/overloaded.h"
 #include "core/film/film_codec.h"
 
 namespace hyades::coordinator {
@@ -46,20 +47,23 @@ void SimulatedDisk::die(bool power, std::mt19937& random) {
 }
 
 core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark) {
-  if (const auto* unit = std::get_if<UnitRecord>(&record)) {
-    const core::Film film = film_of(unit->accepted.unit, mark);
-    return log_->append(encode_delivered(unit->accepted, {}, core::encode_film(film)));
-  }
-  if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
-    return log_->append(encode_finished(done->frame, {{}, plan_.region}));
-  }
-  if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
-    return log_->append(encode_tile_voided(voided->frame, voided->tile));
-  }
-  if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
-    return log_->append(encode_dispute(dispute->open));
-  }
-  return log_->append(encode_begun_again(std::get<FrameRestartedRecord>(record).frame));
+  using Bytes = std::vector<std::byte>;
+  return log_->append(std::visit(
+      core::Overloaded{
+          [&](const UnitRecord& unit) {
+            const core::Film film = film_of(unit.accepted.unit, mark);
+            return encode_delivered(unit.accepted, {}, core::encode_film(film));
+          },
+          [&](const FrameFinishedRecord& done) {
+            return encode_finished(done.frame, {{}, plan_.region});
+          },
+          [](const FrameFailedRecord&) -> Bytes { throw "a failed frame is not in the film log"; },
+          [](const FrameRestartedRecord& restarted) { return encode(restarted); },
+          [](const TileVoidedRecord& voided) { return encode(voided); },
+          [](const DisputeRecord& dispute) { return encode(dispute); },
+          [](const WorkerOddRecord&) -> Bytes { throw "an odd worker is not in the film log"; },
+      },
+      record));
 }
 
 core::Status SimulatedDisk::compact(uint64_t through, const std::vector<int32_t>& finished,

@@ -113,7 +113,7 @@ void SimulatedWorld::act(const FrameReopened& a) {
 }
 
 /// The worker is odd, and that is durable: so is the doubt about what it had a part in.
-void SimulatedWorld::found_odd(const WorkerOddRecord& odd) {
+void SimulatedWorld::store(const WorkerOddRecord& odd) {
   workers_[index_of(odd.worker)].known_odd = true;
   for (auto& [id, job] : jobs_) {
     FramesDoubted doubted{id, {}};

@@ -1,4 +1,5 @@
 // What is durable, and the films that are made of it.
+#include "core/base/overloaded.h"
 #include "tests/coordinator/scheduler/simulated_world.h"
 
 namespace hyades::coordinator {
@@ -40,24 +41,17 @@ void SimulatedWorld::act(const Persist& a) {
 }
 
 std::pair<JobId, int32_t> SimulatedWorld::frame_of(const Record& record) {
-  if (const auto* unit = std::get_if<UnitRecord>(&record)) {
-    return {unit->job, unit->accepted.unit.frame};
-  }
-  if (const auto* failed = std::get_if<FrameFailedRecord>(&record)) {
-    return {failed->job, failed->failed.frame};
-  }
-  if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
-    return {done->job, done->frame};
-  }
-  if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
-    return {voided->job, voided->frame};
-  }
-  if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
-    return {dispute->job, INT32_MIN};
-  }
-  if (const auto* odd = std::get_if<WorkerOddRecord>(&record)) return {odd->job, INT32_MIN};
-  const auto& again = std::get<FrameRestartedRecord>(record);
-  return {again.job, again.frame};
+  using Place = std::pair<JobId, int32_t>;
+  return std::visit(core::Overloaded{
+                        [](const UnitRecord& r) { return Place(r.job, r.accepted.unit.frame); },
+                        [](const FrameFinishedRecord& r) { return Place(r.job, r.frame); },
+                        [](const FrameFailedRecord& r) { return Place(r.job, r.failed.frame); },
+                        [](const FrameRestartedRecord& r) { return Place(r.job, r.frame); },
+                        [](const TileVoidedRecord& r) { return Place(r.job, r.frame); },
+                        [](const DisputeRecord& r) { return Place(r.job, INT32_MIN); },
+                        [](const WorkerOddRecord& r) { return Place(r.job, INT32_MIN); },
+                    },
+                    record);
 }
 
 void SimulatedWorld::store_later(const Persist& a) {
@@ -101,39 +95,47 @@ bool SimulatedWorld::stores_unit_of(const TileVoidedRecord& voided) const {
 }
 
 void SimulatedWorld::store(const Record& record) {
-  if (const auto* unit = std::get_if<UnitRecord>(&record)) {
-    SimJob& job = jobs_.at(unit->job);
-    job.stored.accepted.push_back(unit->accepted);
-    if (!job.stored_units.insert(name(unit->accepted.unit)).second) fail("a unit is stored twice");
-  } else if (const auto* done = std::get_if<FrameFinishedRecord>(&record)) {
-    jobs_.at(done->job).stored.finished.push_back(done->frame);
-  } else if (const auto* failed = std::get_if<FrameFailedRecord>(&record)) {
-    jobs_.at(failed->job).stored.failed.push_back(failed->failed);
-  } else if (const auto* voided = std::get_if<TileVoidedRecord>(&record)) {
-    SimJob& job = jobs_.at(voided->job);
-    std::erase_if(job.stored.accepted, [&](const AcceptedUnit& u) {
-      const bool there = u.unit.frame == voided->frame && u.unit.tile == voided->tile;
-      if (there) job.stored_units.erase(name(u.unit));
-      return there;
-    });
-    std::erase_if(job.disagreed, [&](const core::Unit& u) {
-      return u.frame == voided->frame && u.tile == voided->tile;
-    });
-  } else if (const auto* dispute = std::get_if<DisputeRecord>(&record)) {
-    jobs_.at(dispute->job).stored.disputed = dispute->open;
-  } else if (const auto* odd = std::get_if<WorkerOddRecord>(&record)) {
-    found_odd(*odd);
-  } else {
-    const auto& again = std::get<FrameRestartedRecord>(record);
-    SimJob& job = jobs_.at(again.job);
-    std::erase(job.stored.finished, again.frame);
-    std::erase_if(job.stored.failed, [&](const FailedFrame& f) { return f.frame == again.frame; });
-    std::erase_if(job.stored.accepted,
-                  [&](const AcceptedUnit& u) { return u.unit.frame == again.frame; });
-    std::erase_if(job.stored_units,
-                  [&](const UnitName& u) { return std::get<0>(u) == again.frame; });
-    std::erase_if(job.disagreed, [&](const core::Unit& u) { return u.frame == again.frame; });
-  }
+  std::visit([this](const auto& r) { store(r); }, record);
+}
+
+void SimulatedWorld::store(const UnitRecord& unit) {
+  SimJob& job = jobs_.at(unit.job);
+  job.stored.accepted.push_back(unit.accepted);
+  if (!job.stored_units.insert(name(unit.accepted.unit)).second) fail("a unit is stored twice");
+}
+
+void SimulatedWorld::store(const FrameFinishedRecord& done) {
+  jobs_.at(done.job).stored.finished.push_back(done.frame);
+}
+
+void SimulatedWorld::store(const FrameFailedRecord& failed) {
+  jobs_.at(failed.job).stored.failed.push_back(failed.failed);
+}
+
+void SimulatedWorld::store(const FrameRestartedRecord& again) {
+  SimJob& job = jobs_.at(again.job);
+  std::erase(job.stored.finished, again.frame);
+  std::erase_if(job.stored.failed, [&](const FailedFrame& f) { return f.frame == again.frame; });
+  std::erase_if(job.stored.accepted,
+                [&](const AcceptedUnit& u) { return u.unit.frame == again.frame; });
+  std::erase_if(job.stored_units, [&](const UnitName& u) { return std::get<0>(u) == again.frame; });
+  std::erase_if(job.disagreed, [&](const core::Unit& u) { return u.frame == again.frame; });
+}
+
+void SimulatedWorld::store(const TileVoidedRecord& voided) {
+  SimJob& job = jobs_.at(voided.job);
+  std::erase_if(job.stored.accepted, [&](const AcceptedUnit& u) {
+    const bool there = u.unit.frame == voided.frame && u.unit.tile == voided.tile;
+    if (there) job.stored_units.erase(name(u.unit));
+    return there;
+  });
+  std::erase_if(job.disagreed, [&](const core::Unit& u) {
+    return u.frame == voided.frame && u.tile == voided.tile;
+  });
+}
+
+void SimulatedWorld::store(const DisputeRecord& dispute) {
+  jobs_.at(dispute.job).stored.disputed = dispute.open;
 }
 
 void SimulatedWorld::act(const Merge& a) {

@@ -93,6 +93,13 @@ class SimulatedWorld {
   /// yet that it has arrived.
   bool stores_unit_of(const TileVoidedRecord& voided) const;
   void store(const Record& record);
+  void store(const UnitRecord& unit);
+  void store(const FrameFinishedRecord& done);
+  void store(const FrameFailedRecord& failed);
+  void store(const FrameRestartedRecord& again);
+  void store(const TileVoidedRecord& voided);
+  void store(const DisputeRecord& dispute);
+  void store(const WorkerOddRecord& odd);
   bool is_stored(JobId job, const core::Unit& unit) {
     return jobs_.at(job).stored_units.contains(name(unit));
   }
@@ -120,7 +127,6 @@ class SimulatedWorld {
   void act(const Quarantine& a);
   void act(const Confirmed&) {}
   void act(const FrameReopened& a);
-  void found_odd(const WorkerOddRecord& odd);
   void check_rows();
 
   // simulated_workers.cpp

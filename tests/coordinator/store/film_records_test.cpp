@@ -41,7 +41,7 @@ TEST(VoidedTile, TakesOutWhatCameBeforeAndKeepsWhatCameAfter) {
   // The wrong film is of other samples, so that its sums differ.
   const LogContents contents =
       replayed({delivered(kLeft, kSamples - 10), delivered(kRight, kSamples),
-                encode_tile_voided(1, kLeft.tile), delivered(again, kSamples)});
+                encode(TileVoidedRecord{{}, 1, kLeft.tile}), delivered(again, kSamples)});
   core::Film right(fake_film(kRight, kSamples).layout(), kRegion);
   ASSERT_TRUE(right.merge(fake_film(kRight, kSamples)).ok());
   ASSERT_TRUE(right.merge(fake_film(again, kSamples)).ok());
@@ -53,13 +53,14 @@ TEST(VoidedTile, TakesOutWhatCameBeforeAndKeepsWhatCameAfter) {
 
 TEST(Dispute, IsOpenUntilTheLogSaysOtherwise) {
   EXPECT_FALSE(replayed({delivered(kLeft, kSamples)}).disputed);
-  EXPECT_TRUE(replayed({encode_dispute(true), delivered(kLeft, kSamples)}).disputed);
-  EXPECT_FALSE(replayed({encode_dispute(true), encode_dispute(false)}).disputed);
+  EXPECT_TRUE(replayed({encode(DisputeRecord{{}, true}), delivered(kLeft, kSamples)}).disputed);
+  EXPECT_FALSE(
+      replayed({encode(DisputeRecord{{}, true}), encode(DisputeRecord{{}, false})}).disputed);
 }
 
 TEST(VoidedTile, LeavesNothingOfAFrameThatHadNoOther) {
   const LogContents contents =
-      replayed({delivered(kLeft, kSamples), encode_tile_voided(1, kLeft.tile)});
+      replayed({delivered(kLeft, kSamples), encode(TileVoidedRecord{{}, 1, kLeft.tile})});
   EXPECT_TRUE(contents.films.empty());
   EXPECT_TRUE(contents.units.empty());
   EXPECT_TRUE(contents.problems.empty());
@@ -97,8 +98,9 @@ TEST(BegunAgain, LeavesNothingOfTheSplatsThatCameBefore) {
     return encode_delivered({unit, {}, "class"}, {},
                             core::encode_film(fake_film(unit, samples, region)));
   };
-  const LogContents contents = replayed({splatted(kLeft, kSamples - 10), splatted(kRight, kSamples),
-                                         encode_begun_again(1), splatted(kLeft, kSamples)});
+  const LogContents contents =
+      replayed({splatted(kLeft, kSamples - 10), splatted(kRight, kSamples),
+                encode(FrameRestartedRecord{{}, 1}), splatted(kLeft, kSamples)});
   core::Film right(fake_film(kLeft, kSamples, region).layout(), kRegion, region);
   ASSERT_TRUE(right.merge(fake_film(kLeft, kSamples, region)));
   EXPECT_EQ(contents.films.at(1)->digest(), right.digest());

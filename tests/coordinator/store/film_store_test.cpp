@@ -25,7 +25,8 @@ class Kept final : public FilmStore::Owner {
   /// Whether the film of `tile` is durable within some seconds.
   bool keep(int32_t frame, const core::PixelRect& tile) {
     const RecordId record{++records_};
-    film_store_.keep(record, frame, fake_film({frame, tile, {0, 1}}, kSamples));
+    const core::Unit unit{frame, tile, {0, 1}};
+    film_store_.append_rendered(record, {{}, {unit, {}, {}}}, fake_film(unit, kSamples));
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::seconds(20),
                              [&] { return durable_.contains(record); });
