@@ -67,7 +67,7 @@ bool DivergentWorkers::store_trust() {
 
 /// That a worker is odd is stored with the doubt about all finished frames that it had a part in
 /// since it could last be trusted.
-void DivergentWorkers::keep(RecordId record, const WorkerOddRecord& odd) {
+void DivergentWorkers::keep(RecordId record, const DivergentWorkerRecord& odd) {
   const WorkerSession* session = workers_.find(odd.worker);
   ActiveJob* active = jobs_.find(odd.job);
   Found kept;
@@ -118,7 +118,7 @@ bool DivergentWorkers::doubt_frames(const JobFrames& doubted) {
     shared_.background.add(doubted.job,
                            [this, rest = std::move(rest)] { return doubt_frames(rest); });
   }
-  turn.tell(FramesDoubted{active->id, {doubted.frames.begin(), cut}});
+  turn.tell(FramesSuspected{active->id, {doubted.frames.begin(), cut}});
   return true;
 }
 

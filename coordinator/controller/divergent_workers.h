@@ -23,7 +23,7 @@ class DivergentWorkers {
 
   void confirmed(const Confirmed& sure) HYADES_REQUIRES(state_lock);
   /// Stores that the worker diverges; the scheduler hears when that is durable.
-  void keep(RecordId record, const WorkerOddRecord& odd) HYADES_REQUIRES(state_lock);
+  void keep(RecordId record, const DivergentWorkerRecord& odd) HYADES_REQUIRES(state_lock);
 
  private:
   /// On its way into the store.

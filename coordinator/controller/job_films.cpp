@@ -32,7 +32,7 @@ class JobFilms::Owner final : public FilmStore::Owner {
 };
 
 void JobFilms::persist(const Persist& persist, Delivery* delivery) {
-  if (const auto* odd = std::get_if<WorkerOddRecord>(&persist.record)) {
+  if (const auto* odd = std::get_if<DivergentWorkerRecord>(&persist.record)) {
     return divergent_.keep(persist.id, *odd);
   }
   const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
@@ -56,7 +56,7 @@ void JobFilms::persist(const Persist& persist, Delivery* delivery) {
                      HYADES_REQUIRES(state_lock) { of(*active).append(id, voided); },
                  [&](const DisputeRecord& dispute)
                      HYADES_REQUIRES(state_lock) { of(*active).append(id, dispute); },
-                 [](const WorkerOddRecord&) {},  // above: it is of all jobs
+                 [](const DivergentWorkerRecord&) {},  // above: it is of all jobs
              },
              persist.record);
 }

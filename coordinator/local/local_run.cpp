@@ -24,8 +24,6 @@ SchedulerOptions scheduler_options(const LocalPlan& plan) {
   return options;
 }
 
-double seconds(Duration d) { return std::chrono::duration<double>(d).count(); }
-
 }  // namespace
 
 LocalRun::LocalRun(LocalPlan plan, const FilmStoreOptions& log, FrameSource& source,

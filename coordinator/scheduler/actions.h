@@ -62,22 +62,23 @@ struct TileVoidedRecord {
   core::PixelRect tile;
 };
 /// Whether films of the job may be wrong: two renderings of a unit differ, or they did and what the
-/// odd worker did is not void yet. The latest record counts.
+/// divergent worker did is not void yet. The latest record counts.
 struct DisputeRecord {
   JobId job{};
   bool open = true;
 };
 /// The worker rendered a unit of this frame to other bits than two others did: what it had a part
-/// in that is finished is in doubt, in whatever job. Answered once that is so, and durable; there
-/// will be FramesDoubted for jobs that have not ended.
-struct WorkerOddRecord {
+/// in that is finished is suspect, in whatever job. Answered once that is so, and durable; there
+/// will be FramesSuspected for jobs that have not ended.
+struct DivergentWorkerRecord {
   JobId job{};
   int32_t frame = 0;
   WorkerId worker{};
   std::string reason;
 };
-using Record = std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord,
-                            FrameRestartedRecord, TileVoidedRecord, DisputeRecord, WorkerOddRecord>;
+using Record =
+    std::variant<UnitRecord, FrameFinishedRecord, FrameFailedRecord, FrameRestartedRecord,
+                 TileVoidedRecord, DisputeRecord, DivergentWorkerRecord>;
 
 /// Make this durable; answered by Persisted or PersistFailed. For a unit that means the film that
 /// came with the result now being handled.
@@ -151,7 +152,7 @@ struct TileVoided {
   std::vector<core::BatchRange> batches;  ///< that counted
 };
 
-/// The outputs that FinishFrame asked for do not count: a film is in doubt. There will be another
+/// The outputs that FinishFrame asked for do not count: a film is suspect. There will be another
 /// FinishFrame.
 struct FrameReopened {
   JobId job{};

@@ -39,9 +39,9 @@ struct FramesRetried {
   JobId job{};
 };
 
-/// A worker that had a part in these finished frames was found odd: they are to be rendered again,
-/// from their beginning.
-struct FramesDoubted {
+/// A worker that had a part in these finished frames was found divergent: they are to be rendered
+/// again, from their beginning.
+struct FramesSuspected {
   JobId job{};
   std::vector<int32_t> frames;
 };
@@ -170,7 +170,7 @@ struct Tick {};
 
 using Event =
     std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised, FramesRetried,
-                 FramesDoubted, FrameOpened, FrameRefused, FinishDone, FinishFailed, WorkerJoined,
+                 FramesSuspected, FrameOpened, FrameRefused, FinishDone, FinishFailed, WorkerJoined,
                  WorkRequested, LeasingHeld, WorkerAlive, ResultArrived, UnitFailed, UnitReturned,
                  WorkerBarred, WorkerLost, WorkerForgotten, Persisted, PersistFailed, Tick>;
 

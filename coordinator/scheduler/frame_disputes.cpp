@@ -2,25 +2,25 @@
 #include <algorithm>
 #include <set>
 
-#include "coordinator/scheduler/frame_state.h"
+#include "coordinator/scheduler/frame_ledger.h"
 
 namespace hyades::coordinator {
 
-Dispute* FrameState::find_dispute(const Extent& e) {
+Dispute* FrameLedger::find_dispute(const Extent& e) {
   const auto it = std::find_if(disputes_.begin(), disputes_.end(),
                                [&](const Dispute& d) { return d.extent == e; });
   return it == disputes_.end() ? nullptr : &*it;
 }
 
-Dispute& FrameState::open_dispute(const Extent& e, const Opinion& first) {
+Dispute& FrameLedger::open_dispute(const Extent& e, const Opinion& first) {
   return disputes_.emplace_back(Dispute{e, {first}});
 }
 
-void FrameState::end_dispute(const Extent& e) {
+void FrameLedger::end_dispute(const Extent& e) {
   std::erase_if(disputes_, [&](const Dispute& d) { return d.extent == e; });
 }
 
-std::optional<Extent> FrameState::next_check(WorkerId worker, const MayTry& may_try) const {
+std::optional<Extent> FrameLedger::next_check(WorkerId worker, const MayTry& may_try) const {
   for (const Dispute& d : disputes_) {
     const bool heard = std::any_of(d.opinions.begin(), d.opinions.end(),
                                    [&](const Opinion& o) { return o.worker == worker; });
@@ -35,19 +35,19 @@ std::optional<Extent> FrameState::next_check(WorkerId worker, const MayTry& may_
   return std::nullopt;
 }
 
-uint64_t FrameState::waiting_checks() const {
+uint64_t FrameLedger::waiting_checks() const {
   return static_cast<uint64_t>(
       std::count_if(disputes_.begin(), disputes_.end(),
                     [&](const Dispute& d) { return !being_checked(d.extent); }));
 }
 
-void FrameState::verify(const Extent& e) {
+void FrameLedger::verify(const Extent& e) {
   for (HeldRecord& record : records_[e.tile]) {
     if (record.batches == e.batches) record.verified = true;
   }
 }
 
-std::vector<uint32_t> FrameState::unverified_tiles(WorkerId worker) const {
+std::vector<uint32_t> FrameLedger::unverified_tiles(WorkerId worker) const {
   std::vector<uint32_t> tiles;
   for (const auto& [tile, records] : records_) {
     if (std::any_of(records.begin(), records.end(),
@@ -59,7 +59,7 @@ std::vector<uint32_t> FrameState::unverified_tiles(WorkerId worker) const {
   return tiles;
 }
 
-std::vector<WorkerId> FrameState::unconfirmed() const {
+std::vector<WorkerId> FrameLedger::unconfirmed() const {
   std::set<WorkerId> workers;
   for (const auto& [tile, records] : records_) {
     for (const HeldRecord& record : records) {
@@ -69,13 +69,13 @@ std::vector<WorkerId> FrameState::unconfirmed() const {
   return {workers.begin(), workers.end()};
 }
 
-void FrameState::doubt_tile(uint32_t tile) {
+void FrameLedger::suspect_tile(uint32_t tile) {
   voiding_.emplace(tile, false);
   // All of it is rendered again: there is nothing left to quarrel about.
   std::erase_if(disputes_, [&](const Dispute& d) { return d.extent.tile == tile; });
 }
 
-std::vector<uint32_t> FrameState::newly_doubted() {
+std::vector<uint32_t> FrameLedger::newly_suspect() {
   std::vector<uint32_t> tiles;
   for (auto& [tile, named] : voiding_) {
     if (!named) tiles.push_back(tile);
@@ -84,7 +84,7 @@ std::vector<uint32_t> FrameState::newly_doubted() {
   return tiles;
 }
 
-std::vector<core::BatchRange> FrameState::void_tile(uint32_t tile) {
+std::vector<core::BatchRange> FrameLedger::void_tile(uint32_t tile) {
   voiding_.erase(tile);
   const core::BatchRange all{0, batches_};
   const auto records = records_.find(tile);

@@ -1,43 +1,98 @@
-// Which unit a worker gets next.
+#include "coordinator/scheduler/granting.h"
+
 #include <algorithm>
 #include <bit>
 #include <functional>
 #include <utility>
 
 #include "coordinator/scheduler/run_length.h"
-#include "coordinator/scheduler/scheduler.h"
 
 namespace hyades::coordinator {
 namespace {
 
+/// More than any worker can use; a wish beyond it is a mistake or malice.
+constexpr uint32_t kMaxWanted = 1U << 16;
+/// How long a worker waits that came too late for a frame.
+constexpr Duration kLookAgain = std::chrono::seconds(1);
 /// How many frames of an owner's are considered that have workers enough.
 constexpr size_t kPlacesLookedAt = 12;
 
 /// Which doubling of its samples a frame is in: 0 until every tile has had one batch, p until every
 /// tile has had 2^p.
-uint32_t pass_of(const FrameState& books, uint32_t tiles) {
-  return static_cast<uint32_t>(std::bit_width((books.total() - books.free()) / tiles));
+uint32_t pass_of(const FrameLedger& ledger, uint32_t tiles) {
+  return static_cast<uint32_t>(std::bit_width((ledger.total() - ledger.free()) / tiles));
 }
 
 }  // namespace
 
+void Granting::on(const WorkRequested& e) {
+  Worker* worker = workers_.find(e.worker);
+  if (worker == nullptr) return;
+  worker->wanted = std::min(kMaxWanted, worker->wanted + std::min(e.units, kMaxWanted));
+  if (may_lease()) serve(e.worker, *worker, true);
+  workers_.update_waiting(e.worker, *worker);
+}
+
+void Granting::on(const LeasingHeld& e) {
+  held_ = e.held;
+  step_.work_appeared = true;
+}
+
+void Granting::on(const Tick&) {
+  if (step_.now >= records_.blocked_until()) step_.work_appeared = true;
+  turned_away_ = false;
+}
+
+void Granting::serve(WorkerId id, Worker& worker, bool copies) {
+  if (worker.barred) return;
+  while (worker.wanted > 0 && grant(id, worker)) {
+  }
+  while (copies && worker.wanted > 0 && copies_.grant(id, worker)) {
+  }
+}
+
+void Granting::dispatch() {
+  if (!may_lease()) return;
+  if (films_.refused() && !any_film_in_work()) films_.serve_refused();
+  const bool copies = copies_.begin_round();
+  if (!copies && !step_.work_appeared) return;
+  step_.work_appeared = false;
+  for (auto it = workers_.waiting().begin(); it != workers_.waiting().end();) {
+    const bool due = copies && copies_.due();
+    if (jobs_.ready_shares().empty() && !due) return;
+    const WorkerId id = it->second;
+    Worker& worker = *workers_.find(id);
+    ++it;
+    serve(id, worker, due);
+    workers_.update_waiting(id, worker);
+  }
+}
+
+std::optional<TimePoint> Granting::next_wake() const {
+  std::optional<TimePoint> wake;
+  if (turned_away_) wake = step_.now + kLookAgain;
+  if (held_ || workers_.waiting().empty()) return wake;
+  const std::optional<TimePoint> copies = copies_.next_wake();
+  return wake && copies ? std::min(*wake, *copies) : copies ? copies : wake;
+}
+
 /// Where the worker has a scene of another frame in memory it may stay with that one, within
 /// bounds. A scene that it does not have begins with one unit, which waits while the worker goes on
 /// with what it has.
-bool Scheduler::grant(WorkerId id, Worker& worker) {
+bool Granting::grant(WorkerId id, Worker& worker) {
   const auto first = in_turn(id, worker, false);
   if (!first) return false;
-  const bool fresh = !has_scene(worker, first->scene());
-  const bool loads = worker.next == first->scene() && still_loads(worker);
+  const bool fresh = !Affinity::has_scene(worker, first->id());
+  const bool loads = worker.prefetch == first->id() && affinity_.still_loads(worker);
   const bool here = !fresh && !loads;
   const auto loaded = here ? std::nullopt : find_loaded(id, worker, *first->job, loads);
-  if (!loaded) worker.in_turn = now_;
+  if (!loaded) worker.in_turn = step_.now;
   if (fresh && !loaded && options_.scene_time > Duration{0} &&
       find_loaded(id, worker, *first->job, true)) {
     return grant_from(*first, id, worker, true);
   }
-  const Place place = loaded.value_or(*first);
-  if (place.scene() == worker.home && !worker.next && nearly_leased(place)) {
+  const FramePlace place = loaded.value_or(*first);
+  if (place.id() == worker.affinity && !worker.prefetch && affinity_.nearly_leased(place)) {
     const auto next = in_turn(id, worker, true);
     if (next && grant_from(*next, id, worker, true)) return true;
   }
@@ -48,45 +103,44 @@ bool Scheduler::grant(WorkerId id, Worker& worker) {
 /// in turn for this worker. A frame that has workers enough is in turn for those who have its scene
 /// only; where all have, the one with most to do is. `fresh`: of the scenes that the worker does
 /// not have.
-std::optional<Scheduler::Place> Scheduler::in_turn(WorkerId id, const Worker& worker, bool fresh) {
+std::optional<FramePlace> Granting::in_turn(WorkerId id, const Worker& worker, bool fresh) {
   // Where a frame waits for room for its film none behind it begins, so that a large one gets some.
   bool begun = false;
-  for (const auto& [priority, running, index] : ready_shares_) {
-    std::optional<Place> roomiest;
+  for (const auto& [priority, running, index] : jobs_.ready_shares()) {
+    std::optional<FramePlace> roomiest;
     double most = -1;
     size_t looked = 0;
-    for (const auto& [serial, job] : shares_[index].ready) {
+    for (const auto& [serial, job] : jobs_.share(index).ready) {
       if (looked == kPlacesLookedAt) break;
-      if (!may_join(*job, id, worker)) continue;
+      if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
       if (job->plan.order == FrameOrder::progressive) {
         const auto slot = find_pass(*job, id, worker, begun);
-        if (slot && !(fresh && has_scene(worker, Place{job, *slot}.scene()))) {
-          return Place{job, *slot};
+        if (slot && !(fresh && Affinity::has_scene(worker, FramePlace{job, *slot}.id()))) {
+          return FramePlace{job, *slot};
         }
         continue;
       }
       for (const uint32_t slot : job->in_flight) {
-        const Place place{job, slot};
+        const FramePlace place{job, slot};
         const FrameSlot& frame = job->slots[slot];
         if (frame.phase == FramePhase::rendering && !frame.film) {
           begun = begun || !film_fits(*job, frame);
           if (begun) continue;
         }
-        if (!has_work_for(*job, job->slots[slot], id, worker)) continue;
-        const bool here = has_scene(worker, place.scene());
+        if (!has_work_for(*job, frame, id, worker)) continue;
+        const bool here = Affinity::has_scene(worker, place.id());
         if (here && fresh) continue;
-        if (!here && still_loads(worker)) {
+        if (!here && affinity_.still_loads(worker)) {
           // Scenes are loaded one after the other.
           turned_away_ = true;
           continue;
         }
-        if (here || !crowded(place, worker)) return place;
-        if (too_late(place, worker)) {
+        if (here || !affinity_.crowded(place, worker)) return place;
+        if (affinity_.too_late(place, worker)) {
           turned_away_ = true;
           continue;
         }
-        const uint64_t threads = job->slots[slot].crew + job->slots[slot].coming;
-        const double left = seconds_left(place, threads + worker.threads);
+        const double left = affinity_.seconds_left(place, frame.threads() + worker.threads);
         if (left > most) {
           most = left;
           roomiest = place;
@@ -99,34 +153,27 @@ std::optional<Scheduler::Place> Scheduler::in_turn(WorkerId id, const Worker& wo
   return std::nullopt;
 }
 
-/// Whether the worker could render units of the job at all.
-bool Scheduler::suits(const JobState& job, const Worker& worker) {
-  const uint64_t memory = job.plan.needs.memory;
-  return (memory == 0 || worker.memory == 0 || worker.memory >= memory) &&
-         std::includes(worker.tags.begin(), worker.tags.end(), job.tags.begin(), job.tags.end());
-}
-
 /// Whether there is something of the frame for this worker.
-bool Scheduler::has_work_for(const JobState& job, const FrameSlot& slot, WorkerId id,
-                             const Worker& worker) const {
+bool Granting::has_work_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
+                            const Worker& worker) const {
   if (slot.phase != FramePhase::rendering || !film_fits(job, slot)) return false;
   if (slot.worker_class != 0 && slot.worker_class != worker.worker_class) return false;
   const auto judge = [&](const std::vector<WorkerId>& blamed) {
-    return may_try(job, id, worker, blamed);
+    return workers_.may_try(job, id, worker, blamed);
   };
   const MayTry allowed = std::ref(judge);
-  return slot.books->has_work(allowed) || slot.books->next_check(id, allowed).has_value();
+  return slot.ledger->has_work(allowed) || slot.ledger->next_check(id, allowed).has_value();
 }
 
 /// Of a progressive job, the frame in the lowest pass; `begun`: of those that have begun.
-std::optional<uint32_t> Scheduler::find_pass(const JobState& job, WorkerId id, const Worker& worker,
-                                             bool begun) const {
+std::optional<uint32_t> Granting::find_pass(const ScheduledJob& job, WorkerId id,
+                                            const Worker& worker, bool begun) const {
   std::optional<uint32_t> best;
   uint32_t best_pass = 0;
   for (const uint32_t index : job.in_flight) {
     if (begun && !job.slots[index].film) continue;
     if (!has_work_for(job, job.slots[index], id, worker)) continue;
-    const uint32_t pass = pass_of(*job.slots[index].books, job.grid.size());
+    const uint32_t pass = pass_of(*job.slots[index].ledger, job.grid.size());
     if (best && pass >= best_pass) continue;
     best = index;
     best_pass = pass;
@@ -136,80 +183,119 @@ std::optional<uint32_t> Scheduler::find_pass(const JobState& job, WorkerId id, c
 
 /// Units of one frame, as many as the worker wants and the frame has; `ahead`: one, so that its
 /// scene is loaded while the worker is busy with another.
-bool Scheduler::grant_from(const Place& place, WorkerId id, Worker& worker, bool ahead) {
-  JobState& job = *place.job;
-  FrameSlot& slot = job.slots[place.slot];
+bool Granting::grant_from(const FramePlace& place, WorkerId id, Worker& worker, bool ahead) {
+  ScheduledJob& job = *place.job;
+  FrameSlot& slot = place.frame();
   const auto judge = [&](const std::vector<WorkerId>& blamed) {
-    return may_try(job, id, worker, blamed);
+    return workers_.may_try(job, id, worker, blamed);
   };
   const MayTry allowed = std::ref(judge);
-  if (!has_scene(worker, place.scene())) {
-    worker.loading = Loading{place.scene(), now_, worker.leases.empty()};
+  if (!Affinity::has_scene(worker, place.id())) {
+    affinity_.begin_loading(worker, place.id(), worker.leases.empty());
   }
-  remember_scene(worker, place.scene(), ahead);
+  Affinity::remember_scene(worker, place.id(), ahead);
   if (ahead) {
-    come_next(worker, place.scene());
+    affinity_.prefetch(worker, place.id());
   } else {
-    settle(worker, place.scene());
+    affinity_.settle(worker, place.id());
   }
-  slot.last_leased = now_;
-  if (grant_check(job, place.slot, id, worker, allowed)) return true;
+  slot.last_leased = step_.now;
+  if (grant_check(place, id, worker, allowed)) return true;
   std::vector<Extent> extents;
-  const LeaseId next{options_.incarnation, next_lease_};
   while (extents.size() < (ahead ? 1 : worker.wanted)) {
-    const auto extent = slot.books->next(
-        allowed, [&](uint32_t tile) { return run_length_of(job, *slot.books, tile); });
+    const auto extent = slot.ledger->next(
+        allowed, [&](uint32_t tile) { return run_length_of(job, *slot.ledger, tile); });
     if (!extent) break;
-    note_copy_candidate(job, place.slot,
-                        slot.books->assign(*extent, {id, next}, next_assignment_++));
+    copies_.note(place, leases_.assign(slot, *extent, id));
     extents.push_back(*extent);
   }
   if (extents.empty()) return false;
   slot.worker_class = worker.worker_class;
   worker.wanted -= static_cast<uint32_t>(extents.size());
-  new_lease(id, worker, job, place.slot, false, std::move(extents));
-  update_ready(job);
-  open_frames(job);
+  leases_.grant(id, worker, place, std::move(extents));
+  jobs_.update_offer(job);
+  frames_.open(job);
   return true;
 }
 
-/// What a batch of the tile takes one thread, as far as is known [s]; 0: nothing is known.
-double Scheduler::batch_seconds(const JobState& job, uint32_t tile) {
-  return job.tile_cost[tile] > 0 ? job.tile_cost[tile] : job.mean_cost;
-}
-
-uint32_t Scheduler::run_length_of(const JobState& job, const FrameState& books,
-                                  uint32_t tile) const {
-  const double cost = batch_seconds(job, tile);
+uint32_t Granting::run_length_of(const ScheduledJob& job, const FrameLedger& ledger,
+                                 uint32_t tile) const {
+  const double cost = job.batch_seconds(tile);
   if (cost <= 0) return 1;
-  uint64_t left = std::max(offered_, books.free());
+  uint64_t left = std::max(jobs_.offered(), ledger.free());
   if (job.in_flight.size() < job.plan.frames_in_flight) {
-    left += job.waiting * books.total();
+    left += job.waiting * ledger.total();
   }
-  uint64_t run = run_length(cost, options_.unit_time, left, threads_);
+  uint64_t run = run_length(cost, options_.unit_time, left, workers_.threads());
   if (job.plan.order == FrameOrder::progressive) {
     // No tile gets ahead of its frame's pass.
-    const uint32_t pass = pass_of(books, job.grid.size());
+    const uint32_t pass = pass_of(ledger, job.grid.size());
     run = std::min(run, uint64_t{1} << std::min(pass == 0 ? 0 : pass - 1, 31U));
   }
   return static_cast<uint32_t>(run);
 }
 
-/// A unit that has failed goes to somebody who has not failed it yet, if there is anybody.
-bool Scheduler::may_try(const JobState& job, WorkerId id, const Worker& worker,
-                        const std::vector<WorkerId>& blamed) const {
-  return std::find(blamed.begin(), blamed.end(), id) == blamed.end() ||
-         !anybody_besides(blamed, job, worker.worker_class);
+/// A frame out of turn whose scene the worker has. Bounded in three ways, so that nobody starves:
+/// the priority is that of `first`, the owner has not much more than the one who is in turn, and
+/// after `affinity_time` the worker takes what is in turn. While it `loads` that scene, only the
+/// priority counts.
+std::optional<FramePlace> Granting::find_loaded(WorkerId id, const Worker& worker,
+                                                const ScheduledJob& first, bool loads) const {
+  if (!loads && step_.now - worker.in_turn >= options_.affinity_time) return std::nullopt;
+  const FairShare& turn = jobs_.share(first.share);
+  const uint64_t most = turn.running + turn.running / 4 + 2 * uint64_t{worker.threads};
+  for (auto scene = worker.scenes.rbegin(); scene != worker.scenes.rend(); ++scene) {
+    ScheduledJob* job = jobs_.find(scene->job);
+    if (job == nullptr || !job->ready || job->plan.order != FrameOrder::sequential) continue;
+    const FairShare& share = jobs_.share(job->share);
+    if (share.priority != turn.priority || (!loads && share.running > most)) continue;
+    if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
+    const FrameSlot* slot = job->slot(scene->frame);
+    if (!has_work_for(*job, *slot, id, worker)) continue;
+    return FramePlace{job, job->index_of(*slot)};
+  }
+  return std::nullopt;
 }
 
-/// Whether a worker of the class is there that may get units of the job and is none of `tried`.
-bool Scheduler::anybody_besides(const std::vector<WorkerId>& tried, const JobState& job,
-                                uint32_t worker_class) const {
-  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
-    return !entry.second.barred && entry.second.worker_class == worker_class &&
-           suits(job, entry.second) &&
-           std::find(tried.begin(), tried.end(), entry.first) == tried.end();
+/// Whether the frame has a film, or it fits beside those of other frames; or nothing gets on with
+/// those any more, so that they hold nobody up for ever: their jobs are paused, or have no workers.
+bool Granting::film_fits(const ScheduledJob& job, const FrameSlot& slot) const {
+  if (slot.film || films_.has_room(job) || !any_film_in_work()) return true;
+  films_.refuse();
+  return false;
+}
+
+/// Whether a unit is out, a film is on its way to the disk, or a frame is being finished: there
+/// will be room, or something else will be out.
+bool Granting::any_film_in_work() const {
+  if (!leases_.empty() || !records_.empty()) return true;
+  return std::any_of(jobs_.all().begin(), jobs_.all().end(), [](const auto& entry) {
+    const ScheduledJob& job = *entry.second;
+    return std::any_of(job.in_flight.begin(), job.in_flight.end(), [&](uint32_t i) {
+      const FrameSlot& slot = job.slots[i];
+      return slot.film && (slot.over() || slot.phase == FramePhase::finishing);
+    });
   });
+}
+
+bool Granting::waits_for_film(const ScheduledJob& job) const {
+  if (job.paused) return false;
+  return std::any_of(job.in_flight.begin(), job.in_flight.end(), [&](uint32_t i) {
+    const FrameSlot& slot = job.slots[i];
+    return slot.phase == FramePhase::rendering && !film_fits(job, slot);
+  });
+}
+
+/// Gives the worker a disputed unit that it has not rendered.
+bool Granting::grant_check(const FramePlace& place, WorkerId id, Worker& worker,
+                           const MayTry& may_try) {
+  const auto extent = place.frame().ledger->next_check(id, may_try);
+  if (!extent) return false;
+  leases_.assign(place.frame(), *extent, id);
+  --worker.wanted;
+  leases_.grant(id, worker, place, {*extent});
+  jobs_.update_offer(*place.job);
+  return true;
 }
 
 }  // namespace hyades::coordinator

@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstdint>
 
+#include "core/base/duration.h"
 #include "core/base/hash.h"
 
 namespace hyades::coordinator {
@@ -11,6 +12,8 @@ namespace hyades::coordinator {
 using Duration = std::chrono::nanoseconds;
 /// Only differences mean anything: the driver feeds a steady clock, the simulator its own.
 using TimePoint = std::chrono::time_point<std::chrono::steady_clock, Duration>;
+
+using core::seconds;
 
 enum class JobId : uint64_t {};
 enum class WorkerId : uint64_t {};

@@ -12,8 +12,8 @@ namespace hyades::coordinator {
 /// for `threads`, not so many that the threads would end far apart. At least 1.
 inline uint64_t run_length(double batch_seconds, Duration unit_time, uint64_t left,
                            uint64_t threads) {
-  const double seconds = std::chrono::duration<double>(unit_time).count();
-  const auto by_time = static_cast<uint64_t>(std::clamp(seconds / batch_seconds, 1.0, 1e6));
+  const auto by_time =
+      static_cast<uint64_t>(std::clamp(seconds(unit_time) / batch_seconds, 1.0, 1e6));
   const uint64_t by_spread = left / (4 * std::max<uint64_t>(threads, 1));
   return std::max<uint64_t>(1, std::min(by_time, by_spread));
 }

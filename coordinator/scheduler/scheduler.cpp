@@ -1,142 +1,173 @@
 #include "coordinator/scheduler/scheduler.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "coordinator/scheduler/granting.h"
+#include "coordinator/scheduler/job_lifecycle.h"
+#include "coordinator/scheduler/results.h"
+#include "core/base/overloaded.h"
 
 namespace hyades::coordinator {
-namespace {
 
-/// How long a worker waits that came too late for a frame.
-constexpr Duration kLookAgain = std::chrono::seconds(1);
+/// What the scheduler is made of: tables at first, then what changes them. Each part uses only
+/// those above it.
+struct Scheduler::Parts {
+  explicit Parts(const SchedulerOptions& given) : options(given) {}
 
-}  // namespace
+  const SchedulerOptions options;
+  Step step;
+  ScheduledJobs jobs{step};
+  ScheduledWorkers workers{step};
+  FilmBudget films{options.film_memory, step};
+  PendingRecords records{options, step};
+  Leases leases{options, step, jobs, workers, films};
+  Affinity affinity{options, step, jobs};
+  HedgedCopies copies{options, step, jobs, workers, leases, affinity};
+  FrameLifecycle frames{options, step, jobs, workers, films, leases, records, affinity};
+  WorkerLifecycle worker_lifecycle{options, step, jobs, workers, leases, affinity, copies, frames};
+  Conflicts conflicts{step, jobs, leases, records, frames, worker_lifecycle};
+  JobLifecycle job_lifecycle{jobs, workers, films, leases, frames, conflicts};
+  Results results{step,     jobs,   workers,          films,    leases, records,
+                  affinity, frames, worker_lifecycle, conflicts};
+  Granting granting{options, step, jobs, workers, films, leases, records, affinity, copies, frames};
+};
 
-Scheduler::Scheduler(SchedulerOptions options) : options_(options) {
-  // Class 0 stands for 'none yet'.
-  class_names_.emplace_back();
-  class_workers_.push_back(0);
-  class_gone_.emplace_back();
-}
+Scheduler::Scheduler(const SchedulerOptions& options) : parts_(std::make_unique<Parts>(options)) {}
+
+Scheduler::~Scheduler() = default;
 
 std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
-  now_ = std::max(now_, now);
-  std::visit([this](const auto& e) { on(e); }, event);
-  end_marks();
-  dispatch();
-  return std::exchange(actions_, {});
-}
-
-JobState* Scheduler::find_job(JobId id) {
-  const auto it = jobs_.find(id);
-  return it == jobs_.end() ? nullptr : it->second.get();
-}
-
-Scheduler::Worker* Scheduler::find_worker(WorkerId id) {
-  const auto it = workers_.find(id);
-  return it == workers_.end() ? nullptr : &it->second;
-}
-
-std::optional<Extent> Scheduler::extent_of(const JobState& job, const core::Unit& unit) const {
-  const auto tile = job.grid.index_of(unit.tile);
-  const uint64_t end = uint64_t{unit.batches.first} + unit.batches.count;
-  if (!tile || unit.batches.count == 0 || end > job.plan.batches) return std::nullopt;
-  return Extent{*tile, unit.batches};
-}
-
-core::Unit Scheduler::unit_of(const JobState& job, const FrameSlot& slot,
-                              const Extent& extent) const {
-  return {slot.frame, job.grid.tile(extent.tile), extent.batches};
-}
-
-uint32_t Scheduler::intern_class(const std::string& name) {
-  const auto [it, fresh] =
-      class_index_.try_emplace(name, static_cast<uint32_t>(class_names_.size()));
-  if (fresh) {
-    class_names_.push_back(name);
-    class_workers_.push_back(0);
-    class_gone_.push_back(now_);
-  }
-  return it->second;
-}
-
-std::vector<uint32_t> Scheduler::intern_tags(const std::vector<std::string>& tags) {
-  std::vector<uint32_t> numbers;
-  for (const std::string& tag : tags) {
-    const auto next = static_cast<uint32_t>(tag_index_.size());
-    numbers.push_back(tag_index_.try_emplace(tag, next).first->second);
-  }
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  return numbers;
-}
-
-/// Whether a worker of the class may get units of the job.
-bool Scheduler::anybody_for(const JobState& job, uint32_t worker_class) const {
-  if (!job.plan.needs.any()) return class_workers_[worker_class] > 0;
-  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
-    return !entry.second.barred && entry.second.worker_class == worker_class &&
-           suits(job, entry.second);
-  });
-}
-
-Scheduler::LeaseState* Scheduler::find_lease(const LeaseId& id) {
-  if (id.incarnation != options_.incarnation) return nullptr;
-  const auto it = leases_.find(id.number);
-  return it == leases_.end() ? nullptr : &it->second;
+  Parts& p = *parts_;
+  p.step.now = std::max(p.step.now, now);
+  std::visit(
+      core::Overloaded{
+          [&](const JobAdded& e) { p.job_lifecycle.on(e); },
+          [&](const JobPaused& e) { p.job_lifecycle.on(e); },
+          [&](const JobResumed& e) { p.job_lifecycle.on(e); },
+          [&](const JobCancelled& e) { p.job_lifecycle.on(e); },
+          [&](const JobReprioritised& e) { p.job_lifecycle.on(e); },
+          [&](const FramesRetried& e) { p.job_lifecycle.on(e); },
+          [&](const FramesSuspected& e) { p.job_lifecycle.on(e); },
+          [&](const FrameOpened& e) { p.frames.on(e); },
+          [&](const FrameRefused& e) { p.frames.on(e); },
+          [&](const FinishDone& e) { p.frames.on(e); },
+          [&](const FinishFailed& e) { p.frames.on(e); },
+          [&](const WorkerJoined& e) { p.worker_lifecycle.on(e); },
+          [&](const WorkerAlive& e) { p.worker_lifecycle.on(e); },
+          [&](const WorkerBarred& e) { p.worker_lifecycle.on(e); },
+          [&](const WorkerLost& e) { p.worker_lifecycle.on(e); },
+          [&](const WorkerForgotten& e) { p.worker_lifecycle.on(e); },
+          [&](const WorkRequested& e) { p.granting.on(e); },
+          [&](const LeasingHeld& e) { p.granting.on(e); },
+          [&](const ResultArrived& e) { p.results.on(e); },
+          [&](const UnitFailed& e) { p.results.on(e); },
+          [&](const UnitReturned& e) { p.results.on(e); },
+          [&](const Persisted& e) { p.results.on(e); },
+          [&](const PersistFailed& e) { p.results.on(e); },
+          [&](const Tick& e) {
+            p.leases.expire();
+            p.records.retry([&](const Record& record) { return p.conflicts.still_wanted(record); });
+            p.frames.restart_orphans();
+            p.granting.on(e);
+          },
+      },
+      event);
+  p.conflicts.end_marks();
+  p.granting.dispatch();
+  return std::exchange(p.step.actions, {});
 }
 
 std::optional<TimePoint> Scheduler::next_wake() const {
   std::optional<TimePoint> wake;
-  const auto at = [&](TimePoint t) { wake = wake ? std::min(*wake, t) : t; };
-  if (!deadlines_.empty()) at(deadlines_.top().first);
-  if (now_ < storage_blocked_until_) at(storage_blocked_until_);
-  if (turned_away_) at(now_ + kLookAgain);
-  if (options_.class_patience > Duration{0} && !jobs_.empty() && threads_ > 0) {
-    at(next_orphan_check_);
-  }
-  if (!leasing_held_ && !waiting_.empty() && !copy_candidates_.empty() &&
-      options_.copy_after > Duration{0}) {
-    at(std::max(first_copy(copy_candidates_.front()), next_copy_round_));
-  }
+  const auto at = [&](std::optional<TimePoint> t) {
+    if (t) wake = wake ? std::min(*wake, *t) : *t;
+  };
+  at(parts_->leases.next_deadline());
+  at(parts_->records.next_wake());
+  at(parts_->frames.next_wake());
+  at(parts_->granting.next_wake());
   return wake;
 }
 
 uint32_t Scheduler::leased_units(JobId id) const {
-  const auto job = jobs_.find(id);
-  return job == jobs_.end() ? 0 : static_cast<uint32_t>(job->second->running);
-}
-
-uint32_t Scheduler::disputed_units(JobId id) const {
-  const auto job = jobs_.find(id);
-  if (job == jobs_.end()) return 0;
-  size_t units = 0;
-  for (const uint32_t i : job->second->in_flight) {
-    const FrameSlot& slot = job->second->slots[i];
-    if (slot.books) units += slot.books->disputes();
-  }
-  return static_cast<uint32_t>(units);
+  const ScheduledJob* job = parts_->jobs.find(id);
+  return job == nullptr ? 0 : static_cast<uint32_t>(job->running);
 }
 
 uint32_t Scheduler::leased_units(WorkerId id) const {
-  const auto worker = workers_.find(id);
-  if (worker == workers_.end()) return 0;
-  size_t units = 0;
-  for (const uint64_t number : worker->second.leases) units += leases_.at(number).units.size();
-  return static_cast<uint32_t>(units);
+  const Worker* worker = parts_->workers.find(id);
+  return worker == nullptr ? 0 : parts_->leases.units_of(*worker);
 }
 
 std::vector<UnitInHand> Scheduler::units_of(WorkerId worker, const LeaseId& lease) const {
-  std::vector<UnitInHand> units;
-  const auto found = leases_.find(lease.number);
-  if (lease.incarnation != options_.incarnation || found == leases_.end() ||
-      found->second.worker != worker) {
-    return units;
+  return parts_->leases.units_of(worker, lease);
+}
+
+std::vector<UnitInHand> Scheduler::units_of(WorkerId worker) const {
+  return parts_->leases.units_of(worker);
+}
+
+std::vector<std::pair<WorkerId, UnitInHand>> Scheduler::units_of(JobId job) const {
+  return parts_->leases.units_of(job);
+}
+
+uint32_t Scheduler::disputed_units(JobId id) const {
+  const ScheduledJob* job = parts_->jobs.find(id);
+  if (job == nullptr) return 0;
+  size_t units = 0;
+  for (const uint32_t i : job->in_flight) {
+    const FrameSlot& slot = job->slots[i];
+    if (slot.ledger) units += slot.ledger->disputes();
   }
-  const JobState& job = *jobs_.at(found->second.job);
-  for (const Extent& extent : found->second.units) {
-    units.push_back({lease, job.id, unit_of(job, job.slots[found->second.slot], extent)});
+  return static_cast<uint32_t>(units);
+}
+
+uint64_t Scheduler::films() const { return parts_->films.bytes(); }
+
+bool Scheduler::waits_for_film(JobId id) const {
+  const ScheduledJob* job = parts_->jobs.find(id);
+  return job != nullptr && parts_->granting.waits_for_film(*job);
+}
+
+std::string Scheduler::audit() const {
+  std::map<std::pair<JobId, uint32_t>, size_t> out;
+  if (std::string wrong = parts_->leases.audit(out); !wrong.empty()) return wrong;
+  std::vector<uint64_t> running(parts_->jobs.shares().size());
+  uint64_t films = 0;
+  for (const auto& [id, job] : parts_->jobs.all()) {
+    for (uint32_t i = 0; i < job->slots.size(); ++i) {
+      const FrameSlot& slot = job->slots[i];
+      films += slot.film ? job->plan.film_bytes : 0;
+      const auto units = out.find({id, i});
+      const size_t leased = units == out.end() ? 0 : units->second;
+      running[job->share] += leased;
+      const bool listed = std::count(job->in_flight.begin(), job->in_flight.end(), i) == 1;
+      if (listed != slot.in_flight())
+        return fmt::format("frame {} is in the wrong list", slot.frame);
+      if (!slot.ledger) continue;
+      if (slot.ledger->holders() != leased) {
+        return fmt::format("frame {}: {} units assigned, {} leased", slot.frame,
+                           slot.ledger->holders(), leased);
+      }
+      if (std::string wrong = slot.ledger->audit(); !wrong.empty()) {
+        return fmt::format("frame {}: {}", slot.frame, wrong);
+      }
+    }
   }
-  return units;
+  for (size_t i = 0; i < running.size(); ++i) {
+    if (parts_->jobs.share(static_cast<uint32_t>(i)).running != running[i]) {
+      return "an owner's running units are miscounted";
+    }
+  }
+  if (films != parts_->films.bytes()) {
+    return fmt::format("films take {} bytes, {} counted", films, parts_->films.bytes());
+  }
+  return {};
 }
 
 }  // namespace hyades::coordinator

@@ -148,7 +148,7 @@ std::vector<std::byte> FilmStore::encoded(const Record& record) const {
                         [](const FrameRestartedRecord& restarted) { return encode(restarted); },
                         [](const TileVoidedRecord& voided) { return encode(voided); },
                         [](const DisputeRecord& dispute) { return encode(dispute); },
-                        [](const WorkerOddRecord&) { return Bytes(); },
+                        [](const DivergentWorkerRecord&) { return Bytes(); },
                     },
                     record);
 }
@@ -327,7 +327,7 @@ void FilmStore::apply(const Record& record) {
                    whole->second->erase(voided.tile);
                  },
                  [&](const DisputeRecord& dispute) { disputed_ = dispute.open; },
-                 [](const WorkerOddRecord&) {},
+                 [](const DivergentWorkerRecord&) {},
              },
              record);
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "coordinator/scheduler/tile_grid.h"
+
 namespace hyades::coordinator {
 namespace {
 

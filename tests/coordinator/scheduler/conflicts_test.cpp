@@ -44,7 +44,7 @@ TEST_F(Conflicts, TheSecondWasWrong) {
   EXPECT_EQ(b.only<Quarantine>().worker, kBert);
   EXPECT_EQ(b.only<Acknowledge>().worker, kCora);
   EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
-  EXPECT_EQ(std::get<WorkerOddRecord>(b.only<Persist>().record).worker, kBert);
+  EXPECT_EQ(std::get<DivergentWorkerRecord>(b.only<Persist>().record).worker, kBert);
   const auto sure = b.all<Confirmed>();
   ASSERT_EQ(sure.size(), 2U);
   EXPECT_EQ(sure[0].worker, kAnna);
@@ -63,7 +63,7 @@ TEST_F(Conflicts, TheFirstWasWrongAndAllItDidIsRenderedAgain) {
   EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
   const auto voids = b.all<Persist>();
   ASSERT_EQ(voids.size(), 3U);
-  EXPECT_EQ(std::get<WorkerOddRecord>(voids[2].record).worker, kAnna);
+  EXPECT_EQ(std::get<DivergentWorkerRecord>(voids[2].record).worker, kAnna);
   EXPECT_EQ(std::get<TileVoidedRecord>(voids[0].record).tile, anna_.units[0].tile);
   EXPECT_EQ(std::get<TileVoidedRecord>(voids[1].record).tile, other.units[0].tile);
   b.deliver(by(kBert), 0, 2);  // too early

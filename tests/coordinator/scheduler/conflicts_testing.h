@@ -46,7 +46,7 @@ class Conflicts : public testing::Test {
   /// What a worker is found odd for has followed, and is durable.
   void odd_is_stored() {
     const Persist odd = b.all<Persist>().back();
-    ASSERT_TRUE(std::holds_alternative<WorkerOddRecord>(odd.record));
+    ASSERT_TRUE(std::holds_alternative<DivergentWorkerRecord>(odd.record));
     b.tell(Persisted{odd.id});
   }
 

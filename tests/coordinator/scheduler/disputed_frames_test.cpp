@@ -23,7 +23,7 @@ class DoubtedFrames : public testing::Test {
     b.tell(FinishDone{kJob, 1});
     stored_ = b.only<Persist>().id;
   }
-  void doubt() { b.tell(FramesDoubted{kJob, {1, 2, 7}}); }
+  void doubt() { b.tell(FramesSuspected{kJob, {1, 2, 7}}); }
   void expect_again() {
     const Persist again = b.only<Persist>();
     EXPECT_EQ(std::get<FrameRestartedRecord>(again.record).frame, 1);
@@ -163,7 +163,7 @@ TEST_F(WholeFrames, BeginAgainWhereOneOfTheirFilmsIsWrong) {
   EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now);
   const auto said = b.all<Persist>();
   ASSERT_EQ(said.size(), 2U);
-  EXPECT_EQ(std::get<WorkerOddRecord>(said[1].record).worker, kAnna);
+  EXPECT_EQ(std::get<DivergentWorkerRecord>(said[1].record).worker, kAnna);
   b.deliver(check, 0, 2);
   EXPECT_EQ(b.only<Reject>().reason, RejectReason::unknown) << "nothing of then counts";
   expect_again(said[0]);

@@ -194,7 +194,7 @@ TEST(Preference, AffinityNeverOverridesPriority) {
 
 TEST(Preference, AWorkerThatFailsWhatOthersCanRenderIsQuarantined) {
   SchedulerOptions options;
-  options.max_strikes = 3;
+  options.max_failures = 3;
   Bench b(options);
   b.begin(plan_of("eve", 100));
   for (int i = 0; i < 3; ++i) {
@@ -216,7 +216,7 @@ TEST(Preference, AWorkerThatFailsWhatOthersCanRenderIsQuarantined) {
 
 TEST(Preference, AForgottenWorkerLeavesNothingBehind) {
   SchedulerOptions options;
-  options.max_strikes = 2;
+  options.max_failures = 2;
   Bench b(options);
   b.begin(plan_of("eve", 100));
   const auto strike = [&] {
@@ -238,7 +238,7 @@ TEST(Preference, AForgottenWorkerLeavesNothingBehind) {
 
 TEST(Preference, AUnitOfItsOwnEndsAWorkersStrikes) {
   SchedulerOptions options;
-  options.max_strikes = 3;
+  options.max_failures = 3;
   Bench b(options);
   b.begin(plan_of("eve", 100));
   for (int i = 0; i < 6; ++i) {

@@ -1,6 +1,7 @@
 // What the coordinator says of frames and jobs, held against what may be.
 #include <algorithm>
 
+#include "coordinator/scheduler/tile_grid.h"
 #include "tests/coordinator/scheduler/simulated_world.h"
 
 namespace hyades::coordinator {
@@ -113,10 +114,10 @@ void SimulatedWorld::act(const FrameReopened& a) {
 }
 
 /// The worker is odd, and that is durable: so is the doubt about what it had a part in.
-void SimulatedWorld::store(const WorkerOddRecord& odd) {
+void SimulatedWorld::store(const DivergentWorkerRecord& odd) {
   workers_[index_of(odd.worker)].known_odd = true;
   for (auto& [id, job] : jobs_) {
-    FramesDoubted doubted{id, {}};
+    FramesSuspected doubted{id, {}};
     for (auto& [frame, row] : job.rows) {
       const auto& by = row.unconfirmed;
       if (std::find(by.begin(), by.end(), odd.worker) == by.end() &&

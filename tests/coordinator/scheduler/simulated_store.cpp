@@ -33,7 +33,7 @@ void SimulatedWorld::act(const Persist& a) {
   }
   // What failed, and who is odd, is not in the film log.
   if (real_store_ && !std::holds_alternative<FrameFailedRecord>(a.record) &&
-      !std::holds_alternative<WorkerOddRecord>(a.record)) {
+      !std::holds_alternative<DivergentWorkerRecord>(a.record)) {
     return append(jobs_.at(frame_of(a.record).first), a);
   }
   ++storing_[frame_of(a.record)];
@@ -49,7 +49,7 @@ std::pair<JobId, int32_t> SimulatedWorld::frame_of(const Record& record) {
                         [](const FrameRestartedRecord& r) { return Place(r.job, r.frame); },
                         [](const TileVoidedRecord& r) { return Place(r.job, r.frame); },
                         [](const DisputeRecord& r) { return Place(r.job, INT32_MIN); },
-                        [](const WorkerOddRecord& r) { return Place(r.job, INT32_MIN); },
+                        [](const DivergentWorkerRecord& r) { return Place(r.job, INT32_MIN); },
                     },
                     record);
 }

@@ -99,7 +99,7 @@ class SimulatedWorld {
   void store(const FrameRestartedRecord& again);
   void store(const TileVoidedRecord& voided);
   void store(const DisputeRecord& dispute);
-  void store(const WorkerOddRecord& odd);
+  void store(const DivergentWorkerRecord& odd);
   bool is_stored(JobId job, const core::Unit& unit) {
     return jobs_.at(job).stored_units.contains(name(unit));
   }

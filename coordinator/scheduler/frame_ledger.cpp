@@ -1,4 +1,4 @@
-#include "coordinator/scheduler/frame_state.h"
+#include "coordinator/scheduler/frame_ledger.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace hyades::coordinator {
 
-FrameState::FrameState(const std::vector<uint32_t>& tile_order, uint32_t batches)
+FrameLedger::FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches)
     : batches_(batches),
       total_(uint64_t{tile_order.size()} * batches),
       free_(total_),
@@ -15,14 +15,14 @@ FrameState::FrameState(const std::vector<uint32_t>& tile_order, uint32_t batches
   for (const uint32_t tile : tile_order) open_.push_back({tile, {0, batches}});
 }
 
-void FrameState::hold(const Extent& e, const HeldRecord& record) {
+void FrameLedger::hold(const Extent& e, const HeldRecord& record) {
   free_ -= BatchMap::count_free(held_, leased_, e.tile, e.batches);
   held_.set(e.tile, e.batches);
   records_[e.tile].push_back(record);
   if (record.pending == RecordId{}) durable_ += e.batches.count;
 }
 
-const HeldRecord* FrameState::find_held(const Extent& e) const {
+const HeldRecord* FrameLedger::find_held(const Extent& e) const {
   const auto tile = records_.find(e.tile);
   if (tile == records_.end()) return nullptr;
   for (const HeldRecord& record : tile->second) {
@@ -31,7 +31,7 @@ const HeldRecord* FrameState::find_held(const Extent& e) const {
   return nullptr;
 }
 
-void FrameState::made_durable(const Extent& e) {
+void FrameLedger::made_durable(const Extent& e) {
   for (HeldRecord& record : records_[e.tile]) {
     if (record.batches == e.batches && record.pending != RecordId{}) {
       record.pending = RecordId{};
@@ -40,7 +40,7 @@ void FrameState::made_durable(const Extent& e) {
   }
 }
 
-void FrameState::unhold(const Extent& e) {
+void FrameLedger::unhold(const Extent& e) {
   end_dispute(e);
   std::erase_if(records_[e.tile], [&](const HeldRecord& r) { return r.batches == e.batches; });
   held_.clear(e.tile, e.batches);
@@ -48,37 +48,37 @@ void FrameState::unhold(const Extent& e) {
   open_.push_front(e);
 }
 
-size_t FrameState::holders() const {
+size_t FrameLedger::holders() const {
   size_t n = 0;
   for (const auto& [k, assignment] : assignments_) n += assignment.holders.size();
   return n;
 }
 
-bool FrameState::all_free(const Extent& e) const {
+bool FrameLedger::all_free(const Extent& e) const {
   return BatchMap::count_free(held_, leased_, e.tile, e.batches) == e.batches.count;
 }
 
-void FrameState::lease_bits(const Extent& e) {
+void FrameLedger::lease_bits(const Extent& e) {
   free_ -= BatchMap::count_free(held_, leased_, e.tile, e.batches);
   leased_.set(e.tile, e.batches);
 }
 
-void FrameState::unlease_bits(const Extent& e) {
+void FrameLedger::unlease_bits(const Extent& e) {
   leased_.clear(e.tile, e.batches);
   free_ += BatchMap::count_free(held_, leased_, e.tile, e.batches);
 }
 
-std::optional<Extent> FrameState::next_suspect(const MayTry& may_try) {
-  for (size_t i = 0; i < suspects_.size();) {
-    const Extent e = suspects_[i];
+std::optional<Extent> FrameLedger::next_retry(const MayTry& may_try) {
+  for (size_t i = 0; i < retries_.size();) {
+    const Extent e = retries_[i];
     if (!all_free(e)) {
       // A late film has brought a part of it: the rest is ordinary work.
       open_.push_front(e);
-      suspects_.erase(suspects_.begin() + static_cast<ptrdiff_t>(i));
+      retries_.erase(retries_.begin() + static_cast<ptrdiff_t>(i));
       continue;
     }
     if (may_try(find_blame(e)->workers)) {
-      suspects_.erase(suspects_.begin() + static_cast<ptrdiff_t>(i));
+      retries_.erase(retries_.begin() + static_cast<ptrdiff_t>(i));
       return e;
     }
     ++i;
@@ -86,7 +86,7 @@ std::optional<Extent> FrameState::next_suspect(const MayTry& may_try) {
   return std::nullopt;
 }
 
-std::optional<Extent> FrameState::cut_open(const Extent& front, uint32_t run) {
+std::optional<Extent> FrameLedger::cut_open(const Extent& front, uint32_t run) {
   const auto free = BatchMap::first_free(held_, leased_, front.tile, front.batches);
   if (!free) return std::nullopt;
   const Extent cut{front.tile, {free->first, std::clamp(run, 1U, free->count)}};
@@ -98,15 +98,15 @@ std::optional<Extent> FrameState::cut_open(const Extent& front, uint32_t run) {
   return cut;
 }
 
-bool FrameState::has_work(const MayTry& may_try) const {
+bool FrameLedger::has_work(const MayTry& may_try) const {
   uint64_t barred = 0;
-  for (const Extent& e : suspects_) {
+  for (const Extent& e : retries_) {
     if (all_free(e) && !may_try(find_blame(e)->workers)) barred += e.batches.count;
   }
   return free_ > barred;
 }
 
-Assignment& FrameState::assign(const Extent& e, const Holder& holder, uint64_t serial) {
+Assignment& FrameLedger::assign(const Extent& e, const Holder& holder, uint64_t serial) {
   lease_bits(e);
   Assignment& assignment = assignments_[key(e)];
   assignment.extent = e;
@@ -116,12 +116,12 @@ Assignment& FrameState::assign(const Extent& e, const Holder& holder, uint64_t s
   return assignment;
 }
 
-Assignment* FrameState::find_assignment(const Extent& e) {
+Assignment* FrameLedger::find_assignment(const Extent& e) {
   const auto it = assignments_.find(key(e));
   return it != assignments_.end() && it->second.extent == e ? &it->second : nullptr;
 }
 
-Assignment* FrameState::find_covering(const Extent& part, const LeaseId& lease) {
+Assignment* FrameLedger::find_covering(const Extent& part, const LeaseId& lease) {
   // Assignments never overlap, so that the one that begins nearest before `part` is the only one.
   for (uint32_t first = part.batches.first + 1; first-- > 0;) {
     const auto it = assignments_.find(key({part.tile, {first, 1}}));
@@ -135,7 +135,7 @@ Assignment* FrameState::find_covering(const Extent& part, const LeaseId& lease) 
   return nullptr;
 }
 
-void FrameState::release(const Extent& e, const LeaseId& lease) {
+void FrameLedger::release(const Extent& e, const LeaseId& lease) {
   Assignment* assignment = find_assignment(e);
   if (assignment == nullptr) return;
   std::erase_if(assignment->holders, [&](const Holder& h) { return h.lease == lease; });
@@ -143,13 +143,13 @@ void FrameState::release(const Extent& e, const LeaseId& lease) {
   assignments_.erase(key(e));
   unlease_bits(e);
   if (find_blame(e) != nullptr && all_free(e)) {
-    if (std::find(suspects_.begin(), suspects_.end(), e) == suspects_.end()) suspects_.push_back(e);
+    if (std::find(retries_.begin(), retries_.end(), e) == retries_.end()) retries_.push_back(e);
   } else {
     open_.push_front(e);
   }
 }
 
-std::vector<Holder> FrameState::end_assignment(const Extent& e) {
+std::vector<Holder> FrameLedger::end_assignment(const Extent& e) {
   Assignment* assignment = find_assignment(e);
   if (assignment == nullptr) return {};
   std::vector<Holder> holders = std::move(assignment->holders);
@@ -158,14 +158,14 @@ std::vector<Holder> FrameState::end_assignment(const Extent& e) {
   return holders;
 }
 
-const FrameState::Blame* FrameState::find_blame(const Extent& e) const {
+const FrameLedger::Blame* FrameLedger::find_blame(const Extent& e) const {
   for (const Blame& b : blamed_) {
     if (b.extent == e) return &b;
   }
   return nullptr;
 }
 
-void FrameState::blame(const Extent& e, WorkerId worker, const std::string& reason) {
+void FrameLedger::blame(const Extent& e, WorkerId worker, const std::string& reason) {
   for (Blame& b : blamed_) {
     if (b.extent != e) continue;
     b.workers.push_back(worker);
@@ -175,16 +175,15 @@ void FrameState::blame(const Extent& e, WorkerId worker, const std::string& reas
   blamed_.push_back({e, {worker}, reason});
 }
 
-std::vector<WorkerId> FrameState::blamed(const Extent& e) const {
+std::vector<WorkerId> FrameLedger::blamed(const Extent& e) const {
   const Blame* blame = find_blame(e);
   return blame == nullptr ? std::vector<WorkerId>() : blame->workers;
 }
 
-FrameState::Failures FrameState::take_blame(const Extent& e) {
+FrameLedger::Failures FrameLedger::take_blame(const Extent& e) {
   const auto found =
       std::find_if(blamed_.begin(), blamed_.end(), [&](const Blame& b) { return b.extent == e; });
-  if (found == blamed_.end() ||
-      std::find(suspects_.begin(), suspects_.end(), e) != suspects_.end()) {
+  if (found == blamed_.end() || std::find(retries_.begin(), retries_.end(), e) != retries_.end()) {
     return {};
   }
   Failures failures{std::move(found->workers), std::move(found->reason)};
@@ -195,11 +194,11 @@ FrameState::Failures FrameState::take_blame(const Extent& e) {
   return failures;
 }
 
-std::string FrameState::audit() const {
+std::string FrameLedger::audit() const {
   const auto tiles = static_cast<uint32_t>(total_ / std::max(batches_, 1U));
   BatchMap reachable(tiles, batches_);
   for (const Extent& e : open_) reachable.set(e.tile, e.batches);
-  for (const Extent& e : suspects_) reachable.set(e.tile, e.batches);
+  for (const Extent& e : retries_) reachable.set(e.tile, e.batches);
   uint64_t free = 0;
   uint64_t held = 0;
   uint64_t recorded = 0;

@@ -8,11 +8,18 @@
 #include <unordered_map>
 #include <vector>
 
-#include "coordinator/scheduler/frame_state.h"
+#include "coordinator/scheduler/frame_ledger.h"
 #include "coordinator/scheduler/job_plan.h"
 #include "coordinator/scheduler/tile_grid.h"
 
 namespace hyades::coordinator {
+
+/// A frame, by its job and number.
+struct FrameId {
+  JobId job{};
+  int32_t frame = 0;
+  friend bool operator==(const FrameId&, const FrameId&) = default;
+};
 
 enum class FramePhase : uint8_t {
   waiting,     ///< not opened yet
@@ -25,22 +32,24 @@ enum class FramePhase : uint8_t {
   failed,
 };
 
-/// A frame's place in its job. The books exist from opening (or restoring) until the frame is over.
+/// A frame of a job. Its ledger exists from opening (or restoring) until the frame is over.
 struct FrameSlot {
   int32_t frame = 0;
   FramePhase phase = FramePhase::waiting;
   bool film = false;  ///< its film is in memory, or will be with its first unit
   uint32_t finish_attempts = 0;
-  bool doubted = false;  ///< while it is opened or finished, a worker that had a part was found odd
-  uint32_t worker_class = 0;  ///< interned; 0 until the first unit is leased
-  uint64_t crew = 0;          ///< threads of the workers that render it
-  uint64_t coming = 0;        ///< ... that load its scene while they render another
+  bool suspect = false;  ///< while it is opened or finished, a worker that had a part was found
+                         ///< divergent
+  uint32_t worker_class = 0;         ///< interned; 0 until the first unit is leased
+  uint64_t assigned_threads = 0;     ///< of the workers that render it
+  uint64_t prefetching_threads = 0;  ///< of those that load its scene while they render another
   TimePoint last_leased;
   /// Since when nobody is there who may render it.
   std::optional<TimePoint> orphaned;
-  std::unique_ptr<FrameState> books;
+  std::unique_ptr<FrameLedger> ledger;
   std::string reason;  ///< why it failed
 
+  uint64_t threads() const { return assigned_threads + prefetching_threads; }
   bool in_flight() const {
     return phase != FramePhase::waiting && phase != FramePhase::done && phase != FramePhase::failed;
   }
@@ -58,7 +67,8 @@ enum class DisputeMark : uint8_t {
   ending,  ///< will say that they are right
 };
 
-struct JobState {
+/// A job that has not ended: its plan, its frames, and what their rendering has shown so far.
+struct ScheduledJob {
   JobId id{};
   uint64_t serial = 0;  ///< order of arrival
   uint32_t share = 0;   ///< index of its (priority, owner)
@@ -89,12 +99,40 @@ struct JobState {
   double load_seconds = -1;  ///< what it takes to load a scene, measured; -1: not known
 
   /// Whether the frame begins again when what it waits for is over.
-  bool begins_again(const FrameSlot& slot) const { return plan.whole_frames && slot.doubted; }
+  bool begins_again(const FrameSlot& slot) const { return plan.whole_frames && slot.suspect; }
+
+  /// What a batch of the tile takes one thread, as far as is known [s]; 0: nothing is known.
+  double batch_seconds(uint32_t tile) const {
+    return tile_cost[tile] > 0 ? tile_cost[tile] : mean_cost;
+  }
 
   FrameSlot* slot(int32_t frame) {
     const auto it = by_number.find(frame);
     return it == by_number.end() ? nullptr : &slots[it->second];
   }
+  uint32_t index_of(const FrameSlot& slot) const {
+    return static_cast<uint32_t>(&slot - slots.data());
+  }
+
+  /// The unit within its frame; nothing where it is none of the job's.
+  std::optional<Extent> extent_of(const core::Unit& unit) const {
+    const auto tile = grid.index_of(unit.tile);
+    const uint64_t end = uint64_t{unit.batches.first} + unit.batches.count;
+    if (!tile || unit.batches.count == 0 || end > plan.batches) return std::nullopt;
+    return Extent{*tile, unit.batches};
+  }
+  core::Unit unit_of(const FrameSlot& slot, const Extent& extent) const {
+    return {slot.frame, grid.tile(extent.tile), extent.batches};
+  }
+};
+
+/// A frame to get units of.
+struct FramePlace {
+  ScheduledJob* job = nullptr;
+  uint32_t slot = 0;
+
+  FrameSlot& frame() const { return job->slots[slot]; }
+  FrameId id() const { return {job->id, frame().frame}; }
 };
 
 }  // namespace hyades::coordinator

@@ -61,11 +61,11 @@ struct Dispute {
   std::vector<Opinion> opinions;
 };
 
-/// The books of one frame (invariant 3). Every batch of every tile is free, leased, or held, and
-/// is counted once; held means that its film has arrived, durable or about to be.
-class FrameState {
+/// The allocation ledger of one frame (invariant 3). Every batch of every tile is free, leased, or
+/// held, and is counted once; held means that its film has arrived, durable or about to be.
+class FrameLedger {
  public:
-  FrameState(const std::vector<uint32_t>& tile_order, uint32_t batches);
+  FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches);
 
   uint64_t total() const { return total_; }
   uint64_t free() const { return free_; }  ///< tile-batches neither leased nor held
@@ -96,7 +96,7 @@ class FrameState {
   /// fewer.
   template <class RunLength>
   std::optional<Extent> next(const MayTry& may_try, RunLength run) {
-    if (auto suspect = next_suspect(may_try)) return suspect;
+    if (auto retry = next_retry(may_try)) return retry;
     while (!open_.empty()) {
       const Extent front = open_.front();
       open_.pop_front();
@@ -109,7 +109,7 @@ class FrameState {
   bool has_work(const MayTry& may_try) const;
 
   /// Whether a unit has failed and waits for somebody who may try it.
-  bool any_suspect() const { return !suspects_.empty(); }
+  bool any_retry() const { return !retries_.empty(); }
 
   /// Whether all batches are free, so that the extent can be assigned to a worker that has it.
   bool all_free(const Extent& e) const;
@@ -140,7 +140,7 @@ class FrameState {
   /// Whether no film is in doubt.
   bool settled() const { return disputes_.empty() && voiding_.empty(); }
   size_t disputes() const { return disputes_.size(); }
-  bool any_doubted() const { return !voiding_.empty(); }
+  bool any_suspect() const { return !voiding_.empty(); }
   Dispute* find_dispute(const Extent& e);
   Dispute& open_dispute(const Extent& e, const Opinion& first);
   void end_dispute(const Extent& e);
@@ -155,15 +155,15 @@ class FrameState {
   /// Whose films no other worker agreed on, each once.
   std::vector<WorkerId> unconfirmed() const;
   /// The films of the tile do not count any more once that is durable; until then it takes none.
-  void doubt_tile(uint32_t tile);
-  bool in_doubt(uint32_t tile) const { return voiding_.contains(tile); }
+  void suspect_tile(uint32_t tile);
+  bool is_suspect(uint32_t tile) const { return voiding_.contains(tile); }
   /// The tiles in doubt that it has not named before, in order.
-  std::vector<uint32_t> newly_doubted();
+  std::vector<uint32_t> newly_suspect();
   /// Its films do not count: all that is held of the tile is free again.
   /// Returns the runs that did.
   std::vector<core::BatchRange> void_tile(uint32_t tile);
 
-  /// What is wrong with the books, or nothing. Slow; for tests and audits.
+  /// What is wrong with the ledger, or nothing. Slow; for tests and audits.
   std::string audit() const;
 
  private:
@@ -174,7 +174,7 @@ class FrameState {
   };
 
   static uint64_t key(const Extent& e) { return (uint64_t{e.tile} << 32) | e.batches.first; }
-  std::optional<Extent> next_suspect(const MayTry& may_try);
+  std::optional<Extent> next_retry(const MayTry& may_try);
   std::optional<Extent> cut_open(const Extent& front, uint32_t run);
   void lease_bits(const Extent& e);
   void unlease_bits(const Extent& e);
@@ -189,12 +189,12 @@ class FrameState {
   BatchMap held_;
   BatchMap leased_;
   /// Runs that may hold free batches, in the order of leasing. Every free batch is in here or in a
-  /// suspect; what is not free any more is left out when it is taken.
+  /// failed unit; what is not free any more is left out when it is taken.
   std::deque<Extent> open_;
-  std::vector<Extent> suspects_;  ///< failed units that wait for another try
+  std::vector<Extent> retries_;  ///< failed units that wait for another try
   std::vector<Blame> blamed_;
   std::vector<Dispute> disputes_;     ///< oldest first
-  std::map<uint32_t, bool> voiding_;  ///< tiles in doubt, and whether newly_doubted() named them
+  std::map<uint32_t, bool> voiding_;  ///< tiles in doubt, and whether newly_suspect() named them
   std::unordered_map<uint64_t, Assignment> assignments_;           ///< looked up, never walked
   std::unordered_map<uint32_t, std::vector<HeldRecord>> records_;  ///< by tile; no order
 };

@@ -1,0 +1,199 @@
+#include "coordinator/scheduler/frame_lifecycle.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hyades::coordinator {
+
+void FrameLifecycle::on(const FrameOpened& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  if (slot == nullptr || slot->phase != FramePhase::opening) return;
+  slot->phase = FramePhase::rendering;
+  if (slot->suspect) return restart(*job, *slot);
+  void_suspect_tiles(*job, *slot);  // what it has from before a restart
+  jobs_.update_offer(*job);
+  finish_if_complete(*job, *slot);  // a frame without pixels
+}
+
+void FrameLifecycle::on(const FrameRefused& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  if (slot == nullptr || slot->phase != FramePhase::opening) return;
+  fail(*job, *slot, e.reason);
+}
+
+void FrameLifecycle::on(const FinishDone& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  if (slot == nullptr || slot->phase != FramePhase::finishing) return;
+  if (job->begins_again(*slot)) return restart(*job, *slot);
+  if (!slot->ledger->settled()) return reopen(*job, *slot);
+  if (slot->suspect) return restart(*job, *slot);
+  slot->phase = FramePhase::closing;
+  records_.persist(FrameFinishedRecord{job->id, slot->frame});
+}
+
+void FrameLifecycle::on(const FinishFailed& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  if (slot == nullptr || slot->phase != FramePhase::finishing) return;
+  if (job->begins_again(*slot)) return restart(*job, *slot);
+  if (!slot->ledger->settled()) return reopen(*job, *slot);
+  if (++slot->finish_attempts < job->plan.max_attempts) {
+    step_.say(FinishFrame{job->id, slot->frame, slot->ledger->unconfirmed()});
+  } else {
+    fail(*job, *slot, e.reason);
+  }
+}
+
+void FrameLifecycle::open(ScheduledJob& job) {
+  if (job.paused) return;
+  const uint64_t frame_total = uint64_t{job.grid.size()} * job.plan.batches;
+  const uint64_t enough = std::max(frame_total / 2, 2 * workers_.threads());
+  while (job.in_flight.size() < std::max(job.plan.frames_in_flight, 1U)) {
+    uint64_t free = 0;
+    bool room = false;
+    for (const uint32_t i : job.in_flight) {
+      const FrameSlot& slot = job.slots[i];
+      if (slot.phase == FramePhase::opening || slot.phase == FramePhase::rendering) {
+        free += slot.ledger->free();
+        room = room || affinity_.has_room({&job, i});
+      }
+    }
+    if (room && free > enough && job.plan.order == FrameOrder::sequential) return;
+    while (job.next_slot < job.slots.size() &&
+           job.slots[job.next_slot].phase != FramePhase::waiting) {
+      ++job.next_slot;
+    }
+    if (job.next_slot == job.slots.size()) return;
+    const auto index = static_cast<uint32_t>(job.next_slot);
+    FrameSlot& slot = job.slots[index];
+    slot.phase = FramePhase::opening;
+    --job.waiting;
+    if (!slot.ledger) {
+      slot.ledger = std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches);
+    }
+    job.in_flight.push_back(index);
+    step_.say(OpenFrame{job.id, slot.frame});
+  }
+}
+
+void FrameLifecycle::finish_if_complete(ScheduledJob& job, FrameSlot& slot) {
+  if (slot.phase == FramePhase::rendering && slot.ledger->complete()) finish(job, slot);
+}
+
+void FrameLifecycle::finish(ScheduledJob& job, FrameSlot& slot) {
+  // Late films may have overtaken units that are still out.
+  leases_.take_back(job, slot);
+  slot.phase = FramePhase::finishing;
+  step_.say(FinishFrame{job.id, slot.frame, slot.ledger->unconfirmed()});
+}
+
+void FrameLifecycle::fail(ScheduledJob& job, FrameSlot& slot, std::string reason) {
+  slot.phase = FramePhase::closing;
+  slot.reason = std::move(reason);
+  leases_.take_back(job, slot);
+  slot.ledger.reset();
+  jobs_.update_offer(job);
+  records_.persist(FrameFailedRecord{job.id, {slot.frame, slot.reason}});
+}
+
+void FrameLifecycle::restart(ScheduledJob& job, FrameSlot& slot) {
+  slot.phase = FramePhase::restarting;
+  slot.suspect = false;
+  leases_.take_back(job, slot);
+  slot.ledger.reset();
+  jobs_.update_offer(job);
+  records_.persist(FrameRestartedRecord{job.id, slot.frame});
+}
+
+void FrameLifecycle::bring_back(ScheduledJob& job, FrameSlot& slot) {
+  if (slot.phase == FramePhase::waiting) --job.waiting;
+  if (slot.phase == FramePhase::done) --job.frames_done;
+  if (slot.phase == FramePhase::failed) --job.frames_failed;
+  job.in_flight.push_back(job.index_of(slot));
+  restart(job, slot);
+}
+
+void FrameLifecycle::void_suspect_tiles(ScheduledJob& job, FrameSlot& slot) {
+  if (slot.phase != FramePhase::rendering) return;
+  for (const uint32_t tile : slot.ledger->newly_suspect()) {
+    records_.persist(TileVoidedRecord{job.id, slot.frame, job.grid.tile(tile)});
+  }
+}
+
+/// A conflict showed while the outputs were made: the frame goes on until it is settled.
+void FrameLifecycle::reopen(ScheduledJob& job, FrameSlot& slot) {
+  slot.phase = FramePhase::rendering;
+  slot.suspect = false;
+  step_.say(FrameReopened{job.id, slot.frame});
+  void_suspect_tiles(job, slot);
+  jobs_.update_offer(job);
+}
+
+void FrameLifecycle::restarted(ScheduledJob& job, FrameSlot& slot) {
+  const uint32_t index = job.index_of(slot);
+  slot.phase = FramePhase::waiting;
+  films_.drop(job, slot);
+  ++job.waiting;
+  slot.worker_class = 0;
+  slot.orphaned.reset();
+  slot.finish_attempts = 0;
+  slot.reason.clear();
+  std::erase(job.in_flight, index);
+  job.next_slot = std::min<size_t>(job.next_slot, index);
+  step_.say(FrameRestarted{job.id, slot.frame});
+  open(job);
+}
+
+void FrameLifecycle::restart_orphans() {
+  if (options_.class_patience <= Duration{0} || step_.now < next_orphan_check_) return;
+  next_orphan_check_ = step_.now + options_.class_patience / 4;
+  if (workers_.threads() == 0) return;
+  for (const auto& [id, job] : jobs_.all()) {
+    if (job->paused) continue;
+    const std::vector<uint32_t> in_flight = job->in_flight;
+    for (const uint32_t i : in_flight) {
+      FrameSlot& slot = job->slots[i];
+      const uint32_t c = slot.worker_class;
+      if (slot.phase != FramePhase::rendering || c == 0) continue;
+      if (workers_.workers_of(c) > 0 && workers_.anybody_for(*job, c)) {
+        slot.orphaned.reset();
+        continue;
+      }
+      if (!slot.orphaned)
+        slot.orphaned = workers_.workers_of(c) > 0 ? step_.now : workers_.gone_since(c);
+      if (step_.now < *slot.orphaned + options_.class_patience || slot.ledger->all_held()) continue;
+      restart(*job, slot);
+    }
+  }
+}
+
+std::optional<TimePoint> FrameLifecycle::next_wake() const {
+  if (options_.class_patience <= Duration{0}) return std::nullopt;
+  if (jobs_.all().empty() || workers_.threads() == 0) return std::nullopt;
+  return next_orphan_check_;
+}
+
+void FrameLifecycle::over(ScheduledJob& job, FrameSlot& slot, FramePhase phase) {
+  // While that was stored a worker that had a part in it was found divergent.
+  if (phase == FramePhase::done && (slot.suspect || !slot.ledger->settled())) {
+    return restart(job, slot);
+  }
+  slot.phase = phase;
+  films_.drop(job, slot);
+  slot.ledger.reset();
+  std::erase(job.in_flight, job.index_of(slot));
+  if (phase == FramePhase::done) {
+    ++job.frames_done;
+    step_.say(FrameDone{job.id, slot.frame});
+  } else {
+    ++job.frames_failed;
+    step_.say(FrameFailed{job.id, slot.frame, slot.reason});
+  }
+  open(job);
+  jobs_.end_if_over(job);
+}
+
+}  // namespace hyades::coordinator

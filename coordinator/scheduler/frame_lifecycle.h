@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "coordinator/scheduler/affinity.h"
+#include "coordinator/scheduler/leases.h"
+#include "coordinator/scheduler/pending_records.h"
+
+namespace hyades::coordinator {
+
+/// Frames: opened, finished, begun again, over.
+class FrameLifecycle {
+ public:
+  FrameLifecycle(const SchedulerOptions& options, Step& step, ScheduledJobs& jobs,
+                 ScheduledWorkers& workers, FilmBudget& films, Leases& leases,
+                 PendingRecords& records, const Affinity& affinity)
+      : options_(options),
+        step_(step),
+        jobs_(jobs),
+        workers_(workers),
+        films_(films),
+        leases_(leases),
+        records_(records),
+        affinity_(affinity) {}
+
+  void on(const FrameOpened& e);
+  void on(const FrameRefused& e);
+  void on(const FinishDone& e);
+  void on(const FinishFailed& e);
+
+  /// Opens frames while there is less than half a frame left to lease, or too little for all
+  /// threads, or those that are open have workers enough: the next scene is there before the last
+  /// unit of this one is gone, and not much earlier.
+  void open(ScheduledJob& job);
+  /// Every film of the frame is durable: its outputs are made.
+  void finish(ScheduledJob& job, FrameSlot& slot);
+  void finish_if_complete(ScheduledJob& job, FrameSlot& slot);
+  void fail(ScheduledJob& job, FrameSlot& slot, std::string reason);
+  /// Begins the frame again, which is in flight. What is on its way to the disk of its films is
+  /// durable before the record, and void.
+  void restart(ScheduledJob& job, FrameSlot& slot);
+  /// Begins a frame again that is over, or has films from before a restart of the coordinator and
+  /// was not opened since.
+  void bring_back(ScheduledJob& job, FrameSlot& slot);
+  /// Has suspect tiles voided; of a frame whose outputs are being made when that is over.
+  void void_suspect_tiles(ScheduledJob& job, FrameSlot& slot);
+
+  /// Its end, or its restart, is durable.
+  void over(ScheduledJob& job, FrameSlot& slot, FramePhase phase);
+  void restarted(ScheduledJob& job, FrameSlot& slot);
+
+  /// Frames whose class has been gone for too long begin again, if there is somebody to render
+  /// them.
+  void restart_orphans();
+  std::optional<TimePoint> next_wake() const;
+
+ private:
+  void reopen(ScheduledJob& job, FrameSlot& slot);
+
+  const SchedulerOptions& options_;
+  Step& step_;
+  ScheduledJobs& jobs_;
+  ScheduledWorkers& workers_;
+  FilmBudget& films_;
+  Leases& leases_;
+  PendingRecords& records_;
+  const Affinity& affinity_;
+  TimePoint next_orphan_check_;
+};
+
+}  // namespace hyades::coordinator

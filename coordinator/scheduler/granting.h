@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "coordinator/scheduler/frame_lifecycle.h"
+#include "coordinator/scheduler/hedged_copies.h"
+
+namespace hyades::coordinator {
+
+/// Which unit a worker gets next.
+class Granting {
+ public:
+  Granting(const SchedulerOptions& options, Step& step, ScheduledJobs& jobs,
+           ScheduledWorkers& workers, FilmBudget& films, Leases& leases, PendingRecords& records,
+           Affinity& affinity, HedgedCopies& copies, FrameLifecycle& frames)
+      : options_(options),
+        step_(step),
+        jobs_(jobs),
+        workers_(workers),
+        films_(films),
+        leases_(leases),
+        records_(records),
+        affinity_(affinity),
+        copies_(copies),
+        frames_(frames) {}
+
+  void on(const WorkRequested& e);
+  void on(const LeasingHeld& e);
+  void on(const Tick& e);
+
+  /// Serves those who wait, where something has turned up for them.
+  void dispatch();
+  std::optional<TimePoint> next_wake() const;
+  /// Whether a frame of the job could begin if there were more room for films.
+  bool waits_for_film(const ScheduledJob& job) const;
+
+ private:
+  bool may_lease() const { return !held_ && step_.now >= records_.blocked_until(); }
+  void serve(WorkerId id, Worker& worker, bool copies);
+  bool grant(WorkerId id, Worker& worker);
+  bool grant_from(const FramePlace& place, WorkerId id, Worker& worker, bool ahead);
+  bool grant_check(const FramePlace& place, WorkerId id, Worker& worker, const MayTry& may_try);
+  std::optional<FramePlace> in_turn(WorkerId id, const Worker& worker, bool fresh);
+  std::optional<uint32_t> find_pass(const ScheduledJob& job, WorkerId id, const Worker& worker,
+                                    bool begun) const;
+  std::optional<FramePlace> find_loaded(WorkerId id, const Worker& worker,
+                                        const ScheduledJob& first, bool loads) const;
+  bool has_work_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
+                    const Worker& worker) const;
+  uint32_t run_length_of(const ScheduledJob& job, const FrameLedger& ledger, uint32_t tile) const;
+  bool film_fits(const ScheduledJob& job, const FrameSlot& slot) const;
+  bool any_film_in_work() const;
+
+  const SchedulerOptions& options_;
+  Step& step_;
+  ScheduledJobs& jobs_;
+  ScheduledWorkers& workers_;
+  FilmBudget& films_;
+  Leases& leases_;
+  PendingRecords& records_;
+  Affinity& affinity_;
+  HedgedCopies& copies_;
+  FrameLifecycle& frames_;
+  bool held_ = false;         ///< LeasingHeld
+  bool turned_away_ = false;  ///< somebody came too late for a frame: to be looked at again
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,101 @@
+#include "coordinator/scheduler/hedged_copies.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hyades::coordinator {
+namespace {
+
+/// How many of the oldest units are considered before a worker goes without a copy.
+constexpr size_t kCopySearch = 16;
+/// A unit is late when it has been out for that many times what it should take (it may have waited
+/// for another, on a slow machine), and a little for the way there and back.
+constexpr double kLate = 3;
+constexpr Duration kWay = std::chrono::seconds(1);
+/// How often the waiting workers are offered copies.
+constexpr Duration kCopyRound = std::chrono::milliseconds(250);
+
+}  // namespace
+
+bool HedgedCopies::grant(WorkerId id, Worker& worker) {
+  if (!enabled()) return false;
+  while (!candidates_.empty() && !live(candidates_.front())) {
+    candidates_.pop_front();
+  }
+  for (size_t i = 0; i < std::min(kCopySearch, candidates_.size()); ++i) {
+    const Candidate candidate = candidates_[i];
+    if (step_.now < first_copy(candidate)) return false;
+    Assignment* assignment = live(candidate);
+    if (assignment == nullptr || assignment->holders.front().worker == id) continue;
+    const FramePlace place{jobs_.find(candidate.job), candidate.slot};
+    const ScheduledJob& job = *place.job;
+    if (job.paused || place.frame().worker_class != worker.worker_class) continue;
+    if (!ScheduledWorkers::may_join(job, id, worker)) continue;
+    const FrameLedger& ledger = *place.frame().ledger;
+    if (!workers_.may_try(job, id, worker, ledger.blamed(candidate.extent))) continue;
+    const double late = seconds(step_.now - candidate.since) - late_after(job, candidate.extent);
+    if (late < 0) continue;
+    // Those who have the scene come first; whoever has to load it takes one copy.
+    const FrameId frame = place.id();
+    const bool there = Affinity::has_scene(worker, frame);
+    const bool loads = affinity_.still_loads(worker) && worker.loading->frame == frame;
+    const bool ready = there && !loads;
+    if (!ready && (late < affinity_.load_seconds(job) || !worker.leases.empty())) continue;
+    if (!there) affinity_.begin_loading(worker, frame, true);
+    leases_.copy(*assignment, id);
+    --worker.wanted;
+    Affinity::remember_scene(worker, frame, false);
+    leases_.grant(id, worker, place, {candidate.extent});
+    return true;
+  }
+  return false;
+}
+
+/// Before that no copy of the unit is made, however little it should take.
+TimePoint HedgedCopies::first_copy(const Candidate& candidate) const {
+  return candidate.since + std::min(options_.copy_after, kWay);
+}
+
+/// After what time the unit is late [s].
+double HedgedCopies::late_after(const ScheduledJob& job, const Extent& extent) const {
+  const double batch = job.batch_seconds(extent.tile);
+  const double most = seconds(options_.copy_after);
+  if (batch <= 0) return most;
+  return std::min(most, seconds(kWay) + kLate * batch * extent.batches.count);
+}
+
+void HedgedCopies::note(const FramePlace& place, const Assignment& assignment) {
+  if (!enabled()) return;
+  if (candidates_.size() >= swept_at_) {
+    std::erase_if(candidates_, [&](const Candidate& c) { return !live(c); });
+    swept_at_ = std::max<size_t>(64, 2 * candidates_.size());
+  }
+  candidates_.push_back(
+      {step_.now, assignment.serial, place.job->id, place.slot, assignment.extent});
+}
+
+bool HedgedCopies::due() const {
+  return !candidates_.empty() && first_copy(candidates_.front()) <= step_.now;
+}
+
+bool HedgedCopies::begin_round() {
+  if (!enabled() || step_.now < next_round_) return false;
+  next_round_ = step_.now + kCopyRound;
+  return true;
+}
+
+std::optional<TimePoint> HedgedCopies::next_wake() const {
+  if (!enabled() || candidates_.empty()) return std::nullopt;
+  return std::max(first_copy(candidates_.front()), next_round_);
+}
+
+/// The assignment that may still be copied, or null.
+Assignment* HedgedCopies::live(const Candidate& c) const {
+  ScheduledJob* job = jobs_.find(c.job);
+  if (job == nullptr || !job->slots[c.slot].ledger) return nullptr;
+  Assignment* assignment = job->slots[c.slot].ledger->find_assignment(c.extent);
+  if (assignment == nullptr || assignment->serial != c.serial || assignment->copied) return nullptr;
+  return assignment;
+}
+
+}  // namespace hyades::coordinator

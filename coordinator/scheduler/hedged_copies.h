@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "coordinator/scheduler/affinity.h"
+#include "coordinator/scheduler/leases.h"
+
+namespace hyades::coordinator {
+
+/// Second copies of units that are late, for workers that have nothing else to do: purity makes it
+/// safe, and whichever comes first counts.
+class HedgedCopies {
+ public:
+  HedgedCopies(const SchedulerOptions& options, const Step& step, ScheduledJobs& jobs,
+               ScheduledWorkers& workers, Leases& leases, Affinity& affinity)
+      : options_(options),
+        step_(step),
+        jobs_(jobs),
+        workers_(workers),
+        leases_(leases),
+        affinity_(affinity) {}
+
+  bool enabled() const { return options_.copy_after > Duration{0}; }
+  /// The unit has been leased: it may be late one day.
+  void note(const FramePlace& place, const Assignment& assignment);
+  /// Hands out a second copy of one of the oldest units that are late. No unit is copied twice.
+  bool grant(WorkerId id, Worker& worker);
+  /// Whether the oldest unit may be due for a copy.
+  bool due() const;
+  /// Whether it is time to offer copies to those who wait; begins the next round.
+  bool begin_round();
+  /// When copies may be offered next; nothing where no unit is out.
+  std::optional<TimePoint> next_wake() const;
+
+ private:
+  struct Candidate {
+    TimePoint since;
+    uint64_t serial = 0;
+    JobId job{};
+    uint32_t slot = 0;
+    Extent extent;
+  };
+
+  TimePoint first_copy(const Candidate& candidate) const;
+  double late_after(const ScheduledJob& job, const Extent& extent) const;
+  Assignment* live(const Candidate& candidate) const;
+
+  const SchedulerOptions& options_;
+  const Step& step_;
+  ScheduledJobs& jobs_;
+  ScheduledWorkers& workers_;
+  Leases& leases_;
+  Affinity& affinity_;
+  std::deque<Candidate> candidates_;  ///< oldest first
+  size_t swept_at_ = 64;              ///< length at which stale ones are swept out
+  TimePoint next_round_;
+};
+
+}  // namespace hyades::coordinator

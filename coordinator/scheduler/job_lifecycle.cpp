@@ -1,0 +1,110 @@
+#include "coordinator/scheduler/job_lifecycle.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hyades::coordinator {
+
+void JobLifecycle::on(const JobAdded& e) {
+  if (jobs_.find(e.job) != nullptr) return;
+  ScheduledJob& job = jobs_.add(e.job, e.plan);
+  job.tags = workers_.intern_tags(e.plan.needs.tags);
+  restore(job, e.restored);
+  job.waiting = static_cast<uint64_t>(
+      std::count_if(job.slots.begin(), job.slots.end(),
+                    [](const FrameSlot& slot) { return slot.phase == FramePhase::waiting; }));
+  conflicts_.restored(job, e.restored.disputed);
+  for (uint32_t i = 0; i < job.slots.size(); ++i) {
+    FrameSlot& slot = job.slots[i];
+    if (slot.phase == FramePhase::waiting && slot.ledger && slot.ledger->complete()) {
+      --job.waiting;
+      job.in_flight.push_back(i);
+      frames_.finish(job, slot);
+    }
+  }
+  frames_.open(job);
+  jobs_.end_if_over(job);
+}
+
+void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
+  for (const int32_t frame : restored.finished) {
+    if (FrameSlot* slot = job.slot(frame); slot && slot->phase == FramePhase::waiting) {
+      slot->phase = FramePhase::done;
+      ++job.frames_done;
+    }
+  }
+  for (const FailedFrame& failed : restored.failed) {
+    FrameSlot* slot = job.slot(failed.frame);
+    if (slot && slot->phase == FramePhase::waiting) {
+      slot->phase = FramePhase::failed;
+      slot->reason = failed.reason;
+      ++job.frames_failed;
+    }
+  }
+  for (const AcceptedUnit& accepted : restored.accepted) {
+    FrameSlot* slot = job.slot(accepted.unit.frame);
+    const auto extent = job.extent_of(accepted.unit);
+    if (slot == nullptr || slot->phase != FramePhase::waiting || !extent) continue;
+    if (!slot->ledger) {
+      slot->ledger = std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches);
+      slot->worker_class = workers_.intern_class(accepted.worker_class);
+      films_.take(job, *slot);
+    }
+    if (slot->ledger->any_held(*extent)) continue;
+    slot->ledger->hold(*extent, {extent->batches, accepted.digest, WorkerId{}, RecordId{}});
+  }
+}
+
+void JobLifecycle::on(const JobPaused& e) {
+  if (ScheduledJob* job = jobs_.find(e.job)) {
+    job->paused = true;
+    jobs_.update_offer(*job);
+  }
+}
+
+void JobLifecycle::on(const JobResumed& e) {
+  if (ScheduledJob* job = jobs_.find(e.job)) {
+    job->paused = false;
+    jobs_.update_offer(*job);
+    frames_.open(*job);
+  }
+}
+
+void JobLifecycle::on(const JobCancelled& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  if (job == nullptr) return;
+  for (const uint32_t i : job->in_flight) leases_.take_back(*job, job->slots[i]);
+  for (FrameSlot& slot : job->slots) films_.drop(*job, slot);
+  job->in_flight.clear();
+  jobs_.end(*job, true);
+}
+
+void JobLifecycle::on(const JobReprioritised& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  if (job != nullptr && job->plan.priority != e.priority) jobs_.reprioritise(*job, e.priority);
+}
+
+void JobLifecycle::on(const FramesRetried& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  if (job == nullptr) return;
+  for (FrameSlot& slot : job->slots) {
+    if (slot.phase == FramePhase::failed) frames_.bring_back(*job, slot);
+  }
+}
+
+void JobLifecycle::on(const FramesSuspected& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  if (job == nullptr) return;
+  for (const int32_t frame : e.frames) {
+    FrameSlot* slot = job->slot(frame);
+    if (slot == nullptr) continue;
+    if (slot->phase == FramePhase::done) {
+      frames_.bring_back(*job, *slot);
+    } else if (slot->phase == FramePhase::finishing ||
+               (slot->phase == FramePhase::closing && slot->ledger)) {
+      slot->suspect = true;
+    }
+  }
+}
+
+}  // namespace hyades::coordinator

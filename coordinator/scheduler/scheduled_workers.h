@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "coordinator/scheduler/events.h"
+#include "coordinator/scheduler/scheduled_job.h"
+#include "coordinator/scheduler/step.h"
+
+namespace hyades::coordinator {
+
+/// A connected worker.
+struct Worker {
+  /// A scene that it has begun with.
+  struct Loading {
+    FrameId frame;
+    TimePoint since;
+    bool alone = false;  ///< the worker had nothing else to do
+  };
+
+  uint32_t threads = 1;
+  uint32_t worker_class = 0;
+  std::vector<uint32_t> tags;       ///< interned, sorted
+  uint64_t memory = 0;              ///< 0: no limit
+  std::vector<FrameId> scenes;      ///< that it should have in memory, the latest last
+  std::optional<FrameId> affinity;  ///< the frame that it renders and stays with
+  std::optional<FrameId> prefetch;  ///< ... that it will render then; it has a unit of it already
+  std::optional<Loading> loading;   ///< what it last began with, until the first film
+  TimePoint in_turn;                ///< when it last got what was in turn
+  uint32_t wanted = 0;              ///< units it asked for and did not get yet
+  uint64_t waiting = 0;             ///< its place among those who wait, or 0
+  bool barred = false;              ///< gets nothing
+  std::vector<uint64_t> leases;
+};
+
+/// The connected workers: their classes and tags, who may render what, who waits for work; and what
+/// stays when a worker goes: quarantine and failures.
+class ScheduledWorkers {
+ public:
+  /// What a worker could not render and others could, without a unit of its own between.
+  struct Failures {
+    uint32_t count = 0;
+    std::string reason;  ///< of the last
+  };
+
+  explicit ScheduledWorkers(Step& step);
+
+  Worker* find(WorkerId id);
+  const Worker* find(WorkerId id) const;
+  /// The worker is not there yet.
+  Worker& add(const WorkerJoined& joined);
+  void remove(WorkerId id);
+  uint64_t threads() const { return threads_; }  ///< of all
+
+  void bar(Worker& worker, bool barred);
+  bool quarantined(WorkerId id) const { return quarantined_.contains(id); }
+  /// Stays when the worker goes and comes. False where that is so already.
+  bool quarantine(WorkerId id) { return quarantined_.insert(id).second; }
+  /// Ends its quarantine and forgets its failures.
+  void pardon(WorkerId id);
+  Failures& failures(WorkerId id) { return failures_[id]; }
+  void forget_failures(WorkerId id) { failures_.erase(id); }
+
+  // Classes by number; 0 stands for 'none yet'.
+
+  uint32_t intern_class(const std::string& name);
+  const std::string& class_name(uint32_t number) const { return class_names_[number]; }
+  /// How many of the class may get units.
+  uint32_t workers_of(uint32_t worker_class) const { return class_workers_[worker_class]; }
+  /// Since when there are none.
+  TimePoint gone_since(uint32_t worker_class) const { return class_gone_[worker_class]; }
+  /// Numbers of tags, sorted.
+  std::vector<uint32_t> intern_tags(const std::vector<std::string>& tags);
+
+  /// Whether the worker has what the job asks for, and the job's limit leaves room for it.
+  static bool may_join(const ScheduledJob& job, WorkerId id, const Worker& worker);
+  /// Whether a worker of the class may get units of the job.
+  bool anybody_for(const ScheduledJob& job, uint32_t worker_class) const;
+  /// Whether a worker of the class is there that may get units of the job and is none of `tried`.
+  bool anybody_besides(const std::vector<WorkerId>& tried, const ScheduledJob& job,
+                       uint32_t worker_class) const;
+  /// A unit that has failed with `blamed` goes to somebody who has not failed it yet, if there is
+  /// anybody.
+  bool may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
+               const std::vector<WorkerId>& blamed) const;
+
+  /// To be called when its wish has changed.
+  void update_waiting(WorkerId id, Worker& worker);
+  /// Those with a wish, longest waiting first.
+  const std::map<uint64_t, WorkerId>& waiting() const { return waiting_; }
+
+ private:
+  static bool suits(const ScheduledJob& job, const Worker& worker);
+  void count_class(uint32_t worker_class, int change);
+
+  Step& step_;
+  std::unordered_map<WorkerId, Worker> workers_;  ///< looked up; walked only where order is nothing
+  uint64_t threads_ = 0;
+  std::set<WorkerId> quarantined_;
+  std::map<WorkerId, Failures> failures_;
+  std::map<uint64_t, WorkerId> waiting_;
+  uint64_t next_waiting_ = 1;
+  std::map<std::string, uint32_t, std::less<>> class_index_;
+  std::vector<std::string> class_names_;
+  std::vector<uint32_t> class_workers_;
+  std::vector<TimePoint> class_gone_;
+  std::map<std::string, uint32_t, std::less<>> tag_index_;
+};
+
+}  // namespace hyades::coordinator

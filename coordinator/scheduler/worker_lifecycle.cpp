@@ -1,0 +1,93 @@
+#include "coordinator/scheduler/worker_lifecycle.h"
+
+#include <fmt/format.h>
+
+namespace hyades::coordinator {
+
+void WorkerLifecycle::on(const WorkerJoined& e) {
+  on(WorkerLost{e.worker});
+  Worker& worker = workers_.add(e);
+  for (const UnitInHand& held : e.in_hand) adopt(e.worker, worker, held);
+  for (const auto& [id, job] : jobs_.all()) frames_.open(*job);
+}
+
+void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held) {
+  ScheduledJob* job = jobs_.find(held.job);
+  FrameSlot* slot = job ? job->slot(held.unit.frame) : nullptr;
+  const auto extent = job ? job->extent_of(held.unit) : std::nullopt;
+  if (slot == nullptr || !extent || workers_.quarantined(id) ||
+      slot->phase != FramePhase::rendering ||
+      (slot->worker_class != 0 && slot->worker_class != worker.worker_class) ||
+      !slot->ledger->all_free(*extent)) {
+    step_.say(Revoke{id, held.lease, held.job, held.unit});
+    return;
+  }
+  slot->worker_class = worker.worker_class;
+  const FramePlace place{job, job->index_of(*slot)};
+  copies_.note(place, leases_.assign(*slot, *extent, id));
+  leases_.grant(id, worker, place, {*extent}, true);
+  Affinity::remember_scene(worker, place.id(), false);
+  affinity_.settle(worker, place.id());
+  jobs_.update_offer(*job);
+}
+
+void WorkerLifecycle::on(const WorkerAlive& e) {
+  if (workers_.find(e.worker) == nullptr) return;
+  for (const LeaseId& id : e.leases) leases_.renew(e.worker, id);
+}
+
+void WorkerLifecycle::on(const WorkerBarred& e) {
+  if (!e.barred) workers_.pardon(e.worker);
+  Worker* worker = workers_.find(e.worker);
+  if (worker == nullptr || worker->barred == e.barred) return;
+  workers_.bar(*worker, e.barred);
+  if (e.barred) affinity_.settle(*worker, std::nullopt);
+  step_.work_appeared = true;
+}
+
+void WorkerLifecycle::on(const WorkerLost& e) {
+  Worker* worker = workers_.find(e.worker);
+  if (worker == nullptr) return;
+  leases_.release_all(*worker, false);
+  affinity_.settle(*worker, std::nullopt);
+  workers_.remove(e.worker);
+  // A unit that failed with others may now be theirs to try again.
+  step_.work_appeared = true;
+}
+
+void WorkerLifecycle::on(const WorkerForgotten& e) {
+  on(WorkerLost{e.worker});
+  workers_.pardon(e.worker);
+}
+
+bool WorkerLifecycle::quarantine(WorkerId id, const std::string& reason) {
+  if (!workers_.quarantine(id)) return false;
+  step_.say(Quarantine{id, reason});
+  if (Worker* worker = workers_.find(id)) {
+    leases_.release_all(*worker, true);
+    affinity_.settle(*worker, std::nullopt);
+    workers_.bar(*worker, true);
+  }
+  // A unit that failed with others may now be theirs to try again.
+  step_.work_appeared = true;
+  return true;
+}
+
+void WorkerLifecycle::forgive_and_blame(const ScheduledJob& job, FrameSlot& slot,
+                                        const Extent& extent, WorkerId worker) {
+  workers_.forget_failures(worker);
+  const FrameLedger::Failures failures = slot.ledger->take_blame(extent);
+  for (const WorkerId failed : failures.workers) {
+    if (failed == worker) continue;
+    ScheduledWorkers::Failures& in_a_row = workers_.failures(failed);
+    in_a_row.reason = failures.reason;
+    if (++in_a_row.count < options_.max_failures) continue;
+    const std::string why =
+        fmt::format("failed {} units in a row that others could render, the last of job {}: {}",
+                    in_a_row.count, static_cast<uint64_t>(job.id), in_a_row.reason);
+    workers_.forget_failures(failed);
+    quarantine(failed, why);
+  }
+}
+
+}  // namespace hyades::coordinator
