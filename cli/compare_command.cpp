@@ -118,7 +118,7 @@ ordered_json to_json(const core::Comparison& comparison) {
   return json;
 }
 
-int fail(const std::string& message) {
+int compare_error(const std::string& message) {
   std::fprintf(stderr, "hyades compare: %s\n", message.c_str());
   return kUnusable;
 }
@@ -126,7 +126,7 @@ int fail(const std::string& message) {
 /// Says how different the pictures look; the exit status.
 int compare_looks(const core::Image& a, const core::Image& b, double limit) {
   const auto difference = core::perceptual_difference(a, b);
-  if (!difference) return fail(difference.error().message);
+  if (!difference) return compare_error(difference.error().message);
   std::printf("they look %.2f apart (CIELAB), at most %.2f around %d,%d\n", difference->mean,
               difference->largest, difference->x, difference->y);
   if (difference->mean <= limit && difference->largest <= 4.0 * limit) return 0;
@@ -154,25 +154,26 @@ std::string verdict(const core::Comparison& comparison, const Options& options) 
 
 int compare(const Options& options) {
   auto a = core::read_image_file(options.a);
-  if (!a) return fail(a.error().message);
+  if (!a) return compare_error(a.error().message);
   auto b = core::read_image_file(options.b);
-  if (!b) return fail(b.error().message);
+  if (!b) return compare_error(b.error().message);
   if (options.perceptual) return compare_looks(*a, *b, *options.perceptual);
-  if (const auto cut = core::cut_to_common_part(*a, *b); !cut) return fail(cut.error().message);
+  if (const auto cut = core::cut_to_common_part(*a, *b); !cut)
+    return compare_error(cut.error().message);
   const auto comparison = core::compare_images(*a, *b, options.compare);
-  if (!comparison) return fail(comparison.error().message);
+  if (!comparison) return compare_error(comparison.error().message);
   if (options.least_p && !comparison->block_test) {
-    return fail("--least-p needs the layer 'variance' in both pictures");
+    return compare_error("--least-p needs the layer 'variance' in both pictures");
   }
   if (!options.error_image.empty()) {
     const auto image = core::error_image(*a, *b, options.compare);
-    if (!image) return fail(image.error().message);
+    if (!image) return compare_error(image.error().message);
     const auto format = core::picture_format(options.error_image);
     if (!format || *format != core::PictureFormat::png) {
-      return fail("--error-image: expected a name that ends with .png");
+      return compare_error("--error-image: expected a name that ends with .png");
     }
     if (const auto status = core::write_png(options.error_image, *image); !status) {
-      return fail(status.error().message);
+      return compare_error(status.error().message);
     }
   }
   const std::string report =

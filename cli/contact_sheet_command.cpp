@@ -14,18 +14,16 @@
 namespace hyades::cli {
 namespace {
 
-constexpr int kRefused = 2;
-
-struct Options {
+struct ContactSheetOptions {
   std::vector<std::string> pictures;
   std::string output;
   int columns = 4;
   int width = 320;
 };
 
-int fail(const std::string& message) {
+int contact_sheet_error(const std::string& message) {
   std::fprintf(stderr, "hyades contact-sheet: %s\n", message.c_str());
-  return kRefused;
+  return kExitRefused;
 }
 
 /// What a picture is called: its file's name up to the first dot.
@@ -34,17 +32,17 @@ std::string name_of(const std::string& path) {
   return file.substr(0, file.find('.'));
 }
 
-int run(const Options& options) {
+int make_contact_sheet(const ContactSheetOptions& options) {
   std::vector<core::ContactPrint> prints;
   for (const std::string& path : options.pictures) {
     auto picture = core::read_image_file(path);
-    if (!picture) return fail(picture.error().message);
+    if (!picture) return contact_sheet_error(picture.error().message);
     prints.push_back({name_of(path), std::move(*picture)});
   }
   const auto sheet = core::contact_sheet(prints, options.columns, options.width);
-  if (!sheet) return fail(sheet.error().message);
+  if (!sheet) return contact_sheet_error(sheet.error().message);
   if (const auto written = core::write_png(options.output, *sheet); !written)
-    return fail(written.error().message);
+    return contact_sheet_error(written.error().message);
   std::printf("%s: %zu pictures\n", options.output.c_str(), prints.size());
   return 0;
 }
@@ -53,7 +51,7 @@ int run(const Options& options) {
 
 int contact_sheet_command(int argc, char** argv) {
   CLI::App app("puts many pictures on one sheet, with their names", "hyades contact-sheet");
-  Options options;
+  ContactSheetOptions options;
   app.add_option("pictures", options.pictures, "PNG or JPEG files")->required();
   app.add_option("-o,--output", options.output, "PNG to write")->required();
   app.add_option("--columns", options.columns, "pictures in a row")
@@ -66,8 +64,8 @@ int contact_sheet_command(int argc, char** argv) {
       "examples:\n"
       "  hyades contact-sheet out/one.png out/two.png -o sheet.png --columns 4\n"
       "exit status: 0 fine, 2 wrong arguments, or pictures that cannot be read or written.");
-  if (const auto status = parse_command_line(app, argc, argv, kRefused)) return *status;
-  return run(options);
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
+  return make_contact_sheet(options);
 }
 
 }  // namespace hyades::cli

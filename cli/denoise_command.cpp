@@ -19,9 +19,7 @@
 namespace hyades::cli {
 namespace {
 
-constexpr int kRefused = 2;
-
-struct Options {
+struct DenoiseOptions {
   std::string input;
   std::string denoiser = "auto";
   int threads = 0;
@@ -29,7 +27,7 @@ struct Options {
   core::OutputDesc output;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare_denoise(CLI::App& app, DenoiseOptions& options) {
   app.add_option("picture", options.input,
                  "EXR with the layers beauty and, best, variance, albedo, normal and alpha; or a "
                  "film EXR")
@@ -55,9 +53,9 @@ void declare(CLI::App& app, Options& options) {
       "exit status: 0 fine, 2 wrong arguments, or a picture that cannot be read or written.");
 }
 
-int fail(const std::string& message) {
+int denoise_error(const std::string& message) {
   std::fprintf(stderr, "hyades denoise: %s\n", message.c_str());
-  return kRefused;
+  return kExitRefused;
 }
 
 core::Denoiser denoiser_of(const std::string& name) {
@@ -91,17 +89,17 @@ float own_exposure(const std::string& path) {
   return 0.0F;
 }
 
-int run(const Options& options) {
+int denoise_file(const DenoiseOptions& options) {
   const core::FpMode mode;
   const auto picture = core::read_image_file(options.input);
-  if (!picture) return fail(picture.error().message);
+  if (!picture) return denoise_error(picture.error().message);
   const auto clean = core::denoise(*picture, denoiser_of(options.denoiser), options.threads);
-  if (!clean) return fail(clean.error().in(options.input).message);
+  if (!clean) return denoise_error(clean.error().in(options.input).message);
   const core::Image out = with_alpha_of(*picture, *clean);
   core::OutputDesc output = options.output;
   output.exposure = options.exposure ? *options.exposure : own_exposure(options.input);
   if (const auto written = core::write_output(output, out, options.output.file); !written)
-    return fail(written.error().message);
+    return denoise_error(written.error().message);
   return 0;
 }
 
@@ -109,10 +107,10 @@ int run(const Options& options) {
 
 int denoise_command(int argc, char** argv) {
   CLI::App app("takes the noise out of a picture", "hyades denoise");
-  Options options;
-  declare(app, options);
-  if (const auto status = parse_command_line(app, argc, argv, kRefused)) return *status;
-  return run(options);
+  DenoiseOptions options;
+  declare_denoise(app, options);
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
+  return denoise_file(options);
 }
 
 }  // namespace hyades::cli

@@ -12,15 +12,13 @@
 namespace hyades::cli {
 namespace {
 
-constexpr int kRefused = 2;
-
-struct Options {
+struct MergeOptions {
   std::vector<std::string> inputs;
   std::string output;
   bool quiet = false;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare_merge(CLI::App& app, MergeOptions& options) {
   app.add_option("films", options.inputs, "film EXRs of the same frame of the same job")
       ->required();
   app.add_option("-o,--output", options.output, "where to write the joined film")->required();
@@ -35,16 +33,16 @@ void declare(CLI::App& app, Options& options) {
       "exit status: 0 fine, 2 wrong arguments, or films that cannot be read or do not fit.");
 }
 
-int fail(const std::string& message) {
+int merge_error(const std::string& message) {
   std::fprintf(stderr, "hyades merge: %s\n", message.c_str());
-  return kRefused;
+  return kExitRefused;
 }
 
-int merge(const Options& options) {
+int merge(const MergeOptions& options) {
   const auto whole = join_films(options.inputs);
-  if (!whole) return fail(whole.error().message);
+  if (!whole) return merge_error(whole.error().message);
   if (const core::Status written = core::write_film_exr(options.output, *whole); !written) {
-    return fail(written.error().message);
+    return merge_error(written.error().message);
   }
   if (options.quiet) return 0;
   std::printf("%s: frame %d of %s: %zu film%s, %s\n", options.output.c_str(), whole->info.frame,
@@ -60,9 +58,9 @@ int merge(const Options& options) {
 
 int merge_command(int argc, char** argv) {
   CLI::App app("joins films of the same frame into one", "hyades merge");
-  Options options;
-  declare(app, options);
-  if (const auto status = parse_command_line(app, argc, argv, kRefused)) return *status;
+  MergeOptions options;
+  declare_merge(app, options);
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
   return merge(options);
 }
 

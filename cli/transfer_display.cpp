@@ -13,7 +13,7 @@ using core::seconds;
 
 namespace {
 
-constexpr auto kPlainEvery = std::chrono::seconds(10);
+constexpr auto kTransferEvery = std::chrono::seconds(10);
 /// The rate is that of so long a time, looked at so often.
 constexpr auto kLately = std::chrono::seconds(10);
 constexpr auto kLook = std::chrono::milliseconds(250);
@@ -67,7 +67,7 @@ void TransferDisplay::moved(uint64_t bytes) {
   if (quiet_) return;
   if (line_.redraws()) {
     if (line_.is_due()) line_.show(transfer_line(transfer_, true));
-  } else if (now - last_plain_ >= kPlainEvery) {
+  } else if (now - last_plain_ >= kTransferEvery) {
     last_plain_ = now;
     std::fprintf(stderr, "%s\n", transfer_line(transfer_, false).c_str());
   }

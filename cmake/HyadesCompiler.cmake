@@ -36,6 +36,12 @@ if(HYADES_SANITIZE)
   add_link_options(-fsanitize=${HYADES_SANITIZE})
 endif()
 
+# A first build that compiles files by the dozen takes less than half of the time; where one line is changed again and
+# again, each by itself is faster. So that both work, names in the unnamed namespaces of one room differ.
+option(HYADES_UNITY "Compile several files of a room at once" OFF)
+set(CMAKE_UNITY_BUILD ${HYADES_UNITY})
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+
 find_program(HYADES_CCACHE ccache)
 if(HYADES_CCACHE)
   # Where its folder cannot be written (a read-only home), ccache fails instead of compiling.

@@ -15,7 +15,7 @@ namespace {
 using Kind = YamlNode::Kind;
 
 /// Section `key` of a tree; an empty map where there is none.
-const YamlNode& section(const YamlNode& tree, const char* key) {
+const YamlNode& section_of_job(const YamlNode& tree, const char* key) {
   const YamlEntry* entry = tree.find(key);
   return entry != nullptr ? *entry->value : empty_map();
 }
@@ -27,24 +27,24 @@ bool shines(const YamlNode& objects) {
     if (object.kind != Kind::map) return false;
     const YamlEntry* group = object.find("group");
     return object.find("emit") != nullptr ||
-           (group != nullptr && shines(section(*group->value, "objects")));
+           (group != nullptr && shines(section_of_job(*group->value, "objects")));
   });
 }
 
 bool has_light(const YamlNode& scene) {
   if (scene.find("environment") != nullptr || scene.find("lights") != nullptr) return true;
-  const YamlNode& materials = section(scene, "materials");
+  const YamlNode& materials = section_of_job(scene, "materials");
   const auto any_has = [](const YamlNode& things, const char* key) {
     return std::any_of(things.map.begin(), things.map.end(), [&](const YamlEntry& entry) {
       return entry.value->kind == Kind::map && entry.value->find(key) != nullptr;
     });
   };
-  const bool glowing =
-      any_has(materials, "emission_strength") || any_has(section(scene, "media"), "emission");
-  if (glowing || shines(section(scene, "objects"))) return true;
-  const YamlNode& groups = section(scene, "groups");
+  const bool glowing = any_has(materials, "emission_strength") ||
+                       any_has(section_of_job(scene, "media"), "emission");
+  if (glowing || shines(section_of_job(scene, "objects"))) return true;
+  const YamlNode& groups = section_of_job(scene, "groups");
   return std::any_of(groups.map.begin(), groups.map.end(), [](const YamlEntry& entry) {
-    return shines(section(*entry.value, "objects"));
+    return shines(section_of_job(*entry.value, "objects"));
   });
 }
 
@@ -55,8 +55,8 @@ bool has_interiors(const YamlNode& objects) {
 }
 
 /// `wanted`, or something like it that `section` does not have.
-std::string free_name(const YamlNode& section, std::string wanted) {
-  while (section.find(wanted) != nullptr) wanted += "-2";
+std::string free_name(const YamlNode& section_of_job, std::string wanted) {
+  while (section_of_job.find(wanted) != nullptr) wanted += "-2";
   return wanted;
 }
 
@@ -128,7 +128,7 @@ YamlPtr outputs(const std::string& name, bool animated) {
 }
 
 bool is_animated(const YamlNode& scene) {
-  const YamlEntry* range = section(scene, "frames").find("range");
+  const YamlEntry* range = section_of_job(scene, "frames").find("range");
   return range != nullptr && range->value->scalar.find('-') != std::string::npos;
 }
 
@@ -158,12 +158,12 @@ void put_head(YamlMap& job, const YamlNode& scene, const std::string& name, bool
 YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& name,
                std::vector<std::string>& added) {
   const Extent extent(bounds);
-  const YamlNode& own = section(scene, "objects");
-  const YamlNode& groups = section(scene, "groups");
+  const YamlNode& own = section_of_job(scene, "objects");
+  const YamlNode& groups = section_of_job(scene, "groups");
   const bool has_media =
       has_interiors(own) ||
       std::any_of(groups.map.begin(), groups.map.end(), [](const YamlEntry& group) {
-        return has_interiors(section(*group.value, "objects"));
+        return has_interiors(section_of_job(*group.value, "objects"));
       });
   const bool lit = has_light(scene);
   const bool seen = scene.find("camera") != nullptr;
@@ -173,12 +173,12 @@ YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& n
   if (!seen) added.emplace_back("camera");
   YamlMap materials;
   YamlMap objects;
-  for (const YamlEntry& entry : section(scene, "materials").map) {
+  for (const YamlEntry& entry : section_of_job(scene, "materials").map) {
     materials.put(entry.key, entry.value);
   }
   for (const YamlEntry& entry : own.map) objects.put(entry.key, entry.value);
   if (!seen && scene.find("environment") == nullptr) {
-    const std::string look = free_name(section(scene, "materials"), "ground");
+    const std::string look = free_name(section_of_job(scene, "materials"), "ground");
     materials.put(look, YamlMap{{"type", yaml_word("lambert")}, {"color", yaml_number(0.35F)}});
     objects.put(free_name(own, "ground"), ground(extent, look));
     added.push_back("objects." + free_name(own, "ground"));

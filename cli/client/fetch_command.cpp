@@ -24,7 +24,7 @@ namespace {
 
 constexpr size_t kMostNamed = 10;
 
-struct Options {
+struct FetchOptions {
   std::string job;
   std::string folder = ".";
   std::vector<int32_t> frames;
@@ -35,7 +35,7 @@ struct Options {
   bool json = false;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare(CLI::App& app, FetchOptions& options) {
   app.add_option("job", options.job, "its id, or its name (of several: the newest)")->required();
   app.add_option("--output", options.folder, "folder for the files")->capture_default_str();
   app.add_option("--frame", options.frames, "only these frames")->delimiter(',');
@@ -60,7 +60,7 @@ void declare(CLI::App& app, Options& options) {
       "failed, or there is nothing to fetch yet; others: docs/client.md");
 }
 
-Json to_json(const v1::OutputFile& file) {
+Json output_to_json(const v1::OutputFile& file) {
   core::Sha256 digest{};
   std::copy_n(file.sha256().begin(), std::min(file.sha256().size(), digest.size()), digest.begin());
   return {{"id", file.path()},
@@ -70,7 +70,7 @@ Json to_json(const v1::OutputFile& file) {
 }
 
 /// Writes what there is of a frame's film to NAME.FRAME.film.exr.
-Outcome fetch_film(FarmClient& client, uint64_t id, const Options& options) {
+Outcome fetch_film(FarmClient& client, uint64_t id, const FetchOptions& options) {
   v1::FilmHeader header;
   std::string bytes;
   TransferDisplay display("fetching", options.quiet);
@@ -168,7 +168,7 @@ Outcome what_is_missing(const v1::GetJobResponse& response, const std::vector<in
 /// One run of the command.
 class FetchRun {
  public:
-  FetchRun(FarmClient& client, const Options& options, uint64_t id)
+  FetchRun(FarmClient& client, const FetchOptions& options, uint64_t id)
       : client_(client),
         options_(options),
         id_(id),
@@ -222,7 +222,7 @@ class FetchRun {
 
   Outcome take(const v1::OutputFile& file) {
     if (!is_new(file)) return std::nullopt;
-    if (options_.json) told_.push_back(to_json(file));
+    if (options_.json) told_.push_back(output_to_json(file));
     if (options_.list) {
       if (!options_.json) {
         std::printf("%s  %s\n", printable(file.path()).c_str(),
@@ -245,7 +245,7 @@ class FetchRun {
   }
 
   FarmClient& client_;
-  const Options& options_;
+  const FetchOptions& options_;
   uint64_t id_;
   TransferDisplay display_;
   std::set<std::string> seen_;
@@ -257,7 +257,7 @@ class FetchRun {
 
 int fetch_command(int argc, char** argv) {
   ClientApp app("fetch", "Brings a job's finished pictures to this machine.");
-  Options options;
+  FetchOptions options;
   declare(app.app(), options);
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();

@@ -29,7 +29,7 @@ namespace {
 
 constexpr int kMostUploads = 3;  // rounds of bringing what the coordinator misses
 
-struct Options {
+struct SubmitOptions {
   std::string path;
   std::string frames;
   std::string owner;
@@ -47,7 +47,7 @@ struct Options {
   bool json = false;
 };
 
-void declare(CLI::App& app, Options& options) {
+void declare_submit(CLI::App& app, SubmitOptions& options) {
   app.add_option("job", options.path,
                  "the job (.yaml), or a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
       ->required();
@@ -98,7 +98,8 @@ std::string user_name() {
   return entry != nullptr ? entry->pw_name : fmt::format("user-{}", ::getuid());
 }
 
-Result<v1::SubmitRequest> make_request(const farm::JobPackage& package, const Options& options) {
+Result<v1::SubmitRequest> make_request(const farm::JobPackage& package,
+                                       const SubmitOptions& options) {
   v1::SubmitRequest request;
   v1::JobSpec& spec = *request.mutable_spec();
   spec.set_name(options.name.empty() ? package.job.name : options.name);
@@ -180,8 +181,8 @@ void tell_expiry(const ClientApp& app) {
 
 int submit_command(int argc, char** argv) {
   ClientApp app("submit", "Gives a job and all files that it needs to the farm.");
-  Options options;
-  declare(app.app(), options);
+  SubmitOptions options;
+  declare_submit(app.app(), options);
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto files = core::JobFiles::open(options.path, job_file_options(options.scene));
   if (!files) return app.report({kBadArguments, files.error().message});

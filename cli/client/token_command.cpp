@@ -31,7 +31,7 @@ namespace {
 
 constexpr const char* kLifetime = "365d";
 
-struct Options {
+struct TokenOptions {
   std::string data;  ///< the coordinator's folder; empty: ask the coordinator
   std::string name;
   std::string role;
@@ -156,7 +156,7 @@ class NearBook final : public Book {
   std::unique_ptr<coordinator::AuditLog> audit_;
 };
 
-std::unique_ptr<Book> open_book(const ClientApp& app, const Options& options) {
+std::unique_ptr<Book> open_book(const ClientApp& app, const TokenOptions& options) {
   if (options.data.empty()) {
     auto client = app.connect();
     return client ? std::make_unique<FarBook>(std::move(client)) : nullptr;
@@ -213,7 +213,7 @@ std::string shown_state(const v1::Token& token) {
 }
 
 /// The token itself goes to standard output or into a file, what is said of it to standard error.
-int hand_out(const ClientApp& app, const Options& options, const v1::Token& token,
+int hand_out(const ClientApp& app, const TokenOptions& options, const v1::Token& token,
              const std::string& secret) {
   if (!options.output.empty()) {
     if (const auto written = farm::write_secret(options.output, secret + "\n"); !written) {
@@ -236,7 +236,7 @@ int hand_out(const ClientApp& app, const Options& options, const v1::Token& toke
   return kDone;
 }
 
-int create(const ClientApp& app, const Options& options, Book& book) {
+int create(const ClientApp& app, const TokenOptions& options, Book& book) {
   v1::CreateTokenRequest request;
   request.set_name(options.name);
   request.set_role(farm::role_of(options.role).value_or(v1::ROLE_UNSPECIFIED));
@@ -250,7 +250,7 @@ int create(const ClientApp& app, const Options& options, Book& book) {
   return hand_out(app, options, token, secret);
 }
 
-int list(const ClientApp& app, const Options& options, Book& book) {
+int list(const ClientApp& app, const TokenOptions& options, Book& book) {
   v1::ListTokensResponse response;
   if (auto failure = book.list(response)) return app.report(*failure);
   if (options.json) {
@@ -274,7 +274,7 @@ int list(const ClientApp& app, const Options& options, Book& book) {
   return kDone;
 }
 
-int revoke(const ClientApp& app, const Options& options, Book& book) {
+int revoke(const ClientApp& app, const TokenOptions& options, Book& book) {
   v1::Token token;
   if (auto failure = book.revoke(options.id, token)) return app.report(*failure);
   if (options.json) {
@@ -294,7 +294,7 @@ std::string as_long_as(const v1::Token& token) {
 }
 
 /// Another token of the same name, role and lifetime; then the old one goes.
-int rotate(const ClientApp& app, Options options, Book& book) {
+int rotate(const ClientApp& app, TokenOptions options, Book& book) {
   v1::ListTokensResponse all;
   if (auto failure = book.list(all)) return app.report(*failure);
   for (const v1::Token& old : all.tokens()) {
@@ -315,7 +315,7 @@ int rotate(const ClientApp& app, Options options, Book& book) {
   return app.report({kUnknown, fmt::format("there is no token '{}'", options.id)});
 }
 
-int whoami(const ClientApp& app, const Options& options) {
+int whoami(const ClientApp& app, const TokenOptions& options) {
   const auto client = app.connect();
   if (!client) return kBadArguments;
   v1::WhoAmIResponse me;
@@ -342,7 +342,7 @@ int whoami(const ClientApp& app, const Options& options) {
 int token_command(int argc, char** argv) {
   ClientApp client("token", "Makes, lists and revokes the tokens that open the farm.");
   CLI::App& app = client.app();
-  Options options;
+  TokenOptions options;
   app.require_subcommand(1);
   app.fallthrough();
   app.add_option("--data", options.data,

@@ -21,9 +21,9 @@ namespace {
 
 constexpr double kLeastInterval = 0.2;
 
-volatile std::sig_atomic_t g_end = 0;
+volatile std::sig_atomic_t g_top_ends = 0;
 
-void on_end(int) { g_end = 1; }
+void end_top(int) { g_top_ends = 1; }
 
 /// The terminal's other screen, without echo, until this is destroyed.
 class Screen {
@@ -34,7 +34,7 @@ class Screen {
     raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
     tcsetattr(STDIN_FILENO, TCSANOW, &raw);
     struct sigaction action {};
-    action.sa_handler = on_end;  // without SA_RESTART: what waits is woken
+    action.sa_handler = end_top;  // without SA_RESTART: what waits is woken
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     std::fputs("\033[?1049h\033[?25l", stdout);
@@ -58,7 +58,7 @@ class Screen {
   /// Whether somebody has asked for the end meanwhile.
   static bool wait(double seconds) {
     pollfd keys{STDIN_FILENO, POLLIN, 0};
-    if (g_end == 0 && poll(&keys, 1, static_cast<int>(seconds * 1000)) > 0) {
+    if (g_top_ends == 0 && poll(&keys, 1, static_cast<int>(seconds * 1000)) > 0) {
       // An arrow or a function key is several bytes, of which the first is that of Escape.
       char keys_read[64];
       const ssize_t count = ::read(STDIN_FILENO, keys_read, sizeof keys_read);
@@ -66,7 +66,7 @@ class Screen {
       const char key = keys_read[0];
       return key == 'q' || key == 'Q' || (key == 27 && count == 1);
     }
-    return g_end != 0;
+    return g_top_ends != 0;
   }
 
  private:

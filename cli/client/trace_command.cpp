@@ -22,20 +22,20 @@ namespace {
 constexpr auto kLook = std::chrono::seconds(1);
 constexpr auto kGlance = std::chrono::milliseconds(50);
 
-volatile std::sig_atomic_t g_end = 0;
+volatile std::sig_atomic_t g_trace_ends = 0;
 
-void on_end(int) { g_end = 1; }
+void end_trace(int) { g_trace_ends = 1; }
 
 /// From now on Ctrl-C and SIGTERM end the following, and the document is written to its end.
 void mind_signals() {
   struct sigaction action {};
-  action.sa_handler = on_end;
+  action.sa_handler = end_trace;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
 
 void wait_for_more() {
-  for (auto waited = kGlance; waited <= kLook && g_end == 0; waited += kGlance) {
+  for (auto waited = kGlance; waited <= kLook && g_trace_ends == 0; waited += kGlance) {
     std::this_thread::sleep_for(kGlance);
   }
 }
@@ -92,7 +92,7 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
     } while (page.more() && page.steps_size() > 0 && out.good());
     if (!follow || farm::has_ended(job) || !out.good()) break;
     wait_for_more();
-    if (g_end != 0) return std::nullopt;
+    if (g_trace_ends != 0) return std::nullopt;
   }
   v1::LogsRequest logs;
   logs.set_job(id);

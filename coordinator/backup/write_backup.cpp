@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kTries = 20;
+constexpr int kReadTries = 20;
 
 /// A tar file in the making.
 class Tar {
@@ -144,7 +144,7 @@ class Writer {
   }
 
   core::Status add_log(const std::string& folder) {
-    for (int i = 0; i < kTries; ++i) {
+    for (int i = 0; i < kReadTries; ++i) {
       const auto names = log_files(folder);
       // Copied first, so that a log that is rewritten meanwhile leaves nothing in the tar file.
       const std::string copies = work_ + "/log";
@@ -193,7 +193,7 @@ class Writer {
   /// are copied once more. The last line may be cut, as after a crash.
   core::Status add_audit() {
     const std::string copies = work_ + "/audit";
-    for (int i = 0; i < kTries; ++i) {
+    for (int i = 0; i < kReadTries; ++i) {
       const auto files = audit_files();
       fs::remove_all(copies);
       fs::create_directories(copies);

@@ -12,8 +12,6 @@ std::string reason_of(const std::string& trouble) {
   return colon == std::string::npos ? trouble : trouble.substr(colon + 2);
 }
 
-constexpr JobId kJob{1};
-
 SchedulerOptions scheduler_options(const LocalPlan& plan) {
   SchedulerOptions options;
   options.scene_time = Duration{0};  // the threads share them

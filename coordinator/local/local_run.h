@@ -55,6 +55,8 @@ class LocalRun : private FilmStore::Owner {
   LocalOutcome outcome() const;
 
  private:
+  static constexpr JobId kJob{1};
+
   struct Task {
     core::Unit unit;
     LeaseId lease;

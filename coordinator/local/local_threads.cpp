@@ -10,8 +10,6 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr JobId kJob{1};
-
 /// Renders a unit and makes sure that the film is that unit's. What is thrown is its failure.
 core::Result<core::Film> render_unit(const FrameWork& work, const core::Unit& unit,
                                      const std::atomic<bool>& stop) {

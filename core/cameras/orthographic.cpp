@@ -10,8 +10,8 @@ namespace hyades::core {
 namespace {
 
 /// A pose made ready for rays.
-struct View {
-  explicit View(const CameraPose& pose)
+struct ParallelView {
+  explicit ParallelView(const CameraPose& pose)
       : axes(axes_along(pose.at - pose.from, pose.up)),
         from(pose.from),
         height(std::max(pose.height, 1e-30F)),
@@ -35,7 +35,7 @@ class OrthographicCamera : public Camera {
   bool rays_are_parallel() const override { return true; }
 
   Ray generate(const Vec2& film, const Vec2& lens, float time) const override {
-    const View view = views_.at(time);
+    const ParallelView view = views_.at(time);
     const Vec2 on_lens = view.lens.place(aperture_, lens);
     const float half_edge = 0.5F * view.height / resolution_.y;
     const Vec2 start =
@@ -51,7 +51,7 @@ class OrthographicCamera : public Camera {
   /// place is found by following that back to where the rays begin.
   std::optional<CameraConnection> connect(const Vec3& point, const Vec2& lens,
                                           float time) const override {
-    const View view = views_.at(time);
+    const ParallelView view = views_.at(time);
     const CameraAxes& axes = view.axes;
     const Vec3 to_point = point - view.from;
     const float depth = glm::dot(to_point, axes.forward);
@@ -77,29 +77,29 @@ class OrthographicCamera : public Camera {
 
   /// Of the middle of the lens: the same everywhere.
   PixelCone pixel_at(const Vec3& /*point*/, float time) const override {
-    const View view = views_.at(time);
+    const ParallelView view = views_.at(time);
     return {view.axes.forward, view.height / resolution_.y};
   }
 
   float depth_of(const Vec3& point, float time) const override {
-    const View view = views_.at(time);
+    const ParallelView view = views_.at(time);
     return glm::dot(point - view.from, view.axes.forward);
   }
 
  private:
-  static Vec3 direction_through(const View& view, const Vec2& on_lens) {
+  static Vec3 direction_through(const ParallelView& view, const Vec2& on_lens) {
     const Vec2 slope = -view.lens.inverse_focus * on_lens;
     return glm::normalize(view.axes.forward + slope.x * view.axes.right + slope.y * view.axes.up);
   }
 
   /// A pixel of the camera's plane is seen under the cosine.
-  float density(const View& view, const Vec3& direction) const {
+  float density(const ParallelView& view, const Vec3& direction) const {
     const float cosine = glm::dot(direction, view.axes.forward);
     const float edge = view.height / resolution_.y;
     return cosine > 0.0F ? 1.0F / (edge * edge * cosine) : 0.0F;
   }
 
-  ShutterViews<View> views_;
+  ShutterViews<ParallelView> views_;
   Vec2 resolution_;
   ApertureShape aperture_;
 };

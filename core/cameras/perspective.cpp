@@ -14,8 +14,8 @@ namespace {
 constexpr float kLeastCosine = 1e-4F;
 
 /// A pose made ready for rays.
-struct View {
-  explicit View(const CameraPose& pose)
+struct PerspectiveView {
+  explicit PerspectiveView(const CameraPose& pose)
       : axes(axes_along(pose.at - pose.from, pose.up)),
         from(pose.from),
         shift(2.0F * pose.shift),
@@ -37,7 +37,7 @@ class PerspectiveCamera : public Camera {
         aperture_(aperture) {}
 
   Ray generate(const Vec2& film, const Vec2& lens, float time) const override {
-    const View view = views_.at(time);
+    const PerspectiveView view = views_.at(time);
     const CameraAxes& axes = view.axes;
     // Both axes are measured in half heights, so pixels are square.
     const float to_plane = view.half_height / resolution_.y;
@@ -60,7 +60,7 @@ class PerspectiveCamera : public Camera {
 
   std::optional<CameraConnection> connect(const Vec3& point, const Vec2& lens,
                                           float time) const override {
-    const View view = views_.at(time);
+    const PerspectiveView view = views_.at(time);
     const CameraAxes& axes = view.axes;
     CameraConnection seen;
     seen.position = view.from;
@@ -85,13 +85,13 @@ class PerspectiveCamera : public Camera {
   }
 
   float film_density(const Vec3& direction, float time) const override {
-    const View view = views_.at(time);
+    const PerspectiveView view = views_.at(time);
     return density(view, glm::dot(direction, view.axes.forward));
   }
 
   /// From the middle of the lens.
   PixelCone pixel_at(const Vec3& point, float time) const override {
-    const View view = views_.at(time);
+    const PerspectiveView view = views_.at(time);
     const Vec3 to_point = point - view.from;
     const float distance = std::sqrt(glm::dot(to_point, to_point));
     if (!(distance > 0.0F)) return {view.axes.forward, 0.0F};
@@ -105,20 +105,20 @@ class PerspectiveCamera : public Camera {
   }
 
   float depth_of(const Vec3& point, float time) const override {
-    const View view = views_.at(time);
+    const PerspectiveView view = views_.at(time);
     return glm::dot(point - view.from, view.axes.forward);
   }
 
  private:
   /// The film lies at distance 1, where a pixel is `edge` wide; an area there is seen under the
   /// cosine and from 1 / cosine away.
-  float density(const View& view, float cosine) const {
+  float density(const PerspectiveView& view, float cosine) const {
     if (!(cosine > kLeastCosine)) return 0.0F;
     const float edge = 2.0F * view.half_height / resolution_.y;
     return 1.0F / (edge * edge * cosine * cosine * cosine);
   }
 
-  ShutterViews<View> views_;
+  ShutterViews<PerspectiveView> views_;
   Vec2 resolution_;
   ApertureShape aperture_;
 };

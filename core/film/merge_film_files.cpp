@@ -12,7 +12,7 @@ std::string size_text(const FilmInfo& info) {
   return fmt::format("{} x {}", info.width, info.height);
 }
 
-std::string rect_text(const PixelRect& r) {
+std::string region_text(const PixelRect& r) {
   return fmt::format("{} x {} at {}, {}", r.width(), r.height(), r.x0, r.y0);
 }
 
@@ -33,7 +33,7 @@ Status check_same_picture(const FilmInfo& a, const FilmInfo& b) {
     return differ("the number of samples per pixel", std::to_string(a.samples),
                   std::to_string(b.samples));
   }
-  if (a.crop != b.crop) return differ("the crop", rect_text(a.crop), rect_text(b.crop));
+  if (a.crop != b.crop) return differ("the crop", region_text(a.crop), region_text(b.crop));
   if (a.render_key != b.render_key) {
     return differ("the render key (what decides the pixels)", a.render_key, b.render_key);
   }

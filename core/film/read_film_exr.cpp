@@ -24,7 +24,8 @@ namespace hyades::core {
 namespace {
 
 constexpr uint32_t kExrMagic = 20000630;
-constexpr uint64_t kMaxExpansion = 4096;  // ZIP reaches 1032, half of the words may be left out
+constexpr uint64_t kMostPixelsPerByte =
+    4096;  // ZIP reaches 1032, half of the words may be left out
 constexpr ImageLimits kLimits{1 << 20, size_t{1} << 33U};
 
 const Error kNoFilm{"it is an OpenEXR file, but no film of Hyades (there is no part \"sums\")"};
@@ -115,7 +116,7 @@ Result<FilmFile> read_parts(std::span<const std::byte> bytes) {
   IdRows ids(layout, window, part_header.channels());
   Result<std::vector<WordChannel>> words = present_words(part_header.channels(), layout, ids);
   if (!words) return words.error();
-  if (film_memory(layout, window) / kMaxExpansion > bytes.size()) {
+  if (film_memory(layout, window) / kMostPixelsPerByte > bytes.size()) {
     return Error{fmt::format("it claims {} x {} pixels, which {} bytes cannot hold", window.width(),
                              window.height(), bytes.size())};
   }

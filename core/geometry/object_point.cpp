@@ -39,7 +39,7 @@ double vertex_motion_error(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return 2.0 * kRoundoff * std::max(size.x, std::max(size.y, size.z));
 }
 
-bool finite(const Vec3& v) { return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0.0F; }
+bool is_finite(const Vec3& v) { return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0.0F; }
 
 /// v made a unit vector; +y for a zero vector (degenerate triangles have no better normal).
 Vec3d unit(const Vec3d& v) {
@@ -59,7 +59,8 @@ void set_tangents(SurfacePoint& p, const Vec3d& dpdu, const Vec3d& dpdv) {
   p.dpdu = Vec3(dpdu);
   p.dpdv = Vec3(dpdv);
   const Vec3 cross = glm::cross(p.dpdu, p.dpdv);
-  if (finite(p.dpdu) && finite(p.dpdv) && glm::dot(cross, cross) > 0.0F && finite(cross)) return;
+  if (is_finite(p.dpdu) && is_finite(p.dpdv) && glm::dot(cross, cross) > 0.0F && is_finite(cross))
+    return;
   set_any_tangents(p);
 }
 
@@ -68,7 +69,7 @@ Vec3 shading_normal(const Vec3d& n, const Vec3& ng) {
   const double length2 = glm::dot(n, n);
   if (!(length2 > 0.0)) return ng;
   const Vec3 ns(n / std::sqrt(length2));
-  if (!finite(ns)) return ng;
+  if (!is_finite(ns)) return ng;
   return glm::dot(ns, ng) < 0.0F ? -ns : ns;
 }
 

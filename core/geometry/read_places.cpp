@@ -21,7 +21,7 @@ namespace {
 /// What a property means: its place in a row of floats.
 enum Slot : size_t { kX, kY, kZ, kScale, kSx, kSy, kSz, kQx, kQy, kQz, kQw, kMatrix, kSlots = 23 };
 
-constexpr std::array<const char*, kSlots> kNames{
+constexpr std::array<const char*, kSlots> kColumnNames{
     "x",   "y",   "z",   "scale", "scale_x", "scale_y", "scale_z", "qx",  "qy",  "qz",  "qw", "m00",
     "m01", "m02", "m03", "m10",   "m11",     "m12",     "m13",     "m20", "m21", "m22", "m23"};
 
@@ -34,9 +34,9 @@ class Given {
     Given given;
     for (const PlyProperty& p : vertices.properties) {
       if (p.is_list) return Error{"its vertices have lists, expected numbers only"};
-      const auto name = std::find(kNames.begin(), kNames.end(), p.name);
-      const auto slot = static_cast<size_t>(name - kNames.begin());
-      const bool first = name != kNames.end() && !std::exchange(given.seen_[slot], true);
+      const auto name = std::find(kColumnNames.begin(), kColumnNames.end(), p.name);
+      const auto slot = static_cast<size_t>(name - kColumnNames.begin());
+      const bool first = name != kColumnNames.end() && !std::exchange(given.seen_[slot], true);
       given.slots_.push_back(first ? slot : size_t{kSlots});
     }
     const auto all = [&](size_t from, size_t to) {
@@ -234,7 +234,7 @@ Bytes places_bytes(std::span<const PlaceMatrix> places) {
   std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                        std::to_string(places.size()) + "\n";
   for (size_t i = kMatrix; i < kSlots; ++i)
-    header += std::string("property float ") + kNames[i] + "\n";
+    header += std::string("property float ") + kColumnNames[i] + "\n";
   header += "end_header\n";
   constexpr size_t kRow = 12 * sizeof(float);
   const size_t size = header.size() + places.size() * kRow;

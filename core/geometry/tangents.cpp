@@ -39,7 +39,7 @@ Key key_of(const TriangleMesh& mesh, uint32_t vertex, bool winds_left) {
 }
 
 /// Unit, or zero.
-Vec3d unit(const Vec3d& v) {
+Vec3d unit_or_zero(const Vec3d& v) {
   const double length2 = glm::dot(v, v);
   return length2 > 0.0 ? v / std::sqrt(length2) : Vec3d(0.0);
 }
@@ -68,7 +68,7 @@ void compute_tangents(TriangleMesh& mesh) {
                         Vec3d(mesh.positions[t[2]])};
     // dp/du times the winding's size.
     const Vec3d along =
-        unit(((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * (winding < 0.0 ? -1.0 : 1.0));
+        unit_or_zero(((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * (winding < 0.0 ? -1.0 : 1.0));
     for (int k = 0; k < 3; ++k) {
       const auto [group, is_new] =
           groups.try_emplace(key_of(mesh, t[k], winding > 0.0), static_cast<uint32_t>(sums.size()));
@@ -76,15 +76,16 @@ void compute_tangents(TriangleMesh& mesh) {
       group_of[i][k] = group->second;
       if (winding == 0.0) continue;
       const Vec3d normal(mesh.normals[t[k]]);
-      const Vec3d next = unit(in_plane(p[(k + 1) % 3] - p[k], normal));
-      const Vec3d last = unit(in_plane(p[(k + 2) % 3] - p[k], normal));
+      const Vec3d next = unit_or_zero(in_plane(p[(k + 1) % 3] - p[k], normal));
+      const Vec3d last = unit_or_zero(in_plane(p[(k + 2) % 3] - p[k], normal));
       const float cosine = static_cast<float>(glm::clamp(glm::dot(next, last), -1.0, 1.0));
-      sums[group->second] += unit(in_plane(along, normal)) * static_cast<double>(acos(cosine));
+      sums[group->second] +=
+          unit_or_zero(in_plane(along, normal)) * static_cast<double>(acos(cosine));
     }
   }
   mesh.tangents.resize(count);
   for (size_t i = 0; i < count; ++i) {
-    for (int k = 0; k < 3; ++k) mesh.tangents[i][k] = Vec3(unit(sums[group_of[i][k]]));
+    for (int k = 0; k < 3; ++k) mesh.tangents[i][k] = Vec3(unit_or_zero(sums[group_of[i][k]]));
   }
 }
 

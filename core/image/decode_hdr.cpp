@@ -42,7 +42,7 @@ struct Cursor {
   }
 };
 
-struct Header {
+struct HdrHeader {
   int64_t width = 0;
   int64_t height = 0;
   bool bottom_up = false;
@@ -57,7 +57,7 @@ bool parse_number(std::string_view text, double& value) {
 }
 
 /// "-Y 512 +X 1024".
-Status parse_resolution(std::string_view text, Header& header) {
+Status parse_resolution(std::string_view text, HdrHeader& header) {
   const Error wrong{
       fmt::format("unknown picture size '{}'; expected '-Y height +X width'", text.substr(0, 60))};
   const auto axis = [&](std::string_view& rest, char& sign, char& name, int64_t& size) {
@@ -84,10 +84,10 @@ Status parse_resolution(std::string_view text, Header& header) {
   return {};
 }
 
-Result<Header> parse_header(Cursor& cursor) {
+Result<HdrHeader> parse_header(Cursor& cursor) {
   constexpr std::string_view kFormat = "FORMAT=";
   constexpr std::string_view kExposure = "EXPOSURE=";
-  Header header;
+  HdrHeader header;
   for (int lines = 0;; ++lines) {
     const auto line = cursor.line();
     if (!line || lines > 1000) return Error{"the header does not end; the file is truncated"};
@@ -162,9 +162,9 @@ bool read_row(Cursor& cursor, std::vector<Rgbe>& row) {
 
 Result<Image> decode_hdr(std::span<const std::byte> file, bool srgb, const ImageLimits& limits) {
   Cursor cursor{file};
-  const Result<Header> parsed = parse_header(cursor);
+  const Result<HdrHeader> parsed = parse_header(cursor);
   if (!parsed) return parsed.error();
-  const Header& header = *parsed;
+  const HdrHeader& header = *parsed;
   if (const Status size = check_image_size(header.width, header.height, 3, limits); !size) {
     return size.error();
   }

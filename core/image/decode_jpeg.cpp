@@ -19,7 +19,7 @@ constexpr int kMaxScans = 200;
 
 /// All state of one decoding. libjpeg reports errors through error_exit, which longjmps; no C++
 /// object lives in the functions that it passes over.
-struct Reader {
+struct JpegReader {
   jpeg_decompress_struct jpeg{};
   jpeg_error_mgr errors{};
   jpeg_progress_mgr progress{};
@@ -27,15 +27,15 @@ struct Reader {
   char message[JMSG_LENGTH_MAX] = "";
   bool created = false;
 
-  ~Reader() {
+  ~JpegReader() {
     if (created) jpeg_destroy_decompress(&jpeg);
   }
 };
 
-Reader& reader_of(j_common_ptr info) { return *static_cast<Reader*>(info->client_data); }
+JpegReader& reader_of(j_common_ptr info) { return *static_cast<JpegReader*>(info->client_data); }
 
 [[noreturn]] void on_error(j_common_ptr info) {
-  Reader& reader = reader_of(info);
+  JpegReader& reader = reader_of(info);
   info->err->format_message(info, reader.message);
   std::longjmp(reader.jump, 1);
 }
@@ -59,7 +59,7 @@ void on_progress(j_common_ptr info) {
   if (jpeg->input_scan_number > kMaxScans) ERREXIT(jpeg, JERR_BAD_PROGRESSION);
 }
 
-bool read_header(Reader& reader, std::span<const std::byte> file) {
+bool read_header(JpegReader& reader, std::span<const std::byte> file) {
   if (setjmp(reader.jump) != 0) return false;
   jpeg_create_decompress(&reader.jpeg);
   reader.created = true;
@@ -70,7 +70,7 @@ bool read_header(Reader& reader, std::span<const std::byte> file) {
   return true;
 }
 
-bool read_rows(Reader& reader, Image& image, std::vector<JSAMPLE>& row, const float* table) {
+bool read_rows(JpegReader& reader, Image& image, std::vector<JSAMPLE>& row, const float* table) {
   if (setjmp(reader.jump) != 0) return false;
   reader.jpeg.dct_method = JDCT_ISLOW;  // the exact one, the same with and without SIMD
   jpeg_start_decompress(&reader.jpeg);
@@ -88,7 +88,7 @@ bool read_rows(Reader& reader, Image& image, std::vector<JSAMPLE>& row, const fl
 }  // namespace
 
 Result<Image> decode_jpeg(std::span<const std::byte> file, bool srgb, const ImageLimits& limits) {
-  Reader reader;
+  JpegReader reader;
   reader.jpeg.err = jpeg_std_error(&reader.errors);
   reader.errors.error_exit = on_error;
   reader.errors.emit_message = on_message;

@@ -15,7 +15,7 @@
 namespace hyades::core {
 namespace {
 
-struct Header {
+struct NetpbmHeader {
   int channels = 0;
   int64_t width = 0;
   int64_t height = 0;
@@ -53,8 +53,8 @@ bool parse(std::string_view word, T& value) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
-Result<Header> parse_header(std::span<const std::byte> file) {
-  Header header;
+Result<NetpbmHeader> parse_header(std::span<const std::byte> file) {
+  NetpbmHeader header;
   header.channels = file[1] == std::byte{'6'} || file[1] == std::byte{'F'} ? 3 : 1;
   header.pixels = file.subspan(2);
   const auto width = next_word(header.pixels);
@@ -70,7 +70,7 @@ Result<Header> parse_header(std::span<const std::byte> file) {
   return header;
 }
 
-Image image_for(const Header& header) {
+Image image_for(const NetpbmHeader& header) {
   return make_image(static_cast<int>(header.width), static_cast<int>(header.height),
                     header.channels == 3 ? std::vector<std::string>{"R", "G", "B"}
                                          : std::vector<std::string>{"Y"});
@@ -79,7 +79,7 @@ Image image_for(const Header& header) {
 }  // namespace
 
 Result<Image> decode_netpbm(std::span<const std::byte> file, bool srgb, const ImageLimits& limits) {
-  const Result<Header> header = parse_header(file);
+  const Result<NetpbmHeader> header = parse_header(file);
   if (!header) return header.error();
   if (!(header->last >= 1.0 && header->last <= 65535.0) ||
       header->last != std::floor(header->last)) {
@@ -104,7 +104,7 @@ Result<Image> decode_netpbm(std::span<const std::byte> file, bool srgb, const Im
 }
 
 Result<Image> decode_pfm(std::span<const std::byte> file, bool srgb, const ImageLimits& limits) {
-  const Result<Header> header = parse_header(file);
+  const Result<NetpbmHeader> header = parse_header(file);
   if (!header) return header.error();
   if (header->last == 0.0) return Error{"the scale is 0"};
   if (const Status size = check_image_size(header->width, header->height, header->channels, limits);

@@ -12,7 +12,7 @@ namespace {
 
 /// All state of one decoding. libpng reports errors by longjmp, which must not pass over living C++
 /// objects: they live here, outside the functions that call setjmp.
-struct Reader {
+struct PngReader {
   std::span<const std::byte> file;
   size_t at = 0;
   char message[256] = "";
@@ -21,25 +21,25 @@ struct Reader {
   int passes = 1;
   std::vector<png_byte> rows;  ///< one row; all of them where the file is interlaced
 
-  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-void on_error(png_structp png, png_const_charp message) {
-  auto* reader = static_cast<Reader*>(png_get_error_ptr(png));
+void on_png_read_error(png_structp png, png_const_charp message) {
+  auto* reader = static_cast<PngReader*>(png_get_error_ptr(png));
   std::strncpy(reader->message, message, sizeof(reader->message) - 1);
   png_longjmp(png, 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_png_read_warning(png_structp, png_const_charp) {}
 
 void on_read(png_structp png, png_bytep out, size_t count) {
-  auto* reader = static_cast<Reader*>(png_get_io_ptr(png));
+  auto* reader = static_cast<PngReader*>(png_get_io_ptr(png));
   if (count > reader->file.size() - reader->at) png_error(png, "the file is truncated");
   std::memcpy(out, reader->file.data() + reader->at, count);
   reader->at += count;
 }
 
-bool read_header(Reader& reader) {
+bool read_header(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_read_fn(reader.png, &reader, on_read);
   // Our own limits are checked as soon as the size is known.
@@ -52,7 +52,7 @@ bool read_header(Reader& reader) {
 }
 
 /// Asks for 8 or 16 bits of grey, grey + alpha, RGB or RGBA, and for whole rows.
-bool set_up_rows(Reader& reader) {
+bool set_up_rows(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_expand(reader.png);  // palettes, 1-4 bits of grey, transparent colours
   png_set_swap(reader.png);    // 16 bits in the order of this machine
@@ -87,7 +87,7 @@ void store_row(const RowSink& sink, const png_byte* row, int y) noexcept {
   }
 }
 
-bool read_rows(Reader& reader, const RowSink& sink, size_t row_bytes) {
+bool read_rows(PngReader& reader, const RowSink& sink, size_t row_bytes) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   const int height = sink.image->height;
   for (int pass = 0; pass < reader.passes; ++pass) {
@@ -105,9 +105,10 @@ bool read_rows(Reader& reader, const RowSink& sink, size_t row_bytes) {
 }  // namespace
 
 Result<Image> decode_png(std::span<const std::byte> file, bool srgb, const ImageLimits& limits) {
-  Reader reader;
+  PngReader reader;
   reader.file = file;
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_png_read_error,
+                                      on_png_read_warning);
   if (reader.png != nullptr) reader.info = png_create_info_struct(reader.png);
   if (reader.info == nullptr) return Error{"not enough memory"};
   if (!read_header(reader)) return Error{reader.message};

@@ -11,19 +11,19 @@ namespace {
 
 constexpr size_t kHeaderSize = 14;
 
-using Codes = std::array<uint8_t, 4>;  ///< red, green, blue, alpha
+using QoiCodes = std::array<uint8_t, 4>;  ///< red, green, blue, alpha
 
-size_t place_of(const Codes& p) {
+size_t place_of(const QoiCodes& p) {
   return (size_t{p[0]} * 3 + size_t{p[1]} * 5 + size_t{p[2]} * 7 + size_t{p[3]} * 11) % 64;
 }
 
 /// The pixels of a file one after another, unpacked.
-class Pixels {
+class QoiPixels {
  public:
-  explicit Pixels(std::span<const std::byte> left) : left_(left) {}
+  explicit QoiPixels(std::span<const std::byte> left) : left_(left) {}
 
   /// False where the file ends before.
-  bool next(Codes& out) {
+  bool next(QoiCodes& out) {
     if (run_ == 0 && !read()) return false;
     if (run_ > 0) --run_;
     out = last_;
@@ -67,8 +67,8 @@ class Pixels {
   }
 
   std::span<const std::byte> left_;
-  Codes last_ = {0, 0, 0, 255};
-  std::array<Codes, 64> seen_ = {};
+  QoiCodes last_ = {0, 0, 0, 255};
+  std::array<QoiCodes, 64> seen_ = {};
   int run_ = 0;
 };
 
@@ -92,14 +92,14 @@ Result<Image> decode_qoi(std::span<const std::byte> file, bool srgb, const Image
   // A byte says 62 pixels at most.
   const uint64_t count = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
   if (file.size() - kHeaderSize < count / 62) return Error{"the file is truncated"};
-  Pixels pixels(file.subspan(kHeaderSize));
+  QoiPixels pixels(file.subspan(kHeaderSize));
   std::vector<std::string> names = {"R", "G", "B"};
   if (channels == 4) names.emplace_back("A");
   Image image = make_image(static_cast<int>(width), static_cast<int>(height), names);
   const float* linear = linear_of_8_bits(srgb && space == 0);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
-      Codes codes;
+      QoiCodes codes;
       if (!pixels.next(codes)) {
         return Error{fmt::format("row {} of {} is damaged or missing", y + 1, image.height)};
       }

@@ -10,9 +10,9 @@
 namespace hyades::core {
 namespace {
 
-constexpr size_t kHeaderSize = 18;
+constexpr size_t kTgaHeaderSize = 18;
 
-struct Header {
+struct TgaHeader {
   int id_length = 0;
   bool has_palette = false;
   int kind = 0;  ///< 1 palette, 2 colour, 3 grey
@@ -27,10 +27,10 @@ struct Header {
   bool top_down = false;
 };
 
-Header parse_header(std::span<const std::byte> file) {
+TgaHeader parse_tga_header(std::span<const std::byte> file) {
   const auto byte = [&](size_t at) { return std::to_integer<int>(file[at]); };
   const auto word = [&](size_t at) { return byte(at) | byte(at + 1) << 8; };
-  Header header;
+  TgaHeader header;
   header.id_length = byte(0);
   header.has_palette = byte(1) == 1;
   header.kind = byte(2) & 7;
@@ -49,12 +49,12 @@ Header parse_header(std::span<const std::byte> file) {
 bool is_color_depth(int bits) { return bits == 15 || bits == 16 || bits == 24 || bits == 32; }
 
 /// Codes of a pixel: red, green, blue, alpha; grey ones have the same three.
-using Codes = std::array<uint8_t, 4>;
+using TgaCodes = std::array<uint8_t, 4>;
 
 uint8_t from_5_bits(int code) { return static_cast<uint8_t>((code * 255 + 15) / 31); }
 
 /// A colour as it lies in the file, blue first.
-Codes color_of(const std::byte* at, int bits) {
+TgaCodes color_of(const std::byte* at, int bits) {
   const auto byte = [&](int i) { return std::to_integer<uint8_t>(at[i]); };
   if (bits <= 16) {
     const int word = byte(0) | byte(1) << 8;
@@ -64,16 +64,17 @@ Codes color_of(const std::byte* at, int bits) {
 }
 
 /// The pixels of a file one after another, unpacked.
-class Pixels {
+class TgaPixels {
  public:
-  Pixels(const Header& header, std::span<const std::byte> palette, std::span<const std::byte> left)
+  TgaPixels(const TgaHeader& header, std::span<const std::byte> palette,
+            std::span<const std::byte> left)
       : header_(header),
         palette_(palette),
         left_(left),
         size_(static_cast<size_t>(header.bits + 7) / 8) {}
 
   /// False where the file ends before, or names a colour that its palette lacks.
-  bool next(Codes& codes) {
+  bool next(TgaCodes& codes) {
     if (header_.packed) {
       if (count_ == 0) {
         if (left_.empty()) return false;
@@ -97,7 +98,7 @@ class Pixels {
   }
 
  private:
-  bool decode(Codes& codes) const {
+  bool decode(TgaCodes& codes) const {
     const auto first = std::to_integer<uint8_t>(left_[0]);
     if (header_.kind == 2) {
       codes = color_of(left_.data(), header_.bits);
@@ -116,26 +117,26 @@ class Pixels {
     return true;
   }
 
-  const Header& header_;
+  const TgaHeader& header_;
   std::span<const std::byte> palette_;
   std::span<const std::byte> left_;
   size_t size_;    ///< bytes of a pixel
   int count_ = 0;  ///< pixels left of a packet
   bool is_run_ = false;
   bool run_is_known_ = false;
-  Codes run_ = {};
+  TgaCodes run_ = {};
 };
 
 }  // namespace
 
 bool looks_like_tga(std::span<const std::byte> file) {
-  if (file.size() < kHeaderSize) return false;
+  if (file.size() < kTgaHeaderSize) return false;
   const int type = std::to_integer<int>(file[2]);
   if (!((type >= 1 && type <= 3) || (type >= 9 && type <= 11))) return false;
   if (std::to_integer<int>(file[1]) > 1 || (std::to_integer<int>(file[17]) & 0xC0) != 0) {
     return false;
   }
-  const Header header = parse_header(file);
+  const TgaHeader header = parse_tga_header(file);
   if (header.width == 0 || header.height == 0) return false;
   if (header.kind == 2) return is_color_depth(header.bits);
   if (header.bits != 8 && header.bits != 16) return false;
@@ -144,7 +145,7 @@ bool looks_like_tga(std::span<const std::byte> file) {
 
 Result<Image> decode_tga(std::span<const std::byte> file, bool srgb, const ImageLimits& limits) {
   if (!looks_like_tga(file)) return Error{"the header is damaged"};
-  const Header header = parse_header(file);
+  const TgaHeader header = parse_tga_header(file);
   const bool grey = header.kind == 3;
   const bool alpha =
       grey ? header.bits == 16 : (header.kind == 1 ? header.palette_bits : header.bits) == 32;
@@ -156,7 +157,7 @@ Result<Image> decode_tga(std::span<const std::byte> file, bool srgb, const Image
                                   ? static_cast<size_t>(header.palette_length) *
                                         (static_cast<size_t>(header.palette_bits + 7) / 8)
                                   : 0;
-  const size_t begin = kHeaderSize + static_cast<size_t>(header.id_length) + palette_size;
+  const size_t begin = kTgaHeaderSize + static_cast<size_t>(header.id_length) + palette_size;
   // A packet of a run says 128 pixels at most.
   const uint64_t pixel_count = uint64_t(header.width) * uint64_t(header.height);
   const uint64_t pixel_size = static_cast<uint64_t>(header.bits + 7) / 8;
@@ -164,7 +165,7 @@ Result<Image> decode_tga(std::span<const std::byte> file, bool srgb, const Image
       header.packed ? (pixel_count + 127) / 128 * (1 + pixel_size) : pixel_count * pixel_size;
   if (file.size() < begin || file.size() - begin < least) return Error{"the file is truncated"};
 
-  Pixels pixels(header, file.subspan(begin - palette_size, palette_size), file.subspan(begin));
+  TgaPixels pixels(header, file.subspan(begin - palette_size, palette_size), file.subspan(begin));
   std::vector<std::string> names =
       grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
   if (alpha) names.emplace_back("A");
@@ -173,7 +174,7 @@ Result<Image> decode_tga(std::span<const std::byte> file, bool srgb, const Image
   for (int row = 0; row < header.height; ++row) {
     const int y = header.top_down ? row : header.height - 1 - row;
     for (int column = 0; column < header.width; ++column) {
-      Codes codes;
+      TgaCodes codes;
       if (!pixels.next(codes)) {
         return Error{fmt::format("row {} of {} is damaged or missing", row + 1, header.height)};
       }

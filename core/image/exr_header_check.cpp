@@ -15,7 +15,7 @@ constexpr int kMaxParts = 1000;
 constexpr int kMaxAttributes = 100'000;  // of all parts
 
 /// Reads the header's little-endian fields.
-struct Cursor {
+struct HeaderCursor {
   std::span<const std::byte> left;
 
   std::optional<std::string_view> name() {
@@ -47,7 +47,7 @@ struct Part {
 
 int64_t count_channels(std::span<const std::byte> value) {
   // Each: a name, then 16 bytes; the list ends with an empty name.
-  Cursor cursor{value};
+  HeaderCursor cursor{value};
   int64_t count = 0;
   for (auto name = cursor.name(); name && !name->empty(); name = cursor.name()) {
     if (cursor.left.size() < 16) break;
@@ -59,7 +59,7 @@ int64_t count_channels(std::span<const std::byte> value) {
 
 void note(std::string_view name, std::string_view type, std::span<const std::byte> value,
           Part& part) {
-  Cursor cursor{value};
+  HeaderCursor cursor{value};
   if (name == "dataWindow" && type == "box2i" && value.size() == 16) {
     const int64_t x0 = *cursor.number();
     const int64_t y0 = *cursor.number();
@@ -92,7 +92,7 @@ Status check_part(const Part& part, size_t file_size, const ImageLimits& limits)
 
 Status check_exr_header(std::span<const std::byte> file, const ImageLimits& limits) {
   const Error truncated{"the file is truncated"};
-  Cursor cursor{file};
+  HeaderCursor cursor{file};
   cursor.number();  // the magic number
   const auto version = cursor.number();
   if (!version) return truncated;

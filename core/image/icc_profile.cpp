@@ -9,7 +9,7 @@
 namespace hyades::core {
 namespace {
 
-using Bytes = std::vector<uint8_t>;
+using IccBytes = std::vector<uint8_t>;
 /// The format's numbers with a fraction: signed, 16 bits behind the point (ICC.1:2010, 4.6).
 using Fixed = int32_t;
 
@@ -28,22 +28,22 @@ constexpr std::array<Fixed, 1> kNoCurve = {65536};
 constexpr uint32_t kHeaderBytes = 128;
 constexpr uint32_t kVersion = 0x04300000;
 
-void add(Bytes& bytes, std::string_view text) {
+void add(IccBytes& bytes, std::string_view text) {
   for (const char letter : text) bytes.push_back(static_cast<uint8_t>(letter));
 }
 
-void add(Bytes& bytes, uint32_t number) {
+void add(IccBytes& bytes, uint32_t number) {
   for (unsigned shift = 32; shift > 0; shift -= 8) {
     bytes.push_back(static_cast<uint8_t>(number >> (shift - 8)));
   }
 }
 
-void add(Bytes& bytes, std::span<const Fixed> numbers) {
+void add(IccBytes& bytes, std::span<const Fixed> numbers) {
   for (const Fixed number : numbers) add(bytes, static_cast<uint32_t>(number));
 }
 
-Bytes element(std::string_view type, std::span<const Fixed> numbers) {
-  Bytes bytes;
+IccBytes element(std::string_view type, std::span<const Fixed> numbers) {
+  IccBytes bytes;
   add(bytes, type);
   add(bytes, 0);
   add(bytes, numbers);
@@ -51,8 +51,8 @@ Bytes element(std::string_view type, std::span<const Fixed> numbers) {
 }
 
 /// parametricCurveType (ICC.1:2010, 10.15): function 3 is the sRGB curve's form, 0 a power.
-Bytes curve(uint32_t function, std::span<const Fixed> numbers) {
-  Bytes bytes;
+IccBytes curve(uint32_t function, std::span<const Fixed> numbers) {
+  IccBytes bytes;
   add(bytes, "para");
   add(bytes, 0);
   add(bytes, function << 16U);
@@ -61,8 +61,8 @@ Bytes curve(uint32_t function, std::span<const Fixed> numbers) {
 }
 
 /// multiLocalizedUnicodeType (10.13) with one text, in English.
-Bytes text(std::string_view ascii) {
-  Bytes bytes;
+IccBytes text(std::string_view ascii) {
+  IccBytes bytes;
   add(bytes, "mluc");
   add(bytes, 0);
   add(bytes, 1);
@@ -78,8 +78,8 @@ Bytes text(std::string_view ascii) {
 }
 
 /// ICC.1:2010, 7.2; without a date, as files are to be the same whenever they are made.
-Bytes header(uint32_t size) {
-  Bytes bytes;
+IccBytes header(uint32_t size) {
+  IccBytes bytes;
   add(bytes, size);
   add(bytes, 0);
   add(bytes, kVersion);
@@ -97,8 +97,8 @@ Bytes header(uint32_t size) {
 std::vector<uint8_t> icc_profile(ColorTag tag) {
   if (tag == ColorTag::none) return {};
   const bool srgb = tag == ColorTag::srgb;
-  const Bytes tone = srgb ? curve(3, kSrgbCurve) : curve(0, kNoCurve);
-  const std::pair<std::string_view, Bytes> tags[] = {
+  const IccBytes tone = srgb ? curve(3, kSrgbCurve) : curve(0, kNoCurve);
+  const std::pair<std::string_view, IccBytes> tags[] = {
       {"desc", text(srgb ? "sRGB (Hyades)" : "Linear Rec.709 (Hyades)")},
       {"cprt", text("No copyright, use freely")},
       {"wtpt", element("XYZ ", kD50)},
@@ -112,8 +112,8 @@ std::vector<uint8_t> icc_profile(ColorTag tag) {
   };
   constexpr uint32_t kTags = std::size(tags);
   const uint32_t data_at = kHeaderBytes + 4 + 12 * kTags;
-  Bytes table;
-  Bytes data;
+  IccBytes table;
+  IccBytes data;
   add(table, kTags);
   uint32_t at = data_at;
   for (const auto& [name, value] : tags) {
@@ -127,7 +127,7 @@ std::vector<uint8_t> icc_profile(ColorTag tag) {
     add(table, at);
     add(table, static_cast<uint32_t>(value.size()));
   }
-  Bytes profile = header(data_at + static_cast<uint32_t>(data.size()));
+  IccBytes profile = header(data_at + static_cast<uint32_t>(data.size()));
   profile.insert(profile.end(), table.begin(), table.end());
   profile.insert(profile.end(), data.begin(), data.end());
   return profile;

@@ -20,7 +20,7 @@ namespace {
 constexpr size_t kLongestComment = 65533;  ///< bytes of a marker
 
 /// All state of one encoding; see decode_jpeg.cpp about longjmp.
-struct Writer {
+struct JpegWriter {
   jpeg_compress_struct jpeg{};
   jpeg_error_mgr errors{};
   std::jmp_buf jump;
@@ -29,14 +29,14 @@ struct Writer {
   unsigned long size = 0;
   bool created = false;
 
-  ~Writer() {
+  ~JpegWriter() {
     if (created) jpeg_destroy_compress(&jpeg);
     std::free(file);
   }
 };
 
-[[noreturn]] void on_error(j_common_ptr info) {
-  auto& writer = *static_cast<Writer*>(info->client_data);
+[[noreturn]] void on_jpeg_error(j_common_ptr info) {
+  auto& writer = *static_cast<JpegWriter*>(info->client_data);
   info->err->format_message(info, writer.message);
   std::longjmp(writer.jump, 1);
 }
@@ -47,7 +47,7 @@ struct Said {
   std::vector<uint8_t> profile;
 };
 
-bool encode(Writer& writer, const Codes& codes, int width, int height, int quality,
+bool encode(JpegWriter& writer, const Codes& codes, int width, int height, int quality,
             const Said& said) {
   if (setjmp(writer.jump) != 0) return false;
   jpeg_create_compress(&writer.jpeg);
@@ -92,9 +92,9 @@ Status write_jpeg(const std::string& path, const Image& image, int quality,
   const std::string context = "cannot write " + path;
   const Result<Codes> codes = encode_codes(image, false);
   if (!codes) return codes.error().in(context);
-  Writer writer;
+  JpegWriter writer;
   writer.jpeg.err = jpeg_std_error(&writer.errors);
-  writer.errors.error_exit = on_error;
+  writer.errors.error_exit = on_jpeg_error;
   writer.jpeg.client_data = &writer;
   const Said said{metadata_lines(metadata).substr(0, kLongestComment), icc_profile(color)};
   if (!encode(writer, *codes, image.width, image.height, std::clamp(quality, 1, 100), said)) {

@@ -16,23 +16,23 @@ namespace hyades::core {
 namespace {
 
 /// All state of one encoding: libpng's longjmp must not pass over living C++ objects.
-struct Writer {
+struct PngWriter {
   png_structp png = nullptr;
   png_infop info = nullptr;
   char message[256] = "";
   std::vector<png_byte> file;
   std::vector<png_text> texts;
 
-  ~Writer() { png_destroy_write_struct(&png, &info); }
+  ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
-void on_error(png_structp png, png_const_charp message) {
-  auto* writer = static_cast<Writer*>(png_get_error_ptr(png));
+void on_png_error(png_structp png, png_const_charp message) {
+  auto* writer = static_cast<PngWriter*>(png_get_error_ptr(png));
   std::strncpy(writer->message, message, sizeof(writer->message) - 1);
   png_longjmp(png, 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_png_warning(png_structp, png_const_charp) {}
 
 /// Appends; false where there is no memory (an exception must not enter libpng).
 bool append(std::vector<png_byte>& file, const png_byte* bytes, size_t count) noexcept {
@@ -45,13 +45,13 @@ bool append(std::vector<png_byte>& file, const png_byte* bytes, size_t count) no
 }
 
 void on_write(png_structp png, png_bytep bytes, size_t count) {
-  auto* writer = static_cast<Writer*>(png_get_io_ptr(png));
+  auto* writer = static_cast<PngWriter*>(png_get_io_ptr(png));
   if (!append(writer->file, bytes, count)) png_error(png, "not enough memory");
 }
 
 void on_flush(png_structp) {}
 
-void tell_color(Writer& writer, ColorTag color) {
+void tell_color(PngWriter& writer, ColorTag color) {
   if (color == ColorTag::srgb) png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (color == ColorTag::linear) {
     png_set_gAMA_fixed(writer.png, writer.info, PNG_FP_1);
@@ -61,7 +61,7 @@ void tell_color(Writer& writer, ColorTag color) {
   }
 }
 
-bool encode(Writer& writer, const Codes& codes, png_uint_32 width, png_uint_32 height,
+bool encode(PngWriter& writer, const Codes& codes, png_uint_32 width, png_uint_32 height,
             ColorTag tag) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
   png_set_write_fn(writer.png, &writer, on_write, on_flush);
@@ -92,7 +92,7 @@ bool is_ascii(const std::string& text) {
 }
 
 /// tEXt; iTXt (UTF-8) where the value is not ASCII.
-Status add_texts(Writer& writer, const ImageMetadata& metadata) {
+Status add_texts(PngWriter& writer, const ImageMetadata& metadata) {
   for (const auto& [name, value] : metadata) {
     const bool spaced = !name.empty() && (name.front() == ' ' || name.back() == ' ');
     if (name.empty() || name.size() > 79 || spaced || !is_ascii(name)) {
@@ -114,9 +114,10 @@ Result<Bytes> encode_png(const Image& image, const ImageMetadata& metadata,
                          const CodeOptions& options) {
   const Result<Codes> codes = encode_codes(image, true, options.bits);
   if (!codes) return codes.error();
-  const auto writer = std::make_shared<Writer>();
+  const auto writer = std::make_shared<PngWriter>();
   if (const Status status = add_texts(*writer, metadata); !status) return status.error();
-  writer->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, writer.get(), on_error, on_warning);
+  writer->png =
+      png_create_write_struct(PNG_LIBPNG_VER_STRING, writer.get(), on_png_error, on_png_warning);
   if (writer->png != nullptr) writer->info = png_create_info_struct(writer->png);
   if (writer->info == nullptr) return Error{"not enough memory"};
   if (!encode(*writer, *codes, static_cast<png_uint_32>(image.width),

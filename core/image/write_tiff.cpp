@@ -18,7 +18,7 @@ namespace {
 constexpr size_t kStripBytes = 65536;
 
 /// Keeps the first complaint; libtiff would print it.
-int on_error(TIFF*, void* user_data, const char*, const char* format, va_list arguments) {
+int on_tiff_error(TIFF*, void* user_data, const char*, const char* format, va_list arguments) {
   auto& message = *static_cast<std::string*>(user_data);
   char text[256] = "";
   std::vsnprintf(text, sizeof(text), format, arguments);
@@ -26,15 +26,15 @@ int on_error(TIFF*, void* user_data, const char*, const char* format, va_list ar
   return 1;
 }
 
-int on_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
+int on_tiff_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
 
 using Handle = std::unique_ptr<TIFF, void (*)(TIFF*)>;
 
 Handle open_tiff(const std::string& path, std::string& message) {
   const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
                                                                              TIFFOpenOptionsFree);
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), on_error, &message);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), on_warning, nullptr);
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), on_tiff_error, &message);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), on_tiff_warning, nullptr);
   return {TIFFOpenExt(path.c_str(), "w", options.get()), TIFFClose};
 }
 

@@ -223,7 +223,7 @@ void read_principled(MapReader& reader, MaterialDesc& material) {
   }
 }
 
-const std::array<TypeRow<MaterialDesc>, 14> kTypes = {{
+const std::array<TypeRow<MaterialDesc>, 14> kMaterialTypes = {{
     {"lambert", read_lambert},
     {"principled", read_principled},
     {"dielectric", read_dielectric},
@@ -242,7 +242,7 @@ const std::array<TypeRow<MaterialDesc>, 14> kTypes = {{
 
 }  // namespace
 
-std::vector<std::string> material_types() { return type_names<MaterialDesc>(kTypes); }
+std::vector<std::string> material_types() { return type_names<MaterialDesc>(kMaterialTypes); }
 
 void read_material(ReadContext& context, const YamlNode& node, const std::string& name,
                    const std::string& what, const std::string& path) {
@@ -252,7 +252,7 @@ void read_material(ReadContext& context, const YamlNode& node, const std::string
   material.name = name;
   material.where = node.where;
   reader.find("like");
-  if (!read_by_type<MaterialDesc>(reader, "type", "materials", material, kTypes)) return;
+  if (!read_by_type<MaterialDesc>(reader, "type", "materials", material, kMaterialTypes)) return;
   reader.finish();
   context.job.materials.push_back(std::move(material));
 }

@@ -13,8 +13,8 @@ const std::array<std::string, 9> kMappings = {
 const std::array<std::string, 2> kSpaces = {"object", "world"};
 const std::array<std::string, 3> kMetrics = {"euclidean", "manhattan", "chebyshev"};
 const std::array<std::string, 4> kFeatures = {"f1", "f2", "edges", "id"};
-const std::array<std::string, 5> kShapes = {"linear", "radial", "cylindrical", "spherical",
-                                            "angular"};
+const std::array<std::string, 5> kPatternShapes = {"linear", "radial", "cylindrical", "spherical",
+                                                   "angular"};
 
 bool projects(const std::string& type) {
   return type == "planar" || type == "spherical" || type == "cylindrical" || type == "triplanar";
@@ -71,7 +71,7 @@ std::span<const std::string> mapping_names() { return kMappings; }
 std::span<const std::string> mapping_space_names() { return kSpaces; }
 std::span<const std::string> cell_metric_names() { return kMetrics; }
 std::span<const std::string> cell_feature_names() { return kFeatures; }
-std::span<const std::string> gradient_shape_names() { return kShapes; }
+std::span<const std::string> gradient_shape_names() { return kPatternShapes; }
 
 void read_mapping(MapReader& reader, TextureDesc& texture) {
   const YamlNode* node = reader.find("mapping");
@@ -141,7 +141,7 @@ void read_lines(MapReader& reader, TextureDesc& texture) {
 
 void read_gradient(MapReader& reader, TextureDesc& texture) {
   read_two_colors(reader, texture);
-  reader.choice("shape", texture.shape, kShapes);
+  reader.choice("shape", texture.shape, kPatternShapes);
 }
 
 }  // namespace hyades::core

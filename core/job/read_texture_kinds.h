@@ -24,7 +24,7 @@ void read_gradient(MapReader& reader, TextureDesc& texture);
 // What becomes of other textures.
 void read_product(MapReader& reader, TextureDesc& texture);
 void read_pair(MapReader& reader, TextureDesc& texture);
-void read_mix(MapReader& reader, TextureDesc& texture);
+void read_texture_mix(MapReader& reader, TextureDesc& texture);
 void read_invert(MapReader& reader, TextureDesc& texture);
 void read_remap(MapReader& reader, TextureDesc& texture);
 void read_power(MapReader& reader, TextureDesc& texture);

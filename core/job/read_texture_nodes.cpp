@@ -68,7 +68,7 @@ void read_pair(MapReader& reader, TextureDesc& texture) {
   reader.color_input("b", texture.b, kNotNegative);
 }
 
-void read_mix(MapReader& reader, TextureDesc& texture) {
+void read_texture_mix(MapReader& reader, TextureDesc& texture) {
   read_pair(reader, texture);
   reader.scalar_input("amount", texture.amount, kUnitInterval);
 }

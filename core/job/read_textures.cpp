@@ -63,7 +63,7 @@ void read_vertex_color(MapReader& reader, TextureDesc& texture) {
   reader.choice("channel", texture.channel, channel_names());
 }
 
-const std::array<TypeRow<TextureDesc>, 30> kTypes = {{
+const std::array<TypeRow<TextureDesc>, 30> kTextureTypes = {{
     {"constant", read_constant},
     {"image", read_image},
     {"vertex-color", read_vertex_color},
@@ -86,7 +86,7 @@ const std::array<TypeRow<TextureDesc>, 30> kTypes = {{
     {"divide", read_pair},
     {"min", read_pair},
     {"max", read_pair},
-    {"mix", read_mix},
+    {"mix", read_texture_mix},
     {"invert", read_invert},
     {"remap", read_remap},
     {"power", read_power},
@@ -98,7 +98,7 @@ const std::array<TypeRow<TextureDesc>, 30> kTypes = {{
 
 }  // namespace
 
-std::vector<std::string> texture_types() { return type_names<TextureDesc>(kTypes); }
+std::vector<std::string> texture_types() { return type_names<TextureDesc>(kTextureTypes); }
 std::span<const std::string> color_space_names() { return kColorSpaces; }
 std::span<const std::string> wrap_names() { return kWraps; }
 std::span<const std::string> texture_filter_names() { return kFilters; }
@@ -111,7 +111,7 @@ void read_texture(ReadContext& context, const YamlNode& node, const std::string&
   texture.name = name;
   texture.where = node.where;
   reader.find("like");  // already resolved, see resolve_likes
-  if (!read_by_type<TextureDesc>(reader, "type", "textures", texture, kTypes)) return;
+  if (!read_by_type<TextureDesc>(reader, "type", "textures", texture, kTextureTypes)) return;
   reader.finish();
   context.job.textures.push_back(std::move(texture));
 }

@@ -48,7 +48,7 @@ bool read_vector(const ValueSite& site, const YamlNode& node, Animated<Vec3>& ta
   return false;
 }
 
-bool read_pair(const ValueSite& site, const YamlNode& node, Animated<Vec2>& target) {
+bool read_number_pair(const ValueSite& site, const YamlNode& node, Animated<Vec2>& target) {
   if (node.kind == YamlNode::Kind::list) return read_list(site, node, 2, target);
   complain_mismatch(site, node, expected_list(site, "[x, y]"));
   return false;
@@ -180,7 +180,7 @@ bool read_animated_vector(const ValueSite& site, const YamlNode& node, Animated<
 }
 
 bool read_animated_pair(const ValueSite& site, const YamlNode& node, Animated<Vec2>& target) {
-  return read_animated<Vec2>(site, node, target, read_pair);
+  return read_animated<Vec2>(site, node, target, read_number_pair);
 }
 
 bool read_animated_scale(const ValueSite& site, const YamlNode& node, Animated<Vec3>& target) {

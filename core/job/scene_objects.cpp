@@ -28,7 +28,8 @@ constexpr std::array<SceneKey, 3> kSceneKeys = {{
 }};
 constexpr std::array<std::string_view, 2> kAnimationKeys = {"animation", "loop"};
 constexpr std::array<const char*, 4> kOtherKinds = {"shape", "mesh", "instance", "group"};
-constexpr std::array<const char*, 4> kBrought = {"textures", "materials", "media", "groups"};
+constexpr std::array<const char*, 4> kBroughtSections = {"textures", "materials", "media",
+                                                         "groups"};
 
 const SceneKey* scene_key_of(const YamlNode& object) {
   for (const SceneKey& row : kSceneKeys) {
@@ -105,7 +106,7 @@ class Expander {
     const YamlPtr document = wanted ? open_(*wanted, *file.value, row.key) : nullptr;
     if (document == nullptr) return as_empty_group(*node, file);
     changed_ = true;
-    for (const char* section : kBrought) bring(section, *document, nullptr);
+    for (const char* section : kBroughtSections) bring(section, *document, nullptr);
     if (moves != nullptr) bring("lights", *document, moves);
     auto result = std::make_shared<YamlNode>(*without_scene_keys(*node));
     const YamlEntry* objects = document->find("objects");

@@ -8,9 +8,9 @@
 namespace hyades::core {
 namespace {
 
-constexpr float kLargest = 1e15F;  ///< its square must be finite
+constexpr float kLargestRadiance = 1e15F;  ///< its square must be finite
 
-float clean(float x) { return x > 0.0F ? std::min(x, kLargest) : 0.0F; }
+float clean(float x) { return x > 0.0F ? std::min(x, kLargestRadiance) : 0.0F; }
 
 }  // namespace
 

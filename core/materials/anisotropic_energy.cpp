@@ -10,13 +10,12 @@
 #include "core/base/fp_mode.h"
 #include "core/materials/energy_grid.h"
 #include "core/materials/facet_energy.h"
+#include "core/materials/fresnel.h"
 
 namespace hyades::core {
 namespace {
 
 constexpr float kLeastRatio = 0.1F;
-
-float fifth_power(float x) { return x * x * x * x * x; }
 
 struct Reflected {
   float all;

@@ -7,6 +7,9 @@
 /// What part of the light a smooth interface reflects. Unpolarised, exact (no Schlick).
 namespace hyades::core {
 
+/// x^5: how Schlick's formula falls off from grazing angles (Schlick 1994, eq. 15).
+inline float fifth_power(float x) { return x * x * x * x * x; }
+
 /// A refracted direction, or total internal reflection.
 struct DielectricInterface {
   float reflectance = 1.0F;  ///< 1 where all is reflected

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/materials/fresnel.h"
 #include "core/materials/hemisphere_mean.h"
 
 namespace hyades::core {
 namespace {
-
-float fifth_power(float x) { return x * x * x * x * x; }
 
 /// The cosine at which metals are tinted (Kutz, Hasan and Edmondson 2021, "Novel Aspects of the
 /// Adobe Standard Material"): near 82 degrees, where what Schlick's formula bends most.

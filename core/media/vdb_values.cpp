@@ -10,9 +10,9 @@
 namespace hyades::core {
 namespace {
 
-constexpr uint32_t kZip = 1;
-constexpr uint32_t kActiveAlone = 2;
-constexpr uint32_t kBlosc = 4;
+constexpr uint32_t kZipFlag = 1;
+constexpr uint32_t kActiveAloneFlag = 2;
+constexpr uint32_t kBloscFlag = 4;
 
 /// A byte before a node's values says which of its inactive ones follow.
 enum Inactive : uint8_t {
@@ -30,7 +30,7 @@ std::vector<std::byte> unpack(VdbCursor& cursor, uint32_t compression, size_t si
     if (raw.size() == size && size > 0) std::memcpy(unpacked.data(), raw.data(), size);
     if (raw.size() != size) cursor.fail("has a node of a wrong size");
   };
-  if ((compression & (kZip | kBlosc)) == 0) {
+  if ((compression & (kZipFlag | kBloscFlag)) == 0) {
     copy(cursor.take(size));
     return unpacked;
   }
@@ -41,7 +41,7 @@ std::vector<std::byte> unpack(VdbCursor& cursor, uint32_t compression, size_t si
   }
   const auto packed = cursor.take(static_cast<uint64_t>(packed_size));
   if (!cursor.ok()) return unpacked;
-  if ((compression & kBlosc) != 0) {
+  if ((compression & kBloscFlag) != 0) {
     size_t stated = 0;
     const bool good =
         blosc_cbuffer_validate(packed.data(), packed.size(), &stated) == 0 && stated == size &&
@@ -76,7 +76,7 @@ VdbValues read_vdb_values(VdbCursor& cursor, const VdbEncoding& encoding, size_t
   if (inactive >= kMaskAndNone && inactive <= kMaskAndTwo) cursor.take(places / 8);
 
   VdbValues values;
-  values.active_alone = (encoding.compression & kActiveAlone) != 0 && inactive != kAll;
+  values.active_alone = (encoding.compression & kActiveAloneFlag) != 0 && inactive != kAll;
   const size_t count = (values.active_alone ? active : places) * components;
   if (count == 0 && encoding.half) return values;
   const size_t bytes_each = encoding.half ? 2 : static_cast<size_t>(encoding.component_bytes);

@@ -82,8 +82,8 @@ Result<LightPtr> sun(const LightDesc& desc, const LightSetting& setting, SceneCa
                         desc.angle.at(setting.time) * kRadians, setting.world_radius);
 }
 
-using Maker = Result<LightPtr> (*)(const LightDesc&, const LightSetting&, SceneCache&);
-constexpr std::array<NameRow<Maker>, 4> kMakers = {{
+using LightMaker = Result<LightPtr> (*)(const LightDesc&, const LightSetting&, SceneCache&);
+constexpr std::array<NameRow<LightMaker>, 4> kLightMakers = {{
     {"point", point},
     {"spot", spot},
     {"projector", projector},
@@ -93,13 +93,13 @@ constexpr std::array<NameRow<Maker>, 4> kMakers = {{
 }  // namespace
 
 Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting, SceneCache& cache) {
-  const auto make = look_up(kMakers, desc.type, "type of light");
+  const auto make = look_up(kLightMakers, desc.type, "type of light");
   if (!make) return make.error().in("light '" + desc.name + "'");
   auto light = (*make)->value(desc, setting, cache);
   if (!light) return light.error().in("light '" + desc.name + "'");
   return light;
 }
 
-std::vector<std::string> made_light_types() { return names_of(kMakers); }
+std::vector<std::string> made_light_types() { return names_of(kLightMakers); }
 
 }  // namespace hyades::core

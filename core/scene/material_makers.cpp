@@ -133,8 +133,8 @@ Result<MaterialPtr> nothing(const MaterialDesc&, Appearance&) { return make_null
 
 Result<MaterialPtr> black(const MaterialDesc&, Appearance&) { return make_black(); }
 
-using Maker = Result<MaterialPtr> (*)(const MaterialDesc&, Appearance&);
-constexpr std::array<NameRow<Maker>, 14> kMakers = {{
+using MaterialMaker = Result<MaterialPtr> (*)(const MaterialDesc&, Appearance&);
+constexpr std::array<NameRow<MaterialMaker>, 14> kMaterialMakers = {{
     {"lambert", lambert},
     {"principled", principled_material},
     {"dielectric", dielectric},
@@ -154,11 +154,11 @@ constexpr std::array<NameRow<Maker>, 14> kMakers = {{
 }  // namespace
 
 Result<MaterialPtr> make_material(const MaterialDesc& desc, Appearance& looks) {
-  const auto make = look_up(kMakers, desc.type, "type of material");
+  const auto make = look_up(kMaterialMakers, desc.type, "type of material");
   if (!make) return make.error();
   return (*make)->value(desc, looks);
 }
 
-std::vector<std::string> made_material_types() { return names_of(kMakers); }
+std::vector<std::string> made_material_types() { return names_of(kMaterialMakers); }
 
 }  // namespace hyades::core

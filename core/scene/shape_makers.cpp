@@ -102,8 +102,8 @@ Result<Shape> mesh(const ObjectDesc& object, const ShapeSetting& setting) {
   return shape_of(*loaded);
 }
 
-using Maker = Result<Shape> (*)(const ObjectDesc&, const ShapeSetting&);
-constexpr std::array<NameRow<Maker>, 6> kMakers = {{
+using ShapeMaker = Result<Shape> (*)(const ObjectDesc&, const ShapeSetting&);
+constexpr std::array<NameRow<ShapeMaker>, 6> kShapeMakers = {{
     {"sphere", quadric<Shape::Kind::sphere>},
     {"rectangle", rectangle},
     {"disk", quadric<Shape::Kind::disk>},
@@ -115,7 +115,7 @@ constexpr std::array<NameRow<Maker>, 6> kMakers = {{
 }  // namespace
 
 Result<Shape> make_shape(const ObjectDesc& object, const ShapeSetting& setting) {
-  const auto make = look_up(kMakers, object.shape, "shape");
+  const auto make = look_up(kShapeMakers, object.shape, "shape");
   if (!make) return make.error();
   return (*make)->value(object, setting);
 }
@@ -152,7 +152,7 @@ MeshExtras mesh_extras_of(const Job& job) {
   return extras;
 }
 
-std::vector<std::string> made_shapes() { return names_of(kMakers); }
+std::vector<std::string> made_shapes() { return names_of(kShapeMakers); }
 std::vector<std::string> made_mesh_normals() { return names_of(kMeshNormals); }
 
 }  // namespace hyades::core

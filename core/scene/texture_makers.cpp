@@ -59,7 +59,7 @@ Result<TexturePtr> make_vertex_color(const TextureDesc& desc, Appearance& /*look
   return (*channel)->value ? make_channel_texture(colors, *(*channel)->value) : colors;
 }
 
-constexpr std::array<NameRow<TextureMaker>, 30> kMakers = {{
+constexpr std::array<NameRow<TextureMaker>, 30> kTextureMakers = {{
     {"constant", make_constant},
     {"image", make_image},
     {"vertex-color", make_vertex_color},
@@ -95,7 +95,7 @@ constexpr std::array<NameRow<TextureMaker>, 30> kMakers = {{
 }  // namespace
 
 Result<TexturePtr> make_texture(const TextureDesc& desc, Appearance& looks) {
-  const auto make = look_up(kMakers, desc.type, "type of texture");
+  const auto make = look_up(kTextureMakers, desc.type, "type of texture");
   if (!make) return make.error();
   return (*make)->value(desc, looks);
 }
@@ -112,7 +112,7 @@ Result<ImageUse> image_use_of(const TextureDesc& desc) {
   return ImageUse{(*space)->value, is_udim(desc.image.file) ? WrapMode::clamp : wraps};
 }
 
-std::vector<std::string> made_texture_types() { return names_of(kMakers); }
+std::vector<std::string> made_texture_types() { return names_of(kTextureMakers); }
 std::vector<std::string> made_color_spaces() { return names_of(kColorSpaces); }
 std::vector<std::string> made_wraps() { return names_of(kWraps); }
 std::vector<std::string> made_texture_filters() { return names_of(kFilters); }

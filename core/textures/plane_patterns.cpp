@@ -8,13 +8,13 @@ namespace hyades::core {
 namespace {
 
 /// A number of one variable and its slope.
-struct Curve {
+struct Profile {
   float value = 0.0F;
   float slope = 0.0F;
 };
 
 /// From 0 at `low` to 1 at `high`, smoothly; a step where they are the same.
-Curve smooth_step(float low, float high, float x) {
+Profile smooth_step(float low, float high, float x) {
   if (x < low || (x == low && high > low)) return {0.0F, 0.0F};
   if (x >= high) return {1.0F, 0.0F};
   const float u = (x - low) / (high - low);
@@ -22,15 +22,15 @@ Curve smooth_step(float low, float high, float x) {
 }
 
 /// 1 around whole numbers, on `width` of each unit, and softly down to 0 towards their middles.
-Curve line(float x, float width, float softness) {
+Profile line(float x, float width, float softness) {
   const float t = x - std::floor(x + 0.5F);  // -0.5 to 0.5
   const float edge = 0.5F * width;
-  const Curve inside = smooth_step(edge, edge + softness * (0.5F - edge), std::abs(t));
+  const Profile inside = smooth_step(edge, edge + softness * (0.5F - edge), std::abs(t));
   return {1.0F - inside.value, t < 0.0F ? inside.slope : -inside.slope};
 }
 
 /// Where either is.
-Noise3 either(const Curve& x, const Curve& y) {
+Noise3 either(const Profile& x, const Profile& y) {
   const float value = 1.0F - (1.0F - x.value) * (1.0F - y.value);
   return {value, {x.slope * (1.0F - y.value), y.slope * (1.0F - x.value), 0.0F}};
 }
@@ -58,7 +58,7 @@ class Lines final : public Pattern {
   Lines(bool grid, float width, float softness) : grid_(grid), width_(width), softness_(softness) {}
 
   Noise3 at(const Vec3& p) const override {
-    return either(line(p.x, width_, softness_), grid_ ? line(p.y, width_, softness_) : Curve{});
+    return either(line(p.x, width_, softness_), grid_ ? line(p.y, width_, softness_) : Profile{});
   }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 /// Good meshes take several bits per triangle. The library believes the number of triangles before
 /// it has read any, so that more than this many per byte are refused first.
-constexpr uint64_t kMostPerByte = 32;
+constexpr uint64_t kMostCornersPerByte = 32;
 
 std::optional<uint64_t> varint(const std::byte*& at, const std::byte* end) {
   uint64_t value = 0;
@@ -59,7 +59,7 @@ Result<DracoMesh::Attribute> read_attribute(const draco::Mesh& mesh, int id) {
 
 Result<DracoMesh> decode(const GltfPrimitive& primitive, std::span<const std::byte> code) {
   const auto said = triangles_said(code);
-  if (!said || *said > kMostPerByte * code.size()) return Error{"holds no valid Draco code"};
+  if (!said || *said > kMostCornersPerByte * code.size()) return Error{"holds no valid Draco code"};
   if ((static_cast<unsigned>(code[10]) & 0x80U) != 0) {
     return Error{"holds Draco metadata, which are not supported"};
   }

@@ -15,7 +15,7 @@ struct Found {
   size_t more = 0;
 };
 
-bool is_known(const std::string& name) {
+bool is_known_attribute(const std::string& name) {
   static const std::set<std::string> kKnown = {"POSITION",   "NORMAL",     "TANGENT",
                                                "TEXCOORD_0", "TEXCOORD_1", "COLOR_0"};
   // All sets of bones count.
@@ -47,7 +47,7 @@ std::vector<std::string> left_out_attributes(const GltfModel& model) {
   for (const GltfMesh& mesh : model.meshes) {
     for (const GltfPrimitive& primitive : mesh.primitives) {
       for (const auto& [name, accessor] : primitive.attributes) {
-        if (!is_known(name)) add(of_vertices, name, primitive.place);
+        if (!is_known_attribute(name)) add(of_vertices, name, primitive.place);
       }
       std::set<std::string> morphed;
       for (const GltfAttributes& target : primitive.targets) {

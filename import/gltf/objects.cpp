@@ -33,9 +33,9 @@ bool may_vanish(const GltfModel& model, const GltfClip* clip, int node) {
   return false;
 }
 
-class Writer {
+class ObjectWriter {
  public:
-  Writer(const GltfStage& stage, GltfMaterials& materials)
+  ObjectWriter(const GltfStage& stage, GltfMaterials& materials)
       : stage_(stage),
         materials_(materials),
         names_("object", stage.request.prefix),
@@ -277,7 +277,7 @@ class Writer {
 }  // namespace
 
 Result<GltfObjects> write_objects(const GltfStage& stage, GltfMaterials& materials) {
-  Writer writer(stage, materials);
+  ObjectWriter writer(stage, materials);
   if (Status s = writer.shared_meshes(); !s) return s.error();
   for (const int node : stage.model.order) {
     if (Status s = writer.node(node); !s) return s.error();

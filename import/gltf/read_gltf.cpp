@@ -19,7 +19,7 @@ namespace hyades::core {
 
 namespace {
 
-constexpr double kMostFrames = 9'999'999.0;
+constexpr double kMostPoses = 9'999'999.0;
 
 /// The animation that is meant: the one that was read, if any.
 struct Chosen {
@@ -105,7 +105,7 @@ Result<SceneSections> GltfSource::sections(const SceneRequest& request) const {
   if (stage.clip != nullptr) {
     // A key at 1 s is frame 25 of 24 per second, whatever the last bits of its time are.
     const double frames =
-        std::min(stage.clip->duration * static_cast<double>(request.fps), kMostFrames);
+        std::min(stage.clip->duration * static_cast<double>(request.fps), kMostPoses);
     stage.frames.last = static_cast<int>(1.0 + std::floor(frames + 1e-4));
     if (request.loop && frames > 0.0) {
       stage.frames.seam = 1.0 + frames;

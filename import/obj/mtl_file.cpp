@@ -10,8 +10,6 @@ namespace hyades::core {
 
 namespace {
 
-using Material = MtlMaterial;
-
 /// A colour: three numbers, or one for all channels. Null, or what was expected.
 const char* read_color(std::string_view text, Rgb& color) {
   float parts[3] = {};
@@ -21,26 +19,27 @@ const char* read_color(std::string_view text, Rgb& color) {
   return nullptr;
 }
 
-using Colors = std::pair<std::string_view, std::optional<Rgb> Material::*>;
+using Colors = std::pair<std::string_view, std::optional<Rgb> MtlMaterial::*>;
 constexpr Colors kColors[] = {
-    {"Kd", &Material::diffuse}, {"Ks", &Material::specular}, {"Tf", &Material::filter}};
+    {"Kd", &MtlMaterial::diffuse}, {"Ks", &MtlMaterial::specular}, {"Tf", &MtlMaterial::filter}};
 
-using Shares = std::pair<std::string_view, std::optional<float> Material::*>;
-constexpr Shares kShares[] = {{"Pr", &Material::roughness},       {"Pm", &Material::metallic},
-                              {"Ps", &Material::sheen},           {"Pc", &Material::coat},
-                              {"Pcr", &Material::coat_roughness}, {"aniso", &Material::anisotropy},
-                              {"anisor", &Material::rotation}};
+using Shares = std::pair<std::string_view, std::optional<float> MtlMaterial::*>;
+constexpr Shares kShares[] = {
+    {"Pr", &MtlMaterial::roughness},       {"Pm", &MtlMaterial::metallic},
+    {"Ps", &MtlMaterial::sheen},           {"Pc", &MtlMaterial::coat},
+    {"Pcr", &MtlMaterial::coat_roughness}, {"aniso", &MtlMaterial::anisotropy},
+    {"anisor", &MtlMaterial::rotation}};
 
-using Maps = std::pair<std::string_view, MtlMap Material::*>;
+using Maps = std::pair<std::string_view, MtlMap MtlMaterial::*>;
 constexpr Maps kMaps[] = {
-    {"map_Kd", &Material::diffuse_map},        {"map_Ks", &Material::specular_map},
-    {"map_Ns", &Material::exponent_map},       {"map_Ke", &Material::emission_map},
-    {"map_d", &Material::dissolve_map},        {"map_bump", &Material::bump_map},
-    {"map_Bump", &Material::bump_map},         {"bump", &Material::bump_map},
-    {"norm", &Material::normal_map},           {"map_Kn", &Material::normal_map},
-    {"map_Pr", &Material::roughness_map},      {"map_Pm", &Material::metallic_map},
-    {"map_Ps", &Material::sheen_map},          {"map_Pc", &Material::coat_map},
-    {"map_Pcr", &Material::coat_roughness_map}};
+    {"map_Kd", &MtlMaterial::diffuse_map},        {"map_Ks", &MtlMaterial::specular_map},
+    {"map_Ns", &MtlMaterial::exponent_map},       {"map_Ke", &MtlMaterial::emission_map},
+    {"map_d", &MtlMaterial::dissolve_map},        {"map_bump", &MtlMaterial::bump_map},
+    {"map_Bump", &MtlMaterial::bump_map},         {"bump", &MtlMaterial::bump_map},
+    {"norm", &MtlMaterial::normal_map},           {"map_Kn", &MtlMaterial::normal_map},
+    {"map_Pr", &MtlMaterial::roughness_map},      {"map_Pm", &MtlMaterial::metallic_map},
+    {"map_Ps", &MtlMaterial::sheen_map},          {"map_Pc", &MtlMaterial::coat_map},
+    {"map_Pcr", &MtlMaterial::coat_roughness_map}};
 
 /// What says nothing about a path-traced picture: ambient light and its pictures, anti-aliasing,
 /// sharpness of reflections.
@@ -52,14 +51,14 @@ auto find_row(const Table& table, std::string_view key) {
                       [&](const auto& row) { return row.first == key; });
 }
 
-void leave_out(int line, std::string_view key, std::string_view what, Material& material) {
+void leave_out(int line, std::string_view key, std::string_view what, MtlMaterial& material) {
   material.unknown.push_back("line " + std::to_string(line) + ": " + std::string(key) +
                              (what.empty() ? "" : " ") + std::string(what));
 }
 
 /// Numbers and words of a classic material. Null where it was read; `known` is false for others.
-const char* read_classic(std::string_view key, std::string_view rest, int line, Material& material,
-                         bool& known) {
+const char* read_classic(std::string_view key, std::string_view rest, int line,
+                         MtlMaterial& material, bool& known) {
   float number = 0.0F;
   known = true;
   if (key == "Ke") {
@@ -86,7 +85,8 @@ const char* read_classic(std::string_view key, std::string_view rest, int line, 
 }
 
 /// One line of a material. Null, or what was expected.
-const char* read_line(std::string_view key, std::string_view rest, int line, Material& material) {
+const char* read_line(std::string_view key, std::string_view rest, int line,
+                      MtlMaterial& material) {
   if (const auto* row = find_row(kColors, key); row != std::end(kColors)) {
     if (rest.starts_with("spectral") || rest.starts_with("xyz")) {
       leave_out(line, key, next_word(rest), material);

@@ -23,7 +23,7 @@ constexpr float kUsualIndex = 1.5F;
 constexpr float kMostStrength = 100.0F;
 
 /// All that may be shown; map_Ns has no counterpart.
-constexpr std::pair<const char*, MtlMap MtlMaterial::*> kMaps[] = {
+constexpr std::pair<const char*, MtlMap MtlMaterial::*> kMaterialMaps[] = {
     {"map_Kd", &MtlMaterial::diffuse_map},        {"map_Ks", &MtlMaterial::specular_map},
     {"map_Ke", &MtlMaterial::emission_map},       {"map_d", &MtlMaterial::dissolve_map},
     {"map_bump", &MtlMaterial::bump_map},         {"norm", &MtlMaterial::normal_map},
@@ -189,7 +189,7 @@ class Maker {
     const auto note = [&](const std::string& what, const char* why) {
       look_.notes.push_back(what + " of '" + from_.name + "' is left out" + why);
     };
-    for (const auto& [key, map] : kMaps) {
+    for (const auto& [key, map] : kMaterialMaps) {
       if ((from_.*map).given() && !used_.contains(&(from_.*map))) note(key, "");
     }
     if (from_.exponent_map.given()) note("map_Ns", ": Ns counts everywhere");

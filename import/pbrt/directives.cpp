@@ -11,9 +11,9 @@
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr size_t kDeepest = 4096;
-constexpr size_t kMostShapes = size_t{1} << 22;  ///< objects of a job
-constexpr size_t kMostSingle = size_t{1} << 17;  ///< instances that are objects of a job
+constexpr size_t kDeepestAttributes = 4096;
+constexpr size_t kMostShapes = size_t{1} << 22;     ///< objects of a job
+constexpr size_t kMostInstances = size_t{1} << 17;  ///< instances that are objects of a job
 
 }  // namespace
 
@@ -200,8 +200,9 @@ Status Directives::world_begin() {
 
 Status Directives::push(char kind) {
   if (Status s = only_in_world(); !s) return s;
-  if (pushed_.size() >= kDeepest) {
-    return error("attributes are nested deeper than " + std::to_string(kDeepest) + " levels");
+  if (pushed_.size() >= kDeepestAttributes) {
+    return error("attributes are nested deeper than " + std::to_string(kDeepestAttributes) +
+                 " levels");
   }
   pushed_.push_back({state_, kind, place_});
   return {};
@@ -446,8 +447,8 @@ Status Directives::object_instance() {
   ObjectDefinition& object = scene_.objects[found->second];
   const bool still = !state_.to_world.moves();
   if (still && ++object.still >= kFewestCopies) return one_of_many(object);
-  if (scene_.instances.size() >= kMostSingle) {
-    return error("the scene has more than " + format_count(kMostSingle) +
+  if (scene_.instances.size() >= kMostInstances) {
+    return error("the scene has more than " + format_count(kMostInstances) +
                  " instances that move, or are of objects with few of them");
   }
   scene_.instances.push_back({found->second, place_, state_.to_world});

@@ -10,7 +10,7 @@ namespace hyades::core::pbrt {
 namespace {
 
 constexpr size_t kMostIncludes = 10'000;
-constexpr size_t kDeepest = 64;
+constexpr size_t kDeepestInclude = 64;
 constexpr uint64_t kMostText = uint64_t{8} << 30;
 
 /// Reads files into one scene.
@@ -34,8 +34,9 @@ class TextReader : public Includer {
     if (std::find(open_.begin(), open_.end(), *path) != open_.end()) {
       return place.error("'" + *path + "' includes itself");
     }
-    if (open_.size() >= kDeepest) {
-      return place.error("files are included deeper than " + std::to_string(kDeepest) + " levels");
+    if (open_.size() >= kDeepestInclude) {
+      return place.error("files are included deeper than " + std::to_string(kDeepestInclude) +
+                         " levels");
     }
     if (++includes_ > kMostIncludes) {
       return place.error("more than " + format_count(kMostIncludes) + " files are included");

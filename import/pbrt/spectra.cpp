@@ -10,8 +10,8 @@
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kFirst = 380.0;
-constexpr double kLast = 780.0;
+constexpr double kFirstWavelength = 380.0;
+constexpr double kLastWavelength = 780.0;
 
 /// The CIE 1931 observer from 380 to 780 nm by tens (CIE 15:2004, table T.4).
 using Table = std::array<double, 41>;
@@ -47,13 +47,13 @@ Vec3d observer(double w) {
 }
 
 /// D65 from 380 to 780 nm by tens (CIE S 014-2).
-constexpr Table kD65 = {49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.86, 117.01, 117.81,
-                        114.86, 115.92, 108.81, 109.35, 107.80, 104.79, 107.69, 104.41, 104.05,
-                        100.00, 96.33,  95.79,  88.69,  90.01,  89.60,  87.70,  83.29,  83.70,
-                        80.03,  80.21,  82.28,  78.28,  69.72,  71.61,  74.35,  61.60,  69.89,
-                        75.09,  63.59,  46.42,  66.81,  63.38};
+constexpr Table kD65Power = {49.98,  54.65,  82.75,  91.49,  93.43,  86.68,  104.86, 117.01, 117.81,
+                             114.86, 115.92, 108.81, 109.35, 107.80, 104.79, 107.69, 104.41, 104.05,
+                             100.00, 96.33,  95.79,  88.69,  90.01,  89.60,  87.70,  83.29,  83.70,
+                             80.03,  80.21,  82.28,  78.28,  69.72,  71.61,  74.35,  61.60,  69.89,
+                             75.09,  63.59,  46.42,  66.81,  63.38};
 
-double d65(double w) { return look_up(kD65, w, true); }
+double d65(double w) { return look_up(kD65Power, w, true); }
 
 struct Named {
   std::string_view name;
@@ -150,7 +150,8 @@ Result<Spectrum> read_spd(std::string_view text) {
 
 Rgb light_color(const Spectrum& spectrum) {
   Vec3d xyz(0.0);
-  for (double w = kFirst; w <= kLast; w += 1.0) xyz += spectrum.at(w) * observer(w);
+  for (double w = kFirstWavelength; w <= kLastWavelength; w += 1.0)
+    xyz += spectrum.at(w) * observer(w);
   if (!(xyz.y > 0.0)) return Rgb(0.0F);
   return without_negatives(rec709_from_xyz(xyz / xyz.y));
 }
@@ -158,7 +159,7 @@ Rgb light_color(const Spectrum& spectrum) {
 Rgb blackbody_light(double kelvin) {
   Spectrum spectrum;
   const double peak = 2.8977721e6 / std::max(kelvin, 1.0);  // nm, Wien's law
-  for (double nm = kFirst; nm <= kLast; nm += 10.0) {
+  for (double nm = kFirstWavelength; nm <= kLastWavelength; nm += 10.0) {
     spectrum.wavelengths.push_back(nm);
     const double x = 1.4387769e7 / (nm * std::max(kelvin, 1.0));
     // Over its value at the peak, so that cold bodies keep a colour.
@@ -175,7 +176,7 @@ Vec3d surface_weight(double wavelength) {
 Rgb surface_color(const Spectrum& spectrum) {
   Vec3d seen(0.0);
   Vec3d white(0.0);
-  for (double w = kFirst; w <= kLast; w += 1.0) {
+  for (double w = kFirstWavelength; w <= kLastWavelength; w += 1.0) {
     const Vec3d weight = surface_weight(w);
     seen += spectrum.at(w) * weight;
     white += weight;

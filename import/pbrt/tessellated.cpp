@@ -10,19 +10,19 @@ namespace {
 
 constexpr int kAround = 128;
 
-struct Surface {
+struct Parametric {
   Vec3d position;
   Vec3d normal;
 };
 
 /// A grid of u and v from 0 to 1, `columns` x `rows` cells.
-TriangleMesh grid(int columns, int rows, const std::function<Surface(double, double)>& at) {
+TriangleMesh grid(int columns, int rows, const std::function<Parametric(double, double)>& at) {
   TriangleMesh mesh;
   for (int y = 0; y <= rows; ++y) {
     for (int x = 0; x <= columns; ++x) {
       const double u = static_cast<double>(x) / columns;
       const double v = static_cast<double>(y) / rows;
-      const Surface s = at(u, v);
+      const Parametric s = at(u, v);
       mesh.positions.emplace_back(s.position);
       mesh.normals.emplace_back(s.normal);
       mesh.uvs.emplace_back(u, v);
@@ -46,13 +46,13 @@ TriangleMesh grid(int columns, int rows, const std::function<Surface(double, dou
   return mesh;
 }
 
-struct Extent {
+struct Ranges {
   double radius, low, high, turn, inner;
 };
 
-Extent extent_of(const ShapeEntity& shape, Report& report) {
+Ranges extent_of(const ShapeEntity& shape, Report& report) {
   ParameterReader reader(shape.parameters, shape.place, report);
-  Extent e{};
+  Ranges e{};
   const float radius = reader.number("radius", 1.0F);
   e.radius = static_cast<double>(radius);
   const bool ball = shape.type == "sphere";
@@ -72,7 +72,7 @@ Extent extent_of(const ShapeEntity& shape, Report& report) {
 bool needs_tessellation(const ShapeEntity& shape) {
   if (shape.type != "sphere" && shape.type != "disk" && shape.type != "cylinder") return false;
   Report unheard;
-  const Extent e = extent_of(shape, unheard);
+  const Ranges e = extent_of(shape, unheard);
   if (e.turn < 2.0 * std::numbers::pi - 1e-9) return true;
   if (shape.type == "disk") return e.inner > 0.0;
   if (shape.type == "cylinder") return shape.reversed;
@@ -80,7 +80,7 @@ bool needs_tessellation(const ShapeEntity& shape) {
 }
 
 Result<TriangleMesh> tessellated_mesh(const ShapeEntity& shape, Report& report) {
-  const Extent e = extent_of(shape, report);
+  const Ranges e = extent_of(shape, report);
   if (!(e.radius > 0.0)) return shape.place.error("the radius is not above 0");
   if (!(e.turn > 0.0)) return shape.place.error("phimax is not above 0");
   const int columns =
@@ -92,19 +92,19 @@ Result<TriangleMesh> tessellated_mesh(const ShapeEntity& shape, Report& report) 
       const double theta = std::lerp(first, last, v);
       const Vec3d n(std::sin(theta) * std::cos(u * e.turn), std::sin(theta) * std::sin(u * e.turn),
                     std::cos(theta));
-      return Surface{e.radius * n, n};
+      return Parametric{e.radius * n, n};
     });
   }
   if (shape.type == "cylinder") {
     return grid(columns, 1, [&](double u, double v) {
       const Vec3d n(std::cos(u * e.turn), std::sin(u * e.turn), 0.0);
-      return Surface{e.radius * n + Vec3d(0.0, 0.0, std::lerp(e.low, e.high, v)), n};
+      return Parametric{e.radius * n + Vec3d(0.0, 0.0, std::lerp(e.low, e.high, v)), n};
     });
   }
   // v grows towards the middle.
   return grid(columns, 1, [&](double u, double v) {
     const double r = std::lerp(e.radius, e.inner, v);
-    return Surface{{r * std::cos(u * e.turn), r * std::sin(u * e.turn), e.low}, {0.0, 0.0, 1.0}};
+    return Parametric{{r * std::cos(u * e.turn), r * std::sin(u * e.turn), e.low}, {0.0, 0.0, 1.0}};
   });
 }
 

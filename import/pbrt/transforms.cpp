@@ -7,7 +7,7 @@
 namespace hyades::core::pbrt {
 namespace {
 
-constexpr double kDegrees = std::numbers::pi / 180.0;
+constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ Mat4d translation(const Vec3d& by) { return glm::translate(Mat4d(1.0), by); }
 Mat4d scaling(const Vec3d& by) { return glm::scale(Mat4d(1.0), by); }
 
 Mat4d rotation(double degrees, const Vec3d& axis) {
-  Mat4d turned = glm::rotate(Mat4d(1.0), degrees * kDegrees, glm::normalize(axis));
+  Mat4d turned = glm::rotate(Mat4d(1.0), degrees * kRadiansPerDegree, glm::normalize(axis));
   // Quarter turns about an axis are exact.
   for (int c = 0; c < 3; ++c) {
     for (int r = 0; r < 3; ++r) {
