@@ -27,7 +27,7 @@ objects:
       {"lamp_in_a_cloud_of_noise", R"(
 camera: {look_from: [0, 1.2, 3], look_at: [0, 0.6, 0], fov: 40}
 media:
-  cloud: {scattering: [8, 9, 10], absorption: [0.5, 0.2, 0.1], g: 0.4, emission: [0, 0.02, 0.05], density: {noise: {scale: 3, octaves: 3}}}
+  cloud: {scattering: [8, 9, 10], absorption: [0.5, 0.2, 0.1], g: 0.4, emission: [0, 0.4, 1], density: {noise: {scale: 3, octaves: 3}}}
 materials:
   white: {type: lambert, color: 0.6}
   air: {type: "null"}

@@ -35,8 +35,8 @@ void expect_same_picture(const Replicates& a, const Replicates& b, const Promise
 
 /// Whether two estimates of one picture agree pixel by pixel, as Mitsuba's test_renders.py has it:
 /// 99.75 % of the values pass a test at a significance of 0.01 shared among them (Sidak). Notices
-/// an error of `relative_error` of the picture's mean in one value of a hundred, if these are no
-/// noisier than half of the picture, or fails as underpowered.
+/// an error of `relative_error` of the picture's mean in one value of a hundred, if these are
+/// among the nine of ten with the least noise, or fails as underpowered.
 void expect_same_pixels(const Replicates& a, const Replicates& b, double relative_error);
 
 }  // namespace hyades::test
