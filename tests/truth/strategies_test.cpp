@@ -77,11 +77,11 @@ TEST(Strategies, EachFindsAllLightBetweenSurfaces) {
       "0.9, 0], material: white}\n"
       "  ball: {shape: sphere, radius: 0.3, at: [0.3, 0.8, 0], material: satin}\n"));
   Promise promise{
-      .significance = 0.005, .tests = 3 * (4 + 5 + 5), .relative_error = 0.05, .power = 0.99};
+      .significance = 0.005, .tests = 3 * (4 + 5 + 5), .relative_error = 0.02, .power = 0.99};
   expect_strategies_agree(scene, 1, 0, 2, promise);
-  promise.relative_error = 0.1;
+  promise.relative_error = 0.075;
   expect_strategies_agree(scene, 2, 0, 3, promise);
-  promise.relative_error = 0.15;
+  promise.relative_error = 0.1;
   expect_strategies_agree(scene, 3, 1, 4, promise);
 }
 
@@ -92,7 +92,7 @@ TEST(Strategies, EachFindsAllLightOnSmoothedMeshes) {
       "  ball: {mesh: tests/truth/coarse_ball.obj, normals: smooth, transform: [{scale: 0.5}], at: "
       "[0, 0.75, 0], material: satin}\n"));
   const Promise promise{
-      .significance = 0.005, .tests = 3 * (4 + 4), .relative_error = 0.16, .power = 0.99};
+      .significance = 0.005, .tests = 3 * (4 + 4), .relative_error = 0.15, .power = 0.99};
   expect_strategies_agree(scene, 1, 0, 2, promise);
   expect_strategies_agree(scene, 2, 1, 3, promise);
 }
@@ -125,7 +125,7 @@ TEST(Strategies, EachFindsAllLightInAMedium) {
       "fog}\n"
       "media: {fog: {scattering: [1, 1.2, 1.4], absorption: [0.1, 0.05, 0.02], g: 0.4}}\n"));
   const Promise promise{
-      .significance = 0.005, .tests = 3 * (4 + 2 + 2), .relative_error = 0.1, .power = 0.99};
+      .significance = 0.005, .tests = 3 * (4 + 2 + 2), .relative_error = 0.075, .power = 0.99};
   expect_strategies_agree(scene, 1, 0, 2, promise);
   expect_strategies_agree(scene, 2, 1, 1, promise);
   expect_strategies_agree(scene, 2, 3, 3, promise);
