@@ -14,6 +14,7 @@
 #include "core/job/mesh_files.h"
 #include "core/job/ocio_files.h"
 #include "core/job/reference_graph.h"
+#include "core/job/references.h"
 
 namespace hyades::core {
 
@@ -97,8 +98,9 @@ void check_material_cycles(ReadContext& context) {
   ReferenceGraph graph(names_of(job.materials));
   for (size_t i = 0; i < job.materials.size(); ++i) {
     graph.weigh(i, 1);
-    graph.add(i, job.materials[i].first);
-    graph.add(i, job.materials[i].second);
+    for (const std::string& part : names_in(job.materials[i], NameKind::material)) {
+      graph.add(i, part);
+    }
   }
   const std::vector<size_t> cycles = graph.in_cycles();
   for (const size_t i : cycles) {

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "core/job/references.h"
+
 namespace hyades::core {
 namespace {
 
@@ -24,12 +26,11 @@ bool lets_through(const MaterialDesc& m) {
   };
   const bool whole = m.opacity.texture.empty() && m.opacity.value.is_constant() &&
                      m.opacity.value.constant >= 1.0F;
-  if (!whole || m.subsurface || m.type == "dielectric" || m.type == "thin-dielectric" ||
-      m.type == "diffuse-transmission" || m.type == "null") {
-    return true;
-  }
-  return m.principled && (may_be_positive(m.principled->transmission) ||
-                          may_be_positive(m.principled->diffuse_transmission));
+  const bool clear = std::visit([](const auto& kind) { return kind.kTraits.clear; }, m.kind);
+  if (!whole || clear || subsurface_of(m) != nullptr) return true;
+  const auto* principled = std::get_if<PrincipledDesc>(&m.kind);
+  return principled != nullptr && (may_be_positive(principled->transmission) ||
+                                   may_be_positive(principled->diffuse_transmission));
 }
 
 /// What `material` or what it is made of lets light through; null: nothing.
@@ -41,8 +42,8 @@ const MaterialDesc* transparent_part(const MaterialsByName& all, const MaterialD
     left.pop_back();
     if (!seen.insert(m).second) continue;
     if (lets_through(*m)) return m;
-    for (const std::string* name : {&m->first, &m->second}) {
-      const auto part = all.find(*name);
+    for (const std::string& name : names_in(*m, NameKind::material)) {
+      const auto part = all.find(name);
       if (part != all.end()) left.push_back(part->second);
     }
   }
@@ -54,9 +55,9 @@ const MaterialDesc* transparent_part(const MaterialsByName& all, const MaterialD
 void check_two_sided(ReadContext& context) {
   const MaterialsByName all = materials_by_name(context.job);
   for (const MaterialDesc& material : context.job.materials) {
-    if (material.type != "two-sided") continue;
-    for (const std::string* name : {&material.first, &material.second}) {
-      const auto part = all.find(*name);
+    if (!std::holds_alternative<TwoSidedDesc>(material.kind)) continue;
+    for (const std::string& name : names_in(material, NameKind::material)) {
+      const auto part = all.find(name);
       if (part == all.end()) continue;
       const MaterialDesc* clear = transparent_part(all, *part->second);
       if (clear == nullptr) continue;
@@ -71,14 +72,15 @@ void check_two_sided(ReadContext& context) {
 void check_emission(ReadContext& context) {
   const MaterialsByName all = materials_by_name(context.job);
   for (const MaterialDesc& material : context.job.materials) {
-    for (const std::string* name : {&material.first, &material.second}) {
-      const auto part = all.find(*name);
-      if (part == all.end() || !part->second->principled || !part->second->principled->emits())
-        continue;
+    for (const std::string& name : names_in(material, NameKind::material)) {
+      const auto part = all.find(name);
+      if (part == all.end()) continue;
+      const auto* principled = std::get_if<PrincipledDesc>(&part->second->kind);
+      if (principled == nullptr || !principled->emits()) continue;
       context.complain(material.where,
                        fmt::format("'{}' is a part of material '{}' and has an emission_strength, "
                                    "expected one of 0: parts do not shine",
-                                   *name, material.name));
+                                   name, material.name));
     }
   }
 }

@@ -51,6 +51,10 @@ FieldWriter::FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRe
 }
 
 void FieldWriter::line(std::string_view key, std::string_view value) {
+  if (collected_ != nullptr) {
+    collected_->push_back({path_ + std::string(key), std::string(value)});
+    return;
+  }
   text_ += path_;
   text_ += key;
   text_ += '=';
@@ -105,6 +109,18 @@ void FieldWriter::put(std::string_view key, const ScalarInput& value) {
   }
 }
 
+void FieldWriter::put(std::string_view /*key*/, const TransformList& steps) {
+  for (const TransformStep& step : steps) {
+    enter("step");
+    put("kind", static_cast<int32_t>(step.kind));
+    put("vector", step.vector);
+    put("angle", step.angle);
+    put("quaternion", step.quaternion);
+    put("matrix", step.matrix);
+    leave();
+  }
+}
+
 void FieldWriter::put_file(std::string_view key, const std::string& reference) {
   const auto found = hashes_.find(reference);
   if (found == hashes_.end()) {
@@ -135,6 +151,16 @@ void FieldWriter::put_other_files(const std::vector<std::string>& except) {
     if (std::find(except.begin(), except.end(), reference) != except.end()) continue;
     put("asset", fmt::format("{} {}", reference, hash));
   }
+}
+
+std::vector<FieldWriter::Line> FieldWriter::collect(const std::function<void()>& write) {
+  std::vector<Line> lines;
+  const std::string outside = std::exchange(path_, "");
+  collected_ = &lines;
+  write();
+  collected_ = nullptr;
+  path_ = outside;
+  return lines;
 }
 
 void FieldWriter::enter(std::string_view name) {

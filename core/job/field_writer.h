@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -10,13 +11,20 @@
 
 #include "core/base/assets.h"
 #include "core/job/animated.h"
+#include "core/job/fields.h"
 #include "core/job/job.h"
 
 namespace hyades::core {
 
 /// Writes "path=value" lines for resolved_job_text.
-class FieldWriter {
+class FieldWriter : public FieldVisitor<FieldWriter> {
  public:
+  struct Line {
+    std::string key;  ///< below what was entered when the writer began to collect
+    std::string value;
+    bool operator==(const Line&) const = default;
+  };
+
   FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRecord>& assets);
 
   void put(std::string_view key, const std::string& text);
@@ -37,6 +45,8 @@ class FieldWriter {
   void put(std::string_view key, const ColorInput& value);
   void put(std::string_view key, const ScalarInput& value);
 
+  void put(std::string_view key, const TransformList& steps);
+
   /// A file by the hash of its content, or by its name where the hash is not known.
   void put_file(std::string_view key, const std::string& reference);
   /// The file of a mesh at a frame of the job, of a sequence that and, where `ahead`, the next one,
@@ -49,17 +59,44 @@ class FieldWriter {
   void enter(std::string_view name);
   void leave();
 
+  /// The lines that `write` writes, instead of writing them.
+  std::vector<Line> collect(const std::function<void()>& write);
+
+  void line(std::string_view key, std::string_view value);
+
+  // As a visitor of keys.
+  void file(const KeyName& key, const std::string& reference) { put_file(key.line, reference); }
+  void light_group(const KeyName& key, const std::string& group) {
+    if (!group.empty()) put(key.line, group);
+  }
+  template <class T>
+  void value(std::string_view key, const T& value) {
+    put(key, value);
+  }
+  template <class Desc>
+  void map(const KeyName& key, const char* /*section*/, const std::optional<Desc>& desc) {
+    if (!desc) return;
+    enter(key.line);
+    Desc::fields(*desc, *this);
+    leave();
+  }
+  /// Its lines stand beside those of what it belongs to.
+  template <class Desc>
+  void color_or_map(const KeyName& /*key*/, const char* /*section*/,
+                    const std::optional<Desc>& desc, const Range& /*range*/) {
+    if (desc) Desc::fields(*desc, *this);
+  }
+
   std::string take() { return std::move(text_); }
 
  private:
-  void line(std::string_view key, std::string_view value);
-
   std::vector<JobTime> moments_;
   std::map<std::string, std::string> hashes_;
   std::set<std::string> named_;
   std::string path_;
   std::vector<size_t> starts_;
   std::string text_;
+  std::vector<Line>* collected_ = nullptr;  ///< where lines go instead of text_
 };
 
 }  // namespace hyades::core

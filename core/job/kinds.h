@@ -34,12 +34,6 @@ std::span<const std::string> gradient_shape_names();
 std::span<const std::string> remap_end_names();
 std::span<const std::string> ramp_shape_names();
 
-/// The values of a medium's `phase`.
-std::span<const std::string> phase_names();
-
-/// The values of `place` of a density of a vdb.
-std::span<const std::string> vdb_places();
-
 /// The values of a mesh's `normals`.
 std::span<const std::string> mesh_normals_names();
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/film/layout.h"
+#include "core/job/map_reader.h"
 
 namespace hyades::core {
 namespace {
@@ -37,23 +38,23 @@ std::vector<std::string> light_groups_of(const Job& job) {
   return {groups.begin(), groups.end()};
 }
 
-void read_light_group(MapReader& reader, std::string& group) {
+void MapReader::light_group(std::string_view key, std::string& target) {
   const std::string expected =
       fmt::format("a name of at most {} letters, digits, _ and -", kLongestName);
   std::string name;
-  reader.text("light_group", name, expected);
+  text(key, name, expected);
   if (name.empty()) return;
-  const YamlNode& node = *reader.find("light_group");
+  const YamlNode& node = *find(key);
   if (name.size() > kLongestName || !std::all_of(name.begin(), name.end(), is_plain)) {
-    return reader.mismatch("light_group", node, expected);
+    return mismatch(key, node, expected);
   }
   if (name == kRestGroup) {
-    return reader.complain(
-        node.where, fmt::format("light_group is '{}', which is what lights of no group are called, "
+    return complain(node.where,
+                    fmt::format("{} is '{}', which is what lights of no group are called, "
                                 "expected another name",
-                                kRestGroup));
+                                key, kRestGroup));
   }
-  group = name;
+  target = name;
 }
 
 }  // namespace hyades::core

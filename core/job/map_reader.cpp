@@ -50,6 +50,11 @@ MapReader::MapReader(ReadContext& context, const YamlNode& map, std::string what
   context_.spend(map.map.size() + 1, where_);
 }
 
+void MapReader::ask(std::string_view key) {
+  asked_.emplace_back(key);
+  if (listing()) context_.listing->insert({section_, std::string(key)});
+}
+
 const YamlNode* MapReader::find(std::string_view key) { return find(key, ""); }
 
 const YamlNode* MapReader::find_color(std::string_view key) {
@@ -58,8 +63,7 @@ const YamlNode* MapReader::find_color(std::string_view key) {
 }
 
 const YamlNode* MapReader::find(std::string_view key, std::string_view hint) {
-  asked_.emplace_back(key);
-  if (listing()) context_.listing->insert({section_, std::string(key)});
+  ask(key);
   const YamlEntry* entry = map_.find(key);
   if (entry == nullptr) return nullptr;
   if (entry->value->kind == YamlNode::Kind::null) {
@@ -237,6 +241,12 @@ void MapReader::direction(std::string_view key, Animated<Vec3>& target) {
                                          context_.in_shutter});
 }
 
+void MapReader::direction(std::string_view key, std::optional<Animated<Vec3>>& target) {
+  Animated<Vec3> value(Vec3(0.0F, 1.0F, 0.0F));
+  direction(key, value);
+  if (has(key)) target = value;
+}
+
 void MapReader::keep_apart(std::string_view a_key, const Animated<Vec3>& a, std::string_view b_key,
                            const Animated<Vec3>& b) {
   const YamlEntry* entry = map_.find(b_key);
@@ -294,6 +304,29 @@ void MapReader::scalar_input(std::string_view key, ScalarInput& target, const Ra
   }
 }
 
+void MapReader::color_input(std::string_view key, std::optional<ColorInput>& target,
+                            const Range& range) {
+  ColorInput value;
+  color_input(key, value, range);
+  if (has(key)) target = value;
+}
+
+void MapReader::scalar_input(std::string_view key, std::optional<ScalarInput>& target,
+                             const Range& range) {
+  ScalarInput value;
+  scalar_input(key, value, range);
+  if (has(key)) target = value;
+}
+
+void MapReader::texture(std::string_view key, std::string& target) {
+  const char* const expected = "a texture's name or a texture";
+  require(key, expected);
+  const YamlNode* node = find(key);
+  if (node != nullptr && !read_texture_input(*this, key, *node, target)) {
+    mismatch(key, *node, expected);
+  }
+}
+
 void MapReader::map(std::string_view key, const std::string& section,
                     const std::function<void(MapReader&)>& read) {
   const YamlNode* node = find(key);
@@ -304,6 +337,10 @@ void MapReader::map(std::string_view key, const std::string& section,
   if (node != nullptr && node->kind != YamlNode::Kind::map) return;
   read(reader);
   reader.finish();
+}
+
+bool MapReader::is_map_of_keys(const YamlNode* node) {
+  return node != nullptr && node->kind == YamlNode::Kind::map && node->find("keys") == nullptr;
 }
 
 void MapReader::mismatch(std::string_view key, const YamlNode& found, const std::string& expected) {
@@ -325,12 +362,31 @@ void MapReader::finish() {
   }
 }
 
-bool check_type(MapReader& reader, const SourceLocation& where, std::string_view key,
-                const std::string& type, std::span<const std::string> valid) {
-  if (std::find(valid.begin(), valid.end(), type) != valid.end()) return true;
-  reader.complain(where, fmt::format("{} is '{}', expected {}{}", key, type.substr(0, 60),
-                                     join_names(valid), did_you_mean(type, valid)));
-  return false;
+bool read_by_type(MapReader& reader, std::string_view key, const std::string& section,
+                  std::string& type, std::span<const std::string> names,
+                  const std::function<void(size_t)>& read) {
+  const std::string expected = "one of " + join_names(names);
+  if (type.empty()) reader.require(key, expected);
+  const YamlNode* node = reader.find(key);
+  if (reader.listing()) {
+    for (size_t i = 0; i < names.size(); ++i) {
+      reader.enter_section(section + "." + names[i]);
+      read(i);
+    }
+    return true;
+  }
+  if (node != nullptr) reader.text(key, type, expected);
+  if (type.empty()) return false;
+  const auto found = std::find(names.begin(), names.end(), type);
+  if (found == names.end()) {
+    reader.complain(node != nullptr ? SourceLocation(node->where) : reader.where(),
+                    fmt::format("{} is '{}', expected {}{}", key, type.substr(0, 60),
+                                join_names(names), did_you_mean(type, names)));
+    return false;
+  }
+  reader.enter_section(section + "." + type);
+  read(static_cast<size_t>(found - names.begin()));
+  return true;
 }
 
 }  // namespace hyades::core

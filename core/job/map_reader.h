@@ -9,9 +9,15 @@
 #include <vector>
 
 #include "core/base/text.h"
+#include "core/job/kinds_of.h"
 #include "core/job/read_context.h"
 
 namespace hyades::core {
+
+class MapReader;
+
+template <class Desc>
+void read_fields(MapReader& reader, Desc& desc);
 
 /// Reads a map key by key. Each reader asks for the keys that it understands, with type, range and
 /// a target that already holds the default; finish() then complains about keys that nobody asked
@@ -27,6 +33,7 @@ class MapReader {
 
   ReadContext& context() { return context_; }
   bool listing() const { return context_.listing != nullptr; }
+  const YamlNode& node() const { return map_; }
   const std::string& what() const { return what_; }
   const std::string& path() const { return path_; }
   const SourceLocation& where() const { return where_; }
@@ -34,9 +41,14 @@ class MapReader {
   /// From here on, keys asked for belong to this section of the reference.
   void enter_section(std::string section) { section_ = std::move(section); }
 
+  /// `key` is known, but somebody else reads it.
+  void leave_to_others(std::string_view key) { ask(key); }
+
   /// The value of `key`, or null where it is absent (or empty, which is a complaint).
   const YamlNode* find(std::string_view key);
   bool has(std::string_view key) const { return map_.find(key) != nullptr; }
+  /// Where the value of `key`, which is there, stands.
+  SourceLocation where_of(std::string_view key) const { return map_.find(key)->value->where; }
   /// Complains unless `key` is there.
   void require(std::string_view key, std::string_view expected);
 
@@ -49,6 +61,8 @@ class MapReader {
   void choice(std::string_view key, std::string& target, std::span<const std::string> names);
   /// The name of something that the job defines; that it exists is checked at the end.
   void name_of(std::string_view key, std::string& target, NameKind kind);
+  /// The name of a texture, or one written in place. It must be there.
+  void texture(std::string_view key, std::string& target);
   /// A file, relative to where it is written; that it opens is checked at the end.
   void file(std::string_view key, std::string& target);
   /// The same of a mesh, which may have a file for each frame.
@@ -60,11 +74,25 @@ class MapReader {
   void animated(std::string_view key, Animated<float>& target, const Range& range);
   void animated(std::string_view key, Animated<Vec2>& target, const Range& range);
   void animated(std::string_view key, Animated<Vec3>& target, const Range& range);
+  /// As above; stays empty where the key is absent.
+  template <class T>
+  void animated(std::string_view key, std::optional<Animated<T>>& target, const Range& range) {
+    Animated<T> value;
+    animated(key, value, range);
+    if (has(key)) target = value;
+  }
   /// As above; complains where it is [0, 0, 0] at a frame.
   void direction(std::string_view key, Animated<Vec3>& target);
+  void direction(std::string_view key, std::optional<Animated<Vec3>>& target);
   /// Complains where two points that were read already are the same at a frame.
   void keep_apart(std::string_view a_key, const Animated<Vec3>& a, std::string_view b_key,
                   const Animated<Vec3>& b);
+  /// The `transform` and `at` of what may move while the shutter is open.
+  void place(TransformList& steps, Animated<Vec3>& at);
+  /// A list of steps, of what stands still while the shutter is open.
+  void transform(std::string_view key, TransformList& target);
+  /// A name of letters, digits, _ and -, for it becomes part of channels' names.
+  void light_group(std::string_view key, std::string& target);
   /// A rotation as a quaternion.
   void rotation(std::string_view key, Animated<Vec4>& target);
   /// A vector; a single number stands for all three, and [x, y] leaves z as it is.
@@ -73,11 +101,42 @@ class MapReader {
   /// As above; stays empty where the key is absent.
   void color(std::string_view key, std::optional<Animated<Rgb>>& target, const Range& range);
   void color_input(std::string_view key, ColorInput& target, const Range& range);
+  void color_input(std::string_view key, std::optional<ColorInput>& target, const Range& range);
   void scalar_input(std::string_view key, ScalarInput& target, const Range& range);
+  void scalar_input(std::string_view key, std::optional<ScalarInput>& target, const Range& range);
 
   /// A map below this one. In listing mode the reader runs even where the key is absent.
   void map(std::string_view key, const std::string& section,
            const std::function<void(MapReader&)>& read);
+  /// The keys of a description, which stays empty where `key` is absent.
+  template <class Desc>
+  void map(std::string_view key, const std::string& section, std::optional<Desc>& desc) {
+    if (has(key) || listing()) desc.emplace();
+    map(key, section, [&](MapReader& inner) {
+      if constexpr (requires { desc->where; }) desc->where = inner.where();
+      read_fields(inner, *desc);
+    });
+  }
+
+  /// As map(), but where the value is no map (or one of keys over time) it is another member's.
+  template <class Desc>
+  void map_beside_value(std::string_view key, const std::string& section,
+                        std::optional<Desc>& desc) {
+    if (is_map_of_keys(find(key)) || listing()) map(key, section, desc);
+  }
+  /// A map, or in its place desc.color alone.
+  template <class Desc>
+  void color_or_map(std::string_view key, const std::string& section, std::optional<Desc>& desc,
+                    const Range& range) {
+    if (is_map_of_keys(find(key)) || listing()) return map(key, section, desc);
+    Animated<Rgb> value(Rgb(0.0F));
+    color(key, value, range);
+    if (!has(key)) return;
+    desc.emplace();
+    desc->color = value;
+  }
+  /// What a measured medium brings.
+  void preset(std::string_view key, MediumDesc& medium);
 
   /// Complains about the value of `key`: "fov is 'wide', expected ...".
   void mismatch(std::string_view key, const YamlNode& found, const std::string& expected);
@@ -89,6 +148,9 @@ class MapReader {
   void finish();
 
  private:
+  /// Whether it is a map, but not one of values over time.
+  static bool is_map_of_keys(const YamlNode* node);
+  void ask(std::string_view key);
   const YamlNode* find(std::string_view key, std::string_view hint);
   /// The same; where it is empty, the complaint tells of the commonest reason.
   const YamlNode* find_color(std::string_view key);
@@ -109,6 +171,18 @@ class MapReader {
   std::vector<std::string> asked_;
 };
 
+/// What the keys of a description ask of each other, beyond what each takes. Of most nothing; for
+/// the others there are overloads, which complain.
+template <class Desc>
+void check_keys(MapReader& /*reader*/, Desc& /*desc*/) {}
+
+/// Reads the keys of `desc`.
+template <class Desc>
+void read_fields(MapReader& reader, Desc& desc) {
+  Desc::fields(desc, reader);
+  if (!reader.listing()) check_keys(reader, desc);
+}
+
 /// One row of a table "type name -> who reads its keys".
 template <class Desc>
 struct TypeRow {
@@ -124,35 +198,33 @@ std::vector<std::string> type_names(std::span<const TypeRow<Desc>> table) {
   return names;
 }
 
-/// Checks `type` (standing at `where`) against the names of a table; complains with the valid ones.
-bool check_type(MapReader& reader, const SourceLocation& where, std::string_view key,
-                const std::string& type, std::span<const std::string> valid);
+/// Reads `key` as one of `names` into `type` (which holds the default, "" = required) and lets
+/// `read` read the rest, in section "section.type"; it is given the place among `names`. False
+/// where the type is unknown.
+bool read_by_type(MapReader& reader, std::string_view key, const std::string& section,
+                  std::string& type, std::span<const std::string> names,
+                  const std::function<void(size_t)>& read);
 
-/// Reads `key` as a row's name into desc.type (which holds the default, "" = required) and lets
-/// that row read the rest, in section "section.row". False where the type is unknown.
+/// As above, into desc.type, by the row of that name.
 template <class Desc>
 bool read_by_type(MapReader& reader, std::string_view key, const std::string& section, Desc& desc,
                   std::span<const TypeRow<Desc>> table) {
-  const std::vector<std::string> valid = type_names(table);
-  if (desc.type.empty()) reader.require(key, "one of " + join_names(valid));
-  const YamlNode* node = reader.find(key);
-  if (reader.listing()) {
-    for (const auto& row : table) {
-      reader.enter_section(section + "." + row.name);
-      row.read(reader, desc);
-    }
-    return true;
-  }
-  if (node != nullptr) reader.text(key, desc.type, "one of " + join_names(valid));
-  if (desc.type.empty()) return false;
-  const SourceLocation where = node != nullptr ? SourceLocation(node->where) : reader.where();
-  if (!check_type(reader, where, key, desc.type, valid)) return false;
-  for (const auto& row : table) {
-    if (row.name != desc.type) continue;
-    reader.enter_section(section + "." + row.name);
-    row.read(reader, desc);
-  }
-  return true;
+  return read_by_type(reader, key, section, desc.type, type_names(table),
+                      [&](size_t row) { table[row].read(reader, desc); });
+}
+
+/// Reads `type` into desc.kind, a variant (KindsOf), and then all keys of `desc`, from section
+/// "section.type" on. False where the type is unknown.
+template <class Desc>
+bool read_kind(MapReader& reader, const std::string& section, Desc& desc) {
+  using Kinds = KindsOf<decltype(desc.kind)>;
+  std::string type;
+  return read_by_type(reader, "type", section, type, Kinds::names(), [&](size_t kind) {
+    desc.kind = Kinds::make(kind);
+    Desc::fields(desc, reader);
+    if (reader.listing()) return;
+    std::visit([&](auto& of_type) { check_keys(reader, of_type); }, desc.kind);
+  });
 }
 
 }  // namespace hyades::core

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/job/animated.h"
+#include "core/job/fields.h"
 #include "core/job/inputs.h"
 #include "core/job/source.h"
 #include "core/job/transform_desc.h"
@@ -34,6 +35,15 @@ struct DisplacementDesc {
   Animated<float> midlevel{0.0F};  ///< the texture's number where the surface stays, 0..1
   float max_edge = 0.0F;           ///< longest edge of its triangles; 0: 1/256 of the longest side
   uint32_t budget = 4'000'000;     ///< most triangles
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit.texture("texture", self.texture);
+    visit.animated("height", self.height, kAnyNumber.in("length"));
+    visit.animated("midlevel", self.midlevel, kUnitInterval);
+    visit.number("max_edge", self.max_edge, kPositive.in("length"));
+    visit.integer("budget", self.budget, 1, kMostDisplacedTriangles);
+  }
 };
 
 struct ObjectDesc {

@@ -8,15 +8,13 @@
 #include <vector>
 
 #include "core/base/assets.h"
+#include "core/job/fields.h"
 #include "core/job/job.h"
 #include "core/job/job_keys.h"
 #include "core/job/source.h"
 #include "core/job/yaml_tree.h"
 
 namespace hyades::core {
-
-/// What a name in a job may stand for.
-enum class NameKind { texture, material, group, object, medium };
 
 /// A name that was used somewhere and must exist.
 struct NameUse {

@@ -79,7 +79,7 @@ void check_splats(MapReader& top, const Job& job) {
 
 void read_job(MapReader& top, Job& job) {
   read_version(top);
-  top.find("include");  // already merged, see load_job_tree
+  top.leave_to_others("include");  // already merged, see load_job_tree
   read_name(top, job);
   read_units(top, job);
   read_frames(top, job.frames);

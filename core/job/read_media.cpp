@@ -1,18 +1,10 @@
 #include <array>
 
-#include "core/job/kinds.h"
-#include "core/job/light_groups.h"
-#include "core/job/read_density.h"
-#include "core/job/read_preset.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
 
 namespace {
-
-constexpr Range kCosine{-1.0, 1.0, true, true};
-
-const std::array<std::string, 2> kPhases = {"henyey-greenstein", "rayleigh"};
 
 /// Complains where `key` stands beside any of `others`; whether it did.
 bool stands_beside(MapReader& reader, std::string_view key,
@@ -20,21 +12,16 @@ bool stands_beside(MapReader& reader, std::string_view key,
   if (!reader.has(key)) return false;
   for (const std::string_view other : others) {
     if (!reader.has(other)) continue;
-    reader.complain(reader.find(key)->where, reader.what() + " has both " + std::string(key) +
-                                                 " and " + std::string(other) +
-                                                 ", expected one way of saying how dense it is");
+    reader.complain(reader.where_of(key), reader.what() + " has both " + std::string(key) +
+                                              " and " + std::string(other) +
+                                              ", expected one way of saying how dense it is");
     return true;
   }
   return false;
 }
 
 /// Coefficients, or an albedo with a length or a density.
-void read_density(MapReader& reader, MediumDesc& medium) {
-  reader.color("absorption", medium.absorption, kNotNegative);
-  reader.color("scattering", medium.scattering, kNotNegative);
-  reader.color("albedo", medium.albedo, kUnitInterval);
-  reader.color("mean_free_path", medium.mean_free_path, kPositive);
-  if (!medium.varying) reader.color("density", medium.density, kNotNegative);
+void check_density(MapReader& reader, const MediumDesc& medium) {
   static constexpr std::array<std::string_view, 2> kCoefficients = {"absorption", "scattering"};
   static constexpr std::array<std::string_view, 1> kLength = {"mean_free_path"};
   if (stands_beside(reader, "albedo", kCoefficients) ||
@@ -46,50 +33,69 @@ void read_density(MapReader& reader, MediumDesc& medium) {
   if (medium.varying && medium.albedo) return;
   if (medium.albedo.has_value() != (medium.density || medium.mean_free_path)) {
     const char* there = medium.albedo ? "albedo" : medium.density ? "density" : "mean_free_path";
-    reader.complain(reader.find(there)->where, reader.what() + " has " + there +
-                                                   " alone, expected albedo together with " +
-                                                   "mean_free_path or density");
+    reader.complain(reader.where_of(there), reader.what() + " has " + there +
+                                                " alone, expected albedo together with " +
+                                                "mean_free_path or density");
   }
 }
 
-void read_phase(MapReader& reader, MediumDesc& medium) {
-  reader.choice("phase", medium.phase, kPhases);
-  reader.color("g", medium.g, kCosine);
-  reader.color("g2", medium.g2, kCosine);
-  reader.animated("blend", medium.blend, kUnitInterval);
-  if (medium.phase == "rayleigh") {
-    for (const char* key : {"g", "g2", "blend"}) {
-      if (!reader.has(key)) continue;
-      reader.complain(reader.find(key)->where,
-                      std::string(key) + " belongs to phase henyey-greenstein, not to rayleigh");
-    }
+/// Grids are those of the density's vdb.
+void check_emission(MapReader& reader, const MediumDesc& medium) {
+  if (!medium.emission || (medium.varying && !medium.varying->vdb.empty())) return;
+  const YamlNode& emission = *reader.node().find("emission")->value;
+  if (emission.kind != YamlNode::Kind::map) return;
+  for (const char* key : {"grid", "temperature"}) {
+    const YamlEntry* entry = emission.find(key);
+    if (entry == nullptr) continue;
+    reader.complain(entry->value->where,
+                    std::string(key) + " names a grid, but the medium's density is of no vdb");
   }
 }
 
 }  // namespace
 
-std::span<const std::string> phase_names() { return kPhases; }
+void check_keys(MapReader& reader, ShellDensityDesc& shell) {
+  const bool still = shell.inner.is_constant() && shell.outer.is_constant();
+  if (still && shell.inner.constant >= shell.outer.constant) {
+    reader.complain(reader.where(), reader.what() +
+                                        " has an inner radius that is not below the "
+                                        "outer one");
+  }
+}
+
+void check_keys(MapReader& reader, DensityDesc& /*density*/) {
+  for (const char* key : {"grid", "tint", "place", "transform", "at"}) {
+    if (reader.has("vdb") || !reader.has(key)) continue;
+    reader.complain(reader.where_of(key), std::string(key) + " belongs to a density of a vdb");
+  }
+  const int kinds =
+      (reader.has("vdb") ? 1 : 0) + (reader.has("noise") ? 1 : 0) + (reader.has("shell") ? 1 : 0);
+  if (kinds != 1) {
+    reader.complain(reader.where(), reader.what() + (kinds == 0 ? " has none" : " has several") +
+                                        " of vdb, noise and shell, expected one");
+  }
+}
+
+void check_keys(MapReader& reader, MediumDesc& medium) {
+  check_density(reader, medium);
+  check_emission(reader, medium);
+  if (medium.phase != "rayleigh") return;
+  for (const char* key : {"g", "g2", "blend"}) {
+    if (!reader.has(key)) continue;
+    reader.complain(reader.where_of(key),
+                    std::string(key) + " belongs to phase henyey-greenstein, not to rayleigh");
+  }
+}
 
 void read_media(MapReader& top) {
   read_named(top, "media", "medium", NameKind::medium,
-             [&](const YamlNode& node, const std::string& name, const std::string& what,
-                 const std::string& path) {
-               MapReader reader(top.context(), node, what, path, "media");
-               if (node.kind != YamlNode::Kind::map) return;
+             [](MapReader& reader, const std::string& name) {
                MediumDesc medium;
                medium.name = name;
-               medium.where = node.where;
-               reader.find("like");
-               read_varying_density(reader, medium.varying);
-               read_preset(reader, medium);
-               read_density(reader, medium);
-               read_phase(reader, medium);
-               read_index(reader, medium);
-               read_emission(reader, medium);
-               reader.animated("scale", medium.scale, kNotNegative);
-               read_light_group(reader, medium.light_group);
+               medium.where = reader.where();
+               read_fields(reader, medium);
                reader.finish();
-               top.context().job.media.push_back(std::move(medium));
+               reader.context().job.media.push_back(std::move(medium));
              });
 }
 

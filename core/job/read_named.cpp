@@ -2,20 +2,25 @@
 
 #include "core/job/like.h"
 #include "core/job/read_sections.h"
-#include "core/job/read_textures.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core {
 
 void read_named(MapReader& parent, std::string_view key, const std::string& noun,
                 std::optional<NameKind> kind,
-                const std::function<void(const YamlNode& node, const std::string& name,
-                                         const std::string& what, const std::string& path)>& read) {
+                const std::function<void(MapReader& reader, const std::string& name)>& read) {
   const std::string path =
       parent.path().empty() ? std::string(key) : fmt::format("{}.{}", parent.path(), key);
+  const auto read_one = [&](const YamlNode& node, const std::string& name, const std::string& what,
+                            const std::string& where) {
+    MapReader reader(parent.context(), node, what, where, std::string(key));
+    if (node.kind != YamlNode::Kind::map) return;
+    reader.leave_to_others("like");  // resolve_likes
+    read(reader, name);
+  };
   if (parent.listing()) {
     parent.find(key);
-    read(empty_map(), noun, noun, path);
+    read_one(empty_map(), noun, noun, path);
     return;
   }
   const YamlNode* section = parent.find(key);
@@ -43,15 +48,9 @@ void read_named(MapReader& parent, std::string_view key, const std::string& noun
                        fmt::format("{} '{}' is empty, expected a map", noun, entry.key));
       continue;
     }
-    read(*entry.value, entry.key, fmt::format("{} '{}'", noun, entry.key),
-         fmt::format("{}.{}", path, entry.key));
+    read_one(*entry.value, entry.key, fmt::format("{} '{}'", noun, entry.key),
+             fmt::format("{}.{}", path, entry.key));
   }
-}
-
-void read_textures(MapReader& top) {
-  read_named(top, "textures", "texture", NameKind::texture,
-             [&](const YamlNode& node, const std::string& name, const std::string& what,
-                 const std::string& path) { read_texture(top.context(), node, name, what, path); });
 }
 
 }  // namespace hyades::core

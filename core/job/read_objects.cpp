@@ -4,8 +4,6 @@
 
 #include "core/base/text.h"
 #include "core/job/kinds.h"
-#include "core/job/light_groups.h"
-#include "core/job/read_displacement.h"
 #include "core/job/read_overrides.h"
 #include "core/job/read_sections.h"
 
@@ -15,10 +13,6 @@ namespace {
 
 void read_emit(MapReader& reader, ObjectDesc& object) {
   reader.enter_section("objects.shapes");
-  if (!reader.has("emit") && !reader.listing()) {
-    reader.find("emit");
-    return;
-  }
   EmitDesc emit;
   reader.map("emit", "objects.emit", [&](MapReader& map) {
     map.color_input("color", emit.color, kNotNegative);
@@ -30,9 +24,9 @@ void read_emit(MapReader& reader, ObjectDesc& object) {
                    "emit has both radiance and power, expected one of them");
     }
     map.flag("two_sided", emit.two_sided);
-    read_light_group(map, emit.light_group);
+    map.light_group("light_group", emit.light_group);
   });
-  object.emit = emit;
+  if (reader.has("emit")) object.emit = emit;
 }
 
 void read_body(MapReader& reader, ObjectDesc& object) {
@@ -114,9 +108,21 @@ void read_mesh(MapReader& reader, ObjectDesc& object) {
   reader.enter_section("objects.mesh");
   reader.choice("normals", object.smooth, kMeshNormals);
   reader.text("part", object.part, "the name of a material in the mesh's file (usemtl)");
-  read_displacement(reader, object);
+  reader.map("displacement", "objects.mesh.displacement", object.displacement);
   reader.enter_section("objects.mesh");
   read_body(reader, object);
+}
+
+/// What moves the triangles of a mesh, beside anything else.
+void refuse_displacement(MapReader& reader, const ObjectDesc& object) {
+  if (!reader.has("displacement")) return;
+  reader.leave_to_others("displacement");
+  const bool is_shape = object.shape != "instance" && object.shape != "group";
+  reader.complain(reader.where_of("displacement"),
+                  fmt::format("{} is {} {}, but displacement moves the triangles of a mesh{}",
+                              reader.what(), object.shape == "instance" ? "an" : "a", object.shape,
+                              is_shape ? ": write the shape as a file and give it with mesh"
+                                       : ": give it to the meshes in it"));
 }
 
 void read_instance(MapReader& reader, ObjectDesc& object) {
@@ -171,10 +177,9 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
   ObjectDesc object;
   object.name = name;
   object.where = reader.where();
-  reader.find("like");
   reader.name_of("material", object.material, NameKind::material);
   read_overrides(reader, object);
-  read_transform(reader, object.transform, object.at);
+  reader.place(object.transform, object.at);
   reader.flag("visible_to_camera", object.visible_to_camera);
   if (reader.listing()) {
     for (const KindRow& row : kKinds) {
@@ -182,8 +187,9 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
       if (std::string_view(row.key) != "group") row.read(reader, object);
     }
     reader.enter_section("objects");
-    for (const char* scene : {"gltf", "pbrt", "obj", "animation", "loop"}) reader.find(scene);
-    reader.find("group");
+    for (const char* scene : {"gltf", "pbrt", "obj", "animation", "loop"})
+      reader.leave_to_others(scene);
+    reader.leave_to_others("group");
     reader.context().listing->insert({"objects.group", "objects"});
     return;
   }
@@ -200,12 +206,9 @@ void read_object(MapReader& reader, std::vector<ObjectDesc>& objects, const std:
 void read_object_list(MapReader& reader, std::vector<ObjectDesc>& objects) {
   // Names within groups are not seen from outside.
   const auto kind = reader.path().empty() ? std::optional(NameKind::object) : std::nullopt;
-  read_named(reader, "objects", "object", kind,
-             [&](const YamlNode& node, const std::string& name, const std::string& what,
-                 const std::string& path) {
-               MapReader object(reader.context(), node, what, path, "objects");
-               if (node.kind == YamlNode::Kind::map) read_object(object, objects, name);
-             });
+  read_named(reader, "objects", "object", kind, [&](MapReader& object, const std::string& name) {
+    read_object(object, objects, name);
+  });
 }
 
 }  // namespace
@@ -227,17 +230,13 @@ void read_objects(MapReader& top) { read_object_list(top, top.context().job.obje
 
 void read_groups(MapReader& top) {
   read_named(top, "groups", "group", NameKind::group,
-             [&](const YamlNode& node, const std::string& name, const std::string& what,
-                 const std::string& path) {
-               MapReader reader(top.context(), node, what, path, "groups");
-               if (node.kind != YamlNode::Kind::map) return;
+             [&](MapReader& reader, const std::string& name) {
                GroupDesc group;
                group.name = name;
-               group.where = node.where;
-               reader.find("like");
+               group.where = reader.where();
                reader.require("objects", "a map of objects");
                if (reader.listing()) {
-                 reader.find("objects");
+                 reader.leave_to_others("objects");
                  return;
                }
                read_object_list(reader, group.objects);

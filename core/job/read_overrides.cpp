@@ -31,8 +31,11 @@ void read_overrides(MapReader& reader, ObjectDesc& object) {
       // No name that a job could give.
       const std::string name = fmt::format("{} / {}", reader.path(), entry.key);
       const YamlPtr changed = merged(value, *original->second);
-      read_material(context, *changed, name,
-                    fmt::format("material '{}' of {}", entry.key, reader.what()), name);
+      MapReader material(context, *changed,
+                         fmt::format("material '{}' of {}", entry.key, reader.what()), name,
+                         "materials");
+      material.leave_to_others("like");
+      read_material(material, name);
       object.overrides.emplace_back(entry.key, name);
     } else {
       context.complain(value.where, fmt::format("{} is {}, expected keys of the material '{}', or "

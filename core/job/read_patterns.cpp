@@ -23,7 +23,7 @@ bool projects(const std::string& type) {
 void read_mapping_map(MapReader& map, TextureMapping& mapping) {
   map.choice("type", mapping.type, kMappings);
   map.choice("space", mapping.space, kSpaces);
-  read_transform_steps(map, mapping.transform);
+  map.transform("transform", mapping.transform);
   map.animated("blend", mapping.blend, kUnitInterval);
   if (map.listing()) return;
   if (map.has("space") && !projects(mapping.type)) {

@@ -17,9 +17,8 @@ void read_integrator(MapReader& top, IntegratorDesc& integrator);
 void read_camera(MapReader& top, CameraDesc& camera);
 void read_textures(MapReader& top);
 void read_materials(MapReader& top);
-/// A material called `name`, added to the job; `what` and `path` are those of MapReader.
-void read_material(ReadContext& context, const YamlNode& node, const std::string& name,
-                   const std::string& what, const std::string& path);
+/// A material called `name`, added to the job.
+void read_material(MapReader& reader, const std::string& name);
 void read_media(MapReader& top);
 void read_groups(MapReader& top);
 void read_objects(MapReader& top);
@@ -29,17 +28,10 @@ void read_atmosphere(MapReader& top, Job& job);
 void read_color_config(MapReader& top, Job& job);
 void read_outputs(MapReader& top, Job& job);  ///< after `color`
 
-/// The `transform` and `at` of an object.
-void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at);
-
-/// A `transform` alone, of what stands still while the shutter is open.
-void read_transform_steps(MapReader& reader, TransformList& steps);
-
 /// Reads every `name: {...}` of section `key`, with `like` resolved, in the order of the text.
 /// `noun` is what one of them is called ("material"); `kind` is set where names may refer to them.
 void read_named(MapReader& parent, std::string_view key, const std::string& noun,
                 std::optional<NameKind> kind,
-                const std::function<void(const YamlNode& node, const std::string& name,
-                                         const std::string& what, const std::string& path)>& read);
+                const std::function<void(MapReader& reader, const std::string& name)>& read);
 
 }  // namespace hyades::core

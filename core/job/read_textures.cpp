@@ -7,6 +7,7 @@
 
 #include "core/base/udim.h"
 #include "core/job/kinds.h"
+#include "core/job/read_sections.h"
 #include "core/job/read_texture_kinds.h"
 #include "core/job/read_values.h"
 
@@ -103,17 +104,17 @@ std::span<const std::string> color_space_names() { return kColorSpaces; }
 std::span<const std::string> wrap_names() { return kWraps; }
 std::span<const std::string> texture_filter_names() { return kFilters; }
 
-void read_texture(ReadContext& context, const YamlNode& node, const std::string& name,
-                  const std::string& what, const std::string& path) {
-  MapReader reader(context, node, what, path, "textures");
-  if (node.kind != YamlNode::Kind::map) return;
+void read_textures(MapReader& top) {
+  read_named(top, "textures", "texture", NameKind::texture, read_texture);
+}
+
+void read_texture(MapReader& reader, const std::string& name) {
   TextureDesc texture;
   texture.name = name;
-  texture.where = node.where;
-  reader.find("like");  // already resolved, see resolve_likes
+  texture.where = reader.where();
   if (!read_by_type<TextureDesc>(reader, "type", "textures", texture, kTextureTypes)) return;
   reader.finish();
-  context.job.textures.push_back(std::move(texture));
+  reader.context().job.textures.push_back(std::move(texture));
 }
 
 bool read_texture_input(MapReader& reader, std::string_view key, const YamlNode& node,
@@ -122,8 +123,10 @@ bool read_texture_input(MapReader& reader, std::string_view key, const YamlNode&
     // Parentheses keep it apart from every name that a person can give.
     const std::string path = fmt::format("{}.{}", reader.path(), key);
     texture = "(" + path + ")";
-    read_texture(reader.context(), node, texture, fmt::format("{} of {}", key, reader.what()),
-                 path);
+    MapReader in_place(reader.context(), node, fmt::format("{} of {}", key, reader.what()), path,
+                       "textures");
+    in_place.leave_to_others("like");
+    read_texture(in_place, texture);
     return true;
   }
   if (node.kind == YamlNode::Kind::scalar && !looks_like_color(node.scalar) &&

@@ -105,26 +105,26 @@ void read_list(MapReader& reader, const YamlNode& list, TransformList& steps) {
 
 }  // namespace
 
-void read_transform(MapReader& reader, TransformList& steps, Animated<Vec3>& at) {
-  reader.context().in_shutter = true;
-  reader.animated("at", at, kAnyNumber);
-  read_transform_steps(reader, steps);
-  reader.context().in_shutter = false;
+void MapReader::place(TransformList& steps, Animated<Vec3>& at) {
+  context_.in_shutter = true;
+  animated("at", at, kAnyNumber.in("length"));
+  transform("transform", steps);
+  context_.in_shutter = false;
 }
 
-void read_transform_steps(MapReader& reader, TransformList& steps) {
-  const YamlNode* node = reader.find("transform");
-  if (reader.listing()) {
-    MapReader step_reader(reader.context(), empty_map(), "", "", "transform");
+void MapReader::transform(std::string_view key, TransformList& target) {
+  const YamlNode* node = find(key);
+  if (listing()) {
+    MapReader step_reader(context_, empty_map(), "", "", "transform");
     TransformStep step;
     for (const std::string& name : kSteps) read_step(step_reader, name, step);
     return;
   }
   if (node == nullptr) return;
   if (node->kind == YamlNode::Kind::list) {
-    read_list(reader, *node, steps);
+    read_list(*this, *node, target);
   } else {
-    reader.mismatch("transform", *node, "a list of steps, such as [{scale: 2}, {rotate_y: 45}]");
+    mismatch(key, *node, "a list of steps, such as [{scale: 2}, {rotate_y: 45}]");
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "core/job/references.h"
+
 namespace hyades::core {
 
 namespace {
@@ -10,6 +12,9 @@ class FileList {
  public:
   void add(const std::string& file) {
     if (!file.empty() && seen_.insert(file).second) files.push_back(file);
+  }
+  void add(const std::vector<std::string>& all) {
+    for (const std::string& file : all) add(file);
   }
   void add_meshes(const std::vector<ObjectDesc>& objects) {
     for (const ObjectDesc& object : objects) {
@@ -31,13 +36,11 @@ std::vector<std::string> referenced_files(const Job& job) {
   FileList list;
   for (const TextureDesc& texture : job.textures) list.add(texture.image.file);
   for (const MediumDesc& medium : job.media) {
-    if (!medium.varying) continue;
-    list.add(medium.varying->vdb);
-    if (medium.varying->shell) list.add(medium.varying->shell->image);
+    list.add(files_in(medium));
   }
   for (const GroupDesc& group : job.groups) list.add_meshes(group.objects);
   list.add_meshes(job.objects);
-  for (const LightDesc& light : job.lights) list.add(light.image);
+  for (const LightDesc& light : job.lights) list.add(files_in(light));
   if (job.environment) list.add(job.environment->image);
   return list.files;
 }

@@ -1,11 +1,10 @@
 #include "core/job/resolved_text.h"
 
 #include "core/base/version.h"
-#include "core/job/density_text.h"
 #include "core/job/field_writer.h"
 #include "core/job/layers.h"
 #include "core/job/mesh_files.h"
-#include "core/job/texture_text.h"
+#include "core/job/resolved_parts.h"
 
 namespace hyades::core {
 
@@ -75,96 +74,6 @@ void write(FieldWriter& out, const CameraDesc& camera) {
   out.leave();
 }
 
-void write(FieldWriter& out, const PrincipledDesc& p) {
-  out.enter("principled");
-  out.put("base_color", p.base_color);
-  out.put("metallic", p.metallic);
-  out.put("specular", p.specular);
-  out.put("specular_tint", p.specular_tint);
-  out.put("anisotropic", p.anisotropic);
-  out.put("anisotropic_rotation", p.anisotropic_rotation);
-  if (p.roughness_along) out.put("roughness_along", *p.roughness_along);
-  out.put("transmission", p.transmission);
-  out.put("diffuse_transmission", p.diffuse_transmission);
-  out.put("coat", p.coat);
-  out.put("coat_roughness", p.coat_roughness);
-  out.put("coat_ior", p.coat_ior);
-  out.put("sheen", p.sheen);
-  out.put("sheen_tint", p.sheen_tint);
-  out.put("sheen_roughness", p.sheen_roughness);
-  out.put("thin_walled", p.thin_walled);
-  out.put("emission_color", p.emission_color);
-  out.put("emission_strength", p.emission_strength);
-  out.leave();
-}
-
-void write(FieldWriter& out, const MaterialDesc& material) {
-  out.enter("material");
-  out.put("name", material.name);
-  out.put("type", material.type);
-  out.put("color", material.color);
-  out.put("metal", material.metal);
-  if (material.eta) out.put("eta", *material.eta);
-  if (material.k) out.put("k", *material.k);
-  out.put("roughness", material.roughness);
-  out.put("ior", material.ior);
-  out.put("transmission", material.transmission);
-  out.put("reflection", material.reflection);
-  out.put("reflectiveness", material.reflectiveness);
-  out.put("glossiness", material.glossiness);
-  out.put("multiple_scattering", material.multiple_scattering);
-  out.put("first", material.first);
-  out.put("second", material.second);
-  out.put("amount", material.amount);
-  out.put("opacity", material.opacity);
-  if (material.sides != "both") out.put("sides", material.sides);
-  if (material.bump) {
-    out.put("bump.texture", material.bump->texture);
-    out.put("bump.height", material.bump->height);
-  }
-  if (material.colored) {
-    out.put("colored", material.colored);
-    out.put("edge", material.edge);
-  }
-  if (material.type == "diffuse-transmission") out.put("transmitted", material.transmitted);
-  if (material.normal_map) {
-    out.put("normal_map.texture", material.normal_map->texture);
-    out.put("normal_map.strength", material.normal_map->strength);
-  }
-  if (material.principled) write(out, *material.principled);
-  if (material.subsurface) {
-    out.enter("subsurface");
-    out.put("color", material.subsurface->color);
-    out.put("radius", material.subsurface->radius);
-    out.put("scale", material.subsurface->scale);
-    out.put("g", material.subsurface->g);
-    out.leave();
-  }
-  out.leave();
-}
-
-void write(FieldWriter& out, const MediumDesc& medium) {
-  out.enter("medium");
-  out.put("name", medium.name);
-  out.put("absorption", medium.absorption);
-  out.put("scattering", medium.scattering);
-  if (medium.albedo) out.put("albedo", *medium.albedo);
-  if (medium.mean_free_path) out.put("mean_free_path", *medium.mean_free_path);
-  if (medium.density) out.put("density", *medium.density);
-  out.put("phase", medium.phase);
-  out.put("g", medium.g);
-  out.put("g2", medium.g2);
-  out.put("blend", medium.blend);
-  out.put("emission", medium.emission);
-  out.put("emission_strength", medium.emission_strength);
-  out.put("scale", medium.scale);
-  if (medium.varying) write_density(out, *medium.varying);
-  if (medium.glow) write_glow(out, *medium.glow);
-  if (!medium.light_group.empty()) out.put("light_group", medium.light_group);
-  if (medium.index) out.put("index", *medium.index);
-  out.leave();
-}
-
 void write(FieldWriter& out, const EmitDesc& emit) {
   out.enter("emit");
   out.put("color", emit.color);
@@ -190,7 +99,7 @@ void write(FieldWriter& out, const ObjectDesc& object, bool ahead) {
   out.put("height", object.height);
   out.put("caps", object.caps);
   out.put("smooth", object.smooth);
-  if (object.displacement) write_displacement(out, *object.displacement);
+  out.map("displacement", "", object.displacement);
   out.put("material", object.material);
   if (!object.interior.empty()) out.put("interior", object.interior);
   if (!object.exterior.empty()) out.put("exterior", object.exterior);
@@ -199,7 +108,7 @@ void write(FieldWriter& out, const ObjectDesc& object, bool ahead) {
     out.put("override", from);
     out.put("with", to);
   }
-  write_transform(out, object.transform);
+  out.put("transform", object.transform);
   out.put("at", object.at);
   if (object.emit) write(out, *object.emit);
   out.put("visible_to_camera", object.visible_to_camera);
@@ -211,51 +120,6 @@ void write(FieldWriter& out, const GroupDesc& group, bool ahead) {
   out.enter("group");
   out.put("name", group.name);
   for (const ObjectDesc& object : group.objects) write(out, object, ahead);
-  out.leave();
-}
-
-void write(FieldWriter& out, const LightDesc& light) {
-  out.enter("light");
-  out.put("name", light.name);
-  out.put("type", light.type);
-  out.put("at", light.at);
-  out.put("look_at", light.look_at);
-  out.put("direction", light.direction);
-  out.put("color", light.color);
-  out.put("power", light.power);
-  out.put("irradiance", light.irradiance);
-  out.put("angle", light.angle);
-  out.put("blend", light.blend);
-  if (!light.image.empty()) out.put_file("image", light.image);
-  if (light.type == "projector") {
-    out.put("up", light.up);
-    out.put("fov", light.fov);
-  }
-  if (!light.transform.empty()) write_transform(out, light.transform);
-  if (!light.light_group.empty()) out.put("light_group", light.light_group);
-  out.leave();
-}
-
-void write(FieldWriter& out, const EnvironmentDesc& environment) {
-  out.enter("environment");
-  out.put_file("image", environment.image);
-  if (const auto& sky = environment.sky) {
-    out.enter("sky");
-    out.put("elevation", sky->elevation);
-    out.put("azimuth", sky->azimuth);
-    if (sky->sun_direction) out.put("sun_direction", *sky->sun_direction);
-    out.put("turbidity", sky->turbidity);
-    out.put("ground_albedo", sky->ground_albedo);
-    out.put("irradiance", sky->irradiance);
-    out.put("sun", sky->sun);
-    out.put("sun_size", sky->sun_size);
-    out.leave();
-  }
-  out.put("color", environment.color);
-  out.put("rotate_y", environment.rotate_y);
-  out.put("strength", environment.strength);
-  out.put("visible_to_camera", environment.visible_to_camera);
-  if (!environment.light_group.empty()) out.put("light_group", environment.light_group);
   out.leave();
 }
 
@@ -283,13 +147,13 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   write(out, job.integrator);
   write(out, job.camera);
   for (const TextureDesc& texture : job.textures) write_texture(out, texture);
-  for (const MaterialDesc& material : job.materials) write(out, material);
-  for (const MediumDesc& medium : job.media) write(out, medium);
+  for (const MaterialDesc& material : job.materials) write_material(out, material);
+  for (const MediumDesc& medium : job.media) write_medium(out, medium);
   const bool ahead = looks_at_next_frame(job);
   for (const GroupDesc& group : job.groups) write(out, group, ahead);
   for (const ObjectDesc& object : job.objects) write(out, object, ahead);
-  for (const LightDesc& light : job.lights) write(out, light);
-  if (job.environment) write(out, *job.environment);
+  for (const LightDesc& light : job.lights) write_light(out, light);
+  out.map("environment", "", job.environment);
   if (!job.atmosphere.empty()) out.put("atmosphere", job.atmosphere);
   out.put_other_files(job.includes);
   return out.take();

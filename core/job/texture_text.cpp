@@ -1,6 +1,4 @@
-#include "core/job/texture_text.h"
-
-#include "core/job/density_text.h"
+#include "core/job/resolved_parts.h"
 
 namespace hyades::core {
 
@@ -20,7 +18,7 @@ void write(FieldWriter& out, const TextureMapping& mapping) {
   out.enter("mapping");
   out.put("type", mapping.type);
   out.put("space", mapping.space);
-  write_transform(out, mapping.transform);
+  out.put("transform", mapping.transform);
   out.put("blend", mapping.blend);
   out.put("scale", mapping.scale);
   out.put("offset", mapping.offset);
@@ -79,16 +77,6 @@ void write_texture(FieldWriter& out, const TextureDesc& texture) {
   out.put("saturation", texture.saturation);
   out.put("value", texture.value);
   out.put("channel", texture.channel);
-  out.leave();
-}
-
-void write_displacement(FieldWriter& out, const DisplacementDesc& displacement) {
-  out.enter("displacement");
-  out.put("texture", displacement.texture);
-  out.put("height", displacement.height);
-  out.put("midlevel", displacement.midlevel);
-  out.put("max_edge", displacement.max_edge);
-  out.put("budget", displacement.budget);
   out.leave();
 }
 

@@ -10,12 +10,17 @@
 /// What a job's keys ask of values that are only known once a frame is: check_frame.h tries them.
 namespace hyades::core {
 
-/// The numbers that a key accepts.
+/// The numbers that a key accepts, and what they count.
 struct Range {
   double low = -1e18;  ///< squares of lengths still fit into a float
   double high = 1e18;
   bool low_open = false;   ///< low itself is refused
   bool high_open = false;  ///< high itself is refused
+  const char* unit = "";   ///< as in docs/job.md: "length", "degrees"
+
+  constexpr Range in(const char* of_unit) const {
+    return {low, high, low_open, high_open, of_unit};
+  }
 
   /// Also false for what leaves an open range by being rounded to float (1e-60 is above 0, its
   /// float is not), and for NaN.

@@ -98,7 +98,7 @@ Result<MediumPtr> Appearance::medium_in(const std::string& name, const Placement
 
 bool Appearance::has_subsurface(const std::string& name) const {
   const MaterialDesc* desc = find_named(job_.materials, name);
-  return desc != nullptr && desc->subsurface;
+  return desc != nullptr && subsurface_of(*desc) != nullptr;
 }
 
 MediumPtr Appearance::subsurface(const std::string& name) {

@@ -8,7 +8,7 @@
 #include "core/geometry/displace.h"
 #include "core/job/field_writer.h"
 #include "core/job/mesh_files.h"
-#include "core/job/texture_text.h"
+#include "core/job/resolved_parts.h"
 #include "core/scene/shape_makers.h"
 
 namespace hyades::core {
@@ -59,7 +59,7 @@ std::string key_of(const ObjectDesc& object, const DisplacementSetting& setting,
   out.put("part", object.part);
   out.put("normals", object.smooth);
   out.put("tangents", setting.extras.tangents);
-  write_displacement(out, *object.displacement);
+  out.map("displacement", "", object.displacement);
   for (const TextureDesc* texture : textures) write_texture(out, *texture);
   if (std::any_of(textures.begin(), textures.end(),
                   [](const TextureDesc* texture) { return looks_at_world(*texture); })) {

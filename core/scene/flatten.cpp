@@ -25,8 +25,8 @@ class Flattener {
         extras_(mesh_extras_of(job)) {
     for (const GroupDesc& group : job.groups) groups_.emplace(group.name, &group);
     for (const MaterialDesc& material : job.materials) {
-      if (material.principled && material.principled->emits())
-        shining_.emplace(material.name, &*material.principled);
+      const auto* principled = std::get_if<PrincipledDesc>(&material.kind);
+      if (principled != nullptr && principled->emits()) shining_.emplace(material.name, principled);
     }
   }
 

@@ -4,7 +4,6 @@
 
 #include "core/base/elementary.h"
 #include "core/cameras/axes.h"
-#include "core/scene/name_table.h"
 #include "core/scene/transforms.h"
 
 namespace hyades::core {
@@ -16,90 +15,90 @@ Vec3 direction_of(const Vec3& v) {
   return length > 0.0F ? v / length : Vec3(0.0F, -1.0F, 0.0F);
 }
 
-/// What the light's transform makes of a place [units].
-Vec3 moved(const LightDesc& desc, const Vec3& place, const LightSetting& setting) {
-  if (desc.transform.empty()) return place;
-  const Mat4 matrix = transform_at(desc.transform, Animated<Vec3>(Vec3(0.0F)), setting.time);
-  return Vec3(matrix * Vec4(place, 1.0F));
+/// Where a light stands and how it is turned.
+class LightPlace {
+ public:
+  LightPlace(const TransformList& transform, const LightSetting& setting)
+      : turned_(!transform.empty()), units_(setting.units) {
+    if (turned_) matrix_ = transform_at(transform, Animated<Vec3>(Vec3(0.0F)), setting.time);
+  }
+
+  /// What the light's transform makes of a place [units], in metres.
+  Vec3 place(const Vec3& at) const {
+    return (turned_ ? Vec3(matrix_ * Vec4(at, 1.0F)) : at) * units_;
+  }
+
+  /// What it makes of a direction.
+  Vec3 direction(const Vec3& v) const { return turned_ ? Vec3(matrix_ * Vec4(v, 0.0F)) : v; }
+
+  /// What it makes of the axes of a picture: mirrored where it mirrors, at right angles again where
+  /// it stretches or shears (z goes where it is sent, y as far as that allows).
+  Mat3 axes(const Mat3& axes) const {
+    if (!turned_) return axes;
+    const Vec3 forward = direction_of(direction(axes[2]));
+    const CameraAxes square = axes_along(forward, direction(axes[1]));
+    const bool other_hand = glm::dot(square.right, direction(axes[0])) < 0.0F;
+    return {other_hand ? -square.right : square.right, square.up, square.forward};
+  }
+
+ private:
+  bool turned_;
+  float units_;
+  Mat4 matrix_{1.0F};
+};
+
+template <class Desc>
+Rgb power_of(const Desc& desc, const JobTime& time) {
+  return desc.color.at(time) * desc.power.at(time);
 }
 
-/// What the light's transform makes of a direction.
-Vec3 turned(const LightDesc& desc, const Vec3& direction, const LightSetting& setting) {
-  if (desc.transform.empty()) return direction;
-  const Mat4 matrix = transform_at(desc.transform, Animated<Vec3>(Vec3(0.0F)), setting.time);
-  return Vec3(matrix * Vec4(direction, 0.0F));
-}
-
-Vec3 place_of(const LightDesc& desc, const LightSetting& setting) {
-  return moved(desc, desc.at.at(setting.time), setting) * setting.units;
-}
-
-Rgb power_of(const LightDesc& desc, const LightSetting& setting) {
-  return desc.color.at(setting.time) * desc.power.at(setting.time);
-}
-
-/// What the light's transform makes of the axes of its picture: mirrored where it mirrors, at right
-/// angles again where it stretches or shears (z goes where it is sent, y as far as that allows).
-Mat3 turned_axes(const LightDesc& desc, const Mat3& axes, const LightSetting& setting) {
-  if (desc.transform.empty()) return axes;
-  const Vec3 forward = direction_of(turned(desc, axes[2], setting));
-  const CameraAxes square = axes_along(forward, turned(desc, axes[1], setting));
-  const bool other_hand = glm::dot(square.right, turned(desc, axes[0], setting)) < 0.0F;
-  return {other_hand ? -square.right : square.right, square.up, square.forward};
-}
-
-Result<LightPtr> point(const LightDesc& desc, const LightSetting& setting, SceneCache& cache) {
-  const Vec3 at = place_of(desc, setting);
-  if (desc.image.empty()) return make_point_light(at, power_of(desc, setting));
+Result<LightPtr> make(const PointLightDesc& desc, const LightPlace& place,
+                      const LightSetting& setting, SceneCache& cache) {
+  const Vec3 at = place.place(desc.at.at(setting.time));
+  const Rgb power = power_of(desc, setting.time);
+  if (desc.image.empty()) return make_point_light(at, power);
   auto map = cache.environment_map(desc.image);
   if (!map) return map.error();
-  return make_goniometric_light(at, turned_axes(desc, Mat3(1.0F), setting), power_of(desc, setting),
-                                std::move(*map));
+  return make_goniometric_light(at, place.axes(Mat3(1.0F)), power, std::move(*map));
 }
 
-Result<LightPtr> projector(const LightDesc& desc, const LightSetting& setting, SceneCache& cache) {
+Result<LightPtr> make(const ProjectorLightDesc& desc, const LightPlace& place,
+                      const LightSetting& setting, SceneCache& cache) {
   auto gobo = cache.gobo(desc.image);
   if (!gobo) return gobo.error();
   const JobTime& time = setting.time;
-  const CameraAxes view = axes_along(desc.look_at.at(time) - desc.at.at(time), desc.up.at(time));
-  return make_projector_light(
-      place_of(desc, setting), turned_axes(desc, Mat3(view.right, view.up, view.forward), setting),
-      power_of(desc, setting), desc.fov.at(time) * kRadians, std::move(*gobo));
+  const Vec3 at = desc.at.at(time);
+  const CameraAxes view = axes_along(desc.look_at.at(time) - at, desc.up.at(time));
+  return make_projector_light(place.place(at), place.axes({view.right, view.up, view.forward}),
+                              power_of(desc, time), desc.fov.at(time) * kRadians, std::move(*gobo));
 }
 
-Result<LightPtr> spot(const LightDesc& desc, const LightSetting& setting, SceneCache& /*cache*/) {
-  const Vec3 at = place_of(desc, setting);
-  const Vec3 towards = moved(desc, desc.look_at.at(setting.time), setting) * setting.units - at;
-  const float outer = desc.angle.at(setting.time) * kRadians;
-  const float inner = outer * (1.0F - desc.blend.at(setting.time));
-  return make_spot_light(at, direction_of(towards), power_of(desc, setting), cos(inner),
-                         cos(outer));
+Result<LightPtr> make(const SpotLightDesc& desc, const LightPlace& place,
+                      const LightSetting& setting, SceneCache& /*cache*/) {
+  const JobTime& time = setting.time;
+  const Vec3 at = place.place(desc.at.at(time));
+  const Vec3 towards = place.place(desc.look_at.at(time)) - at;
+  const float outer = desc.angle.at(time) * kRadians;
+  const float inner = outer * (1.0F - desc.blend.at(time));
+  return make_spot_light(at, direction_of(towards), power_of(desc, time), cos(inner), cos(outer));
 }
 
-Result<LightPtr> sun(const LightDesc& desc, const LightSetting& setting, SceneCache& /*cache*/) {
-  return make_sun_light(direction_of(turned(desc, desc.direction.at(setting.time), setting)),
-                        desc.color.at(setting.time) * desc.irradiance.at(setting.time),
-                        desc.angle.at(setting.time) * kRadians, setting.world_radius);
+Result<LightPtr> make(const SunLightDesc& desc, const LightPlace& place,
+                      const LightSetting& setting, SceneCache& /*cache*/) {
+  const JobTime& time = setting.time;
+  return make_sun_light(direction_of(place.direction(desc.direction.at(time))),
+                        desc.color.at(time) * desc.irradiance.at(time),
+                        desc.angle.at(time) * kRadians, setting.world_radius);
 }
-
-using LightMaker = Result<LightPtr> (*)(const LightDesc&, const LightSetting&, SceneCache&);
-constexpr std::array<NameRow<LightMaker>, 4> kLightMakers = {{
-    {"point", point},
-    {"spot", spot},
-    {"projector", projector},
-    {"sun", sun},
-}};
 
 }  // namespace
 
 Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting, SceneCache& cache) {
-  const auto make = look_up(kLightMakers, desc.type, "type of light");
-  if (!make) return make.error().in("light '" + desc.name + "'");
-  auto light = (*make)->value(desc, setting, cache);
+  const LightPlace place(desc.transform, setting);
+  auto light =
+      std::visit([&](const auto& kind) { return make(kind, place, setting, cache); }, desc.kind);
   if (!light) return light.error().in("light '" + desc.name + "'");
   return light;
 }
-
-std::vector<std::string> made_light_types() { return names_of(kLightMakers); }
 
 }  // namespace hyades::core

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "core/base/result.h"
 #include "core/job/job.h"
 #include "core/lights/make_light.h"
@@ -20,8 +17,5 @@ struct LightSetting {
 /// The light that `desc` describes (no shape's emission, no environment); its picture is of
 /// `cache`.
 Result<LightPtr> make_light(const LightDesc& desc, const LightSetting& setting, SceneCache& cache);
-
-/// The types that can be made: those of core/job/kinds.h.
-std::vector<std::string> made_light_types();
 
 }  // namespace hyades::core

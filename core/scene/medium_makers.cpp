@@ -31,7 +31,9 @@ Coefficients coefficients_of(const MediumDesc& desc, const JobTime& time, float 
   const float scale = desc.scale.at(time) / units;
   found.absorption *= scale;
   found.scattering *= scale;
-  found.emission = desc.emission.at(time) * desc.emission_strength.at(time) / units;
+  if (desc.emission) {
+    found.emission = desc.emission->color.at(time) * desc.emission->strength.at(time) / units;
+  }
   return found;
 }
 
@@ -53,12 +55,20 @@ MediumPtr make_medium_in(const MediumDesc& desc, const JobTime& time, float unit
 }
 
 MediumPtr make_subsurface(const MaterialDesc& desc, const JobTime& time, float units) {
-  const SubsurfaceDesc& subsurface = *desc.subsurface;
+  const SubsurfaceDesc& subsurface = *subsurface_of(desc);
   BodyColor body;
   body.color = subsurface.color.at(time);
   body.radius = subsurface.radius.at(time) * subsurface.scale.at(time) * units;
   body.g = subsurface.g.at(time);
-  body.index = desc.type == "null" ? 1.0F : desc.ior.at(time);
+  body.index = std::visit(
+      [&](const auto& kind) {
+        if constexpr (requires { kind.ior; }) {
+          return kind.ior.at(time);
+        } else {
+          return 1.0F;
+        }
+      },
+      desc.kind);
   const ScatteringNumbers made = scattering_of(body);
   return make_homogeneous(made.absorption, made.scattering, Rgb(0.0F),
                           Phase::henyey_greenstein(Rgb(body.g)));

@@ -4,8 +4,7 @@
 
 namespace hyades::core {
 
-Result<MaterialPtr> principled_material(const MaterialDesc& desc, Appearance& looks) {
-  const PrincipledDesc& p = *desc.principled;
+Result<MaterialPtr> principled_material(const PrincipledDesc& p, Appearance& looks) {
   PrincipledParams params;
   struct Color {
     const ColorInput& from;
@@ -23,7 +22,7 @@ Result<MaterialPtr> principled_material(const MaterialDesc& desc, Appearance& lo
     ScalarParam& to;
   };
   for (const Number& each :
-       {Number{p.metallic, params.metallic}, Number{desc.roughness, params.roughness},
+       {Number{p.metallic, params.metallic}, Number{p.roughness, params.roughness},
         Number{p.specular, params.specular}, Number{p.anisotropic, params.anisotropic},
         Number{p.anisotropic_rotation, params.anisotropic_rotation},
         Number{p.transmission, params.transmission},
@@ -39,10 +38,10 @@ Result<MaterialPtr> principled_material(const MaterialDesc& desc, Appearance& lo
     if (!along) return along.error();
     params.roughness_along = *along;
   }
-  params.ior = desc.ior.at(looks.time());
+  params.ior = p.ior.at(looks.time());
   params.coat_ior = p.coat_ior.at(looks.time());
   params.thin_walled = p.thin_walled;
-  params.subsurface = desc.subsurface.has_value();
+  params.subsurface = p.subsurface.has_value();
   return make_principled(params);
 }
 

@@ -6,6 +6,6 @@
 namespace hyades::core {
 
 /// The principled material that `desc` describes at the moment of `looks`.
-Result<MaterialPtr> principled_material(const MaterialDesc& desc, Appearance& looks);
+Result<MaterialPtr> principled_material(const PrincipledDesc& desc, Appearance& looks);
 
 }  // namespace hyades::core

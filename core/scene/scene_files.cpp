@@ -10,7 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/base/udim.h"
 #include "core/job/mesh_files.h"
-#include "core/job/textures_of.h"
+#include "core/job/references.h"
 #include "core/scene/shape_makers.h"
 #include "core/scene/texture_makers.h"
 
@@ -61,9 +61,11 @@ class Walk {
 
   void add_light_maps(const Job& job) {
     for (const LightDesc& light : job.lights) {
-      add_light_map(light.image,
-                    light.type == "projector" ? LightMap::gobo : LightMap::surroundings,
-                    "light '" + light.name + "'", light.where);
+      const bool projects = std::holds_alternative<ProjectorLightDesc>(light.kind);
+      for (const std::string& image : files_in(light)) {
+        add_light_map(image, projects ? LightMap::gobo : LightMap::surroundings,
+                      "light '" + light.name + "'", light.where);
+      }
     }
     if (!job.environment) return;
     add_light_map(job.environment->image, LightMap::surroundings, "environment",
@@ -125,9 +127,8 @@ class Walk {
     const auto found = materials_.find(name);
     if (found == materials_.end() || !seen_materials_.insert(name).second) return;
     const MaterialDesc& material = *found->second;
-    for (const std::string& texture : textures_of(material)) visit_texture(texture);
-    visit_material(material.first);
-    visit_material(material.second);
+    for (const std::string& texture : names_in(material, NameKind::texture)) visit_texture(texture);
+    for (const std::string& part : names_in(material, NameKind::material)) visit_material(part);
   }
 
   void visit_texture(const std::string& name) {

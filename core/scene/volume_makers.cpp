@@ -84,7 +84,7 @@ Mat4 fitted(const Bounds& box, const Bounds& body) {
 Result<std::shared_ptr<const ColorField>> make_glow(const MediumDesc& desc, const JobTime& time,
                                                     const Mat4& to_file, SceneCache& cache) {
   GridGlow glow;
-  glow.kelvin = desc.glow->kelvin.at(time);
+  glow.kelvin = desc.emission->kelvin.at(time);
   const auto add = [&](const std::string& name, std::shared_ptr<const BrickGrid<float>>& voxels,
                        Mat4& to_grid) -> Status {
     if (name.empty()) return {};
@@ -94,8 +94,8 @@ Result<std::shared_ptr<const ColorField>> make_glow(const MediumDesc& desc, cons
     to_grid = glm::inverse((*grid)->to_file) * to_file;
     return {};
   };
-  if (auto done = add(desc.glow->grid, glow.factor, glow.to_factor); !done) return done.error();
-  if (auto done = add(desc.glow->temperature, glow.temperature, glow.to_temperature); !done)
+  if (auto done = add(desc.emission->grid, glow.factor, glow.to_factor); !done) return done.error();
+  if (auto done = add(desc.emission->temperature, glow.temperature, glow.to_temperature); !done)
     return done.error();
   return make_grid_glow(glow);
 }
@@ -115,7 +115,7 @@ Result<PlacedVolume> make_vdb(const MediumDesc& medium, const JobTime& time, con
     volume.tint =
         make_grid_color({*tint, &(*tint)->voxels}, glm::inverse((*tint)->to_file) * to_file);
   }
-  if (medium.glow) {
+  if (medium.emission && medium.emission->has_grids()) {
     auto glow = make_glow(medium, time, to_file, cache);
     if (!glow) return glow.error();
     volume.glow = *glow;

@@ -151,10 +151,12 @@ TEST(Like, CopiesKeysThatAreNotOverridden) {
       "  c: {like: a, shape: disk}\n",
       {});
   ASSERT_EQ(r.complaints, "");
-  EXPECT_EQ(r.job.materials[0].metal, "copper");
-  EXPECT_FLOAT_EQ(r.job.materials[0].roughness.value.constant, 0.1F);
-  EXPECT_EQ(r.job.materials[2].metal, "custom");
-  EXPECT_FLOAT_EQ(r.job.materials[2].roughness.value.constant, 0.1F);
+  const auto& fine = std::get<ConductorDesc>(r.job.materials[0].kind);
+  EXPECT_EQ(fine.metal, "copper");
+  EXPECT_FLOAT_EQ(fine.roughness.value.constant, 0.1F);
+  const auto& mine = std::get<ConductorDesc>(r.job.materials[2].kind);
+  EXPECT_EQ(mine.metal, "custom");
+  EXPECT_FLOAT_EQ(mine.roughness.value.constant, 0.1F);
   EXPECT_FLOAT_EQ(r.job.objects[1].at.constant.x, 2.0F);
   EXPECT_FLOAT_EQ(r.job.objects[1].radius.constant, 2.0F);
   EXPECT_EQ(r.job.objects[1].material, "fine");
@@ -179,7 +181,7 @@ TEST(Like, LongChainsDoNotOverflow) {
   text += "  l" + std::to_string(count) + ": {type: sun, irradiance: 2}\n";
   const Reading r = read(text, {});
   ASSERT_EQ(r.complaints, "");
-  EXPECT_FLOAT_EQ(r.job.lights[0].irradiance.constant, 2.0F);
+  EXPECT_FLOAT_EQ(std::get<SunLightDesc>(r.job.lights[0].kind).irradiance.constant, 2.0F);
 }
 
 TEST(Alias, SharesValues) {
@@ -188,7 +190,7 @@ TEST(Alias, SharesValues) {
       "  b: {type: glossy, color: *red}\n",
       {});
   ASSERT_EQ(r.complaints, "");
-  EXPECT_FLOAT_EQ(r.job.materials[1].color.value.constant.x, 0.8F);
+  EXPECT_FLOAT_EQ(std::get<GlossyDesc>(r.job.materials[1].kind).color.value.constant.x, 0.8F);
 }
 
 }  // namespace

@@ -61,10 +61,10 @@ outputs:
   EXPECT_EQ(job.textures[0].noise.octaves, 4);
   EXPECT_NEAR(job.textures[1].b.value.constant.x, 0.6867F, 1e-3F);
   ASSERT_EQ(job.materials.size(), 3U);
-  EXPECT_EQ(job.materials[0].metal, "silver");
+  EXPECT_EQ(std::get<ConductorDesc>(job.materials[0].kind).metal, "silver");
   ASSERT_TRUE(job.materials[0].bump.has_value());
   EXPECT_EQ(job.materials[0].bump->texture, "swell");
-  EXPECT_EQ(job.materials[1].color.texture, "tiles");
+  EXPECT_EQ(std::get<GlossyDesc>(job.materials[1].kind).color.texture, "tiles");
   ASSERT_EQ(job.objects.size(), 4U);
   EXPECT_EQ(job.objects[2].mesh, "meshes/flask.ply");
   ASSERT_EQ(job.objects[2].transform.size(), 3U);

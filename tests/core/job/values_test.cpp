@@ -183,8 +183,9 @@ TEST(Texture, WrittenInPlaceGetsANameOfItsOwn) {
   EXPECT_EQ(job.textures[0].name, "(materials.a.color.a)");
   EXPECT_EQ(job.textures[1].name, "(materials.a.color)");
   EXPECT_EQ(job.textures[1].a.texture, "(materials.a.color.a)");
-  EXPECT_EQ(job.materials[0].color.texture, "(materials.a.color)");
-  EXPECT_EQ(job.materials[1].roughness.texture, "(materials.b.roughness)");
+  EXPECT_EQ(std::get<LambertDesc>(job.materials[0].kind).color.texture, "(materials.a.color)");
+  EXPECT_EQ(std::get<ConductorDesc>(job.materials[1].kind).roughness.texture,
+            "(materials.b.roughness)");
 }
 
 TEST(Job, ShortForms) {

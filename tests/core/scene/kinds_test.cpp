@@ -16,6 +16,7 @@
 #include "core/scene/material_makers.h"
 #include "core/scene/shape_makers.h"
 #include "core/scene/texture_makers.h"
+#include "core/scene/volume_makers.h"
 #include "tests/core/job/test_assets.h"
 
 /// The names that a job may give are listed by the job room; the scene room makes things of them.
@@ -56,8 +57,6 @@ void expect_builds(const std::string& text) {
 
 TEST(Kinds, EveryNameOfAJobHasAMaker) {
   EXPECT_THAT(made_texture_types(), UnorderedElementsAreArray(texture_types()));
-  EXPECT_THAT(made_material_types(), UnorderedElementsAreArray(material_types()));
-  EXPECT_THAT(made_light_types(), UnorderedElementsAreArray(light_types()));
   EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shape_names()));
   EXPECT_THAT(made_color_spaces(), UnorderedElementsAreArray(color_space_names()));
   EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(wrap_names()));
@@ -71,6 +70,7 @@ TEST(Kinds, EveryNameOfAJobHasAMaker) {
   EXPECT_THAT(made_remap_ends(), UnorderedElementsAreArray(remap_end_names()));
   EXPECT_THAT(made_ramp_shapes(), UnorderedElementsAreArray(ramp_shape_names()));
   EXPECT_THAT(made_mesh_normals(), UnorderedElementsAreArray(mesh_normals_names()));
+  EXPECT_THAT(made_vdb_places(), UnorderedElementsAreArray(kVdbPlaceNames));
 }
 
 /// What docs/job.md lists as the range of `key` in the table below the heading of `section`.
@@ -96,8 +96,8 @@ std::vector<std::string> documented(const std::string& section, const std::strin
 
 TEST(Kinds, TheReferenceListsTheSameNames) {
   EXPECT_THAT(made_texture_types(), UnorderedElementsAreArray(documented("textures", "type")));
-  EXPECT_THAT(made_material_types(), UnorderedElementsAreArray(documented("materials", "type")));
-  EXPECT_THAT(made_light_types(), UnorderedElementsAreArray(documented("lights", "type")));
+  EXPECT_THAT(material_types(), UnorderedElementsAreArray(documented("materials", "type")));
+  EXPECT_THAT(light_types(), UnorderedElementsAreArray(documented("lights", "type")));
   std::vector<std::string> shapes = documented("objects", "shape");
   shapes.emplace_back("mesh");
   EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shapes));
@@ -205,8 +205,7 @@ Job textured_job() {
   job.textures.push_back(texture);
   MaterialDesc material;
   material.name = "m";
-  material.type = "lambert";
-  material.color.texture = "x";
+  material.kind = LambertDesc{.color = {{}, "x"}, .roughness = {}};
   job.materials.push_back(material);
   ObjectDesc object;
   object.name = "o";
@@ -236,16 +235,8 @@ TEST(Kinds, AnUnknownNameIsAnErrorThatListsTheOthers) {
   job.textures[0].type = "granite";
   EXPECT_THAT(refusal(job), HasSubstr("there is no type of texture 'granite'"));
   job = textured_job();
-  job.materials[0].type = "velvet";
-  EXPECT_THAT(refusal(job), HasSubstr("there is no type of material 'velvet'"));
-  job = textured_job();
   job.objects[0].shape = "torus";
   EXPECT_THAT(refusal(job), HasSubstr("object 'o': there is no shape 'torus'"));
-  job = textured_job();
-  job.lights.emplace_back();
-  job.lights[0].name = "l";
-  job.lights[0].type = "laser";
-  EXPECT_THAT(refusal(job), HasSubstr("light 'l': there is no type of light 'laser'"));
 }
 
 }  // namespace

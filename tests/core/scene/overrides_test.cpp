@@ -37,7 +37,7 @@ class Overrides : public ::testing::Test {
     for (const FlatObject& object : *flat) {
       for (const MaterialDesc& material : job.materials) {
         if (material.name == object.material)
-          found[object.name] = material.color.value.at(job.time_of(1));
+          found[object.name] = std::get<LambertDesc>(material.kind).color.value.at(job.time_of(1));
       }
     }
     return found;

@@ -1,0 +1,39 @@
+#include "core/job/old_lines.h"
+#include "core/job/resolved_parts.h"
+
+namespace hyades::core {
+namespace {
+
+/// From when one struct held the keys of all types.
+constexpr OldLine kOldLightLines[] = {
+    {"at", "00000000,00000000,00000000"},
+    {"look_at", "00000000,bf800000,00000000"},
+    {"direction", "00000000,bf800000,00000000"},
+    {"color", kWhiteBits},
+    {"power", "41200000"},
+    {"irradiance", "3f800000"},
+    {"angle", "3f07ae14"},
+    {"blend", "3e4ccccd"},
+    {"image", nullptr, kNoText},
+    {"up"},
+    {"fov"},
+    {"step.*"},
+    {"light_group"},
+};
+
+}  // namespace
+
+void write_light(FieldWriter& out, const LightDesc& light) {
+  out.enter("light");
+  out.put("name", light.name);
+  out.put("type", KindsOf<LightKind>::name(light.kind));
+  LightDesc plain;
+  plain.kind = KindsOf<LightKind>::make(light.kind.index());
+  const auto lines_of = [&](const LightDesc& desc) {
+    return out.collect([&] { LightDesc::fields(desc, out); });
+  };
+  write_in_old_order(out, kOldLightLines, lines_of(light), lines_of(plain));
+  out.leave();
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,99 @@
+#include "core/job/resolved_parts.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/job/old_lines.h"
+
+namespace hyades::core {
+namespace {
+
+/// From when one struct held the keys of all types.
+constexpr OldLine kOldMaterialLines[] = {
+    {"color", "3f000000,3f000000,3f000000"},
+    {"metal", "4:gold"},
+    {"eta"},
+    {"k"},
+    {"roughness", "00000000"},
+    {"ior", "3fc00000"},
+    {"transmission", kWhiteBits},
+    {"reflection", kWhiteBits},
+    {"reflectiveness", "3f000000"},
+    {"glossiness", "3f4ccccd"},
+    {"multiple_scattering", "0"},
+    {"first", kNoText},
+    {"second", kNoText},
+    {"amount", "3f000000"},
+    {"opacity", "3f800000"},
+    {"sides", nullptr, "4:both"},
+    {"bump.texture"},
+    {"bump.height"},
+    {"colored"},
+    {"edge"},
+    {"transmitted"},
+    {"normal_map.texture"},
+    {"normal_map.strength"},
+    {"principled.base_color"},
+    {"principled.metallic"},
+    {"principled.specular"},
+    {"principled.specular_tint"},
+    {"principled.anisotropic"},
+    {"principled.anisotropic_rotation"},
+    {"principled.roughness_along"},
+    {"principled.transmission"},
+    {"principled.diffuse_transmission"},
+    {"principled.coat"},
+    {"principled.coat_roughness"},
+    {"principled.coat_ior"},
+    {"principled.sheen"},
+    {"principled.sheen_tint"},
+    {"principled.sheen_roughness"},
+    {"principled.thin_walled"},
+    {"principled.emission_color"},
+    {"principled.emission_strength"},
+    {"subsurface.color"},
+    {"subsurface.radius"},
+    {"subsurface.scale"},
+    {"subsurface.g"},
+};
+
+bool has_old_line(std::string_view key) {
+  return std::any_of(std::begin(kOldMaterialLines), std::end(kOldMaterialLines),
+                     [&](const OldLine& line) { return key == line.key; });
+}
+
+/// The lines of `material`, by the old names.
+std::vector<FieldWriter::Line> lines_of(FieldWriter& out, const MaterialDesc& material) {
+  auto lines = out.collect([&] { MaterialDesc::fields(material, out); });
+  if (std::holds_alternative<PrincipledDesc>(material.kind)) {
+    // Its roughness and ior were those of all types.
+    for (FieldWriter::Line& line : lines) {
+      const std::string inner = "principled." + line.key;
+      if (has_old_line(inner)) line.key = inner;
+    }
+  }
+  if (const auto* metal = std::get_if<ConductorDesc>(&material.kind)) {
+    if (metal->color) {
+      lines.push_back({"colored", "1"});
+    } else {
+      std::erase_if(lines, [](const FieldWriter::Line& line) { return line.key == "edge"; });
+    }
+  }
+  return lines;
+}
+
+}  // namespace
+
+void write_material(FieldWriter& out, const MaterialDesc& material) {
+  out.enter("material");
+  out.put("name", material.name);
+  out.put("type", KindsOf<MaterialKind>::name(material.kind));
+  MaterialDesc plain;
+  plain.kind = KindsOf<MaterialKind>::make(material.kind.index());
+  write_in_old_order(out, kOldMaterialLines, lines_of(out, material), lines_of(out, plain));
+  out.leave();
+}
+
+}  // namespace hyades::core

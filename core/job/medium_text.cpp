@@ -1,0 +1,66 @@
+#include <algorithm>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include "core/job/old_lines.h"
+#include "core/job/resolved_parts.h"
+
+namespace hyades::core {
+namespace {
+
+constexpr OldLine kOldMediumLines[] = {
+    {"absorption"},
+    {"scattering"},
+    {"albedo"},
+    {"mean_free_path"},
+    {"density"},
+    {"phase"},
+    {"g"},
+    {"g2"},
+    {"blend"},
+    {"emission", "00000000,00000000,00000000"},
+    {"emission_strength", "3f800000"},
+    {"scale"},
+    {"density.vdb"},
+    {"density.grid"},
+    {"density.tint"},
+    {"density.place"},
+    {"density.step.*"},
+    {"density.at"},
+    {"density.noise.*"},
+    {"density.shell.*"},
+    {"density.march"},
+    {"glow.grid"},
+    {"glow.temperature"},
+    {"glow.kelvin"},
+    {"light_group"},
+    {"index"},
+};
+
+std::vector<FieldWriter::Line> lines_of(FieldWriter& out, const MediumDesc& medium) {
+  auto lines = out.collect([&] { MediumDesc::fields(medium, out); });
+  const auto leave_out = [&](std::initializer_list<std::string_view> keys) {
+    std::erase_if(lines, [&](const FieldWriter::Line& line) {
+      return std::find(keys.begin(), keys.end(), line.key) != keys.end();
+    });
+  };
+  if (medium.varying && medium.varying->vdb.empty()) {
+    leave_out({"density.vdb", "density.grid", "density.tint", "density.place", "density.at"});
+  }
+  if (medium.emission && !medium.emission->has_grids()) {
+    leave_out({"glow.grid", "glow.temperature", "glow.kelvin"});
+  }
+  return lines;
+}
+
+}  // namespace
+
+void write_medium(FieldWriter& out, const MediumDesc& medium) {
+  out.enter("medium");
+  out.put("name", medium.name);
+  write_in_old_order(out, kOldMediumLines, lines_of(out, medium), lines_of(out, MediumDesc()));
+  out.leave();
+}
+
+}  // namespace hyades::core

@@ -1,0 +1,37 @@
+#include "core/job/old_lines.h"
+
+#include <algorithm>
+#include <string_view>
+
+namespace hyades::core {
+namespace {
+
+bool is_of(const OldLine& old, const FieldWriter::Line& line) {
+  const std::string_view key = old.key;
+  return key.ends_with('*') ? line.key.starts_with(key.substr(0, key.size() - 1)) : line.key == key;
+}
+
+}  // namespace
+
+void write_in_old_order(FieldWriter& out, std::span<const OldLine> old,
+                        const std::vector<FieldWriter::Line>& lines,
+                        const std::vector<FieldWriter::Line>& defaults) {
+  std::vector<bool> is_old(lines.size(), false);
+  for (const OldLine& row : old) {
+    bool there = false;
+    for (size_t i = 0; i < lines.size(); ++i) {
+      if (is_old[i] || !is_of(row, lines[i])) continue;
+      there = is_old[i] = true;
+      if (row.left_out == nullptr || lines[i].value != row.left_out) {
+        out.line(lines[i].key, lines[i].value);
+      }
+    }
+    if (!there && row.absent != nullptr) out.line(row.key, row.absent);
+  }
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const bool changed = std::find(defaults.begin(), defaults.end(), lines[i]) == defaults.end();
+    if (!is_old[i] && changed) out.line(lines[i].key, lines[i].value);
+  }
+}
+
+}  // namespace hyades::core
