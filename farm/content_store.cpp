@@ -12,6 +12,7 @@
 #include "core/base/failpoint.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::farm {
 
@@ -36,11 +37,8 @@ Status make_folder(const std::string& path) {
 }
 
 Status sync_folder(const std::string& path) {
-  const core::Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!folder.valid() || ::fsync(folder.get()) != 0) {
-    return Error{"cannot write " + path + ": " + core::io_reason(errno)};
-  }
-  return {};
+  if (core::sync_folder(path)) return {};
+  return Error{"cannot write " + path + ": " + core::io_reason(errno)};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "core/base/descriptor.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::farm {
 namespace {
@@ -47,14 +48,9 @@ core::Status write_secret(const std::string& path, const std::string& text) {
                                    ? ": is there already: name another, or remove it first"
                                    : ": cannot be made: " + core::io_reason(errno))};
   }
-  size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t count = ::write(file.get(), text.data() + written, text.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) break;
-    written += static_cast<size_t>(count);
+  if (core::write_all(file.get(), std::as_bytes(std::span(text))) && ::fsync(file.get()) == 0) {
+    return {};
   }
-  if (written == text.size() && ::fsync(file.get()) == 0) return {};
   const int why = errno;
   (void)::unlink(path.c_str());
   return core::Error{path + ": cannot be written: " + core::io_reason(why)};

@@ -19,6 +19,7 @@
 #include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -50,14 +51,11 @@ core::Result<Manifest::File> extract(archive* tar, const std::string& from, cons
     const la_ssize_t got = archive_read_data(tar, piece.data(), piece.size());
     if (got < 0) return torn(from, tar);
     if (got == 0) break;
-    auto bytes = std::span<const std::byte>(piece).first(static_cast<size_t>(got));
+    const auto bytes = std::span<const std::byte>(piece).first(static_cast<size_t>(got));
     digest.add(bytes);
     done.size += bytes.size();
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(file.get(), bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) return core::Error{to + ": " + core::io_reason(errno)};
-      bytes = bytes.subspan(static_cast<size_t>(written));
+    if (!core::write_all(file.get(), bytes)) {
+      return core::Error{to + ": " + core::io_reason(errno)};
     }
   }
   if (::fsync(file.get()) != 0) return core::Error{to + ": " + core::io_reason(errno)};
@@ -153,10 +151,8 @@ void remove_leftovers(const std::string& data) {
   for (const fs::path& path : left) fs::remove_all(path, none);
 }
 
-void sync_folder(const std::string& path) {
-  const core::Descriptor open(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (open.valid()) (void)::fsync(open.get());
-}
+/// As well as can be: what is restored is there, whether or not it would outlast a loss of power.
+void sync_folder(const std::string& path) { (void)core::sync_folder(path); }
 
 void sync_all(const std::string& folder) {
   std::error_code failed;

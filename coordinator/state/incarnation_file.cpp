@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -42,32 +44,23 @@ uint64_t starts_of(std::string_view block) {
   return read.ec == std::errc() && block == block_of(starts) ? starts : 0;
 }
 
-bool write_at(int file, std::string_view bytes, off_t offset) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(file, bytes.data(), bytes.size(), offset);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes.remove_prefix(static_cast<size_t>(written));
-    offset += written;
-  }
-  return true;
+bool write_at(int file, std::string_view bytes, uint64_t offset) {
+  return core::write_all_at(file, std::as_bytes(std::span(bytes)), offset);
 }
 
 bool sync_folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const core::Descriptor open(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  return open.valid() && ::fsync(open.get()) == 0;
+  return core::sync_folder(std::filesystem::path(path).parent_path().string());
 }
 
 }  // namespace
 
 core::Result<uint64_t> count_start(const std::string& path, uint64_t known) {
-  const core::Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  const core::Descriptor file = core::open_file(path, O_RDWR | O_CREAT, 0600);
   if (!file.valid()) return failed(path);
   std::string bytes(kBlock * kBlocks, '\0');
-  const ssize_t got = ::pread(file.get(), bytes.data(), bytes.size(), 0);
-  if (got < 0) return failed(path);
-  const bool whole = static_cast<size_t>(got) == bytes.size();
+  const auto got = core::read_all_at(file.get(), std::as_writable_bytes(std::span(bytes)), 0);
+  if (!got) return failed(path);
+  const bool whole = *got == bytes.size();
   uint64_t last = known;
   for (size_t i = 0; i < kBlocks; ++i) {
     last = std::max(last, starts_of(std::string_view(bytes).substr(i * kBlock, kBlock)));
@@ -78,7 +71,7 @@ core::Result<uint64_t> count_start(const std::string& path, uint64_t known) {
     // Once: from now on it has all the room that it will ever need.
     bytes.replace(now % kBlocks * kBlock, kBlock, block);
     if (!write_at(file.get(), bytes, 0)) return failed(path);
-  } else if (!write_at(file.get(), block, static_cast<off_t>(now % kBlocks * kBlock))) {
+  } else if (!write_at(file.get(), block, now % kBlocks * kBlock)) {
     return failed(path);
   }
   if (::fdatasync(file.get()) != 0 || (!whole && !sync_folder_of(path))) return failed(path);

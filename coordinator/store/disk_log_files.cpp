@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <optional>
 #include <system_error>
+#include <utility>
 
 #include "coordinator/store/log_files.h"
 #include "core/base/descriptor.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -27,25 +30,17 @@ Error failed(const std::string& doing, const std::string& path, int error) {
   return {"cannot " + doing + " " + path + ": " + reason};
 }
 
-int open_retrying(const std::string& path, int flags) {
-  int fd = -1;
-  do {
-    fd = ::open(path.c_str(), flags | O_CLOEXEC, 0644);
-  } while (fd < 0 && errno == EINTR);
-  return fd;
+core::Descriptor open_file(const std::string& path, int flags) {
+  return core::open_file(path, flags, 0644);
 }
 
 class DiskWriter final : public LogWriter {
  public:
-  DiskWriter(std::string path, int fd) : path_(std::move(path)), handle_(fd) {}
+  DiskWriter(std::string path, core::Descriptor file)
+      : path_(std::move(path)), handle_(std::move(file)) {}
 
   Status write(std::span<const std::byte> bytes) override {
-    while (!bytes.empty()) {
-      const ssize_t done = ::write(handle_.get(), bytes.data(), bytes.size());
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) return failed("write", path_, errno);
-      bytes = bytes.subspan(static_cast<size_t>(done));
-    }
+    if (!core::write_all(handle_.get(), bytes)) return failed("write", path_, errno);
     return {};
   }
 
@@ -62,21 +57,15 @@ class DiskWriter final : public LogWriter {
 
 class DiskReader final : public LogReader {
  public:
-  DiskReader(std::string path, int fd, uint64_t size)
-      : path_(std::move(path)), handle_(fd), size_(size) {}
+  DiskReader(std::string path, core::Descriptor file, uint64_t size)
+      : path_(std::move(path)), handle_(std::move(file)), size_(size) {}
 
   uint64_t size() const override { return size_; }
 
   Status read(uint64_t offset, std::span<std::byte> into) override {
-    while (!into.empty()) {
-      const ssize_t done =
-          ::pread(handle_.get(), into.data(), into.size(), static_cast<off_t>(offset));
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) return failed("read", path_, errno);
-      if (done == 0) return Error{"cannot read " + path_ + ": it ends too early"};
-      into = into.subspan(static_cast<size_t>(done));
-      offset += static_cast<uint64_t>(done);
-    }
+    const std::optional<size_t> got = core::read_all_at(handle_.get(), into, offset);
+    if (!got) return failed("read", path_, errno);
+    if (*got < into.size()) return Error{"cannot read " + path_ + ": it ends too early"};
     return {};
   }
 
@@ -88,7 +77,7 @@ class DiskReader final : public LogReader {
 
 class DiskLock final : public LogLock {
  public:
-  explicit DiskLock(int fd) : handle_(fd) {}
+  explicit DiskLock(core::Descriptor file) : handle_(std::move(file)) {}
   int fd() const { return handle_.get(); }
 
  private:
@@ -113,10 +102,7 @@ class DiskFiles final : public LogFiles {
   }
 
   Status sync_folder(const std::string& folder) override {
-    const core::Descriptor handle(open_retrying(folder, O_RDONLY | O_DIRECTORY));
-    if (handle.get() < 0) return failed("open", folder, errno);
-    // Some network file systems do not know how and say EINVAL; they keep names on their own.
-    if (::fsync(handle.get()) != 0 && errno != EINVAL) return failed("sync", folder, errno);
+    if (!core::sync_folder(folder)) return failed("sync", folder, errno);
     return {};
   }
 
@@ -131,27 +117,23 @@ class DiskFiles final : public LogFiles {
   }
 
   Result<std::unique_ptr<LogWriter>> create(const std::string& path) override {
-    const int fd = open_retrying(path, O_WRONLY | O_CREAT | O_EXCL);
-    if (fd < 0) return failed("create", path, errno);
-    return std::unique_ptr<LogWriter>(std::make_unique<DiskWriter>(path, fd));
+    core::Descriptor file = open_file(path, O_WRONLY | O_CREAT | O_EXCL);
+    if (!file.valid()) return failed("create", path, errno);
+    return std::unique_ptr<LogWriter>(std::make_unique<DiskWriter>(path, std::move(file)));
   }
 
   Result<std::unique_ptr<LogReader>> open(const std::string& path) override {
-    const int fd = open_retrying(path, O_RDONLY);
-    if (fd < 0) return failed("open", path, errno);
+    core::Descriptor file = open_file(path, O_RDONLY);
+    if (!file.valid()) return failed("open", path, errno);
     struct stat info {};
-    if (::fstat(fd, &info) != 0) {
-      const int error = errno;
-      ::close(fd);
-      return failed("read", path, error);
-    }
+    if (::fstat(file.get(), &info) != 0) return failed("read", path, errno);
     return std::unique_ptr<LogReader>(
-        std::make_unique<DiskReader>(path, fd, static_cast<uint64_t>(info.st_size)));
+        std::make_unique<DiskReader>(path, std::move(file), static_cast<uint64_t>(info.st_size)));
   }
 
   Status sync_file(const std::string& path) override {
-    const core::Descriptor handle(open_retrying(path, O_RDONLY));
-    if (handle.get() < 0) return failed("open", path, errno);
+    const core::Descriptor handle = open_file(path, O_RDONLY);
+    if (!handle.valid()) return failed("open", path, errno);
     if (::fsync(handle.get()) != 0) return failed("sync", path, errno);
     return {};
   }
@@ -167,8 +149,8 @@ class DiskFiles final : public LogFiles {
   }
 
   Status truncate(const std::string& path, uint64_t size) override {
-    const core::Descriptor handle(open_retrying(path, O_WRONLY));
-    if (handle.get() < 0) return failed("open", path, errno);
+    const core::Descriptor handle = open_file(path, O_WRONLY);
+    if (!handle.valid()) return failed("open", path, errno);
     if (::ftruncate(handle.get(), static_cast<off_t>(size)) != 0 || ::fsync(handle.get()) != 0) {
       return failed("shorten", path, errno);
     }
@@ -176,7 +158,7 @@ class DiskFiles final : public LogFiles {
   }
 
   Result<std::unique_ptr<LogLock>> lock(const std::string& path) override {
-    auto held = std::make_unique<DiskLock>(open_retrying(path, O_RDWR | O_CREAT));
+    auto held = std::make_unique<DiskLock>(open_file(path, O_RDWR | O_CREAT));
     if (held->fd() < 0) return failed("open", path, errno);
     if (::flock(held->fd(), LOCK_EX | LOCK_NB) != 0) {
       if (errno != EWOULDBLOCK) return failed("lock", path, errno);

@@ -17,6 +17,7 @@
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
 #include "core/base/leftovers.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::core {
 namespace {
@@ -55,16 +56,6 @@ std::string temporary_name(const std::filesystem::path& target) {
   return (target.parent_path() / fmt::format(".{}.{:016x}.tmp", base, unique)).string();
 }
 
-Status sync_folder(const std::string& folder) {
-  const Descriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // A folder that one may write to but not list cannot be synced by us: the rename still happened.
-  if (!handle.valid()) return {};
-  if (::fsync(handle.get()) != 0 && errno != EINVAL && errno != ENOTSUP) {
-    return failure(folder, errno);
-  }
-  return {};
-}
-
 }  // namespace
 
 Status replace_file(const std::string& path,
@@ -98,7 +89,7 @@ Status replace_file(const std::string& path,
     return add_cause ? Error{message + " (" + full + ")"} : written.error();
   }
   {
-    const Descriptor handle(::open(temporary.path.c_str(), O_RDWR | O_CLOEXEC));
+    const Descriptor handle = open_file(temporary.path, O_RDWR);
     if (!handle.valid()) return failure(path, errno);
     // Best effort: the new file keeps the old one's permissions.
     if (exists && ::fchmod(handle.get(), old.st_mode & 07777) != 0) errno = 0;
@@ -107,20 +98,13 @@ Status replace_file(const std::string& path,
   failpoint("before-rename");
   if (::rename(temporary.path.c_str(), target.c_str()) != 0) return failure(path, errno);
   temporary.keep = true;
-  return sync_folder(folder);
+  if (!sync_folder(folder)) return failure(folder, errno);
+  return {};
 }
 
 Status write_in_place(const std::string& path, std::span<const std::byte> bytes) {
-  const Descriptor handle(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (!handle.valid()) return failure(path, errno);
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(handle.get(), bytes.data(), bytes.size());
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      return failure(path, errno);
-    }
-    bytes = bytes.subspan(static_cast<size_t>(written));
-  }
+  const Descriptor handle = open_file(path, O_WRONLY | O_CREAT | O_TRUNC);
+  if (!handle.valid() || !write_all(handle.get(), bytes)) return failure(path, errno);
   return {};
 }
 

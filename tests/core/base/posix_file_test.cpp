@@ -86,7 +86,7 @@ TEST(PosixFile, SignalsInterruptNothing) {
 
 TEST(PosixFile, AFolderThatMayNotBeListedIsNoFailureAndOneThatIsMissingIs) {
   const test::TempFolder folder;
-  EXPECT_TRUE(sync_folder(folder.path()));
+  EXPECT_TRUE(sync_folder(folder.path().string()));
   EXPECT_FALSE(sync_folder(folder.file("none")));
   EXPECT_EQ(errno, ENOENT);
   const std::string shut = folder.file("shut");
