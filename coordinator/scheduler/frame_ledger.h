@@ -157,7 +157,7 @@ class FrameLedger {
   /// The films of the tile do not count any more once that is durable; until then it takes none.
   void suspect_tile(uint32_t tile);
   bool is_suspect(uint32_t tile) const { return voiding_.contains(tile); }
-  /// The tiles suspect that it has not named before, in order.
+  /// The suspect tiles that it has not named before, in order.
   std::vector<uint32_t> newly_suspect();
   /// Its films do not count: all that is held of the tile is free again.
   /// Returns the runs that did.
@@ -194,7 +194,7 @@ class FrameLedger {
   std::vector<Extent> retries_;  ///< failed units that wait for another try
   std::vector<Blame> blamed_;
   std::vector<Dispute> disputes_;     ///< oldest first
-  std::map<uint32_t, bool> voiding_;  ///< tiles suspect, and whether newly_suspect() named them
+  std::map<uint32_t, bool> voiding_;  ///< suspect tiles, and whether newly_suspect() named them
   std::unordered_map<uint64_t, Assignment> assignments_;           ///< looked up, never walked
   std::unordered_map<uint32_t, std::vector<HeldRecord>> records_;  ///< by tile; no order
 };
