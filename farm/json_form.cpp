@@ -1,30 +1,77 @@
 #include "farm/json_form.h"
 
-#include <vector>
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "farm/wire.h"
 
 namespace hyades::farm {
 namespace {
 
-/// "JOB_STATE_DONE" without `prefix`, in small letters.
-std::string word(const std::string& name, const std::string& prefix) {
-  std::string text = name.starts_with(prefix) ? name.substr(prefix.size()) : "unknown";
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+using google::protobuf::EnumDescriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+/// What a field holds; of a repeated one its element `at`.
+Json value_of(const Message& message, const FieldDescriptor& field, std::optional<int> at) {
+  const auto& reflection = *message.GetReflection();
+  const auto get = [&](auto single, auto repeated) {
+    return at ? (reflection.*repeated)(message, &field, *at)
+              : (reflection.*single)(message, &field);
+  };
+  using R = google::protobuf::Reflection;
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return get(&R::GetBool, &R::GetRepeatedBool);
+    case FieldDescriptor::CPPTYPE_INT32:
+      return get(&R::GetInt32, &R::GetRepeatedInt32);
+    case FieldDescriptor::CPPTYPE_INT64:
+      return get(&R::GetInt64, &R::GetRepeatedInt64);
+    case FieldDescriptor::CPPTYPE_UINT32:
+      return get(&R::GetUInt32, &R::GetRepeatedUInt32);
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return get(&R::GetUInt64, &R::GetRepeatedUInt64);
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return get(&R::GetFloat, &R::GetRepeatedFloat);
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return get(&R::GetDouble, &R::GetRepeatedDouble);
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return enum_word(*field.enum_type(), get(&R::GetEnumValue, &R::GetRepeatedEnumValue));
+    case FieldDescriptor::CPPTYPE_STRING: {
+      std::string text = get(&R::GetString, &R::GetRepeatedString);
+      return field.type() == FieldDescriptor::TYPE_BYTES ? hex_from_wire(text) : std::move(text);
+    }
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return to_json(at ? reflection.GetRepeatedMessage(message, &field, *at)
+                        : reflection.GetMessage(message, &field));
   }
-  return text == "unspecified" ? "unknown" : text;
+  return {};
 }
 
 }  // namespace
 
-std::string state_name(v1::JobState state) { return word(v1::JobState_Name(state), "JOB_STATE_"); }
+std::string enum_word(const EnumDescriptor& type, int number) {
+  static constexpr std::string_view kNone = "UNSPECIFIED";
+  const auto* value = type.FindValueByNumber(number);
+  if (value == nullptr || value->name().ends_with(kNone)) return "unknown";
+  // All names begin as that of the value 0 does.
+  std::string word = value->name().substr(type.value(0)->name().size() - kNone.size());
+  std::transform(word.begin(), word.end(), word.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return word;
+}
+
+std::string state_name(v1::JobState state) { return enum_word(*v1::JobState_descriptor(), state); }
 std::string state_name(v1::FrameState state) {
-  return word(v1::FrameState_Name(state), "FRAME_STATE_");
+  return enum_word(*v1::FrameState_descriptor(), state);
 }
 std::string state_name(v1::WorkerState state) {
-  return word(v1::WorkerState_Name(state), "WORKER_STATE_");
+  return enum_word(*v1::WorkerState_descriptor(), state);
 }
-std::string level_name(v1::LogLevel level) { return word(v1::LogLevel_Name(level), "LOG_LEVEL_"); }
-std::string role_name(v1::Role role) { return word(v1::Role_Name(role), "ROLE_"); }
+std::string level_name(v1::LogLevel level) { return enum_word(*v1::LogLevel_descriptor(), level); }
+std::string role_name(v1::Role role) { return enum_word(*v1::Role_descriptor(), role); }
 std::optional<v1::Role> role_of(const std::string& name) {
   for (int role = v1::ROLE_VIEWER; role <= v1::ROLE_ADMIN; ++role) {
     if (name == role_name(static_cast<v1::Role>(role))) return static_cast<v1::Role>(role);
@@ -32,116 +79,41 @@ std::optional<v1::Role> role_of(const std::string& name) {
   return std::nullopt;
 }
 
-Json to_json(const v1::Job& job) {
-  Json json = {{"id", job.id()},
-               {"name", job.name()},
-               {"owner", job.owner()},
-               {"owner_proven", job.owner_proven()},
-               {"priority", job.priority()},
-               {"state", state_name(job.state())},
-               {"frames", job.frames()},
-               {"frames_done", job.frames_done()},
-               {"frames_failed", job.frames_failed()},
-               {"samples", job.samples()},
-               {"samples_done", job.samples_done()},
-               {"leased", job.leased()},
-               {"samples_per_second", job.samples_per_second()},
-               {"seconds_left", job.seconds_left()},
-               {"submitted_ms", job.submitted_ms()},
-               {"ended_ms", job.ended_ms()},
-               {"reason", job.reason()},
-               {"max_workers", job.max_workers()},
-               {"tags", std::vector<std::string>(job.tags().begin(), job.tags().end())},
-               {"memory_bytes", job.memory_bytes()},
-               {"max_attempts", job.max_attempts()},
-               {"frame_order", word(v1::FrameOrder_Name(job.frame_order()), "FRAME_ORDER_")},
-               {"core_seconds", job.core_seconds()},
-               {"cost", job.cost()}};
-  if (job.has_preview_frame()) json["preview_frame"] = job.preview_frame();
-  return json;
+const std::string& json_name(const FieldDescriptor& field) {
+  return field.has_json_name() ? field.json_name() : field.name();
 }
 
-Json to_json(const v1::Frame& frame) {
-  return {{"id", frame.frame()},          {"state", state_name(frame.state())},
-          {"samples", frame.samples()},   {"samples_done", frame.samples_done()},
-          {"reason", frame.reason()},     {"worker_class", frame.worker_class()},
-          {"restarts", frame.restarts()}, {"doubtful", frame.doubtful()}};
-}
-
-Json to_json(const v1::Worker& worker) {
-  Json work = Json::array();
-  for (const v1::WorkInHand& one : worker.work()) {
-    work.push_back({{"job", one.job()}, {"frame", one.frame()}, {"units", one.units()}});
+Json to_json(const Message& message) {
+  const auto& type = *message.GetDescriptor();
+  const auto& reflection = *message.GetReflection();
+  Json json = Json::object();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    if (field.has_presence() && !reflection.HasField(message, &field)) continue;
+    Json& value = json[json_name(field)];
+    if (field.is_repeated()) {
+      value = Json::array();
+      for (int k = 0; k < reflection.FieldSize(message, &field); ++k) {
+        value.push_back(value_of(message, field, k));
+      }
+    } else {
+      value = value_of(message, field, std::nullopt);
+    }
   }
-  return {{"id", worker.id()},
-          {"name", worker.name()},
-          {"host", worker.host()},
-          {"worker_class", worker.worker_class()},
-          {"build", worker.build()},
-          {"threads", worker.threads()},
-          {"state", state_name(worker.state())},
-          {"reason", worker.reason()},
-          {"leased", worker.leased()},
-          {"units_done", worker.units_done()},
-          {"units_failed", worker.units_failed()},
-          {"samples_done", worker.samples_done()},
-          {"joined_ms", worker.joined_ms()},
-          {"heard_ms", worker.heard_ms()},
-          {"memory_bytes", worker.memory_bytes()},
-          {"memory_limit_bytes", worker.memory_limit_bytes()},
-          {"tags", std::vector<std::string>(worker.tags().begin(), worker.tags().end())},
-          {"work", std::move(work)},
-          {"cache_bytes", worker.cache_bytes()},
-          {"cache_limit_bytes", worker.cache_limit_bytes()},
-          {"cache_hits", worker.cache_hits()},
-          {"cache_misses", worker.cache_misses()},
-          {"samples_per_second", worker.samples_per_second()}};
-}
-
-Json to_json(const v1::TimelineStep& step) {
-  Json json = {{"id", step.number()},
-               {"kind", word(v1::TimelineStep::Kind_Name(step.kind()), "KIND_")},
-               {"worker", step.worker()},
-               {"thread", step.thread()}};
-  const bool of_frame = step.kind() != v1::TimelineStep::KIND_VIDEO;
-  const bool of_unit = of_frame && step.kind() != v1::TimelineStep::KIND_FINISH;
-  if (of_frame) json["frame"] = step.unit().frame();
-  if (of_unit) {
-    const v1::PixelRect& tile = step.unit().tile();
-    json["tile"] = {tile.x0(), tile.y0(), tile.x1(), tile.y1()};
-    json["first_batch"] = step.unit().first_batch();
-    json["batches"] = step.unit().batches();
-  }
-  json["begun_ms"] = 1e-3 * static_cast<double>(step.begun_us());
-  json["ended_ms"] = 1e-3 * static_cast<double>(step.ended_us());
   return json;
 }
 
 Json to_json(const v1::LogLine& line) {
-  Json json = {{"time_ms", line.time_ms()}, {"level", level_name(line.level())}};
-  if (line.of_frame()) json["frame"] = line.frame();
-  json["worker"] = line.worker();
-  json["text"] = line.text();
+  Json json = to_json(static_cast<const Message&>(line));
+  if (!line.of_frame()) json.erase("frame");
+  json.erase("of_frame");
+  json.erase("number");
   return json;
 }
 
-Json to_json(const v1::Token& token) {
-  return {{"id", token.id()},
-          {"name", token.name()},
-          {"role", role_name(token.role())},
-          {"created_ms", token.created_ms()},
-          {"expires_ms", token.expires_ms()},
-          {"used_ms", token.used_ms()},
-          {"revoked_ms", token.revoked_ms()}};
-}
-
 Json to_json(const v1::AuditEntry& entry) {
-  Json json = {{"time_ms", entry.time_ms()}, {"token_id", entry.token_id()},
-               {"name", entry.name()},       {"role", role_name(entry.role())},
-               {"address", entry.address()}, {"deed", entry.deed()},
-               {"target", entry.target()},   {"result", entry.result()},
-               {"detail", entry.detail()}};
-  if (entry.times() > 1) json["times"] = entry.times();
+  Json json = to_json(static_cast<const Message&>(entry));
+  if (entry.times() <= 1) json.erase("times");
   return json;
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include <google/protobuf/message.h>
 #include <nlohmann/json.hpp>
 
 #include "hyades/v1/admin.pb.h"
@@ -26,13 +27,17 @@ std::string role_name(v1::Role role);
 /// Nothing where it is none.
 std::optional<v1::Role> role_of(const std::string& name);
 
-Json to_json(const v1::Job& job);
-Json to_json(const v1::Frame& frame);
-Json to_json(const v1::Worker& worker);
-/// Its kind as a word; a tile only where it is of a unit; times in milliseconds, with parts.
-Json to_json(const v1::TimelineStep& step);
+/// "DONE" of JOB_STATE_DONE as "done"; "unknown" for the value 0, and for numbers without a name.
+std::string enum_word(const google::protobuf::EnumDescriptor& type, int number);
+/// The name of a field: its json_name where the proto gives one.
+const std::string& json_name(const google::protobuf::FieldDescriptor& field);
+/// All fields in the order in which the proto has them. Absent ones are left out where the proto
+/// says `optional`, and those of sub-messages; bytes are hexadecimal.
+Json to_json(const google::protobuf::Message& message);
+
+/// `frame` only where the line is of one, no number.
 Json to_json(const v1::LogLine& line);
-Json to_json(const v1::Token& token);
+/// `times` only where it stands for several.
 Json to_json(const v1::AuditEntry& entry);
 
 }  // namespace hyades::farm

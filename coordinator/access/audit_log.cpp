@@ -63,7 +63,7 @@ std::optional<v1::AuditEntry> entry_of(const std::string& text) {
   return entry;
 }
 
-v1::AuditEntry entry_for(const Caller& caller, const std::string& deed, const std::string& target,
+v1::AuditEntry entry_for(const Caller& caller, const std::string& action, const std::string& target,
                          const grpc::Status& result, const std::string& detail) {
   v1::AuditEntry entry;
   entry.set_time_ms(token_clock_ms());
@@ -71,7 +71,7 @@ v1::AuditEntry entry_for(const Caller& caller, const std::string& deed, const st
   entry.set_name(caller.name);
   entry.set_role(caller.role);
   entry.set_address(farm::wire_text(caller.address));
-  entry.set_deed(deed);
+  entry.set_deed(action);
   entry.set_target(farm::wire_text(target.substr(0, kMostDetail)));
   entry.set_result(result_name(result));
   const std::string& why = result.ok() ? detail : result.error_message();
@@ -106,7 +106,7 @@ std::string result_name(const grpc::Status& status) {
 
 AuditLog::AuditLog(const AuditOptions& options)
     : most_waiting_(options.most_waiting),
-      deeds_({options.folder, "audit", options.most_bytes, options.most_files}),
+      actions_({options.folder, "audit", options.most_bytes, options.most_files}),
       refusals_({options.folder, "refusals", options.most_bytes, options.most_of_others}),
       uploads_({options.folder, "uploads", options.most_bytes, options.most_of_others}) {}
 
@@ -129,20 +129,20 @@ AuditLog::~AuditLog() {
   if (thread_.joinable()) thread_.join();
 }
 
-void AuditLog::note(const Caller& caller, const std::string& deed, const std::string& target,
+void AuditLog::note(const Caller& caller, const std::string& action, const std::string& target,
                     const grpc::Status& result, const std::string& detail) {
   const std::lock_guard lock(mutex_);
-  add(deeds_, entry_for(caller, deed, target, result, detail));
+  add(actions_, entry_for(caller, action, target, result, detail));
 }
 
-void AuditLog::upload(const Caller& caller, const std::string& deed, const std::string& sha256,
+void AuditLog::upload(const Caller& caller, const std::string& action, const std::string& sha256,
                       const std::string& detail) {
   const std::lock_guard lock(mutex_);
-  add(uploads_, entry_for(caller, deed, sha256, grpc::Status::OK, detail));
+  add(uploads_, entry_for(caller, action, sha256, grpc::Status::OK, detail));
 }
 
-void AuditLog::refuse(const Caller& caller, const std::string& deed, const grpc::Status& why) {
-  v1::AuditEntry entry = entry_for(caller, deed, {}, why, {});
+void AuditLog::refuse(const Caller& caller, const std::string& action, const grpc::Status& why) {
+  v1::AuditEntry entry = entry_for(caller, action, {}, why, {});
   const auto now = Clock::now();
   const std::lock_guard lock(mutex_);
   std::string whose = neighbourhood_of(caller.address);

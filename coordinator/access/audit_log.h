@@ -27,7 +27,7 @@ namespace hyades::coordinator {
 struct AuditOptions {
   std::string folder;                         ///< audit.jsonl, audit.1.jsonl (older), ...
   uint64_t most_bytes = uint64_t{16} << 20U;  ///< of a file; then the next one is begun
-  int most_files = 10;                        ///< of deeds; the oldest goes
+  int most_files = 10;                        ///< of actions; the oldest goes
   int most_of_others = 4;                     ///< of refusals, and of uploads
   size_t most_waiting = 10'000;  ///< lines of each kind that the disk has not taken yet
 };
@@ -35,9 +35,9 @@ struct AuditOptions {
 /// Who did what: lines of JSON that are only ever added to. Nobody who notes something waits: a
 /// thread writes and syncs, within milliseconds where the disk answers. Thread-safe.
 ///
-/// Deeds, refusals and uploads have files and room of their own: whoever is refused as often as he
-/// likes, as any stranger may be, and whoever uploads many files, makes none vanish that somebody
-/// needs to know of.
+/// Actions, refusals and uploads have files and room of their own: whoever is refused as often as
+/// he likes, as any stranger may be, and whoever uploads many files, makes none vanish that
+/// somebody needs to know of.
 class AuditLog {
  public:
   /// An error where the folder cannot be written to.
@@ -48,13 +48,13 @@ class AuditLog {
   AuditLog& operator=(const AuditLog&) = delete;
 
   /// Something was done, or was tried by somebody who may.
-  void note(const Caller& caller, const std::string& deed, const std::string& target,
+  void note(const Caller& caller, const std::string& action, const std::string& target,
             const grpc::Status& result, const std::string& detail);
   /// Somebody may not. Of one address a few are noted one by one, then some every minute, which say
   /// how many they stand for. Of more than a thousand addresses all others count as one.
-  void refuse(const Caller& caller, const std::string& deed, const grpc::Status& why);
+  void refuse(const Caller& caller, const std::string& action, const grpc::Status& why);
   /// Somebody begins to upload, or to go on with, the file of this digest.
-  void upload(const Caller& caller, const std::string& deed, const std::string& sha256,
+  void upload(const Caller& caller, const std::string& action, const std::string& sha256,
               const std::string& detail);
 
   /// Waits until all that was noted is written; two seconds at most.
@@ -105,10 +105,10 @@ class AuditLog {
   const size_t most_waiting_;
 
   mutable std::mutex mutex_;  ///< of all below, but for the books' files
-  Book deeds_;
+  Book actions_;
   Book refusals_;
   Book uploads_;
-  const std::array<Book*, 3> books_ = {&deeds_, &refusals_, &uploads_};  ///< as they are written
+  const std::array<Book*, 3> books_ = {&actions_, &refusals_, &uploads_};  ///< as they are written
   std::map<std::string, Purse> purses_;  ///< by neighbourhood_of() an address
   bool stop_ = false;
   bool busy_ = false;  ///< lines are on their way

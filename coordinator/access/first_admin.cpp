@@ -8,10 +8,10 @@ namespace hyades::coordinator {
 
 core::Result<StoredToken> make_first_admin(Authority& authority, const std::string& folder) {
   const std::string file = folder + "/admin-token";
-  const auto note = [&](const std::string& deed, const StoredToken& row,
+  const auto note = [&](const std::string& action, const StoredToken& row,
                         const grpc::Status& result) {
     if (AuditLog* log = authority.audit()) {
-      log->note({kByItself, {}, v1::ROLE_ADMIN, kThisMachine}, deed, row.id, result,
+      log->note({kByItself, {}, v1::ROLE_ADMIN, kThisMachine}, action, row.id, result,
                 "no admin's token was in use: " + file);
     }
   };

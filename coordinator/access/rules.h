@@ -1,9 +1,6 @@
 #pragma once
 
-#include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include <grpcpp/support/status.h>
 
@@ -11,22 +8,14 @@
 
 namespace hyades::coordinator {
 
-/// Who may do a deed, whichever way he asks for it.
+/// Who may do something, whichever way he asks for it.
 struct Rule {
-  const char* deed;    ///< "job.cancel": what refusals call it
-  v1::Role least;      ///< of viewer < submitter < operator < admin; unspecified: everybody may
-  bool worker;         ///< whether workers may, too
-  bool audited;        ///< changes something: each is noted, and who did it (files: upload_note.h)
-  const char* method;  ///< of gRPC: "Jobs/Cancel"; empty: none does it
-  std::vector<const char*> routes;  ///< of HTTP: "POST /api/v1/jobs/{job}/cancel"
+  const char* action;    ///< "job.cancel": what refusals and the audit log call it
+  v1::Role least;        ///< of viewer < submitter < operator < admin; unspecified: everybody may
+  bool worker = false;   ///< whether workers may, too
+  bool audited = false;  ///< changes something: the audit log notes each, and who did it
+  bool steers_job = false;  ///< the request's `job`: only its owner and operators may
 };
-
-/// All of them.
-std::span<const Rule> all_rules();
-
-/// The rule of a method of gRPC, or of a route as Router::add has it. What has none is for admins.
-const Rule& rule_of_method(std::string_view method);
-const Rule& rule_of_route(std::string_view route);
 
 bool may(v1::Role role, const Rule& rule);
 

@@ -18,7 +18,7 @@ grpc::Status Admission::check(const grpc::CallbackServerContext& context, const 
   const bool refused = admitted.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
                        admitted.error_code() == grpc::StatusCode::PERMISSION_DENIED;
   if (AuditLog* log = authority_.audit(); log != nullptr && refused) {
-    log->refuse(caller, rule.deed, admitted);
+    log->refuse(caller, rule.action, admitted);
   }
   return admitted;
 }
@@ -45,7 +45,7 @@ grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const 
   }
   if (const grpc::Status allowed = allow(caller, rule); !allowed.ok()) return allowed;
   const bool works =
-      caller.role == v1::ROLE_WORKER || rule.deed == std::string_view("worker.attend");
+      caller.role == v1::ROLE_WORKER || rule.action == std::string_view("worker.attend");
   if (works && workers_show_ && !context.auth_context()->IsPeerAuthenticated()) {
     return {grpc::StatusCode::UNAUTHENTICATED,
             "workers show a certificate here: --tls-cert FILE --tls-key FILE ('hyades certs issue "

@@ -31,14 +31,6 @@ class Admission {
     return authority_.visit(caller, std::move(leave));
   }
 
-  /// Notes what somebody who was admitted did, or tried to (docs/safety.md).
-  void note(const Caller& caller, const Rule& rule, const std::string& target,
-            const grpc::Status& result, const std::string& detail) const {
-    if (AuditLog* log = authority_.audit(); log != nullptr && rule.audited) {
-      log->note(caller, rule.deed, target, result, detail);
-    }
-  }
-
   /// Where it is kept who did what; null where it is not.
   AuditLog* audit() const { return authority_.audit(); }
 

@@ -13,22 +13,13 @@
 
 namespace hyades::coordinator {
 
-/// A stream that says no.
-class Refusal final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
- public:
-  explicit Refusal(const grpc::Status& status) { Finish(status); }
-  void OnDone() override { delete this; }
-};
-
 /// A file's bytes from an offset on, in chunks. To touch them is to read the disk.
 class FileStream final : public Producer<v1::Chunk> {
  public:
-  /// `open` finds the bytes, or says why not; called once, by a thread of the pool.
+  /// `open` finds the bytes, or says why not; called once, by one of the pool.
   using Open = std::function<grpc::Status(core::Bytes&)>;
   FileStream(grpc::CallbackServerContext& context, ThreadPool& pool, Open open, uint64_t offset)
-      : Producer(context, pool), open_(std::move(open)), offset_(offset) {
-    begin();
-  }
+      : Producer(context, pool), open_(std::move(open)), offset_(offset) {}
 
  private:
   Step next(v1::Chunk& chunk, grpc::Status& status, bool may_wait) override {

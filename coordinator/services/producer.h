@@ -9,8 +9,8 @@
 #include <grpcpp/support/server_callback.h>
 #include <grpcpp/support/status.h>
 
+#include "coordinator/operations/executors.h"
 #include "coordinator/services/admission.h"
-#include "coordinator/services/executors.h"
 #include "coordinator/services/raw.h"
 
 namespace hyades::coordinator {
@@ -25,21 +25,35 @@ class Poker {
   virtual void poke() = 0;
 };
 
-/// A stream of messages to a client, produced as fast as it reads: next() is called again when the
+/// A stream of messages to a client. Deletes itself.
+class OutgoingStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+ public:
+  /// Ends the stream when its caller's token does. Called once.
+  virtual void guard(const Admission& admission, const Caller& caller) = 0;
+  /// Called once, when everything is set up. gRPC reports nothing, so the end neither, before the
+  /// service's method has returned.
+  virtual void begin() = 0;
+};
+
+/// A stream that says no.
+class Refusal final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+ public:
+  explicit Refusal(const grpc::Status& status) { Finish(status); }
+  void OnDone() override { delete this; }
+};
+
+/// A stream whose messages are produced as fast as it reads: next() is called again when the
 /// last message is on its way, or, after it had nothing, when somebody pokes. Where it would have
 /// to wait (for the disk, say) it has itself called by a thread of the pool. Broken off where the
 /// client does not read, or the pool has too much to do. Deletes itself.
 template <class Message>
-class Producer : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+class Producer : public OutgoingStream {
  public:
   enum class Step { message, wait, hand, end };
 
-  /// To be called once, by the service's method or the last constructor: when everything is set up.
-  /// gRPC reports nothing, so the end neither, before the method has returned.
-  void begin() { advance(false); }
+  void begin() override { advance(false); }
 
-  /// To be called once, by the service's method: ends the stream when its caller's token does.
-  void guard(const Admission& admission, const Caller& caller) {
+  void guard(const Admission& admission, const Caller& caller) override {
     visit_ = admission.visit(
         caller, [handle = handle_](const grpc::Status& why) { handle->send_away(why); });
   }

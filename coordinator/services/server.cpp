@@ -7,13 +7,10 @@
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 
-#include "coordinator/services/admin_service.h"
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/admission.h"
-#include "coordinator/services/assets_service.h"
 #include "coordinator/services/call_meter.h"
-#include "coordinator/services/farm_service.h"
-#include "coordinator/services/jobs_service.h"
-#include "coordinator/services/work_service.h"
+#include "coordinator/services/service.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -33,20 +30,16 @@ constexpr int kMostCalls = 100;
 
 struct Server::Parts {
   Parts(Controller& controller, Authority& authority, bool workers_show)
-      : admission(authority, workers_show),
-        work(controller, admission),
-        jobs(controller, admission, executors),
-        assets(controller, admission, executors),
-        farm(controller, admission),
-        admin(authority, admission, executors) {}
+      : admission(authority, workers_show), service({controller, authority}, admission, executors) {
+    add_job_streams(service);
+    add_asset_streams(service);
+    add_audit_stream(service);
+    add_worker_stream(service);
+  }
 
   Admission admission;
   Executors executors;
-  WorkService work;
-  JobsService jobs;
-  AssetsService assets;
-  FarmService farm;
-  AdminService admin;
+  Service service;
   std::unique_ptr<grpc::Server> server;
 };
 
@@ -63,11 +56,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   grpc::ServerBuilder builder;
   int port = 0;
   builder.AddListeningPort(door.address, door.credentials, &port);
-  builder.RegisterService(&parts->work);
-  builder.RegisterService(&parts->jobs);
-  builder.RegisterService(&parts->assets);
-  builder.RegisterService(&parts->farm);
-  builder.RegisterService(&parts->admin);
+  builder.RegisterService(&parts->service);
   builder.experimental().SetInterceptorCreators(count_calls(controller.meters()));
   builder.SetMaxReceiveMessageSize(static_cast<int>(farm::kMaxResultBytes));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);

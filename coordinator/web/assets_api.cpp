@@ -1,18 +1,16 @@
 #include "coordinator/web/assets_api.h"
 
 #include <algorithm>
-#include <set>
 #include <span>
 
-#include "coordinator/services/upload_note.h"
-#include "coordinator/web/handing.h"
+#include "coordinator/operations/audit.h"
+#include "coordinator/web/route_helpers.h"
 #include "farm/content_store.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
 namespace {
 
-constexpr size_t kMostAsked = 10'000;
 constexpr size_t kMostOpen = 64;
 constexpr std::chrono::seconds kOpenFor{60};
 
@@ -20,78 +18,26 @@ grpc::Status invalid(const std::string& message) {
   return {grpc::StatusCode::INVALID_ARGUMENT, message};
 }
 
-/// What a JSON object with a digest and a size means.
-struct Wanted {
-  std::string name;
-  uint64_t size = 0;
-};
-
-std::optional<Wanted> read_wanted(const farm::Json& json) {
-  if (!json.is_object() || !json.contains("sha256") || !json.contains("size")) return std::nullopt;
-  const farm::Json& name = json["sha256"];
-  const farm::Json& size = json["size"];
-  if (!name.is_string() || !size.is_number_unsigned()) return std::nullopt;
-  Wanted wanted{name.get<std::string>(), size.get<uint64_t>()};
-  if (!farm::is_content_name(wanted.name)) return std::nullopt;
-  return wanted;
-}
-
 }  // namespace
 
 void AssetsApi::add_routes(Router& router) {
-  router.add(
-      "POST", "/api/v1/assets/missing", [this](const WebRequest& request, const Answer& answer) {
-        answer_by(executors_.files, answer, [this, body = request.body] { return missing(body); });
-      });
-  router.add(
-      "PUT", "/api/v1/assets/{sha256}", [this](const WebRequest& request, const Answer& answer) {
-        const std::string& name = request.parameters.at("sha256");
-        if (!farm::is_content_name(name)) {
-          answer(error_reply(invalid("sha256: expected 64 hexadecimal digits in small letters")));
-          return;
+  add_by_hand<v1::PieceRequest>(
+      router, executors_.files, "PUT", "/api/v1/assets/{sha256}",
+      [this](const v1::PieceRequest& asked, const WebRequest& request) {
+        if (!farm::is_content_name(asked.sha256())) {
+          return error_reply(invalid("sha256: expected 64 hexadecimal digits in small letters"));
         }
-        if (!request.query.contains("size")) {
-          answer(error_reply(invalid("size: expected the size of the whole file")));
-          return;
+        if (!asked.has_size()) {
+          return error_reply(invalid("size: expected the size of the whole file"));
         }
-        const auto size = query_number<uint64_t>(request, "size", 0, answer);
-        if (!size) return;
-        const auto offset = query_number<uint64_t>(request, "offset", 0, answer);
-        if (!offset) return;
-        answer_by(executors_.files, answer,
-                  [this, caller = request.caller, name, whole = *size, from = *offset,
-                   piece = request.body] { return take(caller, name, whole, from, piece); });
+        return take(request.caller, asked, request.body);
       });
 }
 
-WebReply AssetsApi::missing(const std::string& body) {
-  const std::unique_lock alone(large_, std::try_to_lock);
-  if (!alone) return error_reply(crowded());
-  const auto json = farm::Json::parse(body, nullptr, false);
-  if (!json.is_object() || !json.contains("files") || !json["files"].is_array()) {
-    return error_reply(invalid("expected {\"files\": [{\"sha256\": ..., \"size\": ...}, ...]}"));
-  }
-  if (json["files"].size() > kMostAsked) {
-    return error_reply(invalid("at most 10,000 files at a time"));
-  }
-  farm::Json missing = farm::Json::array();
-  std::set<std::string> seen;
-  for (const farm::Json& file : json["files"]) {
-    const auto wanted = read_wanted(file);
-    if (!wanted) return error_reply(invalid("files: expected sha256 and size of each"));
-    if (!seen.insert(wanted->name).second) continue;
-    if (controller_.assets().contains(wanted->name, wanted->size)) {
-      controller_.assets().touch(wanted->name);
-      continue;
-    }
-    const uint64_t begun = std::min(controller_.assets().begun(wanted->name), wanted->size);
-    missing.push_back({{"sha256", wanted->name}, {"offset", begun}});
-  }
-  return json_reply({{"missing", std::move(missing)}});
-}
-
-WebReply AssetsApi::take(const Caller& caller, const std::string& name, uint64_t size,
-                         uint64_t offset, const std::string& piece) {
+WebReply AssetsApi::take(const Caller& caller, const v1::PieceRequest& asked,
+                         const std::string& piece) {
+  const std::string& name = asked.sha256();
+  const uint64_t size = asked.size();
   if (controller_.assets().contains(name, size)) {
     return json_reply({{"offset", size}, {"complete", true}});
   }
@@ -108,7 +54,8 @@ WebReply AssetsApi::take(const Caller& caller, const std::string& name, uint64_t
     }
   }
   auto writer = take_writer(caller, name, size);
-  WebReply reply = writer.ok() ? append(*writer.writer, offset, piece) : error_reply(writer.status);
+  WebReply reply =
+      writer.ok() ? append(*writer.writer, asked.offset(), piece) : error_reply(writer.status);
   if (writer.ok() && writer.writer->offset() < size) put_back(name, std::move(writer.writer));
   done_with(name);
   return reply;

@@ -9,13 +9,14 @@
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/controller/controller.h"
-#include "coordinator/services/executors.h"
+#include "coordinator/operations/executors.h"
 #include "coordinator/web/router.h"
 #include "farm/content_writer.h"
+#include "hyades/v1/web.pb.h"
 
 namespace hyades::coordinator {
 
-/// Files by content, in pieces.
+/// Uploads of files by content, in pieces.
 class AssetsApi {
  public:
   /// `audit` (where it is kept who did what; null: nowhere) outlives it, as the others do.
@@ -26,9 +27,7 @@ class AssetsApi {
   void sweep();
 
  private:
-  WebReply missing(const std::string& body);
-  WebReply take(const Caller& caller, const std::string& name, uint64_t size, uint64_t offset,
-                const std::string& piece);
+  WebReply take(const Caller& caller, const v1::PieceRequest& asked, const std::string& piece);
   WebReply append(farm::ContentWriter& writer, uint64_t offset, const std::string& piece);
 
   /// A file in the making, between two pieces: to open it anew is to read what is there of it.
@@ -52,7 +51,6 @@ class AssetsApi {
   std::mutex mutex_;
   std::map<std::string, Open> open_;  ///< by the file's name
   std::set<std::string> busy_;        ///< files of which a piece is being written
-  std::mutex large_;                  ///< held while a long list is looked at
 };
 
 }  // namespace hyades::coordinator

@@ -85,13 +85,13 @@ class ConnectionOver final : public Connection,
   }
 
   void push(std::shared_ptr<const std::string> bytes) override {
-    world_.outlet->post([weak = weak_from_this_(), bytes = std::move(bytes)]() mutable {
+    world_.io->post([weak = weak_from_this_(), bytes = std::move(bytes)]() mutable {
       if (const auto me = weak.lock()) me->enqueue(std::move(bytes));
     });
   }
 
   void end() override {
-    world_.outlet->post([weak = weak_from_this_()] {
+    world_.io->post([weak = weak_from_this_()] {
       if (const auto me = weak.lock()) me->end_live();
     });
   }
@@ -194,12 +194,11 @@ class ConnectionOver final : public Connection,
     request_.body = std::move(parser_->release().body());
     // However long the answer takes.
     tcp(stream_).expires_never();
-    world_.serve(std::move(request_),
-                 [outlet = world_.outlet, weak = weak_from_this_()](WebReply reply) {
-                   outlet->post([weak, reply = std::move(reply)]() mutable {
-                     if (const auto me = weak.lock()) me->send(std::move(reply));
-                   });
-                 });
+    world_.serve(std::move(request_), [io = world_.io, weak = weak_from_this_()](WebReply reply) {
+      io->post([weak, reply = std::move(reply)]() mutable {
+        if (const auto me = weak.lock()) me->send(std::move(reply));
+      });
+    });
   }
 
   void send(WebReply reply) {
@@ -219,9 +218,9 @@ class ConnectionOver final : public Connection,
     for (const auto& [name, value] : reply_.headers) header_->set(name, value);
     if (reply_.topic || reply_.source) {
       // Its token may be revoked meanwhile.
-      visit_ = world_.visit(
-          caller_, [outlet = world_.outlet, weak = weak_from_this_()](const grpc::Status&) {
-            outlet->post([weak] {
+      visit_ =
+          world_.visit(caller_, [io = world_.io, weak = weak_from_this_()](const grpc::Status&) {
+            io->post([weak] {
               if (const auto me = weak.lock()) me->close();
             });
           });
@@ -283,10 +282,10 @@ class ConnectionOver final : public Connection,
 
   void next_piece() {
     tcp(stream_).expires_never();
-    const bool taken = world_.files.submit(
-        [outlet = world_.outlet, weak = weak_from_this_(), source = reply_.source] {
+    const bool taken =
+        world_.files.submit([io = world_.io, weak = weak_from_this_(), source = reply_.source] {
           std::optional<std::string> piece = source->next();
-          outlet->post([weak, piece = std::move(piece)]() mutable {
+          io->post([weak, piece = std::move(piece)]() mutable {
             if (const auto me = weak.lock()) me->send_piece(std::move(piece));
           });
         });

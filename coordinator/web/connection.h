@@ -11,7 +11,7 @@
 #include "coordinator/controller/thread_pool.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
-#include "coordinator/web/outlet.h"
+#include "coordinator/web/io_handle.h"
 
 namespace boost::asio::ssl {
 class context;
@@ -44,7 +44,7 @@ struct ConnectionWorld {
   /// Answers a request; called by the network's thread.
   std::function<void(WebRequest, Answer)> serve;
   ThreadPool& files;  ///< who reads what is sent from the disk
-  std::shared_ptr<Outlet> outlet;
+  std::shared_ptr<IoHandle> io;
   Meters& meters;
   ConnectionCount count;                         ///< of the network's thread
   std::set<std::shared_ptr<Connection>> open{};  ///< likewise

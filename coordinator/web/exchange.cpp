@@ -75,13 +75,6 @@ WebReply empty_reply(unsigned status) {
   return reply;
 }
 
-grpc::Status status_of(const std::string& code, const std::string& message) {
-  for (const Code& known : kCodes) {
-    if (code == known.name) return {known.code, message};
-  }
-  return {grpc::StatusCode::UNKNOWN, message};
-}
-
 WebReply error_reply(const grpc::Status& status) {
   const Code code = code_of(status.error_code());
   const v1::ErrorDetail detail = farm::detail_of(status);

@@ -79,8 +79,6 @@ WebReply json_reply(const farm::Json& json);
 WebReply text_reply(std::string text, const char* type);
 /// No body: 204, or 304.
 WebReply empty_reply(unsigned status);
-/// The error that such a form tells of.
-grpc::Status status_of(const std::string& code, const std::string& message);
 /// What went wrong, in the form that openapi.yaml gives it.
 WebReply error_reply(const grpc::Status& status);
 

@@ -1,13 +1,12 @@
 #pragma once
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/services/executors.h"
+#include "coordinator/operations/executors.h"
 #include "coordinator/web/router.h"
-#include "farm/json_form.h"
 
 namespace hyades::coordinator {
 
-/// The farm and its workers; whether the coordinator is well.
+/// Whether the coordinator is well, and numbers for Prometheus.
 class FarmApi {
  public:
   FarmApi(Controller& controller, Executors& executors)
@@ -18,8 +17,5 @@ class FarmApi {
   Controller& controller_;
   Executors& executors_;
 };
-
-/// As openapi.yaml's Info.
-farm::Json to_json(const v1::InfoResponse& info);
 
 }  // namespace hyades::coordinator

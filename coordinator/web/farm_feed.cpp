@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "coordinator/controller/all_pages.h"
-#include "coordinator/web/farm_api.h"
 #include "farm/json_form.h"
 
 namespace hyades::coordinator {
@@ -68,7 +67,7 @@ void FarmFeed::join(std::weak_ptr<LiveReader> reader) {
 
 void FarmFeed::tick() {
   if (stepping_.exchange(true)) return;
-  const bool taken = executors_.rows.submit([me = shared_from_this()] {
+  const bool taken = executors_.store.submit([me = shared_from_this()] {
     // Without memory for it nothing is told this time.
     (void)within_memory([&] {
       me->step();
@@ -96,7 +95,7 @@ void FarmFeed::step() {
   farm::Json change = farm::Json::object();
   v1::InfoResponse asked;
   controller_.farm().info(asked);
-  farm::Json info = to_json(asked);
+  farm::Json info = farm::to_json(asked);
   if (info != info_) change["info"] = info;
   info_ = std::move(info);
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/services/executors.h"
+#include "coordinator/operations/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/live_readers.h"
 #include "coordinator/web/live_rows.h"

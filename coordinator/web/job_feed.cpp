@@ -28,7 +28,7 @@ bool JobFeed::tick() {
   }
   if (!*changed_ || stepping_.exchange(true)) return true;
   *changed_ = false;
-  const bool taken = executors_.rows.submit([me = shared_from_this()] {
+  const bool taken = executors_.store.submit([me = shared_from_this()] {
     const grpc::Status done = within_memory([&] {
       me->step();
       return grpc::Status::OK;
@@ -57,11 +57,11 @@ void JobFeed::step() {
   bool ended = false;
   bool ended_for_fresh = false;
   grpc::Status status;
-  if (begun_) status = changes(told_, change, ended);
+  if (begun_) status = changes(cursor_, change, ended);
   if (status.ok() && !fresh.empty()) {
     ChangeCursor all;
     status = changes(all, snapshot, ended_for_fresh);
-    if (status.ok() && !std::exchange(begun_, true)) told_ = all;
+    if (status.ok() && !std::exchange(begun_, true)) cursor_ = all;
   }
   const std::lock_guard lock(mutex_);
   if (status.error_code() == grpc::StatusCode::NOT_FOUND) {
@@ -92,11 +92,11 @@ void JobFeed::step() {
 }
 
 /// All pages of what has changed, as one.
-grpc::Status JobFeed::changes(ChangeCursor& told, farm::Json& change, bool& ended) {
+grpc::Status JobFeed::changes(ChangeCursor& cursor, farm::Json& change, bool& ended) {
   farm::Json frames = farm::Json::array();
   for (;;) {
     v1::WatchEvent event;
-    const grpc::Status status = controller_.queries().changes(job_, told, event, ended);
+    const grpc::Status status = controller_.queries().changes(job_, cursor, event, ended);
     if (!status.ok()) return status;
     for (const v1::Frame& frame : event.changed()) frames.push_back(farm::to_json(frame));
     if (event.more()) continue;

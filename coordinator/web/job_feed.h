@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/services/executors.h"
+#include "coordinator/operations/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/live_readers.h"
 
@@ -29,7 +29,7 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
 
  private:
   void step();
-  grpc::Status changes(ChangeCursor& told, farm::Json& change, bool& ended);
+  grpc::Status changes(ChangeCursor& cursor, farm::Json& change, bool& ended);
 
   Controller& controller_;
   Executors& executors_;
@@ -39,8 +39,8 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
   std::atomic<bool> stepping_{false};
   std::mutex mutex_;  ///< guards readers_
   LiveReaders readers_;
-  ChangeCursor told_;   ///< to those who know; of the thread that steps
-  bool begun_ = false;  ///< told_ means something
+  ChangeCursor cursor_;  ///< to those who know; of the thread that steps
+  bool begun_ = false;   ///< cursor_ means something
 };
 
 }  // namespace hyades::coordinator

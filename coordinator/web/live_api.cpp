@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "coordinator/web/handing.h"
+#include "coordinator/web/route_helpers.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -21,27 +21,28 @@ WebReply live(std::shared_ptr<LiveTopic> topic) {
 }  // namespace
 
 LiveApi::LiveApi(Controller& controller, Executors& executors, boost::asio::io_context& network,
-                 std::shared_ptr<Outlet> outlet)
+                 std::shared_ptr<IoHandle> io)
     : controller_(controller),
       executors_(executors),
-      outlet_(std::move(outlet)),
+      io_(std::move(io)),
       timer_(network),
       farm_(std::make_shared<FarmFeed>(controller, executors)) {}
 
 void LiveApi::add_routes(Router& router) {
   router.add("GET", "/api/v1/events",
              [this](const WebRequest&, const Answer& answer) { answer(live(farm_)); });
-  router.add("GET", "/api/v1/jobs/{job}/events",
-             of_job([this](uint64_t job, const WebRequest&, const Answer& answer) {
-               // Whether there is such a job is known before the stream begins.
-               const bool taken = executors_.rows.submit([this, job, answer] {
-                 v1::GetJobResponse got;
-                 const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
-                 if (!status.ok()) return answer(error_reply(status));
-                 outlet_->post([this, job, answer] { answer(live(feed_of(job))); });
-               });
-               if (!taken) answer(error_reply(crowded()));
-             }));
+  add_by_hand<v1::JobRequest>(
+      router, "GET", "/api/v1/jobs/{job}/events",
+      [this](const v1::JobRequest& asked, const WebRequest&, const Answer& answer) {
+        // Whether there is such a job is known before the stream begins.
+        const bool taken = executors_.store.submit([this, job = asked.job(), answer] {
+          v1::GetJobResponse got;
+          const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
+          if (!status.ok()) return answer(error_reply(status));
+          io_->post([this, job, answer] { answer(live(feed_of(job))); });
+        });
+        if (!taken) answer(error_reply(crowded()));
+      });
 }
 
 std::shared_ptr<JobFeed> LiveApi::feed_of(uint64_t job) {

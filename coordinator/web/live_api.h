@@ -8,10 +8,10 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/services/executors.h"
+#include "coordinator/operations/executors.h"
 #include "coordinator/web/farm_feed.h"
+#include "coordinator/web/io_handle.h"
 #include "coordinator/web/job_feed.h"
-#include "coordinator/web/outlet.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
@@ -21,7 +21,7 @@ namespace hyades::coordinator {
 class LiveApi {
  public:
   LiveApi(Controller& controller, Executors& executors, boost::asio::io_context& network,
-          std::shared_ptr<Outlet> outlet);
+          std::shared_ptr<IoHandle> io);
   void add_routes(Router& router);
   /// From now on the farm's throughput is noted, whether anybody looks or not.
   void begin();
@@ -34,7 +34,7 @@ class LiveApi {
 
   Controller& controller_;
   Executors& executors_;
-  std::shared_ptr<Outlet> outlet_;
+  std::shared_ptr<IoHandle> io_;
   boost::asio::steady_timer timer_;
   std::shared_ptr<FarmFeed> farm_;
   std::map<uint64_t, std::shared_ptr<JobFeed>> jobs_;  ///< that somebody reads; network's thread

@@ -15,4 +15,12 @@ std::optional<Number> number_of(std::string_view text) {
   return number;
 }
 
+/// What a value of a query means that says yes or no ("", "true", "1"; "false", "0"); nothing where
+/// it is neither.
+inline std::optional<bool> flag_of(std::string_view text) {
+  if (text.empty() || text == "true" || text == "1") return true;
+  if (text == "false" || text == "0") return false;
+  return std::nullopt;
+}
+
 }  // namespace hyades::coordinator

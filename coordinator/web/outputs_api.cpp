@@ -6,7 +6,7 @@
 #include "coordinator/controller/not_there.h"
 #include "coordinator/web/byte_range.h"
 #include "coordinator/web/file_source.h"
-#include "coordinator/web/handing.h"
+#include "coordinator/web/route_helpers.h"
 #include "coordinator/web/zip_source.h"
 #include "core/base/assets.h"
 #include "farm/wire.h"
@@ -73,47 +73,35 @@ core::Result<OutputsPage> finished_files(Controller& controller, uint64_t job, u
 }
 
 void OutputsApi::add_routes(Router& router) {
-  router.add("GET", "/api/v1/jobs/{job}/outputs",
-             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
-               ListAsked asked;
-               asked.job = job;
-               const auto after = query_number<uint64_t>(request, "after", 0, answer);
-               if (!after) return;
-               const auto limit =
-                   query_within<uint32_t>(request, "limit", 1, kMostListed, kMostListed, answer);
-               if (!limit) return;
-               if (!query_number_if_any(request, "frame", asked.frame, answer)) return;
-               asked.after = *after;
-               asked.limit = *limit;
-               answer_by(executors_.rows, answer, [this, asked] { return list(asked); });
-             }));
-  router.add("GET", "/api/v1/jobs/{job}/outputs/{path...}",
-             of_job([this](uint64_t job, const WebRequest& request, const Answer& answer) {
-               const auto download = query_flag(request, "download", answer);
-               if (!download) return;
-               answer_by(executors_.files, answer,
-                         [this, job, path = request.parameters.at("path"),
-                          range = WantedRange{request.header("range"), request.header("if-range")},
-                          download = *download] { return file(job, path, range, download); });
-             }));
-  router.add("GET", "/api/v1/jobs/{job}/archive.zip",
-             of_job_by(executors_.files, [this](uint64_t job) { return archive(job); }));
+  const std::string base = "/api/v1/jobs/{job}/";
+  add_by_hand<v1::OutputsPageRequest>(
+      router, executors_.store, "GET", base + "outputs",
+      [this](const v1::OutputsPageRequest& asked, const WebRequest&) { return list(asked); });
+  add_by_hand<v1::OutputRequest>(router, executors_.files, "GET", base + "outputs/{path...}",
+                                 [this](const v1::OutputRequest& asked, const WebRequest& request) {
+                                   return file(asked, request);
+                                 });
+  add_by_hand<v1::JobRequest>(
+      router, executors_.files, "GET", base + "archive.zip",
+      [this](const v1::JobRequest& asked, const WebRequest&) { return archive(asked.job()); });
 }
 
-WebReply OutputsApi::list(const ListAsked& asked) {
-  const auto state = controller_.store().state(asked.job);
+WebReply OutputsApi::list(const v1::OutputsPageRequest& asked) {
+  const uint64_t job = asked.job();
+  const auto state = controller_.store().state(job);
   if (!state) return error_reply(farm::unavailable(state.error()));
-  if (!*state) return error_reply(no_job(asked.job));
+  if (!*state) return error_reply(no_job(job));
   OutputsPage page;
-  if (asked.frame) {
-    auto outputs = controller_.store().outputs_of(asked.job, *asked.frame);
+  if (asked.has_frame()) {
+    auto outputs = controller_.store().outputs_of(job, asked.frame());
     if (!outputs) return error_reply(farm::unavailable(outputs.error()));
     page.outputs = std::move(*outputs);
     std::erase_if(page.outputs, [&](const StoredOutput& output) {
-      return controller_.queries().is_for_video(asked.job, output.path);
+      return controller_.queries().is_for_video(job, output.path);
     });
   } else {
-    auto found = finished_files(controller_, asked.job, asked.after, asked.limit);
+    auto found = finished_files(controller_, job, asked.after(),
+                                asked.limit() == 0 ? kMostListed : asked.limit());
     if (!found) return error_reply(farm::unavailable(found.error()));
     page = std::move(*found);
   }
@@ -127,8 +115,9 @@ WebReply OutputsApi::list(const ListAsked& asked) {
   return json_reply({{"outputs", std::move(all)}, {"after", page.after}, {"more", page.more}});
 }
 
-WebReply OutputsApi::file(uint64_t job, const std::string& path, const WantedRange& wanted,
-                          bool download) {
+WebReply OutputsApi::file(const v1::OutputRequest& asked, const WebRequest& request) {
+  const uint64_t job = asked.job();
+  const std::string& path = asked.path();
   // The path is looked up among the job's outputs and never taken for one of the file system's.
   const auto output = controller_.store().output(job, path);
   if (!output) return error_reply(farm::unavailable(output.error()));
@@ -144,19 +133,21 @@ WebReply OutputsApi::file(uint64_t job, const std::string& path, const WantedRan
                    {"Content-Security-Policy", "sandbox"}};
   reply.headers.emplace_back(
       "Content-Disposition",
-      fmt::format("{}; filename=\"{}\"", download ? "attachment" : "inline", header_name(path)));
+      fmt::format("{}; filename=\"{}\"", asked.download() ? "attachment" : "inline",
+                  header_name(path)));
   // The rest of another file would not fit to what the client has.
-  const bool same = wanted.if_tag.empty() || wanted.if_tag == reply.headers[1].second;
-  const std::string range = same ? wanted.range : "";
+  const std::string& tag = request.header("if-range");
+  const bool same = tag.empty() || tag == reply.headers[1].second;
+  const std::string range = same ? request.header("range") : "";
   ByteRange part{0, size == 0 ? 0 : size - 1};
-  const RangeAsked asked = read_range(range, size, part);
-  if (asked == RangeAsked::impossible) {
+  const RangeAsked wanted = read_range(range, size, part);
+  if (wanted == RangeAsked::impossible) {
     WebReply none =
         error_reply({grpc::StatusCode::OUT_OF_RANGE, fmt::format("the file has {} bytes", size)});
     none.headers.emplace_back("Content-Range", fmt::format("bytes */{}", size));
     return none;
   }
-  if (asked == RangeAsked::part) {
+  if (wanted == RangeAsked::part) {
     reply.status = 206;
     reply.headers.emplace_back("Content-Range",
                                fmt::format("bytes {}-{}/{}", part.first, part.last, size));

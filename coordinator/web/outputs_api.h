@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/services/executors.h"
+#include "coordinator/operations/executors.h"
 #include "coordinator/web/router.h"
+#include "hyades/v1/web.pb.h"
 
 namespace hyades::coordinator {
 
@@ -19,20 +19,8 @@ class OutputsApi {
   void add_routes(Router& router);
 
  private:
-  /// Which files of a job are asked for.
-  struct ListAsked {
-    uint64_t job = 0;
-    uint64_t after = 0;
-    uint32_t limit = 0;
-    std::optional<int32_t> frame;  ///< only its own
-  };
-  WebReply list(const ListAsked& asked);
-  /// The headers Range and If-Range.
-  struct WantedRange {
-    std::string range;
-    std::string if_tag;
-  };
-  WebReply file(uint64_t job, const std::string& path, const WantedRange& wanted, bool download);
+  WebReply list(const v1::OutputsPageRequest& asked);
+  WebReply file(const v1::OutputRequest& asked, const WebRequest& request);
   WebReply archive(uint64_t job);
 
   Controller& controller_;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/web/handing.h"
 #include "coordinator/web/preview.h"
+#include "coordinator/web/route_helpers.h"
 #include "core/image/read_image.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
+#include "hyades/v1/web.pb.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -18,8 +19,6 @@ constexpr std::chrono::milliseconds kFreshFor{1000};
 /// Copies of films at a time: one of a large frame is a gigabyte.
 constexpr int kMostFilms = 2;
 constexpr size_t kMostFrames = 1000;
-constexpr int kNarrowest = 16;
-constexpr int kWidest = 8192;
 
 bool is_over(const v1::Frame& frame) { return frame.state() == v1::FRAME_STATE_DONE; }
 
@@ -88,29 +87,15 @@ void PicturesApi::close() {
 }
 
 void PicturesApi::add_routes(Router& router) {
-  router.add(
-      "GET", "/api/v1/jobs/{job}/frames/{frame}/picture",
-      [this](const WebRequest& request, const Answer& answer) {
-        const auto job = parameter<uint64_t>(request, "job", answer);
-        if (!job) return;
-        const auto frame = parameter<int32_t>(request, "frame", answer);
-        if (!frame) return;
-        const auto width = query_within<int>(request, "width", kNarrowest, kWidest, 0, answer);
-        if (!width) return;
-        const auto mask = query_flag(request, "mask", answer);
-        if (!mask) return;
-        Asked asked{*job, *frame, false, *mask, *width, "beauty"};
-        const auto format = request.query.find("format");
-        if (format != request.query.end()) {
-          asked.half = format->second == "half";
-          if (!asked.half && format->second != "png") {
-            answer(
-                error_reply({grpc::StatusCode::INVALID_ARGUMENT, "format: expected png or half"}));
-            return;
-          }
-        }
-        const auto layer = request.query.find("layer");
-        if (layer != request.query.end()) asked.layer = layer->second;
+  add_by_hand<v1::PictureRequest>(
+      router, "GET", "/api/v1/jobs/{job}/frames/{frame}/picture",
+      [this](const v1::PictureRequest& request, const WebRequest&, const Answer& answer) {
+        const Asked asked{request.job(),
+                          request.frame(),
+                          request.format() == v1::PICTURE_FORMAT_HALF,
+                          request.mask(),
+                          static_cast<int>(request.width()),
+                          request.has_layer() ? request.layer() : "beauty"};
         if (!asked.half && asked.layer != "beauty") {
           answer(error_reply({grpc::StatusCode::INVALID_ARGUMENT,
                               "layer: png shows beauty; expected format=half for other layers"}));

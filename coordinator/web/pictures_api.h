@@ -29,7 +29,7 @@ class PicturesApi {
   PicturesApi& operator=(const PicturesApi&) = delete;
 
   void add_routes(Router& router);
-  /// Films that come later are let go of; before the destructor, which may wait for the pool.
+  /// Films that come later are let go of; before the destructor, which may wait for pool.
   void close();
 
   /// What is asked for.

@@ -38,12 +38,15 @@ std::optional<std::map<std::string, std::string>> match(const std::vector<std::s
 }  // namespace
 
 void Router::add(const std::string& method, const std::string& pattern, Handler handler) {
-  routes_.push_back({method, pattern, parse_target(pattern)->path, std::move(handler),
-                     &rule_of_route(method + " " + pattern)});
+  const Operation& operation = operation_of_route(method + " " + pattern);
+  const uint64_t own = find_route(operation, method + " " + pattern).most_bytes;
+  const uint64_t most_bytes = method == "GET" ? 0 : own > 0 ? own : operation.most_bytes;
+  routes_.push_back(
+      {method, pattern, parse_target(pattern)->path, std::move(handler), &operation, most_bytes});
 }
 
-const Router::Route* Router::find(const WebRequest& request) const {
-  for (const Route& route : routes_) {
+const Router::Entry* Router::find(const WebRequest& request) const {
+  for (const Entry& route : routes_) {
     if (route.method == request.method && match(route.parts, request.path)) return &route;
   }
   return nullptr;
@@ -51,7 +54,7 @@ const Router::Route* Router::find(const WebRequest& request) const {
 
 void Router::answer(WebRequest request, const Answer& answer) const {
   std::string allowed;
-  for (const Route& route : routes_) {
+  for (const Entry& route : routes_) {
     auto found = match(route.parts, request.path);
     if (!found) continue;
     if (route.method != request.method) {
@@ -59,18 +62,7 @@ void Router::answer(WebRequest request, const Answer& answer) const {
       continue;
     }
     request.parameters = std::move(*found);
-    if (!note_ || !route.rule->audited) return route.handler(request, answer);
-    std::string target;
-    for (const char* name : {"job", "worker"}) {
-      const auto named = request.parameters.find(name);
-      if (named != request.parameters.end()) target = named->second;
-    }
-    route.handler(request, [this, answer, target, caller = request.caller,
-                            rule = route.rule](WebReply reply) {
-      note_(caller, *rule, target, reply);
-      answer(std::move(reply));
-    });
-    return;
+    return route.handler(request, answer);
   }
   std::string path;
   for (const std::string& part : request.path) path += "/" + part;

@@ -14,23 +14,21 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "coordinator/access/authority.h"
-#include "coordinator/access/rules.h"
-#include "coordinator/access/token.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
-#include "coordinator/services/executors.h"
+#include "coordinator/operations/operation.h"
 #include "coordinator/web/assets_api.h"
+#include "coordinator/web/authenticator.h"
 #include "coordinator/web/connection.h"
 #include "coordinator/web/dashboard.h"
 #include "coordinator/web/farm_api.h"
-#include "coordinator/web/gatekeeper.h"
 #include "coordinator/web/jobs_api.h"
 #include "coordinator/web/live_api.h"
+#include "coordinator/web/operation_routes.h"
 #include "coordinator/web/outputs_api.h"
 #include "coordinator/web/pictures_api.h"
 #include "coordinator/web/router.h"
 #include "coordinator/web/tls_context.h"
-#include "coordinator/web/videos_api.h"
 #include "farm/log.h"
 #include "farm/wire.h"
 
@@ -60,35 +58,6 @@ HostAndPort split(const std::string& address) {
   return {host, address.substr(colon + 1)};
 }
 
-/// Of a request's body.
-uint64_t most_bytes(const WebRequest& request) {
-  constexpr uint64_t kSession = 4U << 10U;
-  constexpr uint64_t kUsual = 64U << 10U;
-  constexpr uint64_t kPiece = uint64_t{8} << 20U;
-  const std::vector<std::string>& path = request.path;
-  if (request.method == "GET" || path.size() < 3) return 0;
-  if (path[2] == "session") return kSession;
-  if (request.method == "PUT" && path[2] == "assets") return kPiece;
-  const bool names_files = path.back() == "missing" || (path.size() == 3 && path[2] == "jobs");
-  return names_files ? farm::kMaxMessageBytes : kUsual;
-}
-
-/// What became of something that was asked for over HTTP, for the audit log.
-void note_reply(AuditLog& log, const Caller& caller, const Rule& rule, std::string target,
-                const WebReply& reply) {
-  const farm::Json said =
-      reply.text ? farm::Json::parse(*reply.text, nullptr, false) : farm::Json();
-  grpc::Status result;
-  if (reply.status >= 400) {
-    const bool told = said.is_object() && said.contains("error");
-    result = told ? status_of(said["error"].value("code", ""), said["error"].value("message", ""))
-                  : grpc::Status(grpc::StatusCode::UNKNOWN, std::to_string(reply.status));
-  } else if (target.empty() && said.is_object() && said.contains("job")) {
-    target = std::to_string(said["job"].value("id", uint64_t{0}));
-  }
-  log.note(caller, rule.deed, target, result, "over HTTP");
-}
-
 /// Programs that the coordinator starts must not hold its connections open.
 template <class Socket>
 void close_on_exec(Socket& socket) {
@@ -101,47 +70,42 @@ struct WebServer::Parts {
   Parts(Controller& controller, Authority& known, std::vector<std::string> names, bool secure)
       : meters(controller.meters()),
         authority(known),
-        gatekeeper(known, std::move(names), secure),
-        outlet(std::make_shared<Outlet>(network)),
+        authenticator(known, std::move(names), secure),
+        io(std::make_shared<IoHandle>(network)),
+        operations({controller, known}, executors),
         farm(controller, executors),
         jobs(controller, executors),
         assets(controller, executors, known.audit()),
         outputs(controller, executors),
         pictures(controller),
-        videos(controller, executors),
-        live(controller, executors, network, outlet),
+        live(controller, executors, network, io),
         world{[this](WebRequest& request) { return admit(request); },
               [this](const Caller& caller, std::function<void(const grpc::Status&)> leave) {
                 return authority.visit(caller, std::move(leave));
               },
               [this](WebRequest request, Answer answer) { serve(std::move(request), answer); },
               executors.files,
-              outlet,
+              io,
               meters,
               ConnectionCount(kMostConnections, kMostOfAddress)},
         acceptor(network),
         again(network),
         sweep(network),
         look(network) {
-    if (AuditLog* log = authority.audit()) {
-      router.set_note(
-          [log](const Caller& caller, const Rule& rule, const std::string& target,
-                const WebReply& reply) { note_reply(*log, caller, rule, target, reply); });
-    }
     add_dashboard(router);
     add_session(router);
+    operations.add_routes(router);
     farm.add_routes(router);
     jobs.add_routes(router);
     assets.add_routes(router);
     outputs.add_routes(router);
     pictures.add_routes(router);
-    videos.add_routes(router);
     live.add_routes(router);
   }
 
   /// Counts by route, never by what was asked for: there are as many rows as routes.
   void serve(WebRequest request, const Answer& answer) const {
-    const Router::Route* route = router.find(request);
+    const Router::Entry* route = router.find(request);
     const std::string name = route != nullptr ? route->pattern : "none";
     const std::string method = route != nullptr ? request.method : "any";
     const auto begun = std::chrono::steady_clock::now();
@@ -160,10 +124,10 @@ struct WebServer::Parts {
               ? json["token"].get<std::string>()
               : std::string();
       grpc::Status why;
-      const auto cookie = gatekeeper.open_session(token, why);
+      const auto cookie = authenticator.open_session(token, why);
       if (!cookie) {
         if (why.error_code() == grpc::StatusCode::UNAUTHENTICATED) {
-          note_refusal(request.caller, rule_of_route("POST /api/v1/session"), why);
+          note_refusal(request.caller, operation_of_route("POST /api/v1/session").rule, why);
         }
         answer(error_reply(why));
         return;
@@ -172,27 +136,20 @@ struct WebServer::Parts {
       reply.headers.emplace_back("Set-Cookie", *cookie);
       answer(std::move(reply));
     });
-    to.add("GET", "/api/v1/session", [this](const WebRequest& request, const Answer& answer) {
-      const Caller& caller = request.caller;
-      answer(json_reply({{"guarded", authority.guarded()},
-                         {"role", role_name(caller.role)},
-                         {"name", caller.name},
-                         {"token_id", caller.token_id},
-                         {"expires_ms", caller.term.expires_ms},
-                         {"expiring", farm::expiry_warning(caller.term, token_clock_ms())}}));
-    });
     to.add("DELETE", "/api/v1/session", [this](const WebRequest& request, const Answer& answer) {
       WebReply reply = empty_reply(204);
-      reply.headers.emplace_back("Set-Cookie", gatekeeper.end_session(request));
+      reply.headers.emplace_back("Set-Cookie", authenticator.end_session(request));
       answer(std::move(reply));
     });
   }
 
   ConnectionWorld::Admitted admit(WebRequest& request) const {
-    grpc::Status allowed = gatekeeper.check(request, request.caller);
+    grpc::Status allowed = authenticator.check(request, request.caller);
     // What is not here at all is told to nobody who may not come in.
-    const Router::Route* route = router.find(request);
-    const Rule& rule = route != nullptr ? *route->rule : rule_of_method("Farm/Info");
+    const Router::Entry* route = router.find(request);
+    const Operation& operation =
+        route != nullptr ? *route->operation : operation_of_method("Farm/Info");
+    const Rule& rule = operation.rule;
     const bool for_all = rule.least == v1::ROLE_UNSPECIFIED;
     if (for_all && allowed.error_code() == grpc::StatusCode::UNAUTHENTICATED) {
       allowed = grpc::Status::OK;
@@ -204,11 +161,12 @@ struct WebServer::Parts {
       meters.answered("any", "refused", refusal.status, Meters::Time(0));
       return {0, std::move(refusal)};
     }
-    return {most_bytes(request)};
+    if (route != nullptr) return {route->most_bytes};
+    return {request.method == "GET" ? 0 : farm::kMaxRequestBytes};
   }
 
   void note_refusal(const Caller& caller, const Rule& rule, const grpc::Status& why) const {
-    if (AuditLog* log = authority.audit()) log->refuse(caller, rule.deed, why);
+    if (AuditLog* log = authority.audit()) log->refuse(caller, rule.action, why);
   }
 
   core::Status listen(const std::string& address) {
@@ -283,7 +241,7 @@ struct WebServer::Parts {
     std::string trouble = fresh ? std::string() : fresh.error().message;
     const std::lock_guard lock(certificates_mutex);
     if (fresh) {
-      outlet->post([this, context = std::move(*fresh)] { tls = context; });
+      io->post([this, context = std::move(*fresh)] { tls = context; });
       certificates->taken(stamps);
     } else if (trouble != certificates_trouble) {
       farm::log(farm::LogLevel::warning, trouble + ": HTTP goes on with the last certificate");
@@ -307,14 +265,14 @@ struct WebServer::Parts {
   asio::io_context network{1};
   Meters& meters;
   Authority& authority;
-  Gatekeeper gatekeeper;
-  std::shared_ptr<Outlet> outlet;
+  Authenticator authenticator;
+  std::shared_ptr<IoHandle> io;
+  OperationRoutes operations;
   FarmApi farm;
   JobsApi jobs;
   AssetsApi assets;
   OutputsApi outputs;
   PicturesApi pictures;
-  VideosApi videos;
   LiveApi live;
   Router router;
   ConnectionWorld world;
@@ -327,7 +285,7 @@ struct WebServer::Parts {
   asio::steady_timer sweep;
   asio::steady_timer look;
   std::thread thread;
-  Executors executors;  ///< ends first: its threads use all of the above
+  Executors executors;  ///< ends first: its pool use all of the above
 };
 
 WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -336,7 +294,7 @@ WebServer::~WebServer() {
   if (!parts_) return;
   parts_->network.stop();
   if (parts_->thread.joinable()) parts_->thread.join();
-  parts_->outlet->close();
+  parts_->io->close();
   parts_->pictures.close();
   parts_->live.stop();
   parts_->world.open.clear();
@@ -344,7 +302,7 @@ WebServer::~WebServer() {
 
 std::vector<std::string> WebServer::routes() const {
   std::vector<std::string> all;
-  for (const Router::Route& route : parts_->router.routes()) {
+  for (const Router::Entry& route : parts_->router.routes()) {
     all.push_back(route.method + " " + route.pattern);
   }
   return all;
@@ -371,7 +329,7 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   Parts& running = *server->parts_;
   boost::system::error_code error;
   const uint16_t port = running.acceptor.local_endpoint(error).port();
-  running.gatekeeper.set_port(port);
+  running.authenticator.set_port(port);
   server->url_ = (secure ? "https://" : "http://") +
                  listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
   running.accept();

@@ -15,14 +15,14 @@ class Controller;
 /// The coordinator's HTTP server: the dashboard and the API of openapi.yaml over a controller.
 ///
 /// One thread does all that concerns connections, so that thousands of them cost no more than what
-/// they ask for; what may wait for the disk is done by pools of threads, as for gRPC.
+/// they ask for; what may wait for the disk is done by pool, as for gRPC.
 class WebServer {
  public:
   /// Listens at listen.address, with its certificate and token (farm::open_door has the rules). An
   /// error where they do not hold together, or the address is taken or not this machine's.
   /// `controller` and `authority`, which says who may come in, outlive the server. `names`: by
   /// which browsers may reach it where no token guards, beside those that no stranger can have
-  /// (Gatekeeper::check).
+  /// (Authenticator::check).
   static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen,
                                                         Controller& controller,
                                                         Authority& authority,

@@ -2,8 +2,9 @@
 
 #include <cstdlib>
 
+#include "coordinator/operations/operation.h"
 #include "coordinator/web/byte_range.h"
-#include "coordinator/web/submission.h"
+#include "coordinator/web/request_form.h"
 #include "coordinator/web/target.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -32,7 +33,9 @@ bool try_input(std::string_view input) {
   if (part && (range.first > range.last || range.last >= 100)) {
     std::abort();
   }
-  return coordinator::read_submission(std::string(input)).ok() || target || part;
+  v1::SubmitRequest submission;
+  const auto& route = coordinator::operation_of_route("POST /api/v1/jobs").routes.front();
+  return coordinator::read_body(std::string(input), *route.body, submission).ok() || target || part;
 }
 
 }  // namespace hyades::fuzz

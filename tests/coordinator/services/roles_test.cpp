@@ -5,8 +5,8 @@
 #include <grpcpp/completion_queue.h>
 #include <grpcpp/generic/generic_stub.h>
 
-#include "coordinator/access/rules.h"
 #include "coordinator/access/token.h"
+#include "coordinator/operations/operation.h"
 #include "hyades/v1/admin.grpc.pb.h"
 #include "tests/coordinator/services/farm_world.h"
 
@@ -67,14 +67,14 @@ TEST_F(Roles, EveryMethodIsRefusedToThoseBelowIt) {
       {v1::ROLE_WORKER, make(v1::ROLE_WORKER, "node")},
       {v1::ROLE_ADMIN, admin}};
   int refused = 0;
-  for (const Rule& rule : all_rules()) {
-    if (*rule.method == '\0') continue;
-    const std::string method = std::string("/hyades.v1.") + rule.method;
+  for (const Operation& operation : all_operations()) {
+    if (*operation.method == '\0') continue;
+    const std::string method = std::string("/hyades.v1.") + operation.method;
     EXPECT_EQ(call(method, "").error_code(), grpc::StatusCode::UNAUTHENTICATED) << method;
     for (const auto& [role, token] : tokens) {
       const grpc::StatusCode code = call(method, token).error_code();
       EXPECT_NE(code, grpc::StatusCode::UNAUTHENTICATED) << method;
-      EXPECT_EQ(code == grpc::StatusCode::PERMISSION_DENIED, !may(role, rule))
+      EXPECT_EQ(code == grpc::StatusCode::PERMISSION_DENIED, !may(role, operation.rule))
           << method << " " << role_name(role) << " " << code;
       refused += code == grpc::StatusCode::PERMISSION_DENIED ? 1 : 0;
     }

@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
-#include <sstream>
 
 #include <yaml-cpp/yaml.h>
 
+#include "coordinator/operations/operation.h"
 #include "tests/coordinator/web/web_world.h"
 
 namespace hyades::coordinator {
@@ -321,18 +319,51 @@ TEST_F(OpenApi, EveryParameterThatIsReadIsTold) {
     }
   }
   std::set<std::string> read;
-  const std::regex reads(
-      R"re((?:query_(?:number|within)<[^>]*>|query_number_if_any|query_flag)\(\s*request,\s*"([a-z_]+)"|query\.(?:find|contains|at)\("([a-z_]+)"\))re");
-  for (const auto& file : std::filesystem::directory_iterator("coordinator/web")) {
-    if (file.path().extension() != ".cpp") continue;
-    std::stringstream source;
-    source << std::ifstream(file.path()).rdbuf();
-    const std::string text = source.str();
-    for (std::sregex_iterator it(text.begin(), text.end(), reads), end; it != end; ++it) {
-      read.insert((*it)[1].matched ? (*it)[1] : (*it)[2]);
+  for (const Operation& operation : all_operations()) {
+    for (const Route& route : operation.routes) {
+      for (const QueryField& field : route.query) read.insert(field.name);
     }
   }
   EXPECT_EQ(told, read);
+}
+
+// What the table has of a route is what is told of it.
+TEST_F(OpenApi, QueriesAreThoseOfTheTable) {
+  int compared = 0;
+  for (const Operation& operation : all_operations()) {
+    for (const Route& route : operation.routes) {
+      const std::string path =
+          std::regex_replace(std::string(route.path), std::regex("\\.\\.\\.\\}"), "}");
+      if (!path.starts_with("GET ")) continue;
+      const YAML::Node get = api["paths"][path.substr(4)]["get"];
+      if (route.query.empty() || !get.IsDefined()) continue;
+      ASSERT_EQ(get["parameters"].size(), route.query.size()) << path;
+      for (size_t i = 0; i < route.query.size(); ++i) {
+        const YAML::Node told = get["parameters"][i];
+        EXPECT_EQ(told["name"].as<std::string>(), route.query[i].name) << path;
+        const bool bounded = route.query[i].least != INT64_MIN;
+        EXPECT_EQ(told["schema"]["minimum"].IsDefined(), bounded) << path;
+        if (bounded) EXPECT_EQ(told["schema"]["minimum"].as<int64_t>(), route.query[i].least);
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 18);
+}
+
+// The fields of a message are the properties of its schema.
+TEST_F(OpenApi, SchemasAreThoseOfTheMessages) {
+  for (const auto* type : {v1::Job::descriptor(), v1::Frame::descriptor(), v1::Worker::descriptor(),
+                           v1::InfoResponse::descriptor(), v1::Video::descriptor()}) {
+    const std::string name = type->name() == "InfoResponse" ? "Info" : type->name();
+    std::set<std::string> told;
+    for (const auto& property : schema_of(name)["properties"]) {
+      told.insert(property.first.as<std::string>());
+    }
+    std::set<std::string> fields;
+    for (int i = 0; i < type->field_count(); ++i) fields.insert(farm::json_name(*type->field(i)));
+    EXPECT_EQ(told, fields) << name;
+  }
 }
 
 TEST_F(OpenApi, EventsHaveTheFormThatItGives) {

@@ -5,9 +5,10 @@
 #include <fstream>
 #include <limits>
 
+#include "coordinator/operations/operation.h"
 #include "coordinator/web/byte_range.h"
 #include "coordinator/web/preview.h"
-#include "coordinator/web/submission.h"
+#include "coordinator/web/request_form.h"
 #include "coordinator/web/target.h"
 #include "coordinator/web/zip_source.h"
 #include "tests/support/temp_folder.h"
@@ -152,6 +153,14 @@ TEST(Preview, HalfPlanesLieOneAfterTheOther) {
   for (size_t i = 0; i < planes.size(); ++i) {
     EXPECT_EQ(static_cast<unsigned char>(planes[i]), expected[i]) << i;
   }
+}
+
+core::Result<v1::SubmitRequest> read_submission(const std::string& body) {
+  v1::SubmitRequest request;
+  const Route& route = operation_of_route("POST /api/v1/jobs").routes.front();
+  const grpc::Status read = read_body(body, *route.body, request);
+  if (!read.ok()) return core::Error{read.error_message()};
+  return request;
 }
 
 TEST(Submission, FieldsThatAreWrongAreNamed) {

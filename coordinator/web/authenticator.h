@@ -14,11 +14,11 @@ namespace hyades::coordinator {
 
 /// Who comes in over HTTP. The same tokens as over gRPC; besides, no page of another site may act
 /// in the name of a person whose browser reaches the coordinator.
-class Gatekeeper {
+class Authenticator {
  public:
   /// `names`: by which browsers may reach it besides those that no stranger can have (see
   /// check()). `secure`: TLS. `authority` outlives it.
-  Gatekeeper(Authority& authority, std::vector<std::string> names, bool secure);
+  Authenticator(Authority& authority, std::vector<std::string> names, bool secure);
 
   /// Cookies are the same for all ports of a machine: a coordinator's are named by its own.
   void set_port(uint16_t port);

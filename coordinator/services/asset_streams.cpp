@@ -1,24 +1,22 @@
-#include "coordinator/services/assets_service.h"
-
+// Files by content, up and down.
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "coordinator/services/answer.h"
+#include "coordinator/controller/controller.h"
+#include "coordinator/operations/audit.h"
 #include "coordinator/services/file_stream.h"
-#include "coordinator/services/upload_note.h"
+#include "coordinator/services/service.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
+#include "hyades/v1/assets.pb.h"
 
 namespace hyades::coordinator {
 namespace {
-
-constexpr int kMostAsked = 10'000;
 
 grpc::Status invalid(const std::string& message) {
   return {grpc::StatusCode::INVALID_ARGUMENT, message};
@@ -154,57 +152,34 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
 
 }  // namespace
 
-grpc::ServerUnaryReactor* AssetsService::FindMissing(Context* context, const Bytes* asked,
-                                                     Bytes* said) {
-  const auto find = [this](const v1::FindMissingRequest& request,
-                           v1::FindMissingResponse& response) {
-    if (request.files_size() > kMostAsked) return invalid("at most 10,000 files at a time");
-    std::set<std::string> seen;
-    for (const v1::JobFile& file : request.files()) {
-      const auto digest = farm::digest_from_wire(file.sha256());
-      if (!digest) return invalid(digest.error().message);
-      const std::string name = core::to_hex(*digest);
-      if (!seen.insert(name).second || store_.contains(name, file.size())) continue;
-      auto* missing = response.add_missing();
-      missing->set_sha256(file.sha256());
-      missing->set_offset(std::min(store_.begun(name), file.size()));
-    }
-    return grpc::Status::OK;
-  };
-  return answer_by<v1::FindMissingRequest, v1::FindMissingResponse>(
-      executors_.files, {admission_, "Assets/FindMissing", context, asked, said}, find,
-      farm::kMaxMessageBytes);
-}
-
-grpc::ServerReadReactor<grpc::ByteBuffer>* AssetsService::Upload(Context* context, Bytes* said) {
-  (void)serialise(v1::UploadResponse(), *said);
-  Caller caller;
-  const grpc::Status admitted = admission_.check(*context, rule_of_method("Assets/Upload"), caller);
-  return new Uploading(controller_, executors_.files, admission_, *context, caller, admitted);
-}
-
-grpc::ServerWriteReactor<grpc::ByteBuffer>* AssetsService::Download(Context* context,
-                                                                    const Bytes* asked) {
-  const auto refuse = [](const grpc::Status& status) { return new Refusal(status); };
-  Caller caller;
-  const grpc::Status admitted =
-      admission_.check(*context, rule_of_method("Assets/Download"), caller);
-  if (!admitted.ok()) return refuse(admitted);
-  v1::DownloadRequest request;
-  if (const grpc::Status read = parse(*asked, farm::kMaxRequestBytes, request); !read.ok()) {
-    return refuse(read);
-  }
-  const auto digest = farm::digest_from_wire(request.sha256());
-  if (!digest) return refuse(invalid(digest.error().message));
-  const auto open = [this, name = core::to_hex(*digest)](core::Bytes& file) -> grpc::Status {
-    auto bytes = store_.read(name);
-    if (!bytes) return {grpc::StatusCode::NOT_FOUND, bytes.error().message};
-    file = std::move(*bytes);
-    return grpc::Status::OK;
-  };
-  auto* stream = new FileStream(*context, executors_.files, open, request.offset());
-  stream->guard(admission_, caller);
-  return stream;
+void add_asset_streams(Service& service) {
+  Controller& controller = service.backend().controller;
+  service.add_writer(
+      "Assets/Upload",
+      [&service, &controller](Service::Context& context, const Caller& caller,
+                              const grpc::Status& admitted) {
+        return new Uploading(controller, service.executors().files, service.admission(), context,
+                             caller, admitted);
+      },
+      v1::UploadResponse::default_instance());
+  service.add_reader<v1::DownloadRequest>(
+      "Assets/Download",
+      [&service, &controller](Service::Context& context, v1::DownloadRequest&& request,
+                              grpc::Status& refused) -> OutgoingStream* {
+        const auto digest = farm::digest_from_wire(request.sha256());
+        if (!digest) {
+          refused = invalid(digest.error().message);
+          return nullptr;
+        }
+        const auto open = [&controller,
+                           name = core::to_hex(*digest)](core::Bytes& file) -> grpc::Status {
+          auto bytes = controller.assets().read(name);
+          if (!bytes) return {grpc::StatusCode::NOT_FOUND, bytes.error().message};
+          file = std::move(*bytes);
+          return grpc::Status::OK;
+        };
+        return new FileStream(context, service.executors().files, open, request.offset());
+      });
 }
 
 }  // namespace hyades::coordinator

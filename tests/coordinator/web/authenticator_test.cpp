@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "coordinator/access/rules.h"
+#include "coordinator/operations/operation.h"
 #include "tests/coordinator/web/web_world.h"
 
 namespace hyades::coordinator {
@@ -90,7 +90,7 @@ TEST_F(WithRoles, EachRoleIsRefusedWhatIsAboveIt) {
       {v1::ROLE_WORKER, make(v1::ROLE_WORKER, "node")}};
   for (const std::string& route : world.web->routes()) {
     const size_t space = route.find(' ');
-    const Rule& rule = rule_of_route(route);
+    const Rule& rule = operation_of_route(route).rule;
     if (route.ends_with("events")) continue;  // they do not end
     std::string target = route.substr(space + 1);
     for (const auto& [name, value] : {std::pair("{job}", "999"),
@@ -256,7 +256,7 @@ TEST_F(WithRoles, LiveReadersAreSentAwayWithTheirToken) {
   EXPECT_EQ(again.status(), 401);
 }
 
-TEST(Gatekeeper, PagesOfOtherSitesMayNotSteer) {
+TEST(Authenticator, PagesOfOtherSitesMayNotSteer) {
   WebWorld world;
   world.start();
   const uint64_t job = world.farm.submit(1);
@@ -273,7 +273,7 @@ TEST(Gatekeeper, PagesOfOtherSitesMayNotSteer) {
   EXPECT_EQ(world.client->post(cancel, {}, {{"Origin", world.web->url()}}).status, 200);
 }
 
-TEST(Gatekeeper, NamesThatAreNotThisMachinesAreRefusedWhereNothingElseGuards) {
+TEST(Authenticator, NamesThatAreNotThisMachinesAreRefusedWhereNothingElseGuards) {
   WebWorld world;
   world.start();
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Host", "evil.example:8080"}}).status, 403);
@@ -281,7 +281,7 @@ TEST(Gatekeeper, NamesThatAreNotThisMachinesAreRefusedWhereNothingElseGuards) {
   EXPECT_EQ(world.client->get("/api/v1/info", {{"Host", "localhost:99"}}).status, 200);
 }
 
-TEST(Gatekeeper, ANameThatAStrangerMayHaveIsRefusedBeyondThisMachineToo) {
+TEST(Authenticator, ANameThatAStrangerMayHaveIsRefusedBeyondThisMachineToo) {
   WebWorld world;
   world.farm.how.insecure = true;
   world.names = {"Farm.Example"};
@@ -305,7 +305,7 @@ TEST(Gatekeeper, ANameThatAStrangerMayHaveIsRefusedBeyondThisMachineToo) {
   EXPECT_EQ(as("evil.example"), 401);
 }
 
-TEST(Gatekeeper, BeyondThisMachineOnlyWithTlsAndToken) {
+TEST(Authenticator, BeyondThisMachineOnlyWithTlsAndToken) {
   FarmWorld farm;
   farm.start();
   farm::Listen listen;

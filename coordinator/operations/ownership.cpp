@@ -1,4 +1,4 @@
-#include "coordinator/services/ownership.h"
+#include "coordinator/operations/ownership.h"
 
 #include <climits>
 

@@ -1,5 +1,4 @@
-#include "coordinator/services/work_service.h"
-
+// One stream per worker.
 #include <atomic>
 #include <deque>
 #include <memory>
@@ -8,7 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/raw.h"
+#include "coordinator/services/service.h"
 #include "coordinator/services/worker_bytes.h"
 #include "farm/wire.h"
 
@@ -213,11 +214,12 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
 
 }  // namespace
 
-grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* WorkService::Attend(
-    grpc::CallbackServerContext* context) {
-  Caller caller;
-  const grpc::Status admitted = admission_.check(*context, rule_of_method("Work/Attend"), caller);
-  return new Attendance(controller_, *context, admission_, caller, admitted);
+void add_worker_stream(Service& service) {
+  service.add_talker("Work/Attend", [&service](Service::Context& context, const Caller& caller,
+                                               const grpc::Status& admitted) {
+    return new Attendance(service.backend().controller, context, service.admission(), caller,
+                          admitted);
+  });
 }
 
 }  // namespace hyades::coordinator

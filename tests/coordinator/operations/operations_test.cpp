@@ -1,5 +1,5 @@
-// One table says who may do what; nothing that the coordinator answers is missing in it.
-#include "coordinator/access/rules.h"
+// One table says what the coordinator can be asked for, and by whom; nothing is missing in it.
+#include "coordinator/operations/operation.h"
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,9 @@ namespace {
 
 TEST(Rules, EveryMethodOfTheWireHasOne) {
   std::set<std::string> known;
-  for (const Rule& rule : all_rules()) {
-    if (*rule.method != '\0') {
-      EXPECT_TRUE(known.insert(rule.method).second) << rule.method << " stands twice";
+  for (const Operation& row : all_operations()) {
+    if (*row.method != '\0') {
+      EXPECT_TRUE(known.insert(row.method).second) << row.method << " stands twice";
     }
   }
   std::set<std::string> methods;
@@ -38,6 +38,55 @@ TEST(Rules, EveryMethodOfTheWireHasOne) {
     }
   }
   EXPECT_EQ(known, methods);
+}
+
+/// Those that one message answers.
+std::vector<const google::protobuf::MethodDescriptor*> unary_methods() {
+  std::vector<const google::protobuf::MethodDescriptor*> all;
+  for (const auto* file : {v1::Token::descriptor()->file(), v1::UploadPart::descriptor()->file(),
+                           v1::Worker::descriptor()->file(), v1::Job::descriptor()->file()}) {
+    for (int m = 0; m < file->service(0)->method_count(); ++m) {
+      const auto* method = file->service(0)->method(m);
+      if (!method->client_streaming() && !method->server_streaming()) all.push_back(method);
+    }
+  }
+  return all;
+}
+
+TEST(Operations, HandlersTakeAndGiveWhatTheWireSays) {
+  for (const auto* method : unary_methods()) {
+    const Operation& row = operation_of_method(method->service()->name() + "/" + method->name());
+    ASSERT_TRUE(row.handle) << method->full_name();
+    EXPECT_EQ(row.handle.request().GetDescriptor(), method->input_type()) << method->full_name();
+    EXPECT_EQ(row.handle.response().GetDescriptor(), method->output_type()) << method->full_name();
+  }
+  EXPECT_EQ(unary_methods().size(), 21U);
+}
+
+TEST(Operations, WhatRoutesTakeIsInTheirRequests) {
+  for (const Operation& row : all_operations()) {
+    for (const Route& route : row.routes) {
+      if (!row.handle) continue;
+      const auto* type = (route.handle ? route.handle : row.handle).request().GetDescriptor();
+      for (const QueryField& field : route.query) {
+        EXPECT_NE(type->FindFieldByName(field.name), nullptr) << route.path << " " << field.name;
+      }
+      const std::string path = route.path;
+      for (size_t at = path.find('{'); at != std::string::npos; at = path.find('{', at + 1)) {
+        const std::string name = path.substr(at + 1, path.find('}', at) - at - 1);
+        EXPECT_NE(type->FindFieldByName(name), nullptr) << route.path;
+      }
+    }
+  }
+}
+
+TEST(Operations, OnlyThoseWhoMayWaitLookWhoseJobItIs) {
+  for (const Operation& row : all_operations()) {
+    if (!row.rule.steers_job) continue;
+    EXPECT_NE(row.runs, Runs::at_once) << row.rule.action;
+    EXPECT_TRUE(row.rule.audited) << row.rule.action;
+    EXPECT_NE(row.handle.request().GetDescriptor()->FindFieldByName("job"), nullptr);
+  }
 }
 
 TEST(Rules, EveryPathOfOpenApiHasOne) {
@@ -62,7 +111,8 @@ TEST(Rules, EveryPathOfOpenApiHasOne) {
         auto name = method.first.as<std::string>();
         if (name == "parameters") continue;
         std::transform(name.begin(), name.end(), name.begin(), ::toupper);
-        EXPECT_STRNE(rule_of_route(name + " " + one).deed, "unknown") << name << " " << one;
+        EXPECT_STRNE(operation_of_route(name + " " + one).rule.action, "unknown")
+            << name << " " << one;
         ++count;
       }
     }
@@ -71,8 +121,8 @@ TEST(Rules, EveryPathOfOpenApiHasOne) {
 }
 
 TEST(Rules, WhatHasNoneIsForAdmins) {
-  for (const Rule* rule :
-       {&rule_of_method("Jobs/Explode"), &rule_of_route("GET /api/v1/secrets")}) {
+  for (const Rule* rule : {&operation_of_method("Jobs/Explode").rule,
+                           &operation_of_route("GET /api/v1/secrets").rule}) {
     EXPECT_FALSE(may(v1::ROLE_OPERATOR, *rule));
     EXPECT_FALSE(may(v1::ROLE_WORKER, *rule));
     EXPECT_FALSE(may(v1::ROLE_UNSPECIFIED, *rule));
@@ -81,13 +131,14 @@ TEST(Rules, WhatHasNoneIsForAdmins) {
 }
 
 TEST(Rules, EachRoleMayWhatThoseBelowMay) {
-  for (const Rule& rule : all_rules()) {
-    EXPECT_LE(may(v1::ROLE_VIEWER, rule), may(v1::ROLE_SUBMITTER, rule)) << rule.deed;
-    EXPECT_LE(may(v1::ROLE_SUBMITTER, rule), may(v1::ROLE_OPERATOR, rule)) << rule.deed;
-    EXPECT_LE(may(v1::ROLE_OPERATOR, rule), may(v1::ROLE_ADMIN, rule)) << rule.deed;
+  for (const Operation& row : all_operations()) {
+    const Rule& rule = row.rule;
+    EXPECT_LE(may(v1::ROLE_VIEWER, rule), may(v1::ROLE_SUBMITTER, rule)) << rule.action;
+    EXPECT_LE(may(v1::ROLE_SUBMITTER, rule), may(v1::ROLE_OPERATOR, rule)) << rule.action;
+    EXPECT_LE(may(v1::ROLE_OPERATOR, rule), may(v1::ROLE_ADMIN, rule)) << rule.action;
   }
   const auto allowed = [](v1::Role role, const char* method) {
-    return may(role, rule_of_method(method));
+    return may(role, operation_of_method(method).rule);
   };
   EXPECT_TRUE(allowed(v1::ROLE_VIEWER, "Jobs/Watch"));
   EXPECT_FALSE(allowed(v1::ROLE_VIEWER, "Jobs/Cancel"));
@@ -106,15 +157,16 @@ TEST(Rules, EachRoleMayWhatThoseBelowMay) {
 
 TEST(Rules, ARefusalSaysWhatIsNeeded) {
   const Caller caller = {"9f3a01c2", "alice", v1::ROLE_VIEWER, "here"};
-  const grpc::Status refused = allow(caller, rule_of_method("Jobs/Cancel"));
+  const grpc::Status refused = allow(caller, operation_of_method("Jobs/Cancel").rule);
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::PERMISSION_DENIED);
   for (const char* part : {"job.cancel", "submitter", "9f3a01c2", "alice", "viewer",
                            "hyades token create --role submitter"}) {
     EXPECT_NE(refused.error_message().find(part), std::string::npos) << refused.error_message();
   }
   const Caller operates = {"9f3a01c2", "bob", v1::ROLE_OPERATOR, "here"};
-  EXPECT_NE(allow(operates, rule_of_method("Work/Attend")).error_message().find("role worker"),
-            std::string::npos);
+  EXPECT_NE(
+      allow(operates, operation_of_method("Work/Attend").rule).error_message().find("role worker"),
+      std::string::npos);
 }
 
 TEST(Rules, JobsAreSteeredByTheirOwners) {

@@ -1,4 +1,4 @@
-#include "coordinator/web/gatekeeper.h"
+#include "coordinator/web/authenticator.h"
 
 #include <arpa/inet.h>
 #include <unistd.h>
@@ -63,15 +63,15 @@ std::string own_name() {
 
 }  // namespace
 
-Gatekeeper::Gatekeeper(Authority& authority, std::vector<std::string> names, bool secure)
+Authenticator::Authenticator(Authority& authority, std::vector<std::string> names, bool secure)
     : authority_(authority), names_(std::move(names)), secure_(secure) {
   for (std::string& name : names_) name = small_letters(name);
   names_.push_back(own_name());
 }
 
-void Gatekeeper::set_port(uint16_t port) { cookie_ = fmt::format("hyades_session_{}=", port); }
+void Authenticator::set_port(uint16_t port) { cookie_ = fmt::format("hyades_session_{}=", port); }
 
-grpc::Status Gatekeeper::check(const WebRequest& request, Caller& caller) const {
+grpc::Status Authenticator::check(const WebRequest& request, Caller& caller) const {
   caller.address = request.address;
   if (const grpc::Status site = check_site(request); !site.ok()) return site;
   const std::string& shown = request.header("authorization");
@@ -82,7 +82,7 @@ grpc::Status Gatekeeper::check(const WebRequest& request, Caller& caller) const 
   return authority_.admit(shown, caller);
 }
 
-grpc::Status Gatekeeper::check_site(const WebRequest& request) const {
+grpc::Status Authenticator::check_site(const WebRequest& request) const {
   const std::string host = small_letters(request.header("host"));
   // A page that has its own name resolve to this machine's address would be here without any token,
   // and by a browser that may reach what its site may not.
@@ -106,7 +106,7 @@ grpc::Status Gatekeeper::check_site(const WebRequest& request) const {
   return grpc::Status::OK;
 }
 
-bool Gatekeeper::is_ours(std::string_view name) const {
+bool Authenticator::is_ours(std::string_view name) const {
   if (is_address(name) || name.find('.') == std::string_view::npos) return true;
   for (const char* local : {".local", ".localhost", ".internal", ".home.arpa"}) {
     if (name.ends_with(local)) return true;
@@ -114,7 +114,8 @@ bool Gatekeeper::is_ours(std::string_view name) const {
   return std::find(names_.begin(), names_.end(), name) != names_.end();
 }
 
-std::optional<std::string> Gatekeeper::open_session(const std::string& token, grpc::Status& why) {
+std::optional<std::string> Authenticator::open_session(const std::string& token,
+                                                       grpc::Status& why) {
   Caller caller;
   why = authority_.guarded()
             ? authority_.admit("Bearer " + token, caller)
@@ -129,7 +130,7 @@ std::optional<std::string> Gatekeeper::open_session(const std::string& token, gr
                      kSessionSeconds, secure_ ? "; Secure" : "");
 }
 
-std::string Gatekeeper::end_session(const WebRequest& request) {
+std::string Authenticator::end_session(const WebRequest& request) {
   if (const auto ended = sessions_.end(find_cookie(request.header("cookie"), cookie_))) {
     authority_.end_session(ended->key);
   }
@@ -137,7 +138,7 @@ std::string Gatekeeper::end_session(const WebRequest& request) {
                      secure_ ? "; Secure" : "");
 }
 
-grpc::Status Gatekeeper::admit_session(std::string_view secret, Caller& caller) const {
+grpc::Status Authenticator::admit_session(std::string_view secret, Caller& caller) const {
   const auto session = sessions_.find(secret, now_seconds());
   if (!session) {
     return {grpc::StatusCode::UNAUTHENTICATED,

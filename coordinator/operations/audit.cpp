@@ -1,13 +1,14 @@
-#include "coordinator/services/audit_target.h"
+#include "coordinator/operations/audit.h"
 
+#include <fmt/format.h>
 #include <google/protobuf/descriptor.h>
+
+#include "coordinator/operations/operation.h"
 
 namespace hyades::coordinator {
 namespace {
 
 using google::protobuf::FieldDescriptor;
-using google::protobuf::Message;
-
 constexpr size_t kMostBytes = 500;
 
 /// A field that holds one number, text or message; as text.
@@ -44,6 +45,14 @@ std::string audit_target(const Message& request, const Message& response) {
 
 std::string audit_detail(const Message& request) {
   return request.ByteSizeLong() > kMostBytes ? std::string() : request.ShortDebugString();
+}
+
+void note_upload(AuditLog* log, const Caller& caller, const std::string& sha256, uint64_t size,
+                 uint64_t begun) {
+  if (log == nullptr) return;
+  const std::string detail = begun == 0 ? fmt::format("{} bytes", size)
+                                        : fmt::format("{} bytes, goes on from {}", size, begun);
+  log->upload(caller, operation_of_method("Assets/Upload").rule.action, sha256, detail);
 }
 
 }  // namespace hyades::coordinator

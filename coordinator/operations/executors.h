@@ -10,15 +10,28 @@
 
 namespace hyades::coordinator {
 
-/// Where gRPC's threads hand over whatever may wait for the disk: they are few, and workers'
-/// heartbeats and results come by them too. Two pools, so that files on a disk that does not answer
-/// leave those waiting alone who only want to know something.
-struct Executors {
-  ThreadPool rows{4, 1000};   ///< what is read from and stored in the job store
-  ThreadPool files{8, 1000};  ///< what reads or writes files besides
+/// Where an operation runs.
+enum class Runs {
+  at_once,   ///< on the thread that it came by: it never waits
+  in_store,  ///< where it may wait for the job store
+  in_files,  ///< where it may wait for other files
 };
 
-/// For those whose pool has too long a queue.
+/// The threads of a door that may wait for the disk: gRPC's own are few, and workers' heartbeats
+/// and results come by them too; HTTP has one. Two pools, so that files on a disk that does not
+/// answer leave those alone who only want to know something.
+struct Executors {
+  ThreadPool store{4, 1000};  ///< what is read from and stored in the job store
+  ThreadPool files{8, 1000};  ///< what reads or writes files besides
+
+  /// Null: at once.
+  ThreadPool* of(Runs runs) {
+    if (runs == Runs::at_once) return nullptr;
+    return runs == Runs::in_store ? &store : &files;
+  }
+};
+
+/// For those before whom too many wait.
 inline grpc::Status crowded() {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                            "more requests wait for the coordinator's disk than may",

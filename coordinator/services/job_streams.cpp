@@ -10,8 +10,9 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/controller/controller.h"
 #include "coordinator/services/file_stream.h"
-#include "coordinator/services/jobs_service.h"
+#include "coordinator/services/service.h"
 #include "core/base/assets.h"
 #include "core/film/film_codec.h"
 #include "farm/wire.h"
@@ -30,15 +31,6 @@ grpc::Status too_many(const char* what) {
   return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("at most {} {}", kMostAsked, what)};
 }
 
-/// A request of a caller that is admitted.
-template <class Request>
-grpc::Status take_in(const Admission& admission, const char* method,
-                     const grpc::CallbackServerContext& context, const grpc::ByteBuffer& bytes,
-                     Request& request, Caller& caller) {
-  const grpc::Status admitted = admission.check(context, rule_of_method(method), caller);
-  return admitted.ok() ? parse(bytes, farm::kMaxRequestBytes, request) : admitted;
-}
-
 /// Follows a job: wakes up whenever it has changed.
 template <class Message>
 class Follower : public Producer<Message> {
@@ -53,13 +45,13 @@ class Follower : public Producer<Message> {
   /// Whether nothing can come any more, or why the job cannot be followed.
   grpc::Status ended(bool& ended) {
     v1::WatchEvent event;
-    told_.version = std::max<uint64_t>(told_.version, 1);
-    return controller_.queries().changes(job_, told_, event, ended);
+    cursor_.version = std::max<uint64_t>(cursor_.version, 1);
+    return controller_.queries().changes(job_, cursor_, event, ended);
   }
 
   Controller& controller_;
   const uint64_t job_;
-  ChangeCursor told_;
+  ChangeCursor cursor_;
 
  private:
   uint64_t watch_ = 0;
@@ -74,15 +66,15 @@ class Watching final : public Follower<v1::WatchEvent> {
  private:
   Step next(v1::WatchEvent& event, grpc::Status& status, bool may_wait) override {
     if (ended_) return Step::end;
-    const ChangeCursor before = told_;
+    const ChangeCursor before = cursor_;
     bool over = false;
-    if (!controller_.queries().changes_of_open(job_, told_, event)) {
+    if (!controller_.queries().changes_of_open(job_, cursor_, event)) {
       if (!may_wait) return Step::hand;
-      status = controller_.queries().changes(job_, told_, event, over);
+      status = controller_.queries().changes(job_, cursor_, event, over);
       if (!status.ok()) return Step::end;
     }
     ended_ = over && !event.more();
-    const bool news = over || before.after || event.more() || told_.version != before.version;
+    const bool news = over || before.after || event.more() || cursor_.version != before.version;
     return news ? Step::message : Step::wait;
   }
   bool ended_ = false;
@@ -117,7 +109,7 @@ class OutputList final : public Follower<v1::OutputFile> {
         message.set_sha256(output.sha256);
         return Step::message;
       }
-      if (last_) return Step::end;
+      if (phase_ == Phase::all_told) return Step::end;
       if (!may_wait) return Step::hand;
       bool over = false;
       status = ended(over);
@@ -127,33 +119,42 @@ class OutputList final : public Follower<v1::OutputFile> {
         status = farm::unavailable(outputs.error());
         return Step::end;
       }
-      const bool all = outputs->empty();
-      if (!all) seen_ = outputs->back().number;
-      for (const StoredOutput& output : *outputs) {
-        // Those for a video go when it is made, and are of use only where it never will be.
-        if (!over && controller_.queries().is_for_video(job_, output.path)) {
-          passed_over_.insert(output.path);
-        } else if (!again_ || passed_over_.contains(output.path)) {
-          ready_.push_back(output);
-        }
-      }
-      if (!all) continue;
-      if (over && !again_ && !passed_over_.empty()) {
-        again_ = true;
+      if (!outputs->empty()) {
+        seen_ = outputs->back().number;
+        take(*outputs, over);
+      } else if (over && phase_ == Phase::as_finished && !passed_over_.empty()) {
+        phase_ = Phase::left_over;
         seen_ = 0;
-        continue;
+      } else if (over || !request_.follow()) {
+        phase_ = Phase::all_told;
+      } else {
+        return Step::wait;
       }
-      last_ = over || !request_.follow();
-      if (!last_) return Step::wait;
     }
   }
 
+  void take(const std::vector<StoredOutput>& outputs, bool job_is_over) {
+    for (const StoredOutput& output : outputs) {
+      // Those for a video go when it is made, and are of use only where it never will be.
+      if (!job_is_over && controller_.queries().is_for_video(job_, output.path)) {
+        passed_over_.insert(output.path);
+      } else if (phase_ == Phase::as_finished || passed_over_.contains(output.path)) {
+        ready_.push_back(output);
+      }
+    }
+  }
+
+  enum class Phase {
+    as_finished,  ///< in the order of their numbers
+    left_over,    ///< the job has ended: those that were passed over and are still there
+    all_told
+  };
+
   const v1::OutputsRequest request_;
   std::deque<StoredOutput> ready_;
-  uint64_t seen_ = 0;                  ///< the number of the last one
+  Phase phase_ = Phase::as_finished;
+  uint64_t seen_ = 0;                  ///< the number of the phase's last one
   std::set<std::string> passed_over_;  ///< paths of a video's pictures, as long as the job was open
-  bool again_ = false;                 ///< the job has ended: those of them that are left
-  bool last_ = false;
 };
 
 class LogLines final : public Follower<v1::LogLine> {
@@ -211,17 +212,16 @@ class FilmStream final : public Producer<v1::FilmPart> {
  public:
   /// `open` counts such streams.
   FilmStream(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
-             v1::FilmRequest request, std::atomic<int>& open)
+             v1::FilmRequest request, std::shared_ptr<std::atomic<int>> open)
       : Producer(context, pool),
         controller_(controller),
         request_(std::move(request)),
-        open_(open),
+        open_(std::move(open)),
         found_(std::make_shared<Found>()) {
-    ++open_;
-    begin();
+    ++*open_;
   }
 
-  ~FilmStream() override { --open_; }
+  ~FilmStream() override { --*open_; }
 
  private:
   struct Found {
@@ -273,99 +273,87 @@ class FilmStream final : public Producer<v1::FilmPart> {
 
   Controller& controller_;
   const v1::FilmRequest request_;
-  std::atomic<int>& open_;
+  const std::shared_ptr<std::atomic<int>> open_;
   const std::shared_ptr<Found> found_;
   bool asked_ = false;
   std::vector<std::byte> bytes_;
   uint64_t offset_ = 0;
 };
 
+/// The bytes of an output as it was listed.
+grpc::Status open_output(Controller& controller, const v1::FetchRequest& request,
+                         core::Bytes& file) {
+  // The path is looked up among the job's outputs and never taken for one of the file system's.
+  const auto output = controller.store().output(request.job(), request.path());
+  if (!output) return farm::unavailable(output.error());
+  if (!*output) {
+    return {grpc::StatusCode::NOT_FOUND,
+            fmt::format("job {} has no output '{}' (yet)", request.job(), request.path())};
+  }
+  if (!request.sha256().empty() && request.sha256() != (*output)->sha256) {
+    return {grpc::StatusCode::FAILED_PRECONDITION,
+            request.path() + " has been rendered again: fetch it from its beginning"};
+  }
+  auto bytes = core::map_file(controller.output_folder(request.job()) + "/" + (*output)->path);
+  if (!bytes || bytes->size() != (*output)->size) {
+    return {grpc::StatusCode::DATA_LOSS, request.path() + " is damaged on the coordinator's disk"};
+  }
+  file = std::move(*bytes);
+  return grpc::Status::OK;
+}
+
 }  // namespace
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Watch(Context* context,
-                                                               const Bytes* asked) {
-  v1::WatchRequest request;
-  Caller caller;
-  const grpc::Status taken = take_in(admission_, "Jobs/Watch", *context, *asked, request, caller);
-  if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new Watching(*context, executors_.rows, controller_, request.job());
-  stream->guard(admission_, caller);
-  stream->begin();
-  return stream;
-}
-
-grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Outputs(Context* context,
-                                                                 const Bytes* asked) {
-  v1::OutputsRequest request;
-  Caller caller;
-  grpc::Status taken = take_in(admission_, "Jobs/Outputs", *context, *asked, request, caller);
-  if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("ranges of frames");
-  if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new OutputList(*context, executors_.rows, controller_, request);
-  stream->guard(admission_, caller);
-  stream->begin();
-  return stream;
-}
-
-grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Logs(Context* context,
-                                                              const Bytes* asked) {
-  v1::LogsRequest request;
-  Caller caller;
-  grpc::Status taken = take_in(admission_, "Jobs/Logs", *context, *asked, request, caller);
-  if (taken.ok() && request.frames_size() > kMostAsked) taken = too_many("frames");
-  if (!taken.ok()) return new Refusal(taken);
-  auto* stream = new LogLines(*context, executors_.rows, controller_, request);
-  stream->guard(admission_, caller);
-  stream->begin();
-  return stream;
-}
-
-grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Fetch(Context* context,
-                                                               const Bytes* asked) {
-  v1::FetchRequest request;
-  Caller caller;
-  const grpc::Status taken = take_in(admission_, "Jobs/Fetch", *context, *asked, request, caller);
-  if (!taken.ok()) return new Refusal(taken);
-  const uint64_t offset = request.offset();
-  const auto open = [this, request = std::move(request)](core::Bytes& file) -> grpc::Status {
-    // The path is looked up among the job's outputs and never taken for one of the file system's.
-    const auto output = controller_.store().output(request.job(), request.path());
-    if (!output) return farm::unavailable(output.error());
-    if (!*output) {
-      return {grpc::StatusCode::NOT_FOUND,
-              fmt::format("job {} has no output '{}' (yet)", request.job(), request.path())};
-    }
-    if (!request.sha256().empty() && request.sha256() != (*output)->sha256) {
-      return {grpc::StatusCode::FAILED_PRECONDITION,
-              request.path() + " has been rendered again: fetch it from its beginning"};
-    }
-    auto bytes = core::map_file(controller_.output_folder(request.job()) + "/" + (*output)->path);
-    if (!bytes || bytes->size() != (*output)->size) {
-      return {grpc::StatusCode::DATA_LOSS,
-              request.path() + " is damaged on the coordinator's disk"};
-    }
-    file = std::move(*bytes);
-    return grpc::Status::OK;
-  };
-  auto* stream = new FileStream(*context, executors_.files, open, offset);
-  stream->guard(admission_, caller);
-  return stream;
-}
-
-grpc::ServerWriteReactor<grpc::ByteBuffer>* JobsService::Film(Context* context,
-                                                              const Bytes* asked) {
-  v1::FilmRequest request;
-  Caller caller;
-  const grpc::Status taken = take_in(admission_, "Jobs/Film", *context, *asked, request, caller);
-  if (!taken.ok()) return new Refusal(taken);
-  if (films_ >= kMostFilms) {
-    return new Refusal(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                                         "enough films are on their way to others",
-                                         std::chrono::seconds(2)));
-  }
-  auto* stream = new FilmStream(*context, executors_.files, controller_, request, films_);
-  stream->guard(admission_, caller);
-  return stream;
+void add_job_streams(Service& service) {
+  Controller& controller = service.backend().controller;
+  ThreadPool& store = service.executors().store;
+  ThreadPool& files = service.executors().files;
+  using Context = Service::Context;
+  service.add_reader<v1::WatchRequest>(
+      "Jobs/Watch", [&](Context& context, v1::WatchRequest&& request, grpc::Status&) {
+        return new Watching(context, store, controller, request.job());
+      });
+  service.add_reader<v1::OutputsRequest>("Jobs/Outputs",
+                                         [&](Context& context, v1::OutputsRequest&& request,
+                                             grpc::Status& refused) -> OutgoingStream* {
+                                           if (request.frames_size() <= kMostAsked) {
+                                             return new OutputList(context, store, controller,
+                                                                   request);
+                                           }
+                                           refused = too_many("ranges of frames");
+                                           return nullptr;
+                                         });
+  service.add_reader<v1::LogsRequest>(
+      "Jobs/Logs",
+      [&](Context& context, v1::LogsRequest&& request, grpc::Status& refused) -> OutgoingStream* {
+        if (request.frames_size() <= kMostAsked) {
+          return new LogLines(context, store, controller, request);
+        }
+        refused = too_many("frames");
+        return nullptr;
+      });
+  service.add_reader<v1::FetchRequest>(
+      "Jobs/Fetch", [&](Context& context, v1::FetchRequest&& request, grpc::Status&) {
+        const uint64_t offset = request.offset();
+        return new FileStream(
+            context, files,
+            [&controller, request = std::move(request)](core::Bytes& file) {
+              return open_output(controller, request, file);
+            },
+            offset);
+      });
+  service.add_reader<v1::FilmRequest>(
+      "Jobs/Film",
+      [&, films = std::make_shared<std::atomic<int>>(0)](
+          Context& context, v1::FilmRequest&& request, grpc::Status& refused) -> OutgoingStream* {
+        if (*films < kMostFilms) {
+          return new FilmStream(context, files, controller, std::move(request), films);
+        }
+        refused =
+            farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                              "enough films are on their way to others", std::chrono::seconds(2));
+        return nullptr;
+      });
 }
 
 }  // namespace hyades::coordinator

@@ -10,9 +10,9 @@
 namespace hyades::coordinator {
 
 /// The way from other threads to the network's, which may end before they do.
-class Outlet {
+class IoHandle {
  public:
-  explicit Outlet(boost::asio::io_context& network) : network_(&network) {}
+  explicit IoHandle(boost::asio::io_context& network) : network_(&network) {}
 
   /// Has the network's thread call `what`; after close() nothing happens.
   void post(std::function<void()> what) {

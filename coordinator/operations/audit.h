@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <google/protobuf/message.h>
+
+#include "coordinator/access/audit_log.h"
 
 namespace hyades::coordinator {
 
@@ -13,5 +16,10 @@ std::string audit_target(const google::protobuf::Message& request,
 
 /// What a request says, in one line; nothing of one that is long.
 std::string audit_detail(const google::protobuf::Message& request);
+
+/// Notes that somebody begins to upload a file of `size` bytes, of which `begun` are here already:
+/// once for a file, however many pieces it comes in. `log` may be null.
+void note_upload(AuditLog* log, const Caller& caller, const std::string& sha256, uint64_t size,
+                 uint64_t begun);
 
 }  // namespace hyades::coordinator

@@ -1,0 +1,51 @@
+#include <optional>
+#include <utility>
+
+#include "coordinator/access/authority.h"
+#include "coordinator/services/service.h"
+
+namespace hyades::coordinator {
+namespace {
+
+class AuditEntries final : public Producer<v1::AuditEntry> {
+ public:
+  AuditEntries(grpc::CallbackServerContext& context, ThreadPool& pool, AuditLog* log,
+               int64_t since_ms)
+      : Producer(context, pool), log_(log), since_ms_(since_ms) {}
+
+ private:
+  Step next(v1::AuditEntry& entry, grpc::Status& status, bool may_wait) override {
+    if (log_ == nullptr) {
+      status = {grpc::StatusCode::FAILED_PRECONDITION, "this coordinator keeps no audit log"};
+      return Step::end;
+    }
+    if (!may_wait) return Step::hand;
+    if (!reader_) {
+      log_->flush();
+      reader_ = log_->read();
+    }
+    while (auto found = reader_->next()) {
+      if (found->time_ms() < since_ms_) continue;
+      entry = std::move(*found);
+      return Step::message;
+    }
+    return Step::end;
+  }
+
+  AuditLog* const log_;
+  const int64_t since_ms_;
+  std::optional<AuditLog::Reader> reader_;
+};
+
+}  // namespace
+
+void add_audit_stream(Service& service) {
+  service.add_reader<v1::AuditRequest>(
+      "Admin/Audit",
+      [&service](Service::Context& context, v1::AuditRequest&& request, grpc::Status&) {
+        return new AuditEntries(context, service.executors().files, service.admission().audit(),
+                                request.since_ms());
+      });
+}
+
+}  // namespace hyades::coordinator
