@@ -23,7 +23,6 @@ namespace {
 
 constexpr size_t kLongestName = 200;
 constexpr size_t kMostMissingTold = 100;  // an error travels in headers, which are short
-constexpr std::chrono::seconds kSubmitPatience{2};
 /// For what is left of a job that has ended: less than that for which others wait for this one.
 constexpr std::chrono::milliseconds kLeavePatience{1500};
 /// Of all open jobs together: what they have in memory.
@@ -75,7 +74,7 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   if (!files) return wrong(files.error().message);
   if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
-  const std::unique_lock one(shared_.submissions, kSubmitPatience);
+  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
   if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
   // What was not needed may have been removed meanwhile; from here on nothing is.
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
@@ -158,7 +157,7 @@ grpc::Status JobIntake::wait_until_left(uint64_t id) {
 }
 
 grpc::Status JobIntake::retry(uint64_t id, v1::Job& now) {
-  const std::unique_lock one(shared_.submissions, kSubmitPatience);
+  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
   if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
   {
     Turn turn(dispatcher_);
@@ -216,7 +215,7 @@ grpc::Status JobIntake::retry(uint64_t id, v1::Job& now) {
 }
 
 grpc::Status JobIntake::remove(uint64_t id) {
-  const std::unique_lock one(shared_.submissions, kSubmitPatience);
+  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
   if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
   {
     const StateLock lock(shared_.mutex);

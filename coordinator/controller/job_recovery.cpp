@@ -13,8 +13,6 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr std::chrono::seconds kPatience{2};
-
 /// Films of a progressive job that may be in memory together, and frames that may be.
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
 constexpr uint64_t kMostAtOnce = 256;
@@ -92,7 +90,7 @@ bool JobRecovery::recover_later(uint64_t id) {
 bool JobRecovery::try_to_recover(uint64_t id) {
   if (shared_.stop) return true;
   // Not while somebody deletes it, or unused files are swept.
-  const std::unique_lock one(shared_.submissions, kPatience);
+  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
   if (!one) return false;
   const auto stored = shared_.store->job(id);
   if (!stored) return false;

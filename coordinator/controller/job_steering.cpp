@@ -13,7 +13,6 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr int kMostPriority = 1'000'000;
-constexpr std::chrono::seconds kPatience{2};
 
 }  // namespace
 
@@ -95,7 +94,7 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   };
   if (!waits()) return why_not_open(*shared_.store, id);
   // Nobody takes it up meanwhile.
-  const std::unique_lock one(shared_.submissions, kPatience);
+  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
   auto stored = shared_.store->job(id);
   if (!stored) return farm::unavailable(stored.error());
   if (!one || !waits() || !*stored || has_ended((*stored)->state)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -35,6 +36,8 @@ struct Shared {
   StateMutex mutex;
   /// One submission at a time, and none while jobs or unused files are removed.
   std::timed_mutex submissions;
+  /// How long anybody waits for it.
+  static constexpr std::chrono::seconds kSubmissionPatience{2};
   /// Stores what has changed: by the job's id, or kWorkersKey.
   RetryQueue background{2};
   static constexpr uint64_t kWorkersKey = 0;  ///< no job has this number
