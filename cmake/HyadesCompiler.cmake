@@ -13,14 +13,13 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DNDEBUG")
 
 add_compile_options(-pthread -march=${HYADES_ARCH} -ffp-contract=off -fno-math-errno
-                    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual)
-# GCC 12 sees overlapping or endless copies in "literal" + std::string that are not there (its bug 105651).
-# Later ones see copies of one-element vectors reach past their ends (what its bug 56456 collects).
+                    -Wall -Wextra -Wpedantic -Wnon-virtual-dtor -Woverloaded-virtual)
+# GCC sees copies reach past the ends of strings and one-element vectors that do not (its bugs 105651 and 56456); 12
+# also overlapping ones.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-Wno-array-bounds -Wno-stringop-overflow)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    add_compile_options(-Wno-restrict -Wno-stringop-overflow)
-  else()
-    add_compile_options(-Wno-array-bounds)
+    add_compile_options(-Wno-restrict)
   endif()
 endif()
 if(HYADES_WERROR)
@@ -41,6 +40,11 @@ endif()
 option(HYADES_UNITY "Compile several files of a room at once" OFF)
 set(CMAKE_UNITY_BUILD ${HYADES_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+if(HYADES_UNITY)
+  add_compile_options(-Wshadow=local)  # what is global may be so in another file
+else()
+  add_compile_options(-Wshadow)
+endif()
 
 find_program(HYADES_CCACHE ccache)
 if(HYADES_CCACHE)

@@ -14,7 +14,7 @@ constexpr Duration kShortestHeartbeat = std::chrono::milliseconds(100);
 constexpr Duration kShortestLease = std::chrono::seconds(1);
 constexpr Duration kResendAfter = std::chrono::milliseconds(200);
 
-Duration milliseconds(uint64_t count) { return std::chrono::milliseconds(count); }
+Duration in_milliseconds(uint64_t count) { return std::chrono::milliseconds(count); }
 
 }  // namespace
 
@@ -56,8 +56,8 @@ void Desk::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
   fence(now);
   if (message.has_welcome()) {
     const v1::Welcome& welcome = message.welcome();
-    heartbeat_every_ = std::max(milliseconds(welcome.heartbeat_ms()), kShortestHeartbeat);
-    lease_time_ = std::max(milliseconds(welcome.lease_ms()), kShortestLease);
+    heartbeat_every_ = std::max(in_milliseconds(welcome.heartbeat_ms()), kShortestHeartbeat);
+    lease_time_ = std::max(in_milliseconds(welcome.lease_ms()), kShortestLease);
     if (welcome.max_message_bytes() > 0) max_message_bytes_ = welcome.max_message_bytes();
     welcomed_ = true;
     renewed_ = hello_sent_;
@@ -163,7 +163,7 @@ void Desk::rejected(const v1::Rejected& message, TimePoint now) {
   const auto item = find(message.unit());
   if (item == items_.end()) return;
   if (message.reason() == v1::Rejected::REASON_NOT_NOW) {
-    item->second.send_again = now + std::max(milliseconds(message.retry_after_ms()), kResendAfter);
+    item->second.send_again = now + std::max(in_milliseconds(message.retry_after_ms()), kResendAfter);
     return;
   }
   ports_.note(

@@ -36,7 +36,7 @@ struct Shared {
   StateMutex mutex;
   /// One submission at a time, and none while jobs or unused files are removed.
   std::timed_mutex submissions;
-  /// How long anybody waits for it.
+  /// How long a caller waits for the submissions before his.
   static constexpr std::chrono::seconds kSubmissionPatience{2};
   /// Stores what has changed: by the job's id, or kWorkersKey.
   RetryQueue background{2};
