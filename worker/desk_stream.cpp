@@ -163,7 +163,8 @@ void Desk::rejected(const v1::Rejected& message, TimePoint now) {
   const auto item = find(message.unit());
   if (item == items_.end()) return;
   if (message.reason() == v1::Rejected::REASON_NOT_NOW) {
-    item->second.send_again = now + std::max(in_milliseconds(message.retry_after_ms()), kResendAfter);
+    item->second.send_again =
+        now + std::max(in_milliseconds(message.retry_after_ms()), kResendAfter);
     return;
   }
   ports_.note(

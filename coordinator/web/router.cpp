@@ -10,7 +10,9 @@
 namespace hyades::coordinator {
 namespace {
 
-bool is_name(const std::string& part) { return part.starts_with('{') && part.ends_with('}'); }
+bool is_placeholder(const std::string& part) {
+  return part.starts_with('{') && part.ends_with('}');
+}
 
 /// What the pattern's names stand for, where it matches.
 std::optional<std::map<std::string, std::string>> match(const std::vector<std::string>& pattern,
@@ -25,7 +27,7 @@ std::optional<std::map<std::string, std::string>> match(const std::vector<std::s
       found[part.substr(1, part.size() - 5)] = rest;
       return found;
     }
-    if (is_name(part)) {
+    if (is_placeholder(part)) {
       found[part.substr(1, part.size() - 2)] = path[i];
     } else if (part != path[i]) {
       return std::nullopt;

@@ -61,7 +61,9 @@ core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark)
           [](const FrameRestartedRecord& restarted) { return encode(restarted); },
           [](const TileVoidedRecord& voided) { return encode(voided); },
           [](const DisputeRecord& dispute) { return encode(dispute); },
-          [](const DivergentWorkerRecord&) -> Bytes { throw "an odd worker is not in the film log"; },
+          [](const DivergentWorkerRecord&) -> Bytes {
+            throw "an odd worker is not in the film log";
+          },
       },
       record));
 }
