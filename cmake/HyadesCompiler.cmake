@@ -17,7 +17,7 @@ add_compile_options(-pthread -march=${HYADES_ARCH} -ffp-contract=off -fno-math-e
 # GCC sees copies reach past the ends of strings and one-element vectors that do not (its bugs 105651 and 56456); 12
 # also overlapping ones.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  add_compile_options(-Wno-array-bounds -Wno-stringop-overflow)
+  add_compile_options(-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
   if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     add_compile_options(-Wno-restrict)
   endif()
