@@ -343,7 +343,9 @@ TEST_F(OpenApi, QueriesAreThoseOfTheTable) {
         EXPECT_EQ(told["name"].as<std::string>(), route.query[i].name) << path;
         const bool bounded = route.query[i].least != INT64_MIN;
         EXPECT_EQ(told["schema"]["minimum"].IsDefined(), bounded) << path;
-        if (bounded) EXPECT_EQ(told["schema"]["minimum"].as<int64_t>(), route.query[i].least);
+        if (bounded) {
+          EXPECT_EQ(told["schema"]["minimum"].as<int64_t>(), route.query[i].least);
+        }
         ++compared;
       }
     }
