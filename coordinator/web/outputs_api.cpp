@@ -19,7 +19,7 @@ constexpr uint32_t kRowsAtOnce = 1000;
 /// Of an answer: some two megabytes.
 constexpr uint32_t kMostListed = 10'000;
 
-const char* type_of(const std::string& path) {
+const char* media_type_of(const std::string& path) {
   constexpr std::pair<const char*, const char*> kTypes[] = {
       {".png", "image/png"},  {".jpg", "image/jpeg"},      {".jpeg", "image/jpeg"},
       {".tif", "image/tiff"}, {".tiff", "image/tiff"},     {".exr", "image/x-exr"},
@@ -126,7 +126,7 @@ WebReply OutputsApi::file(const v1::OutputRequest& asked, const WebRequest& requ
   if (!bytes || bytes->size() != (*output)->size) return lost(path);
   const uint64_t size = bytes->size();
   WebReply reply;
-  reply.type = type_of(path);
+  reply.type = media_type_of(path);
   reply.headers = {{"Accept-Ranges", "bytes"},
                    {"ETag", "\"" + farm::hex_from_wire((*output)->sha256) + "\""},
                    {"Cache-Control", "private, no-cache"},

@@ -12,7 +12,7 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint64_t kPiece = uint64_t{1} << 20U;
+constexpr uint64_t kZipPiece = uint64_t{1} << 20U;
 
 la_ssize_t append(archive*, void* to, const void* bytes, size_t count) {
   static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), count);
@@ -39,7 +39,7 @@ ZipSource::~ZipSource() {
 
 std::optional<std::string> ZipSource::next() {
   if (archive_ == nullptr) return std::nullopt;
-  while (!over_ && made_.size() < kPiece) {
+  while (!over_ && made_.size() < kZipPiece) {
     if (!step()) return std::nullopt;
   }
   return std::exchange(made_, {});
@@ -48,7 +48,7 @@ std::optional<std::string> ZipSource::next() {
 /// The next file's header, some more of its bytes, or the archive's end.
 bool ZipSource::step() {
   if (in_file_) {
-    const uint64_t count = std::min<uint64_t>(kPiece, bytes_.size() - at_);
+    const uint64_t count = std::min<uint64_t>(kZipPiece, bytes_.size() - at_);
     if (archive_write_data(archive_, bytes_.chars() + at_, count) !=
         static_cast<la_ssize_t>(count)) {
       return false;
