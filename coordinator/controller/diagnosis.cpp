@@ -7,6 +7,7 @@
 #include "coordinator/controller/counted.h"
 #include "coordinator/controller/disk_watch.h"
 #include "coordinator/controller/lease_renewal.h"
+#include "coordinator/controller/not_there.h"
 #include "coordinator/controller/video_maker.h"
 #include "coordinator/controller/worker_sessions.h"
 #include "core/base/text.h"
@@ -53,7 +54,7 @@ grpc::Status Diagnosis::explain(uint64_t id, v1::ExplainResponse& response) {
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE, stored.error().message,
                              std::chrono::seconds(1));
   }
-  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  if (!*stored) return no_job(id);
   Reasons reasons(response);
   switch ((*stored)->state) {
     case StoredState::running:

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/controller/not_there.h"
 #include "coordinator/controller/video_maker.h"
 #include "coordinator/controller/wall_clock.h"
 #include "farm/wire_status.h"
@@ -116,7 +117,7 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
 grpc::Status why_not_open(JobStore& store, uint64_t id) {
   const auto stored = store.job(id);
   if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
+  if (!*stored) return no_job(id);
   if (!has_ended((*stored)->state)) {
     return farm::retry_later(
         grpc::StatusCode::UNAVAILABLE,

@@ -12,7 +12,7 @@ inline grpc::Status no_job(uint64_t id) {
   return {grpc::StatusCode::NOT_FOUND, fmt::format("there is no job {}", id)};
 }
 
-/// The same of a job's frame.
+/// What who asks for a frame is told where its job has none of that number.
 inline grpc::Status no_frame(uint64_t id, int32_t frame) {
   return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no frame {}", id, frame)};
 }

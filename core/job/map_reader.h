@@ -74,14 +74,14 @@ class MapReader {
   void animated(std::string_view key, Animated<float>& target, const Range& range);
   void animated(std::string_view key, Animated<Vec2>& target, const Range& range);
   void animated(std::string_view key, Animated<Vec3>& target, const Range& range);
-  /// As above; stays empty where the key is absent.
+  /// A number or vector that may move; `target` stays empty where the key is absent.
   template <class T>
   void animated(std::string_view key, std::optional<Animated<T>>& target, const Range& range) {
     Animated<T> value;
     animated(key, value, range);
     if (has(key)) target = value;
   }
-  /// As above; complains where it is [0, 0, 0] at a frame.
+  /// A vector that may move; complains where it is [0, 0, 0] at a frame.
   void direction(std::string_view key, Animated<Vec3>& target);
   void direction(std::string_view key, std::optional<Animated<Vec3>>& target);
   /// Complains where two points that were read already are the same at a frame.
@@ -98,7 +98,7 @@ class MapReader {
   /// A vector; a single number stands for all three, and [x, y] leaves z as it is.
   void animated_scale(std::string_view key, Animated<Vec3>& target, const Range& range);
   void color(std::string_view key, Animated<Rgb>& target, const Range& range);
-  /// As above; stays empty where the key is absent.
+  /// A colour that may move; `target` stays empty where the key is absent.
   void color(std::string_view key, std::optional<Animated<Rgb>>& target, const Range& range);
   void color_input(std::string_view key, ColorInput& target, const Range& range);
   void color_input(std::string_view key, std::optional<ColorInput>& target, const Range& range);
@@ -205,7 +205,8 @@ bool read_by_type(MapReader& reader, std::string_view key, const std::string& se
                   std::string& type, std::span<const std::string> names,
                   const std::function<void(size_t)>& read);
 
-/// As above, into desc.type, by the row of that name.
+/// Reads `key` into desc.type as the name of a row of `table`, whose reader reads the rest. False
+/// where the type is unknown.
 template <class Desc>
 bool read_by_type(MapReader& reader, std::string_view key, const std::string& section, Desc& desc,
                   std::span<const TypeRow<Desc>> table) {
