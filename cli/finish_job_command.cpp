@@ -1,5 +1,6 @@
 // `hyades finish job.yaml FILM...`: the pictures of frames whose films others have rendered.
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <optional>

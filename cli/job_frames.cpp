@@ -1,7 +1,12 @@
 #include "cli/job_frames.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cstddef>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>

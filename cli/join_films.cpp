@@ -1,5 +1,7 @@
 #include "cli/join_films.h"
 
+#include <cstddef>
+
 #include <fmt/format.h>
 
 #include "core/film/coverage_gaps.h"

@@ -1,5 +1,6 @@
 #include "cli/load_job.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 

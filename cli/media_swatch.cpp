@@ -1,5 +1,6 @@
 #include "cli/media_swatch.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 

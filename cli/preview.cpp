@@ -1,6 +1,7 @@
 #include "cli/preview.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "core/job/output_path.h"
 

@@ -1,4 +1,5 @@
 // `hyades video job.yaml`.
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "farm/channel.h"
 
+#include <cstddef>
 #include <utility>
 
 #include <grpcpp/channel.h>

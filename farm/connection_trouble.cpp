@@ -1,4 +1,8 @@
 // What gRPC says of a connection that does not come about, in words for people.
+#include <cstddef>
+#include <optional>
+#include <string>
+
 #include "farm/channel.h"
 
 namespace hyades::farm {

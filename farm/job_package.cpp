@@ -1,5 +1,7 @@
 #include "farm/job_package.h"
 
+#include <utility>
+
 #include "core/job/parse.h"
 
 namespace hyades::farm {

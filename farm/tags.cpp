@@ -1,6 +1,7 @@
 #include "farm/tags.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <fmt/format.h>
 

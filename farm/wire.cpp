@@ -1,6 +1,8 @@
 #include "farm/wire.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 #include <fmt/format.h>
 

@@ -1,5 +1,7 @@
 #include "farm/wire_status.h"
 
+#include <cstdint>
+
 namespace hyades::farm {
 
 grpc::Status wire_status(grpc::StatusCode code, const std::string& message,

@@ -1,5 +1,7 @@
 #include "import/fill_with_media.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>

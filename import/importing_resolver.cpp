@@ -1,9 +1,11 @@
 #include "import/importing_resolver.h"
 
+#include <cstddef>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "core/job/scene_document.h"

@@ -1,6 +1,8 @@
 #include "import/names.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "core/job/read_values.h"
 

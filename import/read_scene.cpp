@@ -1,4 +1,6 @@
 #include <array>
+#include <memory>
+#include <string>
 #include <string_view>
 
 #include "core/job/output_path.h"

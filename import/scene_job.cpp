@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "core/job/yaml_build.h"
 #include "import/fill_with_media.h"

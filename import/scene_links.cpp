@@ -1,7 +1,9 @@
 #include "import/scene_links.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace hyades::core {

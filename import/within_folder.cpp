@@ -1,6 +1,7 @@
 #include "import/within_folder.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "core/base/assets.h"
 

@@ -5,8 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
+#include <span>
 #include <system_error>
+#include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/geometry/read_mesh.h"

@@ -1,6 +1,8 @@
 #include "worker/renderer_talk.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "core/base/hash.h"

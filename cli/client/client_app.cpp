@@ -1,6 +1,7 @@
 #include "cli/client/client_app.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "cli/command_line.h"
 #include "cli/peer_options.h"

@@ -1,8 +1,11 @@
 #include "cli/client/film_display.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "cli/display/shown_films.h"
 #include "core/film/film_codec.h"

@@ -1,6 +1,7 @@
 #include "cli/client/trace_writer.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>

@@ -1,4 +1,6 @@
+#include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "cli/address_option.h"
 #include "cli/client/client_app.h"

@@ -1,6 +1,7 @@
 #include "cli/display/shown_films.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include <fmt/format.h>
 

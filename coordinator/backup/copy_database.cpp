@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <ios>
 #include <optional>
 #include <span>
+#include <system_error>
 #include <thread>
 
 #include <sqlite3.h>

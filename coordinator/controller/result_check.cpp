@@ -1,5 +1,6 @@
 #include "coordinator/controller/result_check.h"
 
+#include <cstddef>
 #include <span>
 #include <utility>
 

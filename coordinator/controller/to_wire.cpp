@@ -1,5 +1,7 @@
 #include "coordinator/controller/to_wire.h"
 
+#include <cstdint>
+
 #include "farm/wire.h"
 
 namespace hyades::coordinator {

@@ -1,6 +1,7 @@
 #include "coordinator/finisher/finish_task.h"
 
 #include <filesystem>
+#include <system_error>
 
 #include "coordinator/finisher/json_file.h"
 #include "core/film/film_codec.h"

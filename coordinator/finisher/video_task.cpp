@@ -1,5 +1,8 @@
 #include "coordinator/finisher/video_task.h"
 
+#include <cstdint>
+#include <vector>
+
 #include "coordinator/finisher/json_file.h"
 
 namespace hyades::coordinator {

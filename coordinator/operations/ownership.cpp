@@ -1,6 +1,7 @@
 #include "coordinator/operations/ownership.h"
 
 #include <climits>
+#include <cstdint>
 
 #include <fmt/format.h>
 

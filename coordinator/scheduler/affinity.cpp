@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/affinity.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace hyades::coordinator {

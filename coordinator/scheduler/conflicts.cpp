@@ -1,7 +1,11 @@
 #include "coordinator/scheduler/conflicts.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 

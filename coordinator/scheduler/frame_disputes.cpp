@@ -1,6 +1,9 @@
 // Films that differ, and films that are taken back.
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "coordinator/scheduler/frame_ledger.h"
 

@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/frame_ledger.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include <fmt/format.h>
 

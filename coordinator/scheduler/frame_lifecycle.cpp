@@ -1,7 +1,10 @@
 #include "coordinator/scheduler/frame_lifecycle.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace hyades::coordinator {
 

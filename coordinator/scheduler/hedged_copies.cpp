@@ -1,7 +1,9 @@
 #include "coordinator/scheduler/hedged_copies.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
+#include <vector>
 
 namespace hyades::coordinator {
 namespace {

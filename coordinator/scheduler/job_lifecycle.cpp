@@ -1,6 +1,8 @@
 #include "coordinator/scheduler/job_lifecycle.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <memory>
 #include <utility>
 
 namespace hyades::coordinator {

@@ -1,8 +1,12 @@
 #include "coordinator/scheduler/results.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "core/base/overloaded.h"
 

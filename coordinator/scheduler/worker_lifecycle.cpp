@@ -1,5 +1,8 @@
 #include "coordinator/scheduler/worker_lifecycle.h"
 
+#include <cstdint>
+#include <optional>
+
 #include <fmt/format.h>
 
 namespace hyades::coordinator {

@@ -1,6 +1,7 @@
 #include "coordinator/services/admission.h"
 
 #include <charconv>
+#include <cstdint>
 #include <string_view>
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include "coordinator/services/server.h"
 
 #include <chrono>
+#include <cstddef>
 #include <utility>
 
 #include <grpcpp/resource_quota.h>

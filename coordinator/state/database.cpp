@@ -1,5 +1,7 @@
 #include "coordinator/state/database.h"
 
+#include <cstddef>
+
 namespace hyades::coordinator {
 
 namespace {

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 

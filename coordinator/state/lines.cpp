@@ -1,6 +1,7 @@
 #include "coordinator/state/lines.h"
 
 #include <string>
+#include <utility>
 
 #include "coordinator/state/database.h"
 

@@ -1,5 +1,7 @@
 #include "coordinator/state/token_rows.h"
 
+#include <cstdint>
+
 namespace hyades::coordinator {
 
 core::Result<std::vector<StoredToken>> read_tokens(sqlite3* db) {

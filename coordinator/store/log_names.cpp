@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstddef>
 #include <string_view>
+#include <system_error>
 
 namespace hyades::coordinator {
 namespace {

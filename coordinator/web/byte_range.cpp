@@ -1,6 +1,7 @@
 #include "coordinator/web/byte_range.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "coordinator/web/number.h"
 

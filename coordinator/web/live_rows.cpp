@@ -1,6 +1,7 @@
 #include "coordinator/web/live_rows.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,8 @@
 #include "coordinator/web/metrics.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>

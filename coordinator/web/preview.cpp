@@ -3,6 +3,8 @@
 #include <Imath/half.h>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <utility>
 

@@ -1,5 +1,8 @@
 #include "coordinator/web/router.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <utility>
 

@@ -1,5 +1,6 @@
 #include "coordinator/web/target.h"
 
+#include <cstddef>
 #include <utility>
 
 namespace hyades::coordinator {

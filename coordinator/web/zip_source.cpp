@@ -1,7 +1,9 @@
 #include "coordinator/web/zip_source.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <ctime>
+#include <optional>
 #include <utility>
 
 #include <archive.h>

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <system_error>
 
 namespace hyades::core {
 namespace {

@@ -9,8 +9,11 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <system_error>
 
 #include "core/base/descriptor.h"
 #include "core/base/failpoint.h"

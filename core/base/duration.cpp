@@ -2,8 +2,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
+#include <system_error>
 
 namespace hyades::core {
 namespace {

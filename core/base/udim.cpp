@@ -1,5 +1,6 @@
 #include "core/base/udim.h"
 
+#include <cstddef>
 #include <string_view>
 
 namespace hyades::core {

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/base/elementary.h"
 #include "core/cameras/aperture.h"

@@ -1,6 +1,7 @@
 #include "core/film/coverage_cut.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 namespace hyades::core {

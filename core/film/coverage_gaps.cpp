@@ -1,6 +1,8 @@
 #include "core/film/coverage_gaps.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,3 +1,7 @@
+#include <cstddef>
+#include <span>
+#include <string>
+
 #include <fmt/format.h>
 
 #include "core/base/hash.h"

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstddef>
 #include <limits>
+#include <system_error>
 #include <utility>
 #include <vector>
 

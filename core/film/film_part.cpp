@@ -1,6 +1,7 @@
 #include "core/film/film_part.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace hyades::core {
 

@@ -10,6 +10,9 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "core/base/atomic_file.h"
 #include "core/film/film_exr.h"

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "core/base/color.h"
 #include "core/film/unit.h"

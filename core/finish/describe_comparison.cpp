@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <string>
 
 #include "core/base/text.h"
 #include "core/finish/compare.h"

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/finish/compare.h"
 #include "core/finish/compare_channels.h"

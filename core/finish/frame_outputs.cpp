@@ -1,6 +1,7 @@
 #include "core/finish/frame_outputs.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <utility>
 

@@ -1,6 +1,8 @@
 #include "core/finish/linear_fit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace hyades::core {
 namespace {

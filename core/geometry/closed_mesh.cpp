@@ -1,6 +1,7 @@
 #include "core/geometry/closed_mesh.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <tuple>
 #include <vector>
 

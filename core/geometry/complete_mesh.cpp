@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/geometry/chunks.h"
 #include "core/geometry/mesh_source.h"

@@ -1,6 +1,8 @@
 #include "core/geometry/displace.h"
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <fmt/format.h>
 

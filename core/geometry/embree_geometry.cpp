@@ -1,7 +1,9 @@
 #include "core/geometry/embree_geometry.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
+#include <optional>
 
 namespace hyades::core {
 namespace {

@@ -1,5 +1,7 @@
 #include "core/geometry/mesh_attributes.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/geometry/mesh.h"

@@ -1,8 +1,14 @@
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <map>
+#include <memory>
 #include <numeric>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/geometry/chunks.h"
 #include "core/geometry/mesh_source.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <tuple>
 
 #include "core/geometry/chunks.h"

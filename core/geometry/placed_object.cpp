@@ -1,5 +1,6 @@
 #include "core/geometry/placed_object.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
 
 #include "core/geometry/affine.h"
 #include "core/geometry/placed_object.h"

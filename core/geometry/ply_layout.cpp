@@ -1,6 +1,8 @@
 #include "core/geometry/ply_layout.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 

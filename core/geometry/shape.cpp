@@ -1,5 +1,8 @@
 #include "core/geometry/shape.h"
 
+#include <cstddef>
+#include <cstdint>
+
 namespace hyades::core {
 namespace {
 

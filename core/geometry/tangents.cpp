@@ -1,7 +1,9 @@
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <unordered_map>
+#include <vector>
 
 #include "core/base/elementary.h"
 #include "core/base/hash.h"

@@ -1,6 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <glm/common.hpp>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/geometry/chunks.h"
 #include "core/geometry/mesh_source.h"

@@ -1,6 +1,7 @@
 #include "core/geometry/weld.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <tuple>
 

@@ -1,6 +1,8 @@
 // jpeglib.h needs size_t and FILE before it.
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <span>
 
 #include <jerror.h>
 #include <jpeglib.h>

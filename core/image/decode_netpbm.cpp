@@ -1,11 +1,18 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
 #include "core/base/color.h"
 #include "core/image/decoders.h"

@@ -1,8 +1,12 @@
 #include <png.h>
 
 #include <csetjmp>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/image/decoders.h"

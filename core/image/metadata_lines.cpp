@@ -1,3 +1,5 @@
+#include <string>
+
 #include "core/image/write_image.h"
 
 namespace hyades::core {

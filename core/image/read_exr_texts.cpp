@@ -1,3 +1,8 @@
+#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>

@@ -1,5 +1,9 @@
+#include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/assets.h"
 #include "core/image/read_image.h"

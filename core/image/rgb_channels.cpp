@@ -1,5 +1,7 @@
 #include "core/image/rgb_channels.h"
 
+#include <cstddef>
+
 namespace hyades::core {
 
 std::optional<std::array<int, 3>> rgb_channels(const Image& image) {

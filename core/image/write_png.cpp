@@ -6,6 +6,8 @@
 #include <csetjmp>
 #include <cstring>
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/atomic_file.h"

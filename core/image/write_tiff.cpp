@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/base/atomic_file.h"
 #include "core/base/version.h"

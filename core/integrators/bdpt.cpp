@@ -1,6 +1,8 @@
 #include "core/integrators/bdpt.h"
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include "core/integrators/light_parts.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace hyades::core {
 namespace {

@@ -1,6 +1,7 @@
 #include "core/integrators/path_vertex.h"
 
 #include <cmath>
+#include <cstddef>
 
 #include "core/integrators/visibility.h"
 

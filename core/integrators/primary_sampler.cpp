@@ -1,6 +1,7 @@
 #include "core/integrators/primary_sampler.h"
 
 #include <cmath>
+#include <cstddef>
 
 #include "core/base/elementary.h"
 #include "core/base/hash.h"

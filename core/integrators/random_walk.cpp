@@ -1,6 +1,7 @@
 #include "core/integrators/random_walk.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "core/integrators/visibility.h"
 #include "core/media/shares.h"

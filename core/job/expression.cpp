@@ -4,7 +4,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <mutex>
+#include <system_error>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,8 @@
 #include "core/job/layers.h"
 
+#include <cstddef>
 #include <set>
+#include <string>
 
 #include "core/job/light_groups.h"
 #include "core/job/output_names.h"

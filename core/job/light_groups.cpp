@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
+#include <string_view>
 
 #include "core/film/layout.h"
 #include "core/job/map_reader.h"

@@ -1,6 +1,10 @@
 #include "core/job/like.h"
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
 #include <unordered_map>
 #include <utility>
 

@@ -2,7 +2,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <system_error>
 
 #include "core/job/layers.h"
 #include "core/job/output_path.h"

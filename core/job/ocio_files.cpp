@@ -1,7 +1,9 @@
 #include "core/job/ocio_files.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
+#include <utility>
 
 namespace hyades::core {
 namespace {

@@ -1,6 +1,7 @@
 #include "core/job/output_names.h"
 
 #include <array>
+#include <cstddef>
 
 #include "core/film/layout.h"
 #include "core/image/tone_map.h"

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "core/job/read_sections.h"
 
 namespace hyades::core {

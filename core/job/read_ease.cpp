@@ -1,4 +1,6 @@
 #include <array>
+#include <cstddef>
+#include <string>
 
 #include "core/job/read_components.h"
 

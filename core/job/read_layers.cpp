@@ -1,7 +1,9 @@
 #include "core/job/read_layers.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 

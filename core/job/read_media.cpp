@@ -1,4 +1,8 @@
 #include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "core/job/read_sections.h"
 

@@ -1,4 +1,5 @@
 #include <string>
+#include <string_view>
 
 #include "core/job/map_reader.h"
 #include "core/job/measured_media.h"

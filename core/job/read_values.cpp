@@ -4,6 +4,10 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <system_error>
 
 #include "core/job/read_color.h"
 #include "core/job/read_components.h"

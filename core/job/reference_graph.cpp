@@ -1,6 +1,7 @@
 #include "core/job/reference_graph.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace hyades::core {
 

@@ -1,5 +1,7 @@
 #include "core/job/render_key.h"
 
+#include <cstdint>
+
 #include "core/base/hash.h"
 #include "core/job/resolved_text.h"
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
 
 #include "core/job/output_path.h"
 #include "core/job/read_values.h"

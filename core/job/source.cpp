@@ -1,6 +1,7 @@
 #include "core/job/source.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
 #include <utility>
 

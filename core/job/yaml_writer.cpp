@@ -1,7 +1,10 @@
 #include "core/job/yaml_writer.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cstddef>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/job/read_values.h"
 

@@ -1,3 +1,5 @@
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "core/base/warp.h"

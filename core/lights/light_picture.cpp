@@ -1,6 +1,7 @@
 #include "core/lights/light_picture.h"
 
 #include <algorithm>
+#include <array>
 
 namespace hyades::core {
 namespace {

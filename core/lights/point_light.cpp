@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 
 #include "core/base/frame.h"
 #include "core/base/warp.h"

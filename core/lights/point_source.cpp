@@ -1,6 +1,7 @@
 #include "core/lights/point_source.h"
 
 #include <cmath>
+#include <optional>
 
 namespace hyades::core {
 

@@ -1,6 +1,8 @@
 #include "core/lights/quadric_light.h"
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <glm/gtc/matrix_inverse.hpp>

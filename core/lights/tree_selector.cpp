@@ -1,5 +1,9 @@
 #include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/lights/light_importance.h"
 #include "core/lights/light_selector.h"

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/materials/above_horizon.h"
 #include "core/materials/params.h"

@@ -1,3 +1,6 @@
+#include <memory>
+#include <utility>
+
 #include "core/materials/params.h"
 #include "core/materials/wrapped_material.h"
 

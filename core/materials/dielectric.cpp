@@ -1,4 +1,6 @@
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "core/materials/delta_bsdf.h"
 #include "core/materials/dielectric_bsdf.h"

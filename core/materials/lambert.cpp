@@ -1,4 +1,7 @@
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "core/base/warp.h"
 #include "core/materials/local.h"

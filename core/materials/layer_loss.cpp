@@ -1,6 +1,7 @@
 #include "core/materials/layer_loss.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "core/base/fp_mode.h"

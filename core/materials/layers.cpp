@@ -1,4 +1,6 @@
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/base/elementary.h"
 #include "core/materials/layered_bsdf.h"

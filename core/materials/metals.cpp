@@ -1,3 +1,7 @@
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "core/materials/make_material.h"
 
 namespace hyades::core {

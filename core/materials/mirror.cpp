@@ -1,3 +1,7 @@
+#include <memory>
+#include <optional>
+#include <utility>
+
 #include "core/materials/delta_bsdf.h"
 #include "core/materials/local.h"
 #include "core/materials/params.h"

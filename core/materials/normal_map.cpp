@@ -1,4 +1,6 @@
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/geometry/mesh_attributes.h"
 #include "core/materials/above_horizon.h"

@@ -1,3 +1,6 @@
+#include <memory>
+#include <optional>
+
 #include "core/materials/delta_bsdf.h"
 #include "core/materials/make_material.h"
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <memory>
 
 #include "core/base/elementary.h"
 #include "core/materials/dielectric_bsdf.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/materials/fresnel.h"
 #include "core/materials/hemisphere_mean.h"

@@ -1,4 +1,7 @@
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "core/base/elementary.h"
 #include "core/base/warp.h"

@@ -1,5 +1,7 @@
 #include "core/materials/shading_normal_correction.h"
 
+#include <cstdlib>
+
 namespace hyades::core {
 
 float ShadingNormalCorrection::pdf(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi,

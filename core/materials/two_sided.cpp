@@ -1,3 +1,7 @@
+#include <memory>
+#include <optional>
+#include <utility>
+
 #include "core/materials/local.h"
 #include "core/materials/make_layers.h"
 #include "core/materials/turned_bsdf.h"

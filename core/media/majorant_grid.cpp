@@ -1,6 +1,7 @@
 #include "core/media/majorant_grid.h"
 
 #include <cassert>
+#include <cstddef>
 
 namespace hyades::core {
 

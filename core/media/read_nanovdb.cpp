@@ -1,7 +1,10 @@
 #include "core/media/read_nanovdb.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <initializer_list>
 #include <span>
 
 #include <fmt/format.h>

@@ -1,7 +1,9 @@
 #include "core/media/sphere_image.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "core/base/elementary.h"
 #include "core/image/rgb_channels.h"

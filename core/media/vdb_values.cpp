@@ -3,7 +3,9 @@
 #include <blosc.h>
 #include <zlib.h>
 
+#include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "core/base/half.h"
 

@@ -1,6 +1,8 @@
 #include "core/render/chain_batch.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
 #include "core/base/hash.h"
 

@@ -1,6 +1,7 @@
 #include "core/render/pixel_sums.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace hyades::core {
 

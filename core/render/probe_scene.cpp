@@ -1,6 +1,7 @@
 #include "core/render/probe_scene.h"
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <utility>

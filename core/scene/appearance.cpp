@@ -1,6 +1,7 @@
 #include "core/scene/appearance.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "core/scene/material_makers.h"
 #include "core/scene/medium_makers.h"

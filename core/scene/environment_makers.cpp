@@ -1,6 +1,7 @@
 #include "core/scene/environment_makers.h"
 
 #include <cmath>
+#include <memory>
 
 #include "core/base/elementary.h"
 #include "core/scene/transforms.h"

@@ -1,9 +1,14 @@
 #include "core/scene/flatten.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <set>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
+#include <variant>
 
 #include "core/job/mesh_files.h"
 #include "core/scene/appearance.h"

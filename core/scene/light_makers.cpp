@@ -1,6 +1,8 @@
 #include "core/scene/light_makers.h"
 
 #include <cmath>
+#include <utility>
+#include <variant>
 
 #include "core/base/elementary.h"
 #include "core/cameras/axes.h"

@@ -1,5 +1,7 @@
 #include "core/scene/material_makers.h"
 
+#include <variant>
+
 #include "core/materials/make_layers.h"
 #include "core/materials/make_matt.h"
 #include "core/scene/principled_maker.h"

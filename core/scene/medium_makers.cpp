@@ -1,6 +1,7 @@
 #include "core/scene/medium_makers.h"
 
 #include <utility>
+#include <variant>
 
 #include "core/media/albedo_inversion.h"
 

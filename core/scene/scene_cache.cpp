@@ -1,6 +1,7 @@
 #include "core/scene/scene_cache.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "core/base/machine.h"

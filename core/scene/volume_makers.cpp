@@ -1,6 +1,7 @@
 #include "core/scene/volume_makers.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>

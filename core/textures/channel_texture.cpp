@@ -1,3 +1,4 @@
+#include <memory>
 #include <utility>
 
 #include "core/textures/make_texture.h"

@@ -1,3 +1,5 @@
+#include <memory>
+
 #include "core/textures/make_texture.h"
 
 namespace hyades::core {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "core/base/elementary.h"
 #include "core/textures/noise_octaves.h"

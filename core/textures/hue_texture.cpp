@@ -1,5 +1,7 @@
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "core/textures/make_texture.h"

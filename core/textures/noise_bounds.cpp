@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "core/textures/noise.h"
 #include "core/textures/noise_octaves.h"

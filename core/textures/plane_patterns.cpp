@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "core/base/elementary.h"
 #include "core/textures/pattern.h"

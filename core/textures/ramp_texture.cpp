@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/textures/make_texture.h"
 

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/base/udim.h"
 #include "core/textures/make_texture.h"

@@ -1,3 +1,7 @@
+#include <array>
+#include <cstddef>
+#include <memory>
+
 #include "core/geometry/mesh_attributes.h"
 #include "core/textures/make_texture.h"
 

@@ -1,3 +1,8 @@
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "import/gltf/accessor.h"

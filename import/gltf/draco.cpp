@@ -3,8 +3,12 @@
 #include <draco/compression/decode.h>
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <new>
 #include <optional>
+#include <span>
+#include <utility>
 
 namespace hyades::core {
 

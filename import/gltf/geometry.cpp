@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "import/gltf/accessor.h"
 #include "import/gltf/draco.h"

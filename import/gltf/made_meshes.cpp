@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <string_view>
+#include <system_error>
+#include <utility>
 
 #include "core/geometry/write_ply.h"
 #include "import/gltf/accessor.h"

@@ -1,6 +1,8 @@
 #include "import/gltf/materials.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "import/gltf/material_parts.h"

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <set>
+#include <utility>
 
 #include "core/geometry/placed_object.h"
 #include "import/gltf/geometry.h"

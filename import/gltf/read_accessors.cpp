@@ -1,7 +1,13 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "import/gltf/meshopt.h"
 #include "import/gltf/read_model.h"

@@ -1,5 +1,10 @@
 #include "import/gltf/read_model.h"
 
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,7 @@
 #include "import/obj/mtl_file.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <utility>
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
 
 #include "core/materials/interface_energy.h"
 #include "import/pbrt/material_kinds.h"

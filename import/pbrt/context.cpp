@@ -2,6 +2,9 @@
 
 #include <cctype>
 #include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "import/pbrt/transforms.h"
 #include "import/within_folder.h"

@@ -1,7 +1,12 @@
 #include "import/pbrt/made_meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "core/base/text.h"
 

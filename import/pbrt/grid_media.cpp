@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <string>
+#include <system_error>
 
 #include "import/pbrt/coefficients.h"
 #include "import/pbrt/medium_grids.h"

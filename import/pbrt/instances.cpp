@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include "core/base/text.h"
 #include "core/geometry/read_places.h"

@@ -1,8 +1,12 @@
 #include "import/pbrt/made_meshes.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "core/base/text.h"
 #include "import/pbrt/meshes.h"

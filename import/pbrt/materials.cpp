@@ -1,5 +1,7 @@
 #include "import/pbrt/materials.h"
 
+#include <cstddef>
+
 #include <fmt/format.h>
 
 #include "core/job/yaml_writer.h"

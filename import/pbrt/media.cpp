@@ -1,6 +1,8 @@
 #include "import/pbrt/media.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
 
 #include "import/pbrt/coefficients.h"
 #include "import/pbrt/grid_media.h"

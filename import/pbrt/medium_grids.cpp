@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
 
 #include "core/base/color.h"
 #include "core/base/parallel.h"

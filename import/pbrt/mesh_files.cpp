@@ -1,8 +1,17 @@
 #include "import/pbrt/mesh_files.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include "core/geometry/read_mesh.h"
 #include "core/geometry/write_ply.h"

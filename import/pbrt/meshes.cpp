@@ -1,8 +1,13 @@
 #include "import/pbrt/meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "core/base/text.h"

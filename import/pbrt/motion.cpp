@@ -1,7 +1,10 @@
 #include "import/pbrt/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <glm/gtc/quaternion.hpp>
+#include <utility>
+#include <vector>
 
 #include "import/pbrt/transforms.h"
 

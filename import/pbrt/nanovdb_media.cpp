@@ -1,7 +1,10 @@
 #include "import/pbrt/nanovdb_media.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "core/base/text.h"

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
 
 #include "core/base/elementary.h"
 #include "core/base/parallel.h"

@@ -1,6 +1,7 @@
 #include "import/pbrt/parameters.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace hyades::core::pbrt {
 namespace {

@@ -4,7 +4,14 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "core/base/text.h"
 

@@ -1,5 +1,8 @@
 #include "import/pbrt/read_pbrt.h"
 
+#include <utility>
+#include <vector>
+
 #include "import/pbrt/camera.h"
 #include "import/pbrt/grid_media.h"
 #include "import/pbrt/instances.h"

@@ -1,6 +1,11 @@
 #include "import/pbrt/read_scene_text.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/text.h"
 #include "import/pbrt/directives.h"

@@ -1,7 +1,10 @@
 #include "import/pbrt/render_sections.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "import/pbrt/camera.h"
 #include "import/pbrt/motion.h"

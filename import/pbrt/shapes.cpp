@@ -1,6 +1,11 @@
 #include "import/pbrt/shapes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "core/base/text.h"
 #include "import/pbrt/instances.h"

@@ -1,5 +1,9 @@
 #include "import/pbrt/sky.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "core/base/elementary.h"
 #include "import/pbrt/light_values.h"
 #include "import/pbrt/panorama.h"

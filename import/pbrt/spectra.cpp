@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "import/pbrt/color_space.h"
 #include "import/pbrt/read_parameters.h"

@@ -1,7 +1,9 @@
 #include "import/pbrt/made_meshes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <numbers>
 

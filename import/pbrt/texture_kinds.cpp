@@ -1,7 +1,13 @@
 #include "import/pbrt/texture_kinds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/text.h"
 #include "core/image/read_image.h"

@@ -1,6 +1,9 @@
 #include "import/pbrt/textures.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,7 @@
 #include "import/pbrt/tokenizer.h"
 
 #include <array>
+#include <cstddef>
 #include <utility>
 
 namespace hyades::core::pbrt {

@@ -1,3 +1,6 @@
+#include <array>
+#include <cstddef>
+
 #include "import/pbrt/directives.h"
 #include "import/pbrt/transforms.h"
 

@@ -2,8 +2,10 @@
 
 #include <strings.h>
 
+#include <cstddef>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include <curl/curl.h>
 

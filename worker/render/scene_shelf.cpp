@@ -1,5 +1,6 @@
 #include "worker/render/scene_shelf.h"
 
+#include <cstddef>
 #include <utility>
 #include <vector>
 
