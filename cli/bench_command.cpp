@@ -9,6 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/film_room.h"
 #include "cli/load_job.h"
+#include "cli/number_range.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/render/render_frame.h"
@@ -87,7 +88,7 @@ int bench_command(int argc, char** argv) {
   command->add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")
       ->capture_default_str();
   command->add_option("--threads", threads, "most threads")
-      ->check(CLI::Range(1, 1024))
+      ->check(in_range(1, 1024))
       ->capture_default_str();
   command->add_option("--samples", samples, "samples per pixel (default: the job's)");
   app.footer(

@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -91,111 +95,142 @@ std::string duration_in_words(double hours) {
   return years < 1000.0 ? fmt::format("{:.1f} years", years) : fmt::format("{:.3g} years", years);
 }
 
-}  // namespace
+struct CheckOptions {
+  std::string path;
+  std::string curve;  ///< empty: the job is summed up
+  bool no_probe = false;
+  SceneOptions scene;
+};
 
-/// `hyades check job.yaml`: every mistake, or what the job is and would cost.
-int check_command(int argc, char** argv) {
+std::optional<int> parse_check_options(int argc, char** argv, CheckOptions& options) {
   CLI::App app(
       "Reads a job and reports every mistake in it; a good one is summed up: frames, triangles, "
       "units, and an estimate of memory and core-hours.",
       "hyades check");
-  std::string path;
-  std::string curve;
-  bool no_probe = false;
-  app.add_option("job", path, "the job (.yaml), or a scene or mesh (.glb, ...)")->required();
-  app.add_option("--curve", curve,
+  app.add_option("job", options.path, "the job (.yaml), or a scene or mesh (.glb, ...)")
+      ->required();
+  app.add_option("--curve", options.curve,
                  "print this value of the job over its frames instead: camera.fov, "
                  "objects.NAME.at, objects.NAME.transform[0].rotate_y, materials.NAME.color, ...");
-  app.add_flag("--no-probe", no_probe, "do not render a few pixels to estimate the time");
+  app.add_flag("--no-probe", options.no_probe, "do not render a few pixels to estimate the time");
   app.footer(
       "examples:\n  hyades check jobs/cornell/job.yaml\nexit status: 0 good, 2 mistakes found");
-  SceneOptions how;
-  declare_scene_options(app, how);
-  if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
-  core::Diagnostics diagnostics;
-  auto loaded = read_job_file(path, diagnostics, how);
-  if (!loaded) return kBadInput;
-  const core::Job& job = loaded->job;
-  core::SceneCache cache(*loaded->assets);
-  if (const auto read = read_contents(*loaded, cache, diagnostics); !read) {
-    std::fprintf(stderr, "%s\n", read.error().message.c_str());
-    return kBadInput;
-  }
-  if (!diagnostics.empty()) {
-    std::fputs(diagnostics.to_string().c_str(), stderr);
-    return kBadInput;
-  }
-  if (!curve.empty()) {
-    const auto found = core::find_curve(job, curve);
-    if (!found) {
-      std::fprintf(stderr, "hyades check: %s\n", found.error().message.c_str());
-      return kBadInput;
-    }
-    std::fputs(core::curve_table(job, **found).c_str(), stdout);
-    return 0;
-  }
-  auto scene = core::build_scene(job, job.frames.first, cache);
-  if (!scene) {
-    std::fprintf(stderr, "%s\n", scene.error().message.c_str());
-    return kBadInput;
-  }
-  const core::PixelRect window = core::render_window(job.film);
-  const core::LayerSet layers = core::needed_layers(job);
-  const core::FrameRenderer renderer(*scene, job, job.frames.first, layers);
-  const int64_t frames = frame_count(job.frames.first, job.frames.last, job.frames.step);
-  const uint64_t pixels = static_cast<uint64_t>(window.area());
-  // In double: the largest jobs have more than 64 bits can count.
-  const double samples =
-      static_cast<double>(pixels) * job.sampling.samples * static_cast<double>(frames);
-  const uint64_t batches = core::batch_count(job.sampling.samples);
-  const FilmRoom room = film_room(job, window);
+  declare_scene_options(app, options.scene);
+  return parse_command_line(app, argc, argv, kBadInput);
+}
 
-  std::printf("%s: good\n", path.c_str());
+/// Of the job `name`, whose curve somebody wants to see.
+core::Status print_curve(const core::Job& job, const std::string& name) {
+  const auto found = core::find_curve(job, name);
+  if (!found) return found.error().in("hyades check");
+  std::fputs(core::curve_table(job, **found).c_str(), stdout);
+  return {};
+}
+
+/// What a job holds and asks for, as far as no pixel has to be rendered.
+void print_contents(const core::Job& job, const core::Scene& scene, double samples) {
+  const core::PixelRect window = core::render_window(job.film);
+  const int64_t frames = frame_count(job.frames.first, job.frames.last, job.frames.step);
   std::printf("  job        %s\n", job.name.c_str());
   std::printf("  frames     %s of %d x %d%s\n",
               core::format_count(static_cast<uint64_t>(frames)).c_str(), window.width(),
               window.height(), job.film.crop ? " (cropped)" : "");
   std::printf("  objects    %s, %s triangles, %zu lights\n",
-              core::format_count((*scene)->objects.size()).c_str(),
-              core::format_count((*scene)->triangles).c_str(), (*scene)->lights.size());
+              core::format_count(scene.objects.size()).c_str(),
+              core::format_count(scene.triangles).c_str(), scene.lights.size());
   std::printf("  samples    %u per pixel, %s in all\n", job.sampling.samples,
               samples_in_words(samples).c_str());
   std::printf("  batches    %s per frame, of %u samples of a pixel each\n",
-              core::format_count(batches).c_str(), core::kBatchSamples);
+              core::format_count(core::batch_count(job.sampling.samples)).c_str(),
+              core::kBatchSamples);
+}
+
+/// Into how many units a frame is cut; `seconds` of one core per sample, where they are known.
+void print_units(const core::Job& job, bool splats, std::optional<double> seconds) {
   coordinator::LocalPlan plan;
-  plan.region = window;
+  plan.region = core::render_window(job.film);
   plan.samples = job.sampling.samples;
-  if (layers.splats) plan.tile_size = coordinator::kSplatTile;
-  const uint64_t tiles = coordinator::TileGrid(window, plan.tile_size).size();
-  const double seconds = no_probe ? 0.0 : seconds_per_sample(renderer, window, job.frames.first);
-  if (no_probe) {
-    std::printf("  units      %s to %s per frame (tiles of %d x %d pixels)\n",
-                core::format_count(tiles).c_str(), core::format_count(tiles * batches).c_str(),
-                plan.tile_size, plan.tile_size);
-  } else {
+  if (splats) plan.tile_size = coordinator::kSplatTile;
+  const uint64_t tiles = coordinator::TileGrid(plan.region, plan.tile_size).size();
+  if (seconds) {
     std::printf("  units      about %s per frame (%s tiles of %d x %d pixels, runs of batches)\n",
-                core::format_count(units_per_frame(job, plan, seconds)).c_str(),
+                core::format_count(units_per_frame(job, plan, *seconds)).c_str(),
                 core::format_count(tiles).c_str(), plan.tile_size, plan.tile_size);
+  } else {
+    const uint64_t most = tiles * core::batch_count(plan.samples);
+    std::printf("  units      %s to %s per frame (tiles of %d x %d pixels)\n",
+                core::format_count(tiles).c_str(), core::format_count(most).c_str(), plan.tile_size,
+                plan.tile_size);
   }
-  const uint64_t memory = (*scene)->world->memory() + (*scene)->texture_memory + room.film;
-  std::printf(
-      "  memory     about %s (geometry %s, textures %s, film %s)\n",
-      core::format_bytes(memory).c_str(), core::format_bytes((*scene)->world->memory()).c_str(),
-      core::format_bytes((*scene)->texture_memory).c_str(), core::format_bytes(room.film).c_str());
-  for (const std::string& warning : (*scene)->warnings)
+}
+
+void print_memory(const core::Job& job, const core::Scene& scene) {
+  const FilmRoom room = film_room(job, core::render_window(job.film));
+  const uint64_t geometry = scene.world->memory();
+  const uint64_t memory = geometry + scene.texture_memory + room.film;
+  std::printf("  memory     about %s (geometry %s, textures %s, film %s)\n",
+              core::format_bytes(memory).c_str(), core::format_bytes(geometry).c_str(),
+              core::format_bytes(scene.texture_memory).c_str(),
+              core::format_bytes(room.film).c_str());
+  for (const std::string& warning : scene.warnings) {
     std::printf("  warning    %s\n", warning.c_str());
+  }
   if (const core::Status fits = room.check(); !fits) {
     std::printf("  warning    'hyades render' refuses it here: %s\n", fits.error().message.c_str());
   } else if (room.here > 0 && memory > room.here) {
     std::printf("  warning    there are %s of memory only\n",
                 core::format_bytes(room.here).c_str());
   }
-  if (!no_probe) {
-    const double hours = seconds * samples / 3600.0;
+}
+
+/// Sums up a good job; an error where its first frame cannot be built.
+core::Status print_summary(const CheckOptions& options, const core::Job& job,
+                           core::SceneCache& cache) {
+  auto scene = core::build_scene(job, job.frames.first, cache);
+  if (!scene) return scene.error();
+  const core::PixelRect window = core::render_window(job.film);
+  const core::LayerSet layers = core::needed_layers(job);
+  const core::FrameRenderer renderer(*scene, job, job.frames.first, layers);
+  const int64_t frames = frame_count(job.frames.first, job.frames.last, job.frames.step);
+  // In double: the largest jobs have more than 64 bits can count.
+  const double samples =
+      static_cast<double>(window.area()) * job.sampling.samples * static_cast<double>(frames);
+  std::printf("%s: good\n", options.path.c_str());
+  print_contents(job, **scene, samples);
+  std::optional<double> seconds;
+  if (!options.no_probe) seconds = seconds_per_sample(renderer, window, job.frames.first);
+  print_units(job, layers.splats, seconds);
+  print_memory(job, **scene);
+  if (seconds) {
+    const double hours = *seconds * samples / 3600.0;
     std::printf("  cost       about %s of one core like this one (%.3g core-hours)\n",
                 duration_in_words(hours).c_str(), hours);
   }
-  return 0;
+  return {};
+}
+
+}  // namespace
+
+/// `hyades check job.yaml`: every mistake, or what the job is and would cost.
+int check_command(int argc, char** argv) {
+  CheckOptions options;
+  if (const auto status = parse_check_options(argc, argv, options)) return *status;
+  core::Diagnostics diagnostics;
+  auto loaded = read_job_file(options.path, diagnostics, options.scene);
+  if (!loaded) return kBadInput;
+  core::SceneCache cache(*loaded->assets);
+  core::Status done = read_contents(*loaded, cache, diagnostics);
+  if (done && !diagnostics.empty()) {
+    std::fputs(diagnostics.to_string().c_str(), stderr);
+    return kBadInput;
+  }
+  if (done) {
+    done = options.curve.empty() ? print_summary(options, loaded->job, cache)
+                                 : print_curve(loaded->job, options.curve);
+  }
+  if (done) return 0;
+  std::fprintf(stderr, "%s\n", done.error().message.c_str());
+  return kBadInput;
 }
 
 }  // namespace hyades::cli

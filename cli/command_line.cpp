@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/printable.h"
+#include "core/base/printable.h"
 #include "core/base/text.h"
 
 namespace hyades::cli {
@@ -44,16 +44,7 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
     const std::string name = extra.substr(0, extra.find('='));
     return "there is no option '" + name + "'" + core::did_you_mean(name, options);
   }
-  // "--grace: Value 0 not in range 0.300000 to 3600.000000"
-  static const std::regex range("(.*): Value (.*) not in range (\\S+) to (\\S+)");
-  static const std::regex zeros("(\\.\\d*?)0+(?!\\d)");
-  static const std::regex point("\\.(?!\\d)");
   std::smatch parts;
-  if (std::regex_match(text, parts, range)) {
-    const std::string bounds = parts[3].str() + " to " + parts[4].str();
-    return parts[1].str() + " " + parts[2].str() + ": expected " +
-           std::regex_replace(std::regex_replace(bounds, zeros, "$1"), point, "");
-  }
   static const std::regex conversion("Could not convert: (\\S+) = (.*)");
   if (std::regex_match(text, parts, conversion)) {
     return parts[1].str() + " " + parts[2].str() + ": expected a number";
@@ -85,7 +76,7 @@ std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv, int 
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "%s: %s (%s --help tells more)\n", app.get_name().c_str(),
-                 printable(in_our_words(app, error)).c_str(), app.get_name().c_str());
+                 core::printable(in_our_words(app, error)).c_str(), app.get_name().c_str());
     return wrong;
   }
   return std::nullopt;

@@ -1,4 +1,4 @@
-#include "cli/compare_command.h"
+#include "cli/film_commands.h"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/command_line.h"
+#include "cli/number_range.h"
 #include "core/finish/common_part.h"
 #include "core/finish/compare.h"
 #include "core/finish/perceptual.h"
@@ -52,7 +53,7 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--least-p", options.least_p,
                  "exit with 1 where the z-test of blocks gives a corrected p below this (both "
                  "pictures need the layer 'variance')")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(in_range(0.0, 1.0));
   app.add_option("--perceptual", options.perceptual,
                  "say only how different they look (distance in CIELAB, blurred so that noise does "
                  "not count), and exit with 1 where the mean is above this, or that of one of 12 x "
@@ -60,7 +61,7 @@ void declare(CLI::App& app, Options& options) {
                  "size")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--block", options.compare.block, "side of a block in pixels")
-      ->check(CLI::Range(1, 65536))
+      ->check(in_range(1, 65536))
       ->capture_default_str();
   app.add_option("--epsilon", options.compare.epsilon,
                  "relative MSE is the mean of (a - b)^2 / (b^2 + epsilon)")

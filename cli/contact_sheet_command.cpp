@@ -1,12 +1,14 @@
-#include "cli/contact_sheet_command.h"
+#include "cli/film_commands.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/number_range.h"
 #include "core/finish/contact_sheet.h"
 #include "core/image/read_image.h"
 #include "core/image/write_image.h"
@@ -55,10 +57,10 @@ int contact_sheet_command(int argc, char** argv) {
   app.add_option("pictures", options.pictures, "PNG or JPEG files")->required();
   app.add_option("-o,--output", options.output, "PNG to write")->required();
   app.add_option("--columns", options.columns, "pictures in a row")
-      ->check(CLI::Range(1, 1000))
+      ->check(in_range(1, 1000))
       ->capture_default_str();
   app.add_option("--width", options.width, "of a picture, in pixels")
-      ->check(CLI::Range(16, 8192))
+      ->check(in_range(16, 8192))
       ->capture_default_str();
   app.footer(
       "examples:\n"

@@ -1,19 +1,24 @@
 // `hyades coordinator`: owns jobs, leases units, merges films. It links no renderer.
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
 #include <CLI/CLI.hpp>
 
@@ -21,6 +26,7 @@
 #include "cli/command_line.h"
 #include "cli/config_file.h"
 #include "cli/log_options.h"
+#include "cli/number_range.h"
 #include "coordinator/access/authority.h"
 #include "coordinator/access/first_admin.h"
 #include "coordinator/controller/controller.h"
@@ -28,8 +34,8 @@
 #include "coordinator/services/server.h"
 #include "coordinator/web/web_server.h"
 #include "core/base/atomic_file.h"
-#include "core/base/landlock.h"
 #include "core/base/machine.h"
+#include "core/sandbox/landlock.h"
 #include "farm/last_words.h"
 #include "farm/log.h"
 
@@ -42,6 +48,7 @@ using hyades::coordinator::Duration;
 using hyades::coordinator::Hook;
 using hyades::coordinator::Notifier;
 using hyades::coordinator::Server;
+using hyades::coordinator::Serves;
 using hyades::coordinator::WebServer;
 using hyades::farm::LogLevel;
 
@@ -59,15 +66,9 @@ struct Arguments {
   hyades::farm::LogOptions log;
   std::string http = kHttp;
   bool http_asked = false;
+  std::string health = "off";
   std::vector<std::string> http_names;
   Notifier::Options news;
-  double unit_seconds = 5;
-  double lease_seconds = 30;
-  double class_patience = 300;
-  double adoption_seconds = 5;
-  double stall_seconds = 600;
-  double compact_mb = 256;
-  double asset_grace = 3600;
 };
 
 /// Of a URL, without its port; empty where it has none.
@@ -95,6 +96,16 @@ hyades::core::Result<std::unique_ptr<WebServer>> open_http(const Arguments& argu
   hyades::farm::log(LogLevel::warning, "no dashboard: " + server.error().message +
                                            "; choose another place with --http");
   return std::unique_ptr<WebServer>();
+}
+
+/// /healthz, /readyz and /metrics at a place of their own; null where none was asked for.
+hyades::core::Result<std::unique_ptr<WebServer>> open_health(const Arguments& arguments,
+                                                             Controller& controller,
+                                                             Authority& authority) {
+  if (arguments.health == "off") return std::unique_ptr<WebServer>();
+  hyades::farm::Listen listen = arguments.listen;
+  listen.address = arguments.health;
+  return WebServer::start(listen, controller, authority, arguments.http_names, Serves::health);
 }
 
 /// A thousand workers are a thousand open files; the usual limit is that, and the hard one is
@@ -156,8 +167,11 @@ std::string read_price(const std::string& text, hyades::coordinator::Price& pric
 }
 
 bool is_beyond(const Arguments& arguments) {
-  const bool http = arguments.http != "off" && !hyades::farm::is_loopback(arguments.http);
-  return http || !hyades::farm::is_loopback(arguments.listen.address);
+  const auto leads_out = [](const std::string& address) {
+    return address != "off" && !hyades::farm::is_loopback(address);
+  };
+  return leads_out(arguments.http) || leads_out(arguments.health) ||
+         !hyades::farm::is_loopback(arguments.listen.address);
 }
 
 /// Who may come in. A farm that can be reached from elsewhere has tokens: where there is none of an
@@ -171,6 +185,7 @@ hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments&
   options.beyond = is_beyond(arguments);
   options.audit_folder = arguments.controller.folder;
   options.plain = arguments.listen.cert_file.empty();
+  options.owner_only = !arguments.listen.insecure;
   options.tell_unguarded = [&controller](const std::string& how) {
     controller.farm().set_unguarded(how);
     if (!how.empty()) {
@@ -207,8 +222,42 @@ void tell_where(const std::string& address, const WebServer* http) {
   std::fflush(stdout);
 }
 
+int log_and_fail(const std::string& why) {
+  hyades::farm::log(LogLevel::error, why);
+  return 1;
+}
+
+/// Serves until one of `signals` comes. Exit status.
+int serve_until(const sigset_t& signals, const Arguments& arguments, const hyades::farm::Door& door,
+                Controller& controller) {
+  auto authority = open_authority(arguments, door.token, controller);
+  if (!authority) return log_and_fail(authority.error().message);
+  auto server = Server::start(door, controller, **authority);
+  if (!server) return log_and_fail(server.error().message);
+  note_address(arguments.controller.folder + "/address", (*server)->address() + "\n");
+  if (const grpc::Status room = controller.disk().admit(0); !room.ok()) {
+    hyades::farm::log(LogLevel::error, room.error_message());
+  }
+  auto http = open_http(arguments, controller, **authority);
+  if (!http) return log_and_fail(http.error().message);
+  const auto health = open_health(arguments, controller, **authority);
+  if (!health) return log_and_fail(health.error().message);
+  if (*health)
+    note_address(arguments.controller.folder + "/health-address", (*health)->url() + "\n");
+  const auto notifier = open_notifier(arguments, controller, http->get());
+  note_address(arguments.controller.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
+  tell_where((*server)->address(), http->get());
+  int signal = 0;
+  sigwait(&signals, &signal);
+  controller.stop();
+  return 0;
+}
+
 int serve(const Arguments& arguments) {
   hyades::farm::set_log("hyades coordinator", arguments.log);
+  // Jobs, films and pictures are nobody's but the owner's and the group's, whatever the caller
+  // allows.
+  ::umask(::umask(0) | S_IWGRP | S_IRWXO);
   // Before the folder is touched.
   auto door = hyades::farm::open_door(arguments.listen);
   if (!door) {
@@ -231,65 +280,52 @@ int serve(const Arguments& arguments) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   auto controller = Controller::open(arguments.controller);
-  if (!controller) {
-    hyades::farm::log(LogLevel::error, controller.error().message);
-    return 1;
-  }
-  {
-    auto authority = open_authority(arguments, door->token, **controller);
-    if (!authority) {
-      hyades::farm::log(LogLevel::error, authority.error().message);
-      return 1;
-    }
-    auto server = Server::start(*door, **controller, **authority);
-    if (!server) {
-      hyades::farm::log(LogLevel::error, server.error().message);
-      return 1;
-    }
-    note_address(arguments.controller.folder + "/address", (*server)->address() + "\n");
-    if (const grpc::Status room = (*controller)->disk().admit(0); !room.ok()) {
-      hyades::farm::log(LogLevel::error, room.error_message());
-    }
-    auto http = open_http(arguments, **controller, **authority);
-    if (!http) {
-      hyades::farm::log(LogLevel::error, http.error().message);
-      return 1;
-    }
-    const auto notifier = open_notifier(arguments, **controller, http->get());
-    note_address(arguments.controller.folder + "/http-address", *http ? (*http)->url() + "\n" : "");
-    tell_where((*server)->address(), http->get());
-    int signal = 0;
-    sigwait(&signals, &signal);
-    (*controller)->stop();
-  }
-  return 0;
+  if (!controller) return log_and_fail(controller.error().message);
+  return serve_until(signals, arguments, *door, **controller);
 }
 
-}  // namespace
+struct Bounds {
+  double low = 0.0;
+  double high = 0.0;
+};
 
-int main(int argc, char** argv) {
-  hyades::core::ignore_file_size_signal();
-  hyades::farm::die_with_words("hyades coordinator",
-                               "what was promised is durable: start it again");
-  Arguments arguments;
-  CLI::App app("Owns jobs, leases their units to workers, merges the films and writes the outputs.",
-               "hyades coordinator");
+/// An option in seconds, whose default is what `value` is.
+void add_seconds(CLI::App& app, const std::string& name, Duration& value, const Bounds& bounds,
+                 const std::string& text) {
+  app.add_option_function<double>(
+         name, [&value](double said) { value = seconds(said); }, text)
+      ->check(hyades::cli::in_range(bounds.low, bounds.high))
+      ->default_str(fmt::format("{:g}", std::chrono::duration<double>(value).count()));
+}
+
+void add_addresses(CLI::App& app, Arguments& arguments) {
   app.add_option("--data", arguments.controller.folder, "folder for everything that is kept")
       ->required();
   app.add_option("--listen", arguments.listen.address, "HOST:PORT; port 0 takes a free one")
       ->check(hyades::cli::address_error)
       ->capture_default_str();
-  auto* http = app.add_option("--http", arguments.http,
-                              "HOST:PORT of the dashboard and the HTTP API, or off; where the "
-                              "default is taken it goes without")
-                   ->check([](const std::string& text) {
-                     return text == "off" ? std::string() : hyades::cli::address_error(text);
-                   })
-                   ->capture_default_str();
+  app.add_option("--http", arguments.http,
+                 "HOST:PORT of the dashboard and the HTTP API, or off; where the "
+                 "default is taken it goes without")
+      ->check([](const std::string& text) {
+        return text == "off" ? std::string() : hyades::cli::address_error(text);
+      })
+      ->capture_default_str();
+  app.add_option(
+         "--health", arguments.health,
+         "HOST:PORT of /healthz, /readyz and /metrics alone, where nobody who crowds --http "
+         "is in their way; or off")
+      ->check([](const std::string& text) {
+        return text == "off" ? std::string() : hyades::cli::address_error(text);
+      })
+      ->capture_default_str();
   app.add_option(
       "--http-name", arguments.http_names,
       "a name by which browsers reach the dashboard, beside addresses and this machine's "
       "own names; only needed where no token is asked for; again for others");
+}
+
+void add_guards(CLI::App& app, Arguments& arguments) {
   app.add_option("--tls-cert", arguments.listen.cert_file, "certificate (PEM): TLS");
   app.add_option("--tls-key", arguments.listen.key_file, "its private key (PEM)");
   app.add_option("--tls-ca", arguments.listen.ca_file,
@@ -301,6 +337,9 @@ int main(int argc, char** argv) {
       "file with one token for all roles, beside those of 'hyades token' (docs/safety.md)");
   app.add_flag("--insecure", arguments.listen.insecure,
                "plaintext, and no token where none was made, also beyond this machine");
+}
+
+void add_news(CLI::App& app, Arguments& arguments) {
   app.add_option("--notify", arguments.news.hooks,
                  "URL that hears, as JSON, of jobs that are done, failed or stand still; again for "
                  "others")
@@ -308,56 +347,73 @@ int main(int argc, char** argv) {
   app.add_option("--notify-chat", arguments.news.chats,
                  "the same for a chat server's incoming webhook: {\"text\": ...}")
       ->check(hook_error);
+  app.add_flag(
+      "--notify-private", arguments.news.hook.may_be_private,
+      "names in URLs of --notify and --notify-chat may stand for addresses of this machine "
+      "or of private networks");
   app.add_option("--dashboard-url", arguments.news.dashboard,
                  "the dashboard as people reach it, for links (default: as --http has it)");
-  hyades::cli::add_log_options(app, arguments.log);
-  app.add_option("--unit-seconds", arguments.unit_seconds, "what one thread shall take for a unit")
-      ->check(CLI::Range(0.01, 3600.0))
-      ->capture_default_str();
-  app.add_option("--lease-seconds", arguments.lease_seconds,
-                 "a worker that is silent for so long loses its units")
-      ->check(CLI::Range(1.0, 3600.0))
-      ->capture_default_str();
-  app.add_option("--class-patience", arguments.class_patience,
-                 "seconds after which a frame begins again whose class of workers has vanished")
-      ->check(CLI::Range(0.1, 1e6))
-      ->capture_default_str();
-  app.add_option("--adoption-seconds", arguments.adoption_seconds,
-                 "after a start, workers have so long to say what they hold before others get it")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
-  app.add_option("--stall-seconds", arguments.stall_seconds,
-                 "a unit of which a worker gets no sample done for so long is taken from it")
-      ->check(CLI::Range(1.0, 1e6))
-      ->capture_default_str();
-  app.add_option("--compact-mb", arguments.compact_mb,
-                 "a job's film log is rewritten when it has grown by this much")
-      ->check(CLI::Range(0.01, 1e6))
-      ->capture_default_str();
-  app.add_option("--disk-budget", arguments.controller.disk.budget,
+}
+
+void add_times(CLI::App& app, ControllerOptions& options) {
+  add_seconds(app, "--unit-seconds", options.unit_time, {0.01, 3600.0},
+              "what one thread shall take for a unit");
+  add_seconds(app, "--lease-seconds", options.lease_time, {1.0, 3600.0},
+              "a worker that is silent for so long loses its units");
+  add_seconds(app, "--class-patience", options.class_patience, {0.1, 1e6},
+              "seconds after which a frame begins again whose class of workers has vanished");
+  add_seconds(app, "--adoption-seconds", options.adoption_time, {0.0, 3600.0},
+              "after a start, workers have so long to say what they hold before others get it");
+  add_seconds(app, "--stall-seconds", options.stall_time, {1.0, 1e6},
+              "a unit of which a worker gets no sample done for so long is taken from it");
+}
+
+void add_limits(CLI::App& app, ControllerOptions& options) {
+  app.add_option_function<double>(
+         "--compact-mb",
+         [&options](double said) { options.compact_bytes = static_cast<uint64_t>(said * 1e6); },
+         "a job's film log is rewritten when it has grown by this much")
+      ->check(hyades::cli::in_range(0.01, 1e6))
+      ->default_str(fmt::format("{:g}", static_cast<double>(options.compact_bytes) * 1e-6));
+  app.add_option("--disk-budget", options.disk.budget,
                  "most bytes that the data may take, such as 200G (default: no limit)")
       ->transform(CLI::AsSizeValue(false));
-  app.add_option("--disk-reserve", arguments.controller.disk.reserve,
+  app.add_option("--disk-reserve", options.disk.reserve,
                  "bytes of the disk to keep free (default: a twentieth of it, at most 2G)")
       ->transform(CLI::AsSizeValue(false));
-  app.add_option("--film-memory", arguments.controller.film_memory,
+  app.add_option("--film-memory", options.film_memory,
                  "most bytes that films of frames in work may take in memory; jobs of which one "
                  "takes more are refused (default: half of the machine's memory)")
       ->transform(CLI::AsSizeValue(false));
   app.add_option_function<std::string>(
          "--price",
-         [&](const std::string& text) {
-           if (const auto wrong = read_price(text, arguments.controller.price); !wrong.empty()) {
+         [&options](const std::string& text) {
+           if (const auto wrong = read_price(text, options.price); !wrong.empty()) {
              throw CLI::ValidationError("--price", wrong);
            }
          },
          "what an hour of one rendering thread costs, and in which currency: jobs tell what they "
          "have cost")
       ->type_name("PER_CORE_HOUR[:CURRENCY]");
-  app.add_option("--asset-grace", arguments.asset_grace,
-                 "seconds that files which no job needs any more stay after their last use")
-      ->check(CLI::Range(0.0, 1e9))
-      ->capture_default_str();
+  add_seconds(app, "--asset-grace", options.asset_grace, {0.0, 1e9},
+              "seconds that files which no job needs any more stay after their last use");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hyades::core::ignore_file_size_signal();
+  hyades::farm::die_with_words("hyades coordinator",
+                               "what was promised is durable: start it again");
+  Arguments arguments;
+  CLI::App app("Owns jobs, leases their units to workers, merges the films and writes the outputs.",
+               "hyades coordinator");
+  add_addresses(app, arguments);
+  add_guards(app, arguments);
+  add_news(app, arguments);
+  hyades::cli::add_log_options(app, arguments.log);
+  add_times(app, arguments.controller);
+  add_limits(app, arguments.controller);
   hyades::cli::add_config_option(app);
   app.footer(
       "examples:\n"
@@ -375,15 +431,8 @@ int main(int argc, char** argv) {
           hyades::cli::parse_command_line(app, argc - skipped, argv + skipped, kBadArguments)) {
     return *status;
   }
-  arguments.http_asked = http->count() > 0;
+  arguments.http_asked = app["--http"]->count() > 0;
   arguments.listen.asks_tokens = true;  // open_authority sees to it
   arguments.controller.finisher = hyades::core::program_folder() + "hyades-film";
-  arguments.controller.unit_time = seconds(arguments.unit_seconds);
-  arguments.controller.lease_time = seconds(arguments.lease_seconds);
-  arguments.controller.asset_grace = seconds(arguments.asset_grace);
-  arguments.controller.class_patience = seconds(arguments.class_patience);
-  arguments.controller.adoption_time = seconds(arguments.adoption_seconds);
-  arguments.controller.stall_time = seconds(arguments.stall_seconds);
-  arguments.controller.compact_bytes = static_cast<uint64_t>(arguments.compact_mb * 1e6);
   return serve(arguments);
 }

@@ -1,4 +1,4 @@
-#include "cli/denoise_command.h"
+#include "cli/film_commands.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "cli/command_line.h"

@@ -1,8 +1,4 @@
-#include "cli/compare_command.h"
-#include "cli/contact_sheet_command.h"
-#include "cli/denoise_command.h"
-#include "cli/finish_command.h"
-#include "cli/merge_command.h"
+#include "cli/film_commands.h"
 #include "cli/program.h"
 #include "core/base/machine.h"
 
@@ -10,9 +6,10 @@ int main(int argc, char** argv) {
   using namespace hyades::cli;
   hyades::core::ignore_file_size_signal();
   constexpr ProgramCommand kCommands[] = {
-      {"compare", compare_command}, {"contact-sheet", contact_sheet_command},
-      {"denoise", denoise_command}, {"finish", finish_command},
-      {"merge", merge_command},     {"video", finish_video_command},
+      {"compare", compare_command},    {"contact-sheet", contact_sheet_command},
+      {"denoise", denoise_command},    {"encode", encode_command},
+      {"finish", finish_command},      {"merge", merge_command},
+      {"video", finish_video_command},
   };
   return run_program(kCommands, argc, argv);
 }

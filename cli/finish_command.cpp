@@ -1,12 +1,17 @@
-#include "cli/finish_command.h"
+#include "cli/film_commands.h"
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 #include "coordinator/finisher/confine.h"
 #include "coordinator/finisher/finish_task.h"
@@ -14,7 +19,6 @@
 #include "core/base/assets.h"
 #include "core/base/fp_mode.h"
 #include "core/base/hash.h"
-#include "core/base/landlock.h"
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/video.h"
@@ -39,9 +43,9 @@ core::Status write_result(const std::string& folder, const std::string& outputs,
 core::Status finish(const std::string& folder) {
   auto task = coordinator::read_finish_task(folder);
   if (!task) return task.error();
-  // A machine without Landlock finishes all the same; the coordinator has said so at its start.
-  const core::Status confined = coordinator::confine_finisher(folder, task->folder);
-  if (!confined && core::landlock_lacks().empty()) return confined;
+  if (auto confined = coordinator::confine_finisher(folder, task->folder); !confined) {
+    return confined;
+  }
   auto film = coordinator::read_finish_film(folder);
   if (!film) return film.error();
   std::shared_ptr<const core::DisplayTransform> display;
@@ -70,6 +74,7 @@ core::Status make_video(const std::string& folder) {
   const auto task = coordinator::read_video_task(folder);
   if (!task) return task.error();
   core::VideoPatience patience;
+  patience.starter = {"/proc/self/exe", "encode", task->frames.folder};
   patience.stop = [parent = ::getppid()] { return g_asked_to_end != 0 || ::getppid() != parent; };
   auto made = core::make_video(task->video, task->frames, patience);
   if (!made) return made;
@@ -89,6 +94,20 @@ int finish_command(int argc, char** argv) {
     return 1;
   }
   return 0;
+}
+
+int encode_command(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: hyades-film encode FOLDER PROGRAM ARGUMENTS... (it uses it)\n");
+    return 2;
+  }
+  if (auto confined = coordinator::confine_encoder(argv[2], argv[1]); !confined) {
+    std::fprintf(stderr, "it cannot be held in: %s\n", confined.error().message.c_str());
+    return 1;
+  }
+  ::execv(argv[2], argv + 2);
+  std::fprintf(stderr, "%s: %s\n", argv[2], std::strerror(errno));
+  return 1;
 }
 
 int finish_video_command(int argc, char** argv) {

@@ -15,6 +15,7 @@
 #include "cli/job_frames.h"
 #include "cli/join_films.h"
 #include "cli/load_job.h"
+#include "cli/number_range.h"
 #include "cli/videos.h"
 #include "core/base/fp_mode.h"
 
@@ -41,7 +42,7 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
   app.add_option("--samples", options.samples,
                  "samples per pixel that the films were rendered with (default: the job's)")
-      ->check(CLI::Range(1U, 1U << 24U));
+      ->check(in_range(1U, 1U << 24U));
   app.add_flag("--film", options.film, "also write each frame's whole film (NAME.film.exr)");
   app.add_flag("--quiet", options.quiet, "say nothing where all goes well");
   app.footer(

@@ -6,7 +6,9 @@
 
 #include "cli/command_line.h"
 #include "cli/load_job.h"
-#include "cli/printable.h"
+#include "cli/number_range.h"
+#include "core/base/printable.h"
+#include "core/base/text.h"
 #include "core/job/scene_document.h"
 #include "import/write_scene_job.h"
 
@@ -29,7 +31,7 @@ int import_command(int argc, char** argv) {
                  "none: the scene stands still)");
   app.add_flag("--loop", request.loop, "the animation begins again where it ends");
   app.add_option("--fps", request.fps, "frames per second of the job")
-      ->check(CLI::Range(0.001F, 1e6F))
+      ->check(in_range(0.001F, 1e6F))
       ->capture_default_str();
   app.add_flag("--overwrite", request.overwrite, "replace files that are there already");
   bool missing_textures = false;
@@ -43,7 +45,7 @@ int import_command(int argc, char** argv) {
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
   if (!core::is_scene_file(request.scene)) {
     std::fprintf(stderr, "%s: expected a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)\n",
-                 printable(request.scene).c_str());
+                 core::printable(request.scene).c_str());
     return kBadInput;
   }
   if (request.job.empty()) {
@@ -56,12 +58,12 @@ int import_command(int argc, char** argv) {
     return kBadInput;
   }
   for (const std::string& note : written->notes) {
-    std::fprintf(stderr, "%s\n", printable(note).c_str());
+    std::fprintf(stderr, "%s\n", core::printable(note).c_str());
   }
   std::fprintf(stderr, "wrote %s", request.job.c_str());
   if (written->files.size() > 1) {
-    std::fprintf(stderr, " and %zu file%s beside it", written->files.size() - 1,
-                 written->files.size() == 2 ? "" : "s");
+    std::fprintf(stderr, " and %s beside it",
+                 core::counted(written->files.size() - 1, "file").c_str());
   }
   std::fprintf(stderr, "\n");
   return 0;

@@ -249,7 +249,7 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
 }
 
 coordinator::FrameKey JobFrames::frame_key(int32_t frame) {
-  const std::lock_guard lock(keys_mutex_);
+  const core::MutexLock lock(keys_mutex_);
   if (const auto known = keys_.find(frame); known != keys_.end()) return known->second;
   const coordinator::FrameKey key =
       // Another machine (or build) may give other bits: its films are not continued here.
@@ -262,7 +262,7 @@ coordinator::FrameKey JobFrames::frame_key(int32_t frame) {
 }
 
 void JobFrames::note(int32_t frame, const core::RenderCounters& counters) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(totals_mutex_);
   totals_.counters.add(counters);
   for (const core::BadSample& bad : counters.examples) {
     if (totals_.bad.size() < kBadExamples) totals_.bad.push_back({frame, bad});
@@ -270,7 +270,7 @@ void JobFrames::note(int32_t frame, const core::RenderCounters& counters) {
 }
 
 RunTotals JobFrames::totals() const {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(totals_mutex_);
   return totals_;
 }
 

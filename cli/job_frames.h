@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <mutex>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/load_job.h"
+#include "coordinator/film_store/film_records.h"
 #include "coordinator/local/frame_work.h"
-#include "coordinator/store/film_records.h"
+#include "core/base/mutex.h"
 #include "core/film/film_exr.h"
 #include "core/film/film_info.h"
 #include "core/finish/display_transform.h"
@@ -98,10 +99,11 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   int32_t first_frame_ = 0;
   /// Of first_frame_, until a frame is prepared: from then on only the thread that prepares has it.
   std::shared_ptr<const core::Scene> first_scene_;
-  std::mutex keys_mutex_;
-  std::map<int32_t, coordinator::FrameKey> keys_;  ///< of some frames; guarded by keys_mutex_
-  mutable std::mutex mutex_;
-  RunTotals totals_;  ///< guarded by mutex_
+  core::Mutex keys_mutex_;
+  std::map<int32_t, coordinator::FrameKey> keys_
+      HYADES_GUARDED_BY(keys_mutex_);  ///< of some frames
+  mutable core::Mutex totals_mutex_;
+  RunTotals totals_ HYADES_GUARDED_BY(totals_mutex_);
 };
 
 }  // namespace hyades::cli

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cli/frame_range.h"
+#include "cli/number_range.h"
 #include "core/job/parse.h"
 
 namespace hyades::cli {

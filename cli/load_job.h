@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,8 +25,9 @@ struct LoadedJob {
 /// error and returns nothing where there is a complaint.
 std::optional<LoadedJob> load_job(const std::string& path, const SceneOptions& scene = {});
 
-/// The same without printing complaints about the job: they go to `diagnostics`, and what could be
-/// read is returned. Nothing (and a message) where there is no such file or the scene is broken.
+/// Reads `path` as load_job does, but prints no complaint about the job: they go to `diagnostics`,
+/// and what could be read is returned. Nothing (and a message) where there is no such file or the
+/// scene is broken.
 std::optional<LoadedJob> read_job_file(const std::string& path, core::Diagnostics& diagnostics,
                                        const SceneOptions& scene = {});
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/client_commands.h"
 #include "cli/completion.h"
 #include "core/base/machine.h"
 #include "core/base/text.h"
@@ -50,32 +51,11 @@ constexpr Command kCommands[] = {
     {"denoise", "hyades-film", "take the noise out of a picture"},
     {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
 #ifdef HYADES_FARM
-    {"submit", "hyades-client", "give a job to the farm"},
-    {"jobs", "hyades-client", "list the farm's jobs"},
-    {"status", "hyades-client", "how a job and its frames are"},
-    {"watch", "hyades-client", "show how a job gets on, until it has ended"},
-    {"fetch", "hyades-client", "bring a job's finished pictures here"},
-    {"logs", "hyades-client", "what has happened to a job"},
-    {"trace", "hyades-client", "write what was done for a job when, for ui.perfetto.dev"},
-    {"explain", "hyades-client", "why a job does or does not get on"},
-    {"pause", "hyades-client", "lease no more units of a job"},
-    {"resume", "hyades-client", "let a paused job go on"},
-    {"cancel", "hyades-client", "end a job"},
-    {"retry", "hyades-client", "take up a job's failed frames again"},
-    {"priority", "hyades-client", "change a job's priority"},
-    {"delete", "hyades-client", "forget a job that has ended"},
-    {"top", "hyades-client", "show jobs and workers as they change"},
-    {"autoscale", "hyades-client", "have a command start and end workers as the queue needs them"},
-    {"workers", "hyades-client", "list the farm's workers"},
-    {"drain", "hyades-client", "let a worker finish and leave"},
-    {"quarantine", "hyades-client", "give a worker no more work"},
-    {"release", "hyades-client", "end a worker's quarantine"},
-    {"audit", "hyades-client", "who did what on the farm"},
-    {"certs", "hyades-client",
-     "make certificates: an authority of the farm's own, and what it signs"},
-    {"token", "hyades-client", "make, list and revoke the tokens that open the farm"},
+#define HYADES_ROW(word, help) {#word, "hyades-client", help},
+    HYADES_CLIENT_COMMANDS(HYADES_ROW)
+#undef HYADES_ROW
 #endif
-    {"completion", nullptr, "print a script that completes commands in bash, zsh or fish"},
+        {"completion", nullptr, "print a script that completes commands in bash, zsh or fish"},
 };
 
 void print_help() {

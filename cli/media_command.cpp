@@ -12,6 +12,7 @@
 #include "cli/media_maker.h"
 #include "cli/media_swatch.h"
 #include "cli/media_text.h"
+#include "cli/number_range.h"
 #include "core/base/atomic_file.h"
 #include "core/base/parallel.h"
 
@@ -93,6 +94,84 @@ int swatch(const std::vector<std::string>& names, SwatchOptions options, const L
   return 0;
 }
 
+/// What the command line says, whichever of the four it calls.
+struct MediaOptions {
+  std::string unit = "m";
+  bool json = false;
+  std::vector<std::string> names;
+  std::string file;
+  MediumDescription wanted;
+  SwatchOptions swatch;
+  float size = 0.0F;  ///< of a ball of the swatch, in `unit`; 0: nothing was said
+};
+
+void add_unit(CLI::App& command, MediaOptions& said) {
+  command
+      .add_option("--units", said.unit, "unit of length of all numbers, files' too: mm, cm or m")
+      ->check(CLI::IsMember({"mm", "cm", "m"}))
+      ->capture_default_str();
+}
+
+const CLI::App* declare_list(CLI::App& app, MediaOptions& said) {
+  CLI::App& command = *app.add_subcommand("list", "lists the presets");
+  command.add_flag("--json", said.json, "as JSON, with all numbers");
+  add_unit(command, said);
+  return &command;
+}
+
+const CLI::App* declare_show(CLI::App& app, MediaOptions& said) {
+  CLI::App& command =
+      *app.add_subcommand("show", "tells the numbers of presets and of files of media");
+  command.add_option("media", said.names, "presets, or files (.json, .yaml); without: all presets");
+  command.add_flag("--json", said.json, "as JSON");
+  add_unit(command, said);
+  return &command;
+}
+
+const CLI::App* declare_make(CLI::App& app, MediaOptions& said) {
+  CLI::App& command = *app.add_subcommand("make", "makes a file of media from another description");
+  command.add_option("--name", said.wanted.name, "what it is called")->capture_default_str();
+  command.add_option("--preset", said.wanted.preset,
+                     "a measured medium, or a file of one; with --scale");
+  command.add_option("--albedo", said.wanted.albedo,
+                     "single-scattering albedo, with --mean-free-path");
+  command.add_option("--mean-free-path", said.wanted.mean_free_path, "how far light goes");
+  command.add_option("--color", said.wanted.color, "a colour such as 0.9,0.6,0.4 or '#d8c8a8'");
+  command.add_option("--depth", said.wanted.depth, "white light has the colour after this way");
+  command.add_option("--radius", said.wanted.radius,
+                     "a thick body has the colour, and light loses its direction over this way");
+  command.add_option("--g", said.wanted.g, "mean cosine (default: 0, or the preset's)")
+      ->check(in_range(-0.999F, 0.999F));
+  command
+      .add_option("--index", said.wanted.index,
+                  "index of refraction (default: 1.33, or the preset's)")
+      ->check(in_range(0.01F, 100.0F));
+  command
+      .add_option("--scale", said.wanted.scale,
+                  "multiplies absorption and scattering: concentration")
+      ->check(in_range(0.0F, 1e9F));
+  command.add_option("--output", said.file,
+                     "file (.json or .yaml; default: YAML on standard output)");
+  command.add_flag("--json", said.json, "JSON, whatever the file is called");
+  add_unit(command, said);
+  return &command;
+}
+
+void declare_swatch(CLI::App& app, MediaOptions& said) {
+  CLI::App& command = *app.add_subcommand("swatch", "renders a row of balls of media");
+  command.add_option("media", said.names, "presets, or files (.json, .yaml)")->required();
+  command.add_option("--output", said.swatch.file, "the picture (.png, .jpg or .exr)")->required();
+  command.add_option("--size", said.size, "diameter of a ball (default: 20 mm)")
+      ->check(in_range(1e-6F, 1e6F));
+  command.add_option("--samples", said.swatch.samples, "samples per pixel")
+      ->check(in_range(1U, 1U << 20U))
+      ->capture_default_str();
+  command.add_option("--threads", said.swatch.threads, "rendering threads")
+      ->check(in_range(1, 1024))
+      ->capture_default_str();
+  add_unit(command, said);
+}
+
 }  // namespace
 
 /// `hyades media list|show|make|swatch`.
@@ -100,62 +179,12 @@ int media_command(int argc, char** argv) {
   CLI::App app("Measured media: their numbers and colours; media files from other descriptions.",
                "hyades media");
   app.require_subcommand(1);
-  std::string unit = "m";
-  bool json = false;
-  std::vector<std::string> names;
-  std::string file;
-  MediumDescription wanted;
-  SwatchOptions options;
-  options.threads = core::hardware_threads();
-  float size = 0.0F;
-  const auto add_unit = [&](CLI::App* command) {
-    command->add_option("--units", unit, "unit of length of all numbers, files' too: mm, cm or m")
-        ->check(CLI::IsMember({"mm", "cm", "m"}))
-        ->capture_default_str();
-  };
-
-  CLI::App* lists = app.add_subcommand("list", "lists the presets");
-  lists->add_flag("--json", json, "as JSON, with all numbers");
-  add_unit(lists);
-
-  CLI::App* shows =
-      app.add_subcommand("show", "tells the numbers of presets and of files of media");
-  shows->add_option("media", names, "presets, or files (.json, .yaml); without: all presets");
-  shows->add_flag("--json", json, "as JSON");
-  add_unit(shows);
-
-  CLI::App* makes = app.add_subcommand("make", "makes a file of media from another description");
-  makes->add_option("--name", wanted.name, "what it is called")->capture_default_str();
-  makes->add_option("--preset", wanted.preset, "a measured medium, or a file of one; with --scale");
-  makes->add_option("--albedo", wanted.albedo, "single-scattering albedo, with --mean-free-path");
-  makes->add_option("--mean-free-path", wanted.mean_free_path, "how far light goes");
-  makes->add_option("--color", wanted.color, "a colour such as 0.9,0.6,0.4 or '#d8c8a8'");
-  makes->add_option("--depth", wanted.depth, "white light has the colour after this way");
-  makes->add_option("--radius", wanted.radius,
-                    "a thick body has the colour, and light loses its direction over this way");
-  makes->add_option("--g", wanted.g, "mean cosine (default: 0, or the preset's)")
-      ->check(CLI::Range(-0.999F, 0.999F));
-  makes->add_option("--index", wanted.index, "index of refraction (default: 1.33, or the preset's)")
-      ->check(CLI::Range(0.01F, 100.0F));
-  makes->add_option("--scale", wanted.scale, "multiplies absorption and scattering: concentration")
-      ->check(CLI::Range(0.0F, 1e9F));
-  makes->add_option("--output", file, "file (.json or .yaml; default: YAML on standard output)");
-  makes->add_flag("--json", json, "JSON, whatever the file is called");
-  add_unit(makes);
-
-  CLI::App* paints = app.add_subcommand("swatch", "renders a row of balls of media");
-  paints->add_option("media", names, "presets, or files (.json, .yaml)")->required();
-  paints->add_option("--output", options.file, "the picture (.png, .jpg or .exr)")->required();
-  paints->add_option("--size", size, "diameter of a ball (default: 20 mm)")
-      ->check(CLI::Range(1e-6F, 1e6F));
-  paints->add_option("--samples", options.samples, "samples per pixel")
-      ->check(CLI::Range(1U, 1U << 20U))
-      ->capture_default_str();
-  paints->add_option("--threads", options.threads, "rendering threads")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  add_unit(paints);
-
+  MediaOptions said;
+  said.swatch.threads = core::hardware_threads();
+  const CLI::App* lists = declare_list(app, said);
+  const CLI::App* shows = declare_show(app, said);
+  const CLI::App* makes = declare_make(app, said);
+  declare_swatch(app, said);
   app.footer(
       "examples:\n"
       "  hyades media list\n"
@@ -166,12 +195,12 @@ int media_command(int argc, char** argv) {
       "  hyades media swatch espresso cream wax.json --output row.png\n"
       "exit status: 0 done, 1 a file could not be written, 2 the arguments or files are wrong");
   if (const auto status = parse_command_line(app, argc, argv, kBadInput)) return *status;
-  const LengthUnit in = unit_called(unit);
-  if (lists->parsed()) return list(json, in);
-  if (shows->parsed()) return show(names, json, in);
-  if (makes->parsed()) return make(wanted, file, json, in);
-  options.size = size > 0.0F ? size : 0.02F / in.metres;
-  return swatch(names, options, in);
+  const LengthUnit in = unit_called(said.unit);
+  if (lists->parsed()) return list(said.json, in);
+  if (shows->parsed()) return show(said.names, said.json, in);
+  if (makes->parsed()) return make(said.wanted, said.file, said.json, in);
+  said.swatch.size = said.size > 0.0F ? said.size : 0.02F / in.metres;
+  return swatch(said.names, said.swatch, in);
 }
 
 }  // namespace hyades::cli

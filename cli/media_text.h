@@ -19,7 +19,7 @@ std::string media_table(const std::vector<KnownMedium>& media);
 /// All that is known of one, for people.
 std::string medium_sheet(const KnownMedium& medium, const LengthUnit& unit);
 
-/// The same as a JSON list.
+/// All that is known of each, as a JSON list for programs.
 std::string media_json(const std::vector<KnownMedium>& media, const LengthUnit& unit);
 
 /// A file of media that jobs of that unit read: JSON of the simple kind, or YAML.

@@ -1,4 +1,4 @@
-#include "cli/merge_command.h"
+#include "cli/film_commands.h"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,6 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/join_films.h"
+#include "core/base/text.h"
 #include "core/film/film_exr.h"
 
 namespace hyades::cli {
@@ -45,9 +46,9 @@ int merge(const MergeOptions& options) {
     return merge_error(written.error().message);
   }
   if (options.quiet) return 0;
-  std::printf("%s: frame %d of %s: %zu film%s, %s\n", options.output.c_str(), whole->info.frame,
-              whole->info.job_name.c_str(), options.inputs.size(),
-              options.inputs.size() == 1 ? "" : "s", share_held(*whole).c_str());
+  std::printf("%s: frame %d of %s: %s, %s\n", options.output.c_str(), whole->info.frame,
+              whole->info.job_name.c_str(), core::counted(options.inputs.size(), "film").c_str(),
+              share_held(*whole).c_str());
   if (const std::string missing = what_is_missing(*whole); !missing.empty()) {
     std::printf("missing: %s\n", missing.c_str());
   }

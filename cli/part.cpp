@@ -37,30 +37,30 @@ int32_t cut(int64_t origin, int64_t length, int64_t part, int64_t parts) {
 
 }  // namespace
 
-core::Result<SamplesWish> parse_samples(const std::string& text) {
+core::Result<SamplesOption> parse_samples(const std::string& text) {
   const core::Error wrong{text +
                           ": expected 1 to 16777216, or samples such as 0-31 or 0-31/256 (of "
                           "256)"};
-  SamplesWish wish;
+  SamplesOption option;
   std::string_view rest = text;
   const size_t dash = rest.find('-');
   if (dash == std::string_view::npos) {
     const auto count = number(rest);
     if (!count || *count < 1 || *count > kMostSamples) return wrong;
-    wish.of = *count;
-    return wish;
+    option.of = *count;
+    return option;
   }
   if (const size_t slash = rest.find('/'); slash != std::string_view::npos) {
     const auto of = number(rest.substr(slash + 1));
     if (!of || *of < 1 || *of > kMostSamples) return wrong;
-    wish.of = *of;
+    option.of = *of;
     rest = rest.substr(0, slash);
   }
   const auto first = number(rest.substr(0, dash));
   const auto last = number(rest.substr(dash + 1));
   if (!first || !last || *last < *first || *last >= kMostSamples) return wrong;
-  wish.range = SampleRange{*first, *last};
-  return wish;
+  option.range = SampleRange{*first, *last};
+  return option;
 }
 
 core::Result<core::BatchRange> batches_of(const SampleRange& range, uint32_t samples) {
@@ -86,28 +86,29 @@ core::Result<core::BatchRange> batches_of(const SampleRange& range, uint32_t sam
                           core::batch_count(end) - range.first / core::kBatchSamples};
 }
 
-core::Result<TileWish> parse_tile(const std::string& text) {
+core::Result<TileOption> parse_tile(const std::string& text) {
   const std::string_view words = text;
   const size_t slash = words.find('/');
   if (slash != std::string_view::npos) {
     const auto index = number(words.substr(0, slash));
     const auto count = number(words.substr(slash + 1));
     if (index && count && *index >= 1 && *index <= *count && *count <= kMostTiles) {
-      return TileWish{*index, *count};
+      return TileOption{*index, *count};
     }
   }
   return core::Error{text + ": expected a part such as 2/3, from 1/3 to 3/3"};
 }
 
-core::Result<core::PixelRect> tile_of(const core::PixelRect& whole, const TileWish& wish) {
+core::Result<core::PixelRect> tile_of(const core::PixelRect& whole, const TileOption& option) {
   const int64_t most = std::max<int64_t>(whole.area() / kSmallestTile, 1);
-  if (wish.count > most) {
-    return core::Error{fmt::format("--tile {}/{}: {} x {} pixels have at most {} parts", wish.index,
-                                   wish.count, whole.width(), whole.height(), most)};
+  if (option.count > most) {
+    return core::Error{fmt::format("--tile {}/{}: {} x {} pixels have at most {} parts",
+                                   option.index, option.count, whole.width(), whole.height(),
+                                   most)};
   }
   core::PixelRect tile = whole;
-  uint32_t index = wish.index - 1;
-  for (uint32_t count = wish.count; count > 1;) {
+  uint32_t index = option.index - 1;
+  for (uint32_t count = option.count; count > 1;) {
     const uint32_t before = count / 2;
     const bool wide = tile.width() >= tile.height();
     const int32_t at = wide ? cut(tile.x0, tile.width(), before, count)

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
+
+#include <CLI/CLI.hpp>
 
 #include "cli/address_option.h"
 #include "farm/channel.h"
@@ -13,10 +13,16 @@ namespace hyades::cli {
 /// shown; in the help they stand under `group`.
 inline void add_peer_options(CLI::App& app, farm::Peer& peer, const std::string& group) {
   const auto grouped = [&](CLI::Option* option) { option->group(group); };
-  grouped(app.add_option("--coordinator", peer.address, "HOST:PORT of the coordinator")
+  // Not by check(): CLI11 2.4 passes over a variable of the environment that fails it.
+  const auto set_address = [&peer](const std::string& text) {
+    const std::string error = address_error(text);
+    if (!error.empty()) throw CLI::ValidationError("--coordinator", error);
+    peer.address = text;
+  };
+  grouped(app.add_option_function<std::string>("--coordinator", set_address,
+                                               "HOST:PORT of the coordinator")
               ->envname("HYADES_COORDINATOR")
-              ->check(address_error)
-              ->capture_default_str());
+              ->default_str(peer.address));
   grouped(app.add_option("--token-file", peer.token_file, "file with the farm's token")
               ->envname("HYADES_TOKEN_FILE"));
   grouped(app.add_option("--tls-ca", peer.ca_file,

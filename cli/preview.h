@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/job/job.h"
 
 namespace hyades::cli {

@@ -1,12 +1,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -101,116 +105,59 @@ int report(const RenderOptions& options, const JobFrames& frames,
   return outcome.failures.empty() ? 0 : 1;
 }
 
-}  // namespace
+/// Says what is wrong.
+int refuse(const core::Error& error, int status = kBadInput) {
+  std::fprintf(stderr, "%s\n", error.message.c_str());
+  return status;
+}
 
-/// `hyades render job.yaml`.
-int render_command(int argc, char** argv) {
-  const auto begin = std::filesystem::file_time_type::clock::now();
-  RenderOptions options;
-  if (const auto status = parse_render_options(argc, argv, options)) return *status;
-  auto loaded = load_for_render(options);
-  if (!loaded) return kBadInput;
-  const core::Job& job = loaded->job;
-  if (options.preview > 0 && options.frames.empty())
-    options.frames = std::to_string(job.frames.first);
-  const auto numbers = select_frames(job, options.frames);
-  if (!numbers) return kBadInput;
+core::Status check_film_file(const std::string& file, size_t frames) {
+  if (frames < 2 || file.empty() || file.find('#') != std::string::npos) return {};
+  return core::Error{fmt::format(
+      "--film {}: expected #### in the name, for the frame: there are {}", file, frames)};
+}
 
-  note_cut_chains(options, job);
-  const core::PixelRect window = window_of(options, job);
-  const FilmRoom room = film_room(job, window, options.film_memory);
-  if (const auto fits = room.check(); !fits) {
-    std::fprintf(stderr, "%s: %s\n", options.path.c_str(), fits.error().message.c_str());
-    return kBadInput;
+/// Reads what no frame could be rendered without.
+core::Status load_inputs(JobFrames& frames, bool resume, int32_t first) {
+  if (auto names = frames.check_film_names(); !names) return names;
+  if (auto files = frames.load_files(); !files) return files;
+  // A resumed run may have its first frame behind it.
+  if (resume && frames.outputs_exist(first)) return {};
+  const auto warnings = frames.load_first(first);
+  if (!warnings) return warnings.error();
+  for (const std::string& warning : *warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
-  const std::string film_file = film_file_of(options, job);
-  if (numbers->size() > 1 && !film_file.empty() && film_file.find('#') == std::string::npos) {
-    std::fprintf(stderr, "--film %s: expected #### in the name, for the frame: there are %zu\n",
-                 film_file.c_str(), numbers->size());
-    return kBadInput;
-  }
-  const std::string kept = options.folder + "/.hyades/" + kept_name(options, job);
-  const OutputNote note(kept + ".outputs", *loaded);
-  JobFrames frames(*loaded,
-                   {options.folder, options.film || job.keep_films || options.is_part(), film_file,
-                    options.is_part(), window, note.still_true(), options.texture_memory});
-  if (const auto names = frames.check_film_names(); !names) {
-    std::fprintf(stderr, "%s\n", names.error().message.c_str());
-    return kBadInput;
-  }
-  // No frame could be rendered without them.
-  if (const auto files = frames.load_files(); !files) {
-    std::fprintf(stderr, "%s\n", files.error().message.c_str());
-    return kBadInput;
-  }
-  // Nor, mostly, where the first one cannot. A resumed run may have it behind it.
-  if (!options.resume || !frames.outputs_exist(numbers->front())) {
-    const auto warnings = frames.load_first(numbers->front());
-    if (!warnings) {
-      std::fprintf(stderr, "%s\n", warnings.error().message.c_str());
-      return kBadInput;
-    }
-    for (const std::string& warning : *warnings)
-      std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  }
+  return {};
+}
+
+core::Status check_own_folders(const std::string& folder, const std::string& kept) {
   std::error_code failed;
-  for (const std::string& own : {options.folder + "/.hyades", kept}) {
+  for (const std::string& own : {folder + "/.hyades", kept}) {
     if (!std::filesystem::is_symlink(own, failed)) continue;
-    std::fprintf(stderr, "%s: a symbolic link, expected a folder of the run's own (or none)\n",
-                 own.c_str());
-    return kBadInput;
+    return core::Error{own + ": a symbolic link, expected a folder of the run's own (or none)"};
   }
-  const bool begins_over = !options.resume && std::filesystem::exists(kept, failed);
-  std::filesystem::create_directories(options.folder, failed);
-  if (failed) {
-    std::fprintf(stderr, "%s: the folder could not be made: %s\n", options.folder.c_str(),
-                 failed.message().c_str());
-    return 1;
-  }
+  return {};
+}
+
+coordinator::LocalPlan plan_of(const RenderOptions& options, const core::Job& job,
+                               const std::vector<int32_t>& numbers, const FilmRoom& room) {
   coordinator::LocalPlan plan;
-  plan.frames = *numbers;
-  plan.region = window;
+  plan.frames = numbers;
+  plan.region = room.window;
   plan.samples = job.sampling.samples;
   plan.batches = batches_of(options, job);
   plan.threads = options.threads;
   if (core::makes_splats(job.integrator)) plan.tile_size = coordinator::kSplatTile;
   plan.frames_in_flight = room.frames_in_flight();
-  coordinator::FilmStoreOptions log;
-  log.folder = kept;
-  log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
-  log.resume = options.resume;
+  return plan;
+}
 
-  const bool videos = !job.videos.empty() && !options.is_part();
-  if (videos && !core::have_ffmpeg()) {
-    std::fprintf(stderr, "warning: %s; until then frames' pictures are kept for its videos\n",
-                 core::kNoFfmpeg);
-  }
-  // What is durable is safe however the process ends.
-  watch_for_interrupts();
-  std::optional<Viewer> viewer;
-  std::optional<ShownFilms> shown;
-  if (!options.display.empty()) {
-    viewer.emplace(options.display);
-    shown.emplace(*viewer, job.name, job.frames.first != job.frames.last);
-  }
-  coordinator::LocalRun run(plan, log, frames, frames, shown ? &*shown : nullptr);
-  if (auto started = run.start(); !started) {
-    std::fprintf(stderr, "%s\n", started.error().message.c_str());
-    return 1;
-  }
-  if (begins_over) {
-    std::fprintf(stderr,
-                 "the work kept from an earlier run is given up; --resume would have "
-                 "gone on with it\n");
-  }
-  // The log is ours now, so nobody else writes these files.
-  frames.remove_leftovers(*numbers, begin);
-  note.write();
-  for (const std::string& problem : run.log_problems())
-    std::fprintf(stderr, "%s\n", problem.c_str());
-  ProgressDisplay display(job.name, options.quiet);
+/// Until the run has ended, shows how far it is; false where somebody interrupted it.
+bool follow(coordinator::LocalRun& run, const std::string& name, bool quiet, Viewer* viewer) {
+  ProgressDisplay display(name, quiet);
   const auto tell_of_viewer = [&] {
-    const auto notice = viewer ? viewer->take_notice() : std::nullopt;
+    const auto notice = viewer != nullptr ? viewer->take_notice() : std::nullopt;
     if (!notice) return;
     display.clear();
     std::fprintf(stderr, "%s\n", notice->c_str());
@@ -226,39 +173,136 @@ int render_command(int argc, char** argv) {
   }
   display.clear();
   tell_of_viewer();
-  const coordinator::LocalOutcome outcome = run.outcome();
-  int status = report(options, frames, *numbers, outcome, run.progress());
-  const bool all_frames = core::are_all_frames(job, *numbers);
-  bool complete = outcome.complete && outcome.failures.empty();
-  if (complete && videos) {
-    if (!all_frames) {
-      if (!options.quiet) note_no_videos(job, options.folder, options.path);
-    } else if (!make_videos(job, options.folder, *numbers, options.quiet)) {
-      complete = false;
-      status = interrupted() ? kInterrupted : 1;
-      std::fprintf(stderr,
-                   "all frames are rendered and their pictures are kept: 'hyades video %s --output "
-                   "%s' (or --resume) goes on\n",
-                   options.path.c_str(), options.folder.c_str());
-    }
+  return !stopping;
+}
+
+/// Makes the videos of a run that has rendered all frames `numbers`; nothing, or the exit status
+/// where that failed.
+std::optional<int> make_videos_of_run(const RenderOptions& options, const core::Job& job,
+                                      const std::vector<int32_t>& numbers) {
+  if (make_videos(job, options.folder, numbers, options.quiet)) return std::nullopt;
+  std::fprintf(stderr,
+               "all frames are rendered and their pictures are kept: 'hyades video %s --output "
+               "%s' (or --resume) goes on\n",
+               options.path.c_str(), options.folder.c_str());
+  return interrupted() ? kInterrupted : 1;
+}
+
+/// What only a resumed run would have needed.
+void remove_kept(const RenderOptions& options, const std::string& kept) {
+  std::error_code ignored;
+  std::filesystem::remove_all(kept, ignored);
+  std::filesystem::remove(kept + ".outputs", ignored);
+  // Only where no other job is in it.
+  std::filesystem::remove(options.folder + "/.hyades", ignored);
+}
+
+/// Videos, and the removal of what is of no more use once all is written.
+int finish_run(const RenderOptions& options, const core::Job& job,
+               const std::vector<int32_t>& numbers, const std::string& kept) {
+  const bool all_frames = core::are_all_frames(job, numbers);
+  const bool videos = !job.videos.empty() && !options.is_part();
+  if (videos && all_frames) {
+    if (const auto failed = make_videos_of_run(options, job, numbers)) return *failed;
+  } else if (videos && !options.quiet) {
+    note_no_videos(job, options.folder, options.path);
   }
-  // Everything is written: the films are of no more use. After --frames the log may hold work on
-  // other frames.
-  if (complete && (all_frames || options.is_part())) {
-    std::filesystem::remove_all(log.folder, failed);
-    std::filesystem::remove(kept + ".outputs", failed);
-    std::filesystem::remove(options.folder + "/.hyades",
-                            failed);  // only where no other job is in it
-    // Before that a resumed run would have missed them.
-    for (const core::VideoDesc& video : job.videos) {
-      if (!videos) break;
-      core::remove_video_pictures(video, core::video_frames(job, options.folder, *numbers));
-    }
+  // After --frames the log may hold work on other frames.
+  if (!all_frames && !options.is_part()) return 0;
+  remove_kept(options, kept);
+  if (!videos) return 0;
+  // Not earlier: a resumed run would have missed them.
+  for (const core::VideoDesc& video : job.videos) {
+    core::remove_video_pictures(video, core::video_frames(job, options.folder, numbers));
+  }
+  return 0;
+}
+
+/// Renders what has been found good; the exit status.
+int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoom& room,
+               const std::vector<int32_t>& numbers, JobFrames& frames, const OutputNote& note,
+               const std::string& kept) {
+  const auto begin = std::filesystem::file_time_type::clock::now();
+  std::error_code failed;
+  const bool begins_over = !options.resume && std::filesystem::exists(kept, failed);
+  std::filesystem::create_directories(options.folder, failed);
+  if (failed) {
+    return refuse({options.folder + ": the folder could not be made: " + failed.message()}, 1);
+  }
+  if (!job.videos.empty() && !options.is_part() && !core::have_ffmpeg()) {
+    std::fprintf(stderr, "warning: %s; until then frames' pictures are kept for its videos\n",
+                 core::kNoFfmpeg);
+  }
+  coordinator::FilmStoreOptions log;
+  log.folder = kept;
+  log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
+  log.resume = options.resume;
+  // What is durable is safe however the process ends.
+  watch_for_interrupts();
+  std::optional<Viewer> viewer;
+  std::optional<ShownFilms> shown;
+  if (!options.display.empty()) {
+    viewer.emplace(options.display);
+    shown.emplace(*viewer, job.name, job.frames.first != job.frames.last);
+  }
+  coordinator::LocalRun run(plan_of(options, job, numbers, room), log, frames, frames,
+                            shown ? &*shown : nullptr);
+  if (auto started = run.start(); !started) return refuse(started.error(), 1);
+  if (begins_over) {
+    std::fprintf(stderr,
+                 "the work kept from an earlier run is given up; --resume would have "
+                 "gone on with it\n");
+  }
+  // The log is ours now, so nobody else writes these files.
+  frames.remove_leftovers(numbers, begin);
+  note.write();
+  for (const std::string& problem : run.log_problems()) {
+    std::fprintf(stderr, "%s\n", problem.c_str());
+  }
+  const bool to_its_end = follow(run, job.name, options.quiet, viewer ? &*viewer : nullptr);
+  const coordinator::LocalOutcome outcome = run.outcome();
+  int status = report(options, frames, numbers, outcome, run.progress());
+  if (outcome.complete && outcome.failures.empty()) {
+    status = finish_run(options, job, numbers, kept);
   }
   std::fflush(nullptr);
   // An orderly end waits for frames that are loading or finishing; after Ctrl-C nobody wants to.
-  if (stopping) _exit(status);
+  if (!to_its_end) _exit(status);
   return status;
+}
+
+}  // namespace
+
+/// `hyades render job.yaml`.
+int render_command(int argc, char** argv) {
+  RenderOptions options;
+  if (const auto status = parse_render_options(argc, argv, options)) return *status;
+  auto loaded = load_for_render(options);
+  if (!loaded) return kBadInput;
+  const core::Job& job = loaded->job;
+  if (options.preview > 0 && options.frames.empty())
+    options.frames = std::to_string(job.frames.first);
+  const auto numbers = select_frames(job, options.frames);
+  if (!numbers) return kBadInput;
+
+  note_cut_chains(options, job);
+  const core::PixelRect window = window_of(options, job);
+  const FilmRoom room = film_room(job, window, options.film_memory);
+  if (const auto fits = room.check(); !fits) return refuse(fits.error().in(options.path));
+  const std::string film_file = film_file_of(options, job);
+  if (const auto named = check_film_file(film_file, numbers->size()); !named) {
+    return refuse(named.error());
+  }
+  const std::string kept = options.folder + "/.hyades/" + kept_name(options, job);
+  const OutputNote note(kept + ".outputs", *loaded);
+  JobFrames frames(*loaded,
+                   {options.folder, options.film || job.keep_films || options.is_part(), film_file,
+                    options.is_part(), window, note.still_true(), options.texture_memory});
+  if (const auto ready = load_inputs(frames, options.resume, numbers->front()); !ready) {
+    return refuse(ready.error());
+  }
+  if (const auto own = check_own_folders(options.folder, kept); !own) return refuse(own.error());
+  return run_frames(options, job, room, *numbers, frames, note, kept);
 }
 
 }  // namespace hyades::cli

@@ -1,6 +1,9 @@
 #include "cli/render_options.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -9,6 +12,7 @@
 #include "cli/address_option.h"
 #include "cli/command_line.h"
 #include "cli/frame_range.h"
+#include "cli/number_range.h"
 #include "cli/preview.h"
 #include "core/job/film_file.h"
 #include "core/job/output_path.h"
@@ -53,11 +57,14 @@ std::string part_text(const RenderOptions& options) {
   return text;
 }
 
-}  // namespace
+/// Options as they are written.
+struct Words {
+  std::string samples;
+  std::string tile;
+  std::optional<int64_t> preview;
+};
 
-std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& options) {
-  CLI::App app("Renders a job, or a scene or mesh of another tool, on this machine.",
-               "hyades render");
+void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
   app.add_option("job", options.path,
                  "the job (.yaml), or a scene or mesh (.glb, .gltf, .pbrt, .obj, .ply)")
       ->required();
@@ -65,23 +72,25 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
       ->check(no_frames_error);
-  std::string samples;
-  std::string tile;
-  app.add_option("--samples", samples,
+  app.add_option("--samples", words.samples,
                  "samples per pixel (default: the job's); 0-31, or 0-31/256: only these of them, "
                  "whole batches of 16, which writes only films")
       ->check(is_right<parse_samples>);
-  app.add_option("--tile", tile, "2/3: only this part of each frame, which writes only films")
+  app.add_option("--tile", words.tile, "2/3: only this part of each frame, which writes only films")
       ->check(is_right<parse_tile>);
   app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
       ->delimiter(',')
       ->expected(4);
-  app.add_flag("--preview{320}", options.preview,
-               "render a small denoised picture of the first frame (or --frames) with 32 samples, "
-               "NAME.preview.png; --preview=N makes it N pixels wide")
-      ->check(CLI::Range(16, 8192));
+  // Not a plain flag: CLI11 2.4 sets those that have a default and were not given, and counts them.
+  app.add_flag_function(
+      "--preview{320}", [&words](int64_t width) { words.preview = width; },
+      "render a small denoised picture of the first frame (or --frames) with 32 samples, "
+      "NAME.preview.png; --preview=N makes it N pixels wide, 16 to 8192");
+}
+
+void declare_resources(CLI::App& app, RenderOptions& options) {
   app.add_option("--threads", options.threads, "rendering threads")
-      ->check(CLI::Range(1, 1024))
+      ->check(in_range(1, 1024))
       ->capture_default_str();
   app.add_option("--film-memory", options.film_memory,
                  "most memory that films may take, such as 8G; jobs of larger ones are refused "
@@ -92,6 +101,9 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
          "most memory for the pixels of textures, such as 2G; others lie in files of TMPDIR "
          "(default: a quarter of what is here)")
       ->transform(CLI::AsSizeValue(false));
+}
+
+void declare_results(CLI::App& app, RenderOptions& options) {
   app.add_option("--display", options.display,
                  "HOST:PORT of the viewer tev: shows the picture there while it is rendered, with "
                  "all its layers (tev listens on 127.0.0.1:14158)")
@@ -108,6 +120,17 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       });
   app.add_flag("--resume", options.resume, "continue a run that was interrupted, to the same bits");
   app.add_flag("--quiet", options.quiet, "show no progress");
+}
+
+}  // namespace
+
+std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& options) {
+  CLI::App app("Renders a job, or a scene or mesh of another tool, on this machine.",
+               "hyades render");
+  Words words;
+  declare_what(app, options, words);
+  declare_resources(app, options);
+  declare_results(app, options);
   app.footer(
       "examples:\n"
       "  hyades render jobs/quickstart/job.yaml\n"
@@ -120,15 +143,22 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
       "Ctrl-C stops; --resume continues, also after a crash.\n"
       "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
       "interrupted");
-  auto words = joined_film(argc, argv);
+  auto arguments = joined_film(argc, argv);
   std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
   if (const auto status =
           parse_command_line(app, static_cast<int>(pointers.size()), pointers.data(), kBadInput)) {
     return status;
   }
-  if (!samples.empty()) options.samples = *parse_samples(samples);
-  if (!tile.empty()) options.tile = *parse_tile(tile);
+  if (words.preview) {
+    if (*words.preview < 16 || *words.preview > 8192) {
+      std::fprintf(stderr, "--preview: expected 16 to 8192 pixels\n");
+      return kBadInput;
+    }
+    options.preview = static_cast<int>(*words.preview);
+  }
+  if (!words.samples.empty()) options.samples = *parse_samples(words.samples);
+  if (!words.tile.empty()) options.tile = *parse_tile(words.tile);
   options.film = !options.film_file.empty();
   if (options.film_file == "*") options.film_file.clear();
   return std::nullopt;

@@ -20,8 +20,8 @@ struct RenderOptions {
   std::string folder = ".";
   SceneOptions scene;
   int threads = core::hardware_threads();
-  SamplesWish samples;
-  std::optional<TileWish> tile;
+  SamplesOption samples;
+  std::optional<TileOption> tile;
   uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
   uint64_t texture_memory = core::TexelStore::default_budget();  ///< bytes
   std::vector<int> crop;

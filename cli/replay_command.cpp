@@ -7,6 +7,7 @@
 
 #include "cli/command_line.h"
 #include "cli/load_job.h"
+#include "cli/number_range.h"
 #include "core/job/layers.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/build_scene.h"

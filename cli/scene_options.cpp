@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/printable.h"
+#include "core/base/printable.h"
 
 namespace hyades::cli {
 
@@ -38,7 +38,7 @@ core::JobFileOptions job_file_options(const SceneOptions& options) {
 void print_notes(const core::JobFiles& files) {
   const std::vector<std::string> notes = files.notes();
   for (size_t i = 0; i < notes.size() && i < kMostNotes; ++i) {
-    std::fprintf(stderr, "%s\n", printable(notes[i]).c_str());
+    std::fprintf(stderr, "%s\n", core::printable(notes[i]).c_str());
   }
   if (notes.size() > kMostNotes) {
     std::fprintf(stderr, "and %zu more such notes\n", notes.size() - kMostNotes);

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "cli/command_line.h"
 #include "cli/load_job.h"
+#include "cli/number_range.h"
 #include "core/base/parallel.h"
 #include "core/finish/frame_outputs.h"
 #include "core/render/render_frame.h"
@@ -15,7 +17,7 @@
 namespace hyades::cli {
 namespace {
 
-struct Wish {
+struct StrategiesOptions {
   int32_t frame = 0;
   int events = 4;
   int threads = core::hardware_threads();
@@ -25,17 +27,17 @@ struct Wish {
 /// Renders what strategy (s, t) brings to the picture, and writes it. False (and a message) where
 /// that fails.
 bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job job,
-                    const Wish& wish, int s, int t, bool weighted) {
+                    const StrategiesOptions& options, int s, int t, bool weighted) {
   job.integrator.light_vertices = s;
   job.integrator.camera_vertices = t;
   job.integrator.min_events = job.integrator.max_depth = s + t - 2;
   job.integrator.mis = weighted;
   core::LayerSet layers;
   layers.splats = true;
-  const core::FrameRenderer renderer(scene, job, wish.frame, layers);
+  const core::FrameRenderer renderer(scene, job, options.frame, layers);
   const core::RenderedFrame rendered =
-      core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, wish.frame,
-                         {.threads = wish.threads});
+      core::render_frame(renderer, core::render_window(job.film), job.sampling.samples,
+                         options.frame, {.threads = options.threads});
   const std::string name =
       fmt::format("{}.s{}-t{}{}", job.name, s, t, weighted ? "" : ".unweighted");
   core::OutputDesc exr;
@@ -45,13 +47,13 @@ bool write_strategy(const std::shared_ptr<const core::Scene>& scene, core::Job j
   png.file = name + ".png";
   core::FilmInfo info;
   info.job_name = job.name;
-  info.frame = wish.frame;
+  info.frame = options.frame;
   info.width = job.film.width;
   info.height = job.film.height;
   info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
   const core::OutputDesc outputs[] = {exr, png};
-  const auto written = core::write_outputs(outputs, wish.output, info, rendered.film);
+  const auto written = core::write_outputs(outputs, options.output, info, rendered.film);
   if (!written) std::fprintf(stderr, "%s\n", written.error().message.c_str());
   for (size_t i = 0; written && i < written->size(); ++i)
     std::printf("wrote %s\n", (*written)[i].c_str());
@@ -68,18 +70,18 @@ int strategies_command(int argc, char** argv) {
       "paths of s vertices from the light and t from the camera, as weighted in the picture (their "
       "sum is the picture but for what shines into the camera itself) and unweighted.",
       "hyades strategies");
-  Wish wish;
+  StrategiesOptions options;
   std::string path;
   uint32_t samples = 0;
   app.add_option("job", path, "the job (.yaml)")->required();
-  auto* frame = app.add_option("--frame", wish.frame, "frame number (default: the job's first)");
-  app.add_option("--events", wish.events, "most scattering events")
-      ->check(CLI::Range(1, 16))
+  auto* frame = app.add_option("--frame", options.frame, "frame number (default: the job's first)");
+  app.add_option("--events", options.events, "most scattering events")
+      ->check(in_range(1, 16))
       ->capture_default_str();
   app.add_option("--samples", samples, "per pixel (default: the job's)")
-      ->check(CLI::Range(1U, 16'777'216U));
-  app.add_option("--threads", wish.threads, "rendering threads")->check(CLI::Range(1, 1024));
-  app.add_option("--output", wish.output, "folder for the pictures")->capture_default_str();
+      ->check(in_range(1U, 16'777'216U));
+  app.add_option("--threads", options.threads, "rendering threads")->check(in_range(1, 1024));
+  app.add_option("--output", options.output, "folder for the pictures")->capture_default_str();
   app.footer(
       "examples:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output "
       "parts\n"
@@ -89,9 +91,9 @@ int strategies_command(int argc, char** argv) {
   auto loaded = load_job(path);
   if (!loaded) return kBadInput;
   core::Job& job = loaded->job;
-  if (frame->empty()) wish.frame = job.frames.first;
-  if (!is_in_range(job, wish.frame)) return kBadInput;
-  if (job.film.filter == core::FilterKind::center) {
+  if (frame->empty()) options.frame = job.frames.first;
+  if (!is_in_range(job, options.frame)) return kBadInput;
+  if (job.film.filter.type == core::FilterKind::center) {
     std::fprintf(stderr, "%s: film.filter is center, expected a filter with a radius\n",
                  path.c_str());
     return kBadInput;
@@ -99,17 +101,17 @@ int strategies_command(int argc, char** argv) {
   if (samples > 0) job.sampling.samples = samples;
   job.integrator.type = "bdpt";
   core::SceneCache cache(*loaded->assets);
-  auto scene = core::build_scene(job, wish.frame, cache);
+  auto scene = core::build_scene(job, options.frame, cache);
   if (!scene) {
     std::fprintf(stderr, "%s\n", scene.error().message.c_str());
     return 1;
   }
   for (const std::string& warning : (*scene)->warnings)
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  for (int events = 1; events <= wish.events; ++events) {
+  for (int events = 1; events <= options.events; ++events) {
     for (int s = 0; s <= events + 1; ++s) {
       for (const bool weighted : {true, false}) {
-        if (!write_strategy(*scene, job, wish, s, events + 2 - s, weighted)) return 1;
+        if (!write_strategy(*scene, job, options, s, events + 2 - s, weighted)) return 1;
       }
     }
   }

@@ -17,6 +17,7 @@
 #include "cli/config_file.h"
 #include "cli/duration_option.h"
 #include "cli/log_options.h"
+#include "cli/number_range.h"
 #include "cli/peer_options.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
@@ -102,20 +103,19 @@ std::string default_cache() {
   return std::string(home == nullptr ? "/var/tmp" : home) + "/.cache/hyades";
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  hyades::core::ignore_file_size_signal();
-  CLI::App app("Renders for a coordinator.", "hyades worker");
+WorkerOptions default_options() {
   WorkerOptions options;
   options.threads = hyades::core::hardware_threads();
   options.memory = hyades::core::usable_memory() / 5 * 4;  // the rest is for all else
   options.cache = default_cache();
   options.cache_size = uint64_t{16} << 30U;
   options.renderer = hyades::core::program_folder() + "hyades-worker-render";
-  hyades::cli::add_peer_options(app, options.coordinator, "The coordinator");
+  return options;
+}
+
+void add_resources(CLI::App& app, WorkerOptions& options) {
   app.add_option("--threads", options.threads, "units rendered at once")
-      ->check(CLI::Range(1, 4096))
+      ->check(hyades::cli::in_range(1, 4096))
       ->capture_default_str();
   app.add_option("--memory", options.memory,
                  "most memory of the process that renders: 8G, 512M (default: four fifths of what "
@@ -130,8 +130,11 @@ int main(int argc, char** argv) {
   app.add_option("--tags", options.tags, "what jobs may ask for: a,b")
       ->delimiter(',')
       ->allow_extra_args(false);
+}
+
+void add_limits(CLI::App& app, WorkerOptions& options) {
   app.add_option("--grace", options.grace, "seconds from SIGTERM to the end")
-      ->check(CLI::Range(0.3, 3600.0))
+      ->check(hyades::cli::in_range(0.3, 3600.0))
       ->capture_default_str();
   app.add_option("--hang-limit", options.hang_limit,
                  "seconds without a new sample of a unit after which the process that renders is "
@@ -147,6 +150,10 @@ int main(int argc, char** argv) {
          "worker ends) or off")
       ->check(CLI::IsMember({"auto", "require", "off"}))
       ->capture_default_str();
+}
+
+/// `preemption`: the cloud's name, auto or off.
+void add_leaving(CLI::App& app, WorkerOptions& options, std::string& preemption) {
   hyades::cli::add_duration(app, "--exit-when-idle", options.idle_limit,
                             "end after so long without work, such as 5m; also where no coordinator "
                             "answers (default: never)",
@@ -154,9 +161,8 @@ int main(int argc, char** argv) {
   app.add_option("--exit-status-when-told", options.told_status,
                  "exit status where SIGTERM, Ctrl-C or the cloud (--preemption) ended it, such as "
                  "143 where 0 would mean that its work is done")
-      ->check(CLI::Range(0, 255))
+      ->check(hyades::cli::in_range(0, 255))
       ->capture_default_str();
-  std::string preemption = "off";
   auto* cloud = app.add_option("--preemption", preemption,
                                "hand over what is done when this cloud says that it takes the "
                                "machine away: aws, gcp, azure, auto (which the firmware names) or "
@@ -167,7 +173,20 @@ int main(int argc, char** argv) {
                  "http://HOST:PORT to ask instead of the cloud's own metadata service")
       ->needs(cloud)
       ->check(endpoint_error);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hyades::core::ignore_file_size_signal();
+  CLI::App app("Renders for a coordinator.", "hyades worker");
+  WorkerOptions options = default_options();
+  std::string preemption = "off";
   hyades::farm::LogOptions log;
+  hyades::cli::add_peer_options(app, options.coordinator, "The coordinator");
+  add_resources(app, options);
+  add_limits(app, options);
+  add_leaving(app, options, preemption);
   hyades::cli::add_log_options(app, log);
   hyades::cli::add_config_option(app);
   app.footer(

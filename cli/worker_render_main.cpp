@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "cli/number_range.h"
 #include "core/base/descriptor.h"
 #include "core/base/machine.h"
 #include "core/base/parallel.h"
@@ -71,7 +72,7 @@ int main(int argc, char** argv) {
   int threads = 1;
   uint64_t memory = 0;
   std::string cache;
-  app.add_option("--threads", threads)->check(CLI::Range(1, 4096));
+  app.add_option("--threads", threads)->check(hyades::cli::in_range(1, 4096));
   app.add_option("--memory", memory);
   std::string sandbox = "auto";
   app.add_option("--cache", cache)->required();

@@ -39,11 +39,13 @@ endif()
 # again, each by itself is faster. So that both work, names in the unnamed namespaces of one room differ.
 option(HYADES_UNITY "Compile several files of a room at once" OFF)
 set(CMAKE_UNITY_BUILD ${HYADES_UNITY})
-set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
-if(HYADES_UNITY)
-  add_compile_options(-Wshadow=local)  # what is global may be so in another file
-else()
+if(NOT DEFINED CMAKE_UNITY_BUILD_BATCH_SIZE)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+endif()
+if(NOT HYADES_UNITY)
   add_compile_options(-Wshadow)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-Wshadow=local)  # what is global may be so in another file
 endif()
 
 find_program(HYADES_CCACHE ccache)

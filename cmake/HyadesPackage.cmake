@@ -54,8 +54,8 @@ set(CPACK_DEBIAN_PACKAGE_RECOMMENDS ffmpeg)  # for videos
 set(CPACK_STRIP_FILES ON)
 if(HYADES_FARM)
   # preinst knows which stores these programs can read: one version for each step of the schema.
-  file(READ ${CMAKE_SOURCE_DIR}/coordinator/state/schema.cpp schema)
-  set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/coordinator/state/schema.cpp)
+  file(READ ${CMAKE_SOURCE_DIR}/coordinator/job_store/schema.cpp schema)
+  set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/coordinator/job_store/schema.cpp)
   string(REGEX MATCHALL "R\"\\(" steps "${schema}")
   list(LENGTH steps HYADES_SCHEMA_VERSION)
   set(control ${CMAKE_SOURCE_DIR}/deploy/debian)

@@ -38,7 +38,7 @@ class Backoff {
 };
 
 /// Of workers whose stream has ended. The limit is a part of what a coordinator waits for them
-/// after its restart (BrainOptions::adoption_time).
+/// after its restart (ControllerOptions::adoption_time).
 inline constexpr std::chrono::milliseconds kFirstReconnect{200};
 inline constexpr std::chrono::milliseconds kLongestReconnect{3000};
 

@@ -28,7 +28,8 @@ struct CertificateRequest {
 
 /// Makes DIR/NAME.pem (the certificate, then the authority's) and DIR/NAME.key, signed by
 /// DIR/ca.key; it ends with the authority's at the latest. A server without names is reached by
-/// `name`. Errors as above, and where the authority is not there or has ended.
+/// `name`. An error where one of the two is there already or cannot be written, and where the
+/// authority is not there or has ended.
 core::Status issue_certificate(const std::string& folder, const CertificateRequest& request);
 
 }  // namespace hyades::farm

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 #include "core/base/text.h"
 #include "farm/content_store.h"
 
@@ -99,8 +100,8 @@ Status ContentStore::make_room(const std::string& name, uint64_t bytes) {
   // One process at a time, so that two do not both evict for the same shortage.
   const std::string lock_path = options_.folder + "/lock";
   const core::Descriptor lock(::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
-  if (!lock.valid() || ::flock(lock.get(), LOCK_EX) != 0) {
-    return Error{"cannot lock " + lock_path + ": " + core::io_reason(errno)};
+  if (!lock.valid() || !core::lock_file(lock.get(), LOCK_EX, options_.lock_patience)) {
+    return Error{"cannot lock " + lock_path + ": " + core::lock_reason(errno)};
   }
   std::vector<StoredFile> files;
   list_files(options_.folder, files);

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
+#include <ctime>
 #include <utility>
 
 #include "core/base/assets.h"
@@ -32,7 +34,8 @@ Status make_folder(const std::string& path) {
   if (::mkdir(path.c_str(), 0700) == 0) return {};
   const int error = errno;
   struct stat info {};
-  if (error == EEXIST && ::stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) return {};
+  // Who may make none (the process that renders) may still use one that is there.
+  if (::stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) return {};
   return Error{"cannot make the folder " + path + ": " + core::io_reason(error)};
 }
 
@@ -71,7 +74,7 @@ Result<ContentStore::Identity> ContentStore::identify(const std::string& path) {
 }
 
 void ContentStore::remember(const std::string& name, const Identity& identity) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   verified_[name] = identity;
 }
 
@@ -97,7 +100,7 @@ Result<Bytes> ContentStore::read(const std::string& name) {
   if (!bytes) return bytes.error().in("asset " + name);
   touch(name);
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     const auto known = verified_.find(name);
     if (known != verified_.end() && known->second == *identity && bytes->size() == identity->size) {
       return bytes;
@@ -107,7 +110,7 @@ Result<Bytes> ContentStore::read(const std::string& name) {
     // Another process may have put a good one there meanwhile.
     const auto now = identify(path);
     const bool removed = now && *now == *identity && ::unlink(path.c_str()) == 0;
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     damaged_.insert(name);
     return Error{"asset " + name + ": the stored file " +
                  (removed ? "was damaged and has been removed" : "is damaged")};
@@ -117,13 +120,13 @@ Result<Bytes> ContentStore::read(const std::string& name) {
 }
 
 std::set<std::string> ContentStore::take_damaged() {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   return std::exchange(damaged_, {});
 }
 
 void ContentStore::check_again(const std::string& name) {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     verified_.erase(name);
   }
   (void)read(name);
@@ -139,6 +142,7 @@ void ContentStore::touch(const std::string& name) const {
 Result<ContentPin> ContentStore::pin(const std::string& name) {
   if (!is_content_name(name)) return not_a_name(name);
   const std::string path = path_of(name);
+  touch(name);
   while (true) {
     core::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
     struct stat info {};
@@ -146,9 +150,9 @@ Result<ContentPin> ContentStore::pin(const std::string& name) {
       const std::string why = errno == ENOENT ? "it is not here" : core::io_reason(errno);
       return Error{"asset " + name + ": " + why};
     }
-    if (::flock(file.get(), LOCK_SH) != 0 || ::fstat(file.get(), &info) != 0) {
-      if (errno == EINTR) continue;
-      return Error{"asset " + name + ": cannot be locked: " + core::io_reason(errno)};
+    if (!core::lock_file(file.get(), LOCK_SH, options_.lock_patience) ||
+        ::fstat(file.get(), &info) != 0) {
+      return Error{"asset " + name + ": cannot be locked: " + core::lock_reason(errno)};
     }
     // Evicted or replaced between opening and locking: look again.
     if (info.st_nlink > 0) return ContentPin(std::move(file));

@@ -5,14 +5,15 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/bytes.h"
 #include "core/base/descriptor.h"
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "farm/content_writer.h"
 
@@ -44,6 +45,8 @@ class ContentStore {
     std::string folder;   ///< made if it is missing; its parent must exist
     uint64_t budget = 0;  ///< bytes of all files, unfinished ones included; 0: no limit, and
                           ///< nothing is ever evicted
+    /// For a lock that another process has; whoever may read a file may lock it for ever.
+    std::chrono::milliseconds lock_patience{5000};
   };
 
   static core::Result<std::unique_ptr<ContentStore>> open(const Options& options);
@@ -66,7 +69,8 @@ class ContentStore {
   /// Hashes file `name` also where this process knows it; a damaged one is removed.
   void check_again(const std::string& name);
 
-  /// Error where there is no such file.
+  /// Counts as use of the file, for eviction. Error where there is no such file, or where another
+  /// process has locked it for itself and does not let go.
   core::Result<ContentPin> pin(const std::string& name);
 
   /// Begins or resumes file `name` of `size` bytes: the writer's offset says what is there already.
@@ -124,9 +128,9 @@ class ContentStore {
   std::atomic<uint64_t> expected_{0};   ///< bytes that this process' writers have still to write
   std::atomic<int64_t> next_sweep_{0};  ///< seconds of the steady clock
   std::atomic<uint64_t> commits_{0};
-  std::mutex mutex_;
-  std::map<std::string, Identity> verified_;  ///< guarded by mutex_, as is
-  std::set<std::string> damaged_;
+  core::Mutex mutex_;
+  std::map<std::string, Identity> verified_ HYADES_GUARDED_BY(mutex_);
+  std::set<std::string> damaged_ HYADES_GUARDED_BY(mutex_);
 };
 
 }  // namespace hyades::farm

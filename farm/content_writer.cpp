@@ -6,11 +6,13 @@
 
 #include <array>
 #include <cerrno>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 #include "farm/content_store.h"
 
 namespace hyades::farm {
@@ -87,14 +89,12 @@ Status ContentWriter::read_partial() {
   }
   std::vector<std::byte> piece(kReadPiece);
   while (true) {
-    const ssize_t got =
-        ::pread(file_.get(), piece.data(), piece.size(), static_cast<off_t>(offset_));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return Error{"cannot read " + path_ + ": " + core::io_reason(errno)};
-    if (got == 0) return {};
-    hash_.add(std::span(piece).first(static_cast<size_t>(got)));
-    offset_ += static_cast<uint64_t>(got);
-    store_->expected_ -= static_cast<uint64_t>(got);
+    const auto got = core::read_all_at(file_.get(), piece, offset_);
+    if (!got) return Error{"cannot read " + path_ + ": " + core::io_reason(errno)};
+    if (*got == 0) return {};
+    hash_.add(std::span(piece).first(*got));
+    offset_ += *got;
+    store_->expected_ -= *got;
   }
 }
 
@@ -102,19 +102,10 @@ Status ContentWriter::append(std::span<const std::byte> bytes) {
   if (bytes.size() > size_ - offset_) {
     return Error{fmt::format("{}: more than the {} bytes that were announced", name_, size_)};
   }
-  while (!bytes.empty()) {
-    const ssize_t written =
-        ::pwrite(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset_));
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      return write_failure(path_, errno);
-    }
-    const auto count = static_cast<size_t>(written);
-    hash_.add(bytes.first(count));
-    offset_ += count;
-    store_->expected_ -= count;
-    bytes = bytes.subspan(count);
-  }
+  if (!core::write_all_at(file_.get(), bytes, offset_)) return write_failure(path_, errno);
+  hash_.add(bytes);
+  offset_ += bytes.size();
+  store_->expected_ -= bytes.size();
   return {};
 }
 

@@ -1,9 +1,9 @@
 #include "farm/json_form.h"
 
-#include <algorithm>
 #include <string_view>
 #include <utility>
 
+#include "core/base/text.h"
 #include "farm/wire.h"
 
 namespace hyades::farm {
@@ -56,11 +56,7 @@ std::string enum_word(const EnumDescriptor& type, int number) {
   const auto* value = type.FindValueByNumber(number);
   if (value == nullptr || value->name().ends_with(kNone)) return "unknown";
   // All names begin as that of the value 0 does.
-  std::string word = value->name().substr(type.value(0)->name().size() - kNone.size());
-  std::transform(word.begin(), word.end(), word.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return word;
+  return core::lower_case(value->name().substr(type.value(0)->name().size() - kNone.size()));
 }
 
 std::string state_name(v1::JobState state) { return enum_word(*v1::JobState_descriptor(), state); }

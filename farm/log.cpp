@@ -2,18 +2,21 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <cstdlib>
 #include <ctime>
 #include <deque>
-#include <mutex>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "core/base/mutex.h"
+#include "core/base/printable.h"
+#include "core/base/wall_clock.h"
 
 namespace hyades::farm {
 namespace {
@@ -41,12 +44,6 @@ const char* name_of(LogLevel level) {
   return "error";
 }
 
-int64_t now_ms() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 void write_line(int64_t time_ms, LogLevel level, std::string_view text, const LogFields& fields) {
   const Log& log = the_log();
   const std::string line =
@@ -66,12 +63,12 @@ class Scribe {
   }
 
   void say(LogLevel level, std::string text, LogFields fields) {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (lines_.size() >= kMostWaiting) {
       ++left_out_;
       return;
     }
-    lines_.push_back({level, now_ms(), std::move(text), std::move(fields)});
+    lines_.push_back({level, core::wall_ms(), std::move(text), std::move(fields)});
     wake_.notify_one();
   }
 
@@ -91,16 +88,19 @@ class Scribe {
   }
 
   void flush() {
-    std::unique_lock lock(mutex_);
-    written_.wait_for(lock, kGoodbye, [this] { return lines_.empty() && !writing_; });
+    const auto end = std::chrono::steady_clock::now() + kGoodbye;
+    const core::MutexLock lock(mutex_);
+    while ((!lines_.empty() || writing_) && std::chrono::steady_clock::now() < end) {
+      written_.wait_until(mutex_, end);
+    }
   }
 
   void write() {
-    std::unique_lock lock(mutex_);
+    core::MutexLock lock(mutex_);
     for (;;) {
       writing_ = false;
       if (lines_.empty()) written_.notify_all();
-      wake_.wait(lock, [this] { return !lines_.empty(); });
+      while (lines_.empty()) wake_.wait(mutex_);
       writing_ = true;
       const Line line = std::move(lines_.front());
       lines_.pop_front();
@@ -114,12 +114,12 @@ class Scribe {
     }
   }
 
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::condition_variable written_;
-  std::deque<Line> lines_;
-  uint64_t left_out_ = 0;
-  bool writing_ = false;
+  core::Mutex mutex_;
+  core::CondVar wake_;
+  core::CondVar written_;
+  std::deque<Line> lines_ HYADES_GUARDED_BY(mutex_);
+  uint64_t left_out_ HYADES_GUARDED_BY(mutex_) = 0;
+  bool writing_ HYADES_GUARDED_BY(mutex_) = false;
 };
 
 /// 2026-01-31T12:00:00.123Z
@@ -147,10 +147,8 @@ std::string text_line(std::string_view program, LogLevel level, std::string_view
   if (!fields.unit.empty()) add("unit", fields.unit);
   if (!fields.worker.empty()) add("worker", fields.worker);
   if (!about.empty()) line += " (" + about + ")";
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < ' ' || c == 127) c = ' ';
-  }
-  return line;
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return core::printable(line);
 }
 
 std::string json_line(std::string_view program, int64_t time_ms, LogLevel level,
@@ -181,7 +179,7 @@ bool logs(LogLevel level) { return level >= the_log().options.level; }
 
 void log(LogLevel level, std::string_view text, const LogFields& fields) {
   if (!logs(level)) return;
-  write_line(now_ms(), level, text, fields);
+  write_line(core::wall_ms(), level, text, fields);
 }
 
 void log_later(LogLevel level, std::string text, LogFields fields) {

@@ -35,7 +35,7 @@ std::string unit_field(const core::Unit& unit);
 /// line of text, and in JSON as a field.
 void set_log(std::string_view program, const LogOptions& options = {});
 
-/// As set_log has it.
+/// The format that set_log has chosen for this process.
 LogFormat log_format();
 
 /// Whether lines of this level are written: for those that cost something to make.
@@ -45,9 +45,10 @@ bool logs(LogLevel level);
 /// replaced.
 void log(LogLevel level, std::string_view text, const LogFields& fields = {});
 
-/// The same, written soon by a thread of its own, in the order in which they were said: for those
-/// who may not wait for whoever reads. Of lines that nobody reads ten thousand wait; how many more
-/// there were is told afterwards. What waits at the process' end has a second to be read.
+/// Writes one line as log() does, but soon and by a thread of its own, in the order in which they
+/// were said: for those who may not wait for whoever reads. Of lines that nobody reads ten thousand
+/// wait; how many more there were is told afterwards. What waits at the process' end has a second
+/// to be read.
 void log_later(LogLevel level, std::string text, LogFields fields = {});
 
 /// The line without its end, as of `time_ms` since 1970, UTC (text has no time: journals add it).

@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
+#include <span>
 
 #include "core/base/descriptor.h"
 #include "core/base/io_reason.h"
@@ -23,16 +25,16 @@ core::Error unreadable(const std::string& path, int error) {
 }  // namespace
 
 core::Result<std::string> read_small_file(const std::string& path) {
-  const core::Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const core::Descriptor file = core::open_file(path, O_RDONLY);
   if (!file.valid()) return unreadable(path, errno);
   std::string bytes;
   for (size_t size = 0; size <= kMostBytes;) {
     bytes.resize(size + kPiece);
-    const ssize_t got = ::read(file.get(), bytes.data() + size, kPiece);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return unreadable(path, errno);
-    size += static_cast<size_t>(got);
-    if (got > 0) continue;
+    const auto got =
+        core::read_all(file.get(), std::as_writable_bytes(std::span(bytes).subspan(size)));
+    if (!got) return unreadable(path, errno);
+    size += *got;
+    if (*got > 0) continue;
     bytes.resize(size);
     return bytes;
   }
@@ -41,8 +43,8 @@ core::Result<std::string> read_small_file(const std::string& path) {
 
 core::Status write_secret(const std::string& path, const std::string& text) {
   constexpr mode_t kOwnerOnly = 0600;
-  const core::Descriptor file(
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, kOwnerOnly));
+  const core::Descriptor file =
+      core::open_file(path, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, kOwnerOnly);
   if (!file.valid()) {
     return core::Error{path + (errno == EEXIST
                                    ? ": is there already: name another, or remove it first"

@@ -1,7 +1,9 @@
 #include "farm/token_term.h"
+#include "core/base/text.h"
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -20,8 +22,7 @@ std::string in_words(int64_t ms) {
   const auto [unit, word] = ms >= 2 * kDay ? std::pair(kDay, "day")
                             : ms >= kHour  ? std::pair(kHour, "hour")
                                            : std::pair(kMinute, "minute");
-  const int64_t count = ms / unit;
-  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+  return core::counted(static_cast<uint64_t>(ms / unit), word);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -19,6 +21,9 @@ namespace hyades::farm {
 /// The version of the wire that this program speaks, and the oldest it understands (docs/wire.md).
 inline constexpr uint32_t kProtocol = 2;
 inline constexpr uint32_t kOldestProtocol = 2;
+
+/// The most files in a FindMissingRequest.
+inline constexpr size_t kMostFilesAsked = 10'000;
 
 /// The most bytes of data in a Chunk.
 inline constexpr uint64_t kMaxChunkBytes = uint64_t{1} << 20U;

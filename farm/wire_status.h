@@ -14,7 +14,7 @@ namespace hyades::farm {
 grpc::Status wire_status(grpc::StatusCode code, const std::string& message,
                          const v1::ErrorDetail& detail);
 
-/// The same, told to come again after `retry_after`.
+/// An error as it goes over the wire, which tells the caller to come again after `retry_after`.
 grpc::Status retry_later(grpc::StatusCode code, const std::string& message,
                          std::chrono::milliseconds retry_after);
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 #include <span>
+#include <string_view>
 #include <system_error>
 #include <utility>
 

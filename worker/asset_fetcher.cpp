@@ -34,24 +34,25 @@ std::string name_of(const v1::JobFile& file) { return farm::hex_from_wire(file.s
 
 }  // namespace
 
-class AssetFetcher::Turn {
+class AssetFetcher::FileClaim {
  public:
   /// Waits for those who are before; they may have brought the file.
-  Turn(AssetFetcher& fetcher, const Wanted& wanted, std::string name)
+  FileClaim(AssetFetcher& fetcher, const Wanted& wanted, std::string name)
       : fetcher_(fetcher), name_(std::move(name)) {
-    std::unique_lock lock(fetcher_.mutex_);
-    fetcher_.wake_.wait(
-        lock, [&] { return fetcher_.unwanted(wanted) || !fetcher_.turns_.contains(name_); });
-    mine_ = !fetcher_.unwanted(wanted) && fetcher_.turns_.insert(name_).second;
+    const core::MutexLock lock(fetcher_.mutex_);
+    while (!fetcher_.unwanted(wanted) && fetcher_.claimed_.contains(name_)) {
+      fetcher_.wake_.wait(fetcher_.mutex_);
+    }
+    mine_ = !fetcher_.unwanted(wanted) && fetcher_.claimed_.insert(name_).second;
   }
-  ~Turn() {
+  ~FileClaim() {
     if (!mine_) return;
-    const std::lock_guard lock(fetcher_.mutex_);
-    fetcher_.turns_.erase(name_);
+    const core::MutexLock lock(fetcher_.mutex_);
+    fetcher_.claimed_.erase(name_);
     fetcher_.wake_.notify_all();
   }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
+  FileClaim(const FileClaim&) = delete;
+  FileClaim& operator=(const FileClaim&) = delete;
 
   /// Else the file is not wanted any more.
   bool is_mine() const { return mine_; }
@@ -74,13 +75,13 @@ AssetFetcher::AssetFetcher(std::shared_ptr<grpc::Channel> channel, std::string t
 }
 
 void AssetFetcher::set_token(std::string token) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   token_ = std::move(token);
 }
 
 AssetFetcher::~AssetFetcher() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     stop_ = true;
     for (const auto& wanted : in_work_) {
       if (wanted->call != nullptr) wanted->call->TryCancel();
@@ -91,27 +92,27 @@ AssetFetcher::~AssetFetcher() {
 }
 
 void AssetFetcher::fetch(uint64_t job, const v1::JobSpec& spec) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   wanted_.push_back(std::make_shared<Wanted>(Wanted{job, spec}));
   wake_.notify_all();  // of those who wait not all wait for this
 }
 
-void AssetFetcher::doubt(const std::string& file) {
-  const std::lock_guard lock(mutex_);
-  doubted_.insert(file);
+void AssetFetcher::recheck(const std::string& file) {
+  const core::MutexLock lock(mutex_);
+  to_recheck_.insert(file);
 }
 
-void AssetFetcher::settle_doubts(const std::string& name) {
+void AssetFetcher::check_again(const std::string& name) {
   {
-    const std::lock_guard lock(mutex_);
-    if (doubted_.erase(name) == 0) return;
+    const core::MutexLock lock(mutex_);
+    if (to_recheck_.erase(name) == 0) return;
   }
   store_.check_again(name);
 }
 
 void AssetFetcher::release(uint64_t job) {
   std::vector<farm::ContentPin> released;  // let go of without the lock
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   std::erase_if(wanted_, [&](const auto& wanted) { return wanted->job == job; });
   for (const auto& wanted : in_work_) {
     if (wanted->job != job) continue;
@@ -129,8 +130,8 @@ void AssetFetcher::loop() {
   for (;;) {
     std::shared_ptr<Wanted> wanted;
     {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, [this] { return stop_ || !wanted_.empty(); });
+      const core::MutexLock lock(mutex_);
+      while (!stop_ && wanted_.empty()) wake_.wait(mutex_);
       if (stop_) return;
       wanted = std::move(wanted_.front());
       wanted_.pop_front();
@@ -139,7 +140,7 @@ void AssetFetcher::loop() {
     const Outcome failed = fetch_all(*wanted);
     cache_bytes_ = store_.used();
     {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       if (stop_) return;
       std::erase(in_work_, wanted);
       if (wanted->dropped) continue;
@@ -170,7 +171,7 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
       if (attempt == 2) return Failure{pin.error().in(file.path()).message};
     }
   }
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   if (unwanted(wanted)) return Failure{"no longer wanted"};  // the pins go
   pins_[wanted.job] = std::move(pins);
   return std::nullopt;
@@ -179,14 +180,14 @@ AssetFetcher::Outcome AssetFetcher::fetch_all(Wanted& wanted) {
 /// Nothing to do where the file is there.
 AssetFetcher::Outcome AssetFetcher::fetch_file(Wanted& wanted, const v1::JobFile& file) {
   const std::string name = name_of(file);
-  settle_doubts(name);
+  check_again(name);
   if (store_.contains(name, file.size())) {
     ++hits_;
     return std::nullopt;
   }
   ++misses_;
-  const Turn turn(*this, wanted, name);
-  if (!turn.is_mine()) return Failure{"no longer wanted"};
+  const FileClaim claim(*this, wanted, name);
+  if (!claim.is_mine()) return Failure{"no longer wanted"};
   if (store_.contains(name, file.size())) return std::nullopt;
   return fetch_patiently(wanted, file);
 }
@@ -205,8 +206,10 @@ AssetFetcher::Outcome AssetFetcher::fetch_patiently(Wanted& wanted, const v1::Jo
 
 /// Waits; false when the files are no longer wanted.
 bool AssetFetcher::pause(const Wanted& wanted, farm::Backoff::Duration time) {
-  std::unique_lock lock(mutex_);
-  return !wake_.wait_for(lock, time, [&] { return unwanted(wanted); });
+  const auto end = std::chrono::steady_clock::now() + time;
+  const core::MutexLock lock(mutex_);
+  while (!unwanted(wanted) && std::chrono::steady_clock::now() < end) wake_.wait_until(mutex_, end);
+  return !unwanted(wanted);
 }
 
 /// Nobody else's, the job's least of all.
@@ -224,7 +227,7 @@ AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& 
   const auto stub = v1::Assets::NewStub(channel_);
   grpc::ClientContext context;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     farm::prepare(context, token_,
                   std::max(kShortestDeadline, milliseconds(file.size() / kSlowest)));
     if (unwanted(wanted)) return Failure{"no longer wanted"};
@@ -247,7 +250,7 @@ AssetFetcher::Outcome AssetFetcher::download(Wanted& wanted, const v1::JobFile& 
   if (!kept) context.TryCancel();
   const grpc::Status status = stream->Finish();
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     wanted.call = nullptr;
   }
   if (!kept) return local_trouble(kept.error().in(file.path()));

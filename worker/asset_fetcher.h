@@ -2,18 +2,17 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "farm/backoff.h"
 #include "farm/content_store.h"
@@ -50,15 +49,15 @@ class AssetFetcher {
   AssetFetcher& operator=(const AssetFetcher&) = delete;
 
   /// Of downloads that begin from now on.
-  void set_token(std::string token);
+  void set_token(std::string token) HYADES_EXCLUDES(mutex_);
 
   /// All files of the job, which are then kept from eviction until release().
-  void fetch(uint64_t job, const v1::JobSpec& spec);
+  void fetch(uint64_t job, const v1::JobSpec& spec) HYADES_EXCLUDES(mutex_);
   /// Somebody has found this file of the store damaged: before it counts as there again it is
   /// hashed.
-  void doubt(const std::string& file);
+  void recheck(const std::string& file) HYADES_EXCLUDES(mutex_);
   /// The job's files are no longer wanted: what is under way is broken off and not reported.
-  void release(uint64_t job);
+  void release(uint64_t job) HYADES_EXCLUDES(mutex_);
 
   /// Bytes of the store's files, as of the last time that a job's files were fetched.
   uint64_t cache_bytes() const { return cache_bytes_; }
@@ -67,15 +66,15 @@ class AssetFetcher {
   uint64_t misses() const { return misses_; }
 
  private:
-  /// The files of a job. What changes is guarded by mutex_.
+  /// The files of a job.
   struct Wanted {
     uint64_t job = 0;
     v1::JobSpec spec;
-    bool dropped = false;                 ///< it was released meanwhile
-    grpc::ClientContext* call = nullptr;  ///< the download in progress
+    bool dropped = false;                 ///< with the lock: it was released meanwhile
+    grpc::ClientContext* call = nullptr;  ///< with the lock: the download in progress
   };
   /// Of a file: nobody else fetches it meanwhile.
-  class Turn;
+  class FileClaim;
   struct Failure {
     std::string reason;
     bool final = false;
@@ -85,31 +84,34 @@ class AssetFetcher {
   };
   using Outcome = std::optional<Failure>;
 
-  void loop();
-  Outcome fetch_all(Wanted& wanted);
-  Outcome fetch_file(Wanted& wanted, const v1::JobFile& file);
-  void settle_doubts(const std::string& name);
+  void loop() HYADES_EXCLUDES(mutex_);
+  Outcome fetch_all(Wanted& wanted) HYADES_EXCLUDES(mutex_);
+  Outcome fetch_file(Wanted& wanted, const v1::JobFile& file) HYADES_EXCLUDES(mutex_);
+  void check_again(const std::string& name) HYADES_EXCLUDES(mutex_);
   static Failure local_trouble(const core::Error& error);
-  Outcome fetch_patiently(Wanted& wanted, const v1::JobFile& file);
-  Outcome download(Wanted& wanted, const v1::JobFile& file);
-  bool pause(const Wanted& wanted, farm::Backoff::Duration time);
-  bool unwanted(const Wanted& wanted) const { return stop_ || wanted.dropped; }
+  Outcome fetch_patiently(Wanted& wanted, const v1::JobFile& file) HYADES_EXCLUDES(mutex_);
+  Outcome download(Wanted& wanted, const v1::JobFile& file) HYADES_EXCLUDES(mutex_);
+  bool pause(const Wanted& wanted, farm::Backoff::Duration time) HYADES_EXCLUDES(mutex_);
+  bool unwanted(const Wanted& wanted) const HYADES_REQUIRES(mutex_) {
+    return stop_ || wanted.dropped;
+  }
 
   const std::shared_ptr<grpc::Channel> channel_;
   farm::ContentStore& store_;
   Owner& owner_;
   const std::chrono::milliseconds patience_;
 
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  // Guarded by mutex_.
-  std::string token_;
-  std::deque<std::shared_ptr<Wanted>> wanted_;    ///< those that nobody has begun with
-  std::vector<std::shared_ptr<Wanted>> in_work_;  ///< one for each busy thread
-  std::set<std::string> turns_;                   ///< files that are being fetched
-  std::set<std::string> doubted_;                 ///< files that doubt() has named
-  std::map<uint64_t, std::vector<farm::ContentPin>> pins_;
-  bool stop_ = false;
+  core::Mutex mutex_;
+  core::CondVar wake_;
+  std::string token_ HYADES_GUARDED_BY(mutex_);
+  /// Those that nobody has begun with.
+  std::deque<std::shared_ptr<Wanted>> wanted_ HYADES_GUARDED_BY(mutex_);
+  /// One for each busy thread.
+  std::vector<std::shared_ptr<Wanted>> in_work_ HYADES_GUARDED_BY(mutex_);
+  std::set<std::string> claimed_ HYADES_GUARDED_BY(mutex_);     ///< files that are being fetched
+  std::set<std::string> to_recheck_ HYADES_GUARDED_BY(mutex_);  ///< files that recheck() has named
+  std::map<uint64_t, std::vector<farm::ContentPin>> pins_ HYADES_GUARDED_BY(mutex_);
+  bool stop_ HYADES_GUARDED_BY(mutex_) = false;
 
   std::atomic<uint64_t> cache_bytes_;
   std::atomic<uint64_t> hits_{0};

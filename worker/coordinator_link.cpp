@@ -1,13 +1,13 @@
 #include "worker/coordinator_link.h"
 
 #include <chrono>
-#include <condition_variable>
 #include <deque>
 #include <utility>
 
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 
+#include "core/base/mutex.h"
 #include "farm/channel.h"
 #include "farm/wire_status.h"
 #include "hyades/v1/work.grpc.pb.h"
@@ -36,12 +36,12 @@ struct CoordinatorLink::State {
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::Work::Stub> stub;
   Owner* owner = nullptr;
-  std::mutex mutex;
-  std::condition_variable closed;
-  // Guarded by mutex.
-  std::string token;
-  std::shared_ptr<Stream> stream;  ///< the one that is open
-  int live = 0;                    ///< streams whose end the owner has not heard of
+  core::Mutex mutex;
+  core::CondVar closed;
+  std::string token HYADES_GUARDED_BY(mutex);
+  std::shared_ptr<Stream> stream HYADES_GUARDED_BY(mutex);  ///< the one that is open
+  /// Streams whose end the owner has not heard of.
+  int live HYADES_GUARDED_BY(mutex) = 0;
 };
 
 /// One call. It keeps itself alive until gRPC is done with it.
@@ -49,7 +49,7 @@ class CoordinatorLink::Stream
     : public grpc::ClientBidiReactor<v1::WorkerMessage, v1::CoordinatorMessage> {
  public:
   explicit Stream(std::shared_ptr<State> state) : state_(std::move(state)) {
-    const std::lock_guard lock(state_->mutex);
+    const core::MutexLock lock(state_->mutex);
     farm::prepare(context_, state_->token, std::chrono::milliseconds(0));
   }
 
@@ -61,19 +61,19 @@ class CoordinatorLink::Stream
   }
 
   void send(v1::WorkerMessage message) {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (broken_ || finishing_) return;
     outgoing_.push_back(std::move(message));
     write_next_locked();
   }
 
   bool flowing() const {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     return outgoing_.empty() && !writing_;
   }
 
   void finish() {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (broken_ || finishing_) return;
     finishing_ = true;
     write_next_locked();
@@ -89,14 +89,14 @@ class CoordinatorLink::Stream
       return;
     }
     {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       broken_ = true;
     }
     RemoveHold();
   }
 
   void OnWriteDone(bool /*ok: a broken stream is noticed by reading*/) override {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     writing_ = false;
     if (!broken_) write_next_locked();
   }
@@ -105,20 +105,20 @@ class CoordinatorLink::Stream
     const std::shared_ptr<State> state = state_;
     std::shared_ptr<Stream> self;  // outlives this function's last line
     {
-      const std::lock_guard lock(state->mutex);
+      const core::MutexLock lock(state->mutex);
       self = std::move(state->stream);
       state->stream.reset();
     }
     state->owner->stream_ended(meaning_of(status.error_code()),
                                status.ok() ? "it was closed" : status.error_message(),
                                std::chrono::milliseconds(farm::detail_of(status).retry_after_ms()));
-    const std::lock_guard lock(state->mutex);
+    const core::MutexLock lock(state->mutex);
     --state->live;
     state->closed.notify_all();
   }
 
  private:
-  void write_next_locked() {
+  void write_next_locked() HYADES_REQUIRES(mutex_) {
     if (writing_) return;
     if (!outgoing_.empty()) {
       writing_ = true;
@@ -135,14 +135,13 @@ class CoordinatorLink::Stream
   grpc::ClientContext context_;
   v1::CoordinatorMessage incoming_;
 
-  mutable std::mutex mutex_;
-  // Guarded by mutex_.
-  std::deque<v1::WorkerMessage> outgoing_;
-  v1::WorkerMessage current_;
-  bool writing_ = false;
-  bool broken_ = false;
-  bool finishing_ = false;
-  bool half_closed_ = false;
+  mutable core::Mutex mutex_;
+  std::deque<v1::WorkerMessage> outgoing_ HYADES_GUARDED_BY(mutex_);
+  v1::WorkerMessage current_ HYADES_GUARDED_BY(mutex_);
+  bool writing_ HYADES_GUARDED_BY(mutex_) = false;
+  bool broken_ HYADES_GUARDED_BY(mutex_) = false;
+  bool finishing_ HYADES_GUARDED_BY(mutex_) = false;
+  bool half_closed_ HYADES_GUARDED_BY(mutex_) = false;
 };
 
 CoordinatorLink::CoordinatorLink(std::shared_ptr<grpc::Channel> channel, std::string token,
@@ -155,20 +154,20 @@ CoordinatorLink::CoordinatorLink(std::shared_ptr<grpc::Channel> channel, std::st
 }
 
 CoordinatorLink::~CoordinatorLink() {
-  std::unique_lock lock(state_->mutex);
+  const core::MutexLock lock(state_->mutex);
   if (state_->stream) state_->stream->cancel();
-  state_->closed.wait(lock, [this] { return state_->live == 0; });
+  while (state_->live > 0) state_->closed.wait(state_->mutex);
 }
 
 void CoordinatorLink::set_token(std::string token) {
-  const std::lock_guard lock(state_->mutex);
+  const core::MutexLock lock(state_->mutex);
   state_->token = std::move(token);
 }
 
 void CoordinatorLink::open() {
   const auto stream = std::make_shared<Stream>(state_);
   {
-    const std::lock_guard lock(state_->mutex);
+    const core::MutexLock lock(state_->mutex);
     state_->stream = stream;
     ++state_->live;
   }
@@ -176,17 +175,17 @@ void CoordinatorLink::open() {
 }
 
 void CoordinatorLink::send(v1::WorkerMessage message) {
-  const std::lock_guard lock(state_->mutex);
+  const core::MutexLock lock(state_->mutex);
   if (state_->stream) state_->stream->send(std::move(message));
 }
 
 bool CoordinatorLink::flowing() const {
-  const std::lock_guard lock(state_->mutex);
+  const core::MutexLock lock(state_->mutex);
   return state_->stream == nullptr || state_->stream->flowing();
 }
 
 void CoordinatorLink::finish() {
-  const std::lock_guard lock(state_->mutex);
+  const core::MutexLock lock(state_->mutex);
   if (state_->stream) state_->stream->finish();
 }
 

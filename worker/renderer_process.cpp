@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "core/base/own_environment.h"
+#include "core/base/posix_file.h"
 #include "worker/renderer_talk.h"
 
 namespace hyades::worker {
@@ -82,7 +83,7 @@ RendererProcess::RendererProcess(pid_t pid, int fd, Owner& owner)
 
 RendererProcess::~RendererProcess() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     closing_ = true;
     wake_.notify_all();
   }
@@ -93,25 +94,25 @@ RendererProcess::~RendererProcess() {
 }
 
 void RendererProcess::kill_child() {
-  const std::lock_guard lock(mutex_);
-  if (pid_ > 0) ::kill(pid_, SIGKILL);
+  const core::MutexLock lock(mutex_);
+  if (!reaped_) ::kill(pid_, SIGKILL);
 }
 
 void RendererProcess::kill(const std::string& reason) {
-  const std::lock_guard lock(mutex_);
-  if (pid_ <= 0) return;
+  const core::MutexLock lock(mutex_);
+  if (reaped_) return;
   killed_ = reason;
   ::kill(pid_, SIGKILL);
 }
 
 void RendererProcess::send(pipe::ToRenderer message) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   outgoing_.push_back(std::move(message));
   wake_.notify_all();  // the reader may wait, too
 }
 
 void RendererProcess::heard() {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   if (unheard_.empty()) return;
   unheard_bytes_ -= unheard_.front();
   unheard_.pop_front();
@@ -119,10 +120,10 @@ void RendererProcess::heard() {
 }
 
 void RendererProcess::wait_for_owner(size_t bytes) {
-  std::unique_lock lock(mutex_);
-  wake_.wait(lock, [this] {
-    return closing_ || (unheard_.size() < kMostUnheard && unheard_bytes_ < kMostUnheardBytes);
-  });
+  const core::MutexLock lock(mutex_);
+  while (!closing_ && (unheard_.size() >= kMostUnheard || unheard_bytes_ >= kMostUnheardBytes)) {
+    wake_.wait(mutex_);
+  }
   unheard_.push_back(bytes);
   unheard_bytes_ += bytes;
 }
@@ -145,18 +146,17 @@ void RendererProcess::read_loop() {
   }
   kill_child();  // where it has merely closed its end
   siginfo_t info{};
-  while (::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT) != 0 &&
-         errno == EINTR) {
-  }
+  core::uninterrupted(
+      [&] { return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOWAIT); });
   bool wanted = false;
   std::string reason;
   {
     // Under the lock, so that nobody signals a pid that belongs to another process by then.
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     int status = 0;
     ::waitpid(pid_, &status, 0);
     reason = killed_.empty() ? describe_end(status) : killed_;
-    pid_ = 0;
+    reaped_ = true;
     wanted = closing_;
     closing_ = true;
     wake_.notify_all();
@@ -168,8 +168,8 @@ void RendererProcess::write_loop() {
   for (;;) {
     pipe::ToRenderer message;
     {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, [this] { return closing_ || !outgoing_.empty(); });
+      const core::MutexLock lock(mutex_);
+      while (!closing_ && outgoing_.empty()) wake_.wait(mutex_);
       if (closing_) return;
       message = std::move(outgoing_.front());
       outgoing_.pop_front();

@@ -2,14 +2,14 @@
 
 #include <sys/types.h>
 
-#include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "worker/pipe/message_pipe.h"
 #include "worker/pipe/render_pipe.pb.h"
@@ -50,36 +50,38 @@ class RendererProcess {
 
   /// The owner is done with a message. While it has too many of them, no more are read: a child
   /// that talks without end takes no memory here.
-  void heard();
+  void heard() HYADES_EXCLUDES(mutex_);
 
   /// Messages, and bytes of films, that the owner has before it at once (the last may be larger).
   static constexpr size_t kMostUnheard = 1000;
   static constexpr size_t kMostUnheardBytes = size_t{64} << 20U;
 
   /// Ends the child; the owner hears of it when it is dead, with this reason.
-  void kill(const std::string& reason);
+  void kill(const std::string& reason) HYADES_EXCLUDES(mutex_);
 
   /// Queues a message; never blocks.
-  void send(pipe::ToRenderer message);
+  void send(pipe::ToRenderer message) HYADES_EXCLUDES(mutex_);
 
  private:
   RendererProcess(pid_t pid, int fd, Owner& owner);
-  void read_loop();
-  void write_loop();
-  void kill_child();
-  void wait_for_owner(size_t bytes);
+  void read_loop() HYADES_EXCLUDES(mutex_);
+  void write_loop() HYADES_EXCLUDES(mutex_);
+  void kill_child() HYADES_EXCLUDES(mutex_);
+  void wait_for_owner(size_t bytes) HYADES_EXCLUDES(mutex_);
 
   Owner& owner_;
   pipe::MessagePipe pipe_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  // Guarded by mutex_.
-  pid_t pid_;           ///< 0: it has been waited for
-  std::string killed_;  ///< why, where this process did it
-  std::deque<pipe::ToRenderer> outgoing_;
-  std::deque<size_t> unheard_;  ///< bytes of the messages that the owner has before it
-  size_t unheard_bytes_ = 0;
-  bool closing_ = false;
+  const pid_t pid_;
+  core::Mutex mutex_;
+  core::CondVar wake_;
+  /// The child has been waited for: its pid may be another process' by now.
+  bool reaped_ HYADES_GUARDED_BY(mutex_) = false;
+  std::string killed_ HYADES_GUARDED_BY(mutex_);  ///< why, where this process did it
+  std::deque<pipe::ToRenderer> outgoing_ HYADES_GUARDED_BY(mutex_);
+  /// Bytes of the messages that the owner has before it.
+  std::deque<size_t> unheard_ HYADES_GUARDED_BY(mutex_);
+  size_t unheard_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
+  bool closing_ HYADES_GUARDED_BY(mutex_) = false;
 
   std::thread reader_;
   std::thread writer_;

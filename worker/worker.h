@@ -20,9 +20,9 @@ struct WorkerOptions {
   std::string name;         ///< for people
   std::vector<std::string> tags;
   double grace = 2.0;        ///< seconds from SIGTERM to the end
-  double hang_limit = 60;    ///< seconds without a new sample of a unit; 0: for ever (RenderWatch)
-  double unit_limit = 3600;  ///< seconds for one unit; 0: no limit (UnitLimit)
-  double idle_limit = 0;     ///< seconds without work after which it ends; 0: never (IdleWatch)
+  double hang_limit = 60;    ///< seconds without a new sample of a unit; 0: for ever (UnitClock)
+  double unit_limit = 3600;  ///< seconds for one unit; 0: no limit (UnitClock)
+  double idle_limit = 0;     ///< seconds without work after which it ends; 0: never
   int told_status = 0;       ///< exit status where a signal or the cloud ended it, not lack of work
   std::string sandbox = "auto";  ///< of the rendering child: auto, require or off
   std::optional<Cloud> cloud;    ///< whose notices of pre-emption to watch for

@@ -9,12 +9,14 @@
 #include <cerrno>
 #include <cstddef>
 #include <fstream>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 #include "core/base/random_id.h"
 
 namespace hyades::worker {
@@ -33,9 +35,8 @@ bool is_id(const std::string& text) {
 /// What the file says where it was written whole, by this machine.
 std::string read_id(int fd, const std::string& machine) {
   std::array<char, 512> bytes{};
-  const ssize_t size = ::pread(fd, bytes.data(), bytes.size(), 0);
-  if (size <= 0) return {};
-  const std::string text(bytes.data(), static_cast<size_t>(size));
+  const auto size = core::read_all_at(fd, std::as_writable_bytes(std::span(bytes)), 0);
+  const std::string text(bytes.data(), size.value_or(0));
   const std::string id = text.substr(0, kIdLength);
   return is_id(id) && text == id + " " + machine + "\n" ? id : std::string();
 }
@@ -48,7 +49,7 @@ core::Result<WorkerId> WorkerId::take(const std::string& cache_folder, const std
     const auto failed = [&](const char* what) {
       return core::Error{fmt::format("cannot {} {}: {}", what, path, core::io_reason(errno))};
     };
-    core::Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+    core::Descriptor file = core::open_file(path, O_RDWR | O_CREAT, 0600);
     if (!file.valid()) return failed("open");
     if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
       if (errno == EWOULDBLOCK) continue;
@@ -70,7 +71,7 @@ core::Status WorkerId::renew() {
   if (!fresh) return fresh.error();
   const std::string text = *fresh + " " + machine_ + "\n";
   if (::ftruncate(lock_.get(), 0) != 0 ||
-      ::pwrite(lock_.get(), text.data(), text.size(), 0) != std::ssize(text) ||
+      !core::write_all_at(lock_.get(), std::as_bytes(std::span(text)), 0) ||
       ::fsync(lock_.get()) != 0) {
     return core::Error{fmt::format("cannot write {}: {}", path_, core::io_reason(errno))};
   }

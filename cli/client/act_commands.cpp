@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -6,19 +7,20 @@
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/find_job.h"
 #include "cli/client/show.h"
+#include "cli/client_commands.h"
+#include "cli/number_range.h"
 
 namespace hyades::cli {
 namespace {
 
-using Deed = std::function<Outcome(FarmClient&, uint64_t id, v1::Job& after)>;
+using Action = std::function<Outcome(FarmClient&, uint64_t id, v1::Job& after)>;
 
-/// Does `deed` to each of the jobs called `names`; the first failure's exit status, after all were
-/// tried.
+/// Does `action` to each of the jobs called `names`; the first failure's exit status, after all
+/// were tried.
 int for_each_job(const ClientApp& app, const std::vector<std::string>& names, Namesakes namesakes,
-                 bool json, const Deed& deed) {
+                 bool json, const Action& action) {
   const auto client = app.connect();
   if (!client) return kBadArguments;
   int worst = kDone;
@@ -27,7 +29,7 @@ int for_each_job(const ClientApp& app, const std::vector<std::string>& names, Na
     uint64_t id = 0;
     v1::Job job;
     Outcome failure = find_job(*client, name, namesakes, id);
-    if (!failure) failure = deed(*client, id, job);
+    if (!failure) failure = action(*client, id, job);
     if (failure) {
       const int status = app.report(*failure);
       if (worst == kDone) worst = status;
@@ -37,7 +39,7 @@ int for_each_job(const ClientApp& app, const std::vector<std::string>& names, Na
     if (json) {
       list.push_back(to_json(job));
     } else if (job.state() != v1::JOB_STATE_UNSPECIFIED) {
-      std::printf("job %lu (%s) is %s, priority %d\n", id, printable(job.name()).c_str(),
+      std::printf("job %lu (%s) is %s, priority %d\n", id, core::printable(job.name()).c_str(),
                   state_name(job.state()).c_str(), job.priority());
     } else {
       std::printf("job %lu is deleted\n", id);
@@ -47,8 +49,8 @@ int for_each_job(const ClientApp& app, const std::vector<std::string>& names, Na
   return worst;
 }
 
-/// The same for the jobs that the command line names.
-int for_each_job(ClientApp& app, Namesakes namesakes, int argc, char** argv, const Deed& deed) {
+/// Adds the options, and acts on each of the jobs that the command line names.
+int for_each_job(ClientApp& app, Namesakes namesakes, int argc, char** argv, const Action& action) {
   std::vector<std::string> names;
   bool json = false;
   app.app()
@@ -62,16 +64,23 @@ int for_each_job(ClientApp& app, Namesakes namesakes, int argc, char** argv, con
   const std::string words = std::string("hyades ") + app.command();
   app.give_examples({words + " perlin-sphere", words + " 12 13 --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
-  return for_each_job(app, names, namesakes, json, deed);
+  return for_each_job(app, names, namesakes, json, action);
 }
 
-int act(const char* command, const char* description, FarmClient::Action action, int argc,
-        char** argv, Namesakes namesakes = Namesakes::open) {
+v1::JobRequest ask_of(uint64_t id) {
+  v1::JobRequest request;
+  request.set_job(id);
+  return request;
+}
+
+template <class Method>
+int act(const char* command, const char* description, Method method, int argc, char** argv,
+        Namesakes namesakes = Namesakes::open) {
   ClientApp app(command, description);
   return for_each_job(app, namesakes, argc, argv,
                       [&](FarmClient& client, uint64_t id, v1::Job& after) {
                         v1::JobResponse response;
-                        auto failure = client.act(action, id, response);
+                        auto failure = client.call(method, ask_of(id), response);
                         after = response.job();
                         return failure;
                       });
@@ -81,22 +90,22 @@ int act(const char* command, const char* description, FarmClient::Action action,
 
 int pause_command(int argc, char** argv) {
   return act("pause", "Stops leasing units of jobs; those that are out go on.",
-             FarmClient::Action::pause, argc, argv);
+             &v1::Jobs::Stub::Pause, argc, argv);
 }
 
 int resume_command(int argc, char** argv) {
-  return act("resume", "Lets paused jobs go on.", FarmClient::Action::resume, argc, argv);
+  return act("resume", "Lets paused jobs go on.", &v1::Jobs::Stub::Resume, argc, argv);
 }
 
 int cancel_command(int argc, char** argv) {
-  return act("cancel", "Ends jobs; frames that are finished stay.", FarmClient::Action::cancel,
-             argc, argv);
+  return act("cancel", "Ends jobs; frames that are finished stay.", &v1::Jobs::Stub::Cancel, argc,
+             argv);
 }
 
 int retry_command(int argc, char** argv) {
   return act("retry",
              "Takes up again the failed frames of jobs, or all that a cancelled job has left.",
-             FarmClient::Action::retry, argc, argv, Namesakes::failed);
+             &v1::Jobs::Stub::Retry, argc, argv, Namesakes::failed);
 }
 
 int delete_command(int argc, char** argv) {
@@ -104,7 +113,8 @@ int delete_command(int argc, char** argv) {
   return for_each_job(app, Namesakes::none, argc, argv,
                       [](FarmClient& client, uint64_t id, v1::Job& after) {
                         after.set_id(id);
-                        return client.remove(id);
+                        v1::DeleteJobResponse response;
+                        return client.call(&v1::Jobs::Stub::Delete, ask_of(id), response);
                       });
 }
 
@@ -116,15 +126,18 @@ int priority_command(int argc, char** argv) {
   app.app().add_option("job", name, "its id, or the name of the only one (open)")->required();
   app.app()
       .add_option("priority", priority, "the new priority (write -- before a negative one)")
-      ->check(CLI::Range(-1'000'000, 1'000'000))
+      ->check(in_range(-1'000'000, 1'000'000))
       ->required();
   app.app().add_flag("--json", json, "print the job as JSON (field id)");
   app.give_examples({"hyades priority perlin-sphere 10", "hyades priority 12 -- -5"});
   if (const auto status = app.parse(argc, argv)) return *status;
   return for_each_job(app, {name}, Namesakes::open, json,
                       [&](FarmClient& client, uint64_t id, v1::Job& after) {
+                        v1::SetPriorityRequest request;
+                        request.set_job(id);
+                        request.set_priority(priority);
                         v1::JobResponse response;
-                        auto failure = client.set_priority(id, priority, response);
+                        auto failure = client.call(&v1::Jobs::Stub::SetPriority, request, response);
                         after = response.job();
                         return failure;
                       });

@@ -1,13 +1,19 @@
+#include <cstdint>
 #include <cstdio>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/show.h"
+#include "cli/client_commands.h"
 #include "cli/duration_option.h"
+#include "coordinator/access/audit_chain.h"
 #include "coordinator/access/token.h"
+#include "core/base/text.h"
+#include "core/base/wall_clock.h"
 
 namespace hyades::cli {
 namespace {
@@ -25,8 +31,43 @@ void print_entry(const v1::AuditEntry& entry) {
   line += ": " + entry.result();
   if (entry.times() > 1) line += fmt::format(", {} times", entry.times());
   if (!entry.detail().empty()) line += " (" + entry.detail() + ")";
-  std::printf("%s\n", printable(line).c_str());
+  std::printf("%s\n", core::printable(line).c_str());
 }
+
+/// Follows the chains of the logs, and looks for digests that were noted before.
+class Verification {
+ public:
+  explicit Verification(std::vector<std::string> noted) : noted_(std::move(noted)) {}
+
+  void add(const v1::AuditEntry& entry) {
+    const std::string wrong = chains_.add(entry);
+    const std::string& last = chains_.ends().at(entry.log()).last;
+    std::erase(noted_, last);
+    if (wrong.empty()) return;
+    ++broken_;
+    std::printf("%s: the entry of %s, %s, %s\n", core::printable(entry.log()).c_str(),
+                format_time(entry.time_ms()).c_str(), core::printable(entry.deed()).c_str(),
+                wrong.c_str());
+  }
+
+  /// Tells what there is; whether all is as it should be.
+  bool report() const {
+    for (const auto& [log, end] : chains_.ends()) {
+      std::printf("%s: %s, last %s%s\n", core::printable(log).c_str(),
+                  core::counted(end.entries, "line").c_str(), end.last.c_str(),
+                  end.first.empty() ? "" : ", the oldest are gone");
+    }
+    for (const std::string& digest : noted_) {
+      std::printf("no entry has the digest %s\n", core::printable(digest).c_str());
+    }
+    return broken_ == 0 && noted_.empty();
+  }
+
+ private:
+  std::vector<std::string> noted_;  ///< that were not met yet
+  coordinator::AuditChains chains_;
+  uint64_t broken_ = 0;
+};
 
 }  // namespace
 
@@ -34,27 +75,43 @@ int audit_command(int argc, char** argv) {
   ClientApp app("audit", "Prints who did what on the farm, and who was refused.");
   double since = 0;
   bool json = false;
+  bool verify = false;
+  std::vector<std::string> noted;
   add_duration(app.app(), "--since", since,
                "only the last 12h, 30d or so (default: all that is kept)");
   app.app().add_flag("--json", json, "print an object a line");
+  auto* verifies =
+      app.app().add_flag("--verify", verify,
+                         "tell whether any entry was changed, left out or put in, and each log's "
+                         "last digest");
+  app.app()
+      .add_option("--noted", noted,
+                  "with --verify: this digest, which it told before, must be there")
+      ->needs(verifies)
+      ->type_name("DIGEST");
   app.app().footer(
       "examples:\n  hyades audit --since 2h\n  hyades audit --json | grep job.cancel\n"
+      "  hyades audit --verify --noted 5891b5b5...\n"
       "docs/safety.md tells what is kept\n"
-      "exit status: 0 done, 2 wrong arguments, 3 no coordinator answers, 4 no token, or not an "
+      "exit status: 0 done, 1 an entry is not as it was written, 2 wrong arguments, 3 no "
+      "coordinator answers, 4 no token, or not an "
       "admin's");
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
-  const int64_t since_ms =
-      since == 0 ? 0 : coordinator::token_clock_ms() - static_cast<int64_t>(1e3 * since);
+  const int64_t since_ms = since == 0 ? 0 : core::wall_ms() - static_cast<int64_t>(1e3 * since);
+  Verification verification(noted);
   const auto failure = client->audit(since_ms, [&](const v1::AuditEntry& entry) {
-    if (json) {
+    if (verify) {
+      verification.add(entry);
+    } else if (json) {
       print_json(to_json(entry));
     } else {
       print_entry(entry);
     }
   });
-  return failure ? app.report(*failure) : kDone;
+  if (failure) return app.report(*failure);
+  return verify && !verification.report() ? kFailed : kDone;
 }
 
 }  // namespace hyades::cli

@@ -13,12 +13,13 @@
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/find_job.h"
 #include "cli/client/finish_time.h"
 #include "cli/client/scale_call.h"
 #include "cli/client/scale_decision.h"
+#include "cli/client_commands.h"
 #include "cli/duration_option.h"
+#include "cli/number_range.h"
 
 namespace hyades::cli {
 namespace {
@@ -204,22 +205,15 @@ int run(const ClientApp& app, FarmClient& client, const Options& options) {
   return kDone;
 }
 
-}  // namespace
-
-int autoscale_command(int argc, char** argv) {
-  ClientApp app(
-      "autoscale",
-      "Calls a command with the number of workers that the queue needs, when it changes.");
-  Options options;
-  CLI::App& words = app.app();
+void declare_autoscale(CLI::App& words, Options& options) {
   words.add_option("--exec", options.exec,
                    "the command, run by a shell: the number is its last argument, and in "
                    "HYADES_WANTED");
   words.add_option("--min", options.least, "fewest workers")
-      ->check(CLI::Range(0U, 1'000'000U))
+      ->check(in_range(0U, 1'000'000U))
       ->capture_default_str();
   words.add_option("--max", options.most, "most workers")
-      ->check(CLI::Range(1U, 1'000'000U))
+      ->check(in_range(1U, 1'000'000U))
       ->required();
   auto* by = words.add_option("--finish-by", options.finish_by,
                               "when all shall be done: 18:00 (the first one after a job's "
@@ -231,9 +225,9 @@ int autoscale_command(int argc, char** argv) {
                     .add_option("--max-cost", options.money,
                                 "the most that workers may cost while this command runs; then "
                                 "there are only --min")
-                    ->check(CLI::Range(0.0, 1e12));
+                    ->check(in_range(0.0, 1e12));
   words.add_option("--price", options.price, "of a worker and hour, in the money of --max-cost")
-      ->check(CLI::Range(1e-9, 1e9))
+      ->check(in_range(1e-9, 1e9))
       ->needs(money);
   add_duration(words, "--interval", options.interval,
                "between two looks at the queue; the command is called no more often (default: 1m)",
@@ -245,7 +239,7 @@ int autoscale_command(int argc, char** argv) {
   words
       .add_option("--threads", options.threads,
                   "of a worker (default: as those that are there have, else 8)")
-      ->check(CLI::Range(1U, 4096U));
+      ->check(in_range(1U, 4096U));
   words
       .add_option("--tags", options.tags,
                   "of the workers that the command starts: jobs that ask for others do not count")
@@ -261,14 +255,29 @@ int autoscale_command(int argc, char** argv) {
       "  hyades autoscale --max 50 --once --dry-run\n"
       "docs/client.md tells how it decides. exit status: 0 after Ctrl-C or SIGTERM, with --once 1 "
       "where the command failed; 2 wrong arguments, 3 no coordinator (--once), 4 no token");
+}
+
+/// What is wrong with options that do not fit each other; empty: nothing.
+std::string contradiction(const Options& options) {
+  if (options.exec.empty() && !options.dry) return "--exec is missing (or --dry-run)";
+  if (options.least > options.most) return "--min is more than --max";
+  if (options.money && !options.price) return "--max-cost: expected --price beside it";
+  if (options.finish_by.empty()) return {};
+  const auto moment = parse_moment(options.finish_by, std::time(nullptr));
+  return moment ? std::string() : "--finish-by " + moment.error().message;
+}
+
+}  // namespace
+
+int autoscale_command(int argc, char** argv) {
+  ClientApp app(
+      "autoscale",
+      "Calls a command with the number of workers that the queue needs, when it changes.");
+  Options options;
+  declare_autoscale(app.app(), options);
   if (const auto status = app.parse(argc, argv)) return *status;
-  const auto wrong = [&](const std::string& why) { return app.report({kBadArguments, why}); };
-  if (options.exec.empty() && !options.dry) return wrong("--exec is missing (or --dry-run)");
-  if (options.least > options.most) return wrong("--min is more than --max");
-  if (options.money && !options.price) return wrong("--max-cost: expected --price beside it");
-  if (!options.finish_by.empty()) {
-    const auto moment = parse_moment(options.finish_by, std::time(nullptr));
-    if (!moment) return wrong("--finish-by " + moment.error().message);
+  if (const std::string wrong = contradiction(options); !wrong.empty()) {
+    return app.report({kBadArguments, wrong});
   }
   const auto client = app.connect();
   if (!client) return kBadArguments;

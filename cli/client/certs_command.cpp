@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/client/commands.h"
 #include "cli/client/failure.h"
+#include "cli/client_commands.h"
 #include "cli/command_line.h"
 #include "farm/certificate_maker.h"
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/command_line.h"
+#include "cli/number_range.h"
 #include "cli/peer_options.h"
 
 namespace hyades::cli {
@@ -14,7 +15,7 @@ ClientApp::ClientApp(const char* command, const std::string& description)
   add_peer_options(app_, options_.peer, group);
   app_.add_option("--patience", options_.later_patience,
                   "seconds to go on trying when a coordinator that was there is gone")
-      ->check(CLI::Range(0.0, 1e9))
+      ->check(in_range(0.0, 1e9))
       ->capture_default_str()
       ->group(group);
 }

@@ -1,24 +1,20 @@
 #include "cli/client/farm_client.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <ios>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <grpcpp/channel.h>
-#include <grpcpp/client_context.h>
 
-#include "cli/client/patience.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
-#include "hyades/v1/admin.grpc.pb.h"
-#include "hyades/v1/assets.grpc.pb.h"
-#include "hyades/v1/farm.grpc.pb.h"
-#include "hyades/v1/jobs.grpc.pb.h"
 
 namespace hyades::cli {
 
@@ -27,9 +23,8 @@ using std::chrono::milliseconds;
 
 namespace {
 
-constexpr milliseconds kShortCall{20'000};
-constexpr milliseconds kSubmit{120'000};  // the coordinator reads the job
-constexpr uint64_t kSlowestLink = 64;     // bytes/ms: bounds the deadlines of transfers
+constexpr milliseconds kAsLongAsItLives{0};
+constexpr uint64_t kSlowestLink = 64;  // bytes/ms: bounds the deadlines of transfers
 
 milliseconds transfer_time(uint64_t bytes) {
   return milliseconds{60'000 + static_cast<int64_t>(bytes / kSlowestLink)};
@@ -45,180 +40,137 @@ std::vector<std::string> hex_of(const v1::ErrorDetail& detail) {
 
 }  // namespace
 
-struct FarmClient::State {
-  ClientOptions options;
-  std::string token;
-  std::shared_ptr<grpc::Channel> channel;
-  std::unique_ptr<v1::Jobs::Stub> jobs;
-  std::unique_ptr<v1::Assets::Stub> assets;
-  std::unique_ptr<v1::Farm::Stub> farm;
-  std::unique_ptr<v1::Admin::Stub> admin;
-  Patience patience{0, 0};
-  std::function<void(const std::string&)> tell;
-  bool told = false;    ///< that the coordinator is gone
-  Patience room{0, 0};  ///< with a coordinator that has no room, whatever else it answers
-  bool told_room = false;
-
-  void reached() {
-    patience.reached();
-    told = false;
-  }
-
-  std::string no_answer(const std::string& reason) const {
-    const std::string& address = options.peer.address;
-    if (const auto tls = farm::tls_trouble(reason, options.peer)) {
-      return fmt::format("cannot speak with the coordinator at {}: {}", address, *tls);
-    }
-    const std::string trouble = farm::connection_trouble(reason, options.peer);
-    if (patience.was_reached()) {
-      return fmt::format("the coordinator at {} answers no more ({})", address, trouble);
-    }
-    return fmt::format(
-        "no coordinator answers at {} ({}); --coordinator HOST:PORT or HYADES_COORDINATOR says "
-        "where it is",
-        address, trouble);
-  }
-
-  Failure failure(const grpc::Status& status) const {
-    Failure out;
-    out.missing = hex_of(farm::detail_of(status));
-    out.message = status.error_message();
-    out.lines = true;  // every complaint about a job, say
-    switch (status.error_code()) {
-      case grpc::StatusCode::INVALID_ARGUMENT:
-        out.code = kBadArguments;
-        break;
-      case grpc::StatusCode::NOT_FOUND:
-        out.code = kUnknown;
-        break;
-      case grpc::StatusCode::UNAUTHENTICATED:
-      case grpc::StatusCode::PERMISSION_DENIED:
-        out.code = kRefused;
-        out.message += token.empty() ? " (--token-file FILE or HYADES_TOKEN_FILE gives a token)"
-                                     : " (the token is that of " + options.peer.token_file + ")";
-        break;
-      case grpc::StatusCode::UNIMPLEMENTED:
-        out.message = "the coordinator at " + options.peer.address + " cannot do this: it is older";
-        break;
-      case grpc::StatusCode::DATA_LOSS:
-        out.damaged = true;
-        break;
-      case grpc::StatusCode::UNAVAILABLE:
-      case grpc::StatusCode::DEADLINE_EXCEEDED:
-        // Where a time is named the coordinator has spoken itself: what is asked for is not there
-        // yet.
-        if (farm::detail_of(status).retry_after_ms() != 0) break;
-        out.code = kNoAnswer;
-        out.message = no_answer(status.error_message());
-        break;
-      default:
-        break;
-    }
-    if (out.message.empty())
-      out.message = fmt::format("error {}", static_cast<int>(status.error_code()));
-    return out;
-  }
-
-  /// Whether to try again, after having waited.
-  bool wait_after(const grpc::Status& status) {
-    if (!farm::is_retryable(status)) return false;
-    const double asked = farm::detail_of(status).retry_after_ms() * 1e-3;
-    const bool no_room = status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
-    const double wait = (no_room ? room : patience).next_wait(Patience::Clock::now(), asked);
-    if (wait < 0) return false;
-    if (bool& known = no_room ? told_room : told; !known && (no_room || patience.was_reached())) {
-      known = true;
-      const std::string text =
-          fmt::format("{} ({}): trying for up to {}", options.peer.address,
-                      farm::connection_trouble(status.error_message(), options.peer),
-                      core::format_duration(options.later_patience));
-      tell ? tell(text) : static_cast<void>(std::fprintf(stderr, "%s\n", text.c_str()));
-    }
-    std::this_thread::sleep_for(std::chrono::duration<double>(wait));
-    return true;
-  }
-
-  /// `once` until it succeeds, fails for good, or patience ends.
-  Outcome persist(milliseconds timeout,
-                  const std::function<grpc::Status(grpc::ClientContext&)>& once) {
-    for (bool refused = false;;) {
-      grpc::ClientContext context;
-      farm::prepare(context, token, timeout);
-      const grpc::Status status = once(context);
-      if (status.ok()) {
-        reached();
-        if (refused) room.reached();
-        return std::nullopt;
-      }
-      refused = refused || status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
-      if (!wait_after(status)) return failure(status);
-    }
-  }
-
-  template <class Stub, class Request, class Response>
-  Outcome call(Stub& stub,
-               grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-               const Request& request, Response& response, milliseconds timeout = kShortCall) {
-    return persist(timeout, [&](grpc::ClientContext& context) {
-      response.Clear();
-      return (stub.*method)(&context, request, &response);
-    });
-  }
-
-  /// Every message of a server's stream until `on_message` returns false; an error that it leaves
-  /// in `stopped` ends everything.
-  template <class Message, class Begin>
-  Outcome stream(milliseconds timeout, const Begin& begin,
-                 const std::function<bool(const Message&)>& on_message, const Outcome& stopped) {
-    Outcome outcome = persist(timeout, [&](grpc::ClientContext& context) {
-      const auto reader = begin(context);
-      Message message;
-      while (reader->Read(&message)) {
-        reached();
-        if (on_message(message)) continue;
-        context.TryCancel();
-        while (reader->Read(&message)) {
-        }
-        (void)reader->Finish();
-        return grpc::Status::OK;
-      }
-      return reader->Finish();
-    });
-    return stopped ? stopped : outcome;
-  }
-};
+FarmClient::FarmClient(const ClientOptions& options, std::string token,
+                       std::shared_ptr<grpc::Channel> channel)
+    : options_(options),
+      token_(std::move(token)),
+      channel_(std::move(channel)),
+      patience_(options.first_patience, options.later_patience),
+      room_(options.later_patience, options.later_patience) {}
 
 Result<std::unique_ptr<FarmClient>> FarmClient::open(const ClientOptions& options) {
-  auto state = std::make_unique<State>();
-  state->options = options;
   auto token = farm::read_token(options.peer.token_file);
   if (!token) return token.error();
-  state->token = *token;
   auto channel = farm::connect(options.peer);
   if (!channel) return channel.error();
-  state->channel = *channel;
-  state->jobs = v1::Jobs::NewStub(*channel);
-  state->assets = v1::Assets::NewStub(*channel);
-  state->farm = v1::Farm::NewStub(*channel);
-  state->admin = v1::Admin::NewStub(*channel);
-  state->patience = Patience(options.first_patience, options.later_patience);
-  state->room = Patience(options.later_patience, options.later_patience);
-  return std::unique_ptr<FarmClient>(new FarmClient(std::move(state)));
+  return std::unique_ptr<FarmClient>(new FarmClient(options, *token, *channel));
 }
 
-FarmClient::FarmClient(std::unique_ptr<State> state) : state_(std::move(state)) {}
-FarmClient::~FarmClient() = default;
-
-void FarmClient::on_notice(std::function<void(const std::string&)> tell) {
-  state_->tell = std::move(tell);
+void FarmClient::reached() {
+  patience_.reached();
+  told_ = false;
 }
 
-Outcome FarmClient::submit(const v1::SubmitRequest& request, v1::SubmitResponse& response) {
-  return state_->call(*state_->jobs, &v1::Jobs::Stub::Submit, request, response, kSubmit);
+std::string FarmClient::no_answer(const std::string& reason) const {
+  const std::string& address = options_.peer.address;
+  if (const auto tls = farm::tls_trouble(reason, options_.peer)) {
+    return fmt::format("cannot speak with the coordinator at {}: {}", address, *tls);
+  }
+  const std::string trouble = farm::connection_trouble(reason, options_.peer);
+  if (patience_.was_reached()) {
+    return fmt::format("the coordinator at {} answers no more ({})", address, trouble);
+  }
+  return fmt::format(
+      "no coordinator answers at {} ({}); --coordinator HOST:PORT or HYADES_COORDINATOR says "
+      "where it is",
+      address, trouble);
 }
 
-Outcome FarmClient::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
-  return state_->call(*state_->jobs, &v1::Jobs::Stub::List, request, response);
+Failure FarmClient::failure(const grpc::Status& status) const {
+  Failure out;
+  out.missing = hex_of(farm::detail_of(status));
+  out.message = status.error_message();
+  out.lines = true;  // every complaint about a job, say
+  switch (status.error_code()) {
+    case grpc::StatusCode::INVALID_ARGUMENT:
+      out.code = kBadArguments;
+      break;
+    case grpc::StatusCode::NOT_FOUND:
+      out.code = kUnknown;
+      break;
+    case grpc::StatusCode::UNAUTHENTICATED:
+    case grpc::StatusCode::PERMISSION_DENIED:
+      out.code = kRefused;
+      out.message += token_.empty() ? " (--token-file FILE or HYADES_TOKEN_FILE gives a token)"
+                                    : " (the token is that of " + options_.peer.token_file + ")";
+      break;
+    case grpc::StatusCode::UNIMPLEMENTED:
+      out.message = "the coordinator at " + options_.peer.address + " cannot do this: it is older";
+      break;
+    case grpc::StatusCode::DATA_LOSS:
+      out.damaged = true;
+      break;
+    case grpc::StatusCode::UNAVAILABLE:
+    case grpc::StatusCode::DEADLINE_EXCEEDED:
+      // Where a time is named the coordinator has spoken itself: what is asked for is not there
+      // yet.
+      if (farm::detail_of(status).retry_after_ms() != 0) break;
+      out.code = kNoAnswer;
+      out.message = no_answer(status.error_message());
+      break;
+    default:
+      break;
+  }
+  if (out.message.empty())
+    out.message = fmt::format("error {}", static_cast<int>(status.error_code()));
+  return out;
+}
+
+bool FarmClient::wait_after(const grpc::Status& status) {
+  if (!farm::is_retryable(status)) return false;
+  const double asked = farm::detail_of(status).retry_after_ms() * 1e-3;
+  const bool no_room = status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+  const double wait = (no_room ? room_ : patience_).next_wait(Patience::Clock::now(), asked);
+  if (wait < 0) return false;
+  if (bool& known = no_room ? told_room_ : told_; !known && (no_room || patience_.was_reached())) {
+    known = true;
+    const std::string text =
+        fmt::format("{} ({}): trying for up to {}", options_.peer.address,
+                    farm::connection_trouble(status.error_message(), options_.peer),
+                    core::format_duration(options_.later_patience));
+    tell_ ? tell_(text) : static_cast<void>(std::fprintf(stderr, "%s\n", text.c_str()));
+  }
+  std::this_thread::sleep_for(std::chrono::duration<double>(wait));
+  return true;
+}
+
+Outcome FarmClient::persist(milliseconds timeout,
+                            const std::function<grpc::Status(grpc::ClientContext&)>& once) {
+  for (bool refused = false;;) {
+    grpc::ClientContext context;
+    farm::prepare(context, token_, timeout);
+    const grpc::Status status = once(context);
+    if (status.ok()) {
+      reached();
+      if (refused) room_.reached();
+      return std::nullopt;
+    }
+    refused = refused || status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+    if (!wait_after(status)) return failure(status);
+  }
+}
+
+template <class Stub, class Request, class Message, class OnMessage>
+Outcome FarmClient::stream(std::unique_ptr<grpc::ClientReader<Message>> (Stub::*method)(
+                               grpc::ClientContext*, const Request&),
+                           const Request& request, milliseconds timeout,
+                           const OnMessage& on_message, const Outcome& stopped) {
+  Stub stub(channel_);
+  Outcome outcome = persist(timeout, [&](grpc::ClientContext& context) {
+    const auto reader = (stub.*method)(&context, request);
+    Message message;
+    while (reader->Read(&message)) {
+      reached();
+      if (on_message(message)) continue;
+      context.TryCancel();
+      while (reader->Read(&message)) {
+      }
+      (void)reader->Finish();
+      return grpc::Status::OK;
+    }
+    return reader->Finish();
+  });
+  return stopped ? stopped : outcome;
 }
 
 Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
@@ -227,7 +179,7 @@ Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
   response.Clear();
   v1::GetJobResponse part;
   do {
-    auto failure = state_->call(*state_->jobs, &v1::Jobs::Stub::Get, request, part);
+    auto failure = call(&v1::Jobs::Stub::Get, request, part);
     if (failure) return failure;
     response.mutable_job()->Swap(part.mutable_job());
     response.mutable_frames()->MergeFrom(part.frames());
@@ -236,60 +188,18 @@ Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
   return std::nullopt;
 }
 
-Outcome FarmClient::act(Action action, uint64_t job, v1::JobResponse& response) {
-  v1::JobRequest request;
-  request.set_job(job);
-  const auto call = [&](auto method) {
-    return state_->call(*state_->jobs, method, request, response);
-  };
-  switch (action) {
-    case Action::pause:
-      return call(&v1::Jobs::Stub::Pause);
-    case Action::resume:
-      return call(&v1::Jobs::Stub::Resume);
-    case Action::cancel:
-      return call(&v1::Jobs::Stub::Cancel);
-    case Action::retry:
-      return call(&v1::Jobs::Stub::Retry);
-  }
-  return Failure{kFailed, "no such action"};
-}
-
-Outcome FarmClient::set_priority(uint64_t job, int32_t priority, v1::JobResponse& response) {
-  v1::SetPriorityRequest request;
-  request.set_job(job);
-  request.set_priority(priority);
-  return state_->call(*state_->jobs, &v1::Jobs::Stub::SetPriority, request, response);
-}
-
-Outcome FarmClient::remove(uint64_t job) {
-  v1::JobRequest request;
-  request.set_job(job);
-  v1::DeleteJobResponse response;
-  return state_->call(*state_->jobs, &v1::Jobs::Stub::Delete, request, response);
-}
-
-Outcome FarmClient::explain(uint64_t job, v1::ExplainResponse& response) {
-  v1::JobRequest request;
-  request.set_job(job);
-  return state_->call(*state_->jobs, &v1::Jobs::Stub::Explain, request, response);
-}
-
 Outcome FarmClient::watch(uint64_t job,
                           const std::function<bool(const v1::WatchEvent&)>& on_event) {
   v1::WatchRequest request;
   request.set_job(job);
-  return state_->stream<v1::WatchEvent>(
-      milliseconds{0}, [&](grpc::ClientContext& c) { return state_->jobs->Watch(&c, request); },
-      on_event, std::nullopt);
+  return stream(&v1::Jobs::Stub::Watch, request, kAsLongAsItLives, on_event);
 }
 
 Outcome FarmClient::outputs(const v1::OutputsRequest& request,
                             const std::function<Outcome(const v1::OutputFile&)>& on_file) {
   Outcome stopped;
-  return state_->stream<v1::OutputFile>(
-      request.follow() ? milliseconds{0} : kSubmit,
-      [&](grpc::ClientContext& c) { return state_->jobs->Outputs(&c, request); },
+  return stream(
+      &v1::Jobs::Stub::Outputs, request, request.follow() ? kAsLongAsItLives : kLongCall,
       [&](const v1::OutputFile& file) { return !(stopped = on_file(file)); }, stopped);
 }
 
@@ -306,9 +216,7 @@ Outcome FarmClient::fetch(v1::FetchRequest request, uint64_t size,
     stopped = on_bytes(chunk.data());
     return !stopped;
   };
-  return state_->stream<v1::Chunk>(
-      transfer_time(size), [&](grpc::ClientContext& c) { return state_->jobs->Fetch(&c, request); },
-      on_chunk, stopped);
+  return stream(&v1::Jobs::Stub::Fetch, request, transfer_time(size), on_chunk, stopped);
 }
 
 Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes,
@@ -317,16 +225,12 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
   request.set_job(job);
   request.set_frame(frame);
   Outcome stopped;
-  return state_->stream<v1::FilmPart>(
-      transfer_time(farm::kMaxResultBytes),
-      [&](grpc::ClientContext& c) {
-        header.Clear();
-        bytes.clear();
-        return state_->jobs->Film(&c, request);
-      },
+  return stream(
+      &v1::Jobs::Stub::Film, request, transfer_time(farm::kMaxResultBytes),
       [&](const v1::FilmPart& part) {
-        if (part.has_header()) {
+        if (part.has_header()) {  // the first message of each try
           header = part.header();
+          bytes.clear();
         } else if (part.chunk().offset() == bytes.size() &&
                    part.chunk().data().size() <= header.size() - bytes.size()) {
           bytes += part.chunk().data();
@@ -341,25 +245,13 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
 
 Outcome FarmClient::logs(v1::LogsRequest request,
                          const std::function<void(const v1::LogLine&)>& on_line) {
-  return state_->stream<v1::LogLine>(
-      request.follow() ? milliseconds{0} : kSubmit,
-      [&](grpc::ClientContext& c) { return state_->jobs->Logs(&c, request); },
+  return stream(
+      &v1::Jobs::Stub::Logs, request, request.follow() ? kAsLongAsItLives : kLongCall,
       [&](const v1::LogLine& line) {
         on_line(line);
         request.set_after(line.number());  // after a break those told already do not come again
         return true;
-      },
-      std::nullopt);
-}
-
-Outcome FarmClient::timeline(const v1::ListTimelineRequest& request,
-                             v1::ListTimelineResponse& response) {
-  return state_->call(*state_->jobs, &v1::Jobs::Stub::ListTimeline, request, response);
-}
-
-Outcome FarmClient::find_missing(const v1::FindMissingRequest& request,
-                                 v1::FindMissingResponse& response) {
-  return state_->call(*state_->assets, &v1::Assets::Stub::FindMissing, request, response);
+      });
 }
 
 Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, uint64_t offset,
@@ -371,9 +263,10 @@ Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, u
   if (!input) return Failure{kFailed, file.reference + ": cannot be read"};
 
   grpc::ClientContext context;
-  farm::prepare(context, state_->token, transfer_time(file.size));
+  farm::prepare(context, token_, transfer_time(file.size));
   v1::UploadResponse response;
-  const auto writer = state_->assets->Upload(&context, &response);
+  v1::Assets::Stub stub(channel_);
+  const auto writer = stub.Upload(&context, &response);
   v1::UploadPart part;
   part.set_sha256(farm::to_wire(*digest));
   part.set_size(file.size);
@@ -396,62 +289,40 @@ Outcome FarmClient::upload(const core::AssetRecord& file, std::istream& input, u
   writer->WritesDone();
   const grpc::Status status = writer->Finish();
   if (status.ok()) {
-    state_->reached();
-    state_->room.reached();
+    reached();
+    room_.reached();
     return std::nullopt;
   }
-  Failure out = state_->failure(status);
+  Failure out = failure(status);
   if (status.error_code() == grpc::StatusCode::DATA_LOSS) out.message = changed.message;
   // The caller asks how far it came and goes on from there. What the coordinator said may be held
   // by a stream that it does not know to be broken yet: then everything has to come again.
   out.from_start = status.error_code() == grpc::StatusCode::OUT_OF_RANGE && offset > 0;
-  out.again = state_->wait_after(status);
+  out.again = wait_after(status);
   return out;
-}
-
-Outcome FarmClient::whoami(v1::WhoAmIResponse& response) {
-  return state_->call(*state_->admin, &v1::Admin::Stub::WhoAmI, v1::WhoAmIRequest(), response);
 }
 
 Outcome FarmClient::create_token(const v1::CreateTokenRequest& request,
                                  v1::CreateTokenResponse& response) {
   // A call of no effect first: a coordinator that has just gone is waited for.
   v1::WhoAmIResponse me;
-  if (Outcome failed = whoami(me)) return failed;
+  if (Outcome failed = call(&v1::Admin::Stub::WhoAmI, {}, me)) return failed;
   grpc::ClientContext context;
-  farm::prepare(context, state_->token, kShortCall);
-  const grpc::Status status = state_->admin->CreateToken(&context, request, &response);
-  return status.ok() ? Outcome() : state_->failure(status);
-}
-
-Outcome FarmClient::tokens(v1::ListTokensResponse& response) {
-  return state_->call(*state_->admin, &v1::Admin::Stub::ListTokens, v1::ListTokensRequest(),
-                      response);
-}
-
-Outcome FarmClient::revoke_token(const std::string& id, v1::RevokeTokenResponse& response) {
-  v1::RevokeTokenRequest request;
-  request.set_id(id);
-  return state_->call(*state_->admin, &v1::Admin::Stub::RevokeToken, request, response);
+  farm::prepare(context, token_, kShortCall);
+  const grpc::Status status = v1::Admin::Stub(channel_).CreateToken(&context, request, &response);
+  return status.ok() ? Outcome() : failure(status);
 }
 
 Outcome FarmClient::audit(int64_t since_ms,
                           const std::function<void(const v1::AuditEntry&)>& on_entry) {
   v1::AuditRequest request;
   request.set_since_ms(since_ms);
-  return state_->stream<v1::AuditEntry>(
-      transfer_time(farm::kMaxResultBytes),
-      [&](grpc::ClientContext& c) { return state_->admin->Audit(&c, request); },
-      [&](const v1::AuditEntry& entry) {
-        on_entry(entry);
-        request.set_since_ms(entry.time_ms() + 1);
-        return true;
-      },
-      std::nullopt);
-}
-
-Outcome FarmClient::info(v1::InfoResponse& response) {
-  return state_->call(*state_->farm, &v1::Farm::Stub::Info, v1::InfoRequest(), response);
+  return stream(&v1::Admin::Stub::Audit, request, transfer_time(farm::kMaxResultBytes),
+                [&](const v1::AuditEntry& entry) {
+                  on_entry(entry);
+                  request.set_since_ms(entry.time_ms() + 1);
+                  return true;
+                });
 }
 
 Outcome FarmClient::workers(v1::WorkersResponse& response) {
@@ -459,7 +330,7 @@ Outcome FarmClient::workers(v1::WorkersResponse& response) {
   v1::WorkersRequest request;
   for (;;) {
     v1::WorkersResponse page;
-    Outcome failed = state_->call(*state_->farm, &v1::Farm::Stub::Workers, request, page);
+    Outcome failed = call(&v1::Farm::Stub::Workers, request, page);
     if (failed) return failed;
     for (v1::Worker& worker : *page.mutable_workers()) *response.add_workers() = std::move(worker);
     if (page.next_after() <= request.after()) break;
@@ -470,14 +341,6 @@ Outcome FarmClient::workers(v1::WorkersResponse& response) {
               return a.name() != b.name() ? a.name() < b.name() : a.id() < b.id();
             });
   return std::nullopt;
-}
-
-Outcome FarmClient::act(WorkerAction action, const v1::WorkerRequest& request,
-                        v1::WorkerResponse& response) {
-  const auto method = action == WorkerAction::drain        ? &v1::Farm::Stub::DrainWorker
-                      : action == WorkerAction::quarantine ? &v1::Farm::Stub::QuarantineWorker
-                                                           : &v1::Farm::Stub::ReleaseWorker;
-  return state_->call(*state_->farm, method, request, response);
 }
 
 }  // namespace hyades::cli

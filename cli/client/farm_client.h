@@ -1,19 +1,26 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <istream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
+
+#include <grpcpp/channel.h>
+#include <grpcpp/client_context.h>
 
 #include "cli/client/failure.h"
+#include "cli/client/patience.h"
 #include "core/base/assets.h"
 #include "core/base/result.h"
 #include "farm/channel.h"
-#include "hyades/v1/admin.pb.h"
-#include "hyades/v1/assets.pb.h"
-#include "hyades/v1/farm.pb.h"
-#include "hyades/v1/jobs.pb.h"
+#include "hyades/v1/admin.grpc.pb.h"
+#include "hyades/v1/assets.grpc.pb.h"
+#include "hyades/v1/farm.grpc.pb.h"
+#include "hyades/v1/jobs.grpc.pb.h"
 
 namespace hyades::cli {
 
@@ -29,21 +36,28 @@ struct ClientOptions {
 /// something) keepalive. Streams that break go on where they were. One thread at a time.
 class FarmClient {
  public:
+  static constexpr std::chrono::seconds kShortCall{20};
+  static constexpr std::chrono::seconds kLongCall{120};  ///< the coordinator reads a job
+
   static core::Result<std::unique_ptr<FarmClient>> open(const ClientOptions& options);
-  ~FarmClient();
 
   /// Who tells the person that the coordinator is gone and tries go on; standard error if nobody.
-  void on_notice(std::function<void(const std::string&)> tell);
+  void on_notice(std::function<void(const std::string&)> tell) { tell_ = std::move(tell); }
 
-  Outcome submit(const v1::SubmitRequest& request, v1::SubmitResponse& response);
-  Outcome list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
+  /// One method of the wire, such as `&v1::Jobs::Stub::Pause`; a try takes `timeout` at most.
+  template <class Stub, class Request, class Response>
+  Outcome call(grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
+               const Request& request, Response& response,
+               std::chrono::milliseconds timeout = kShortCall) {
+    Stub stub(channel_);
+    return persist(timeout, [&](grpc::ClientContext& context) {
+      response.Clear();
+      return (stub.*method)(&context, request, &response);
+    });
+  }
+
+  /// The job with all its frames.
   Outcome get(uint64_t job, v1::GetJobResponse& response);
-
-  enum class Action { pause, resume, cancel, retry };
-  Outcome act(Action action, uint64_t job, v1::JobResponse& response);
-  Outcome set_priority(uint64_t job, int32_t priority, v1::JobResponse& response);
-  Outcome remove(uint64_t job);
-  Outcome explain(uint64_t job, v1::ExplainResponse& response);
 
   /// Calls `on_event` until it returns false or the stream ends, which is where the job does.
   Outcome watch(uint64_t job, const std::function<bool(const v1::WatchEvent&)>& on_event);
@@ -61,36 +75,49 @@ class FarmClient {
   Outcome film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes,
                const std::function<void(uint64_t)>& on_progress = {});
 
-  /// A page of what was done for a job.
-  Outcome timeline(const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response);
-
   Outcome logs(v1::LogsRequest request, const std::function<void(const v1::LogLine&)>& on_line);
-
-  Outcome find_missing(const v1::FindMissingRequest& request, v1::FindMissingResponse& response);
 
   /// One try to send `input`, the bytes of `file`, from `offset` on. `on_progress` hears how many
   /// more bytes have gone.
   Outcome upload(const core::AssetRecord& file, std::istream& input, uint64_t offset,
                  const std::function<void(uint64_t)>& on_progress);
 
-  Outcome whoami(v1::WhoAmIResponse& response);
   /// Not tried again: a second one would be another token.
   Outcome create_token(const v1::CreateTokenRequest& request, v1::CreateTokenResponse& response);
-  Outcome tokens(v1::ListTokensResponse& response);
-  Outcome revoke_token(const std::string& id, v1::RevokeTokenResponse& response);
   /// The oldest first; after a break from the last one's time on.
   Outcome audit(int64_t since_ms, const std::function<void(const v1::AuditEntry&)>& on_entry);
 
-  /// Of the coordinator itself.
-  Outcome info(v1::InfoResponse& response);
+  /// All workers, by name.
   Outcome workers(v1::WorkersResponse& response);
-  enum class WorkerAction { drain, quarantine, release };
-  Outcome act(WorkerAction action, const v1::WorkerRequest& request, v1::WorkerResponse& response);
 
  private:
-  struct State;
-  explicit FarmClient(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  FarmClient(const ClientOptions& options, std::string token,
+             std::shared_ptr<grpc::Channel> channel);
+
+  void reached();
+  std::string no_answer(const std::string& reason) const;
+  Failure failure(const grpc::Status& status) const;
+  /// Whether to try again, after having waited.
+  bool wait_after(const grpc::Status& status);
+  /// `once` until it succeeds, fails for good, or patience ends.
+  Outcome persist(std::chrono::milliseconds timeout,
+                  const std::function<grpc::Status(grpc::ClientContext&)>& once);
+  /// Every message of a server's stream until `on_message` returns false; an error that it leaves
+  /// in `stopped` ends everything. Another try begins with the `request` as it is then.
+  template <class Stub, class Request, class Message, class OnMessage>
+  Outcome stream(std::unique_ptr<grpc::ClientReader<Message>> (Stub::*method)(grpc::ClientContext*,
+                                                                              const Request&),
+                 const Request& request, std::chrono::milliseconds timeout,
+                 const OnMessage& on_message, const Outcome& stopped = std::nullopt);
+
+  const ClientOptions options_;
+  const std::string token_;
+  const std::shared_ptr<grpc::Channel> channel_;
+  Patience patience_;
+  std::function<void(const std::string&)> tell_;
+  bool told_ = false;  ///< that the coordinator is gone
+  Patience room_;      ///< with a coordinator that has no room, whatever else it answers
+  bool told_room_ = false;
 };
 
 }  // namespace hyades::cli

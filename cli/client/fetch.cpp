@@ -4,9 +4,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
+#include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <span>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -14,12 +21,13 @@
 #include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
+#include "core/base/printable.h"
 #include "farm/wire.h"
 
 namespace hyades::cli {
 
 namespace fs = std::filesystem;
-using core::Descriptor;
 
 namespace {
 
@@ -34,17 +42,16 @@ std::optional<uint64_t> hash_file(int fd, core::Sha256Stream& hash) {
   std::vector<std::byte> piece(kPiece);
   uint64_t size = 0;
   while (true) {
-    const ssize_t got = ::pread(fd, piece.data(), piece.size(), static_cast<off_t>(size));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return std::nullopt;
-    if (got == 0) return size;
-    hash.add(std::span(piece).first(static_cast<size_t>(got)));
-    size += static_cast<uint64_t>(got);
+    const auto got = core::read_all_at(fd, piece, size);
+    if (!got) return std::nullopt;
+    if (*got == 0) return size;
+    hash.add(std::span(piece).first(*got));
+    size += *got;
   }
 }
 
 bool is_complete(const std::string& path, uint64_t size, const std::string& sha256) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const core::Descriptor file = core::open_file(path, O_RDONLY | O_NONBLOCK);
   struct stat info {};
   if (!file.valid() || ::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode) ||
       static_cast<uint64_t>(info.st_size) != size) {
@@ -67,7 +74,7 @@ class Part {
 
   /// Opens it; what an earlier run left beyond `size` is none of it.
   Outcome open(uint64_t size) {
-    file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+    file_ = core::open_file(path_, O_RDWR | O_CREAT | O_NOFOLLOW);
     if (!file_.valid()) return write_failure(path_);
     const auto there = hash_file(file_.get(), hash_);
     if (!there || *there > size) return restart();
@@ -83,16 +90,10 @@ class Part {
   }
 
   Outcome append(const std::string& bytes) {
-    size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t written = ::pwrite(file_.get(), bytes.data() + done, bytes.size() - done,
-                                       static_cast<off_t>(offset_));
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return write_failure(path_);
-      done += static_cast<size_t>(written);
-      offset_ += static_cast<uint64_t>(written);
-    }
-    hash_.add(std::as_bytes(std::span(bytes)));
+    const auto piece = std::as_bytes(std::span(bytes));
+    if (!core::write_all_at(file_.get(), piece, offset_)) return write_failure(path_);
+    offset_ += piece.size();
+    hash_.add(piece);
     return std::nullopt;
   }
 
@@ -110,7 +111,7 @@ class Part {
   std::string target_;
   std::string sha256_;
   std::string path_;
-  Descriptor file_;
+  core::Descriptor file_;
   core::Sha256Stream hash_;
   uint64_t offset_ = 0;
 };
@@ -118,27 +119,49 @@ class Part {
 }  // namespace
 
 bool is_safe_output(const std::string& path) {
-  if (path.empty() || path.front() == '/' || path.find('\0') != std::string::npos) return false;
+  if (path.empty() || path.front() == '/' || core::printable(path) != path) return false;
   const fs::path normal = fs::path(path).lexically_normal();
   return normal.string() == path && normal.has_filename() && *normal.begin() != ".." &&
          *normal.begin() != ".";
 }
 
-Outcome fetch_file(FarmClient& client, uint64_t id, const v1::OutputFile& file,
-                   const std::string& folder, const std::function<void(uint64_t)>& on_progress,
-                   Fetched& totals) {
-  const auto digest = farm::digest_from_wire(file.sha256());
-  if (!digest || !is_safe_output(file.path())) {
+bool is_hidden_output(const std::string& path) {
+  const fs::path parts(path);
+  return std::ranges::any_of(parts,
+                             [](const fs::path& part) { return part.string().starts_with('.'); });
+}
+
+Outcome FetchTarget::check(const std::string& path) const {
+  if (!is_safe_output(path)) {
     return Failure{kFailed, "the coordinator names an output that is no file of a job: '" +
-                                file.path().substr(0, 200) + "'"};
+                                path.substr(0, 200) + "'"};
   }
+  if (!hidden && is_hidden_output(path)) {
+    return Failure{kFailed, path + ": hidden files are not written (--hidden writes them)"};
+  }
+  std::error_code none;
+  if (!overwrite && !record.has(path) &&
+      fs::exists(fs::symlink_status(fs::path(folder) / path, none))) {
+    return Failure{kFailed, (fs::path(folder) / path).string() +
+                                " is there and was not written by hyades fetch (--overwrite "
+                                "replaces it, --output takes another folder)"};
+  }
+  return std::nullopt;
+}
+
+Outcome fetch_file(FarmClient& client, uint64_t id, const v1::OutputFile& file, FetchTarget& into,
+                   const std::function<void(uint64_t)>& on_progress, Fetched& totals) {
+  const auto digest = farm::digest_from_wire(file.sha256());
+  if (!digest) return Failure{kFailed, file.path() + ": the coordinator names no SHA-256"};
+  if (!is_safe_output(file.path())) return into.check(file.path());
   const std::string sha256 = core::to_hex(*digest);
-  const fs::path target = fs::path(folder) / file.path();
+  const fs::path target = fs::path(into.folder) / file.path();
   if (is_complete(target.string(), file.size(), sha256)) {
     ++totals.files;
     ++totals.present;
     return std::nullopt;
   }
+  if (auto refused = into.check(file.path())) return refused;
   std::error_code failed;
   fs::create_directories(target.parent_path(), failed);
   if (failed) {
@@ -163,6 +186,7 @@ Outcome fetch_file(FarmClient& client, uint64_t id, const v1::OutputFile& file,
       if (failure) return failure;
     }
     if (part.offset() == file.size() && part.is_right()) {
+      if (auto failure = into.record.add(file.path())) return failure;
       if (auto failure = part.give_name()) return failure;
       ++totals.files;
       return std::nullopt;

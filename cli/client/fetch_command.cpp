@@ -1,17 +1,22 @@
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/fetch.h"
 #include "cli/client/find_job.h"
 #include "cli/client/show.h"
+#include "cli/client_commands.h"
 #include "cli/transfer_display.h"
 #include "core/base/hash.h"
 #include "core/base/text.h"
@@ -33,7 +38,16 @@ struct FetchOptions {
   bool list = false;
   bool quiet = false;
   bool json = false;
+  bool hidden = false;
+  bool overwrite = false;
 };
+
+FetchTarget target_of(const FetchOptions& options) {
+  FetchTarget target(options.folder);
+  target.hidden = options.hidden;
+  target.overwrite = options.overwrite;
+  return target;
+}
 
 void declare(CLI::App& app, FetchOptions& options) {
   app.add_option("job", options.job, "its id, or its name (of several: the newest)")->required();
@@ -43,6 +57,9 @@ void declare(CLI::App& app, FetchOptions& options) {
   app.add_option("--film", options.film,
                  "instead, this frame's film as it is now, also in mid-render (for 'hyades merge' "
                  "or any EXR viewer)");
+  app.add_flag("--overwrite", options.overwrite,
+               "replace files that are there and that no fetch has written");
+  app.add_flag("--hidden", options.hidden, "write files whose names begin with a dot, too");
   app.add_flag("--list", options.list, "only tell which files there are");
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json, "print the files as JSON (field id: the path)");
@@ -53,7 +70,9 @@ void declare(CLI::App& app, FetchOptions& options) {
       "  hyades fetch 12 --film 7\n"
       "Goes on where an earlier run stopped; every file is checked against its SHA-256 before it "
       "gets its\n"
-      "name, and those that are there already are left alone.\n"
+      "name, and those that are there already are left alone. Others that are there are not "
+      "replaced,\n"
+      "but for what a fetch has written (.hyades/fetched in the folder has the list).\n"
       "exit status: 0 all that was asked for and is finished is here, 1 something failed, a frame "
       "of "
       "the job has\n"
@@ -85,13 +104,15 @@ Outcome fetch_film(FarmClient& client, uint64_t id, const FetchOptions& options)
   auto film = core::decode_film(std::as_bytes(std::span(bytes)));
   if (!film) return Failure{kFailed, film.error().in("the film that came").message};
   const std::string name = fmt::format("{}.{:04}.film.exr", header.job_name(), *options.film);
-  if (!is_safe_output(name)) return Failure{kFailed, "the coordinator names a job that is no name"};
+  FetchTarget target = target_of(options);
+  if (auto refused = target.check(name)) return refused;
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
   const std::string path = options.folder + "/" + name;
+  if (auto failure = target.record.add(name)) return failure;
   auto written = core::write_film_exr(path, {std::move(*info), std::move(*film)});
   if (!written) return Failure{kFailed, written.error().message};
-  if (!options.quiet) std::fprintf(stderr, "wrote %s\n", printable(path).c_str());
+  if (!options.quiet) std::fprintf(stderr, "wrote %s\n", core::printable(path).c_str());
   return std::nullopt;
 }
 
@@ -172,6 +193,7 @@ class FetchRun {
       : client_(client),
         options_(options),
         id_(id),
+        target_(target_of(options)),
         display_("fetching", options.quiet || options.list) {}
 
   Outcome run() {
@@ -206,8 +228,8 @@ class FetchRun {
       print_json(told_);
     } else if (!options_.list && !options_.quiet && totals_.files > 0) {
       std::fprintf(
-          stderr, "%lu file%s in %s, %s fetched%s\n", totals_.files, totals_.files == 1 ? "" : "s",
-          printable(options_.folder).c_str(), core::format_bytes(totals_.bytes).c_str(),
+          stderr, "%s in %s, %s fetched%s\n", core::counted(totals_.files, "file").c_str(),
+          core::printable(options_.folder).c_str(), core::format_bytes(totals_.bytes).c_str(),
           totals_.present > 0 ? fmt::format(" ({} were there)", totals_.present).c_str() : "");
     }
   }
@@ -225,16 +247,16 @@ class FetchRun {
     if (options_.json) told_.push_back(output_to_json(file));
     if (options_.list) {
       if (!options_.json) {
-        std::printf("%s  %s\n", printable(file.path()).c_str(),
+        std::printf("%s  %s\n", core::printable(file.path()).c_str(),
                     core::format_bytes(file.size()).c_str());
       }
       return std::nullopt;
     }
     if (options_.follow) display_.expect(file.size());
-    display_.begin_file(printable(file.path()));
+    display_.begin_file(core::printable(file.path()));
     uint64_t came = 0;
     const Outcome failure = fetch_file(
-        client_, id_, file, options_.folder,
+        client_, id_, file, target_,
         [&](uint64_t bytes) {
           came += bytes;
           display_.moved(bytes);
@@ -247,6 +269,7 @@ class FetchRun {
   FarmClient& client_;
   const FetchOptions& options_;
   uint64_t id_;
+  FetchTarget target_;
   TransferDisplay display_;
   std::set<std::string> seen_;
   Fetched totals_;

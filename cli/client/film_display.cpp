@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -28,7 +28,7 @@ FilmDisplay::FilmDisplay(std::unique_ptr<FarmClient> client, Viewer& viewer, uin
 
 FilmDisplay::~FilmDisplay() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     ending_ = true;
   }
   wake_.notify_one();
@@ -36,7 +36,7 @@ FilmDisplay::~FilmDisplay() {
 }
 
 void FilmDisplay::take(const v1::WatchEvent& event) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   const bool first = name_.empty();
   name_ = event.job().name();
   several_ = event.job().frames() > 1;
@@ -80,10 +80,10 @@ std::optional<int32_t> FilmDisplay::next_frame() const {
 }
 
 void FilmDisplay::run() {
-  std::unique_lock lock(mutex_);
+  core::MutexLock lock(mutex_);
   std::optional<Clock::time_point> end;
   while (true) {
-    wake_.wait(lock, [&] { return ending_ || !done_.empty() || next_frame(); });
+    while (!ending_ && done_.empty() && !next_frame()) wake_.wait(mutex_);
     if (ending_ && !end) end = Clock::now() + kLastWords;
     const Clock::time_point begin = Clock::now();
     if (!done_.empty()) {
@@ -107,7 +107,8 @@ void FilmDisplay::run() {
     }
     const Clock::duration rest =
         std::max<Clock::duration>(kLeast, kRestPerWork * (Clock::now() - begin));
-    wake_.wait_for(lock, rest, [this] { return ending_; });
+    const Clock::time_point next = Clock::now() + rest;
+    while (!ending_ && Clock::now() < next) wake_.wait_until(mutex_, next);
   }
 }
 
@@ -153,7 +154,7 @@ void FilmDisplay::show_exr(int32_t frame) {
 void FilmDisplay::show(int32_t frame, const core::Image& picture) {
   std::string name;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     name = picture_name(name_, frame, several_);
   }
   viewer_.put(name, picture.width, picture.height, picture, 0, 0);

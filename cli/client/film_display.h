@@ -1,16 +1,17 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "cli/client/farm_client.h"
 #include "cli/display/viewer.h"
+#include "core/base/mutex.h"
 
 namespace hyades::cli {
 
@@ -27,7 +28,7 @@ class FilmDisplay {
   ~FilmDisplay();
 
   /// News of the job.
-  void take(const v1::WatchEvent& event);
+  void take(const v1::WatchEvent& event) HYADES_EXCLUDES(mutex_);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -36,23 +37,24 @@ class FilmDisplay {
     uint64_t samples = 0;
     uint64_t shown = 0;  ///< samples of the film that the viewer has
   };
-  void run();
-  std::optional<int32_t> next_frame() const;
+  void run() HYADES_EXCLUDES(mutex_);
+  std::optional<int32_t> next_frame() const HYADES_REQUIRES(mutex_);
   bool show_film(int32_t frame);
   void show_exr(int32_t frame);
-  void show(int32_t frame, const core::Image& picture);
+  void show(int32_t frame, const core::Image& picture) HYADES_EXCLUDES(mutex_);
 
   const std::unique_ptr<FarmClient> client_;
   Viewer& viewer_;
   const uint64_t job_;
 
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::string name_;
-  bool several_ = false;
-  std::map<int32_t, InWork> in_work_;
-  std::deque<int32_t> done_;  ///< the last few that were finished, to be shown as they are now
-  bool ending_ = false;
+  core::Mutex mutex_;
+  core::CondVar wake_;
+  std::string name_ HYADES_GUARDED_BY(mutex_);
+  bool several_ HYADES_GUARDED_BY(mutex_) = false;
+  std::map<int32_t, InWork> in_work_ HYADES_GUARDED_BY(mutex_);
+  /// The last few that were finished, to be shown as they are now.
+  std::deque<int32_t> done_ HYADES_GUARDED_BY(mutex_);
+  bool ending_ HYADES_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
 

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <cstdio>
+#include <optional>
 #include <set>
+#include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -39,7 +43,7 @@ Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
   request.set_owner(owner);
   v1::ListJobsResponse response;
   do {
-    if (auto failure = client.list(request, response)) return failure;
+    if (auto failure = client.call(&v1::Jobs::Stub::List, request, response)) return failure;
     jobs.insert(jobs.end(), response.jobs().begin(), response.jobs().end());
     request.set_before(response.next_before());
   } while (response.next_before() != 0);
@@ -100,7 +104,7 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
   if (meant.size() == 1 || namesakes == Namesakes::newest) {
     id = meant.front();
     std::fprintf(stderr, "%zu jobs are called '%s': this is job %lu, %s\n", ids.size(),
-                 printable(text).c_str(), id, in_words(namesakes));
+                 core::printable(text).c_str(), id, in_words(namesakes));
     return std::nullopt;
   }
   const size_t shown = std::min(ids.size(), kMostShown);

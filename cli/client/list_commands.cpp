@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -5,9 +6,9 @@
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/find_job.h"
 #include "cli/client/show.h"
+#include "cli/client_commands.h"
 #include "core/base/text.h"
 
 namespace hyades::cli {
@@ -27,7 +28,7 @@ std::string left_text(const v1::Job& job) {
              : "-";
 }
 
-constexpr const char* kInDoubt = "in doubt: an odd worker had a part in it";
+constexpr const char* kSuspect = "in doubt: a divergent worker had a part in it";
 
 void print_jobs(const std::vector<v1::Job>& jobs) {
   std::vector<std::vector<std::string>> rows = {
@@ -42,7 +43,7 @@ void print_jobs(const std::vector<v1::Job>& jobs) {
 }
 
 void print_line(const char* name, const std::string& value) {
-  std::printf("%-10s %s\n", name, printable(value).c_str());
+  std::printf("%-10s %s\n", name, core::printable(value).c_str());
 }
 
 void print_frames(const v1::GetJobResponse& response, bool all) {
@@ -60,7 +61,7 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
     rows.push_back({std::to_string(frame.frame()), state_name(frame.state()),
                     percent(frame.samples_done(), frame.samples()),
                     frame.worker_class().substr(0, 12), std::to_string(frame.restarts()),
-                    frame.doubtful() ? kInDoubt : frame.reason()});
+                    frame.doubtful() ? kSuspect : frame.reason()});
   }
   if (rows.size() == 1) return;
   std::printf("\n");
@@ -70,7 +71,7 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
 
 void print_status(const v1::GetJobResponse& response, bool all) {
   const v1::Job& job = response.job();
-  std::printf("job %lu: %s\n", job.id(), printable(job.name()).c_str());
+  std::printf("job %lu: %s\n", job.id(), core::printable(job.name()).c_str());
   print_line("state", state_name(job.state()) + (job.reason().empty() ? "" : ": " + job.reason()));
   print_line("owner", fmt::format("{}, priority {}", job.owner(), job.priority()));
   if (job.tags_size() > 0 || job.memory_bytes() > 0) {
@@ -96,8 +97,8 @@ void print_log_line(const v1::LogLine& line) {
   std::string text = format_time(line.time_ms());
   if (line.level() != v1::LOG_LEVEL_INFO) text += "  " + level_name(line.level());
   if (line.of_frame()) text += fmt::format("  frame {}", line.frame());
-  if (!line.worker().empty()) text += "  " + printable(line.worker());
-  std::printf("%s  %s\n", text.c_str(), printable(line.text()).c_str());
+  if (!line.worker().empty()) text += "  " + core::printable(line.worker());
+  std::printf("%s  %s\n", text.c_str(), core::printable(line.text()).c_str());
 }
 
 }  // namespace
@@ -167,8 +168,12 @@ int explain_command(int argc, char** argv) {
   if (!client) return kBadArguments;
   uint64_t id = 0;
   if (auto failure = find_job(*client, job, Namesakes::open, id)) return app.report(*failure);
+  v1::JobRequest request;
+  request.set_job(id);
   v1::ExplainResponse response;
-  if (auto failure = client->explain(id, response)) return app.report(*failure);
+  if (auto failure = client->call(&v1::Jobs::Stub::Explain, request, response)) {
+    return app.report(*failure);
+  }
   if (json) {
     Json out = {{"id", id}, {"reasons", Json::array()}};
     for (const std::string& reason : response.reasons()) out["reasons"].push_back(reason);
@@ -176,7 +181,7 @@ int explain_command(int argc, char** argv) {
     return kDone;
   }
   for (const std::string& reason : response.reasons())
-    std::printf("%s\n", printable(reason).c_str());
+    std::printf("%s\n", core::printable(reason).c_str());
   return kDone;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/printable.h"
+#include "core/base/printable.h"
 #include "farm/json_form.h"
 
 namespace hyades::cli {

@@ -1,21 +1,26 @@
 #include <pwd.h>
 #include <unistd.h>
 
-#include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/show.h"
 #include "cli/client/upload.h"
 #include "cli/client/watch.h"
+#include "cli/client_commands.h"
 #include "cli/frame_range.h"
+#include "cli/number_range.h"
 #include "cli/scene_options.h"
 #include "core/base/random_id.h"
+#include "core/base/text.h"
+#include "core/base/wall_clock.h"
 #include "farm/job_package.h"
 #include "farm/tags.h"
 #include "farm/token_term.h"
@@ -53,7 +58,7 @@ void declare_submit(CLI::App& app, SubmitOptions& options) {
       ->required();
   app.add_flag("--watch", options.watch, "stay and show progress until the job has ended");
   app.add_option("--priority", options.priority, "higher goes first")
-      ->check(CLI::Range(-1'000'000, 1'000'000))
+      ->check(in_range(-1'000'000, 1'000'000))
       ->capture_default_str();
   app.add_option("--owner", options.owner,
                  "whose job it is; owners share the farm (default: the token's name, or you)");
@@ -61,7 +66,7 @@ void declare_submit(CLI::App& app, SubmitOptions& options) {
   app.add_option("--frames", options.frames, "frames to render: 7, 1-10 or 1-10x2 (default: all)")
       ->check(no_frames_error);
   app.add_option("--samples", options.samples, "samples per pixel (default: the job's)")
-      ->check(CLI::Range(1U, 1U << 24U));
+      ->check(in_range(1U, 1U << 24U));
   declare_scene_options(app, options.scene);
   app.add_option("--max-workers", options.max_workers, "render on no more than so many at once");
   app.add_option("--tags", options.tags, "render only on workers that have all of these: a,b")
@@ -73,7 +78,7 @@ void declare_submit(CLI::App& app, SubmitOptions& options) {
   app.add_option("--attempts", options.attempts,
                  "a unit that fails on so many different workers stops its frame (where fewer are "
                  "there: on all of them, and so often in all)")
-      ->check(CLI::Range(1U, 100U))
+      ->check(in_range(1U, 100U))
       ->capture_default_str();
   app.add_option("--order", options.order,
                  "sequential: frame after frame (default); progressive: a few samples of every "
@@ -140,7 +145,7 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package,
 
 /// Several lines: every complaint about the job, with its path as it can be shown.
 void print_complaints(std::string text, const std::string& path) {
-  const std::string shown = printable(path);
+  const std::string shown = core::printable(path);
   if (shown != path) {
     for (size_t at = 0; (at = text.find(path, at)) != std::string::npos; at += shown.size()) {
       text.replace(at, path.size(), shown);
@@ -154,7 +159,8 @@ Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFil
   for (int round = 1;; ++round) {
     if (auto failure = upload_missing(client, package, files, quiet)) return failure;
     v1::SubmitResponse response;
-    const auto failure = client.submit(request, response);
+    const auto failure =
+        client.call(&v1::Jobs::Stub::Submit, request, response, FarmClient::kLongCall);
     if (!failure) {
       job = response.job();
       return std::nullopt;
@@ -164,14 +170,12 @@ Outcome submit(FarmClient& client, const farm::JobPackage& package, core::JobFil
   }
 }
 
-/// Whoever submits hears in time that his token ends. An older coordinator does not say so.
+/// Whoever submits hears in time that their token ends. An older coordinator does not say so.
 void tell_expiry(const ClientApp& app) {
   const auto client = app.connect_impatiently();
   v1::WhoAmIResponse me;
-  if (!client || client->whoami(me)) return;
-  const auto now = std::chrono::duration_cast<std::chrono::milliseconds>(
-      std::chrono::system_clock::now().time_since_epoch());
-  const std::string when = farm::expiry_warning({me.expires_ms(), me.warn_ms()}, now.count());
+  if (!client || client->call(&v1::Admin::Stub::WhoAmI, {}, me)) return;
+  const std::string when = farm::expiry_warning({me.expires_ms(), me.warn_ms()}, core::wall_ms());
   if (when.empty()) return;
   std::fprintf(stderr, "hyades submit: WARNING: your token %s: ask an admin for another\n",
                when.c_str());
@@ -202,8 +206,8 @@ int submit_command(int argc, char** argv) {
     return app.report(*failure);
   }
   if (!options.json) {
-    std::printf("job %lu: %s, %u frame%s\n", job.id(), printable(job.name()).c_str(), job.frames(),
-                job.frames() == 1 ? "" : "s");
+    std::printf("job %lu: %s, %s\n", job.id(), core::printable(job.name()).c_str(),
+                core::counted(job.frames(), "frame").c_str());
   }
   std::fflush(stdout);
   tell_expiry(app);

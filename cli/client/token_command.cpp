@@ -6,22 +6,26 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/show.h"
+#include "cli/client_commands.h"
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/token.h"
 #include "core/base/duration.h"
+#include "core/base/wall_clock.h"
 #include "farm/small_file.h"
 #include "farm/token_term.h"
 #include "farm/wire.h"
@@ -43,18 +47,18 @@ struct TokenOptions {
 };
 
 /// Where tokens are kept, whichever way they are reached.
-class Book {
+class Tokens {
  public:
-  virtual ~Book() = default;
+  virtual ~Tokens() = default;
   virtual Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
                          std::string& secret) = 0;
   virtual Outcome list(v1::ListTokensResponse& tokens) = 0;
   virtual Outcome revoke(const std::string& id, v1::Token& token) = 0;
 };
 
-class FarBook final : public Book {
+class RemoteTokens final : public Tokens {
  public:
-  explicit FarBook(std::unique_ptr<FarmClient> client) : client_(std::move(client)) {}
+  explicit RemoteTokens(std::unique_ptr<FarmClient> client) : client_(std::move(client)) {}
   Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
                  std::string& secret) override {
     v1::CreateTokenResponse response;
@@ -63,10 +67,14 @@ class FarBook final : public Book {
     secret = response.secret();
     return failed;
   }
-  Outcome list(v1::ListTokensResponse& tokens) override { return client_->tokens(tokens); }
+  Outcome list(v1::ListTokensResponse& tokens) override {
+    return client_->call(&v1::Admin::Stub::ListTokens, {}, tokens);
+  }
   Outcome revoke(const std::string& id, v1::Token& token) override {
+    v1::RevokeTokenRequest request;
+    request.set_id(id);
     v1::RevokeTokenResponse response;
-    Outcome failed = client_->revoke_token(id, response);
+    Outcome failed = client_->call(&v1::Admin::Stub::RevokeToken, request, response);
     token = response.token();
     return failed;
   }
@@ -97,21 +105,21 @@ std::string account_name() {
 
 /// The folder of a coordinator that does not run. Its audit log tells what was done, as if the
 /// coordinator had been asked.
-class NearBook final : public Book {
+class LocalTokens final : public Tokens {
  public:
-  NearBook(std::string folder, std::unique_ptr<coordinator::JobStore> store,
-           std::unique_ptr<coordinator::AuditLog> audit)
+  LocalTokens(std::string folder, std::unique_ptr<coordinator::JobStore> store,
+              std::unique_ptr<coordinator::AuditLog> audit)
       : folder_(std::move(folder)), store_(std::move(store)), audit_(std::move(audit)) {}
-  ~NearBook() override {
+  ~LocalTokens() override {
     audit_.reset();  // may have begun another file
     give_to_owner_of(folder_);
   }
-  NearBook(const NearBook&) = delete;
-  NearBook& operator=(const NearBook&) = delete;
+  LocalTokens(const LocalTokens&) = delete;
+  LocalTokens& operator=(const LocalTokens&) = delete;
   Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
                  std::string& secret) override {
-    const auto fresh = coordinator::make_token(
-        request.name(), request.role(), request.lifetime_ms(), coordinator::token_clock_ms());
+    const auto fresh = coordinator::make_token(request.name(), request.role(),
+                                               request.lifetime_ms(), core::wall_ms());
     if (!fresh) return Failure{kBadArguments, fresh.error().message};
     const auto added = store_->add_token(fresh->row);
     note("token.create", fresh->row.id, added, request.ShortDebugString());
@@ -127,7 +135,7 @@ class NearBook final : public Book {
     return std::nullopt;
   }
   Outcome revoke(const std::string& id, v1::Token& token) override {
-    const auto done = store_->revoke_token(id, coordinator::token_clock_ms());
+    const auto done = store_->revoke_token(id, core::wall_ms());
     if (!done) {
       note("token.revoke", id, done, {});
       return Failure{kFailed, done.error().message};
@@ -143,23 +151,23 @@ class NearBook final : public Book {
   }
 
  private:
-  void note(const std::string& deed, const std::string& id, const core::Status& done,
+  void note(const std::string& action, const std::string& id, const core::Status& done,
             const std::string& detail) {
     const auto result =
         done ? grpc::Status::OK : grpc::Status(grpc::StatusCode::UNAVAILABLE, done.error().message);
     audit_->note({coordinator::kByFolder, farm::wire_text(account_name()), v1::ROLE_ADMIN,
                   coordinator::kThisMachine},
-                 deed, id, result, detail);
+                 action, id, result, detail);
   }
   const std::string folder_;
   const std::unique_ptr<coordinator::JobStore> store_;
   std::unique_ptr<coordinator::AuditLog> audit_;
 };
 
-std::unique_ptr<Book> open_book(const ClientApp& app, const TokenOptions& options) {
+std::unique_ptr<Tokens> open_tokens(const ClientApp& app, const TokenOptions& options) {
   if (options.data.empty()) {
     auto client = app.connect();
-    return client ? std::make_unique<FarBook>(std::move(client)) : nullptr;
+    return client ? std::make_unique<RemoteTokens>(std::move(client)) : nullptr;
   }
   const std::string file = options.data + "/state.db";
   if (!std::filesystem::is_directory(options.data)) {
@@ -182,7 +190,8 @@ std::unique_ptr<Book> open_book(const ClientApp& app, const TokenOptions& option
   }
   auto audit = coordinator::AuditLog::open({.folder = options.data});
   give_to_owner_of(options.data);
-  if (audit) return std::make_unique<NearBook>(options.data, std::move(*store), std::move(*audit));
+  if (audit)
+    return std::make_unique<LocalTokens>(options.data, std::move(*store), std::move(*audit));
   app.report({kFailed, audit.error().message});
   return nullptr;
 }
@@ -198,17 +207,17 @@ std::string moment(int64_t ms, const char* none) { return ms == 0 ? none : forma
 
 std::string state_of(const v1::Token& token) {
   if (token.revoked_ms() != 0) return "revoked";
-  const bool over = token.expires_ms() != 0 && token.expires_ms() <= coordinator::token_clock_ms();
+  const bool over = token.expires_ms() != 0 && token.expires_ms() <= core::wall_ms();
   return over ? "expired" : "in use";
 }
 
 /// What people have to mind of it, besides.
 std::string shown_state(const v1::Token& token) {
   const std::string state = state_of(token);
-  const bool soon = state == "in use" &&
-                    !farm::expiry_warning(farm::term_of(token.created_ms(), token.expires_ms()),
-                                          coordinator::token_clock_ms())
-                         .empty();
+  const bool soon =
+      state == "in use" &&
+      !farm::expiry_warning(farm::term_of(token.created_ms(), token.expires_ms()), core::wall_ms())
+           .empty();
   return soon ? "expires soon" : state;
 }
 
@@ -230,13 +239,13 @@ int hand_out(const ClientApp& app, const TokenOptions& options, const v1::Token&
   if (options.output.empty()) std::printf("%s\n", secret.c_str());
   std::fprintf(
       stderr, "token %s of %s, %s, expires: %s%s\n", token.id().c_str(),
-      printable(token.name()).c_str(), farm::role_name(token.role()).c_str(),
+      core::printable(token.name()).c_str(), farm::role_name(token.role()).c_str(),
       moment(token.expires_ms(), "never").c_str(),
       options.output.empty() ? "; it is shown only now" : (", is in " + options.output).c_str());
   return kDone;
 }
 
-int create(const ClientApp& app, const TokenOptions& options, Book& book) {
+int create(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
   v1::CreateTokenRequest request;
   request.set_name(options.name);
   request.set_role(farm::role_of(options.role).value_or(v1::ROLE_UNSPECIFIED));
@@ -246,13 +255,13 @@ int create(const ClientApp& app, const TokenOptions& options, Book& book) {
   }
   v1::Token token;
   std::string secret;
-  if (auto failure = book.create(request, token, secret)) return app.report(*failure);
+  if (auto failure = tokens.create(request, token, secret)) return app.report(*failure);
   return hand_out(app, options, token, secret);
 }
 
-int list(const ClientApp& app, const TokenOptions& options, Book& book) {
+int list(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
   v1::ListTokensResponse response;
-  if (auto failure = book.list(response)) return app.report(*failure);
+  if (auto failure = tokens.list(response)) return app.report(*failure);
   if (options.json) {
     Json all = Json::array();
     for (const v1::Token& token : response.tokens()) all.push_back(to_json(token));
@@ -266,7 +275,7 @@ int list(const ClientApp& app, const TokenOptions& options, Book& book) {
   std::vector<std::vector<std::string>> rows = {
       {"id", "role", "name", "state", "made", "expires", "last used"}};
   for (const v1::Token& token : response.tokens()) {
-    rows.push_back({token.id(), farm::role_name(token.role()), printable(token.name()),
+    rows.push_back({token.id(), farm::role_name(token.role()), core::printable(token.name()),
                     shown_state(token), format_time(token.created_ms()),
                     moment(token.expires_ms(), "never"), moment(token.used_ms(), "never")});
   }
@@ -274,14 +283,14 @@ int list(const ClientApp& app, const TokenOptions& options, Book& book) {
   return kDone;
 }
 
-int revoke(const ClientApp& app, const TokenOptions& options, Book& book) {
+int revoke(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
   v1::Token token;
-  if (auto failure = book.revoke(options.id, token)) return app.report(*failure);
+  if (auto failure = tokens.revoke(options.id, token)) return app.report(*failure);
   if (options.json) {
     print_json(to_json(token));
   } else {
     std::printf("token %s (%s, %s) is revoked\n", token.id().c_str(),
-                farm::role_name(token.role()).c_str(), printable(token.name()).c_str());
+                farm::role_name(token.role()).c_str(), core::printable(token.name()).c_str());
   }
   return kDone;
 }
@@ -294,9 +303,9 @@ std::string as_long_as(const v1::Token& token) {
 }
 
 /// Another token of the same name, role and lifetime; then the old one goes.
-int rotate(const ClientApp& app, TokenOptions options, Book& book) {
+int rotate(const ClientApp& app, TokenOptions options, Tokens& tokens) {
   v1::ListTokensResponse all;
-  if (auto failure = book.list(all)) return app.report(*failure);
+  if (auto failure = tokens.list(all)) return app.report(*failure);
   for (const v1::Token& old : all.tokens()) {
     if (old.id() != options.id) continue;
     if (state_of(old) != "in use") {
@@ -307,9 +316,9 @@ int rotate(const ClientApp& app, TokenOptions options, Book& book) {
     options.name = old.name();
     options.role = farm::role_name(old.role());
     if (options.expires.empty()) options.expires = as_long_as(old);
-    if (const int status = create(app, options, book); status != kDone) return status;
+    if (const int status = create(app, options, tokens); status != kDone) return status;
     v1::Token gone;
-    if (auto failure = book.revoke(options.id, gone)) return app.report(*failure);
+    if (auto failure = tokens.revoke(options.id, gone)) return app.report(*failure);
     return kDone;
   }
   return app.report({kUnknown, fmt::format("there is no token '{}'", options.id)});
@@ -319,7 +328,7 @@ int whoami(const ClientApp& app, const TokenOptions& options) {
   const auto client = app.connect();
   if (!client) return kBadArguments;
   v1::WhoAmIResponse me;
-  if (auto failure = client->whoami(me)) return app.report(*failure);
+  if (auto failure = client->call(&v1::Admin::Stub::WhoAmI, {}, me)) return app.report(*failure);
   if (options.json) {
     print_json({{"guarded", me.guarded()},
                 {"role", farm::role_name(me.role())},
@@ -386,11 +395,11 @@ int token_command(int argc, char** argv) {
   if (me->parsed()) return whoami(client, options);
   if (made->parsed() && options.expires.empty()) options.expires = kLifetime;
   options.of_existing = !made->parsed();
-  const auto book = open_book(client, options);
-  if (!book) return kBadArguments;
-  if (made->parsed()) return create(client, options, *book);
-  if (listed->parsed()) return list(client, options, *book);
-  return revoked->parsed() ? revoke(client, options, *book) : rotate(client, options, *book);
+  const auto tokens = open_tokens(client, options);
+  if (!tokens) return kBadArguments;
+  if (made->parsed()) return create(client, options, *tokens);
+  if (listed->parsed()) return list(client, options, *tokens);
+  return revoked->parsed() ? revoke(client, options, *tokens) : rotate(client, options, *tokens);
 }
 
 }  // namespace hyades::cli

@@ -3,18 +3,21 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/find_job.h"
 #include "cli/client/top_page.h"
+#include "cli/client_commands.h"
+#include "cli/number_range.h"
+#include "core/base/wall_clock.h"
 
 namespace hyades::cli {
 namespace {
@@ -101,9 +104,7 @@ Outcome look(FarmClient& client, FarmNow& now) {
   if (auto failure = client.workers(workers)) return failure;
   now.jobs = std::move(jobs);
   now.workers.assign(workers.workers().begin(), workers.workers().end());
-  now.time_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
-                    std::chrono::system_clock::now().time_since_epoch())
-                    .count();
+  now.time_ms = core::wall_ms();
   return std::nullopt;
 }
 
@@ -152,7 +153,7 @@ int top_command(int argc, char** argv) {
   bool once = false;
   app.app()
       .add_option("--interval", interval, "seconds between two looks")
-      ->check(CLI::Range(kLeastInterval, 3600.0))
+      ->check(in_range(kLeastInterval, 3600.0))
       ->capture_default_str();
   app.app().add_flag("--once", once, "print it once and end");
   app.give_examples(

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "cli/client/show.h"
-#include "cli/printable.h"
+#include "core/base/printable.h"
 #include "core/base/text.h"
 
 namespace hyades::cli {
@@ -151,8 +153,8 @@ void add_jobs(Page& page, std::vector<v1::Job> jobs, int room) {
                                                   static_cast<double>(job.samples());
     const Style style = style_of(job);
     page.row(columns, {{std::to_string(job.id())},
-                       {printable(job.name())},
-                       {printable(job.owner()), Style::faint},
+                       {core::printable(job.name())},
+                       {core::printable(job.owner()), Style::faint},
                        {std::to_string(job.priority())},
                        {state_name(job.state()), style},
                        {bar(share, 12), style},
@@ -160,7 +162,7 @@ void add_jobs(Page& page, std::vector<v1::Job> jobs, int room) {
                        {fmt::format("{}/{}", job.frames_done(), job.frames())},
                        {speed_text(job.samples_per_second())},
                        {job.seconds_left() >= 0 ? core::format_duration(job.seconds_left()) : "-"},
-                       {printable(job.reason()), Style::faint}});
+                       {core::printable(job.reason()), Style::faint}});
   }
   if (shown < static_cast<int>(jobs.size())) {
     page.line(fmt::format("  and {} more", static_cast<int>(jobs.size()) - shown), Style::faint);
@@ -184,8 +186,8 @@ void add_workers(Page& page, std::vector<v1::Worker> workers, const WorkerSpeeds
     const v1::Worker& worker = workers[static_cast<size_t>(i)];
     page.row(columns,
              {{std::to_string(worker.id())},
-              {printable(worker.name())},
-              {printable(worker.host()), Style::faint},
+              {core::printable(worker.name())},
+              {core::printable(worker.host()), Style::faint},
               {state_name(worker.state()), style_of(worker)},
               {std::to_string(worker.threads())},
               {std::to_string(worker.leased())},
@@ -194,7 +196,7 @@ void add_workers(Page& page, std::vector<v1::Worker> workers, const WorkerSpeeds
               {std::to_string(worker.units_failed()),
                worker.units_failed() > 0 ? Style::bad : Style::plain},
               {worker.memory_bytes() > 0 ? core::format_bytes(worker.memory_bytes()) : "-"},
-              {printable(worker.reason()), Style::faint}});
+              {core::printable(worker.reason()), Style::faint}});
   }
   if (shown < static_cast<int>(workers.size())) {
     page.line(fmt::format("  and {} more", static_cast<int>(workers.size()) - shown), Style::faint);
@@ -245,9 +247,9 @@ std::vector<std::string> top_page(const FarmNow& now, const WorkerSpeeds& speeds
     ++connected;
     threads += worker.threads();
   }
-  page.line(fmt::format("hyades top - {} - {} job{}, {} worker{} with {} threads, {}", coordinator,
-                        now.jobs.size(), now.jobs.size() == 1 ? "" : "s", connected,
-                        connected == 1 ? "" : "s", threads, speed_text(speeds.all())));
+  page.line(fmt::format("hyades top - {} - {}, {} with {} threads, {}", coordinator,
+                        core::counted(now.jobs.size(), "job"), core::counted(connected, "worker"),
+                        threads, speed_text(speeds.all())));
   page.line(format_time(now.time_ms), Style::faint);
   // Two heads, and what lies between them; jobs get half of the rest, and what workers do not need.
   const int rows = std::max(height - 5, 0);

@@ -1,17 +1,23 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <fstream>
+#include <ios>
+#include <optional>
+#include <ostream>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/find_job.h"
 #include "cli/client/show.h"
 #include "cli/client/trace_writer.h"
+#include "cli/client_commands.h"
 #include "cli/status_line.h"
 #include "core/base/io_reason.h"
 #include "farm/job_state.h"
@@ -47,7 +53,7 @@ Outcome get_job(FarmClient& client, uint64_t id, v1::Job& job) {
   request.set_limit(1);
   request.set_before(id + 1);
   v1::ListJobsResponse response;
-  if (auto failure = client.list(request, response)) return failure;
+  if (auto failure = client.call(&v1::Jobs::Stub::List, request, response)) return failure;
   if (response.jobs().empty() || response.jobs(0).id() != id) {
     return Failure{kUnknown, fmt::format("there is no job {} any more", id)};
   }
@@ -59,7 +65,8 @@ Outcome get_job(FarmClient& client, uint64_t id, v1::Job& job) {
 /// does this; the trace is what was asked for.
 void tell_what_is_lost(FarmClient& client, const v1::Job& job) {
   v1::InfoResponse coordinator;
-  if (!client.info(coordinator) && coordinator.started_ms() > job.submitted_ms()) {
+  if (!client.call(&v1::Farm::Stub::Info, {}, coordinator) &&
+      coordinator.started_ms() > job.submitted_ms()) {
     std::fprintf(stderr,
                  "the coordinator was started again after job %lu was submitted: what was done "
                  "before that is not in the trace\n",
@@ -78,7 +85,7 @@ Outcome write_trace(FarmClient& client, uint64_t id, bool follow, std::ostream& 
     if (auto failure = get_job(client, id, job)) return failure;
     v1::ListTimelineResponse page;
     do {
-      if (auto failure = client.timeline(request, page)) return failure;
+      if (auto failure = client.call(&v1::Jobs::Stub::ListTimeline, request, page)) return failure;
       if (std::exchange(begins, false) && page.dropped() > 0) {
         std::fprintf(stderr,
                      "%lu older steps are not kept by the coordinator: the trace begins later\n",
@@ -140,7 +147,7 @@ int trace_command(int argc, char** argv) {
   if (!out) return cannot_write();
   if (failure) return app.report(*failure);
   if (!quiet) {
-    std::fprintf(stderr, "wrote %s: %lu units of job %lu\n", printable(file).c_str(),
+    std::fprintf(stderr, "wrote %s: %lu units of job %lu\n", core::printable(file).c_str(),
                  writer.units(), id);
   }
   return kDone;

@@ -1,9 +1,12 @@
 #include "cli/client/upload.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,8 +22,7 @@ using core::AssetRecord;
 
 namespace {
 
-constexpr size_t kMostAsked = 10'000;  // files in one FindMissing
-constexpr int kMostRestarts = 1;       // of one file whose bytes arrived damaged
+constexpr int kMostRestarts = 1;  // of one file whose bytes arrived damaged
 
 /// A file to be sent, and from where on.
 struct Missing {
@@ -30,10 +32,10 @@ struct Missing {
 
 Outcome ask(FarmClient& client, const std::vector<AssetRecord>& files,
             std::vector<Missing>& missing) {
-  for (size_t at = 0; at < files.size(); at += kMostAsked) {
+  for (size_t at = 0; at < files.size(); at += farm::kMostFilesAsked) {
     v1::FindMissingRequest request;
     std::map<std::string, const AssetRecord*> by_digest;
-    for (size_t i = at; i < std::min(files.size(), at + kMostAsked); ++i) {
+    for (size_t i = at; i < std::min(files.size(), at + farm::kMostFilesAsked); ++i) {
       const auto digest = farm::digest_from_hex(files[i].sha256);
       if (!digest) return Failure{kFailed, digest.error().message};
       v1::JobFile& asked = *request.add_files();
@@ -42,7 +44,8 @@ Outcome ask(FarmClient& client, const std::vector<AssetRecord>& files,
       by_digest[asked.sha256()] = &files[i];
     }
     v1::FindMissingResponse response;
-    if (auto failure = client.find_missing(request, response)) return failure;
+    if (auto failure = client.call(&v1::Assets::Stub::FindMissing, request, response))
+      return failure;
     for (const auto& one : response.missing()) {
       const auto found = by_digest.find(one.sha256());
       if (found == by_digest.end()) {
@@ -95,8 +98,8 @@ Outcome upload_missing(FarmClient& client, const farm::JobPackage& package, core
   }
   display.clear();
   if (!quiet && !missing.empty()) {
-    std::fprintf(stderr, "uploaded %zu file%s, %s\n", missing.size(),
-                 missing.size() == 1 ? "" : "s", core::format_bytes(total).c_str());
+    std::fprintf(stderr, "uploaded %s, %s\n", core::counted(missing.size(), "file").c_str(),
+                 core::format_bytes(total).c_str());
   }
   return std::nullopt;
 }

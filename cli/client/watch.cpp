@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -51,7 +52,7 @@ coordinator::Progress progress_of(const v1::Job& job) {
   progress.samples_done = job.samples_done();
   progress.samples_per_second = job.samples_per_second();
   progress.seconds_left = job.seconds_left();
-  progress.trouble = job.state() == v1::JOB_STATE_PAUSED ? "paused" : printable(job.reason());
+  progress.trouble = job.state() == v1::JOB_STATE_PAUSED ? "paused" : core::printable(job.reason());
   return progress;
 }
 
@@ -70,7 +71,8 @@ class Watcher {
         failed_.erase(frame.frame());
       }
     }
-    if (!display_) display_ = std::make_unique<ProgressDisplay>(printable(job_.name()), quiet_);
+    if (!display_)
+      display_ = std::make_unique<ProgressDisplay>(core::printable(job_.name()), quiet_);
     if (!farm::has_ended(job_)) display_->update(progress_of(job_));
   }
 
@@ -86,8 +88,8 @@ class Watcher {
     if (job_.state() == v1::JOB_STATE_DONE) {
       if (!quiet_) {
         std::fprintf(
-            stderr, "job %lu is done: %u frame%s in %s; hyades fetch %lu brings them\n", job_.id(),
-            job_.frames_done(), job_.frames_done() == 1 ? "" : "s",
+            stderr, "job %lu is done: %s in %s; hyades fetch %lu brings them\n", job_.id(),
+            core::counted(job_.frames_done(), "frame").c_str(),
             core::format_duration(1e-3 * static_cast<double>(job_.ended_ms() - job_.submitted_ms()))
                 .c_str(),
             job_.id());
@@ -97,13 +99,13 @@ class Watcher {
     size_t told = 0;
     for (const auto& [frame, reason] : failed_) {
       if (++told > kMostFramesTold) break;
-      std::fprintf(stderr, "frame %d failed: %s\n", frame, printable(reason).c_str());
+      std::fprintf(stderr, "frame %d failed: %s\n", frame, core::printable(reason).c_str());
     }
     if (failed_.size() > kMostFramesTold) {
       std::fprintf(stderr, "... and %zu more (hyades status %lu)\n",
                    failed_.size() - kMostFramesTold, job_.id());
     }
-    const std::string why = job_.reason().empty() ? "" : ": " + printable(job_.reason());
+    const std::string why = job_.reason().empty() ? "" : ": " + core::printable(job_.reason());
     if (job_.state() == v1::JOB_STATE_CANCELLED) {
       return Failure{kCancelled, fmt::format("job {} was cancelled{}", job_.id(), why)};
     }

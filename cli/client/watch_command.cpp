@@ -1,12 +1,13 @@
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "cli/address_option.h"
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/find_job.h"
 #include "cli/client/watch.h"
+#include "cli/client_commands.h"
 
 namespace hyades::cli {
 

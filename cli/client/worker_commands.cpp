@@ -1,4 +1,5 @@
-#include <chrono>
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -6,19 +7,18 @@
 #include <fmt/format.h>
 
 #include "cli/client/client_app.h"
-#include "cli/client/commands.h"
 #include "cli/client/show.h"
+#include "cli/client_commands.h"
 #include "core/base/text.h"
+#include "core/base/wall_clock.h"
 
 namespace hyades::cli {
 namespace {
 
 /// How long ago a moment was, by this machine's clock.
 std::string ago(int64_t ms) {
-  const auto now = std::chrono::duration_cast<std::chrono::milliseconds>(
-                       std::chrono::system_clock::now().time_since_epoch())
-                       .count();
-  return core::format_duration(1e-3 * static_cast<double>(std::max<int64_t>(now - ms, 0)));
+  return core::format_duration(1e-3 *
+                               static_cast<double>(std::max<int64_t>(core::wall_ms() - ms, 0)));
 }
 
 void print_workers(const v1::WorkersResponse& response) {
@@ -36,8 +36,9 @@ void print_workers(const v1::WorkersResponse& response) {
   print_table(rows);
 }
 
-int act(const char* command, const char* description, FarmClient::WorkerAction action, int argc,
-        char** argv) {
+template <class Method>
+int act_on_worker(const char* command, const char* description, Method method, int argc,
+                  char** argv) {
   ClientApp app(command, description);
   std::vector<std::string> names;
   std::string reason;
@@ -57,7 +58,7 @@ int act(const char* command, const char* description, FarmClient::WorkerAction a
     request.set_worker(name);
     request.set_reason(reason);
     v1::WorkerResponse response;
-    if (auto failure = client->act(action, request, response)) {
+    if (auto failure = client->call(method, request, response)) {
       const int status = app.report(*failure);
       if (worst == kDone) worst = status;
       if (status == kNoAnswer) break;
@@ -67,7 +68,7 @@ int act(const char* command, const char* description, FarmClient::WorkerAction a
     if (json) {
       list.push_back(to_json(worker));
     } else {
-      std::printf("worker %lu (%s) is %s\n", worker.id(), printable(worker.name()).c_str(),
+      std::printf("worker %lu (%s) is %s\n", worker.id(), core::printable(worker.name()).c_str(),
                   state_name(worker.state()).c_str());
     }
   }
@@ -100,19 +101,20 @@ int workers_command(int argc, char** argv) {
 }
 
 int drain_command(int argc, char** argv) {
-  return act("drain", "Gives workers no more work; they deliver what they have and leave.",
-             FarmClient::WorkerAction::drain, argc, argv);
+  return act_on_worker("drain",
+                       "Gives workers no more work; they deliver what they have and leave.",
+                       &v1::Farm::Stub::DrainWorker, argc, argv);
 }
 
 int quarantine_command(int argc, char** argv) {
-  return act("quarantine",
-             "Gives workers no more work and refuses what they have not delivered yet.",
-             FarmClient::WorkerAction::quarantine, argc, argv);
+  return act_on_worker("quarantine",
+                       "Gives workers no more work and refuses what they have not delivered yet.",
+                       &v1::Farm::Stub::QuarantineWorker, argc, argv);
 }
 
 int release_command(int argc, char** argv) {
-  return act("release", "Ends the quarantine of workers.", FarmClient::WorkerAction::release, argc,
-             argv);
+  return act_on_worker("release", "Ends the quarantine of workers.", &v1::Farm::Stub::ReleaseWorker,
+                       argc, argv);
 }
 
 }  // namespace hyades::cli

@@ -35,7 +35,7 @@ ShownFilms::Pending& ShownFilms::pending_of(int32_t frame, const core::Film& fil
 }
 
 void ShownFilms::grown(int32_t frame, const core::Film& film, const core::PixelRect& tile) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   Pending& pending = pending_of(frame, film);
   const core::PixelRect& window = film.window();
   // With splats every pixel has a part in each.
@@ -52,7 +52,7 @@ void ShownFilms::grown(int32_t frame, const core::Film& film, const core::PixelR
 }
 
 void ShownFilms::complete(int32_t frame, const core::Film& film) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   pending_of(frame, film);
   show(frame, film, true);
   pending_.erase(frame);

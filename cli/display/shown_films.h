@@ -2,13 +2,15 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <map>
-#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/display/viewer.h"
 #include "coordinator/local/frame_work.h"
+#include "core/base/mutex.h"
 
 namespace hyades::cli {
 
@@ -36,9 +38,9 @@ class ShownFilms : public coordinator::FilmAudience {
     std::vector<bool> parts;
     size_t next = 0;
   };
-  Pending& pending_of(int32_t frame, const core::Film& film);
-  bool may_spend() const;
-  void show(int32_t frame, const core::Film& film, bool all);
+  Pending& pending_of(int32_t frame, const core::Film& film) HYADES_REQUIRES(mutex_);
+  bool may_spend() const HYADES_REQUIRES(mutex_);
+  void show(int32_t frame, const core::Film& film, bool all) HYADES_REQUIRES(mutex_);
   void show_part(int32_t frame, const core::Film& film, const core::PixelRect& part);
 
   Viewer& viewer_;
@@ -46,9 +48,10 @@ class ShownFilms : public coordinator::FilmAudience {
   const bool several_;
   const Clock::time_point begin_ = Clock::now();
 
-  std::mutex mutex_;
-  std::map<int32_t, Pending> pending_;  ///< of frames that are not complete
-  Clock::duration spent_{0};
+  core::Mutex mutex_;
+  /// Of frames that are not complete.
+  std::map<int32_t, Pending> pending_ HYADES_GUARDED_BY(mutex_);
+  Clock::duration spent_ HYADES_GUARDED_BY(mutex_){0};
 };
 
 }  // namespace hyades::cli

@@ -36,7 +36,7 @@ Viewer::Viewer(const std::string& address)
 
 Viewer::~Viewer() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     last_words_ = Clock::now() + kLastWords;
   }
   wake_.notify_one();
@@ -44,12 +44,12 @@ Viewer::~Viewer() {
 }
 
 bool Viewer::must_give_up() const {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   return last_words_ && Clock::now() >= *last_words_;
 }
 
 std::optional<std::string> Viewer::take_notice() {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   return std::exchange(notice_, std::nullopt);
 }
 
@@ -79,7 +79,7 @@ Viewer::Picture& Viewer::hold(const std::string& name, int width, int height,
 
 void Viewer::put(const std::string& name, int width, int height, const core::Image& part, int x,
                  int y) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   Picture& picture = hold(name, width, height, part);
   const size_t channels = part.channels.size();
   for (int row = 0; row < part.height; ++row) {
@@ -118,10 +118,17 @@ void Viewer::lose() {
   }
 }
 
-bool Viewer::connect(std::unique_lock<std::mutex>& lock) {
-  lock.unlock();
+/// Waits so long for the end; whether it has come.
+bool Viewer::ends_within(Clock::duration wait) {
+  const Clock::time_point until = Clock::now() + wait;
+  while (!last_words_ && Clock::now() < until) wake_.wait_until(mutex_, until);
+  return last_words_.has_value();
+}
+
+bool Viewer::connect() {
+  mutex_.unlock();
   const core::Status opened = link_.open();
-  lock.lock();
+  mutex_.lock();
   connected_ = opened.ok();
   if (!connected_ && !std::exchange(noticed_, true)) {
     notice_ = fmt::format("no viewer at {} ({}): the picture is shown there when one comes",
@@ -145,7 +152,7 @@ std::string Viewer::next_part(Picture& picture) {
 }
 
 /// Sends one packet of what is new; false where the viewer did not take it.
-bool Viewer::send_something(std::unique_lock<std::mutex>& lock) {
+bool Viewer::send_something() {
   std::string packet;
   if (!to_close_.empty()) {
     packet = close_picture(to_close_.front());
@@ -171,9 +178,9 @@ bool Viewer::send_something(std::unique_lock<std::mutex>& lock) {
     // The others have their turn too.
     pictures_.splice(pictures_.end(), pictures_, news);
   }
-  lock.unlock();
+  mutex_.unlock();
   const bool sent = link_.send(packet);
-  lock.lock();
+  mutex_.lock();
   return sent;
 }
 
@@ -181,13 +188,10 @@ void Viewer::run() {
   // Rendering goes first. On Linux this is of the calling thread alone; where it is refused, fine.
   static_cast<void>(::setpriority(PRIO_PROCESS, 0, kNice));
   farm::Backoff backoff(kFirstTry, kLongestTry);
-  std::unique_lock lock(mutex_);
-  const auto ends_within = [&](Clock::duration wait) {
-    return wake_.wait_for(lock, wait, [this] { return last_words_.has_value(); });
-  };
-  while (connected_ || connect(lock) || !ends_within(backoff.next())) {
+  const core::MutexLock lock(mutex_);
+  while (connected_ || connect() || !ends_within(backoff.next())) {
     while (connected_ && has_news()) {
-      if (!send_something(lock)) lose();
+      if (!send_something()) lose();
     }
     if (last_words_) return;
     if (connected_) {

@@ -1,16 +1,16 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <list>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "cli/display/viewer_link.h"
+#include "core/base/mutex.h"
 #include "core/image/image.h"
 
 namespace hyades::cli {
@@ -38,10 +38,11 @@ class Viewer {
 
   /// Puts `part` at (x, y) into picture `name`, which begins black. All parts of a picture have the
   /// same channels and lie within its size.
-  void put(const std::string& name, int width, int height, const core::Image& part, int x, int y);
+  void put(const std::string& name, int width, int height, const core::Image& part, int x, int y)
+      HYADES_EXCLUDES(mutex_);
 
   /// Why nothing is shown; told once.
-  std::optional<std::string> take_notice();
+  std::optional<std::string> take_notice() HYADES_EXCLUDES(mutex_);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -56,27 +57,30 @@ class Viewer {
     int columns() const { return (image.width + kPart - 1) / kPart; }
     void mark(size_t part);
   };
-  Picture& hold(const std::string& name, int width, int height, const core::Image& part);
-  void run();
-  bool connect(std::unique_lock<std::mutex>& lock);
-  bool send_something(std::unique_lock<std::mutex>& lock);
-  bool has_news() const;
-  bool must_give_up() const;
-  void lose();
-  std::string next_part(Picture& picture);
+  Picture& hold(const std::string& name, int width, int height, const core::Image& part)
+      HYADES_REQUIRES(mutex_);
+  void run() HYADES_EXCLUDES(mutex_);
+  bool ends_within(Clock::duration wait) HYADES_REQUIRES(mutex_);
+  bool connect() HYADES_REQUIRES(mutex_);
+  bool send_something() HYADES_REQUIRES(mutex_);
+  bool has_news() const HYADES_REQUIRES(mutex_);
+  bool must_give_up() const HYADES_EXCLUDES(mutex_);
+  void lose() HYADES_REQUIRES(mutex_);
+  static std::string next_part(Picture& picture);
 
   const std::string address_;
   ViewerLink link_;  ///< of the thread
 
-  mutable std::mutex mutex_;
-  std::condition_variable wake_;
-  std::list<Picture> pictures_;    ///< those that were sent last are the last
-  std::deque<std::string> shown_;  ///< in the viewer, the oldest first
-  std::deque<std::string> to_close_;
-  std::optional<std::string> notice_;
-  bool noticed_ = false;
-  bool connected_ = false;
-  std::optional<Clock::time_point> last_words_;  ///< it ends, at this time for certain
+  mutable core::Mutex mutex_;
+  core::CondVar wake_;
+  std::list<Picture> pictures_ HYADES_GUARDED_BY(mutex_);    ///< those sent last are the last
+  std::deque<std::string> shown_ HYADES_GUARDED_BY(mutex_);  ///< in the viewer, the oldest first
+  std::deque<std::string> to_close_ HYADES_GUARDED_BY(mutex_);
+  std::optional<std::string> notice_ HYADES_GUARDED_BY(mutex_);
+  bool noticed_ HYADES_GUARDED_BY(mutex_) = false;
+  bool connected_ HYADES_GUARDED_BY(mutex_) = false;
+  /// It ends, at this time for certain.
+  std::optional<Clock::time_point> last_words_ HYADES_GUARDED_BY(mutex_);
   std::thread thread_;
 };
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "core/base/address.h"
 #include "core/base/descriptor.h"

@@ -10,13 +10,12 @@ namespace hyades::coordinator {
 /// becomes that.
 std::string address_text(const std::string& host, const std::string& port);
 
-/// The same of what gRPC calls a peer: "ipv4:192.0.2.7:5000", "ipv6:%5B2001:db8::1%5D:5000". What
-/// is neither (a socket of this machine) stays as it is.
+/// The address_text of what gRPC calls a peer: "ipv4:192.0.2.7:5000",
+/// "ipv6:%5B2001:db8::1%5D:5000". What is neither (a socket of this machine) stays as it is.
 std::string address_of_peer(std::string_view peer);
 
-/// Who counts as one where somebody is to be held to a measure: an IPv4 address, or the /64 network
-/// of an IPv6 one, of which anybody who has one address has them all. `address` as address_text has
-/// it.
+/// What counts as one caller where calls are limited: an IPv4 address, or the /64 network of an
+/// IPv6 one, of which anybody who has one address has them all. `address` as address_text() has it.
 std::string neighbourhood_of(const std::string& address);
 
 }  // namespace hyades::coordinator

@@ -2,22 +2,23 @@
 
 #include <array>
 #include <chrono>
-#include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <grpcpp/support/status.h>
 
 #include "coordinator/access/caller.h"
-#include "coordinator/access/line_files.h"
+#include "coordinator/access/rotating_log.h"
 #include "core/base/descriptor.h"
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "hyades/v1/admin.pb.h"
 
@@ -35,9 +36,8 @@ struct AuditOptions {
 /// Who did what: lines of JSON that are only ever added to. Nobody who notes something waits: a
 /// thread writes and syncs, within milliseconds where the disk answers. Thread-safe.
 ///
-/// Actions, refusals and uploads have files and room of their own: whoever is refused as often as
-/// he likes, as any stranger may be, and whoever uploads many files, makes none vanish that
-/// somebody needs to know of.
+/// Actions, refusals and uploads have files and room of their own, so that many refusals, which any
+/// stranger can cause, or many uploads never push out an action that somebody needs to know of.
 class AuditLog {
  public:
   /// An error where the folder cannot be written to.
@@ -68,8 +68,9 @@ class AuditLog {
 
    private:
     friend class AuditLog;
-    /// Entries of one kind.
+    /// The entries of one kind.
     struct Row {
+      std::string log;                      ///< AuditEntry::log
       std::vector<core::Descriptor> files;  ///< the newest first
       std::string waiting;                  ///< bytes of the oldest that are not given yet
       size_t begin = 0;
@@ -81,39 +82,45 @@ class AuditLog {
   Reader read() const;
 
  private:
-  /// How many refusals of an address are noted as they come.
-  struct Purse {
-    double left = 0;
-    std::chrono::steady_clock::time_point since;
-    v1::AuditEntry held;  ///< with `times` of those that were not noted
+  /// A token bucket of a neighbourhood: it bounds how many of its refusals are noted one by one.
+  struct RateLimit {
+    double left = 0;                              ///< refusals that may be noted now
+    std::chrono::steady_clock::time_point since;  ///< when `left` was counted
+    v1::AuditEntry held;                          ///< with `times` of those that were not noted
   };
 
   /// Lines of one kind.
-  struct Book {
-    explicit Book(LineFiles::Options options) : files(std::move(options)) {}
-    LineFiles files;  ///< written by the thread alone, once it runs
-    std::deque<std::string> queue;
-    uint64_t lost = 0;  ///< that found no room in the queue
+  struct Trail {
+    explicit Trail(RotatingLog::Options options) : files(std::move(options)) {}
+    RotatingLog files;              ///< written by the thread alone, once it runs
+    std::deque<std::string> queue;  ///< with the lock
+    uint64_t lost = 0;              ///< that found no room in the queue
+    std::string last;               ///< audit_digest() of the last entry
+    /// Adds the entry to the queue and to the chain.
+    void append(v1::AuditEntry entry);
   };
 
   explicit AuditLog(const AuditOptions& options);
-  void add(Book& book, v1::AuditEntry entry);
-  void release_held(bool all);
-  bool write_some(Book& book, std::unique_lock<std::mutex>& lock);
+  void add(Trail& trail, v1::AuditEntry entry) HYADES_REQUIRES(mutex_);
+  void release_held(bool all) HYADES_REQUIRES(mutex_);
+  bool all_written() const HYADES_REQUIRES(mutex_);
+  bool write_some(Trail& trail) HYADES_REQUIRES(mutex_);
   void work();
 
   const size_t most_waiting_;
 
-  mutable std::mutex mutex_;  ///< of all below, but for the books' files
-  Book actions_;
-  Book refusals_;
-  Book uploads_;
-  const std::array<Book*, 3> books_ = {&actions_, &refusals_, &uploads_};  ///< as they are written
-  std::map<std::string, Purse> purses_;  ///< by neighbourhood_of() an address
-  bool stop_ = false;
-  bool busy_ = false;  ///< lines are on their way
-  std::condition_variable wake_;
-  std::condition_variable written_;
+  mutable core::Mutex mutex_;
+  Trail actions_;
+  Trail refusals_;
+  Trail uploads_;
+  const std::array<Trail*, 3> trails_ = {&actions_, &refusals_,
+                                         &uploads_};  ///< as they are written
+  std::map<std::string, RateLimit> limits_
+      HYADES_GUARDED_BY(mutex_);  ///< by neighbourhood_of() an address
+  bool stop_ HYADES_GUARDED_BY(mutex_) = false;
+  bool busy_ HYADES_GUARDED_BY(mutex_) = false;  ///< lines are on their way
+  core::CondVar wake_;
+  core::CondVar written_;
   std::thread thread_;
 };
 

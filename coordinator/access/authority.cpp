@@ -1,14 +1,21 @@
 #include "coordinator/access/authority.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <string_view>
 #include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <openssl/crypto.h>
 
+#include "coordinator/access/address.h"
+#include "coordinator/access/peer_user.h"
 #include "coordinator/access/token.h"
+#include "core/base/wall_clock.h"
 #include "farm/json_form.h"
 #include "farm/wire_status.h"
 
@@ -16,19 +23,25 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr std::string_view kBearer = "Bearer ";
-/// Those that are of no use any more make room, the oldest first.
+/// Tokens that are of no use any more make room for new ones, the oldest first.
 constexpr size_t kMostTokens = 10'000;
 /// How far the stored time of a token's last use may be behind.
 constexpr int64_t kUseStepMs = 60'000;
 constexpr std::chrono::seconds kLongestSleep{30};
 constexpr int64_t kDayMs = int64_t{24} * 3600 * 1000;
 constexpr int64_t kTellAgainMs = kDayMs;
-/// Who has not used his token for so long may not need it any more.
+/// A token that was not used for so long may not be needed any more.
 constexpr int64_t kStillUsedMs = 30 * kDayMs;
+
+/// Tokens that are none, of one neighbourhood: how many at once, and how many more each second.
+constexpr double kWrongAtOnce = 20;
+constexpr double kWrongPerSecond = 0.2;
+constexpr size_t kMostNeighbourhoods = 1000;
+constexpr std::chrono::minutes kForgiven{10};
 
 grpc::Status stranger(const std::string& why) { return {grpc::StatusCode::UNAUTHENTICATED, why}; }
 
-/// In a time that does not depend on how much of it is right.
+/// Whether they are equal, in a time that does not depend on how much of them is.
 bool same(std::string_view a, std::string_view b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
@@ -41,8 +54,8 @@ std::string date(int64_t ms) {
 }  // namespace
 
 Visit::~Visit() {
-  const std::lock_guard lock(authority_.stays_mutex_);
-  authority_.stays_.erase(number_);
+  const core::MutexLock lock(authority_.streams_mutex_);
+  authority_.streams_.erase(number_);
 }
 
 Authority::Authority(JobStore& store, Options options)
@@ -52,7 +65,10 @@ core::Result<std::unique_ptr<Authority>> Authority::open(JobStore& store, Option
   const auto rows = store.tokens();
   if (!rows) return rows.error();
   std::unique_ptr<Authority> authority(new Authority(store, std::move(options)));
-  for (const StoredToken& row : *rows) authority->take_in(row);
+  {
+    const core::MutexLock lock(authority->mutex_);
+    for (const StoredToken& row : *rows) authority->take_in(row);
+  }
   if (const std::string& folder = authority->options_.audit_folder; !folder.empty()) {
     auto log = AuditLog::open({.folder = folder});
     if (!log) return log.error();
@@ -61,13 +77,13 @@ core::Result<std::unique_ptr<Authority>> Authority::open(JobStore& store, Option
   if (authority->options_.tell_unguarded) {
     authority->options_.tell_unguarded(authority->unguarded());
   }
-  authority->thread_ = std::thread([&me = *authority] { me.mind(); });
+  authority->thread_ = std::thread([&me = *authority] { me.watch_expiry(); });
   return authority;
 }
 
 Authority::~Authority() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     stop_ = true;
   }
   wake_.notify_all();
@@ -78,14 +94,14 @@ Authority::~Authority() {
 void Authority::take_in(const StoredToken& row) { tokens_[row.id] = {row, row.used_ms, 0}; }
 
 bool Authority::guarded() const {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   return !options_.shared_token.empty() || !tokens_.empty();
 }
 
 bool Authority::has_admin() const {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   if (!options_.shared_token.empty()) return true;
-  const int64_t now = token_clock_ms();
+  const int64_t now = core::wall_ms();
   return std::any_of(tokens_.begin(), tokens_.end(), [&](const auto& token) {
     return token.second.row.role == v1::ROLE_ADMIN && is_live(token.second.row, now);
   });
@@ -102,35 +118,79 @@ std::string Authority::unguarded() const {
 
 grpc::Status Authority::admit(std::string_view authorization, Caller& caller) {
   // Who has a token of another farm may come in as all others.
-  if (!guarded()) return admit_known({}, caller);
+  if (!guarded()) return admit_without_token(caller);
   if (authorization.empty()) {
     return stranger(
         "this coordinator wants a token with every call: an admin makes one with 'hyades token "
         "create'");
   }
-  const grpc::Status unknown = stranger("this is not a token of this coordinator");
-  if (!authorization.starts_with(kBearer)) return unknown;
+  if (!authorization.starts_with(kBearer)) return refuse_unknown(caller.address);
   const std::string_view shown = authorization.substr(kBearer.size());
   if (!options_.shared_token.empty() && same(shown, options_.shared_token)) {
     return admit_known(kSharedToken, caller);
   }
   const auto id = token_id(shown);
-  if (!id) return unknown;
+  if (!id) return refuse_unknown(caller.address);
   const std::string hash = token_hash(shown);
+  bool right = false;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     const auto found = tokens_.find(*id);
     // Ids are no secret; a hash of 32 zeros is none of anything.
-    const bool right = same(
-        hash, found == tokens_.end() ? std::string(hash.size(), '\0') : found->second.row.hash);
-    if (!right) return unknown;
+    right = same(hash,
+                 found == tokens_.end() ? std::string(hash.size(), '\0') : found->second.row.hash);
   }
-  return admit_known(*id, caller);
+  return right ? admit_known(*id, caller) : refuse_unknown(caller.address);
+}
+
+grpc::Status Authority::admit_without_token(Caller& caller) {
+  if (options_.owner_only) {
+    std::set<uint16_t> ports;
+    {
+      const core::MutexLock lock(mutex_);
+      ports = ports_;
+    }
+    const auto user = user_of_peer(caller.address, ports);
+    if (!user || (*user != ::geteuid() && *user != 0)) {
+      return stranger(
+          "this coordinator has no tokens and serves the user who started it alone: ask him for a "
+          "token ('hyades token create'), or to start it with --insecure");
+    }
+  }
+  return admit_known({}, caller);
+}
+
+void Authority::listens_at(uint16_t port) {
+  const core::MutexLock lock(mutex_);
+  ports_.insert(port);
+}
+
+grpc::Status Authority::refuse_unknown(const std::string& address) {
+  const auto now = std::chrono::steady_clock::now();
+  std::string whose = neighbourhood_of(address);
+  const core::MutexLock lock(wrong_mutex_);
+  if (wrong_.size() >= kMostNeighbourhoods && !wrong_.contains(whose)) {
+    // Those whose tries are long over make room; else all others count as one.
+    std::erase_if(wrong_, [&](const auto& one) { return now - one.second.since > kForgiven; });
+    if (wrong_.size() >= kMostNeighbourhoods) whose = "others";
+  }
+  const auto [found, fresh] = wrong_.try_emplace(whose, WrongTokens{kWrongAtOnce, now});
+  WrongTokens& wrong = found->second;
+  const std::chrono::duration<double> passed = now - wrong.since;
+  wrong.left = std::min(kWrongAtOnce, wrong.left + passed.count() * kWrongPerSecond);
+  wrong.since = now;
+  if (wrong.left < 1) {
+    return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                             "too many tokens from this address were none of this coordinator's",
+                             std::chrono::seconds(10));
+  }
+  wrong.left -= 1;
+  return stranger("this is not a token of this coordinator");
 }
 
 grpc::Status Authority::admit_known(const std::string& id, Caller& caller) {
-  const int64_t now = token_clock_ms();
-  const std::lock_guard lock(mutex_);
+  const int64_t now = core::wall_ms();
+  const core::MutexLock lock(mutex_);
   if (const grpc::Status live = check(id, now); !live.ok()) return live;
   caller.token_id = id;
   const auto found = tokens_.find(id);
@@ -145,7 +205,7 @@ grpc::Status Authority::admit_known(const std::string& id, Caller& caller) {
   return grpc::Status::OK;
 }
 
-/// Whether this one may (still) come in; with the lock.
+/// Whether this one may (still) come in.
 grpc::Status Authority::check(const std::string& id, int64_t now_ms) const {
   if (id.empty()) {
     const bool open = options_.shared_token.empty() && tokens_.empty();
@@ -168,57 +228,57 @@ grpc::Status Authority::check(const std::string& id, int64_t now_ms) const {
 
 std::unique_ptr<Visit> Authority::visit(const Caller& caller,
                                         std::function<void(const grpc::Status&)> leave) {
-  const std::lock_guard staying(stays_mutex_);
-  auto visit = std::make_unique<Visit>(*this, next_stay_);
+  const core::MutexLock streams_lock(streams_mutex_);
+  auto visit = std::make_unique<Visit>(*this, next_stream_);
   grpc::Status live;
   {
-    const std::lock_guard lock(mutex_);
-    live = check(caller.token_id, token_clock_ms());
+    const core::MutexLock lock(mutex_);
+    live = check(caller.token_id, core::wall_ms());
   }
   if (live.ok()) {
-    stays_[next_stay_] = {caller.token_id, caller.session, std::move(leave)};
+    streams_[next_stream_] = {caller.token_id, caller.session, std::move(leave)};
   } else {
     leave(live);
   }
-  ++next_stay_;
+  ++next_stream_;
   return visit;
 }
 
 void Authority::end_session(const std::string& session) {
-  const std::lock_guard staying(stays_mutex_);
-  for (auto stay = stays_.begin(); stay != stays_.end();) {
-    if (session.empty() || stay->second.session != session) {
-      ++stay;
+  const core::MutexLock streams_lock(streams_mutex_);
+  for (auto stream = streams_.begin(); stream != streams_.end();) {
+    if (session.empty() || stream->second.session != session) {
+      ++stream;
       continue;
     }
-    stay->second.leave(stranger("the session was signed out"));
-    stay = stays_.erase(stay);
+    stream->second.leave(stranger("the session was signed out"));
+    stream = streams_.erase(stream);
   }
 }
 
-/// Those whose token is of no use any more have to go.
-void Authority::end_stays() {
-  const std::lock_guard staying(stays_mutex_);
-  const int64_t now = token_clock_ms();
-  for (auto stay = stays_.begin(); stay != stays_.end();) {
+/// Ends the streams of those whose token is of no use any more.
+void Authority::end_expired() {
+  const core::MutexLock streams_lock(streams_mutex_);
+  const int64_t now = core::wall_ms();
+  for (auto stream = streams_.begin(); stream != streams_.end();) {
     grpc::Status live;
     {
-      const std::lock_guard lock(mutex_);
-      live = check(stay->second.token_id, now);
+      const core::MutexLock lock(mutex_);
+      live = check(stream->second.token_id, now);
     }
     if (live.ok()) {
-      ++stay;
+      ++stream;
       continue;
     }
-    stay->second.leave(live);
-    stay = stays_.erase(stay);
+    stream->second.leave(live);
+    stream = streams_.erase(stream);
   }
 }
 
 grpc::Status Authority::create(const std::string& name, v1::Role role, int64_t lifetime_ms,
                                std::string& text, StoredToken& row) {
-  const std::lock_guard one(change_mutex_);
-  const int64_t now = token_clock_ms();
+  const core::MutexLock one(change_mutex_);
+  const int64_t now = core::wall_ms();
   auto fresh = make_token(name, role, lifetime_ms, now);
   if (!fresh) return {grpc::StatusCode::INVALID_ARGUMENT, fresh.error().message};
   const bool first = !guarded();
@@ -234,12 +294,12 @@ grpc::Status Authority::create(const std::string& name, v1::Role role, int64_t l
     return farm::unavailable(stored.error());
   }
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     take_in(fresh->row);
   }
   wake_.notify_all();
   if (first) {
-    end_stays();
+    end_expired();
     if (options_.tell_unguarded) options_.tell_unguarded(unguarded());
   }
   text = std::move(fresh->text);
@@ -250,7 +310,7 @@ grpc::Status Authority::create(const std::string& name, v1::Role role, int64_t l
 core::Status Authority::make_room(int64_t now_ms) {
   std::string oldest;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (tokens_.size() < kMostTokens) return {};
     int64_t made = INT64_MAX;
     for (const auto& [id, token] : tokens_) {
@@ -263,24 +323,24 @@ core::Status Authority::make_room(int64_t now_ms) {
     return core::Error{fmt::format("there are {} tokens in use: revoke some", kMostTokens)};
   }
   if (core::Status gone = store_.forget_token(oldest); !gone) return gone;
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   tokens_.erase(oldest);
   return {};
 }
 
 grpc::Status Authority::revoke(const std::string& id, StoredToken& row) {
-  const std::lock_guard one(change_mutex_);
+  const core::MutexLock one(change_mutex_);
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     const auto found = tokens_.find(id);
     if (found == tokens_.end()) {
       return {grpc::StatusCode::NOT_FOUND,
               fmt::format("there is no token '{}': 'hyades token list' has their ids", id)};
     }
-    if (found->second.row.revoked_ms == 0) found->second.row.revoked_ms = token_clock_ms();
+    if (found->second.row.revoked_ms == 0) found->second.row.revoked_ms = core::wall_ms();
     row = found->second.row;
   }
-  end_stays();
+  end_expired();
   const core::Status stored = store_.revoke_token(id, row.revoked_ms);
   if (stored) return grpc::Status::OK;
   return {grpc::StatusCode::UNAVAILABLE,
@@ -292,7 +352,7 @@ grpc::Status Authority::revoke(const std::string& id, StoredToken& row) {
 std::vector<StoredToken> Authority::tokens() const {
   std::vector<StoredToken> all;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     for (const auto& [id, token] : tokens_) all.push_back(token.row);
   }
   std::sort(all.begin(), all.end(), [](const StoredToken& a, const StoredToken& b) {
@@ -304,7 +364,7 @@ std::vector<StoredToken> Authority::tokens() const {
 void Authority::store_uses() {
   std::vector<TokenUse> uses;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     for (auto& [id, token] : tokens_) {
       if (token.row.used_ms < token.noted_ms + (stop_ ? 1 : kUseStepMs)) continue;
       token.noted_ms = token.row.used_ms;
@@ -320,8 +380,8 @@ void Authority::tell_expiring() {
   if (!options_.tell_expiring) return;
   std::vector<std::string> lines;
   {
-    const std::lock_guard lock(mutex_);
-    const int64_t now = token_clock_ms();
+    const core::MutexLock lock(mutex_);
+    const int64_t now = core::wall_ms();
     for (auto& [id, token] : tokens_) {
       const StoredToken& row = token.row;
       if (row.revoked_ms != 0 || row.used_ms == 0 || now - row.used_ms > kStillUsedMs ||
@@ -340,20 +400,22 @@ void Authority::tell_expiring() {
   for (const std::string& line : lines) options_.tell_expiring(line);
 }
 
-void Authority::mind() {
+/// Until the end: ends streams of tokens that expire, and stores when tokens were used.
+void Authority::watch_expiry() {
   tell_expiring();
-  std::unique_lock lock(mutex_);
+  core::MutexLock lock(mutex_);
   while (!stop_) {
-    const int64_t now = token_clock_ms();
+    const int64_t now = core::wall_ms();
     int64_t next = now + std::chrono::milliseconds(kLongestSleep).count();
     for (const auto& [id, token] : tokens_) {
       if (is_live(token.row, now) && token.row.expires_ms != 0) {
         next = std::min(next, token.row.expires_ms);
       }
     }
-    wake_.wait_until(lock, std::chrono::system_clock::time_point(std::chrono::milliseconds(next)));
+    wake_.wait_until(mutex_,
+                     std::chrono::system_clock::time_point(std::chrono::milliseconds(next)));
     lock.unlock();
-    end_stays();
+    end_expired();
     store_uses();
     tell_expiring();
     lock.lock();

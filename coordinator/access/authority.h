@@ -1,12 +1,13 @@
 #pragma once
 
-#include <condition_variable>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
+#include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -14,14 +15,15 @@
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/caller.h"
-#include "coordinator/state/job_store.h"
+#include "coordinator/job_store/job_store.h"
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 
 namespace hyades::coordinator {
 
 class Authority;
 
-/// Somebody who stays, with a stream open: he is told when he may not any longer. Ends with it.
+/// A caller's open stream, as long as this lives: it hears when its caller may stay no longer.
 class Visit {
  public:
   Visit(Authority& authority, uint64_t number) : authority_(authority), number_(number) {}
@@ -38,10 +40,14 @@ class Visit {
 /// once, for streams that are open too. Thread-safe.
 class Authority {
  public:
+  /// Who may come in, and who hears of it.
   struct Options {
     std::string shared_token{};  ///< that --token-file gives: one for all roles; empty: none
     bool beyond = false;         ///< the coordinator listens beyond this machine
     bool plain = false;          ///< ... without TLS
+    /// Where no token is asked for only the user that has started this process may come in, and
+    /// root, who are told by the kernel (peer_user.h).
+    bool owner_only = false;
     /// Hears unguarded(), at once and whenever it has changed; called by any thread.
     std::function<void(const std::string&)> tell_unguarded{};
     /// Hears of a token that is used and will expire soon, once a day; called by any thread.
@@ -49,9 +55,9 @@ class Authority {
     /// Where it is kept who did what (audit_log.h); empty: nowhere.
     std::string audit_folder{};
   };
-  /// An error where the tokens cannot be read. `store` outlives it.
+  /// Reads the tokens; an error where that fails. `store` has to outlive it.
   static core::Result<std::unique_ptr<Authority>> open(JobStore& store, Options options);
-  /// All visits have ended.
+  /// All visits have to be over.
   ~Authority();
   Authority(const Authority&) = delete;
   Authority& operator=(const Authority&) = delete;
@@ -63,33 +69,41 @@ class Authority {
   /// How strangers may listen or act; empty: they may not.
   std::string unguarded() const;
 
+  /// Callers come to this port.
+  void listens_at(uint16_t port);
+
   /// Where it is kept who did what; null where it is not.
   AuditLog* audit() { return audit_.get(); }
 
-  /// Who shows `authorization` ("Bearer TOKEN"; empty: nothing): OK with all of `caller` but the
-  /// address, or UNAUTHENTICATED. Where no token is needed he is an admin without a name.
+  /// Admits who shows `authorization` ("Bearer TOKEN"; empty: nothing) from the address that
+  /// `caller` has: OK with the rest of `caller`, or UNAUTHENTICATED. Where no token is needed
+  /// everybody is an admin without a name. Whose neighbourhood has shown too many tokens that are
+  /// none is told RESOURCE_EXHAUSTED instead, and when to come again; a token that is one is always
+  /// taken.
   grpc::Status admit(std::string_view authorization, Caller& caller);
-  /// The same for who has shown the token of this id before.
+  /// Admits who has shown the token of this id before: OK with all of `caller` but the address, or
+  /// UNAUTHENTICATED where the token is of no use any more.
   grpc::Status admit_known(const std::string& token_id, Caller& caller);
 
-  /// Registers who stays. `leave` is called once his token is of no use any more, perhaps within
-  /// this call, by any thread; it must not wait, and not end the visit itself.
+  /// Registers a caller's open stream. `leave` is called once the caller's token is of no use any
+  /// more, perhaps within this call, by any thread; it must not wait, and not end the visit itself.
   std::unique_ptr<Visit> visit(const Caller& caller,
                                std::function<void(const grpc::Status&)> leave);
 
-  /// Those who stay in this session (Caller::session) have to go: it was signed out.
+  /// Has all streams of this session (Caller::session) end: it was signed out.
   void end_session(const std::string& session);
 
   // These may wait for the store.
 
-  /// The token and what is stored of it. INVALID_ARGUMENT as check_token() has it,
-  /// FAILED_PRECONDITION where it would be the farm's first and not an admin's.
+  /// Makes a token: `text` is what its owner shows, `row` what is stored of it. INVALID_ARGUMENT as
+  /// check_token() has it, FAILED_PRECONDITION where it would be the farm's first and not an
+  /// admin's.
   grpc::Status create(const std::string& name, v1::Role role, int64_t lifetime_ms,
                       std::string& text, StoredToken& row);
-  /// Holds from here on, even where the store refuses (UNAVAILABLE: it may come back after a
-  /// restart). NOT_FOUND.
+  /// Makes the token useless from here on, even where the store refuses (UNAVAILABLE: it may come
+  /// back after a restart). NOT_FOUND where there is none of this id.
   grpc::Status revoke(const std::string& id, StoredToken& row);
-  /// The oldest first.
+  /// All that are known, the oldest first.
   std::vector<StoredToken> tokens() const;
 
  private:
@@ -99,36 +113,46 @@ class Authority {
     int64_t noted_ms = 0;  ///< used_ms as it is stored
     int64_t told_ms = 0;   ///< when tell_expiring has heard of it
   };
-  struct Stay {
+  struct OpenStream {
     std::string token_id;
     std::string session;  ///< empty: none
     std::function<void(const grpc::Status&)> leave;
   };
 
   Authority(JobStore& store, Options options);
-  void take_in(const StoredToken& row);
-  grpc::Status check(const std::string& token_id, int64_t now_ms) const;
-  Caller as_caller(const StoredToken& row) const;
+  grpc::Status refuse_unknown(const std::string& address);
+  grpc::Status admit_without_token(Caller& caller);
+  void take_in(const StoredToken& row) HYADES_REQUIRES(mutex_);
+  grpc::Status check(const std::string& token_id, int64_t now_ms) const HYADES_REQUIRES(mutex_);
   core::Status make_room(int64_t now_ms);
-  void end_stays();
+  void end_expired();
   void store_uses();
   void tell_expiring();
-  void mind();
+  void watch_expiry();
 
   JobStore& store_;
   const Options options_;
   std::unique_ptr<AuditLog> audit_;
-  mutable std::mutex mutex_;
-  std::map<std::string, Known> tokens_;
-  bool stop_ = false;
-  std::condition_variable wake_;
+  mutable core::Mutex mutex_;
+  std::map<std::string, Known> tokens_ HYADES_GUARDED_BY(mutex_);
+  std::set<uint16_t> ports_ HYADES_GUARDED_BY(mutex_);
+  bool stop_ HYADES_GUARDED_BY(mutex_) = false;
+  core::CondVar wake_;
 
-  std::mutex stays_mutex_;  ///< taken before mutex_
-  std::map<uint64_t, Stay> stays_;
-  uint64_t next_stay_ = 1;
+  /// Tokens that were none, by neighbourhood_of() an address: a token bucket each.
+  struct WrongTokens {
+    double left = 0;
+    std::chrono::steady_clock::time_point since;
+  };
+  core::Mutex wrong_mutex_;
+  std::map<std::string, WrongTokens> wrong_ HYADES_GUARDED_BY(wrong_mutex_);
 
-  std::mutex change_mutex_;  ///< one change at a time; taken first
-  std::thread thread_;       ///< minds expiry, and stores when tokens were used
+  core::Mutex streams_mutex_;  ///< taken before mutex_
+  std::map<uint64_t, OpenStream> streams_ HYADES_GUARDED_BY(streams_mutex_);
+  uint64_t next_stream_ HYADES_GUARDED_BY(streams_mutex_) = 1;
+
+  core::Mutex change_mutex_;  ///< one change at a time; taken first
+  std::thread thread_;        ///< watch_expiry()
 };
 
 }  // namespace hyades::coordinator

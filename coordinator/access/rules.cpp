@@ -1,5 +1,7 @@
 #include "coordinator/access/rules.h"
 
+#include <cstdint>
+
 #include <fmt/format.h>
 
 #include "farm/json_form.h"
@@ -22,18 +24,20 @@ bool may(v1::Role role, const Rule& rule) {
 grpc::Status allow(const Caller& caller, const Rule& rule) {
   if (may(caller.role, rule)) return grpc::Status::OK;
   const bool render = rule.worker && rule.least == kAdmin;
-  const std::string needed = role_name(render ? v1::ROLE_WORKER : rule.least);
+  const std::string needed = farm::role_name(render ? v1::ROLE_WORKER : rule.least);
   return {grpc::StatusCode::PERMISSION_DENIED,
           fmt::format("{} needs the role {}, and this token ({} of {}) has the role {}: an admin "
                       "makes another with 'hyades token create --role {} --name NAME'",
-                      rule.action, needed, caller.token_id, caller.name, role_name(caller.role),
-                      needed)};
+                      rule.action, needed, caller.token_id, caller.name,
+                      farm::role_name(caller.role), needed)};
 }
+
+bool steers_all(const Caller& caller) { return caller.role == kAdmin || caller.role == kOperator; }
 
 grpc::Status allow_steering(const Caller& caller, uint64_t job, const std::string& owner,
                             bool proven) {
-  const bool his = proven && caller.name == owner;
-  if (caller.role == kAdmin || caller.role == kOperator || his) return grpc::Status::OK;
+  const bool owns = proven && caller.name == owner;
+  if (owns || steers_all(caller)) return grpc::Status::OK;
   if (!proven && caller.name == owner) {
     return {grpc::StatusCode::PERMISSION_DENIED,
             fmt::format("job {} was submitted in the name of {} without a token that proves it: "
@@ -46,7 +50,5 @@ grpc::Status allow_steering(const Caller& caller, uint64_t job, const std::strin
                       job, owner.empty() ? "nobody in particular" : owner, caller.token_id,
                       caller.name)};
 }
-
-std::string role_name(v1::Role role) { return farm::role_name(role); }
 
 }  // namespace hyades::coordinator

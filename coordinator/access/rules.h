@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <grpcpp/support/status.h>
@@ -8,7 +9,7 @@
 
 namespace hyades::coordinator {
 
-/// Who may do something, whichever way he asks for it.
+/// Who may do something, whichever way they ask for it.
 struct Rule {
   const char* action;    ///< "job.cancel": what refusals and the audit log call it
   v1::Role least;        ///< of viewer < submitter < operator < admin; unspecified: everybody may
@@ -17,17 +18,18 @@ struct Rule {
   bool steers_job = false;  ///< the request's `job`: only its owner and operators may
 };
 
+/// Whether a caller of this role may.
 bool may(v1::Role role, const Rule& rule);
 
 /// OK, or PERMISSION_DENIED with what is needed and how to come by it.
 grpc::Status allow(const Caller& caller, const Rule& rule);
 
-/// Whether the caller may steer a job of this owner: PERMISSION_DENIED where it is another's and he
-/// no operator.
+/// Whether the caller may steer everybody's jobs: operators and admins may.
+bool steers_all(const Caller& caller);
+
+/// OK where the caller may steer a job of this owner (`proven`: a token has shown who that is), or
+/// PERMISSION_DENIED with why not.
 grpc::Status allow_steering(const Caller& caller, uint64_t job, const std::string& owner,
                             bool proven);
-
-/// "submitter".
-std::string role_name(v1::Role role);
 
 }  // namespace hyades::coordinator

@@ -1,7 +1,7 @@
 #include "coordinator/access/token.h"
 
 #include <algorithm>
-#include <chrono>
+#include <cstddef>
 
 #include "core/base/hash.h"
 #include "core/base/random_id.h"
@@ -86,12 +86,6 @@ v1::Token to_wire(const StoredToken& token) {
   wire.set_used_ms(token.used_ms);
   wire.set_revoked_ms(token.revoked_ms);
   return wire;
-}
-
-int64_t token_clock_ms() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
 }
 
 }  // namespace hyades::coordinator

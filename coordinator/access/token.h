@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "coordinator/state/job_store.h"
+#include "coordinator/job_store/job_store.h"
 #include "core/base/result.h"
 #include "hyades/v1/admin.pb.h"
 
@@ -22,28 +22,25 @@ struct FreshToken {
   StoredToken row;
 };
 
-/// `lifetime_ms` 0: it does not expire. An error where check_token() has one, or the system gives
-/// no random numbers.
+/// Makes a token. `lifetime_ms` 0: it does not expire. An error where check_token() has one, or the
+/// system gives no random numbers.
 core::Result<FreshToken> make_token(const std::string& name, v1::Role role, int64_t lifetime_ms,
                                     int64_t now_ms);
 
-/// An error where the name is not 1 to 64 letters, digits, '-', '_', '.' or '@', the role is none,
-/// or the lifetime is negative or longer than a hundred years.
+/// OK, or an error where the name is not 1 to 64 letters, digits, '-', '_', '.' or '@', the role is
+/// none, or the lifetime is negative or longer than a hundred years.
 core::Status check_token(const std::string& name, v1::Role role, int64_t lifetime_ms);
 
 /// The public part of a token; nothing where `text` is none of this farm's kind.
 std::optional<std::string> token_id(std::string_view text);
 
-/// 32 bytes.
+/// The SHA-256 of a token: 32 bytes.
 std::string token_hash(std::string_view text);
 
-/// Whether it may still be used at that time.
+/// Whether the token may be used at that time: it is not revoked and has not expired.
 bool is_live(const StoredToken& token, int64_t now_ms);
 
-/// For answers: all but the hash.
+/// The token as the wire shows it: all but the hash.
 v1::Token to_wire(const StoredToken& token);
-
-/// Milliseconds since 1970, UTC.
-int64_t token_clock_ms();
 
 }  // namespace hyades::coordinator

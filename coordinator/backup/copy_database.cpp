@@ -16,7 +16,7 @@
 #include <sqlite3.h>
 
 #include "coordinator/backup/read_file.h"
-#include "coordinator/state/database.h"
+#include "coordinator/job_store/database.h"
 #include "core/base/hash.h"
 
 namespace hyades::coordinator {

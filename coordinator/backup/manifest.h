@@ -23,7 +23,7 @@ struct Manifest {
 
 /// "hyades backup 1", a line "SHA-256 SIZE PATH" for each file, and "end SHA-256" of all before it.
 std::string write_manifest(const Manifest& manifest);
-/// The inverse; strict.
+/// Reads what write_manifest writes; an error for anything else.
 core::Result<Manifest> parse_manifest(const std::string& text);
 
 /// Whether it is the name of a file of the audit log: audit.jsonl, audit.1.jsonl, ...; the same of

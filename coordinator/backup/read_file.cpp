@@ -9,6 +9,7 @@
 
 #include "core/base/descriptor.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -24,13 +25,12 @@ core::Status read_file(const std::string& path, std::optional<uint64_t> size,
   std::vector<std::byte> piece(kPiece);
   uint64_t left = size.value_or(UINT64_MAX);
   while (left > 0) {
-    const ssize_t got =
-        ::read(file.get(), piece.data(), static_cast<size_t>(std::min<uint64_t>(left, kPiece)));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return core::Error{path + ": " + core::io_reason(errno)};
-    if (got == 0) break;
-    left -= static_cast<uint64_t>(got);
-    if (!take(std::span(piece).first(static_cast<size_t>(got)))) return {};
+    const auto got = core::read_all(
+        file.get(), std::span(piece).first(static_cast<size_t>(std::min<uint64_t>(left, kPiece))));
+    if (!got) return core::Error{path + ": " + core::io_reason(errno)};
+    if (*got == 0) break;
+    left -= *got;
+    if (!take(std::span(piece).first(*got))) return {};
   }
   if (size && left > 0) return core::Error{path + ": it became shorter while it was read"};
   return {};

@@ -19,7 +19,7 @@
 
 #include "coordinator/backup/backup.h"
 #include "coordinator/backup/manifest.h"
-#include "coordinator/state/incarnation_file.h"
+#include "coordinator/job_store/incarnation_file.h"
 #include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"

@@ -26,6 +26,7 @@
 #include "core/base/descriptor.h"
 #include "core/base/hash.h"
 #include "core/base/io_reason.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -46,7 +47,7 @@ class Tar {
 
   /// For its owner alone: it holds unfinished pictures, scenes, and the hashes of tokens.
   core::Status open(const std::string& path) {
-    file_ = core::Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+    file_ = core::open_file(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     if (!file_.valid()) return core::Error{"cannot write " + path + ": " + core::io_reason(errno)};
     archive_ = archive_write_new();
     if (archive_ == nullptr) return core::Error{"no memory"};

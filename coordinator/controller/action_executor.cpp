@@ -1,7 +1,10 @@
 #include "coordinator/controller/action_executor.h"
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -17,22 +20,6 @@
 
 namespace hyades::coordinator {
 namespace {
-
-const char* name_of(RejectReason reason) {
-  switch (reason) {
-    case RejectReason::unknown:
-      return "unknown";
-    case RejectReason::malformed:
-      return "malformed";
-    case RejectReason::overlap:
-      return "overlap";
-    case RejectReason::conflict:
-      return "conflict";
-    case RejectReason::not_now:
-      break;
-  }
-  return "not_now";
-}
 
 constexpr uint32_t kRetryAfterMs = 1000;
 
@@ -58,6 +45,10 @@ void ActionExecutor::act(const std::vector<Action>& actions, Turn& turn, Deliver
                 workers_.set_quarantine(*session, divergent.reason);
               }
             },
+            // Before the leases that an open frame brings.
+            [&](const FrameRestarted& again) HYADES_REQUIRES(state_lock) {
+              if (ActiveJob* active = jobs_.find(again.job)) frames_.restarted(*active, again);
+            },
             [&](const Confirmed& sure) HYADES_REQUIRES(state_lock) { divergent_.confirmed(sure); },
             [&](const Merge& merge) { turn.defer(merge); },
             [&](const TileVoided& voided) { turn.defer(voided); },
@@ -65,7 +56,6 @@ void ActionExecutor::act(const std::vector<Action>& actions, Turn& turn, Deliver
             [&](const FinishFrame& finish) { turn.defer(finish); },
             [&](const FrameDone& done) { turn.defer(done); },
             [&](const FrameFailed& failed) { turn.defer(failed); },
-            [&](const FrameRestarted& again) { turn.defer(again); },
             [&](const JobEnded& ended) { turn.defer(ended); },
         },
         action);
@@ -76,32 +66,38 @@ void ActionExecutor::act(const std::vector<Action>& actions, Turn& turn, Deliver
 void ActionExecutor::carry_out(const DeferredAction& action) {
   std::visit(core::Overloaded{
                  [&](const Merge& merge) { frames_.merged(merge); },
-                 [&](const TileVoided& voided) { frames_.tile_voided(voided); },
-                 [&](const FrameReopened& reopened) { frames_.reopened(reopened); },
-                 [&](const FinishFrame& finish) { frames_.finish(finish); },
-                 [&](const FrameDone& done) { frames_.done(done); },
-                 [&](const FrameFailed& failed) { frames_.failed(failed); },
-                 [&](const FrameRestarted& again) { frames_.restarted(again); },
+                 [&](const TileVoided& voided) { with_job(voided, &FrameProgress::tile_voided); },
+                 [&](const FrameReopened& again) { with_job(again, &FrameProgress::reopened); },
+                 [&](const FinishFrame& finish) { with_job(finish, &FrameProgress::finish); },
+                 [&](const FrameDone& done) { with_job(done, &FrameProgress::done); },
+                 [&](const FrameFailed& failed) { with_job(failed, &FrameProgress::failed); },
                  [&](const JobEnded& ended) { end(ended); },
              },
              action);
 }
 
+template <class FrameAction>
+void ActionExecutor::with_job(const FrameAction& action,
+                              void (FrameProgress::*what)(ActiveJob&, const FrameAction&)) {
+  const StateLock lock(context_.mutex);
+  if (ActiveJob* active = jobs_.find(action.job)) (frames_.*what)(*active, action);
+}
+
 void ActionExecutor::send(const Acknowledge& taken, Delivery* delivery) {
   v1::CoordinatorMessage message;
   *message.mutable_acknowledge()->mutable_unit() = to_wire(taken.lease, taken.job, taken.unit);
-  workers_.send(taken.worker, std::move(message));
+  workers_.send(taken.worker, message);
   // Of a film that needs not be stored: it is there already.
   if (delivery != nullptr && !std::exchange(delivery->settled, true)) {
-    shared_.meters->result("duplicate");
+    context_.meters->result("duplicate");
   }
 }
 
 void ActionExecutor::send(const Revoke& revoke) {
   v1::CoordinatorMessage message;
   *message.mutable_stop()->mutable_unit() = to_wire(revoke.lease, revoke.job, revoke.unit);
-  workers_.send(revoke.worker, std::move(message));
-  shared_.meters->lost(revoke.expired ? "expired" : "revoked");
+  workers_.send(revoke.worker, message);
+  context_.meters->lost(revoke.expired ? "expired" : "revoked");
 }
 
 void ActionExecutor::send(const Reject& reject, Delivery* delivery) {
@@ -110,8 +106,8 @@ void ActionExecutor::send(const Reject& reject, Delivery* delivery) {
   *rejected.mutable_unit() = to_wire(reject.lease, reject.job, reject.unit);
   rejected.set_reason(to_wire(reject.reason));
   if (reject.reason == RejectReason::not_now) rejected.set_retry_after_ms(kRetryAfterMs);
-  workers_.send(reject.worker, std::move(message));
-  shared_.meters->result(name_of(reject.reason));
+  workers_.send(reject.worker, message);
+  context_.meters->result(verdict_of(rejected.reason()));
   if (delivery != nullptr) delivery->settled = true;
 }
 
@@ -144,13 +140,13 @@ void ActionExecutor::note_expired(const std::vector<Action>& actions) {
 
 /// All frames of the job are over: its videos are made, or it ends.
 void ActionExecutor::end(const JobEnded& ended) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(ended.job);
   if (active == nullptr || active->ending) return;
   sessions_.send_over(ended.job);
   active->stored.frames_done = ended.done;
   active->stored.frames_failed = ended.failed;
-  if (!active->read.job.videos.empty() && active->videos().empty()) {
+  if (!active->read->job.videos.empty() && active->videos().empty()) {
     jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
                "no video is made of some of the job's frames: 'fetch' brings their pictures, "
                "'hyades video' makes one of them");

@@ -16,10 +16,10 @@ class WorkerSessions;
 /// Has each action of the scheduler carried out by the part that it concerns.
 class ActionExecutor final : public Dispatcher::Executor {
  public:
-  ActionExecutor(Shared& shared, JobTable& jobs, WorkerTable& workers, WorkerSessions& sessions,
-                 JobFilms& films, FrameProgress& frames, DivergentWorkers& divergent,
-                 JobRecords& records, VideoMaker& videos)
-      : shared_(shared),
+  ActionExecutor(ControllerContext& context, JobTable& jobs, WorkerTable& workers,
+                 WorkerSessions& sessions, JobFilms& films, FrameProgress& frames,
+                 DivergentWorkers& divergent, JobRecords& records, VideoMaker& videos)
+      : context_(context),
         jobs_(jobs),
         workers_(workers),
         sessions_(sessions),
@@ -34,6 +34,11 @@ class ActionExecutor final : public Dispatcher::Executor {
   void carry_out(const DeferredAction& action) override HYADES_EXCLUDES(state_lock);
 
  private:
+  /// Has FrameProgress do what an action says, with its job; does nothing where that is gone.
+  template <class FrameAction>
+  void with_job(const FrameAction& action,
+                void (FrameProgress::*what)(ActiveJob&, const FrameAction&))
+      HYADES_EXCLUDES(state_lock);
   void send(const Acknowledge& taken, Delivery* delivery) HYADES_REQUIRES(state_lock);
   void send(const Revoke& revoke) HYADES_REQUIRES(state_lock);
   void send(const Reject& reject, Delivery* delivery) HYADES_REQUIRES(state_lock);
@@ -41,7 +46,7 @@ class ActionExecutor final : public Dispatcher::Executor {
   void note_expired(const std::vector<Action>& actions) HYADES_REQUIRES(state_lock);
   void end(const JobEnded& ended) HYADES_EXCLUDES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   JobTable& jobs_;
   WorkerTable& workers_;
   WorkerSessions& sessions_;

@@ -1,14 +1,16 @@
 #include "coordinator/controller/active_job.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/counted.h"
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
@@ -25,7 +27,6 @@ namespace {
 constexpr double kSmoothing = 10;  // seconds
 constexpr int kMostFiles = 100'000;
 constexpr int kMostRanges = 10'000;
-constexpr size_t kLongestName = 200;
 constexpr size_t kMostLinesWaiting = 2000;
 constexpr size_t kLongestPath = 4096;
 constexpr uint32_t kMostSamples = 1U << 24U;
@@ -106,7 +107,7 @@ int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splat
 }
 
 int32_t tile_size_of(const ActiveJob& job) {
-  return tile_size_of(job.region, job.read.job.sampling.samples, job.layout.layers.splats);
+  return tile_size_of(job.region, job.read->job.sampling.samples, job.layout.layers.splats);
 }
 
 void Speed::note(uint64_t done, TimePoint now) {
@@ -123,7 +124,9 @@ void Speed::note(uint64_t done, TimePoint now) {
 
 FrameNote& ActiveJob::touch(int32_t frame) {
   FrameNote& note = frames[frame];
+  changed.erase(note.version);
   note.version = ++version;
+  changed.emplace(version, frame);
   in_work.insert(frame);
   return note;
 }
@@ -141,7 +144,7 @@ std::vector<StoredLine> ActiveJob::take_lines() {
   std::vector<StoredLine> taken = std::exchange(lines, {});
   if (const uint64_t dropped = std::exchange(lines_dropped, 0); dropped > 0) {
     taken.push_back({taken.back().time_ms, v1::LOG_LEVEL_WARNING, std::nullopt, "",
-                     counted(dropped, "line") + (dropped == 1 ? " was" : " were") +
+                     core::counted(dropped, "line") + (dropped == 1 ? " was" : " were") +
                          " dropped: too many at once"});
   }
   return taken;
@@ -157,18 +160,23 @@ void ActiveJob::put_back(std::vector<StoredLine> taken) {
   lines_dropped += over;
 }
 
+v1::Job options_of(const StoredJob& job) {
+  v1::Job options;
+  (void)options.ParseFromString(job.options);  // we have written it
+  return options;
+}
+
+JobNeeds needs_of(const v1::Job& options) {
+  return {{options.tags().begin(), options.tags().end()}, options.memory_bytes()};
+}
+
 v1::Job describe(const StoredJob& job) {
-  v1::Job wire;
+  v1::Job wire = options_of(job);
   wire.set_id(job.id);
   wire.set_name(job.name);
   wire.set_owner(job.owner);
   wire.set_owner_proven(job.owner_proven);
   wire.set_priority(job.priority);
-  wire.set_max_workers(job.max_workers);
-  for (const std::string& tag : job.tags) wire.add_tags(tag);
-  wire.set_memory_bytes(job.memory);
-  wire.set_max_attempts(job.max_attempts);
-  wire.set_frame_order(static_cast<v1::FrameOrder>(job.frame_order));
   wire.set_state(static_cast<v1::JobState>(job.state));  // the numbers are the same
   wire.set_frames(job.frames);
   wire.set_frames_done(job.frames_done);
@@ -186,7 +194,7 @@ v1::Job describe(const StoredJob& job) {
 
 const std::vector<core::VideoDesc>& ActiveJob::videos() const {
   static const std::vector<core::VideoDesc> none;
-  return core::are_all_frames(read.job, numbers) ? read.job.videos : none;
+  return core::are_all_frames(read->job, numbers) ? read->job.videos : none;
 }
 
 std::optional<int32_t> ActiveJob::preview_frame() const {
@@ -227,7 +235,7 @@ v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const
   return wire;
 }
 
-core::FilmInfo ActiveJob::film_info(int32_t frame) const {
+core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame) {
   const core::Job& job = read.job;
   core::FilmInfo info;
   info.job_name = job.name;
@@ -235,7 +243,7 @@ core::FilmInfo ActiveJob::film_info(int32_t frame) const {
   info.frame = frame;
   info.width = job.film.width;
   info.height = job.film.height;
-  info.crop = region;
+  info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
   info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
   return info;
@@ -279,8 +287,7 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
   auto read = farm::read_job(spec.document(), spec.document(), files);
   if (!read) return read.error();
   auto active = std::make_unique<ActiveJob>(stored, spec);
-  active->read = std::move(*read);
-  core::Job& job = active->read.job;
+  core::Job& job = read->job;
   if (spec.samples() > kMostSamples) {
     return core::Error{fmt::format("{} samples: at most {}", spec.samples(), kMostSamples)};
   }
@@ -321,6 +328,7 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
   active->stored.name = spec.name().empty() ? job.name : spec.name();
   active->stored.frames = static_cast<uint32_t>(active->numbers.size());
   active->stored.samples = active->samples_per_frame * active->numbers.size();
+  active->read = std::make_shared<const farm::ReadJob>(std::move(*read));
   return active;
 }
 

@@ -1,16 +1,22 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <grpcpp/support/byte_buffer.h>
+
+#include "coordinator/controller/state_lock.h"
+#include "coordinator/film_store/film_store.h"
+#include "coordinator/job_store/job_store.h"
 #include "coordinator/scheduler/ids.h"
-#include "coordinator/state/job_store.h"
-#include "coordinator/store/film_store.h"
+#include "coordinator/scheduler/job_plan.h"
 #include "core/film/film_info.h"
 #include "farm/content_store.h"
 #include "farm/job_package.h"
@@ -19,13 +25,16 @@
 
 namespace hyades::coordinator {
 
-/// A frame of an open job, for those who ask.
+/// Bytes of the name of a job, owner or worker.
+inline constexpr size_t kLongestName = 200;
+
+/// What those who ask are told of a frame of an open job.
 struct FrameNote {
   v1::FrameState state = v1::FRAME_STATE_WAITING;
   uint64_t samples_done = 0;  ///< durable
-  std::string reason;
-  std::string worker_class;
-  uint32_t restarts = 0;
+  std::string reason;         ///< why it failed
+  std::string worker_class;   ///< of those who render it; empty: nobody has begun
+  uint32_t restarts = 0;      ///< how often it has begun again
   uint64_t begun = 0;  ///< StoredFrame::moment of the last frame that was finished then; 0: unknown
   uint64_t version = 0;  ///< of the job when this last changed
 };
@@ -33,18 +42,19 @@ struct FrameNote {
 /// A film that is being made durable: who rendered it, and what that took.
 struct FilmUnderWay {
   WorkerId worker{};
-  std::string name;  ///< of the worker
-  uint32_t thread = 0;
-  uint64_t render_ns = 0;
-  int64_t came_us = 0;  ///< since 1970, UTC
-  TimePoint came;
+  std::string name;        ///< of the worker
+  uint32_t thread = 0;     ///< of the worker
+  uint64_t render_ns = 0;  ///< nanoseconds that the thread took
+  int64_t came_us = 0;     ///< when it arrived: microseconds since 1970, UTC
+  TimePoint came;          ///< the same by the steady clock
 };
 
 /// How fast samples become durable, smoothed over some ten seconds.
 class Speed {
  public:
-  /// `done` in all so far, at `now`.
+  /// Notes that `done` samples in all are durable at `now`.
   void note(uint64_t done, TimePoint now);
+  /// Samples per second.
   double per_second() const { return rate_; }
 
  private:
@@ -53,16 +63,19 @@ class Speed {
   double rate_ = 0;
 };
 
-/// All that the coordinator has in memory of a job that has not ended. Guarded by the controller's
-/// lock, except for what never changes, and the film store.
+/// All that the coordinator has in memory of a job that has not ended. What the state lock does not
+/// guard never changes once the job is in the JobTable. Until then nobody else knows it, and
+/// whoever makes it needs no lock.
 struct ActiveJob {
   ActiveJob(StoredJob stored_, v1::JobSpec spec_)
       : spec(std::move(spec_)), stored(std::move(stored_)) {}
 
-  // Never changes.
   JobId id{};
-  v1::JobSpec spec;
-  farm::ReadJob read;            ///< the job as its document says, with the spec's samples
+  v1::JobSpec spec;        ///< empty once it is in `brief`
+  grpc::ByteBuffer brief;  ///< a CoordinatorMessage, which tells workers of the job
+  /// The job as its document says, with the spec's samples; for what takes its time and so is done
+  /// without the lock.
+  std::shared_ptr<const farm::ReadJob> read;
   std::vector<int32_t> numbers;  ///< of its frames, in order
   core::PixelRect region;
   core::FilmLayout layout;
@@ -70,51 +83,70 @@ struct ActiveJob {
   uint64_t samples_per_frame = 0;
   Digest key{};  ///< JobBrief.key
 
-  std::unique_ptr<FilmStore::Owner> owner;  ///< reports to the controller
-  std::unique_ptr<FilmStore> film_store;    ///< null until there is a film
+  /// Reports to the controller.
+  std::unique_ptr<FilmStore::Owner> owner HYADES_GUARDED_BY(state_lock);
+  /// Null until there is a film. It has locks of its own.
+  std::unique_ptr<FilmStore> film_store HYADES_GUARDED_BY(state_lock);
   /// Complete films until their frame is over.
-  std::map<int32_t, std::shared_ptr<const core::Film>> complete;
+  std::map<int32_t, std::shared_ptr<const core::Film>> complete HYADES_GUARDED_BY(state_lock);
+  std::map<RecordId, FilmUnderWay> films_under_way HYADES_GUARDED_BY(state_lock);
 
-  StoredJob stored;
-  std::map<int32_t, FrameNote> frames;
-  uint64_t samples_done = 0;
-  uint64_t version = 1;  ///< grows with every change
-  Speed speed;
-  std::vector<StoredLine> lines;  ///< not stored yet
-  uint64_t lines_dropped = 0;     ///< since lines were last taken: too many at once
-  bool storing_lines = false;
-  TimePoint lines_again;     ///< not before: storing them has failed
-  bool storing_row = false;  ///< a task will store what has changed in `stored`
-  std::string trouble;       ///< why its films cannot be stored
-  std::string row_trouble;   ///< why `stored` cannot be stored
-  std::map<RecordId, FilmUnderWay> films_under_way;
-  std::set<int32_t> in_work;     ///< frames that may be, for preview_frame()
-  uint64_t core_ns_stored = 0;   ///< of `stored`, as the store has it
-  TimePoint core_stored;         ///< when that was looked at
-  std::set<WorkerId> gave_back;  ///< whose reason for giving units back is in the log
-  bool making_videos = false;    ///< all frames are done, and the scheduler has let go of it; its
-                                 ///< videos are being made, or wait for their turn
-  bool ending = false;           ///< the scheduler has let go of it, and its end is being stored
+  StoredJob stored HYADES_GUARDED_BY(state_lock);
+  std::map<int32_t, FrameNote> frames HYADES_GUARDED_BY(state_lock);
+  uint64_t samples_done HYADES_GUARDED_BY(state_lock) = 0;
+  uint64_t version HYADES_GUARDED_BY(state_lock) = 1;  ///< grows with every change
+  /// The frames that have changed, by the version of their last change.
+  std::map<uint64_t, int32_t> changed HYADES_GUARDED_BY(state_lock);
+  /// Frames that may be in work, for preview_frame().
+  std::set<int32_t> in_work HYADES_GUARDED_BY(state_lock);
+  Speed speed HYADES_GUARDED_BY(state_lock);
 
-  FrameNote& touch(int32_t frame);
-  void touch() { ++version; }
-  /// A line for the job's log; dropped and counted where too many wait for the disk.
-  void note(StoredLine line);
-  /// The lines that wait, and a last one that tells of those dropped.
-  std::vector<StoredLine> take_lines();
-  /// Lines that could not be stored come again, before all others; the oldest of them go where too
-  /// many wait.
-  void put_back(std::vector<StoredLine> taken);
+  std::vector<StoredLine> lines HYADES_GUARDED_BY(state_lock);  ///< not stored yet
+  /// Lines too many since they were last taken.
+  uint64_t lines_dropped HYADES_GUARDED_BY(state_lock) = 0;
+  bool storing_lines HYADES_GUARDED_BY(state_lock) = false;
+  /// Storing lines has failed and is not tried again before.
+  TimePoint lines_again HYADES_GUARDED_BY(state_lock);
+  /// A task will store what has changed in `stored`.
+  bool storing_row HYADES_GUARDED_BY(state_lock) = false;
+  std::string trouble HYADES_GUARDED_BY(state_lock);      ///< why its films cannot be stored
+  std::string row_trouble HYADES_GUARDED_BY(state_lock);  ///< why `stored` cannot be stored
+  /// stored.core_ns as the store has it, and when that was looked at.
+  uint64_t core_ns_stored HYADES_GUARDED_BY(state_lock) = 0;
+  TimePoint core_stored HYADES_GUARDED_BY(state_lock);
+  /// Workers whose reason for giving units back is in the log.
+  std::set<WorkerId> gave_back HYADES_GUARDED_BY(state_lock);
+  /// All frames are done, and the scheduler has let go of it; its videos are being made, or wait
+  /// for their turn.
+  bool making_videos HYADES_GUARDED_BY(state_lock) = false;
+  /// The scheduler has let go of it, and its end is being stored.
+  bool ending HYADES_GUARDED_BY(state_lock) = false;
+
+  /// The frame, which changes now.
+  FrameNote& touch(int32_t frame) HYADES_REQUIRES(state_lock);
+  /// Something else of the job changes now.
+  void touch() HYADES_REQUIRES(state_lock) { ++version; }
+  /// Adds a line to the job's log; it is dropped and counted where too many wait for the disk.
+  void note(StoredLine line) HYADES_REQUIRES(state_lock);
+  /// Takes the lines that wait, and a last one that tells of those dropped.
+  std::vector<StoredLine> take_lines() HYADES_REQUIRES(state_lock);
+  /// Puts lines that could not be stored before all others; the oldest of them go where too many
+  /// wait.
+  void put_back(std::vector<StoredLine> taken) HYADES_REQUIRES(state_lock);
   /// The videos that are made when all frames are done: none where the spec asks for some frames
   /// only.
   const std::vector<core::VideoDesc>& videos() const;
   /// The frame that stands for the job in a list: the first in work of which something is there,
   /// else the last that was finished.
-  std::optional<int32_t> preview_frame() const;
-  v1::Job describe(uint32_t leased) const;
+  std::optional<int32_t> preview_frame() const HYADES_REQUIRES(state_lock);
+  /// The job as the wire shows it; `leased`: its units that workers have.
+  v1::Job describe(uint32_t leased) const HYADES_REQUIRES(state_lock);
+  /// A frame of it as the wire shows it.
   v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
-  core::FilmInfo film_info(int32_t frame) const;
 };
+
+/// What the film of a frame of the job is. Takes its time: it hashes all that the job says.
+core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame);
 
 /// Pixels along the side of a job's tiles, by its crop window and samples per pixel. Every unit
 /// costs the farm some milliseconds, and none is larger than a tile with all its samples: 64 where
@@ -122,19 +154,24 @@ struct ActiveJob {
 /// films have `splats`: kSplatTile.
 int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats);
 
+/// Pixels along the side of the tiles of this job.
 int32_t tile_size_of(const ActiveJob& job);
+
+/// Parses StoredJob::options.
+v1::Job options_of(const StoredJob& job);
+/// What the job asks of its workers, by its options.
+JobNeeds needs_of(const v1::Job& options);
 
 /// A stored job as the wire shows it.
 v1::Job describe(const StoredJob& job);
 
-/// Reads what `stored` says out of `files`; an error holds every complaint about the document, or
-/// says that the film of a frame takes more than `film_memory` bytes.
-core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored,
-                                                         const v1::JobSpec& spec,
-                                                         farm::ContentStore& assets,
-                                                         uint64_t film_memory);
+/// Reads the job's document and what it names out of `assets`. An error holds every complaint about
+/// the document, or says that the film of a frame takes more than `film_memory` bytes.
+core::Result<std::unique_ptr<ActiveJob>> make_active_job(
+    const StoredJob& stored, const v1::JobSpec& spec, farm::ContentStore& assets,
+    uint64_t film_memory) HYADES_NO_THREAD_SAFETY_ANALYSIS;
 
-/// The records of a spec's files; an error where they are not what the wire allows.
+/// The records of a spec's files; an error where the spec is not as the wire allows.
 core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec);
 
 }  // namespace hyades::coordinator

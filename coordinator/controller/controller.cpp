@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,39 +52,39 @@ core::Status make_folders(const std::string& folder) {
 /// The parts, each after those that it needs.
 struct Controller::Parts {
   Parts(const ControllerOptions& options, std::unique_ptr<JobStore> store,
-        std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation)
-      : shared(options, std::move(store), std::move(assets), incarnation),
-        dispatcher(shared.mutex, scheduler_options(options, incarnation)) {
+        std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation, std::string secret)
+      : context(options, std::move(store), std::move(assets), incarnation, std::move(secret)),
+        dispatcher(context.mutex, scheduler_options(options, incarnation)) {
     dispatcher.set_executor(executor);
   }
 
   void tick() HYADES_EXCLUDES(state_lock);
 
-  Shared shared;
+  ControllerContext context;
   Timelines timelines;
   Dispatcher dispatcher;
-  JobTable jobs{shared.mutex};
-  WorkerTable workers{shared, jobs};
-  Watchers watchers{shared, jobs};
-  DiskWatch disk{shared, dispatcher, jobs};
-  WorkerSessions sessions{shared, dispatcher, jobs, workers, disk};
-  FarmControl farm{shared, dispatcher, jobs, workers, disk};
-  DivergentWorkers divergent{shared, dispatcher, jobs, workers};
-  JobQueries queries{shared, dispatcher, jobs, disk, timelines};
-  JobRecords records{shared, jobs, queries, watchers};
-  JobFilms films{shared, dispatcher, jobs, divergent};
-  FrameFinisher finisher{shared, dispatcher, jobs, disk, timelines};
-  FrameProgress frames{shared, jobs, workers, finisher, timelines};
-  VideoMaker videos{shared, jobs, records, disk, timelines};
-  JobRecovery recovery{shared, dispatcher, jobs, films};
-  Sweeper sweeper{shared};
-  JobIntake intake{shared, dispatcher, jobs, queries, recovery, disk, sweeper, timelines};
-  JobSteering steering{shared, dispatcher, jobs, records, videos};
-  Diagnosis diagnosis{shared, dispatcher, jobs, workers, sessions, disk, videos};
-  ActionExecutor executor{shared, jobs,      workers, sessions, films,
-                          frames, divergent, records, videos};
+  JobTable jobs{context.mutex};
+  WorkerTable workers{context, jobs};
+  Watchers watchers{context, jobs};
+  DiskWatch disk{context, dispatcher, jobs};
+  WorkerSessions sessions{context, dispatcher, jobs, workers, disk};
+  DivergentWorkers divergent{context, dispatcher, jobs, workers};
+  JobQueries queries{context, dispatcher, jobs, disk, timelines};
+  JobRecords records{context, jobs, queries, watchers};
+  FarmControl farm{context, dispatcher, jobs, workers, records, disk};
+  JobFilms films{context, dispatcher, jobs, divergent};
+  FrameFinisher finisher{context, dispatcher, jobs, disk, timelines};
+  FrameProgress frames{context, jobs, workers, finisher, timelines};
+  VideoMaker videos{context, jobs, records, disk, timelines};
+  JobRecovery recovery{context, dispatcher, jobs, films};
+  Sweeper sweeper{context};
+  JobIntake intake{context, dispatcher, jobs, queries, records, recovery, disk, sweeper, timelines};
+  JobSteering steering{context, dispatcher, jobs, queries, records, videos};
+  Diagnosis diagnosis{context, dispatcher, jobs, workers, sessions, disk, videos};
+  ActionExecutor executor{context, jobs,      workers, sessions, films,
+                          frames,  divergent, records, videos};
   TimePoint last_poke;  ///< of the clock
-  RetryQueue clock{1, kClock};
+  farm::RetryQueue clock{1, kClock};
 };
 
 core::Result<std::unique_ptr<Controller>> Controller::open(const ControllerOptions& options,
@@ -98,25 +99,27 @@ core::Result<std::unique_ptr<Controller>> Controller::open(const ControllerOptio
   if (!assets) return assets.error();
   const auto incarnation = store->next_incarnation();
   if (!incarnation) return incarnation.error();
-  std::unique_ptr<Controller> controller(new Controller(
-      std::make_unique<Parts>(options, std::move(store), std::move(*assets), *incarnation)));
+  auto secret = store->secret();
+  if (!secret) return secret.error();
+  std::unique_ptr<Controller> controller(new Controller(std::make_unique<Parts>(
+      options, std::move(store), std::move(*assets), *incarnation, std::move(*secret))));
   Parts& parts = *controller->parts_;
   if (auto loaded = parts.workers.load(); !loaded) return loaded.error();
   if (auto loaded = parts.divergent.load(); !loaded) return loaded.error();
   {
-    const StateLock lock(parts.shared.mutex);
+    const StateLock lock(parts.context.mutex);
     parts.jobs.begin_moments(*incarnation << 32U);
   }
   if (auto recovered = parts.recovery.recover_all(); !recovered) return recovered.error();
   {
-    const StateLock lock(parts.shared.mutex);
+    const StateLock lock(parts.context.mutex);
     // From here on workers can come: to recover many jobs may take longer than they are given.
     // Where no job is open nobody holds anything.
     if (*incarnation > 1 && !parts.jobs.all().empty()) parts.sessions.begin_adoption();
   }
   parts.clock.add(0, [&parts] {
-    if (!parts.shared.stop) parts.tick();
-    return parts.shared.stop.load();
+    if (!parts.context.stop) parts.tick();
+    return parts.context.stop.load();
   });
   parts.sweeper.start();
   parts.disk.start();
@@ -142,7 +145,7 @@ void Controller::Parts::tick() {
 }
 
 void Controller::stop() {
-  parts_->shared.stop = true;
+  parts_->context.stop = true;
   parts_->records.answer_late({});
   parts_->jobs.wake();
   parts_->videos.stop();
@@ -157,7 +160,7 @@ Controller::~Controller() {
   parts_->sweeper.end();
   parts_->disk.end();
   // Others leave it some tasks.
-  parts_->shared.background.end();
+  parts_->context.background.end();
   parts_->jobs.clear();
 }
 
@@ -171,12 +174,12 @@ VideoMaker& Controller::videos() { return parts_->videos; }
 Watchers& Controller::watchers() { return parts_->watchers; }
 DiskWatch& Controller::disk() { return parts_->disk; }
 
-Meters& Controller::meters() { return *parts_->shared.meters; }
-farm::ContentStore& Controller::assets() { return *parts_->shared.assets; }
-JobStore& Controller::store() { return *parts_->shared.store; }
+Meters& Controller::meters() { return *parts_->context.meters; }
+farm::ContentStore& Controller::assets() { return *parts_->context.assets; }
+JobStore& Controller::store() { return *parts_->context.store; }
 
 std::string Controller::output_folder(uint64_t job) const {
-  return parts_->shared.output_folder(job);
+  return parts_->context.output_folder(job);
 }
 
 }  // namespace hyades::coordinator

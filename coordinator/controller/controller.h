@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/controller_options.h"
 #include "coordinator/controller/diagnosis.h"
 #include "coordinator/controller/disk_watch.h"
@@ -11,7 +12,6 @@
 #include "coordinator/controller/job_intake.h"
 #include "coordinator/controller/job_queries.h"
 #include "coordinator/controller/job_steering.h"
-#include "coordinator/controller/shared.h"
 #include "coordinator/controller/video_maker.h"
 #include "coordinator/controller/watchers.h"
 #include "coordinator/controller/worker_sessions.h"
@@ -29,15 +29,15 @@ namespace hyades::coordinator {
 /// job's rows is stored in the background. Thread-safe.
 class Controller {
  public:
-  /// Opens the folder and recovers all jobs that have not ended. An error where another process has
-  /// it, or it was written by a newer version. A job whose files are gone fails alone.
-  /// Jobs are kept in `store`, or, where that is null, in the folder.
+  /// Opens the folder and recovers all jobs that have not ended; a job whose files are gone fails
+  /// alone. Jobs are kept in `store`, or, where that is null, in the folder. An error where another
+  /// process has the folder, or a newer version has written it.
   static core::Result<std::unique_ptr<Controller>> open(const ControllerOptions& options,
                                                         std::unique_ptr<JobStore> store = nullptr);
 
   /// Stops at once: all that was promised is durable.
   ~Controller();
-  /// Ends all workers' streams, and starts nothing more. Before the server ends.
+  /// Ends all workers' streams, and starts nothing more; to be called before the server ends.
   void stop();
 
   WorkerSessions& workers();
@@ -50,10 +50,11 @@ class Controller {
   Watchers& watchers();
   DiskWatch& disk();
 
-  /// What is counted, here and by those around.
+  /// What is counted, by the controller and by its callers.
   Meters& meters();
   farm::ContentStore& assets();
   JobStore& store();
+  /// Where the job's finished files lie.
   std::string output_folder(uint64_t job) const;
 
  private:

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
+#include "coordinator/film_store/disk_room.h"
+#include "coordinator/film_store/film_store.h"
 #include "coordinator/scheduler/ids.h"
-#include "coordinator/store/disk_room.h"
-#include "coordinator/store/film_store.h"
 #include "core/base/machine.h"
 
 namespace hyades::coordinator {
@@ -17,19 +17,21 @@ struct Price {
   std::string currency;      ///< three capital letters (ISO 4217), or empty
 };
 
+/// How a controller works, and where.
 struct ControllerOptions {
   std::string folder;                            ///< where all state lies; made if it is missing
   std::string finisher;                          ///< the program hyades-film
-  Duration unit_time = std::chrono::seconds(5);  ///< of one thread for one unit
+  Duration unit_time = std::chrono::seconds(5);  ///< that one thread is to take for one unit
+  /// A lease that is not renewed for this long is lost.
   Duration lease_time = std::chrono::seconds(30);
-  Duration copy_after = std::chrono::seconds(10);
+  Duration copy_after = std::chrono::seconds(10);  ///< SchedulerOptions::copy_after
   /// A frame whose class of workers has been gone for this long begins again with another.
   Duration class_patience = std::chrono::minutes(5);
   /// A worker whose stream has ended is lost if it has not come again after this.
   Duration reconnect_time = std::chrono::seconds(3);
-  /// ... and forgotten after this.
+  /// A worker whose stream has ended is forgotten if it has not come again after this.
   Duration forget_time = std::chrono::hours(1);
-  DiskLimits disk;
+  DiskLimits disk;  ///< how much of the disk the folder may take
   /// Files that no job needs any more stay for so long after they were last used.
   Duration asset_grace = std::chrono::hours(1);
   /// After a restart no new units are leased for this long, so that workers can say what they hold;

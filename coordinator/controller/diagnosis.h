@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ class WorkerSessions;
 /// Why a job does or does not get on, in words. Thread-safe.
 class Diagnosis {
  public:
-  Diagnosis(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, WorkerTable& workers,
-            const WorkerSessions& sessions, const DiskWatch& disk, const VideoMaker& videos)
-      : shared_(shared),
+  Diagnosis(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
+            WorkerTable& workers, const WorkerSessions& sessions, const DiskWatch& disk,
+            const VideoMaker& videos)
+      : context_(context),
         dispatcher_(dispatcher),
         jobs_(jobs),
         workers_(workers),
@@ -27,19 +29,29 @@ class Diagnosis {
         disk_(disk),
         videos_(videos) {}
 
-  /// May wait for the store; explain_open() answers for jobs that have not ended, and says no for
-  /// others.
+  /// Why the job gets on or does not. NOT_FOUND; UNAVAILABLE where the store does not answer. May
+  /// wait for the store.
   grpc::Status explain(uint64_t job, v1::ExplainResponse& response) HYADES_EXCLUDES(state_lock);
+  /// explain() without waiting: false, and nothing is told, where the job has ended or is none.
   bool explain_open(uint64_t job, v1::ExplainResponse& response) HYADES_EXCLUDES(state_lock);
 
  private:
-  // needs.cpp
-  std::string unmet_needs(const StoredJob& job) const HYADES_REQUIRES(state_lock);
+  class Reasons;
+  void explain_state(const ActiveJob& active, Reasons& reasons) const HYADES_REQUIRES(state_lock);
+  bool explain_workers(const ActiveJob& active, bool anybody, Reasons& reasons) const
+      HYADES_REQUIRES(state_lock);
+  bool explain_frames(const ActiveJob& active, const std::set<std::string>& classes,
+                      Reasons& reasons) const HYADES_REQUIRES(state_lock);
+  bool explain_units(const ActiveJob& active, bool anybody, Reasons& reasons) const
+      HYADES_REQUIRES(state_lock);
+  void explain_rivals(const ActiveJob& active, Reasons& reasons) const HYADES_REQUIRES(state_lock);
+  // diagnosis_needs.cpp
+  std::string unmet_needs(const JobNeeds& job) const HYADES_REQUIRES(state_lock);
   std::vector<std::string> barred_workers() const HYADES_REQUIRES(state_lock);
   std::vector<std::string> where_units_are(JobId job) const HYADES_REQUIRES(state_lock);
   std::vector<std::string> still_units(JobId job) const HYADES_REQUIRES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   const WorkerTable& workers_;

@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kAskAgain{5000};
 }  // namespace
 
 void DiskWatch::measure() {
-  auto measured = measure_disk(shared_.options.folder);
+  auto measured = measure_disk(context_.options.folder);
   if (!measured) return;
   Turn turn(dispatcher_);
   // Between two walks what vanishes from the disk is taken for ours.
@@ -38,18 +38,18 @@ void DiskWatch::measure() {
   }
 }
 
-/// Where the disk is short, what uploads have left that nobody goes on with makes room: the farm
-/// stands still, and who wants his file begins again.
+/// Where the disk is short, removes what is left of uploads that nobody goes on with: the farm
+/// stands still, and whoever wants such a file can upload it again.
 void DiskWatch::sweep_partials() {
   uint64_t shortage = 0;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     shortage = room_.shortage();
   }
   if (shortage == 0) return;
-  const uint64_t freed = shared_.assets->free_partials(shortage);
+  const uint64_t freed = context_.assets->free_partials(shortage);
   if (freed == 0) return;
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   // As if the last walk had not found them, so that the next round does not take as many again.
   walked_used_ = surplus(walked_used_, freed);
   walked_free_ += freed;
@@ -57,19 +57,19 @@ void DiskWatch::sweep_partials() {
 
 void DiskWatch::start() {
   rounds_.add(0, [this] {
-    if (!shared_.stop) look();
-    return shared_.stop.load();
+    if (!context_.stop) look();
+    return context_.stop.load();
   });
 }
 
 void DiskWatch::look() {
   const TimePoint begin = std::chrono::steady_clock::now();
-  if (shared_.options.disk.budget > 0 && begin >= walk_again_) {
-    const auto free = measure_disk(shared_.options.folder);
-    const uint64_t used = measure_folder(shared_.options.folder);
+  if (context_.options.disk.budget > 0 && begin >= walk_again_) {
+    const auto free = measure_disk(context_.options.folder);
+    const uint64_t used = measure_folder(context_.options.folder);
     const TimePoint end = std::chrono::steady_clock::now();
     walk_again_ = end + kWalkShare * (end - begin);
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     walked_used_ = used;
     walked_free_ = free ? free->free : 0;
   }
@@ -81,13 +81,13 @@ void DiskWatch::look() {
 
 grpc::Status DiskWatch::admit(uint64_t bytes) {
   measure();
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   if (room_.level() != DiskLevel::roomy) {
     return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                              room_.reason() + "; nothing new is taken in until there is room",
                              kAskAgain);
   }
-  const uint64_t room = surplus(room_.room(), shared_.assets->expected());
+  const uint64_t room = surplus(room_.room(), context_.assets->expected());
   if (bytes <= room) return grpc::Status::OK;
   return farm::retry_later(
       grpc::StatusCode::RESOURCE_EXHAUSTED,
@@ -99,7 +99,7 @@ grpc::Status DiskWatch::admit(uint64_t bytes) {
 bool DiskWatch::is_short_for(const core::Film& film) {
   measure();
   const uint64_t memory = film.memory();
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   // The film is written for the finisher, and its outputs are hardly larger.
   return room_.level() != DiskLevel::roomy || free_ < 2 * memory;
 }

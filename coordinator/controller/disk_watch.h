@@ -7,10 +7,10 @@
 
 #include <grpcpp/support/status.h>
 
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
-#include "coordinator/controller/shared.h"
-#include "coordinator/store/disk_room.h"
+#include "coordinator/film_store/disk_room.h"
 
 namespace hyades::coordinator {
 
@@ -18,20 +18,21 @@ namespace hyades::coordinator {
 /// Thread-safe.
 class DiskWatch {
  public:
-  DiskWatch(Shared& shared, Dispatcher& dispatcher, JobTable& jobs)
-      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), room_(shared.options.disk) {}
-  /// Looks at the disk from now on, several times a second.
+  DiskWatch(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs)
+      : context_(context), dispatcher_(dispatcher), jobs_(jobs), room_(context.options.disk) {}
+  /// Looks at the disk from now on, several times a second, until end().
   void start();
   void end() { rounds_.end(); }
 
-  /// Measures, and does what follows. An error of the system changes nothing.
+  /// Measures the disk, holds back what has to wait for room, and lets go on what has it. An error
+  /// of the system changes nothing.
   void measure() HYADES_EXCLUDES(state_lock);
   /// Whether `bytes` more may be stored, or (0) something new may begin: OK, or RESOURCE_EXHAUSTED
   /// with the reason. May wait for the disk.
   grpc::Status admit(uint64_t bytes) HYADES_EXCLUDES(state_lock);
   /// Whether the disk may be why a frame could not be finished.
   bool is_short_for(const core::Film& film) HYADES_EXCLUDES(state_lock);
-  /// Even what was begun has to wait.
+  /// Whether even what was begun has to wait.
   bool is_full() const { return full_; }
   DiskLevel level() const HYADES_REQUIRES(state_lock) { return room_.level(); }
   /// Why there is little room; empty where there is enough.
@@ -41,7 +42,7 @@ class DiskWatch {
   void look() HYADES_EXCLUDES(state_lock);
   void sweep_partials() HYADES_EXCLUDES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   DiskRoom room_ HYADES_GUARDED_BY(state_lock);
@@ -54,7 +55,7 @@ class DiskWatch {
   std::atomic<bool> full_{false};
   TimePoint walk_again_;   ///< of look() alone
   TimePoint sweep_again_;  ///< of look() alone
-  RetryQueue rounds_{1, std::chrono::milliseconds(250)};
+  farm::RetryQueue rounds_{1, std::chrono::milliseconds(250)};
 };
 
 }  // namespace hyades::coordinator

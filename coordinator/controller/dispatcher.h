@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -11,11 +12,12 @@ namespace hyades::coordinator {
 struct Delivery;
 class Turn;
 
-/// Actions that are carried out after the state lock is let go of, in their order.
-using DeferredAction = std::variant<Merge, FinishFrame, FrameDone, FrameFailed, FrameRestarted,
-                                    TileVoided, FrameReopened, JobEnded>;
+/// Actions that are carried out after the state lock is let go of: those of one turn in their
+/// order, those of different turns, by different threads, in any.
+using DeferredAction =
+    std::variant<Merge, FinishFrame, FrameDone, FrameFailed, TileVoided, FrameReopened, JobEnded>;
 
-/// The scheduler, and who does what it wants done. Events reach it by a Turn.
+/// The scheduler, and who does what it wants done. A Turn tells it of events.
 class Dispatcher {
  public:
   /// Does what the scheduler wants done.
@@ -26,6 +28,7 @@ class Dispatcher {
     /// `delivery` came with the event, if it is a result.
     virtual void act(const std::vector<Action>& actions, Turn& turn, Delivery* delivery)
         HYADES_REQUIRES(state_lock) = 0;
+    /// Does what was deferred, at the end of its turn.
     virtual void carry_out(const DeferredAction& action) HYADES_EXCLUDES(state_lock) = 0;
   };
 
@@ -51,8 +54,10 @@ class HYADES_SCOPED_CAPABILITY Turn {
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
 
+  /// Tells the scheduler of an event and has its actions done. `delivery`: what came with it, where
+  /// it is a result.
   void tell(const Event& event, Delivery* delivery = nullptr) HYADES_REQUIRES(state_lock);
-  /// For Executor::act.
+  /// Has the action carried out at the end of the turn; for Executor::act().
   void defer(DeferredAction action) { deferred_.push_back(std::move(action)); }
 
  private:

@@ -1,6 +1,9 @@
 #include "coordinator/controller/farm_control.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,19 +15,19 @@
 namespace hyades::coordinator {
 namespace {
 
-/// Of an answer: twenty thousand workers with long names and many tags would make forty megabytes.
+/// Bytes of an answer: 20,000 workers with long names and many tags would make forty megabytes.
 constexpr size_t kMostWorkerBytes = size_t{1} << 20U;
-constexpr size_t kMostWorkTold = 16;
+constexpr size_t kMostWorkListed = 16;  ///< of one worker
 
 }  // namespace
 
 void FarmControl::info(v1::InfoResponse& response) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   response.set_protocol(farm::kProtocol);
   response.set_oldest_protocol(farm::kOldestProtocol);
   response.set_version(core::kVersion);
-  response.set_incarnation(shared_.incarnation);
-  response.set_started_ms(shared_.started_ms);
+  response.set_incarnation(context_.incarnation);
+  response.set_started_ms(context_.started_ms);
   for (const auto& [id, session] : workers_.all()) {
     if (!session.joined) continue;
     response.set_workers(response.workers() + 1);
@@ -32,8 +35,8 @@ void FarmControl::info(v1::InfoResponse& response) {
   }
   response.set_jobs(static_cast<uint32_t>(jobs_.all().size()));
   response.set_grpc_address(grpc_address_);
-  response.set_price_per_core_hour(shared_.options.price.per_core_hour);
-  response.set_currency(shared_.options.price.currency);
+  response.set_price_per_core_hour(context_.options.price.per_core_hour);
+  response.set_currency(context_.options.price.currency);
   response.set_unguarded(unguarded_);
   response.set_trouble(disk_.reason());
   for (const auto& [id, active] : jobs_.all()) {
@@ -43,7 +46,7 @@ void FarmControl::info(v1::InfoResponse& response) {
 }
 
 void FarmControl::listens_at(const std::string& address) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   grpc_address_ = address;
 }
 
@@ -61,12 +64,12 @@ std::vector<v1::WorkInHand> FarmControl::work_of(WorkerId worker) const {
   }
   std::stable_sort(work.begin(), work.end(),
                    [](const auto& a, const auto& b) { return a.units() > b.units(); });
-  if (work.size() > kMostWorkTold) work.resize(kMostWorkTold);
+  if (work.size() > kMostWorkListed) work.resize(kMostWorkListed);
   return work;
 }
 
 void FarmControl::set_unguarded(const std::string& how) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   unguarded_ = how;
 }
 
@@ -99,7 +102,7 @@ v1::Worker FarmControl::describe(const WorkerSession& session) const {
 }
 
 void FarmControl::workers(const v1::WorkersRequest& request, v1::WorkersResponse& response) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   size_t bytes = 0;
   for (auto session = workers_.all().upper_bound(WorkerId{request.after()});
        session != workers_.all().end(); ++session) {
@@ -113,41 +116,57 @@ void FarmControl::workers(const v1::WorkersRequest& request, v1::WorkersResponse
   }
 }
 
-grpc::Status FarmControl::drain_worker(const v1::WorkerRequest& request, v1::Worker& now) {
-  return steer(request, now, [&](WorkerSession& session, Turn& turn) HYADES_REQUIRES(state_lock) {
-    v1::CoordinatorMessage message;
-    message.mutable_drain()->set_reason(farm::wire_text(request.reason()));
-    workers_.send(session.id, std::move(message));
-    if (session.state == v1::WORKER_STATE_ACTIVE) session.state = v1::WORKER_STATE_DRAINING;
-    turn.tell(WorkerBarred{session.id, true});
-  });
+void FarmControl::drain_worker(const v1::WorkerRequest& request, const WorkerReply& then) {
+  steer(request, then,
+        [&](WorkerSession& session, const std::string& reason, Turn& turn)
+            HYADES_REQUIRES(state_lock) {
+              session.drained = reason;
+              // While it is in quarantine that is why it gets nothing.
+              if (session.state != v1::WORKER_STATE_QUARANTINED) session.reason = reason;
+              workers_.send_drain(session, turn);
+              return false;
+            });
 }
 
-grpc::Status FarmControl::quarantine_worker(const v1::WorkerRequest& request, v1::Worker& now) {
-  return steer(request, now, [&](WorkerSession& session, Turn& turn) HYADES_REQUIRES(state_lock) {
-    workers_.set_quarantine(session, session.reason);
-    turn.tell(WorkerBarred{session.id, true});
-  });
+void FarmControl::quarantine_worker(const v1::WorkerRequest& request, const WorkerReply& then) {
+  steer(request, then,
+        [&](WorkerSession& session, const std::string& reason, Turn& turn)
+            HYADES_REQUIRES(state_lock) {
+              workers_.set_quarantine(session, reason);
+              turn.tell(WorkerBarred{session.id, true});
+              return true;
+            });
 }
 
-grpc::Status FarmControl::release_worker(const v1::WorkerRequest& request, v1::Worker& now) {
-  return steer(request, now, [&](WorkerSession& session, Turn& turn) HYADES_REQUIRES(state_lock) {
-    if (session.state != v1::WORKER_STATE_QUARANTINED) return;
-    workers_.end_quarantine(session);
-    turn.tell(WorkerBarred{session.id, false});
-  });
+void FarmControl::release_worker(const v1::WorkerRequest& request, const WorkerReply& then) {
+  steer(request, then,
+        [&](WorkerSession& session, const std::string& reason, Turn& turn)
+            HYADES_REQUIRES(state_lock) {
+              if (session.state != v1::WORKER_STATE_QUARANTINED) return false;
+              workers_.end_quarantine(session, reason, turn);
+              return true;
+            });
 }
 
-grpc::Status FarmControl::steer(const v1::WorkerRequest& request, v1::Worker& now,
-                                const std::function<void(WorkerSession&, Turn&)>& what) {
-  Turn turn(dispatcher_);
+void FarmControl::steer(const v1::WorkerRequest& request, const WorkerReply& then,
+                        const Steer& what) {
   grpc::Status status;
-  WorkerSession* session = workers_.find(request.worker(), status);
-  if (session == nullptr) return status;
-  session->reason = farm::wire_text(request.reason());
-  what(*session, turn);
-  now = describe(*session);
-  return status;
+  v1::Worker now;
+  bool waits = false;
+  {
+    Turn turn(dispatcher_);
+    if (WorkerSession* session = workers_.find(request.worker(), status)) {
+      waits = what(*session, farm::wire_text(request.reason()), turn);
+      now = describe(*session);
+    }
+    if (waits) {
+      records_.when_done(
+          ControllerContext::kWorkersKey,
+          [then, now](const grpc::Status& stored, const v1::Job&) { then(stored, now); });
+    }
+  }
+  if (context_.stop) records_.answer_late({});
+  if (!waits) then(status, now);
 }
 
 }  // namespace hyades::coordinator

@@ -1,19 +1,22 @@
 #include "coordinator/controller/frame_finisher.h"
 
 #include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/disk_watch.h"
-#include "coordinator/controller/wall_clock.h"
+#include "coordinator/controller/stored_outputs.h"
 #include "coordinator/finisher/finish_process.h"
 #include "coordinator/finisher/finish_task.h"
 #include "coordinator/meters/meters.h"
 #include "core/base/failpoint.h"
 #include "core/base/fp_mode.h"
+#include "core/base/wall_clock.h"
 #include "core/job/film_file.h"
-#include "farm/wire.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -32,6 +35,13 @@ core::Status find_color_files(FinishTask& task, const std::vector<core::AssetRec
     task.color_files.emplace_back(file.reference, std::move(*bytes));
   }
   return {};
+}
+
+/// Whether every sample of its frame is in the film: where one could not be merged some are not.
+bool is_whole(const core::Film* film, const ActiveJob& active) {
+  const uint32_t batches = core::batch_count(active.read->job.sampling.samples);
+  return film != nullptr &&
+         film->coverage().volume() == static_cast<uint64_t>(active.region.area()) * batches;
 }
 
 }  // namespace
@@ -54,62 +64,28 @@ void FrameFinisher::add(ActiveJob& active, int32_t frame, std::vector<std::strin
 /// Whether the scheduler has heard what became of it. What fails is told with the next try, so that
 /// frames which fail at once keep nobody busy.
 bool FrameFinisher::finish(Completed& completed) {
-  if (shared_.stop) return true;
+  if (context_.stop) return true;
   if (completed.failure) {
     Turn turn(dispatcher_);
     turn.tell(FinishFailed{completed.job, completed.frame, *completed.failure});
     return true;
   }
-  const auto id = static_cast<uint64_t>(completed.job);
-  FinishTask task;
   StoredFrame over;
-  std::vector<core::AssetRecord> assets;
-  {
-    const StateLock lock(shared_.mutex);
-    ActiveJob* active = jobs_.find(completed.job);
-    if (active == nullptr) return true;
-    const FrameNote& note = active->frames[completed.frame];
-    task.info = active->film_info(completed.frame);
-    task.info.worker_class = note.worker_class;
-    task.outputs = active->read.job.outputs;
-    if (active->read.job.keep_films) task.film = core::film_file(active->read.job);
-    task.folder = shared_.output_folder(id);
-    task.color = active->read.job.color;
-    if (task.color) assets = active->read.assets;
-    over = {completed.frame,    true, {}, note.worker_class, note.restarts, completed.parts,
-            jobs_.next_moment()};
-  }
-  const core::FpMode mode;
-  const int64_t begun_us = wall_us();
-  const std::string scratch =
-      fmt::format("{}/tmp/{}-{}", shared_.options.folder, id, completed.frame);
-  core::Status done = find_color_files(task, assets, *shared_.assets);
-  core::Result<std::vector<FinishedFile>> files = core::Error{};
-  if (done) {
-    files = run_finisher(shared_.options.finisher, scratch, task, *completed.film, shared_.stop);
-    if (!files) done = files.error();
-  }
-  if (done) {
-    std::vector<StoredOutput> outputs;
-    for (const FinishedFile& file : *files) {
-      const auto digest = farm::digest_from_hex(file.sha256);
-      outputs.push_back(
-          {file.path, completed.frame, file.size, digest ? farm::to_wire(*digest) : std::string()});
-    }
-    core::failpoint("outputs-written");
-    done = shared_.store->frame_over(id, over, outputs);
-    core::failpoint("frame-stored");
-  }
+  const std::shared_ptr<const farm::ReadJob> read = begin(completed, over);
+  if (!read) return !completed.failure;
+  const int64_t begun_us = core::wall_us();
+  bool written = false;
+  const core::Status done = make_outputs(completed, *read, over, written);
   // What is written and cannot be stored is no fault of the frame's, nor is a full disk.
-  const bool waits = !done && (files || disk_.is_short_for(*completed.film));
+  const bool waits = !done && (written || disk_.is_short_for(*completed.film));
   Turn turn(dispatcher_);
-  if (shared_.stop) return true;
+  if (context_.stop) return true;
   if (waits) {
     ActiveJob* still = jobs_.find(completed.job);
     if (still == nullptr) return true;
     still->trouble =
         fmt::format("frame {} waits {} to be finished: {}", completed.frame,
-                    files ? "for the job store" : "for room on the disk", done.error().message);
+                    written ? "for the job store" : "for room on the disk", done.error().message);
     still->touch();
     return false;
   }
@@ -119,10 +95,55 @@ bool FrameFinisher::finish(Completed& completed) {
   }
   core::Unit all;
   all.frame = completed.frame;
-  shared_.meters->finished(std::chrono::microseconds(std::max<int64_t>(wall_us() - begun_us, 0)));
-  timelines_.note(id, {v1::TimelineStep::KIND_FINISH, {}, 0, all, begun_us, wall_us()});
+  context_.meters->finished(
+      std::chrono::microseconds(std::max<int64_t>(core::wall_us() - begun_us, 0)));
+  timelines_.note(static_cast<uint64_t>(completed.job),
+                  {v1::TimelineStep::KIND_FINISH, {}, 0, all, begun_us, core::wall_us()});
   turn.tell(FinishDone{completed.job, completed.frame});
   return true;
+}
+
+/// The job of the frame, which will be `over`; null where the job is gone, or the frame has failed.
+std::shared_ptr<const farm::ReadJob> FrameFinisher::begin(Completed& completed, StoredFrame& over) {
+  const StateLock lock(context_.mutex);
+  ActiveJob* active = jobs_.find(completed.job);
+  if (active == nullptr) return nullptr;
+  if (!is_whole(completed.film.get(), *active)) {
+    completed.failure = "its film is not whole: 'retry' renders it again";
+    return nullptr;
+  }
+  const FrameNote& note = active->frames[completed.frame];
+  over = {completed.frame,    true, {}, note.worker_class, note.restarts, completed.parts,
+          jobs_.next_moment()};
+  return active->read;
+}
+
+/// Has the outputs made and stores that the frame is over; `written`: the first of it is done.
+core::Status FrameFinisher::make_outputs(const Completed& completed, const farm::ReadJob& read,
+                                         const StoredFrame& over, bool& written) const {
+  const auto id = static_cast<uint64_t>(completed.job);
+  FinishTask task;
+  task.info = film_info(read, completed.frame);
+  task.info.worker_class = over.worker_class;
+  task.outputs = read.job.outputs;
+  if (read.job.keep_films) task.film = core::film_file(read.job);
+  task.folder = context_.output_folder(id);
+  task.color = read.job.color;
+  const core::FpMode mode;
+  const std::string scratch =
+      fmt::format("{}/tmp/{}-{}", context_.options.folder, id, completed.frame);
+  if (core::Status found = find_color_files(task, read.assets, *context_.assets); !found) {
+    return found;
+  }
+  const auto files =
+      run_finisher(context_.options.finisher, scratch, task, *completed.film, context_.stop);
+  if (!files) return files.error();
+  written = true;
+  core::failpoint("outputs-written");
+  const core::Status stored =
+      context_.store->frame_over(id, over, stored_outputs(*files, completed.frame));
+  core::failpoint("frame-stored");
+  return stored;
 }
 
 }  // namespace hyades::coordinator

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
-#include "coordinator/controller/shared.h"
 #include "coordinator/controller/timeline.h"
 
 namespace hyades::coordinator {
@@ -16,26 +17,35 @@ class DiskWatch;
 /// Has the outputs of complete frames made, one frame after the other.
 class FrameFinisher {
  public:
-  FrameFinisher(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, DiskWatch& disk,
+  FrameFinisher(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, DiskWatch& disk,
                 Timelines& timelines)
-      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), disk_(disk), timelines_(timelines) {}
+      : context_(context),
+        dispatcher_(dispatcher),
+        jobs_(jobs),
+        disk_(disk),
+        timelines_(timelines) {}
   /// Waits for the one in work.
   void end() { queue_.end(); }
 
-  /// The frame's film is among those of `active` that are complete. `parts`: StoredFrame::parts.
+  /// Has the frame finished, whose film is among those of `active` that are complete. `parts`:
+  /// StoredFrame::parts.
   void add(ActiveJob& active, int32_t frame, std::vector<std::string> parts)
       HYADES_REQUIRES(state_lock);
 
  private:
   struct Completed;
   bool finish(Completed& completed) HYADES_EXCLUDES(state_lock);
+  std::shared_ptr<const farm::ReadJob> begin(Completed& completed, StoredFrame& over)
+      HYADES_EXCLUDES(state_lock);
+  core::Status make_outputs(const Completed& completed, const farm::ReadJob& read,
+                            const StoredFrame& over, bool& written) const;
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   DiskWatch& disk_;
   Timelines& timelines_;
-  RetryQueue queue_{1};  ///< by job
+  farm::RetryQueue queue_{1};  ///< by job
 };
 
 }  // namespace hyades::coordinator

@@ -1,13 +1,14 @@
 #include "coordinator/controller/frame_progress.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/frame_finisher.h"
-#include "coordinator/controller/wall_clock.h"
 #include "coordinator/meters/meters.h"
+#include "core/base/wall_clock.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -15,26 +16,25 @@ namespace {
 
 uint64_t samples_of(const ActiveJob& active, const core::PixelRect& tile,
                     const core::BatchRange& batches) {
-  return core::samples_in(tile, batches, active.read.job.sampling.samples);
+  return core::samples_in(tile, batches, active.read->job.sampling.samples);
 }
 
 }  // namespace
 
-/// On the film store's thread, as the film is at hand there.
 void FrameProgress::merged(const Merge& merge) {
   FilmStore* film_store = nullptr;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     if (ActiveJob* active = jobs_.find(merge.job)) film_store = active->film_store.get();
   }
   if (film_store == nullptr) return;
-  const int64_t begun_us = wall_us();
+  const int64_t begun_us = core::wall_us();
   const core::Status status = film_store->merge(merge.record);
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(merge.job);
   if (active == nullptr) return;
   if (!status) {
-    // Checked when it arrived: this is a bug, and better a stuck frame than a wrong one.
+    // Checked when it arrived: this is a bug. The finisher will find that the film is not whole.
     jobs_.note(*active, v1::LOG_LEVEL_ERROR, merge.unit.frame, {},
                "a film cannot be merged: " + status.error().message);
     return;
@@ -53,8 +53,8 @@ void FrameProgress::count_film(ActiveJob& active, const Merge& merge, int64_t be
     const FilmUnderWay film = std::move(found->second);
     active.films_under_way.erase(found);
     active.stored.core_ns += film.render_ns;
-    shared_.meters->result("accepted");
-    shared_.meters->made_durable(std::chrono::steady_clock::now() - film.came);
+    context_.meters->result("accepted");
+    context_.meters->made_durable(std::chrono::steady_clock::now() - film.came);
     if (WorkerSession* session = workers_.find(film.worker)) {
       ++session->units_done;
       session->samples_done += samples_of(active, merge.unit.tile, merge.unit.batches);
@@ -63,103 +63,96 @@ void FrameProgress::count_film(ActiveJob& active, const Merge& merge, int64_t be
     timelines_.note(id, {v1::TimelineStep::KIND_RENDER, film.name, film.thread, merge.unit,
                          film.came_us - took_us, film.came_us});
   }
-  const int64_t now_us = wall_us();
-  shared_.meters->merged(std::chrono::microseconds(std::max<int64_t>(now_us - begun_us, 0)));
+  const int64_t now_us = core::wall_us();
+  context_.meters->merged(std::chrono::microseconds(std::max<int64_t>(now_us - begun_us, 0)));
   timelines_.note(id, {v1::TimelineStep::KIND_MERGE, {}, 0, merge.unit, begun_us, now_us});
 }
 
-/// The film store has taken the tile out of the film.
-void FrameProgress::tile_voided(const TileVoided& voided) {
-  const StateLock lock(shared_.mutex);
-  ActiveJob* active = jobs_.find(voided.job);
-  if (active == nullptr) return;
+void FrameProgress::tile_voided(ActiveJob& active, const TileVoided& voided) {
   uint64_t samples = 0;
   for (const core::BatchRange& batches : voided.batches) {
-    samples += samples_of(*active, voided.tile, batches);
+    samples += samples_of(active, voided.tile, batches);
   }
-  FrameNote& frame = active->touch(voided.frame);
+  FrameNote& frame = active.touch(voided.frame);
   samples = std::min(samples, frame.samples_done);
   frame.samples_done -= samples;
-  active->samples_done -= samples;
-  jobs_.note(*active, v1::LOG_LEVEL_WARNING, voided.frame, {},
+  active.samples_done -= samples;
+  jobs_.note(active, v1::LOG_LEVEL_WARNING, voided.frame, {},
              fmt::format("tile {},{} is rendered again: a quarantined worker had a part in it",
                          voided.tile.x0, voided.tile.y0));
 }
 
-/// What the finisher has made is of a film in doubt.
-void FrameProgress::reopened(const FrameReopened& action) {
-  const StateLock lock(shared_.mutex);
+void FrameProgress::reopened(ActiveJob& active, const FrameReopened& action) {
   const int32_t frame = action.frame;
-  ActiveJob* active = jobs_.find(action.job);
-  if (active == nullptr) return;
-  active->complete.erase(frame);
-  active->touch(frame).state = v1::FRAME_STATE_RENDERING;
-  jobs_.note(*active, v1::LOG_LEVEL_WARNING, frame, {},
+  active.complete.erase(frame);
+  active.touch(frame).state = v1::FRAME_STATE_RENDERING;
+  jobs_.note(active, v1::LOG_LEVEL_WARNING, frame, {},
              "is not done: a unit that was rendered differently twice is rendered once more");
   // Should this be lost, or come after the frame is done again, it is rendered again or stays.
-  shared_.background.add(active->stored.id, [this, id = active->stored.id, frame] {
-    (void)shared_.store->forget_frame(id, frame);
+  context_.background.add(active.stored.id, [this, id = active.stored.id, frame] {
+    (void)context_.store->forget_frame(id, frame);
     return true;
   });
 }
 
-/// On the film store's thread, unless the film is among the complete ones already.
-void FrameProgress::finish(const FinishFrame& finish) {
-  const StateLock lock(shared_.mutex);
-  ActiveJob* active = jobs_.find(finish.job);
-  if (active == nullptr) return;
-  auto& film = active->complete[finish.frame];
-  if (!film) film = active->film_store->film(finish.frame);
-  active->touch(finish.frame).state = v1::FRAME_STATE_FINISHING;
-  finisher_.add(*active, finish.frame, workers_.names_of(finish.unconfirmed));
+void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {
+  active.touch(finish.frame).state = v1::FRAME_STATE_FINISHING;
+  if (active.complete.contains(finish.frame)) return hand_over(active, finish);
+  // By any thread, as a result may be what completes a frame: the film store's may still be merging
+  // its last film, and comes to this when it has.
+  active.film_store->call([this, finish] {
+    const StateLock again(context_.mutex);
+    ActiveJob* still = jobs_.find(finish.job);
+    if (still == nullptr) return;
+    still->complete[finish.frame] = still->film_store->film(finish.frame);
+    hand_over(*still, finish);
+  });
 }
 
-void FrameProgress::done(const FrameDone& action) {
-  const StateLock lock(shared_.mutex);
-  const int32_t frame = action.frame;
-  ActiveJob* active = jobs_.find(action.job);
-  if (active == nullptr) return;
-  active->film_store->forget(frame, true);
-  active->complete.erase(frame);
-  active->touch(frame).state = v1::FRAME_STATE_DONE;
-  active->in_work.erase(frame);
-  active->stored.preview = frame;
-  ++active->stored.frames_done;
-  jobs_.note(*active, v1::LOG_LEVEL_INFO, frame, {}, "done");
+void FrameProgress::hand_over(ActiveJob& active, const FinishFrame& finish) {
+  finisher_.add(active, finish.frame, workers_.names_of(finish.unconfirmed));
 }
 
-void FrameProgress::failed(const FrameFailed& action) {
-  const StateLock lock(shared_.mutex);
+void FrameProgress::done(ActiveJob& active, const FrameDone& action) {
+  if (active.ending) return;
   const int32_t frame = action.frame;
-  ActiveJob* active = jobs_.find(action.job);
-  if (active == nullptr) return;
-  active->film_store->forget(frame, false);
-  active->complete.erase(frame);
-  FrameNote& noted = active->touch(frame);
+  active.film_store->forget(frame, true);
+  active.complete.erase(frame);
+  active.touch(frame).state = v1::FRAME_STATE_DONE;
+  active.in_work.erase(frame);
+  active.stored.preview = frame;
+  // Where another turn was quicker to tell that all frames are over, this one is among them.
+  if (!active.making_videos) ++active.stored.frames_done;
+  jobs_.note(active, v1::LOG_LEVEL_INFO, frame, {}, "done");
+}
+
+void FrameProgress::failed(ActiveJob& active, const FrameFailed& action) {
+  if (active.ending) return;
+  const int32_t frame = action.frame;
+  active.film_store->forget(frame, false);
+  active.complete.erase(frame);
+  FrameNote& noted = active.touch(frame);
   noted.state = v1::FRAME_STATE_FAILED;
-  active->in_work.erase(frame);
+  active.in_work.erase(frame);
   noted.reason = farm::wire_text(action.reason);
-  active->samples_done -= std::exchange(noted.samples_done, 0);
-  ++active->stored.frames_failed;
-  jobs_.note(*active, v1::LOG_LEVEL_ERROR, frame, {}, "failed: " + action.reason);
+  active.samples_done -= std::exchange(noted.samples_done, 0);
+  ++active.stored.frames_failed;
+  jobs_.note(active, v1::LOG_LEVEL_ERROR, frame, {}, "failed: " + action.reason);
 }
 
-void FrameProgress::restarted(const FrameRestarted& action) {
-  const StateLock lock(shared_.mutex);
+void FrameProgress::restarted(ActiveJob& active, const FrameRestarted& action) {
   const int32_t frame = action.frame;
-  ActiveJob* active = jobs_.find(action.job);
-  if (active == nullptr) return;
-  FrameNote& noted = active->touch(frame);
-  if (noted.state == v1::FRAME_STATE_FAILED) --active->stored.frames_failed;
-  if (noted.state == v1::FRAME_STATE_DONE) --active->stored.frames_done;
-  active->complete.erase(frame);
+  FrameNote& noted = active.touch(frame);
+  if (noted.state == v1::FRAME_STATE_FAILED) --active.stored.frames_failed;
+  if (noted.state == v1::FRAME_STATE_DONE) --active.stored.frames_done;
+  active.complete.erase(frame);
   noted.state = v1::FRAME_STATE_WAITING;
-  active->in_work.erase(frame);
+  active.in_work.erase(frame);
   noted.reason.clear();
   noted.worker_class.clear();
   ++noted.restarts;
-  active->samples_done -= std::exchange(noted.samples_done, 0);
-  jobs_.note(*active, v1::LOG_LEVEL_WARNING, frame, {}, "is rendered again from its beginning");
+  active.samples_done -= std::exchange(noted.samples_done, 0);
+  jobs_.note(active, v1::LOG_LEVEL_WARNING, frame, {}, "is rendered again from its beginning");
 }
 
 }  // namespace hyades::coordinator

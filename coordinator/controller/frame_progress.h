@@ -9,31 +9,40 @@ namespace hyades::coordinator {
 
 class FrameFinisher;
 
-/// What becomes of frames, as their jobs show it. Its functions are for the scheduler's actions of
-/// these names; those about films are called by the job's film store's thread, where the films are.
+/// What becomes of frames, as their jobs show it: a function for each of the scheduler's actions
+/// about frames.
 class FrameProgress {
  public:
-  FrameProgress(Shared& shared, JobTable& jobs, WorkerTable& workers, FrameFinisher& finisher,
-                Timelines& timelines)
-      : shared_(shared),
+  FrameProgress(ControllerContext& context, JobTable& jobs, WorkerTable& workers,
+                FrameFinisher& finisher, Timelines& timelines)
+      : context_(context),
         jobs_(jobs),
         workers_(workers),
         finisher_(finisher),
         timelines_(timelines) {}
 
+  /// Merges a film that is durable into its frame's. On the film store's thread, where the films
+  /// are.
   void merged(const Merge& merge) HYADES_EXCLUDES(state_lock);
-  void tile_voided(const TileVoided& voided) HYADES_EXCLUDES(state_lock);
-  void finish(const FinishFrame& finish) HYADES_EXCLUDES(state_lock);
-  void done(const FrameDone& action) HYADES_EXCLUDES(state_lock);
-  void failed(const FrameFailed& action) HYADES_EXCLUDES(state_lock);
-  void restarted(const FrameRestarted& action) HYADES_EXCLUDES(state_lock);
-  void reopened(const FrameReopened& action) HYADES_EXCLUDES(state_lock);
+  /// The film store has taken the tile out of its frame's film.
+  void tile_voided(ActiveJob& active, const TileVoided& voided) HYADES_REQUIRES(state_lock);
+  /// Hands the frame to the finisher once its film has all that was delivered.
+  void finish(ActiveJob& active, const FinishFrame& finish) HYADES_REQUIRES(state_lock);
+  /// The frame's outputs are made and stored. On the film store's thread.
+  void done(ActiveJob& active, const FrameDone& action) HYADES_REQUIRES(state_lock);
+  /// The frame has failed for good, which is stored. On the film store's thread.
+  void failed(ActiveJob& active, const FrameFailed& action) HYADES_REQUIRES(state_lock);
+  /// The frame is rendered again from its beginning.
+  void restarted(ActiveJob& active, const FrameRestarted& action) HYADES_REQUIRES(state_lock);
+  /// What the finisher has made is of a suspect film: the frame is not done.
+  void reopened(ActiveJob& active, const FrameReopened& action) HYADES_REQUIRES(state_lock);
 
  private:
   void count_film(ActiveJob& active, const Merge& merge, int64_t begun_us)
       HYADES_REQUIRES(state_lock);
+  void hand_over(ActiveJob& active, const FinishFrame& finish) HYADES_REQUIRES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   JobTable& jobs_;
   WorkerTable& workers_;
   FrameFinisher& finisher_;

@@ -1,6 +1,10 @@
 #include "coordinator/controller/job_films.h"
 
+#include <chrono>
+#include <cstdint>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include "coordinator/controller/divergent_workers.h"
 #include "coordinator/meters/meters.h"
@@ -9,7 +13,7 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;
+constexpr uint64_t kWaitingBytes = uint64_t{256} << 20U;  ///< of films that wait for the disk
 
 }  // namespace
 
@@ -32,40 +36,40 @@ class JobFilms::Owner final : public FilmStore::Owner {
 };
 
 void JobFilms::persist(const Persist& persist, Delivery* delivery) {
-  if (const auto* odd = std::get_if<DivergentWorkerRecord>(&persist.record)) {
-    return divergent_.keep(persist.id, *odd);
-  }
+  const RecordId id = persist.id;
   const auto job = std::visit([](const auto& record) { return record.job; }, persist.record);
   ActiveJob* active = jobs_.find(job);
-  if (active == nullptr) return;
-  const RecordId id = persist.id;
+  // That a worker diverges concerns other jobs too.
+  const bool of_all_jobs = std::holds_alternative<DivergentWorkerRecord>(persist.record);
+  if (active == nullptr && !of_all_jobs) return;
   std::visit(core::Overloaded{
+                 [&](const DivergentWorkerRecord& divergent)
+                     HYADES_REQUIRES(state_lock) { divergent_.keep(id, divergent); },
                  [&](const UnitRecord& unit) HYADES_REQUIRES(state_lock) {
                    delivery->settled = true;
                    active->films_under_way[id] = std::move(delivery->rendered);
                    of(*active).append(id, unit, std::move(delivery->film),
                                       std::move(delivery->record));
                  },
-                 [&](const FrameFinishedRecord& done)
-                     HYADES_REQUIRES(state_lock) { of(*active).append(id, done); },
                  [&](const FrameFailedRecord& failed)
                      HYADES_REQUIRES(state_lock) { fail_frame(*active, id, failed); },
                  [&](const FrameRestartedRecord& again)
                      HYADES_REQUIRES(state_lock) { restart_frame(id, again); },
+                 [&](const FrameFinishedRecord& done)
+                     HYADES_REQUIRES(state_lock) { of(*active).append(id, done); },
                  [&](const TileVoidedRecord& voided)
                      HYADES_REQUIRES(state_lock) { of(*active).append(id, voided); },
                  [&](const DisputeRecord& dispute)
                      HYADES_REQUIRES(state_lock) { of(*active).append(id, dispute); },
-                 [](const DivergentWorkerRecord&) {},  // above: it is of all jobs
              },
              persist.record);
 }
 
 void JobFilms::restart_frame(RecordId id, const FrameRestartedRecord& again) {
   const auto job = static_cast<uint64_t>(again.job);
-  shared_.background.add(job, [this, job, id, again] {
-    const core::Status forgotten = shared_.store->forget_frame(job, again.frame);
-    const StateLock lock(shared_.mutex);
+  context_.background.add(job, [this, job, id, again] {
+    const core::Status forgotten = context_.store->forget_frame(job, again.frame);
+    const StateLock lock(context_.mutex);
     ActiveJob* still = jobs_.find(again.job);
     if (still == nullptr || still->ending) return true;
     if (forgotten) of(*still).append(id, again);
@@ -77,10 +81,10 @@ void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecor
   const FailedFrame& failed = record.failed;
   const FrameNote& note = active.frames[failed.frame];
   StoredFrame frame{failed.frame, false, failed.reason, note.worker_class, note.restarts};
-  shared_.background.add(active.stored.id, [this, id, record, frame] {
+  context_.background.add(active.stored.id, [this, id, record, frame] {
     const core::Status stored =
-        shared_.store->frame_over(static_cast<uint64_t>(record.job), frame, {});
-    const StateLock lock(shared_.mutex);
+        context_.store->frame_over(static_cast<uint64_t>(record.job), frame, {});
+    const StateLock lock(context_.mutex);
     ActiveJob* still = jobs_.find(record.job);
     if (still == nullptr) return true;
     // Where it could not be stored the frame fails again after a restart, if it must.
@@ -90,17 +94,16 @@ void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecor
   });
 }
 
-/// A store of the job's films, not opened yet.
 std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
-  const uint32_t samples = active.read.job.sampling.samples;
+  const uint32_t samples = active.read->job.sampling.samples;
   FilmSet films{active.numbers, active.region, samples, core::batch_count(samples)};
   FilmStoreOptions place;
   place.max_waiting_bytes = kWaitingBytes;
-  place.folder = shared_.films_folder(active.stored.id);
+  place.folder = context_.films_folder(active.stored.id);
   place.frame_key = [key = active.key](int32_t) { return key; };
   place.resume = resume;
-  place.compact_bytes = shared_.options.compact_bytes;
-  place.on_sync = [meters = shared_.meters.get()](std::chrono::nanoseconds took) {
+  place.compact_bytes = context_.options.compact_bytes;
+  place.on_sync = [meters = context_.meters.get()](std::chrono::nanoseconds took) {
     meters->synced(took);
   };
   if (!active.owner) active.owner = std::make_unique<Owner>(*this, active.id);
@@ -112,7 +115,7 @@ std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
 FilmStore& JobFilms::of(ActiveJob& active) {
   if (!active.film_store) {
     active.film_store = make(active, false);
-    shared_.background.add(active.stored.id, [this, job = active.id] { return open(job); });
+    context_.background.add(active.stored.id, [this, job = active.id] { return open(job); });
   }
   return *active.film_store;
 }
@@ -122,7 +125,7 @@ bool JobFilms::open(JobId job) {
   FilmStore* film_store = nullptr;
   int32_t tile_size = 0;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     ActiveJob* active = jobs_.find(job);
     if (active == nullptr || active->ending) return true;  // or its end would wait for this
     film_store = active->film_store.get();
@@ -155,7 +158,7 @@ void JobFilms::not_persisted(JobId job, RecordId record, const std::string& reas
 }
 
 void JobFilms::storage_failed(JobId job, const std::string& reason) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   if (ActiveJob* active = jobs_.find(job)) {
     active->trouble = "films cannot be stored: " + reason;
     active->touch();

@@ -3,10 +3,10 @@
 #include <memory>
 #include <string>
 
-#include "coordinator/controller/delivery.h"
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
-#include "coordinator/controller/shared.h"
+#include "coordinator/controller/result_check.h"
 
 namespace hyades::coordinator {
 
@@ -16,14 +16,16 @@ class DivergentWorkers;
 /// them so, and merges them.
 class JobFilms {
  public:
-  JobFilms(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, DivergentWorkers& divergent)
-      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), divergent_(divergent) {}
+  JobFilms(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
+           DivergentWorkers& divergent)
+      : context_(context), dispatcher_(dispatcher), jobs_(jobs), divergent_(divergent) {}
 
-  /// For the scheduler's action. `delivery`: the result that it handles, where the record is a
-  /// unit's.
+  /// Makes a record durable; the scheduler hears when it is, or that it cannot be. `delivery`: the
+  /// result that the record is of, where it is a unit's.
   void persist(const Persist& persist, Delivery* delivery) HYADES_REQUIRES(state_lock);
-  /// A store of the job's films, not opened yet.
-  std::unique_ptr<FilmStore> make(ActiveJob& active, bool resume);
+  /// A store of the job's films, not opened yet. `resume`: it continues with those that are there,
+  /// instead of removing them.
+  std::unique_ptr<FilmStore> make(ActiveJob& active, bool resume) HYADES_REQUIRES(state_lock);
 
  private:
   class Owner;
@@ -39,7 +41,7 @@ class JobFilms {
       HYADES_EXCLUDES(state_lock);
   void storage_failed(JobId job, const std::string& reason) HYADES_EXCLUDES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   DivergentWorkers& divergent_;

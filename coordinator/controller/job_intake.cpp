@@ -1,7 +1,13 @@
 #include "coordinator/controller/job_intake.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,10 +16,11 @@
 #include "coordinator/controller/job_queries.h"
 #include "coordinator/controller/job_recovery.h"
 #include "coordinator/controller/job_steering.h"
-#include "coordinator/controller/not_there.h"
+#include "coordinator/controller/not_found.h"
 #include "coordinator/controller/sweeper.h"
-#include "coordinator/controller/wall_clock.h"
 #include "core/base/failpoint.h"
+#include "core/base/printable.h"
+#include "core/base/wall_clock.h"
 #include "farm/tags.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -21,22 +28,21 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr size_t kLongestName = 200;
-constexpr size_t kMostMissingTold = 100;  // an error travels in headers, which are short
-/// For what is left of a job that has ended: less than that for which others wait for this one.
+constexpr size_t kMostMissingListed = 100;  // an error travels in headers, which are short
+/// For what is left of a job that has ended: less than ControllerContext::wait_for_submissions().
 constexpr std::chrono::milliseconds kLeavePatience{1500};
-/// Of all open jobs together: what they have in memory.
+/// What all open jobs together may have in memory.
 constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
 constexpr uint32_t kMostAttempts = 100;
-
-bool is_one_line(const std::string& text) {
-  return std::none_of(text.begin(), text.end(),
-                      [](unsigned char c) { return c < ' ' || c == 127; });
-}
+constexpr uint32_t kUsualAttempts = 3;
 
 grpc::Status overloaded(const char* why, std::chrono::milliseconds retry_after) {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, why, retry_after);
+}
+
+grpc::Status others_submit() {
+  return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
 }
 
 grpc::Status no_room() {
@@ -48,6 +54,49 @@ grpc::Status wrong(const std::string& message) {
   return {grpc::StatusCode::INVALID_ARGUMENT, message};
 }
 
+grpc::Status check_words(const v1::SubmitRequest& request) {
+  if (request.owner().size() > kLongestName) return wrong("owner: at most 200 characters");
+  if (!core::is_printable(request.owner())) {
+    return wrong("owner: expected one line of printable characters");
+  }
+  if (!core::is_printable(request.spec().name())) {
+    return wrong("name: expected one line of printable characters");
+  }
+  return check_priority(request.priority());
+}
+
+/// What is asked for besides what is rendered and by whom, as its job shows it: a line for each
+/// such field.
+core::Result<v1::Job> read_options(const v1::SubmitRequest& request) {
+  const auto tags = farm::check_tags({request.tags().begin(), request.tags().end()});
+  if (!tags) return tags.error();
+  if (request.max_attempts() > kMostAttempts) return core::Error{"max_attempts: at most 100"};
+  if (request.frame_order() < 0 || request.frame_order() > v1::FRAME_ORDER_PROGRESSIVE) {
+    return core::Error{"frame_order: expected sequential or progressive"};
+  }
+  v1::Job options;
+  options.set_max_workers(request.max_workers());
+  options.mutable_tags()->Assign(tags->begin(), tags->end());
+  options.set_memory_bytes(request.memory_bytes());
+  options.set_max_attempts(request.max_attempts() == 0 ? kUsualAttempts : request.max_attempts());
+  options.set_frame_order(request.frame_order() == 0 ? v1::FRAME_ORDER_SEQUENTIAL
+                                                     : request.frame_order());
+  return options;
+}
+
+/// What is stored of a new job, but for what its document says.
+StoredJob new_row(const v1::SubmitRequest& request, const v1::Job& options, bool owner_proven) {
+  StoredJob row;
+  row.key = request.idempotency_key();
+  row.spec = request.spec().SerializeAsString();
+  row.owner = request.owner();
+  row.owner_proven = owner_proven;
+  row.priority = request.priority();
+  row.options = options.SerializeAsString();
+  row.submitted_ms = core::wall_ms();
+  return row;
+}
+
 }  // namespace
 
 grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_proven,
@@ -56,75 +105,60 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   if (!key.empty() && (key.size() < 16 || key.size() > 64)) {
     return wrong("idempotency_key has to have 16 to 64 characters");
   }
-  if (request.owner().size() > kLongestName) return wrong("owner: at most 200 characters");
-  if (!is_one_line(request.owner())) {
-    return wrong("owner: expected one line of printable characters");
-  }
-  if (!is_one_line(request.spec().name())) {
-    return wrong("name: expected one line of printable characters");
-  }
-  if (const grpc::Status sane = check_priority(request.priority()); !sane.ok()) return sane;
-  auto tags = farm::check_tags({request.tags().begin(), request.tags().end()});
-  if (!tags) return wrong(tags.error().message);
-  if (request.max_attempts() > kMostAttempts) return wrong("max_attempts: at most 100");
-  if (request.frame_order() < 0 || request.frame_order() > v1::FRAME_ORDER_PROGRESSIVE) {
-    return wrong("frame_order: expected sequential or progressive");
-  }
+  // What is here already is answered, whatever else could be said against a new one.
+  const auto known = context_.store->job_of_key(key);
+  if (!known) return farm::unavailable(known.error());
+  if (*known) return answer_with(**known, true, response);
+  if (const grpc::Status sane = check_words(request); !sane.ok()) return sane;
+  const auto options = read_options(request);
+  if (!options) return wrong(options.error().message);
   const auto files = files_of(request.spec());
   if (!files) return wrong(files.error().message);
   if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
-  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
-  if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
+  const auto one = context_.wait_for_submissions();
+  if (!one) return others_submit();
   // What was not needed may have been removed meanwhile; from here on nothing is.
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
-  StoredJob stored;
-  stored.key = key;
-  stored.spec = request.spec().SerializeAsString();
-  stored.owner = request.owner();
-  stored.owner_proven = owner_proven;
-  stored.priority = request.priority();
-  stored.max_workers = request.max_workers();
-  stored.tags = std::move(*tags);
-  stored.memory = request.memory_bytes();
-  if (request.max_attempts() > 0) stored.max_attempts = request.max_attempts();
-  if (request.frame_order() != 0) stored.frame_order = request.frame_order();
-  stored.submitted_ms = wall_ms();
-  auto active =
-      make_active_job(stored, request.spec(), *shared_.assets, shared_.options.film_memory);
+  auto active = make_active_job(new_row(request, *options, owner_proven), request.spec(),
+                                *context_.assets, context_.options.film_memory);
   if (!active) return wrong(active.error().message);
-  if (!has_room_for((*active)->stored)) {
-    return no_room();
-  }
-  const auto added = shared_.store->add_job((*active)->stored);
+  return take_in(std::move(*active), response);
+}
+
+/// Stores a new job, which nobody else knows yet, and begins with it.
+grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response) {
+  if (!has_room_for(active->stored)) return no_room();
+  const auto added = context_.store->add_job(active->stored);
   if (!added) return farm::unavailable(added.error());
   core::failpoint("job-stored");
-  response.set_existed(added->existed);
   if (!added->existed) {
-    (*active)->id = JobId{added->id};
-    (*active)->stored.id = added->id;
-    {
-      const StateLock lock(shared_.mutex);
-      jobs_.note(**active, v1::LOG_LEVEL_INFO, std::nullopt, {},
-                 fmt::format("submitted by {}: {} frames",
-                             stored.owner.empty() ? "nobody in particular" : stored.owner,
-                             (*active)->numbers.size()));
-    }
-    if (core::Status started = recovery_.start(std::move(*active), {}); !started) {
+    active->id = JobId{added->id};
+    active->stored.id = added->id;
+    const std::string& owner = active->stored.owner;
+    jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
+               fmt::format("submitted by {}: {} frames",
+                           owner.empty() ? "nobody in particular" : owner, active->numbers.size()));
+    if (core::Status started = recovery_.start(std::move(active), {}); !started) {
       // Nothing was promised yet.
-      (void)shared_.store->remove_job(added->id);
+      (void)context_.store->remove_job(added->id);
       return farm::unavailable(started.error());
     }
   }
+  return answer_with(added->id, added->existed, response);
+}
+
+grpc::Status JobIntake::answer_with(uint64_t id, bool existed, v1::SubmitResponse& response) {
   v1::GetJobResponse now;
-  const grpc::Status got = queries_.get(added->id, std::nullopt, now);
+  const grpc::Status got = queries_.get(id, std::nullopt, now);
   *response.mutable_job() = now.job();
+  response.set_existed(existed);
   return got;
 }
 
 /// Whether the memory that open jobs may take holds another one.
 bool JobIntake::has_room_for(const StoredJob& job) const {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   uint64_t frames = job.frames;
   uint64_t bytes = job.spec.size();
   for (const auto& [id, active] : jobs_.all()) {
@@ -139,8 +173,8 @@ grpc::Status JobIntake::files_are_here(const v1::JobSpec& spec) {
   v1::ErrorDetail missing;
   size_t count = 0;
   for (const v1::JobFile& file : spec.files()) {
-    if (is_stored(file, *shared_.assets)) continue;
-    if (++count <= kMostMissingTold) missing.add_missing(file.sha256());
+    if (is_stored(file, *context_.assets)) continue;
+    if (++count <= kMostMissingListed) missing.add_missing(file.sha256());
   }
   if (count == 0) return grpc::Status::OK;
   return farm::wire_status(grpc::StatusCode::FAILED_PRECONDITION,
@@ -150,60 +184,56 @@ grpc::Status JobIntake::files_are_here(const v1::JobSpec& spec) {
 /// Waits for what is left of a job whose end is being stored.
 grpc::Status JobIntake::wait_until_left(uint64_t id) {
   const TimePoint patience = std::chrono::steady_clock::now() + kLeavePatience;
-  if (jobs_.wait_until_left(id, patience, shared_.stop)) return grpc::Status::OK;
+  if (jobs_.wait_until_left(id, patience, context_.stop)) return grpc::Status::OK;
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
                            fmt::format("the end of job {} is still being stored", id),
                            std::chrono::seconds(1));
 }
 
-grpc::Status JobIntake::retry(uint64_t id, v1::Job& now) {
-  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
-  if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
+void JobIntake::retry(uint64_t id, const JobReply& then) {
+  v1::Job now;
+  const auto one = context_.wait_for_submissions();
+  if (!one) return then(others_submit(), now);
+  bool open = false;
   {
     Turn turn(dispatcher_);
     ActiveJob* active = jobs_.find(id);
-    if (active != nullptr && !active->ending) {
+    // The scheduler lets go of a job an instant before its end is seen here.
+    open =
+        active != nullptr && (active->making_videos || dispatcher_.scheduler().knows(active->id));
+    if (open) {
       jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {}, "failed frames are taken up again");
       turn.tell(FramesRetried{active->id});
-      now = queries_.describe(*active);
-      return grpc::Status::OK;
+      records_.when_done(id, then);
     }
   }
+  if (context_.stop) records_.answer_late({});
+  if (open) return;
+  const grpc::Status reopened = reopen(id, now);
+  then(reopened, now);
+}
+
+/// A job that has ended is open again.
+grpc::Status JobIntake::reopen(uint64_t id, v1::Job& now) {
   if (const grpc::Status left = wait_until_left(id); !left.ok()) return left;
-  auto stored = shared_.store->job(id);
-  if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return no_job(id);
-  StoredJob& job = **stored;
-  if (!has_ended(job.state)) return why_not_open(*shared_.store, id);
-  const auto doubtful = shared_.store->doubtful(id, 1);
-  if (!doubtful) return farm::unavailable(doubtful.error());
-  if (job.state == StoredState::done && doubtful->empty()) {
-    return {grpc::StatusCode::FAILED_PRECONDITION,
-            fmt::format("job {} is done: there is nothing to take up again", id)};
-  }
-  if (!has_room_for(job)) return no_room();
-  const auto frames = shared_.store->frames(id);
-  if (!frames) return farm::unavailable(frames.error());
-  for (const StoredFrame& frame : *frames) {
-    if (frame.done) continue;
-    if (auto gone = shared_.store->forget_frame(id, frame.frame); !gone)
-      return farm::unavailable(gone.error());
-  }
+  StoredJob job;
+  if (const grpc::Status may = may_reopen(id, job); !may.ok()) return may;
+  if (core::Status gone = forget_failed_frames(id); !gone) return farm::unavailable(gone.error());
   const StoredJob before = job;
   job.state = StoredState::running;
   job.ended_ms = 0;
   job.reason.clear();
-  if (core::Status noted = shared_.store->update_job(job); !noted)
+  if (core::Status noted = context_.store->update_job(job); !noted)
     return farm::unavailable(noted.error());
-  if (core::Status taken = recovery_.recover(id); !taken) {
-    job = before;  // done, if only some of its pictures are in doubt
-    job.reason = "could not be taken up again: " + taken.error().message;
-    (void)shared_.store->update_job(
-        job);  // where this fails too it is tried again at the next start
-    return {grpc::StatusCode::FAILED_PRECONDITION, taken.error().message};
+  if (core::Status recovered = recovery_.recover(id); !recovered) {
+    job = before;  // done, if only some of its pictures are suspect
+    job.reason = "could not be taken up again: " + recovered.error().message;
+    // Where this fails too it is tried again at the next start.
+    (void)context_.store->update_job(job);
+    return {grpc::StatusCode::FAILED_PRECONDITION, recovered.error().message};
   }
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     if (ActiveJob* active = jobs_.find(id)) {
       jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {}, "taken up again");
     }
@@ -214,11 +244,36 @@ grpc::Status JobIntake::retry(uint64_t id, v1::Job& now) {
   return status;
 }
 
+/// Whether something is left to do of a job that has ended, which is read into `job`.
+grpc::Status JobIntake::may_reopen(uint64_t id, StoredJob& job) {
+  auto stored = context_.store->job(id);
+  if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
+  job = std::move(**stored);
+  if (!has_ended(job.state)) return why_not_open(*context_.store, id);
+  const auto doubtful = context_.store->doubtful(id, 1);
+  if (!doubtful) return farm::unavailable(doubtful.error());
+  if (job.state == StoredState::done && doubtful->empty()) {
+    return {grpc::StatusCode::FAILED_PRECONDITION,
+            fmt::format("job {} is done: there is nothing to take up again", id)};
+  }
+  return has_room_for(job) ? grpc::Status::OK : no_room();
+}
+
+core::Status JobIntake::forget_failed_frames(uint64_t id) {
+  const auto frames = context_.store->frames(id);
+  if (!frames) return frames.error();
+  for (const StoredFrame& frame : *frames) {
+    if (frame.done) continue;
+    if (auto gone = context_.store->forget_frame(id, frame.frame); !gone) return gone;
+  }
+  return {};
+}
+
 grpc::Status JobIntake::remove(uint64_t id) {
-  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
-  if (!one) return overloaded("other jobs are being submitted", std::chrono::milliseconds(500));
+  const auto one = context_.wait_for_submissions();
+  if (!one) return others_submit();
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     const ActiveJob* active = jobs_.find(id);
     if (active != nullptr && !active->ending) {
       return {grpc::StatusCode::FAILED_PRECONDITION,
@@ -226,34 +281,39 @@ grpc::Status JobIntake::remove(uint64_t id) {
     }
   }
   if (const grpc::Status left = wait_until_left(id); !left.ok()) return left;
-  const auto stored = shared_.store->job(id);
-  if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return no_job(id);
-  const auto remove_folders = [&] {
-    std::error_code ignored;  // what stays is found after the next start
-    std::filesystem::remove_all(shared_.films_folder(id), ignored);
-    std::filesystem::remove_all(shared_.output_folder(id), ignored);
-  };
-  core::Status removed = shared_.store->remove_job(id);
-  if (!removed) {
-    // A full disk cannot even store that the job is gone: what is to go makes the room.
-    remove_folders();
-    removed = shared_.store->remove_job(id);
-  }
-  if (!removed) return farm::unavailable(removed.error());
-  timelines_.forget(id);
-  remove_folders();
+  const auto stored = context_.store->job(id);
+  if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
+  if (core::Status gone = forget(id); !gone) return farm::unavailable(gone.error());
   // Its files have been of use until now: they stay for a while, should it come again.
   v1::JobSpec spec;
   if (spec.ParseFromString((*stored)->spec)) {
     for (const v1::JobFile& file : spec.files()) {
       if (const auto digest = farm::digest_from_wire(file.sha256())) {
-        shared_.assets->touch(core::to_hex(*digest));
+        context_.assets->touch(core::to_hex(*digest));
       }
     }
   }
   sweeper_.job_removed();
   return grpc::Status::OK;
+}
+
+/// Forgets what is stored of the job and removes its folders.
+core::Status JobIntake::forget(uint64_t id) {
+  const auto remove_folders = [&] {
+    std::error_code ignored;  // what stays is found after the next start
+    std::filesystem::remove_all(context_.films_folder(id), ignored);
+    std::filesystem::remove_all(context_.output_folder(id), ignored);
+  };
+  core::Status removed = context_.store->remove_job(id);
+  if (!removed) {
+    // A full disk cannot even store that the job is gone: what is to go makes the room.
+    remove_folders();
+    removed = context_.store->remove_job(id);
+  }
+  if (!removed) return removed;
+  timelines_.forget(id);
+  remove_folders();
+  return {};
 }
 
 }  // namespace hyades::coordinator

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include <grpcpp/support/status.h>
 
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
+#include "coordinator/controller/job_records.h"
 #include "coordinator/controller/job_table.h"
-#include "coordinator/controller/shared.h"
 #include "coordinator/controller/timeline.h"
 
 namespace hyades::coordinator {
@@ -20,33 +22,47 @@ class Sweeper;
 /// two seconds. Errors as docs/wire.md has them. Thread-safe.
 class JobIntake {
  public:
-  JobIntake(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, JobQueries& queries,
-            JobRecovery& recovery, DiskWatch& disk, Sweeper& sweeper, Timelines& timelines)
-      : shared_(shared),
+  JobIntake(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, JobQueries& queries,
+            JobRecords& records, JobRecovery& recovery, DiskWatch& disk, Sweeper& sweeper,
+            Timelines& timelines)
+      : context_(context),
         dispatcher_(dispatcher),
         jobs_(jobs),
         queries_(queries),
+        records_(records),
         recovery_(recovery),
         disk_(disk),
         sweeper_(sweeper),
         timelines_(timelines) {}
 
+  /// Takes in a job, or answers with the one that has come with the same key. `owner_proven`: a
+  /// token has shown who the owner is.
   grpc::Status submit(const v1::SubmitRequest& request, bool owner_proven,
                       v1::SubmitResponse& response) HYADES_EXCLUDES(state_lock);
-  /// Failed frames, and those in doubt, are rendered again.
-  grpc::Status retry(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);
-  /// The job has to have ended.
+  /// Has failed frames, and suspect ones, rendered again. `then` is called once, perhaps by
+  /// another thread: when that is stored, or after half a second with UNAVAILABLE.
+  void retry(uint64_t job, const JobReply& then) HYADES_EXCLUDES(state_lock);
+  /// Removes a job that has ended, with its outputs and films.
   grpc::Status remove(uint64_t job) HYADES_EXCLUDES(state_lock);
 
  private:
+  grpc::Status take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response)
+      HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+  grpc::Status reopen(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);
+  grpc::Status may_reopen(uint64_t id, StoredJob& job) HYADES_EXCLUDES(state_lock);
+  core::Status forget_failed_frames(uint64_t job);
+  core::Status forget(uint64_t job);
+  grpc::Status answer_with(uint64_t job, bool existed, v1::SubmitResponse& response)
+      HYADES_EXCLUDES(state_lock);
   bool has_room_for(const StoredJob& job) const HYADES_EXCLUDES(state_lock);
   grpc::Status files_are_here(const v1::JobSpec& spec);
   grpc::Status wait_until_left(uint64_t job) HYADES_EXCLUDES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   JobQueries& queries_;
+  JobRecords& records_;
   JobRecovery& recovery_;
   DiskWatch& disk_;
   Sweeper& sweeper_;

@@ -1,13 +1,17 @@
 #include "coordinator/controller/job_queries.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstddef>
 #include <iterator>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/disk_watch.h"
-#include "coordinator/controller/not_there.h"
+#include "coordinator/controller/not_found.h"
 #include "core/film/film_exr.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
@@ -17,12 +21,11 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint32_t kMostListed = 1000;
-/// Answers to those who read slowly, or never, lie in memory: they are kept short.
+constexpr uint32_t kMostListed = 1000;  ///< jobs
+/// Bytes of frames in an answer: answers to those who read slowly, or never, lie in memory.
 constexpr size_t kMostFrameBytes = size_t{64} << 10U;
-constexpr uint32_t kMostFramesAtOnce = 2000;
-
-constexpr uint32_t kMostSteps = 2000;
+constexpr uint32_t kMostFramesAtOnce = 2000;  ///< that are read from the store
+constexpr uint32_t kMostSteps = 2000;         ///< of a timeline, in an answer
 
 v1::TimelineStep to_wire(const TimedStep& step) {
   v1::TimelineStep wire;
@@ -96,26 +99,26 @@ v1::Job JobQueries::describe(const StoredJob& stored) const {
 }
 
 void JobQueries::count_cost(v1::Job& job) const {
-  job.set_cost(job.core_seconds() / 3600 * shared_.options.price.per_core_hour);
+  job.set_cost(job.core_seconds() / 3600 * context_.options.price.per_core_hour);
 }
 
 bool JobQueries::list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
   if (request.ended()) return false;
   const int limit = static_cast<int>(most_listed(request));
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   const bool all = request.before() == 0;
   auto active = all ? jobs_.all().end() : jobs_.all().lower_bound(JobId{request.before()});
   auto waiting = all ? jobs_.waiting().end() : jobs_.waiting().lower_bound(request.before());
   while (active != jobs_.all().begin() || waiting != jobs_.waiting().begin()) {
     // The newest of both.
-    const bool taken_up = waiting == jobs_.waiting().begin() ||
-                          (active != jobs_.all().begin() &&
-                           std::prev(active)->second->stored.id > std::prev(waiting)->first);
-    const StoredJob& stored = taken_up ? (--active)->second->stored : (--waiting)->second;
+    const bool recovered = waiting == jobs_.waiting().begin() ||
+                           (active != jobs_.all().begin() &&
+                            std::prev(active)->second->stored.id > std::prev(waiting)->first);
+    const StoredJob& stored = recovered ? (--active)->second->stored : (--waiting)->second;
     if (!request.owner().empty() && stored.owner != request.owner()) continue;
-    // One that waits is open already, for an instant, while it is taken up.
-    if (!taken_up && jobs_.all().contains(JobId{stored.id})) continue;
-    *response.add_jobs() = taken_up ? describe(*active->second) : describe(stored);
+    // One that waits is open already, for an instant, while it is recovered.
+    if (!recovered && jobs_.all().contains(JobId{stored.id})) continue;
+    *response.add_jobs() = recovered ? describe(*active->second) : describe(stored);
     if (response.jobs_size() < limit) continue;
     response.set_next_before(stored.id);
     break;
@@ -125,9 +128,9 @@ bool JobQueries::list_open(const v1::ListJobsRequest& request, v1::ListJobsRespo
 
 grpc::Status JobQueries::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
   const uint32_t limit = most_listed(request);
-  const auto jobs = shared_.store->list(request.ended(), request.owner(), request.before(), limit);
+  const auto jobs = context_.store->list(request.ended(), request.owner(), request.before(), limit);
   if (!jobs) return farm::unavailable(jobs.error());
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   for (const StoredJob& job : *jobs) {
     const ActiveJob* active = jobs_.find(job.id);
     *response.add_jobs() = active != nullptr ? describe(*active) : describe(job);
@@ -138,7 +141,7 @@ grpc::Status JobQueries::list(const v1::ListJobsRequest& request, v1::ListJobsRe
 
 bool JobQueries::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response,
                           v1::FrameState only) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   const ActiveJob* active = jobs_.find(id);
   if (active == nullptr) return false;
   FramePage page(*response.mutable_frames());
@@ -156,12 +159,11 @@ grpc::Status JobQueries::get(uint64_t id, std::optional<int32_t> after,
                              v1::GetJobResponse& response, v1::FrameState only) {
   if (get_open(id, after, response, only)) return grpc::Status::OK;
   FramePage page(*response.mutable_frames());
-  const auto stored = shared_.store->job(id);
-  if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return no_job(id);
+  const auto stored = context_.store->job(id);
+  if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   *response.mutable_job() = describe(**stored);
   for (;;) {
-    const auto frames = shared_.store->frames(id, after, kMostFramesAtOnce);
+    const auto frames = context_.store->frames(id, after, kMostFramesAtOnce);
     if (!frames) return farm::unavailable(frames.error());
     for (const StoredFrame& row : *frames) {
       const v1::Frame frame = describe_over(row, **stored);
@@ -181,22 +183,29 @@ grpc::Status JobQueries::get(uint64_t id, std::optional<int32_t> after,
 }
 
 bool JobQueries::changes_of_open(uint64_t id, ChangeCursor& cursor, v1::WatchEvent& event) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   const ActiveJob* active = jobs_.find(id);
   if (active == nullptr) return false;
   *event.mutable_job() = describe(*active);
-  if (!cursor.after) cursor.next_version = active->version;
   FramePage page(*event.mutable_changed());
-  for (auto it = above(active->frames, cursor.after); it != active->frames.end(); ++it) {
-    if (cursor.version != 0 && it->second.version <= cursor.version) continue;
-    if (page.full()) {
-      event.set_more(true);
-      return true;
+  if (cursor.version != 0) {
+    auto it = active->changed.upper_bound(cursor.version);
+    for (; it != active->changed.end() && !page.full(); ++it) {
+      page.add(active->describe_frame(it->second, active->frames.at(it->second)));
+      cursor.version = it->first;
     }
+    event.set_more(it != active->changed.end());
+    return true;
+  }
+  if (!cursor.after) cursor.first_version = active->version;
+  auto it = above(active->frames, cursor.after);
+  for (; it != active->frames.end() && !page.full(); ++it) {
     page.add(active->describe_frame(it->first, it->second));
     cursor.after = it->first;
   }
-  cursor.version = cursor.next_version;
+  event.set_more(it != active->frames.end());
+  if (event.more()) return true;
+  cursor.version = cursor.first_version;
   cursor.after.reset();
   return true;
 }
@@ -219,14 +228,14 @@ grpc::Status JobQueries::changes(uint64_t id, ChangeCursor& cursor, v1::WatchEve
 
 grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     if (const ActiveJob* active = jobs_.find(id)) {
       const auto noted = active->frames.find(frame);
       if (noted == active->frames.end()) return no_frame(id, frame);
       now.frame = active->describe_frame(frame, noted->second);
-      now.tag = fmt::format("\"{}.{}.{}\"", shared_.started_ms, shared_.incarnation,
+      now.tag = fmt::format("\"{}.{}.{}\"", context_.started_ms, context_.incarnation,
                             noted->second.version);
-      for (const core::OutputDesc& output : active->read.job.outputs) {
+      for (const core::OutputDesc& output : active->read->job.outputs) {
         if (output.file.ends_with(".exr")) continue;
         now.tone_map = output.tone_map;
         now.exposure = output.exposure;
@@ -235,27 +244,25 @@ grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
       return grpc::Status::OK;
     }
   }
-  const auto stored = shared_.store->job(id);
-  if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return no_job(id);
+  const auto stored = context_.store->job(id);
+  if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   const auto before = frame == INT32_MIN ? std::nullopt : std::optional(frame - 1);
-  const auto frames = shared_.store->frames(id, before, 1);
+  const auto frames = context_.store->frames(id, before, 1);
   if (!frames) return farm::unavailable(frames.error());
   if (frames->empty() || frames->front().frame != frame) return no_frame(id, frame);
   now.frame = describe_over(frames->front(), **stored);
   return grpc::Status::OK;
 }
 
-/// Of a frame that is done.
+/// The film of a frame that is done.
 grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
-  const auto stored = shared_.store->job(id);
-  if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return no_job(id);
-  const auto outputs = shared_.store->outputs(id, 0, UINT32_MAX);
+  const auto stored = context_.store->job(id);
+  if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
+  const auto outputs = context_.store->outputs(id, 0, UINT32_MAX);
   if (!outputs) return farm::unavailable(outputs.error());
   for (const StoredOutput& output : *outputs) {
     if (output.frame != frame || !output.path.ends_with(".film.exr")) continue;
-    auto file = core::read_film_exr(shared_.output_folder(id) + "/" + output.path);
+    auto file = core::read_film_exr(context_.output_folder(id) + "/" + output.path);
     if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
     then(grpc::Status::OK, file->info, std::make_shared<const core::Film>(std::move(file->film)));
     return grpc::Status::OK;
@@ -267,7 +274,7 @@ grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& 
 }
 
 grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
-  StateLock lock(shared_.mutex);
+  StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(id);
   if (active == nullptr || active->ending) {
     lock.unlock();
@@ -285,26 +292,25 @@ grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "nothing of the frame is there yet",
                              std::chrono::seconds(1));
   }
-  core::FilmInfo info = active->film_info(frame);
-  info.worker_class = noted->second.worker_class;
   // The film store's thread copies, as only it may look at films while they grow.
-  active->film_store->call(
-      [film_store = active->film_store.get(), frame, info, then = std::move(then)] {
-        const auto film = film_store->film(frame);
-        const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
-        then(copy ? grpc::Status::OK
-                  : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
-                                      "nothing of the frame is there yet", std::chrono::seconds(1)),
-             info, copy);
-      });
+  active->film_store->call([film_store = active->film_store.get(), read = active->read, frame,
+                            worker_class = noted->second.worker_class, then = std::move(then)] {
+    core::FilmInfo info = film_info(*read, frame);
+    info.worker_class = worker_class;
+    const auto film = film_store->film(frame);
+    const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
+    then(copy ? grpc::Status::OK
+              : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
+                                  "nothing of the frame is there yet", std::chrono::seconds(1)),
+         info, copy);
+  });
   return grpc::Status::OK;
 }
 
 grpc::Status JobQueries::timeline(const v1::ListTimelineRequest& request,
                                   v1::ListTimelineResponse& response) {
-  const auto known = shared_.store->state(request.job());
-  if (!known) return farm::unavailable(known.error());
-  if (!*known) return no_job(request.job());
+  const auto known = context_.store->state(request.job());
+  if (const grpc::Status there = job_is_there(request.job(), known); !there.ok()) return there;
   const uint32_t limit = request.limit() == 0 ? kMostSteps : std::min(request.limit(), kMostSteps);
   const Timelines::Page page = timelines_.page(request.job(), request.after(), limit);
   for (const TimedStep& step : page.steps) *response.add_steps() = to_wire(step);
@@ -314,7 +320,7 @@ grpc::Status JobQueries::timeline(const v1::ListTimelineRequest& request,
 }
 
 bool JobQueries::is_for_video(uint64_t job, const std::string& path) const {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   const ActiveJob* active = jobs_.find(job);
   if (active == nullptr) return false;
   const std::vector<core::VideoDesc>& videos = active->videos();

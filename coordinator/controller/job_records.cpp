@@ -1,13 +1,17 @@
 #include "coordinator/controller/job_records.h"
 
+#include <chrono>
 #include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/job_queries.h"
-#include "coordinator/controller/wall_clock.h"
 #include "coordinator/controller/watchers.h"
+#include "core/base/wall_clock.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
@@ -16,8 +20,7 @@ namespace {
 
 /// After this somebody who waits for a change to be stored is told to come again.
 constexpr Duration kStorePatience = std::chrono::milliseconds(500);
-/// For the last lines of a job that has ended, a second apart.
-constexpr int kMostTries = 20;
+constexpr int kMostTries = 20;  ///< to store the last lines of a job that has ended
 constexpr Duration kLinesAgain = std::chrono::seconds(1);
 /// How far the account of a job may lag behind in the store.
 constexpr Duration kStoreCoreEvery = std::chrono::seconds(10);
@@ -30,34 +33,54 @@ grpc::Status not_stored(const std::string& why) {
 
 }  // namespace
 
-void JobRecords::when_stored(uint64_t job, JobReply then) {
-  replies_.push_back(
-      {next_reply_++, job, std::chrono::steady_clock::now() + kStorePatience, std::move(then)});
+void JobRecords::when_stored(uint64_t job, JobReply then) { wait(job, false, std::move(then)); }
+
+void JobRecords::when_done(uint64_t key, JobReply then) {
+  context_.background.add(key, [this, key, number = next_reply_] {
+    answer(key, number);
+    return true;
+  });
+  wait(key, true, std::move(then));
 }
 
-/// Stores what has changed of an open job. All of a job's rows are stored by its tasks, one after
-/// the other, and each as the job is then: what is stored last is what was last.
+void JobRecords::wait(uint64_t key, bool for_tasks, JobReply then) {
+  const TimePoint give_up = std::chrono::steady_clock::now() + kStorePatience;
+  replies_.push_back({next_reply_++, key, for_tasks, give_up, std::move(then)});
+}
+
+void JobRecords::answer(uint64_t key, uint64_t number) {
+  std::vector<PendingReply> told;
+  v1::Job now;
+  {
+    const StateLock lock(context_.mutex);
+    if (const ActiveJob* active = jobs_.find(key)) now = queries_.describe(*active);
+    told = take_replies([&](const PendingReply& r) { return r.number == number; });
+  }
+  for (const PendingReply& reply : told) reply.then(grpc::Status::OK, now);
+}
+
 void JobRecords::store(ActiveJob& active) {
   if (std::exchange(active.storing_row, true)) return;
-  shared_.background.add(active.stored.id, [this, id = active.stored.id] { return store_now(id); });
+  context_.background.add(active.stored.id,
+                          [this, id = active.stored.id] { return store_now(id); });
 }
 
 bool JobRecords::store_now(uint64_t id) {
   StoredJob job;
   uint64_t before = 0;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     ActiveJob* active = jobs_.find(id);
     if (active == nullptr || active->ending) return true;  // its end will be stored
     active->storing_row = false;
     job = active->stored;
     before = next_reply_;
   }
-  const core::Status done = shared_.store->update_job(job);
+  const core::Status done = context_.store->update_job(job);
   std::vector<PendingReply> told;
   v1::Job now;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     ActiveJob* active = jobs_.find(id);
     if (active == nullptr) return true;
     if (!done) {
@@ -70,7 +93,8 @@ bool JobRecords::store_now(uint64_t id) {
     if (!active->row_trouble.empty()) active->touch();
     active->row_trouble.clear();
     now = queries_.describe(*active);
-    told = take_replies([&](const PendingReply& r) { return r.job == id && r.number < before; });
+    told = take_replies(
+        [&](const PendingReply& r) { return r.job == id && !r.for_tasks && r.number < before; });
   }
   for (const PendingReply& reply : told) reply.then(grpc::Status::OK, now);
   return true;
@@ -87,13 +111,12 @@ std::vector<JobRecords::PendingReply> JobRecords::take_replies(
   return taken;
 }
 
-/// Those who have waited for long enough are let go.
 void JobRecords::answer_late(TimePoint now) {
   std::vector<std::pair<PendingReply, std::string>> late;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     for (PendingReply& reply :
-         take_replies([&](const PendingReply& r) { return shared_.stop || r.give_up <= now; })) {
+         take_replies([&](const PendingReply& r) { return context_.stop || r.give_up <= now; })) {
       const ActiveJob* active = jobs_.find(reply.job);
       late.emplace_back(std::move(reply), active != nullptr ? active->row_trouble : std::string());
     }
@@ -112,7 +135,7 @@ void JobRecords::look_after(TimePoint now, bool disk_full) {
     }
     if (active->lines.empty() || active->storing_lines || now < active->lines_again) continue;
     active->storing_lines = true;
-    shared_.background.add(active->stored.id, [this, id = active->id] { return store_lines(id); });
+    context_.background.add(active->stored.id, [this, id = active->id] { return store_lines(id); });
   }
 }
 
@@ -120,13 +143,13 @@ void JobRecords::look_after(TimePoint now, bool disk_full) {
 bool JobRecords::store_lines(JobId id) {
   std::vector<StoredLine> lines;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     ActiveJob* active = jobs_.find(id);
     if (active == nullptr) return true;
     if (!active->lines.empty()) lines = active->take_lines();
   }
-  const core::Status stored = shared_.store->add_lines(static_cast<uint64_t>(id), lines);
-  const StateLock lock(shared_.mutex);
+  const core::Status stored = context_.store->add_lines(static_cast<uint64_t>(id), lines);
+  const StateLock lock(context_.mutex);
   ActiveJob* still = jobs_.find(id);
   if (still == nullptr) return true;
   still->storing_lines = false;
@@ -142,7 +165,7 @@ void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) 
   stored.state = cancelled                                  ? StoredState::cancelled
                  : stored.frames_failed > 0 || !why.empty() ? StoredState::failed
                                                             : StoredState::done;
-  stored.ended_ms = wall_ms();
+  stored.ended_ms = core::wall_ms();
   stored.reason = farm::wire_text(why);
   for (const auto& [number, frame] : active.frames) {
     if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
@@ -152,20 +175,20 @@ void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) 
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
              fmt::format("ended: {} frames done, {} failed{}", stored.frames_done,
                          stored.frames_failed, cancelled ? ", cancelled" : ""));
-  shared_.background.add(stored.id, [this, id = stored.id] { return store_end(id); });
+  context_.background.add(stored.id, [this, id = stored.id] { return store_end(id); });
 }
 
 bool JobRecords::store_end(uint64_t id) {
   StoredJob job;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     job = jobs_.find(id)->stored;
   }
   // The end first: on a full disk there may be room for it alone.
-  const core::Status done = shared_.store->update_job(job);
+  const core::Status done = context_.store->update_job(job);
   std::vector<StoredLine> lines;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     ActiveJob* over = jobs_.find(id);
     if (!done) {
       over->row_trouble = "its end cannot be stored: " + done.error().message;
@@ -174,28 +197,28 @@ bool JobRecords::store_end(uint64_t id) {
     }
     lines = over->take_lines();
   }
-  if (!lines.empty() && !shared_.store->add_lines(id, lines)) {
+  if (!lines.empty() && !context_.store->add_lines(id, lines)) {
     // The job is over for whoever waits for it; its last words come as long as there is hope.
-    shared_.background.add(id, [this, id, lines = std::move(lines), tries = 0]() mutable {
-      const auto still = shared_.store->state(id);
+    context_.background.add(id, [this, id, lines = std::move(lines), tries = 0]() mutable {
+      const auto still = context_.store->state(id);
       const bool deleted = still && !*still;
-      return deleted || shared_.store->add_lines(id, lines).ok() || ++tries == kMostTries;
+      return deleted || context_.store->add_lines(id, lines).ok() || ++tries == kMostTries;
     });
   }
   std::unique_ptr<ActiveJob> over;
   std::vector<PendingReply> told;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     over = jobs_.take_out(id);
     told = take_replies([&](const PendingReply& reply) { return reply.job == id; });
     watchers_.poke(id);
   }
   for (const PendingReply& reply : told) reply.then(grpc::Status::OK, queries_.describe(job));
   over.reset();  // waits for the film store's thread
-  // Films of frames that failed stay, should they be taken up again.
+  // Films of frames that failed stay, should they be retried.
   std::error_code ignored;
   if (job.state == StoredState::done)
-    std::filesystem::remove_all(shared_.films_folder(id), ignored);
+    std::filesystem::remove_all(context_.films_folder(id), ignored);
   jobs_.left(id);
   return true;
 }

@@ -1,11 +1,17 @@
 #include "coordinator/controller/job_recovery.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "coordinator/controller/job_films.h"
-#include "coordinator/controller/wall_clock.h"
+#include "coordinator/controller/worker_link.h"
+#include "core/base/wall_clock.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
 #include "farm/wire.h"
@@ -19,16 +25,16 @@ constexpr uint64_t kMostAtOnce = 256;
 
 /// How many frames of a job may be in work together: no more than half of `film_memory` holds, or
 /// one.
-uint32_t frames_at_once(const ActiveJob& active, uint64_t film_memory) {
+uint32_t frames_at_once(const ActiveJob& active, uint64_t film_memory) HYADES_REQUIRES(state_lock) {
   const uint64_t film = std::max<uint64_t>(active.film_bytes, 1);
-  const uint64_t wanted = active.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE
+  const uint64_t wanted = options_of(active.stored).frame_order() == v1::FRAME_ORDER_PROGRESSIVE
                               ? std::clamp<uint64_t>(kProgressiveBytes / film, 3, kMostAtOnce)
                               : JobPlan{}.frames_in_flight;
   return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
 }
 
-/// Whether a job can never be taken up as it is: its record is damaged, its files are gone, or what
-/// they say is not allowed here. All else (a full disk, one that does not answer) may pass.
+/// Whether a job can never be recovered as it is: its record is damaged, its files are gone, or
+/// what they say is not allowed here. All else (a full disk, one that does not answer) may pass.
 bool lasting_obstacle(JobStore& store, farm::ContentStore& assets, uint64_t id,
                       uint64_t film_memory) {
   const auto stored = store.job(id);
@@ -47,6 +53,37 @@ bool lasting_obstacle(JobStore& store, farm::ContentStore& assets, uint64_t id,
   return !make_active_job(**stored, spec, assets, film_memory);
 }
 
+/// What workers are told of the job; takes its spec.
+grpc::ByteBuffer brief_of(ActiveJob& active) {
+  v1::CoordinatorMessage told;
+  v1::JobBrief& brief = *told.mutable_job();
+  brief.set_job(static_cast<uint64_t>(active.id));
+  brief.mutable_spec()->Swap(&active.spec);
+  brief.set_key(farm::to_wire(active.key));
+  return bytes_of(told);
+}
+
+/// What the scheduler is told of the job.
+JobPlan plan_of(const ActiveJob& active, int32_t tile_size, uint64_t film_memory)
+    HYADES_REQUIRES(state_lock) {
+  const v1::Job options = options_of(active.stored);
+  JobPlan plan;
+  plan.frames = active.numbers;
+  plan.region = active.region;
+  plan.tile_size = tile_size;
+  plan.batches = core::batch_count(active.read->job.sampling.samples);
+  plan.priority = active.stored.priority;
+  plan.owner = active.stored.owner;
+  plan.max_workers = options.max_workers();
+  plan.max_attempts = options.max_attempts();
+  plan.needs = needs_of(options);
+  if (options.frame_order() == v1::FRAME_ORDER_PROGRESSIVE) plan.order = FrameOrder::progressive;
+  plan.whole_frames = active.layout.layers.splats;
+  plan.film_bytes = active.film_bytes;
+  plan.frames_in_flight = frames_at_once(active, film_memory);
+  return plan;
+}
+
 }  // namespace
 
 bool is_stored(const v1::JobFile& file, farm::ContentStore& assets) {
@@ -55,93 +92,102 @@ bool is_stored(const v1::JobFile& file, farm::ContentStore& assets) {
 }
 
 core::Status JobRecovery::recover_all() {
-  const auto ids = shared_.store->open_jobs();
+  const auto ids = context_.store->open_jobs();
   if (!ids) return ids.error();
   for (const uint64_t id : *ids) {
-    core::Status taken = recover(id);
-    if (taken) continue;
-    if (!lasting_obstacle(*shared_.store, *shared_.assets, id, shared_.options.film_memory)) {
-      // Perhaps the disk is full, or did not answer: the job waits, and says why.
-      StoredJob waiting;
-      if (auto stored = shared_.store->job(id); stored && *stored) waiting = std::move(**stored);
-      waiting.id = id;
-      waiting.reason = "waits to be taken up again: " + taken.error().message;
-      if (!waiting.spec.empty()) (void)shared_.store->update_job(waiting);
-      const StateLock lock(shared_.mutex);
-      jobs_.wait_for_recovery(std::move(waiting));
-      shared_.background.add(id, [this, id] { return recover_later(id); });
-      continue;
-    }
-    if (core::Status noted = give_up(id, taken.error()); !noted) {
-      shared_.background.add(id, [this, id] { return recover_later(id); });
-    }
+    const core::Status recovered = recover(id);
+    if (recovered) continue;
+    const bool lasts =
+        lasting_obstacle(*context_.store, *context_.assets, id, context_.options.film_memory);
+    if (!lasts || !give_up(id, recovered.error())) wait(id, recovered.error());
   }
   return {};
+}
+
+/// Perhaps the disk is full, or does not answer: the job waits, and says why.
+void JobRecovery::wait(uint64_t id, const core::Error& why) {
+  StoredJob waiting;
+  if (auto stored = context_.store->job(id); stored && *stored) waiting = std::move(**stored);
+  waiting.id = id;
+  waiting.reason = "waits to be taken up again: " + why.message;
+  if (!waiting.spec.empty()) (void)context_.store->update_job(waiting);
+  const StateLock lock(context_.mutex);
+  jobs_.wait_for_recovery(std::move(waiting));
+  context_.background.add(id, [this, id] { return recover_later(id); });
 }
 
 /// Whether there is nothing left to try; for the job's tasks.
 bool JobRecovery::recover_later(uint64_t id) {
   if (!try_to_recover(id)) return false;
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   jobs_.no_longer_waits(id);
   return true;
 }
 
 bool JobRecovery::try_to_recover(uint64_t id) {
-  if (shared_.stop) return true;
+  if (context_.stop) return true;
   // Not while somebody deletes it, or unused files are swept.
-  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
+  const auto one = context_.wait_for_submissions();
   if (!one) return false;
-  const auto stored = shared_.store->job(id);
+  const auto stored = context_.store->job(id);
   if (!stored) return false;
   if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
-  const core::Status taken = recover(id);
-  if (taken) return true;
-  return lasting_obstacle(*shared_.store, *shared_.assets, id, shared_.options.film_memory) &&
-         give_up(id, taken.error()).ok();
+  const core::Status recovered = recover(id);
+  if (recovered) return true;
+  return lasting_obstacle(*context_.store, *context_.assets, id, context_.options.film_memory) &&
+         give_up(id, recovered.error()).ok();
 }
 
-/// The job fails alone, with the reason kept; `retry` takes it up again.
+/// The job fails alone, with the reason kept; `retry` reopens it.
 core::Status JobRecovery::give_up(uint64_t id, const core::Error& why) {
-  auto stored = shared_.store->job(id);
+  auto stored = context_.store->job(id);
   if (!stored) return stored.error();
   if (!*stored) return {};
   (*stored)->state = StoredState::failed;
-  (*stored)->ended_ms = wall_ms();
+  (*stored)->ended_ms = core::wall_ms();
   (*stored)->reason = "could not be taken up again: " + why.message;
-  return shared_.store->update_job(**stored);
+  return context_.store->update_job(**stored);
 }
 
 core::Status JobRecovery::recover(uint64_t id) {
-  auto stored = shared_.store->job(id);
+  auto stored = context_.store->job(id);
   if (!stored) return stored.error();
   if (!*stored) return core::Error{"it is not there"};
   v1::JobSpec spec;
   if (!spec.ParseFromString((*stored)->spec)) return core::Error{"its record is damaged"};
   for (const v1::JobFile& file : spec.files()) {
-    if (is_stored(file, *shared_.assets)) continue;
+    if (is_stored(file, *context_.assets)) continue;
     return core::Error{file.path() +
                        " is gone or damaged on the coordinator's disk: submit the job (or the "
                        "file with another) again, then 'retry' takes this one up"};
   }
-  auto active = make_active_job(**stored, spec, *shared_.assets, shared_.options.film_memory);
+  auto active = make_active_job(**stored, spec, *context_.assets, context_.options.film_memory);
   if (!active) return active.error();
   (*active)->id = JobId{id};
-  RestoredJob restored;
-  const auto frames = shared_.store->frames(id);
+  (*active)->core_ns_stored = (*active)->stored.core_ns;
+  auto restored = restore_frames(**active);
+  if (!restored) return restored.error();
+  return start(std::move(*active), std::move(*restored));
+}
+
+/// The frames of the job that are over, but for those that are rendered again.
+core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
+  const auto id = static_cast<uint64_t>(active.id);
+  const auto frames = context_.store->frames(id);
   if (!frames) return frames.error();
-  const auto repeated = frames_to_repeat(**active, *frames);
+  const auto repeated = frames_to_repeat(active, *frames);
   if (!repeated) return repeated.error();
-  (*active)->stored.preview.reset();  // it may be rendered again
+  RestoredJob restored;
+  active.stored.preview.reset();  // it may be rendered again
   for (const StoredFrame& frame : *frames) {
-    FrameNote& note = (*active)->frames[frame.frame];
+    FrameNote& note = active.frames[frame.frame];
     if (repeated->contains(frame.frame)) {
-      if (auto gone = shared_.store->forget_frame(id, frame.frame); !gone) return gone;
+      if (auto gone = context_.store->forget_frame(id, frame.frame); !gone) return gone.error();
       note.restarts = frame.restarts + 1;
       jobs_.note(
-          **active, v1::LOG_LEVEL_WARNING, frame.frame, {},
+          active, v1::LOG_LEVEL_WARNING, frame.frame, {},
           frame.doubtful
-              ? "a worker that had a part in it was found odd: it is rendered again"
+              ? "a worker that had a part in it was found divergent: it is rendered again"
               : "its outputs are gone or damaged, or went into a video that is made anew: it is "
                 "rendered again");
       continue;
@@ -150,30 +196,29 @@ core::Status JobRecovery::recover(uint64_t id) {
     note.restarts = frame.restarts;
     if (frame.done) {
       restored.finished.push_back(frame.frame);
-      (*active)->stored.preview = frame.frame;
+      active.stored.preview = frame.frame;
       note.state = v1::FRAME_STATE_DONE;
-      note.samples_done = (*active)->samples_per_frame;
-      (*active)->samples_done += note.samples_done;
+      note.samples_done = active.samples_per_frame;
+      active.samples_done += note.samples_done;
     } else {
       restored.failed.push_back({frame.frame, frame.reason});
       note.state = v1::FRAME_STATE_FAILED;
       note.reason = frame.reason;
     }
   }
-  (*active)->core_ns_stored = (*active)->stored.core_ns;
-  (*active)->stored.frames_done = static_cast<uint32_t>(restored.finished.size());
-  (*active)->stored.frames_failed = static_cast<uint32_t>(restored.failed.size());
-  return start(std::move(*active), std::move(restored));
+  active.stored.frames_done = static_cast<uint32_t>(restored.finished.size());
+  active.stored.frames_failed = static_cast<uint32_t>(restored.failed.size());
+  return restored;
 }
 
 /// Outputs that are missing or have another size than when they were written.
 core::Result<std::vector<StoredOutput>> JobRecovery::lost_outputs(uint64_t id) const {
-  const auto outputs = shared_.store->outputs(id, 0, UINT32_MAX);
+  const auto outputs = context_.store->outputs(id, 0, UINT32_MAX);
   if (!outputs) return outputs.error();
   std::vector<StoredOutput> lost;
   for (const StoredOutput& output : *outputs) {
     std::error_code failed;
-    const std::string path = shared_.output_folder(id) + "/" + output.path;
+    const std::string path = context_.output_folder(id) + "/" + output.path;
     const auto size = std::filesystem::file_size(path, failed);
     // What cannot be looked at now may be as it should.
     if (failed && failed != std::errc::no_such_file_or_directory &&
@@ -190,8 +235,8 @@ core::Result<std::vector<StoredOutput>> JobRecovery::lost_outputs(uint64_t id) c
 core::Status JobRecovery::repeat_for_videos(const ActiveJob& active,
                                             const std::vector<int32_t>& done,
                                             std::set<int32_t>& repeated) {
-  const uint64_t id = active.stored.id;
-  const auto outputs = shared_.store->outputs(id, 0, UINT32_MAX);
+  const auto id = static_cast<uint64_t>(active.id);
+  const auto outputs = context_.store->outputs(id, 0, UINT32_MAX);
   if (!outputs) return outputs.error();
   std::set<std::string> paths;
   for (const StoredOutput& output : *outputs) paths.insert(output.path);
@@ -200,7 +245,7 @@ core::Status JobRecovery::repeat_for_videos(const ActiveJob& active,
     before = repeated.size();
     for (const core::VideoDesc& video : active.videos()) {
       if (repeated.empty() && paths.contains(video.file)) continue;
-      if (core::Status gone = shared_.store->change_outputs(id, {video.file}, {}); !gone)
+      if (core::Status gone = context_.store->change_outputs(id, {video.file}, {}); !gone)
         return gone;
       paths.erase(video.file);
       for (const int32_t number : done) {
@@ -211,11 +256,11 @@ core::Status JobRecovery::repeat_for_videos(const ActiveJob& active,
   return {};
 }
 
-/// Of the frames that are over, those that are rendered again: they are in doubt, or of what they
+/// Of the frames that are over, those that are rendered again: they are suspect, or of what they
 /// have written something is gone.
 core::Result<std::set<int32_t>> JobRecovery::frames_to_repeat(
     const ActiveJob& active, const std::vector<StoredFrame>& frames) {
-  const uint64_t id = active.stored.id;
+  const auto id = static_cast<uint64_t>(active.id);
   const auto lost = lost_outputs(id);
   if (!lost) return lost.error();
   std::set<int32_t> repeated;
@@ -224,7 +269,7 @@ core::Result<std::set<int32_t>> JobRecovery::frames_to_repeat(
                                    [&](const core::VideoDesc& v) { return v.file == output.path; });
     if (!video) {
       repeated.insert(output.frame);
-    } else if (core::Status gone = shared_.store->change_outputs(id, {output.path}, {}); !gone) {
+    } else if (core::Status gone = context_.store->change_outputs(id, {output.path}, {}); !gone) {
       return gone.error();
     }
   }
@@ -252,7 +297,7 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
   }
   for (const auto& [number, units] : contents.units) {
     FrameNote& frame = active.frames[number];
-    // The row may be of outputs that were made while a film was in doubt: the log has the last
+    // The row may be of outputs that were made while a film was suspect: the log has the last
     // word.
     if (frame.state == v1::FRAME_STATE_DONE && contents.disputed) {
       frame.state = v1::FRAME_STATE_WAITING;
@@ -269,7 +314,7 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
     frame.worker_class = units.front().worker_class;
     for (const AcceptedUnit& unit : units) {
       frame.samples_done +=
-          core::samples_in(unit.unit.tile, unit.unit.batches, active.read.job.sampling.samples);
+          core::samples_in(unit.unit.tile, unit.unit.batches, active.read->job.sampling.samples);
       restored.accepted.push_back(unit);
     }
     active.samples_done += frame.samples_done;
@@ -283,14 +328,13 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
   }
 }
 
-/// Reads the films that are there, and hands the job to the scheduler.
 core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob restored) {
   ActiveJob& active = *owned;
   int32_t tile_size = tile_size_of(active);
   std::error_code unknown;
-  const bool films = std::filesystem::exists(shared_.films_folder(active.stored.id), unknown);
+  const bool films = std::filesystem::exists(context_.films_folder(active.stored.id), unknown);
   if (unknown)
-    return core::Error{shared_.films_folder(active.stored.id) + ": " + unknown.message()};
+    return core::Error{context_.films_folder(active.stored.id) + ": " + unknown.message()};
   if (films) {
     active.film_store = films_.make(active, true);
     auto contents = active.film_store->open();
@@ -299,23 +343,10 @@ core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob re
     restore_films(active, *contents, restored);
     if (auto started = active.film_store->start(tile_size); !started) return started;
   }
+  active.brief = brief_of(active);
   JobAdded added;
   added.job = active.id;
-  added.plan.frames = active.numbers;
-  added.plan.region = active.region;
-  added.plan.tile_size = tile_size;
-  added.plan.batches = core::batch_count(active.read.job.sampling.samples);
-  added.plan.priority = active.stored.priority;
-  added.plan.owner = active.stored.owner;
-  added.plan.max_workers = active.stored.max_workers;
-  added.plan.max_attempts = active.stored.max_attempts;
-  added.plan.needs = {active.stored.tags, active.stored.memory};
-  if (active.stored.frame_order == v1::FRAME_ORDER_PROGRESSIVE) {
-    added.plan.order = FrameOrder::progressive;
-  }
-  added.plan.whole_frames = active.layout.layers.splats;
-  added.plan.film_bytes = active.film_bytes;
-  added.plan.frames_in_flight = frames_at_once(active, shared_.options.film_memory);
+  added.plan = plan_of(active, tile_size, context_.options.film_memory);
   added.restored = std::move(restored);
   Turn turn(dispatcher_);
   const JobId id = active.id;

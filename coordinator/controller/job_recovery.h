@@ -5,9 +5,9 @@
 #include <set>
 #include <vector>
 
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_table.h"
-#include "coordinator/controller/shared.h"
 
 namespace hyades::coordinator {
 
@@ -16,34 +16,39 @@ class JobFilms;
 /// Whether the job's file is among the assets, whole.
 bool is_stored(const v1::JobFile& file, farm::ContentStore& assets);
 
-/// Brings jobs into memory: those that are new, those that were open when the coordinator ended,
-/// and those that are taken up again.
+/// Brings jobs into memory: new ones, those that were open when the coordinator ended, and those
+/// that are reopened.
 class JobRecovery {
  public:
-  JobRecovery(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, JobFilms& films)
-      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), films_(films) {}
+  JobRecovery(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, JobFilms& films)
+      : context_(context), dispatcher_(dispatcher), jobs_(jobs), films_(films) {}
 
-  /// All jobs that have not ended. One whose files are gone fails alone; one that cannot be
-  /// recovered now waits, and is tried again.
+  /// Recovers all jobs that have not ended. One whose files are gone fails alone; one that cannot
+  /// be recovered now, or cannot be stored as failed, waits and is tried again. An error where the
+  /// store does not tell which jobs there are.
   core::Status recover_all() HYADES_EXCLUDES(state_lock);
-  /// The job, as it is stored.
-  core::Status recover(uint64_t id) HYADES_EXCLUDES(state_lock);
+  /// Recovers the job as it is stored.
+  core::Status recover(uint64_t id) HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   /// Reads the films that are there, and hands the job to the scheduler.
   core::Status start(std::unique_ptr<ActiveJob> owned, RestoredJob restored)
-      HYADES_EXCLUDES(state_lock);
+      HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
 
  private:
   bool recover_later(uint64_t id) HYADES_EXCLUDES(state_lock);
   bool try_to_recover(uint64_t id) HYADES_EXCLUDES(state_lock);
+  void wait(uint64_t id, const core::Error& why) HYADES_EXCLUDES(state_lock);
   core::Status give_up(uint64_t id, const core::Error& why);
+  // Of a job that nobody else knows yet.
+  core::Result<RestoredJob> restore_frames(ActiveJob& active) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   core::Result<std::vector<StoredOutput>> lost_outputs(uint64_t id) const;
   core::Result<std::set<int32_t>> frames_to_repeat(const ActiveJob& active,
                                                    const std::vector<StoredFrame>& frames);
   core::Status repeat_for_videos(const ActiveJob& active, const std::vector<int32_t>& done,
                                  std::set<int32_t>& repeated);
-  void restore_films(ActiveJob& active, const LogContents& contents, RestoredJob& restored);
+  void restore_films(ActiveJob& active, const LogContents& contents,
+                     RestoredJob& restored) HYADES_NO_THREAD_SAFETY_ANALYSIS;
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   JobFilms& films_;

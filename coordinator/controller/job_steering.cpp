@@ -1,13 +1,16 @@
 #include "coordinator/controller/job_steering.h"
 
+#include <chrono>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/not_there.h"
+#include "coordinator/controller/job_queries.h"
+#include "coordinator/controller/not_found.h"
 #include "coordinator/controller/video_maker.h"
-#include "coordinator/controller/wall_clock.h"
+#include "core/base/wall_clock.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -60,8 +63,8 @@ void JobSteering::change(uint64_t id, JobReply then,
       records_.store(*active);
     }
   }
-  if (shared_.stop) records_.answer_late({});
-  if (!open) then(why_not_open(*shared_.store, id), {});
+  if (context_.stop) records_.answer_late({});
+  if (!open) then(why_not_open(*context_.store, id), {});
 }
 
 void JobSteering::cancel(uint64_t id, JobReply then) {
@@ -80,23 +83,23 @@ void JobSteering::cancel(uint64_t id, JobReply then) {
       }
     }
   }
-  if (shared_.stop) records_.answer_late({});
+  if (context_.stop) records_.answer_late({});
   if (open) return;
   v1::Job now;
   const grpc::Status status = cancel_waiting(id, now);
   then(status, now);
 }
 
-/// A job that waits to be taken up ends without; any other is why_not_open().
+/// A job that waits to be recovered ends without; any other is why_not_open().
 grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
   const auto waits = [&] {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     return jobs_.waiting().contains(id) && jobs_.find(id) == nullptr;
   };
-  if (!waits()) return why_not_open(*shared_.store, id);
-  // Nobody takes it up meanwhile.
-  const std::unique_lock one(shared_.submissions, Shared::kSubmissionPatience);
-  auto stored = shared_.store->job(id);
+  if (!waits()) return why_not_open(*context_.store, id);
+  // Nobody recovers it meanwhile.
+  const auto one = context_.wait_for_submissions();
+  auto stored = context_.store->job(id);
   if (!stored) return farm::unavailable(stored.error());
   if (!one || !waits() || !*stored || has_ended((*stored)->state)) {
     return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
@@ -104,20 +107,19 @@ grpc::Status JobSteering::cancel_waiting(uint64_t id, v1::Job& now) {
                              std::chrono::seconds(1));
   }
   (*stored)->state = StoredState::cancelled;
-  (*stored)->ended_ms = wall_ms();
+  (*stored)->ended_ms = core::wall_ms();
   (*stored)->reason.clear();
-  if (const core::Status done = shared_.store->update_job(**stored); !done)
+  if (const core::Status done = context_.store->update_job(**stored); !done)
     return farm::unavailable(done.error());
-  now = coordinator::describe(**stored);
-  const StateLock lock(shared_.mutex);
+  now = queries_.describe(**stored);
+  const StateLock lock(context_.mutex);
   jobs_.no_longer_waits(id);
   return grpc::Status::OK;
 }
 
 grpc::Status why_not_open(JobStore& store, uint64_t id) {
   const auto stored = store.job(id);
-  if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return no_job(id);
+  if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   if (!has_ended((*stored)->state)) {
     return farm::retry_later(
         grpc::StatusCode::UNAVAILABLE,

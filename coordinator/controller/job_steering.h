@@ -10,9 +10,10 @@
 
 namespace hyades::coordinator {
 
+class JobQueries;
 class VideoMaker;
 
-/// INVALID_ARGUMENT for one that no job may have.
+/// OK, or INVALID_ARGUMENT for a priority that no job may have.
 grpc::Status check_priority(int priority);
 
 /// Why a job that is not in memory is not open: NOT_FOUND, FAILED_PRECONDITION for one that has
@@ -25,13 +26,22 @@ grpc::Status why_not_open(JobStore& store, uint64_t job);
 /// for the store. Thread-safe.
 class JobSteering {
  public:
-  JobSteering(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, JobRecords& records,
-              VideoMaker& videos)
-      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), records_(records), videos_(videos) {}
+  JobSteering(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
+              const JobQueries& queries, JobRecords& records, VideoMaker& videos)
+      : context_(context),
+        dispatcher_(dispatcher),
+        jobs_(jobs),
+        queries_(queries),
+        records_(records),
+        videos_(videos) {}
 
+  /// The job's units are leased no more until it is resumed.
   void pause(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  /// Ends a pause.
   void resume(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  /// The job ends as it is; one that waits to be recovered, too.
   void cancel(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  /// INVALID_ARGUMENT as check_priority() has it.
   void set_priority(uint64_t job, int priority, JobReply then) HYADES_EXCLUDES(state_lock);
 
  private:
@@ -40,9 +50,10 @@ class JobSteering {
       HYADES_EXCLUDES(state_lock);
   grpc::Status cancel_waiting(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
+  const JobQueries& queries_;
   JobRecords& records_;
   VideoMaker& videos_;
 };

@@ -1,8 +1,10 @@
 #include "coordinator/controller/job_table.h"
 
+#include <atomic>
+#include <chrono>
 #include <utility>
 
-#include "coordinator/controller/wall_clock.h"
+#include "core/base/wall_clock.h"
 #include "farm/log.h"
 #include "farm/wire.h"
 
@@ -55,7 +57,7 @@ void JobTable::wait_for_recovery(StoredJob job) {
 
 void JobTable::note(ActiveJob& job, v1::LogLevel level, std::optional<int32_t> frame,
                     const std::string& worker, const std::string& text, const core::Unit* unit) {
-  job.note({wall_ms(), level, frame, worker, farm::wire_text(text)});
+  job.note({core::wall_ms(), level, frame, worker, farm::wire_text(text)});
   // Of frames there are many: that they begin and end is for those who look for something.
   const farm::LogLevel said = level == v1::LOG_LEVEL_ERROR     ? farm::LogLevel::error
                               : level == v1::LOG_LEVEL_WARNING ? farm::LogLevel::warning

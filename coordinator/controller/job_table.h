@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -19,13 +20,15 @@ class JobTable {
 
   explicit JobTable(StateMutex& mutex) : mutex_(mutex) {}
 
-  /// Null where the job has ended, or waits to be recovered.
+  /// The open job; null where it has ended, waits to be recovered, or is none.
   ActiveJob* find(JobId job) HYADES_REQUIRES(state_lock);
   ActiveJob* find(uint64_t job) HYADES_REQUIRES(state_lock) { return find(JobId{job}); }
   const Jobs& all() const HYADES_REQUIRES(state_lock) { return jobs_; }
+  /// Puts the job into the table.
   void add(std::unique_ptr<ActiveJob> job) HYADES_REQUIRES(state_lock);
   /// Takes the job out; until left() it is on its way out.
   std::unique_ptr<ActiveJob> take_out(uint64_t job) HYADES_REQUIRES(state_lock);
+  /// Nothing is left of a job that was taken out.
   void left(uint64_t job) HYADES_EXCLUDES(state_lock);
   /// Waits until nothing is left of a job whose end is being stored, or `time` has come, or `stop`;
   /// whether it was awaited.
@@ -36,24 +39,26 @@ class JobTable {
   /// Drops all of them.
   void clear() HYADES_EXCLUDES(state_lock);
 
-  /// Jobs that are open, but could not be recovered yet, with the reason.
+  /// Jobs that are open, but could not be recovered yet; their reasons say why.
   const std::map<uint64_t, StoredJob>& waiting() const HYADES_REQUIRES(state_lock) {
     return waiting_;
   }
+  /// The job is among those that wait from now on; its reason says why.
   void wait_for_recovery(StoredJob job) HYADES_REQUIRES(state_lock);
   void no_longer_waits(uint64_t job) HYADES_REQUIRES(state_lock) { waiting_.erase(job); }
 
-  /// Frames are finished one after the other, over all jobs and runs of the coordinator: the number
-  /// of the last one.
+  /// The number of the frame that was last finished: it grows over all jobs and runs of the
+  /// coordinator.
   uint64_t moment() const HYADES_REQUIRES(state_lock) { return moment_; }
+  /// The number of the frame that is finished next.
   uint64_t next_moment() HYADES_REQUIRES(state_lock) { return ++moment_; }
+  /// Numbers go on after this one.
   void begin_moments(uint64_t moment) HYADES_REQUIRES(state_lock) { moment_ = moment; }
 
-  /// A line for the job's log, and for the coordinator's. `job` is in the table, or nobody else
-  /// knows it yet.
+  /// Adds a line to the job's log, and to the coordinator's.
   static void note(ActiveJob& job, v1::LogLevel level, std::optional<int32_t> frame,
                    const std::string& worker, const std::string& text,
-                   const core::Unit* unit = nullptr);
+                   const core::Unit* unit = nullptr) HYADES_REQUIRES(state_lock);
 
  private:
   StateMutex& mutex_;

@@ -2,7 +2,11 @@
 #include "coordinator/controller/lease_renewal.h"
 
 #include <algorithm>
+#include <chrono>
+#include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -39,7 +43,7 @@ std::optional<Duration> lease_patience(Progress::Stage stage, Duration stall_tim
 void WorkerSessions::renew_leases(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn) {
   const TimePoint now = std::chrono::steady_clock::now();
   // What nobody has heard in between does not count against a worker: this process may have slept.
-  const Duration since = std::min<Duration>(now - session.beat, shared_.options.lease_time);
+  const Duration since = std::min<Duration>(now - session.beat, context_.options.lease_time);
   session.beat = now;
   std::vector<std::pair<LeaseId, LeaseProgress>> stalled;
   WorkerAlive alive{session.id, {}};
@@ -52,7 +56,7 @@ void WorkerSessions::renew_leases(WorkerSession& session, const v1::Heartbeat& b
         old->second.samples_done == progress.samples_done) {
       progress.still = old->second.still + since;
     }
-    const auto patience = lease_patience(progress.stage, shared_.options.stall_time);
+    const auto patience = lease_patience(progress.stage, context_.options.stall_time);
     if (!patience || progress.still < *patience) {
       alive.leases.push_back(lease);
       renewed[lease] = progress;
@@ -80,10 +84,10 @@ void WorkerSessions::take_back(WorkerSession& session, const LeaseId& lease,
                              held.unit.batches.end() - 1, reason),
                  &held.unit);
     }
-    shared_.meters->lost("stalled");
+    context_.meters->lost("stalled");
     v1::CoordinatorMessage stop;
     *stop.mutable_stop()->mutable_unit() = to_wire(lease, held.job, held.unit);
-    session.link->send(std::move(stop));
+    session.link->send(bytes_of(stop));
     if (progress.stage == Progress::STAGE_WAITING) {
       events.emplace_back(UnitReturned{session.id, lease, held.job, held.unit});
     } else {

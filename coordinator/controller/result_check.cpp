@@ -1,6 +1,5 @@
 #include "coordinator/controller/result_check.h"
 
-#include <cstddef>
 #include <span>
 #include <utility>
 
@@ -14,7 +13,7 @@ namespace {
 
 using Rejected = v1::Rejected;
 
-/// Of a decoded film, besides its pixels.
+/// Bytes of a decoded film besides its pixels.
 constexpr uint64_t kFilmOverhead = uint64_t{1} << 20U;
 
 /// The most that the film of a unit may take when it is decoded.

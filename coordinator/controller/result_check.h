@@ -1,14 +1,26 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
-#include "coordinator/controller/delivery.h"
+#include "coordinator/controller/active_job.h"
+#include "core/film/film.h"
 #include "hyades/v1/work.pb.h"
 
 namespace hyades::coordinator {
+
+/// A result on its way through the scheduler.
+struct Delivery {
+  core::Film film;
+  std::vector<std::byte> record;  ///< encode_delivered
+  AcceptedUnit unit;
+  FilmUnderWay rendered;
+  bool settled = false;  ///< it is on its way to the disk, or was answered
+};
 
 /// What the films of a job are like.
 struct ExpectedFilm {
@@ -20,11 +32,11 @@ struct ExpectedFilm {
 /// Why a result is not taken.
 struct ResultRefusal {
   v1::Rejected::Reason reason = v1::Rejected::REASON_UNSPECIFIED;
-  std::string text;
-  uint32_t retry_after_ms = 0;
+  std::string text;             ///< for people
+  uint32_t retry_after_ms = 0;  ///< with REASON_NOT_NOW: when the worker is to send it again
 };
 
-/// Decodes a result and checks all that depends on its bytes alone, which takes its time.
+/// Decodes a result and checks all that depends on its bytes alone; slow.
 /// `expected` is nothing where there is no such job; `worker_class` is that of who sends it.
 std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
                                                    const std::optional<ExpectedFilm>& expected,

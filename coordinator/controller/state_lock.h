@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+
 #include "core/base/mutex.h"
 
 namespace hyades::coordinator {
@@ -31,6 +33,7 @@ class HYADES_SCOPED_CAPABILITY StateLock {
   StateLock(const StateLock&) = delete;
   StateLock& operator=(const StateLock&) = delete;
 
+  /// Lets go of the lock for good.
   void unlock() HYADES_RELEASE() HYADES_NO_THREAD_SAFETY_ANALYSIS {
     held_ = false;
     mutex_.unlock();

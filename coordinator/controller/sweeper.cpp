@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <filesystem>
+#include <mutex>
+#include <system_error>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include "farm/wire.h"
 
@@ -32,27 +36,29 @@ std::vector<uint64_t> numbered_folders(const std::string& folder) {
 
 }  // namespace
 
-/// Folders of jobs that are deleted, and films of jobs that are done: a crash came between.
-void Sweeper::sweep_folders() {
-  for (const uint64_t id : numbered_folders(shared_.options.folder + "/films")) {
-    const auto state = shared_.store->state(id);
-    if (shared_.stop || !state) return;
-    std::error_code ignored;
-    if (!*state || **state == StoredState::done) fs::remove_all(shared_.films_folder(id), ignored);
+/// Removes folders of jobs that are deleted, and films of jobs that are done: a crash came between.
+/// Whether the store has answered for all.
+bool Sweeper::sweep_folders() {
+  for (const char* kind : {"/films/", "/outputs/"}) {
+    const std::string folder = context_.options.folder + kind;
+    for (const uint64_t id : numbered_folders(folder)) {
+      // A job that is done may be reopened, and its films with it.
+      const std::lock_guard one(context_.submissions);
+      const auto state = context_.store->state(id);
+      if (context_.stop || !state) return false;
+      const bool useless = !*state || (folder.ends_with("/films/") && **state == StoredState::done);
+      std::error_code ignored;
+      if (useless) fs::remove_all(folder + std::to_string(id), ignored);
+    }
   }
-  for (const uint64_t id : numbered_folders(shared_.options.folder + "/outputs")) {
-    const auto state = shared_.store->state(id);
-    if (shared_.stop || !state) return;
-    std::error_code ignored;
-    if (!*state) fs::remove_all(shared_.output_folder(id), ignored);
-  }
+  return true;
 }
 
 /// Takes the files of all jobs with ids above `after`, which becomes the last one's, out of
 /// `names`.
 core::Status Sweeper::spare_needed(std::unordered_set<std::string>& names, uint64_t& after) {
-  while (!names.empty() && !shared_.stop) {
-    const auto page = shared_.store->specs(after, kPage);
+  while (!names.empty() && !context_.stop) {
+    const auto page = context_.store->specs(after, kPage);
     if (!page) return page.error();
     for (const StoredSpec& stored : *page) {
       v1::JobSpec spec;
@@ -73,36 +79,36 @@ core::Status Sweeper::spare_needed(std::unordered_set<std::string>& names, uint6
 
 /// Removes the assets that no job needs and that nobody has used for `grace`.
 core::Status Sweeper::sweep_assets(Duration grace) {
-  const uint64_t changes = changes_ + shared_.assets->commits();
+  const uint64_t changes = changes_ + context_.assets->commits();
   if (changes == swept_changes_) return {};
   std::unordered_set<std::string> names;
-  for (std::string& name : shared_.assets->names()) names.insert(std::move(name));
+  for (std::string& name : context_.assets->names()) names.insert(std::move(name));
   uint64_t seen = 0;
   if (core::Status spared = spare_needed(names, seen); !spared) return spared;
-  bool all = !shared_.stop;
+  bool all = !context_.stop;
   if (!names.empty()) {
     // No submission comes between the last look and the removal: it finds its files here, or not.
-    const std::lock_guard one(shared_.submissions);
+    const std::lock_guard one(context_.submissions);
     if (core::Status spared = spare_needed(names, seen); !spared) return spared;
     for (const std::string& name : names) {
-      if (shared_.stop) return {};
-      all = shared_.assets->remove_unused(name, grace) && all;
+      if (context_.stop) return {};
+      all = context_.assets->remove_unused(name, grace) && all;
     }
   }
   if (all) swept_changes_ = changes;
   return {};
 }
 
-Sweeper::Sweeper(Shared& shared)
-    : shared_(shared),
-      rounds_(1, std::clamp(shared.options.asset_grace / 4, kShortestRound, kLongestRound)) {}
+Sweeper::Sweeper(ControllerContext& context)
+    : context_(context),
+      rounds_(1, std::clamp(context.options.asset_grace / 4, kShortestRound, kLongestRound)) {}
 
 void Sweeper::start() {
   rounds_.add(0, [this] {
-    if (!std::exchange(folders_swept_, true)) sweep_folders();
+    if (!folders_swept_) folders_swept_ = sweep_folders();
     // What fails now (a full disk, a damaged record) is tried again; nothing was removed wrongly.
-    if (!shared_.stop) (void)sweep_assets(shared_.options.asset_grace);
-    return shared_.stop.load();
+    if (!context_.stop) (void)sweep_assets(context_.options.asset_grace);
+    return context_.stop.load();
   });
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <unordered_set>
 
-#include "coordinator/controller/shared.h"
+#include "coordinator/controller/controller_context.h"
 
 namespace hyades::coordinator {
 
@@ -13,24 +13,24 @@ namespace hyades::coordinator {
 /// no job needs.
 class Sweeper {
  public:
-  explicit Sweeper(Shared& shared);
-  /// Sweeps from now on, from time to time.
+  explicit Sweeper(ControllerContext& context);
+  /// Sweeps from now on, from time to time, until end().
   void start();
   void end() { rounds_.end(); }
-  /// A job has gone: what it needed may not be needed any more.
+  /// Tells that a job has gone: what it needed may not be needed any more.
   void job_removed() { ++changes_; }
 
  private:
-  void sweep_folders();
+  bool sweep_folders();
   core::Status sweep_assets(Duration grace);
   core::Status spare_needed(std::unordered_set<std::string>& names, uint64_t& after);
 
-  Shared& shared_;
+  ControllerContext& context_;
   std::atomic<uint64_t> changes_{0};  ///< jobs that have gone
   // Of the sweeping thread.
   uint64_t swept_changes_ = UINT64_MAX;  ///< when it last left nothing to remove
   bool folders_swept_ = false;
-  RetryQueue rounds_;
+  farm::RetryQueue rounds_;
 };
 
 }  // namespace hyades::coordinator

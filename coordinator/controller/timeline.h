@@ -31,6 +31,7 @@ struct TimedStep {
 /// those who look for what takes long. Thread-safe.
 class Timelines {
  public:
+  /// Adds a step of the job, and gives it its number.
   void note(uint64_t job, TimedStep step) HYADES_EXCLUDES(mutex_) {
     const core::MutexLock lock(mutex_);
     OfJob& timeline = jobs_[job];
@@ -49,14 +50,16 @@ class Timelines {
     });
     jobs_.erase(oldest);
   }
+  /// Drops the job's steps.
   void forget(uint64_t job) HYADES_EXCLUDES(mutex_) {
     const core::MutexLock lock(mutex_);
     jobs_.erase(job);
   }
 
+  /// Some of a job's steps.
   struct Page {
     std::vector<TimedStep> steps;
-    bool more = false;
+    bool more = false;     ///< there are steps after these
     uint64_t dropped = 0;  ///< older ones that are not kept
   };
   /// Steps above number `after`, at most `limit`; none where nothing is known.

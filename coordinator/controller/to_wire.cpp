@@ -37,4 +37,21 @@ v1::Rejected::Reason to_wire(RejectReason reason) {
   return v1::Rejected::REASON_UNSPECIFIED;
 }
 
+const char* verdict_of(v1::Rejected::Reason reason) {
+  switch (reason) {
+    case v1::Rejected::REASON_DAMAGED:
+      return "damaged";
+    case v1::Rejected::REASON_MALFORMED:
+      return "malformed";
+    case v1::Rejected::REASON_OVERLAP:
+      return "overlap";
+    case v1::Rejected::REASON_CONFLICT:
+      return "conflict";
+    case v1::Rejected::REASON_NOT_NOW:
+      return "not_now";
+    default:
+      return "unknown";
+  }
+}
+
 }  // namespace hyades::coordinator

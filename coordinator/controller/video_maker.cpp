@@ -1,18 +1,23 @@
 #include "coordinator/controller/video_maker.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstddef>
 #include <filesystem>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/counted.h"
 #include "coordinator/controller/disk_watch.h"
 #include "coordinator/controller/job_records.h"
-#include "coordinator/controller/not_there.h"
-#include "coordinator/controller/wall_clock.h"
+#include "coordinator/controller/not_found.h"
+#include "coordinator/controller/stored_outputs.h"
 #include "coordinator/finisher/finish_process.h"
 #include "core/base/failpoint.h"
+#include "core/base/text.h"
+#include "core/base/wall_clock.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
 #include "farm/wire.h"
@@ -22,12 +27,11 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr size_t kMostWaiting = 16;
-/// That are remembered, with what became of them.
-constexpr size_t kMostKept = 200;
+constexpr size_t kMostKept = 200;  ///< that were asked for, with what became of them
 constexpr uint32_t kRowsAtOnce = 1000;
 
-bool is_over(const AskedVideo& video) {
-  return video.state == AskedVideo::State::done || video.state == AskedVideo::State::failed;
+bool is_over(const RequestedVideo& video) {
+  return video.state == RequestedVideo::State::done || video.state == RequestedVideo::State::failed;
 }
 
 /// The paths of all outputs of a job.
@@ -48,16 +52,6 @@ std::string in_words(const std::vector<core::VideoDesc>& videos) {
   return names;
 }
 
-std::vector<StoredOutput> to_outputs(const std::vector<FinishedFile>& files, int32_t last_frame) {
-  std::vector<StoredOutput> outputs;
-  for (const FinishedFile& file : files) {
-    const auto digest = farm::digest_from_hex(file.sha256);
-    outputs.push_back(
-        {file.path, last_frame, file.size, digest ? farm::to_wire(*digest) : std::string()});
-  }
-  return outputs;
-}
-
 }  // namespace
 
 void VideoMaker::begin(ActiveJob& active) {
@@ -75,15 +69,18 @@ void VideoMaker::cancel(ActiveJob& active) {
   records_.end(active, true, {});
 }
 
-void VideoMaker::stop() { stop_ = true; }
+void VideoMaker::stop() {
+  const StateLock lock(context_.mutex);  // or a video that just begins would take it back
+  stop_ = true;
+}
 
 /// Jobs' own videos come before those that somebody asked for. False: a job's wait, to be tried
 /// again.
 bool VideoMaker::make_next() {
   std::optional<JobId> job;
   {
-    const StateLock lock(shared_.mutex);
-    if (shared_.stop) return true;
+    const StateLock lock(context_.mutex);
+    if (context_.stop) return true;
     in_work_.reset();
     if (!due_.empty()) {
       job = due_.front();
@@ -100,20 +97,20 @@ bool VideoMaker::make_of_job(JobId job) {
   std::vector<core::VideoDesc> videos;
   core::VideoFrames frames;
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     const ActiveJob* active = jobs_.find(job);
     if (active == nullptr || !active->making_videos) return true;
     in_work_ = job;
-    stop_ = shared_.stop.load();
+    stop_ = context_.stop.load();
     videos = active->videos();
-    frames = core::video_frames(active->read.job, shared_.output_folder(id), active->numbers);
+    frames = core::video_frames(active->read->job, context_.output_folder(id), active->numbers);
   }
   const core::Status made = make_all(id, videos, frames);
   disk_.measure();
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(job);
   // Cancelled, and perhaps recovered since; or the controller ends.
-  if (shared_.stop || stop_ || active == nullptr) return true;
+  if (context_.stop || stop_ || active == nullptr) return true;
   if (!made && disk_.level() != DiskLevel::roomy) {
     active->trouble = "its video waits for room on the disk: " + made.error().message;
     active->touch();
@@ -135,64 +132,71 @@ bool VideoMaker::make_of_job(JobId job) {
   return true;
 }
 
-/// Those that are not there yet.
+/// Makes those videos that are not there yet.
 core::Status VideoMaker::make_all(uint64_t id, const std::vector<core::VideoDesc>& videos,
                                   const core::VideoFrames& frames) {
   for (const core::VideoDesc& video : videos) {
-    const auto there = shared_.store->output(id, video.file);
+    const auto there = context_.store->output(id, video.file);
     if (!there) return there.error();
     if (!*there) {
-      if (core::Status made = make(id, video, frames); !made) return made;
+      core::Status made = make(id, "video", {video, frames}, {core::video_folder(video)});
+      if (!made) return made;
     }
     // The pictures are not told any more: what an earlier run left goes too.
     std::error_code ignored;
-    std::filesystem::remove_all(shared_.output_folder(id) + "/" + core::video_folder(video),
+    std::filesystem::remove_all(context_.output_folder(id) + "/" + core::video_folder(video),
                                 ignored);
   }
   return {};
 }
 
-core::Status VideoMaker::make(uint64_t id, const core::VideoDesc& video,
-                              const core::VideoFrames& frames) {
-  const int64_t begun_us = wall_us();
-  const auto files = run_video_maker(shared_.options.finisher,
-                                     fmt::format("{}/tmp/{}-video", shared_.options.folder, id),
-                                     {video, frames}, stop_);
+/// Has the video made and stored among the job's outputs, in the place of those that are `gone`
+/// then. `scratch` tells its temporary folder from others of the job.
+core::Status VideoMaker::make(uint64_t id, const std::string& scratch, const VideoTask& task,
+                              const std::vector<std::string>& gone) {
+  const int64_t begun_us = core::wall_us();
+  const auto files = run_video_maker(
+      context_.options.finisher, fmt::format("{}/tmp/{}-{}", context_.options.folder, id, scratch),
+      task, stop_);
   if (!files) return files.error();
   core::failpoint("video-made");
-  core::Status stored = shared_.store->change_outputs(id, {core::video_folder(video)},
-                                                      to_outputs(*files, frames.numbers.back()));
+  core::Status stored =
+      context_.store->change_outputs(id, gone, stored_outputs(*files, task.frames.numbers.back()));
   core::failpoint("video-stored");
-  timelines_.note(id, {v1::TimelineStep::KIND_VIDEO, {}, 0, {}, begun_us, wall_us()});
-  return stored;
+  if (!stored) {  // the job is deleted, perhaps
+    std::error_code ignored;
+    std::filesystem::remove(task.frames.folder + "/" + task.video.file, ignored);
+    return stored;
+  }
+  timelines_.note(id, {v1::TimelineStep::KIND_VIDEO, {}, 0, {}, begun_us, core::wall_us()});
+  return {};
 }
 
-grpc::Status VideoMaker::ask(uint64_t id, const VideoWish& wish, AskedVideo& asked) {
+grpc::Status VideoMaker::ask(uint64_t id, const VideoRequest& request, RequestedVideo& asked) {
   if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
-  const auto stored = shared_.store->job(id);
-  if (!stored) return farm::unavailable(stored.error());
-  if (!*stored) return no_job(id);
+  const auto stored = context_.store->job(id);
+  if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   v1::JobSpec spec;
   if (!spec.ParseFromString((*stored)->spec)) {
     return {grpc::StatusCode::DATA_LOSS, "the job's record is damaged"};
   }
-  const auto read = make_active_job(**stored, spec, *shared_.assets, UINT64_MAX);
+  const auto read = make_active_job(**stored, spec, *context_.assets, UINT64_MAX);
   if (!read) return {grpc::StatusCode::FAILED_PRECONDITION, read.error().message};
-  const auto frames = shared_.store->frames(id);
+  const auto frames = context_.store->frames(id);
   if (!frames) return farm::unavailable(frames.error());
-  const auto paths = output_paths(*shared_.store, id);
+  const auto paths = output_paths(*context_.store, id);
   if (!paths) return farm::unavailable(paths.error());
   std::vector<int32_t> done;
   for (const StoredFrame& frame : *frames) {
     if (frame.done) done.push_back(frame.frame);
   }
-  auto plan = plan_video((*read)->read.job, wish, std::move(done), *paths);
+  auto plan = plan_video((*read)->read->job, request, std::move(done), *paths);
   if (!plan) return {grpc::StatusCode::FAILED_PRECONDITION, plan.error().message};
   plan->job = id;
-  plan->frames.folder = shared_.output_folder(id);
-  const StateLock lock(shared_.mutex);
+  plan->frames.folder = context_.output_folder(id);
+  const StateLock lock(context_.mutex);
   size_t waiting = 0;
-  for (const AskedVideo& other : asked_) {
+  for (const RequestedVideo& other : asked_) {
     waiting += is_over(other) ? 0 : 1;
     if (other.job != id || other.video.file != plan->video.file || is_over(other)) continue;
     asked = other;  // somebody was quicker, or asked twice
@@ -213,12 +217,11 @@ grpc::Status VideoMaker::ask(uint64_t id, const VideoWish& wish, AskedVideo& ask
   return grpc::Status::OK;
 }
 
-grpc::Status VideoMaker::asked(uint64_t id, std::vector<AskedVideo>& videos) {
-  const auto known = shared_.store->state(id);
-  if (!known) return farm::unavailable(known.error());
-  if (!*known) return no_job(id);
-  const StateLock lock(shared_.mutex);
-  for (const AskedVideo& video : asked_) {
+grpc::Status VideoMaker::asked(uint64_t id, std::vector<RequestedVideo>& videos) {
+  const auto known = context_.store->state(id);
+  if (const grpc::Status there = job_is_there(id, known); !there.ok()) return there;
+  const StateLock lock(context_.mutex);
+  for (const RequestedVideo& video : asked_) {
     if (video.job == id) videos.push_back(video);
   }
   return grpc::Status::OK;
@@ -226,60 +229,42 @@ grpc::Status VideoMaker::asked(uint64_t id, std::vector<AskedVideo>& videos) {
 
 /// The first of those that were asked for and wait.
 void VideoMaker::make_asked() {
-  AskedVideo video;
+  RequestedVideo video;
   {
-    const StateLock lock(shared_.mutex);
-    const auto found = std::find_if(asked_.begin(), asked_.end(), [](const AskedVideo& asked) {
-      return asked.state == AskedVideo::State::waiting;
+    const StateLock lock(context_.mutex);
+    const auto found = std::find_if(asked_.begin(), asked_.end(), [](const RequestedVideo& asked) {
+      return asked.state == RequestedVideo::State::waiting;
     });
     if (found == asked_.end()) return;
-    found->state = AskedVideo::State::making;
+    found->state = RequestedVideo::State::making;
     video = *found;
-    stop_ = shared_.stop.load();
+    stop_ = context_.stop.load();
   }
-  const int64_t begun_us = wall_us();
-  const auto files =
-      run_video_maker(shared_.options.finisher,
-                      fmt::format("{}/tmp/{}-asked-video", shared_.options.folder, video.job),
-                      {video.video, video.frames}, stop_);
-  core::Status done;
-  if (files) {
-    done = shared_.store->change_outputs(video.job, {},
-                                         to_outputs(*files, video.frames.numbers.back()));
-    if (!done) {  // the job is deleted, perhaps
-      std::error_code ignored;
-      std::filesystem::remove(video.frames.folder + "/" + video.video.file, ignored);
-    }
-  } else {
-    done = files.error();
-  }
+  const core::Status done = make(video.job, "asked-video", {video.video, video.frames}, {});
   disk_.measure();
-  if (done) {
-    timelines_.note(video.job, {v1::TimelineStep::KIND_VIDEO, {}, 0, {}, begun_us, wall_us()});
-  }
   asked_is_over(video, done);
 }
 
-void VideoMaker::asked_is_over(const AskedVideo& video, const core::Status& done) {
-  StoredLine line{wall_ms(),
+void VideoMaker::asked_is_over(const RequestedVideo& video, const core::Status& done) {
+  StoredLine line{core::wall_ms(),
                   done ? v1::LOG_LEVEL_INFO : v1::LOG_LEVEL_ERROR,
                   std::nullopt,
                   {},
                   done ? fmt::format("{} made of {}, as somebody asked", video.video.file,
-                                     counted(video.frames.numbers.size(), "frame"))
+                                     core::counted(video.frames.numbers.size(), "frame"))
                        : video.video.file + " could not be made: " + done.error().message};
   line.text = farm::wire_text(line.text);
   {
-    const StateLock lock(shared_.mutex);
-    for (AskedVideo& kept : asked_) {
+    const StateLock lock(context_.mutex);
+    for (RequestedVideo& kept : asked_) {
       if (kept.number != video.number) continue;
-      kept.state = done ? AskedVideo::State::done : AskedVideo::State::failed;
+      kept.state = done ? RequestedVideo::State::done : RequestedVideo::State::failed;
       if (!done) kept.reason = farm::wire_text(done.error().message);
     }
-    if (shared_.stop) return;
+    if (context_.stop) return;
     if (ActiveJob* active = jobs_.find(video.job)) return active->note(std::move(line));
   }
-  (void)shared_.store->add_lines(video.job, {line});
+  (void)context_.store->add_lines(video.job, {line});
 }
 
 }  // namespace hyades::coordinator

@@ -4,14 +4,16 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <grpcpp/support/status.h>
 
-#include "coordinator/controller/asked_video.h"
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/job_table.h"
-#include "coordinator/controller/shared.h"
+#include "coordinator/controller/requested_video.h"
 #include "coordinator/controller/timeline.h"
+#include "coordinator/finisher/video_task.h"
 
 namespace hyades::coordinator {
 
@@ -22,27 +24,29 @@ class JobRecords;
 /// a job's own before it ends, and those that somebody asks for. Thread-safe.
 class VideoMaker {
  public:
-  VideoMaker(Shared& shared, JobTable& jobs, JobRecords& records, DiskWatch& disk,
+  VideoMaker(ControllerContext& context, JobTable& jobs, JobRecords& records, DiskWatch& disk,
              Timelines& timelines)
-      : shared_(shared), jobs_(jobs), records_(records), disk_(disk), timelines_(timelines) {}
+      : context_(context), jobs_(jobs), records_(records), disk_(disk), timelines_(timelines) {}
   /// Breaks off the video in work.
-  void stop();
+  void stop() HYADES_EXCLUDES(state_lock);
+  /// Waits for what is in work; to be called after stop().
   void end() { queue_.end(); }
 
   /// Has a video made of the pictures of the job's finished frames, also of a job that has ended or
   /// has none of its own; it is among the outputs once it is there. May wait for the store.
   /// FAILED_PRECONDITION where there is nothing to make it of, RESOURCE_EXHAUSTED where too many
   /// wait already.
-  grpc::Status ask(uint64_t job, const VideoWish& wish, AskedVideo& asked)
+  grpc::Status ask(uint64_t job, const VideoRequest& request, RequestedVideo& asked)
       HYADES_EXCLUDES(state_lock);
-  /// Those that were asked for since the coordinator started, the last ones; may wait for the
-  /// store.
-  grpc::Status asked(uint64_t job, std::vector<AskedVideo>& videos) HYADES_EXCLUDES(state_lock);
+  /// The job's videos that were asked for since the coordinator started, the last ones. NOT_FOUND.
+  /// May wait for the store.
+  grpc::Status asked(uint64_t job, std::vector<RequestedVideo>& videos) HYADES_EXCLUDES(state_lock);
 
   /// Makes the videos of a job whose frames are all done; then it ends.
   void begin(ActiveJob& active) HYADES_REQUIRES(state_lock);
   /// The job, whose videos are being made or wait, ends without them.
   void cancel(ActiveJob& active) HYADES_REQUIRES(state_lock);
+  /// Whether a video of the job's own is in work.
   bool is_making(JobId job) const HYADES_REQUIRES(state_lock) { return in_work_ == job; }
 
  private:
@@ -50,11 +54,13 @@ class VideoMaker {
   bool make_of_job(JobId job) HYADES_EXCLUDES(state_lock);
   core::Status make_all(uint64_t id, const std::vector<core::VideoDesc>& videos,
                         const core::VideoFrames& frames);
-  core::Status make(uint64_t id, const core::VideoDesc& video, const core::VideoFrames& frames);
+  core::Status make(uint64_t id, const std::string& scratch, const VideoTask& task,
+                    const std::vector<std::string>& gone);
   void make_asked() HYADES_EXCLUDES(state_lock);
-  void asked_is_over(const AskedVideo& video, const core::Status& done) HYADES_EXCLUDES(state_lock);
+  void asked_is_over(const RequestedVideo& video, const core::Status& done)
+      HYADES_EXCLUDES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   JobTable& jobs_;
   JobRecords& records_;
   DiskWatch& disk_;
@@ -62,10 +68,10 @@ class VideoMaker {
   std::deque<JobId> due_ HYADES_GUARDED_BY(state_lock);
   std::optional<JobId> in_work_ HYADES_GUARDED_BY(state_lock);
   /// The oldest first; those that are over too.
-  std::deque<AskedVideo> asked_ HYADES_GUARDED_BY(state_lock);
+  std::deque<RequestedVideo> asked_ HYADES_GUARDED_BY(state_lock);
   uint64_t next_asked_ HYADES_GUARDED_BY(state_lock) = 1;
   std::atomic<bool> stop_{false};  ///< ends the video in work
-  RetryQueue queue_{1};
+  farm::RetryQueue queue_{1};
 };
 
 }  // namespace hyades::coordinator

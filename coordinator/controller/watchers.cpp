@@ -5,13 +5,13 @@
 namespace hyades::coordinator {
 
 uint64_t Watchers::watch(uint64_t job, std::function<void()> poke) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   watches_.emplace(next_watch_, Watch{job, 0, std::move(poke)});
   return next_watch_++;
 }
 
 void Watchers::unwatch(uint64_t number) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   watches_.erase(number);
 }
 

@@ -4,18 +4,19 @@
 #include <functional>
 #include <map>
 
+#include "coordinator/controller/controller_context.h"
 #include "coordinator/controller/job_table.h"
-#include "coordinator/controller/shared.h"
-#include "coordinator/controller/thread_pool.h"
+#include "farm/thread_pool.h"
 
 namespace hyades::coordinator {
 
-/// Those who want to hear whenever a job has changed. Thread-safe.
+/// Tells those who want to hear of it that a job has changed. Thread-safe.
 class Watchers {
  public:
-  Watchers(Shared& shared, JobTable& jobs) : shared_(shared), jobs_(jobs) {}
+  Watchers(ControllerContext& context, JobTable& jobs) : context_(context), jobs_(jobs) {}
 
-  /// Calls `poke` (quickly, by another thread) whenever the job has changed, until unwatch.
+  /// Calls `poke`, which has to be quick, by another thread whenever the job has changed, until
+  /// unwatch() of the number that is returned.
   uint64_t watch(uint64_t job, std::function<void()> poke) HYADES_EXCLUDES(state_lock);
   void unwatch(uint64_t number) HYADES_EXCLUDES(state_lock);
 
@@ -30,11 +31,11 @@ class Watchers {
     uint64_t version = 0;
     std::function<void()> poke;
   };
-  Shared& shared_;
+  ControllerContext& context_;
   JobTable& jobs_;
   std::map<uint64_t, Watch> watches_ HYADES_GUARDED_BY(state_lock);
   uint64_t next_watch_ HYADES_GUARDED_BY(state_lock) = 1;
-  ThreadPool pokes_{1, SIZE_MAX};
+  farm::ThreadPool pokes_{1, SIZE_MAX};
 };
 
 }  // namespace hyades::coordinator

@@ -1,17 +1,21 @@
 // What workers say, and what they are told.
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/disk_watch.h"
-#include "coordinator/controller/lease_renewal.h"
 #include "coordinator/controller/result_check.h"
 #include "coordinator/controller/to_wire.h"
-#include "coordinator/controller/wall_clock.h"
 #include "coordinator/controller/worker_sessions.h"
 #include "coordinator/meters/meters.h"
+#include "core/base/wall_clock.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -20,22 +24,8 @@ namespace {
 constexpr int kMostNotes = 8;
 constexpr uint32_t kCrowdedRetryMs = 500;
 constexpr uint32_t kFullRetryMs = 2000;
-/// What a unit can have taken: no worker makes a job more expensive than that.
-constexpr uint64_t kLongestRendering = 7ULL * 24 * 3600 * 1'000'000'000;  // ns
-
-/// Of results that the scheduler is not told of.
-const char* verdict_of(v1::Rejected::Reason reason) {
-  switch (reason) {
-    case v1::Rejected::REASON_DAMAGED:
-      return "damaged";
-    case v1::Rejected::REASON_MALFORMED:
-      return "malformed";
-    case v1::Rejected::REASON_NOT_NOW:
-      return "not_now";
-    default:
-      return "unknown";
-  }
-}
+/// Nanoseconds that a unit counts for at most, so that no worker makes a job more expensive.
+constexpr uint64_t kLongestRendering = 7ULL * 24 * 3600 * 1'000'000'000;
 
 }  // namespace
 
@@ -46,17 +36,23 @@ void WorkerSessions::receive(WorkerId worker, const WorkerLink* link,
   WorkerSession* session = workers_.find(worker, link);
   if (session == nullptr) return;
   session->heard = std::chrono::steady_clock::now();
-  session->heard_ms = wall_ms();
-  if (message.has_request()) {
-    want(*session, message.request().units(), turn);
-  } else if (message.has_heartbeat()) {
-    on_heartbeat(*session, message.heartbeat(), turn);
-  } else if (message.has_failure()) {
-    on_failure(*session, message.failure(), turn);
-  } else if (message.has_returned()) {
-    on_returned(*session, message.returned(), turn);
-  } else if (message.has_leaving()) {
-    on_leaving(*session, message.leaving(), turn);
+  session->heard_ms = core::wall_ms();
+  using Message = v1::WorkerMessage;
+  switch (message.message_case()) {
+    case Message::kRequest:
+      return want(*session, message.request().units(), turn);
+    case Message::kHeartbeat:
+      return on_heartbeat(*session, message.heartbeat(), turn);
+    case Message::kFailure:
+      return on_failure(*session, message.failure(), turn);
+    case Message::kReturned:
+      return on_returned(*session, message.returned(), turn);
+    case Message::kLeaving:
+      return on_leaving(*session, message.leaving(), turn);
+    case Message::kResult:  // above: its film is merged without the lock
+    case Message::kHello:   // heard before there is a session
+    case Message::MESSAGE_NOT_SET:
+      return;
   }
 }
 
@@ -69,7 +65,7 @@ void WorkerSessions::on_heartbeat(WorkerSession& session, const v1::Heartbeat& b
   renew_leases(session, beat, turn);
   v1::CoordinatorMessage echo;
   echo.mutable_echo()->set_number(beat.number());
-  session.link->send(std::move(echo));
+  session.link->send(bytes_of(echo));
 }
 
 void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& failure,
@@ -78,7 +74,7 @@ void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& f
   if (unit) {
     const JobId job{failure.unit().job()};
     ++session.units_failed;
-    shared_.meters->lost("failed");
+    context_.meters->lost("failed");
     if (ActiveJob* active = jobs_.find(job)) {
       jobs_.note(*active, v1::LOG_LEVEL_WARNING, unit->frame, session.hello.name(),
                  fmt::format("tile {},{} batches {}-{} failed: {}", unit->tile.x0, unit->tile.y0,
@@ -98,7 +94,7 @@ void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned
     const auto unit = farm::from_wire(returned.unit());
     if (!unit) continue;
     const JobId job{returned.job()};
-    shared_.meters->lost("returned");
+    context_.meters->lost("returned");
     // Why a worker that stays gives units back, in the job's log: once, for it may go on so.
     ActiveJob* active = session.leaving || message.reason().empty() ? nullptr : jobs_.find(job);
     if (active != nullptr && active->gave_back.insert(session.id).second) {
@@ -110,7 +106,7 @@ void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned
 }
 
 void WorkerSessions::on_leaving(WorkerSession& session, const v1::Leaving& leaving, Turn& turn) {
-  session.held_wish = 0;
+  session.deferred_request = 0;
   session.reason = farm::wire_text(leaving.reason());
   if (!std::exchange(session.leaving, true)) {
     // In the logs of the jobs that it has units of; whether they go to others is told later.
@@ -131,16 +127,16 @@ void WorkerSessions::on_leaving(WorkerSession& session, const v1::Leaving& leavi
 
 void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link,
                                const v1::UnitResult& result) {
-  shared_.meters->film_bytes(result.film().size());
+  context_.meters->film_bytes(result.film().size());
   std::optional<ExpectedFilm> expected;
   std::string worker_class;
   const TimePoint came = std::chrono::steady_clock::now();
   {
-    const StateLock lock(shared_.mutex);
+    const StateLock lock(context_.mutex);
     WorkerSession* session = workers_.find(worker, link);
     if (session == nullptr) return;
     session->heard = came;
-    session->heard_ms = wall_ms();
+    session->heard_ms = core::wall_ms();
     worker_class = session->hello.worker_class();
     if (const ActiveJob* active = jobs_.find(result.job())) {
       expected = {active->layout, active->region, active->key};
@@ -170,6 +166,11 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
   if (session.state == v1::WORKER_STATE_QUARANTINED) {
     return ResultRefusal{Rejected::REASON_UNKNOWN, "the worker is quarantined"};
   }
+  const core::Unit& unit = delivery.unit.unit;
+  if (!context_.proofs.holds(result.unit().proof(), session.hello.worker_id(), JobId{result.job()},
+                             unit)) {
+    return ResultRefusal{Rejected::REASON_UNKNOWN, "the unit was not leased to this worker"};
+  }
   if (disk_.level() == DiskLevel::full) {
     return ResultRefusal{Rejected::REASON_NOT_NOW, "the coordinator's disk is full", kFullRetryMs};
   }
@@ -177,12 +178,11 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
     return ResultRefusal{Rejected::REASON_NOT_NOW, "more films wait for the disk than may",
                          kCrowdedRetryMs};
   }
-  const core::Unit& unit = delivery.unit.unit;
   delivery.rendered.worker = session.id;
   delivery.rendered.name = session.hello.name();
   delivery.rendered.thread = result.thread();
   delivery.rendered.render_ns = std::min(result.render_ns(), kLongestRendering);
-  delivery.rendered.came_us = wall_us();
+  delivery.rendered.came_us = core::wall_us();
   for (int i = 0; active != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
     jobs_.note(*active, v1::LOG_LEVEL_WARNING, unit.frame, session.hello.name(),
                farm::wire_text(result.notes(i)), &unit);
@@ -192,7 +192,7 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
   turn.tell(
       ResultArrived{session.id, from_wire(result.lease()), JobId{result.job()}, unit, digest, took},
       &delivery);
-  if (!delivery.settled) shared_.meters->result("waits");
+  if (!delivery.settled) context_.meters->result("waits");
   return std::nullopt;
 }
 
@@ -206,8 +206,8 @@ void WorkerSessions::refuse(WorkerSession& session, const v1::UnitResult& result
   rejected.set_reason(refusal.reason);
   rejected.set_text(refusal.text);
   rejected.set_retry_after_ms(refusal.retry_after_ms);
-  session.link->send(std::move(message));
-  shared_.meters->result(verdict_of(refusal.reason));
+  session.link->send(bytes_of(message));
+  context_.meters->result(verdict_of(refusal.reason));
   if (refusal.reason == v1::Rejected::REASON_NOT_NOW) return;
   const auto unit = farm::from_wire(result.unit());
   if (ActiveJob* active = jobs_.find(result.job())) {
@@ -224,23 +224,22 @@ void WorkerSessions::send_lease(const Lease& lease) {
   ActiveJob* active = jobs_.find(lease.job);
   if (session == nullptr || active == nullptr) return;
   if (session->spec_sent.insert(lease.job).second) {
-    v1::CoordinatorMessage message;
-    v1::JobBrief& brief = *message.mutable_job();
-    brief.set_job(static_cast<uint64_t>(lease.job));
-    *brief.mutable_spec() = active->spec;
-    brief.set_key(farm::to_wire(active->key));
-    workers_.send(lease.worker, std::move(message));
+    if (session->link) session->link->send(active->brief);
   }
   v1::CoordinatorMessage message;
   v1::Lease& wire = *message.mutable_lease();
   *wire.mutable_lease() = to_wire(lease.lease);
   wire.set_job(static_cast<uint64_t>(lease.job));
-  for (const core::Unit& unit : lease.units) *wire.add_units() = farm::to_wire(unit);
+  for (const core::Unit& unit : lease.units) {
+    v1::Unit& leased = *wire.add_units();
+    leased = farm::to_wire(unit);
+    leased.set_proof(context_.proofs.make(session->hello.worker_id(), lease.job, unit));
+  }
   wire.set_adopted(lease.adopted);
   wire.set_deadline_ms(static_cast<uint64_t>(
-      std::chrono::duration_cast<std::chrono::milliseconds>(shared_.options.lease_time).count()));
-  workers_.send(lease.worker, std::move(message));
-  shared_.meters->leased(lease.units.size(), lease.adopted);
+      std::chrono::duration_cast<std::chrono::milliseconds>(context_.options.lease_time).count()));
+  workers_.send(lease.worker, message);
+  context_.meters->leased(lease.units.size(), lease.adopted);
 
   const int32_t number = lease.units.front().frame;
   FrameNote& frame = active->touch(number);
@@ -257,7 +256,7 @@ void WorkerSessions::send_over(JobId job) {
     if (session.spec_sent.erase(job) == 0) continue;
     v1::CoordinatorMessage message;
     message.mutable_over()->set_job(static_cast<uint64_t>(job));
-    workers_.send(id, std::move(message));
+    workers_.send(id, message);
   }
 }
 

@@ -1,15 +1,20 @@
 #include "coordinator/controller/worker_sessions.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/counted.h"
 #include "coordinator/controller/to_wire.h"
-#include "coordinator/controller/wall_clock.h"
 #include "coordinator/meters/meters.h"
+#include "core/base/printable.h"
+#include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/base/wall_clock.h"
 #include "farm/log.h"
 #include "farm/tags.h"
 #include "farm/wire.h"
@@ -19,12 +24,9 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr size_t kMostWorkers = 20'000;
-/// That one worker may have.
-constexpr uint32_t kMostThreads = 4096;
-/// In the time that a lease lasts.
-constexpr int kHeartbeats = 6;
-/// By which a heartbeat may be late.
-constexpr Duration kTwinMargin = std::chrono::seconds(1);
+constexpr uint32_t kMostThreads = 4096;                        ///< of one worker
+constexpr int kHeartbeats = 6;                                 ///< of a worker, in one lease_time
+constexpr Duration kLateBeatMargin = std::chrono::seconds(1);  ///< that a heartbeat may be late by
 
 uint64_t milliseconds(Duration d) {
   return static_cast<uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(d).count());
@@ -43,9 +45,13 @@ std::string complaint(const v1::Hello& hello) {
   if (hello.instance().size() < 16 || hello.instance().size() > 64) {
     return "instance has to have 16 to 64 characters";
   }
-  if (hello.name().empty() || hello.name().size() > 200 || hello.host().size() > 200 ||
-      hello.build().size() > 200) {
+  if (hello.name().empty() || hello.name().size() > kLongestName ||
+      hello.host().size() > kLongestName || hello.build().size() > kLongestName) {
     return "a worker needs a name; names, host and build have at most 200 characters";
+  }
+  if (!core::is_printable(hello.name()) || !core::is_printable(hello.host()) ||
+      !core::is_printable(hello.build())) {
+    return "name, host and build: expected one line of printable characters";
   }
   if (const auto tags = farm::check_tags({hello.tags().begin(), hello.tags().end()}); !tags) {
     return tags.error().message;
@@ -55,6 +61,42 @@ std::string complaint(const v1::Hello& hello) {
   }
   if (hello.threads() < 1 || hello.threads() > kMostThreads) return "threads: expected 1 to 4096";
   return {};
+}
+
+/// What the scheduler is told of a worker, but for its number. What it says that it has and cannot
+/// prove is put into `unproven`.
+core::Result<WorkerJoined> joining(const v1::Hello& hello, const LeaseProofs& proofs,
+                                   std::vector<v1::LeasedUnit>& unproven) {
+  WorkerJoined joined;
+  joined.threads = hello.threads();
+  joined.worker_class = hello.worker_class();
+  joined.tags.assign(hello.tags().begin(), hello.tags().end());
+  joined.memory = hello.memory_bytes();
+  for (const v1::LeasedUnit& held : hello.in_hand()) {
+    const auto unit = farm::from_wire(held.unit());
+    if (!unit) return unit.error();
+    if (!proofs.holds(held.unit().proof(), hello.worker_id(), JobId{held.job()}, *unit)) {
+      unproven.push_back(held);
+      continue;
+    }
+    joined.in_hand.push_back({from_wire(held.lease()), JobId{held.job()}, *unit});
+  }
+  return joined;
+}
+
+void begin_stream(WorkerSession& session, const v1::Hello& hello,
+                  const std::shared_ptr<WorkerLink>& link) HYADES_REQUIRES(state_lock) {
+  session.hello = hello;
+  session.hello.clear_in_hand();
+  session.link = link;
+  session.spec_sent.clear();
+  session.progress.clear();
+  session.lost_at.reset();
+  session.leaving = false;
+  session.deferred_request = 0;
+  session.heard = std::chrono::steady_clock::now();
+  session.heard_ms = core::wall_ms();
+  if (session.joined_ms == 0) session.joined_ms = session.heard_ms;
 }
 
 }  // namespace
@@ -74,17 +116,18 @@ bool WorkerSessions::has_room(Turn& turn) {
 /// Two processes under one id would close each other's stream for ever. The one that was here first
 /// keeps the id if it still speaks after another has asked; a silent one is gone (its machine lost
 /// its power, say), though nobody has noticed yet.
-grpc::Status WorkerSessions::meet_twin(WorkerSession& session, const v1::Hello& hello) {
+grpc::Status WorkerSessions::resolve_duplicate_id(WorkerSession& session, const v1::Hello& hello) {
   if (!session.link || session.hello.instance() == hello.instance()) return grpc::Status::OK;
   const TimePoint now = std::chrono::steady_clock::now();
-  const Duration pause = shared_.options.lease_time / kHeartbeats + kTwinMargin;
-  if (!session.twin_came || now - *session.twin_came > 4 * pause) session.twin_came = now;
-  if (session.heard > *session.twin_came) {
+  const Duration pause = context_.options.lease_time / kHeartbeats + kLateBeatMargin;
+  if (!session.duplicate_since || now - *session.duplicate_since > 4 * pause)
+    session.duplicate_since = now;
+  if (session.heard > *session.duplicate_since) {
     return {grpc::StatusCode::ALREADY_EXISTS,
             fmt::format("a worker called {} on {} works under this id: take a new one",
                         session.hello.name(), session.hello.host())};
   }
-  if (now - *session.twin_came >= pause) return grpc::Status::OK;
+  if (now - *session.duplicate_since >= pause) return grpc::Status::OK;
   return farm::retry_later(grpc::StatusCode::UNAVAILABLE,
                            "a worker with this id is here: it may have gone without a sign",
                            std::chrono::duration_cast<std::chrono::milliseconds>(pause));
@@ -97,16 +140,9 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
                                                      : grpc::StatusCode::INVALID_ARGUMENT,
             wrong};
   }
-  WorkerJoined joined;
-  joined.threads = hello.threads();
-  joined.worker_class = hello.worker_class();
-  joined.tags.assign(hello.tags().begin(), hello.tags().end());
-  joined.memory = hello.memory_bytes();
-  for (const v1::LeasedUnit& held : hello.in_hand()) {
-    const auto unit = farm::from_wire(held.unit());
-    if (!unit) return {grpc::StatusCode::INVALID_ARGUMENT, unit.error().message};
-    joined.in_hand.push_back({from_wire(held.lease()), JobId{held.job()}, *unit});
-  }
+  std::vector<v1::LeasedUnit> unproven;
+  auto joined = joining(hello, context_.proofs, unproven);
+  if (!joined) return {grpc::StatusCode::INVALID_ARGUMENT, joined.error().message};
   Turn turn(dispatcher_);
   if (!workers_.knows(hello.worker_id()) && !has_room(turn)) {
     return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
@@ -115,44 +151,42 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
   }
   WorkerSession& session = workers_.open(hello.worker_id());
   worker = session.id;
-  if (grpc::Status met = meet_twin(session, hello); !met.ok()) return met;
-  session.twin_came.reset();
+  if (grpc::Status met = resolve_duplicate_id(session, hello); !met.ok()) return met;
+  session.duplicate_since.reset();
   if (session.link) {
     session.link->close({grpc::StatusCode::ABORTED, "the worker has a newer stream"});
   }
-  const bool new_process = session.joined && session.hello.instance() != hello.instance();
-  session.hello = hello;
-  session.hello.clear_in_hand();
-  session.link = link;
-  session.spec_sent.clear();
-  session.progress.clear();
+  const bool same_process = session.hello.instance() == hello.instance();
+  const bool new_process = session.joined && !same_process;
+  if (!same_process) session.drained.reset();
+  begin_stream(session, hello, link);
   if (const std::string* why = workers_.quarantine_of(hello.worker_id())) {
     session.state = v1::WORKER_STATE_QUARANTINED;
     session.reason = *why;
   } else {
     session.state = v1::WORKER_STATE_ACTIVE;
   }
-  session.lost_at.reset();
-  session.leaving = false;
-  session.held_wish = 0;
-  session.heard = std::chrono::steady_clock::now();
-  session.heard_ms = wall_ms();
-  if (session.joined_ms == 0) session.joined_ms = session.heard_ms;
-  link->send(welcome(hello, token));
+  link->send(bytes_of(welcome(hello, token)));
+  for (v1::LeasedUnit& unit : unproven) {
+    v1::CoordinatorMessage stop;
+    *stop.mutable_stop()->mutable_unit() = std::move(unit);
+    link->send(bytes_of(stop));
+  }
 
-  joined.worker = worker;
+  joined->worker = worker;
   if (new_process) {
     workers_.note_losses(session, dispatcher_.scheduler().units_of(worker),
                          "has been started again");
   }
   session.joined = true;
   farm::log_later(farm::LogLevel::info,
-                  fmt::format("attends: {}{}", counted(hello.threads(), "thread"),
+                  fmt::format("attends: {}{}", core::counted(hello.threads(), "thread"),
                               hello.host().empty() ? "" : " on " + hello.host()),
                   {{}, {}, {}, farm::wire_text(hello.name())});
-  turn.tell(joined);
+  turn.tell(*joined);
   if (session.state == v1::WORKER_STATE_QUARANTINED) turn.tell(WorkerBarred{worker, true});
-  if (!joined.in_hand.empty()) wait_for_more_holders();
+  if (session.drained) workers_.send_drain(session, turn);
+  if (!joined->in_hand.empty()) wait_for_more_holders();
   want(session, hello.want(), turn);
   return grpc::Status::OK;
 }
@@ -162,10 +196,10 @@ v1::CoordinatorMessage WorkerSessions::welcome(const v1::Hello& hello,
   v1::CoordinatorMessage message;
   v1::Welcome& welcome = *message.mutable_welcome();
   welcome.set_protocol(farm::kProtocol);
-  welcome.set_incarnation(shared_.incarnation);
+  welcome.set_incarnation(context_.incarnation);
   welcome.set_heartbeat_ms(
-      static_cast<uint32_t>(milliseconds(shared_.options.lease_time) / kHeartbeats));
-  welcome.set_lease_ms(static_cast<uint32_t>(milliseconds(shared_.options.lease_time)));
+      static_cast<uint32_t>(milliseconds(context_.options.lease_time) / kHeartbeats));
+  welcome.set_lease_ms(static_cast<uint32_t>(milliseconds(context_.options.lease_time)));
   welcome.set_max_message_bytes(farm::kMaxResultBytes);
   welcome.set_version(core::kVersion);
   welcome.set_name(hello.name());
@@ -176,8 +210,8 @@ v1::CoordinatorMessage WorkerSessions::welcome(const v1::Hello& hello,
 
 void WorkerSessions::begin_adoption() {
   const TimePoint now = std::chrono::steady_clock::now();
-  adopting_until_ = now + shared_.options.adoption_time;
-  adopting_at_most_ = now + 4 * shared_.options.adoption_time;
+  adopting_until_ = now + context_.options.adoption_time;
+  adopting_at_most_ = now + 4 * context_.options.adoption_time;
 }
 
 bool WorkerSessions::is_adopting() const {
@@ -189,21 +223,22 @@ bool WorkerSessions::is_adopting() const {
 void WorkerSessions::wait_for_more_holders() {
   if (!is_adopting()) return;
   const TimePoint later = std::min(
-      std::chrono::steady_clock::now() + shared_.options.adoption_time / 5, adopting_at_most_);
+      std::chrono::steady_clock::now() + context_.options.adoption_time / 5, adopting_at_most_);
   adopting_until_ = std::max(adopting_until_, later);
 }
 
 void WorkerSessions::want(WorkerSession& session, uint32_t units, Turn& turn) {
   if (units == 0 || session.leaving) return;
   if (is_adopting()) {
-    session.held_wish = std::min(session.held_wish + std::min(units, kMostThreads), kMostThreads);
+    session.deferred_request =
+        std::min(session.deferred_request + std::min(units, kMostThreads), kMostThreads);
     return;
   }
   turn.tell(WorkRequested{session.id, units});
 }
 
 void WorkerSessions::detach(WorkerId worker, const WorkerLink* link) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   WorkerSession* session = workers_.find(worker, link);
   if (session == nullptr) return;
   farm::log_later(
@@ -215,7 +250,7 @@ void WorkerSessions::detach(WorkerId worker, const WorkerLink* link) {
 }
 
 void WorkerSessions::close(const grpc::Status& why) {
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   for (auto& [id, session] : workers_.all()) {
     if (session.link) session.link->close(why);
   }
@@ -225,26 +260,26 @@ void WorkerSessions::look_after(Turn& turn) {
   const TimePoint now = std::chrono::steady_clock::now();
   for (auto it = workers_.all().begin(); it != workers_.all().end();) {
     WorkerSession& session = it->second;
-    if (session.link && now - session.heard > shared_.options.lease_time) {
+    if (session.link && now - session.heard > context_.options.lease_time) {
       session.link->close({grpc::StatusCode::DEADLINE_EXCEEDED, "not heard of for too long"});
       session.link.reset();
       session.lost_at = now;
     }
     if (session.lost_at && session.joined &&
-        (session.leaving || now - *session.lost_at > shared_.options.reconnect_time)) {
+        (session.leaving || now - *session.lost_at > context_.options.reconnect_time)) {
       session.joined = false;
       if (session.state != v1::WORKER_STATE_QUARANTINED) session.state = v1::WORKER_STATE_GONE;
       workers_.note_losses(session, dispatcher_.scheduler().units_of(session.id),
                            session.leaving ? "has left" : "is lost");
-      if (!session.leaving) shared_.meters->worker_lost();
+      if (!session.leaving) context_.meters->worker_lost();
       turn.tell(WorkerLost{session.id});
     }
-    if (session.held_wish > 0 && session.joined && now >= adopting_until_) {
-      turn.tell(WorkRequested{session.id, std::exchange(session.held_wish, 0)});
+    if (session.deferred_request > 0 && session.joined && now >= adopting_until_) {
+      turn.tell(WorkRequested{session.id, std::exchange(session.deferred_request, 0)});
     }
     const WorkerId id = it->first;
     ++it;
-    if (session.lost_at && now - *session.lost_at > shared_.options.forget_time) {
+    if (session.lost_at && now - *session.lost_at > context_.options.forget_time) {
       workers_.forget(id, turn);
     }
   }

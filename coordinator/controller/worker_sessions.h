@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,9 +17,9 @@ struct ResultRefusal;
 /// Workers that come, speak and go: their streams, heartbeats and leases on the wire. Thread-safe.
 class WorkerSessions {
  public:
-  WorkerSessions(Shared& shared, Dispatcher& dispatcher, JobTable& jobs, WorkerTable& workers,
-                 const DiskWatch& disk)
-      : shared_(shared), dispatcher_(dispatcher), jobs_(jobs), workers_(workers), disk_(disk) {}
+  WorkerSessions(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
+                 WorkerTable& workers, const DiskWatch& disk)
+      : context_(context), dispatcher_(dispatcher), jobs_(jobs), workers_(workers), disk_(disk) {}
 
   /// A worker's stream begins; `link` gets the Welcome. An older stream of the same worker is
   /// closed, unless it is another process' that still speaks: ALREADY_EXISTS then. INVALID_ARGUMENT
@@ -29,27 +30,30 @@ class WorkerSessions {
   /// What came on the stream; what comes on one that is not the worker's newest is ignored.
   void receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMessage& message)
       HYADES_EXCLUDES(state_lock);
-  /// The stream has ended.
+  /// A worker's stream has ended; does nothing where it is not the newest.
   void detach(WorkerId worker, const WorkerLink* link) HYADES_EXCLUDES(state_lock);
   /// Ends all streams.
   void close(const grpc::Status& why) HYADES_EXCLUDES(state_lock);
 
   /// From now on no new units are leased for a while, so that workers can say what they hold.
   void begin_adoption() HYADES_REQUIRES(state_lock);
+  /// Whether that while is not over.
   bool is_adopting() const HYADES_REQUIRES(state_lock);
-  /// Workers that are gone, and wishes that waited for adoption; from time to time.
+  /// Looks for workers that are gone, and grants what workers asked for during adoption; to be
+  /// called from time to time.
   void look_after(Turn& turn) HYADES_REQUIRES(state_lock);
 
   // For the scheduler's actions.
 
+  /// Tells the worker of units that are its own.
   void send_lease(const Lease& lease) HYADES_REQUIRES(state_lock);
-  /// Its workers need not know the job any more.
+  /// Tells the workers that know the job that they need it no more.
   void send_over(JobId job) HYADES_REQUIRES(state_lock);
 
  private:
   v1::CoordinatorMessage welcome(const v1::Hello& hello, const farm::TokenTerm& token) const;
   bool has_room(Turn& turn) HYADES_REQUIRES(state_lock);
-  grpc::Status meet_twin(WorkerSession& session, const v1::Hello& hello)
+  grpc::Status resolve_duplicate_id(WorkerSession& session, const v1::Hello& hello)
       HYADES_REQUIRES(state_lock);
   void wait_for_more_holders() HYADES_REQUIRES(state_lock);
   void want(WorkerSession& session, uint32_t units, Turn& turn) HYADES_REQUIRES(state_lock);
@@ -74,7 +78,7 @@ class WorkerSessions {
   void refuse(WorkerSession& session, const v1::UnitResult& result, const ResultRefusal& refusal,
               Turn& turn) HYADES_REQUIRES(state_lock);
 
-  Shared& shared_;
+  ControllerContext& context_;
   Dispatcher& dispatcher_;
   JobTable& jobs_;
   WorkerTable& workers_;

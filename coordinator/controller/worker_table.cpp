@@ -1,10 +1,11 @@
 #include "coordinator/controller/worker_table.h"
 
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "coordinator/controller/counted.h"
+#include "core/base/text.h"
 #include "farm/log.h"
 
 namespace hyades::coordinator {
@@ -22,17 +23,17 @@ std::string in_words(const std::map<int32_t, uint32_t>& units_of) {
   }
   const std::string of =
       frames.size() > kMostFramesNamed
-          ? counted(frames.size(), "frame")
+          ? core::counted(frames.size(), "frame")
           : fmt::format("{} {}", frames.size() == 1 ? "frame" : "frames", fmt::join(frames, ", "));
-  return fmt::format("{} of {} {}", counted(units, "unit"), of, units == 1 ? "goes" : "go");
+  return fmt::format("{} of {} {}", core::counted(units, "unit"), of, units == 1 ? "goes" : "go");
 }
 
 }  // namespace
 
 core::Status WorkerTable::load() {
-  const auto stored = shared_.store->quarantines();
+  const auto stored = context_.store->quarantines();
   if (!stored) return stored.error();
-  const StateLock lock(shared_.mutex);
+  const StateLock lock(context_.mutex);
   for (const StoredQuarantine& kept : *stored) quarantines_[kept.worker] = kept.reason;
   return {};
 }
@@ -100,9 +101,17 @@ void WorkerTable::note_speeds(TimePoint now) {
   }
 }
 
-void WorkerTable::send(WorkerId worker, v1::CoordinatorMessage message) {
+void WorkerTable::send(WorkerId worker, const v1::CoordinatorMessage& message) {
   const WorkerSession* session = find(worker);
-  if (session != nullptr && session->link) session->link->send(std::move(message));
+  if (session != nullptr && session->link) session->link->send(bytes_of(message));
+}
+
+void WorkerTable::send_drain(WorkerSession& session, Turn& turn) {
+  v1::CoordinatorMessage message;
+  message.mutable_drain()->set_reason(*session.drained);
+  send(session.id, message);
+  if (session.state == v1::WORKER_STATE_ACTIVE) session.state = v1::WORKER_STATE_DRAINING;
+  turn.tell(WorkerBarred{session.id, true});
 }
 
 const std::string* WorkerTable::quarantine_of(const std::string& worker_id) const {
@@ -115,7 +124,7 @@ void WorkerTable::set_quarantine(WorkerSession& session, const std::string& reas
   session.reason = reason;
   const std::string worker = session.hello.worker_id();
   quarantines_[worker] = reason;
-  store_quarantine([this, worker, reason] { return shared_.store->quarantine({worker, reason}); });
+  store_quarantine([this, worker, reason] { return context_.store->quarantine({worker, reason}); });
   const std::string text = reason.empty() ? "is in quarantine" : "is in quarantine: " + reason;
   farm::log_later(farm::LogLevel::warning, text, {{}, {}, {}, session.hello.name()});
   // In the logs of the jobs that it has worked for since it came.
@@ -126,15 +135,21 @@ void WorkerTable::set_quarantine(WorkerSession& session, const std::string& reas
   }
 }
 
-void WorkerTable::end_quarantine(WorkerSession& session) {
-  session.state = session.joined ? v1::WORKER_STATE_ACTIVE : v1::WORKER_STATE_GONE;
+void WorkerTable::end_quarantine(WorkerSession& session, const std::string& reason, Turn& turn) {
+  const bool leaves = session.leaving || session.drained;
+  session.state = !session.joined ? v1::WORKER_STATE_GONE
+                  : leaves        ? v1::WORKER_STATE_DRAINING
+                                  : v1::WORKER_STATE_ACTIVE;
+  session.reason = session.drained.value_or(reason);
+  turn.tell(WorkerBarred{session.id, leaves, true});
   const std::string worker = session.hello.worker_id();
   quarantines_.erase(worker);
-  store_quarantine([this, worker] { return shared_.store->end_quarantine(worker); });
+  store_quarantine([this, worker] { return context_.store->end_quarantine(worker); });
 }
 
 void WorkerTable::store_quarantine(std::function<core::Status()> what) {
-  shared_.background.add(Shared::kWorkersKey, [what = std::move(what)] { return what().ok(); });
+  context_.background.add(ControllerContext::kWorkersKey,
+                          [what = std::move(what)] { return what().ok(); });
 }
 
 void WorkerTable::note_losses(const WorkerSession& session, const std::vector<UnitInHand>& units,

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -19,17 +20,17 @@
 
 #include <fmt/format.h>
 
+#include "core/base/io_reason.h"
 #include "core/base/own_environment.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::coordinator {
 namespace {
 
-/// Nobody tone-maps for longer.
-constexpr std::chrono::minutes kLongest{10};
-/// It ends a video without progress itself; others may take days.
+constexpr std::chrono::minutes kLongest{10};  ///< of one frame
+/// The program ends a video without progress itself; others may take days.
 constexpr std::chrono::hours kLongestVideo{24 * 365};
-/// Who is asked to end is ended after that.
-constexpr std::chrono::seconds kGrace{3};
+constexpr std::chrono::seconds kGrace{3};  ///< from SIGTERM to SIGKILL
 constexpr size_t kLongestComplaint = 1000;
 
 /// The end of what the process has said.
@@ -70,7 +71,12 @@ core::Status run(const std::string& program, std::string word, const std::string
   const auto deadline = std::chrono::steady_clock::now() + longest;
   std::optional<std::chrono::steady_clock::time_point> asked;
   int status = 0;
-  for (auto nap = std::chrono::microseconds(500); waitpid(child, &status, WNOHANG) == 0;) {
+  for (auto nap = std::chrono::microseconds(500);;) {
+    const pid_t ended = core::uninterrupted([&] { return waitpid(child, &status, WNOHANG); });
+    if (ended < 0) {
+      return core::Error{"nobody knows how the finisher has ended: " + core::io_reason(errno)};
+    }
+    if (ended == child) break;
     const auto now = std::chrono::steady_clock::now();
     if (!asked && (stop || now > deadline)) {
       kill(child, SIGTERM);

@@ -19,7 +19,9 @@ core::Result<std::vector<FinishedFile>> run_finisher(const std::string& program,
                                                      const FinishTask& task, const core::Film& film,
                                                      const std::atomic<bool>& stop);
 
-/// The same for `program video FOLDER` (video_task.h).
+/// Runs `program video FOLDER` (video_task.h) on the task, in `folder`, which is emptied before and
+/// removed after. Blocks; when `stop` becomes true the process is ended and an error returned. The
+/// video is durable on return.
 core::Result<std::vector<FinishedFile>> run_video_maker(const std::string& program,
                                                         const std::string& folder,
                                                         const VideoTask& task,

@@ -6,8 +6,19 @@
 #include "coordinator/finisher/json_file.h"
 #include "core/film/film_codec.h"
 
+namespace hyades::core {
+
+// What a finisher is told of outputs and colours: each key once, for writing and for reading.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OutputDesc, file, layers, tone_map, exposure, denoise, half,
+                                   quality, bits, transparent)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ColorDesc, config, display, view, look, working_space)
+
+}  // namespace hyades::core
+
 namespace hyades::coordinator {
 using Json = nlohmann::json;
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FinishedFile, path, size, sha256)
 
 namespace {
 
@@ -39,18 +50,6 @@ core::Status put_color_file(const std::string& folder, const std::string& config
 
 core::Status write_finish_task(const std::string& folder, const FinishTask& task,
                                const core::Film& film) {
-  Json outputs = Json::array();
-  for (const core::OutputDesc& output : task.outputs) {
-    outputs.push_back({{"file", output.file},
-                       {"layers", output.layers},
-                       {"tone_map", output.tone_map},
-                       {"exposure", output.exposure},
-                       {"denoise", output.denoise},
-                       {"half", output.half},
-                       {"quality", output.quality},
-                       {"bits", output.bits},
-                       {"transparent", output.transparent}});
-  }
   const core::FilmInfo& info = task.info;
   Json json = {{"job", info.job_name},
                {"render_key", info.render_key},
@@ -62,13 +61,10 @@ core::Status write_finish_task(const std::string& folder, const FinishTask& task
                {"build", info.build},
                {"film", task.film},
                {"folder", task.folder},
-               {"outputs", outputs}};
+               {"outputs", task.outputs}};
   if (const auto& color = task.color) {
-    json["color"] = {{"config", color_path(folder, color->config)},
-                     {"display", color->display},
-                     {"view", color->view},
-                     {"look", color->look},
-                     {"working_space", color->working_space}};
+    json["color"] = *color;
+    json["color"]["config"] = color_path(folder, color->config);
     for (const auto& [reference, bytes] : task.color_files) {
       if (auto put = put_color_file(folder, color->config, reference, bytes); !put) return put;
     }
@@ -96,28 +92,8 @@ core::Result<FinishTask> read_finish_task(const std::string& folder) {
     info.build = json->at("build");
     task.film = json->at("film");
     task.folder = json->at("folder");
-    if (json->contains("color")) {
-      const Json& named = json->at("color");
-      core::ColorDesc& color = task.color.emplace();
-      color.config = named.at("config");
-      color.display = named.at("display");
-      color.view = named.at("view");
-      color.look = named.at("look");
-      color.working_space = named.at("working_space");
-    }
-    for (const Json& entry : json->at("outputs")) {
-      core::OutputDesc output;
-      output.file = entry.at("file");
-      output.layers = entry.at("layers").get<std::vector<std::string>>();
-      output.tone_map = entry.at("tone_map");
-      output.exposure = entry.at("exposure");
-      output.denoise = entry.at("denoise");
-      output.half = entry.at("half");
-      output.quality = entry.at("quality");
-      output.bits = entry.at("bits");
-      output.transparent = entry.at("transparent");
-      task.outputs.push_back(std::move(output));
-    }
+    if (json->contains("color")) task.color = json->at("color").get<core::ColorDesc>();
+    task.outputs = json->at("outputs").get<std::vector<core::OutputDesc>>();
     return task;
   } catch (const Json::exception& e) {
     return core::Error{path + ": " + e.what()};
@@ -132,11 +108,7 @@ core::Result<core::Film> read_finish_film(const std::string& folder) {
 
 core::Status write_finish_result(const std::string& folder,
                                  const std::vector<FinishedFile>& files) {
-  Json json = Json::array();
-  for (const FinishedFile& file : files) {
-    json.push_back({{"path", file.path}, {"size", file.size}, {"sha256", file.sha256}});
-  }
-  return write_json(folder + "/result.json", json);
+  return write_json(folder + "/result.json", files);
 }
 
 core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& folder) {
@@ -144,11 +116,7 @@ core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& fo
   const auto json = read_json(path);
   if (!json) return json.error();
   try {
-    std::vector<FinishedFile> files;
-    for (const Json& entry : *json) {
-      files.push_back({entry.at("path"), entry.at("size"), entry.at("sha256")});
-    }
-    return files;
+    return json->get<std::vector<FinishedFile>>();
   } catch (const Json::exception& e) {
     return core::Error{path + ": " + e.what()};
   }

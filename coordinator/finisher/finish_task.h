@@ -36,10 +36,13 @@ struct FinishedFile {
   std::string sha256;  ///< hexadecimal
 };
 
+/// Writes the task and its film into the folder.
 core::Status write_finish_task(const std::string& folder, const FinishTask& task,
                                const core::Film& film);
+/// Reads what write_finish_task() has written, but for color_files, whose files are there.
 core::Result<FinishTask> read_finish_task(const std::string& folder);
 core::Result<core::Film> read_finish_film(const std::string& folder);
+/// Tells what has been made; for the process that finishes.
 core::Status write_finish_result(const std::string& folder, const std::vector<FinishedFile>& files);
 core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& folder);
 

@@ -16,6 +16,7 @@ inline core::Status write_json(const std::string& path, const nlohmann::json& js
   return core::write_file(path, std::as_bytes(std::span(text)));
 }
 
+/// Reads the file; an error where it cannot be read or is not JSON.
 inline core::Result<nlohmann::json> read_json(const std::string& path) {
   auto bytes = core::map_file(path);
   if (!bytes) return bytes.error().in(path);

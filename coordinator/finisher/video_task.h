@@ -16,6 +16,7 @@ struct VideoTask {
   core::VideoFrames frames;
 };
 
+/// Writes the task into the folder, and reads it there.
 core::Status write_video_task(const std::string& folder, const VideoTask& task);
 core::Result<VideoTask> read_video_task(const std::string& folder);
 

@@ -1,4 +1,10 @@
 // What a run does of what the scheduler says.
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
 #include "coordinator/local/local_run.h"
 #include "coordinator/local/noise.h"
 
@@ -9,8 +15,8 @@ constexpr Duration kNoiseEvery = std::chrono::seconds(1);
 
 }  // namespace
 
-void LocalRun::carry_out(const std::vector<Action>& actions) {
-  for (const Action& action : actions) {
+void LocalRun::carry_out(const std::vector<DeferredAction>& actions) {
+  for (const DeferredAction& action : actions) {
     std::visit([this](const auto& one) { act(one); }, action);
   }
 }
@@ -23,7 +29,7 @@ void LocalRun::act(const Persist& persist) {
 
 void LocalRun::act(const Merge& merge) {
   if (const core::Status merged = film_store_.merge(merge.record); !merged) {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     end_locked("a film cannot be merged: " + merged.error().message);
     return;
   }
@@ -35,7 +41,7 @@ void LocalRun::act(const Merge& merge) {
 void LocalRun::act(const FinishFrame& finish) {
   std::shared_ptr<const core::Film> film;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     works_.erase(finish.frame);
     in_flight_.insert(finish.frame);
     // The store's films are its thread's; a second attempt comes from the finishing thread.
@@ -50,7 +56,7 @@ void LocalRun::act(const FinishFrame& finish) {
 
 void LocalRun::act(const FrameDone& done) {
   film_store_.forget(done.frame, true);
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   in_flight_.erase(done.frame);
   complete_.erase(done.frame);
   frame_samples_.erase(done.frame);
@@ -59,7 +65,7 @@ void LocalRun::act(const FrameDone& done) {
 
 void LocalRun::act(const FrameFailed& failed) {
   film_store_.forget(failed.frame, false);
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   works_.erase(failed.frame);
   in_flight_.erase(failed.frame);
   complete_.erase(failed.frame);
@@ -72,12 +78,12 @@ void LocalRun::act(const FrameFailed& failed) {
 
 /// A film was lost on its way to the disk: its unit will be rendered again.
 void LocalRun::act(const Reject& reject) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   count_locked(reject.unit, false);
 }
 
 void LocalRun::act(const JobEnded& /*ended*/) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   outcome_.complete = true;
   end_locked({});
 }
@@ -108,7 +114,7 @@ void LocalRun::note_film(int32_t frame, const core::Film& film) {
   if (now - last_noise_ < kNoiseEvery) return;
   last_noise_ = now;
   const double noise = estimate_noise(film);
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   progress_.noise = noise;
   progress_.noise_frame = frame;
 }

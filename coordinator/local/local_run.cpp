@@ -1,7 +1,12 @@
 #include "coordinator/local/local_run.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstddef>
 #include <utility>
+#include <variant>
+
+#include "core/base/overloaded.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -55,42 +60,15 @@ core::Status LocalRun::start() {
   if (contents->cut.tile_size > 0) plan_.tile_size = contents->cut.tile_size;
 
   JobAdded job;
-  job.job = kJob;
-  job.plan.frames = plan_.frames;
-  job.plan.region = plan_.region;
-  job.plan.tile_size = plan_.tile_size;
-  job.plan.batches = batches_of(plan_).count;
-  job.plan.shuffle = plan_.shuffle;
-  job.plan.frames_in_flight = plan_.frames_in_flight;
-  for (const int32_t frame : plan_.frames) {
-    if (contents->finished.contains(frame)) {
-      if (!sink_.outputs_exist(frame)) {
-        film_store_.reopen(frame);
-        continue;
-      }
-      job.restored.finished.push_back(frame);
-      progress_.samples_done += samples_per_frame();
-    } else if (const auto film = contents->films.find(frame); film != contents->films.end()) {
-      for (core::Unit unit : units_of(frame, *film->second, plan_.region, plan_.tile_size)) {
-        unit.batches.first -= batches_of(plan_).first;
-        job.restored.accepted.push_back({unit, Digest{}, {}});
-        frame_samples_[frame] += samples_of(unit);
-      }
-      progress_.samples_done += frame_samples_[frame];
-    }
+  {
+    const core::MutexLock lock(mutex_);
+    job = recover(*contents);
   }
-  progress_.frames = static_cast<uint32_t>(plan_.frames.size());
-  progress_.frames_done = static_cast<uint32_t>(job.restored.finished.size());
-  progress_.samples = samples_per_frame() * plan_.frames.size();
-  samples_before_ = progress_.samples_done;
-  started_ = std::chrono::steady_clock::now();
-
   if (core::Status kept = film_store_.start(plan_.tile_size); !kept) return kept;
   for (int i = 0; i < plan_.threads; ++i) {
-    seats_.push_back(std::make_unique<Seat>());
+    task_queues_.push_back(std::make_unique<TaskQueue>());
     tell(WorkerJoined{WorkerId{static_cast<uint64_t>(i)}, 1, {}, {}});
   }
-  rendering_ = plan_.threads;
   carry_out(tell(job));
   for (int i = 0; i < plan_.threads; ++i) threads_.emplace_back([this, i] { render_loop(i); });
   threads_.emplace_back([this] { load_loop(); });
@@ -98,8 +76,45 @@ core::Status LocalRun::start() {
   return {};
 }
 
+/// The job as the scheduler shall know it, with what the log holds of it; the progress begins
+/// there.
+JobAdded LocalRun::recover(const LogContents& contents) {
+  JobAdded job;
+  job.job = kJob;
+  job.plan.frames = plan_.frames;
+  job.plan.region = plan_.region;
+  job.plan.tile_size = plan_.tile_size;
+  job.plan.batches = batches_of(plan_).count;
+  job.plan.shuffle = plan_.shuffle;
+  job.plan.frames_in_flight = plan_.frames_in_flight;
+  for (const int32_t frame : plan_.frames) restore(contents, frame, job.restored);
+  progress_.frames = static_cast<uint32_t>(plan_.frames.size());
+  progress_.frames_done = static_cast<uint32_t>(job.restored.finished.size());
+  progress_.samples = samples_per_frame() * plan_.frames.size();
+  samples_before_ = progress_.samples_done;
+  started_ = std::chrono::steady_clock::now();
+  rendering_ = plan_.threads;
+  return job;
+}
+
+/// A finished frame counts as long as its outputs are there; of others the films do.
+void LocalRun::restore(const LogContents& contents, int32_t frame, RestoredJob& restored) {
+  if (contents.finished.contains(frame)) {
+    if (!sink_.outputs_exist(frame)) return film_store_.reopen(frame);
+    restored.finished.push_back(frame);
+    progress_.samples_done += samples_per_frame();
+  } else if (const auto film = contents.films.find(frame); film != contents.films.end()) {
+    for (core::Unit unit : units_of(frame, *film->second, plan_.region, plan_.tile_size)) {
+      unit.batches.first -= batches_of(plan_).first;
+      restored.accepted.push_back({unit, Digest{}, {}});
+      frame_samples_[frame] += samples_of(unit);
+    }
+    progress_.samples_done += frame_samples_[frame];
+  }
+}
+
 void LocalRun::stop() {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   end_locked({});
 }
 
@@ -107,21 +122,23 @@ void LocalRun::end_locked(const std::string& error) {
   if (!error.empty() && outcome_.error.empty()) outcome_.error = error;
   stop_ = true;
   ending_ = true;
-  for (const auto& seat : seats_) seat->wake.notify_all();
+  for (const auto& queue : task_queues_) queue->wake.notify_all();
   load_wake_.notify_all();
   finish_wake_.notify_all();
   film_store_.hurry();
 }
 
 bool LocalRun::wait_for(Duration duration) {
-  std::unique_lock lock(mutex_);
-  return over_wake_.wait_for(lock, duration, [&] { return over_; });
+  const TimePoint end = std::chrono::steady_clock::now() + duration;
+  const core::MutexLock lock(mutex_);
+  while (!over_ && std::chrono::steady_clock::now() < end) over_wake_.wait_until(mutex_, end);
+  return over_;
 }
 
 Progress LocalRun::progress() const {
   Progress p;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     p = progress_;
     p.frames_in_flight.assign(in_flight_.begin(), in_flight_.end());
     const TimePoint now = std::chrono::steady_clock::now();
@@ -142,39 +159,53 @@ Progress LocalRun::progress() const {
 }
 
 LocalOutcome LocalRun::outcome() const {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   LocalOutcome outcome = outcome_;
   outcome.frames_done = progress_.frames_done;
   return outcome;
 }
 
-std::vector<Action> LocalRun::tell(const Event& event) {
-  const std::lock_guard lock(mutex_);
+std::vector<LocalRun::DeferredAction> LocalRun::tell(const Event& event) {
+  const core::MutexLock lock(mutex_);
   return tell_locked(event);
 }
 
-/// Feeds the scheduler, puts leases and frames to load into their queues, and returns the other
-/// actions, which carry_out() does without the lock.
-std::vector<Action> LocalRun::tell_locked(const Event& event) {
-  const TimePoint now = std::chrono::steady_clock::now();
-  std::vector<Action> others;
-  for (Action& action : scheduler_.handle(event, now)) {
-    if (const auto* lease = std::get_if<Lease>(&action)) {
-      if (!first_lease_) first_lease_ = now;
-      Seat& seat = *seats_[static_cast<size_t>(lease->worker)];
-      for (const core::Unit& unit : lease->units) {
-        seat.tasks.push_back({unit, lease->lease, works_.at(unit.frame)});
-      }
-      seat.wake.notify_one();
-    } else if (const auto* open = std::get_if<OpenFrame>(&action)) {
-      in_flight_.insert(open->frame);
-      to_load_.push_back(open->frame);
-      load_wake_.notify_one();
-    } else {
-      others.push_back(std::move(action));
-    }
+/// Feeds the scheduler, puts leases and frames to load into their queues, and returns what
+/// carry_out() does without the lock.
+std::vector<LocalRun::DeferredAction> LocalRun::tell_locked(const Event& event) {
+  std::vector<DeferredAction> deferred;
+  for (Action& action : scheduler_.handle(event, std::chrono::steady_clock::now())) {
+    std::visit(core::Overloaded{
+                   [&](Lease& lease) HYADES_REQUIRES(mutex_) { hand_out(lease); },
+                   [&](OpenFrame& open) HYADES_REQUIRES(mutex_) {
+                     in_flight_.insert(open.frame);
+                     to_load_.push_back(open.frame);
+                     load_wake_.notify_one();
+                   },
+                   // Threads do not forget, do not fall behind each other and are all of one
+                   // machine.
+                   [](Revoke&) {},
+                   [](Acknowledge&) {},
+                   [](Conflict&) {},
+                   [](Quarantine&) {},
+                   [](Confirmed&) {},
+                   [](TileVoided&) {},
+                   [](FrameReopened&) {},
+                   [](FrameRestarted&) {},
+                   [&](auto& other) { deferred.emplace_back(std::move(other)); },
+               },
+               action);
   }
-  return others;
+  return deferred;
+}
+
+void LocalRun::hand_out(const Lease& lease) {
+  if (!first_lease_) first_lease_ = std::chrono::steady_clock::now();
+  TaskQueue& queue = *task_queues_[static_cast<size_t>(lease.worker)];
+  for (const core::Unit& unit : lease.units) {
+    queue.tasks.push_back({unit, lease.lease, works_.at(unit.frame)});
+  }
+  queue.wake.notify_one();
 }
 
 void LocalRun::persisted(RecordId record) { carry_out(tell(Persisted{record})); }
@@ -186,12 +217,12 @@ void LocalRun::not_persisted(RecordId record, const std::string& reason) {
 void LocalRun::try_again() { carry_out(tell(Tick{})); }
 
 void LocalRun::storage_failed(const std::string& reason) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   end_locked("films cannot be stored: " + reason);
 }
 
 void LocalRun::drained() {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   over_ = true;
   over_wake_.notify_all();
 }

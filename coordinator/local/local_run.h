@@ -1,24 +1,23 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <thread>
-#include <utility>
+#include <variant>
 #include <vector>
 
+#include "coordinator/film_store/film_store.h"
 #include "coordinator/local/frame_work.h"
 #include "coordinator/local/local_plan.h"
 #include "coordinator/local/progress.h"
 #include "coordinator/scheduler/scheduler.h"
-#include "coordinator/store/film_store.h"
+#include "core/base/mutex.h"
 
 namespace hyades::coordinator {
 
@@ -49,22 +48,27 @@ class LocalRun : private FilmStore::Owner {
   /// for all that matters is durable and outputs appear whole or not at all.
   bool wait_for(Duration duration);
 
+  /// How far the run is now.
   Progress progress() const;
 
-  /// After the run is over.
+  /// How the run ended; to be asked once it is over.
   LocalOutcome outcome() const;
 
  private:
   static constexpr JobId kJob{1};
+
+  /// What is done of the scheduler's actions without the lock, in their order.
+  using DeferredAction =
+      std::variant<Persist, Merge, FinishFrame, FrameDone, FrameFailed, Reject, JobEnded>;
 
   struct Task {
     core::Unit unit;
     LeaseId lease;
     std::shared_ptr<const FrameWork> work;
   };
-  /// A render thread's seat.
-  struct Seat {
-    std::condition_variable wake;
+  /// What a render thread is to render next.
+  struct TaskQueue {
+    core::CondVar wake;
     std::deque<Task> tasks;
   };
   struct Completed {
@@ -78,9 +82,14 @@ class LocalRun : private FilmStore::Owner {
   std::optional<Task> next_task(int thread);
   void deliver(int thread, const Task& task, core::Film film, Duration render_time);
 
-  std::vector<Action> tell(const Event& event);
-  std::vector<Action> tell_locked(const Event& event);
-  void carry_out(const std::vector<Action>& actions);
+  JobAdded recover(const LogContents& contents) HYADES_REQUIRES(mutex_);
+  void restore(const LogContents& contents, int32_t frame, RestoredJob& restored)
+      HYADES_REQUIRES(mutex_);
+
+  std::vector<DeferredAction> tell(const Event& event);
+  std::vector<DeferredAction> tell_locked(const Event& event) HYADES_REQUIRES(mutex_);
+  void hand_out(const Lease& lease) HYADES_REQUIRES(mutex_);
+  void carry_out(const std::vector<DeferredAction>& actions);
   void act(const Persist& persist);
   void act(const Merge& merge);
   void act(const FinishFrame& finish);
@@ -88,25 +97,13 @@ class LocalRun : private FilmStore::Owner {
   void act(const FrameFailed& failed);
   void act(const Reject& reject);
   void act(const JobEnded& ended);
-  // tell_locked() has dealt with these.
-  void act(const Lease&) {}
-  void act(const OpenFrame&) {}
-  // Threads do not forget, do not fall behind each other and are all of one machine.
-  void act(const Revoke&) {}
-  void act(const Acknowledge&) {}
-  void act(const Conflict&) {}
-  void act(const Quarantine&) {}
-  void act(const Confirmed&) {}
-  void act(const TileVoided&) {}
-  void act(const FrameReopened&) {}
-  void act(const FrameRestarted&) {}
-  void end_locked(const std::string& error);
+  void end_locked(const std::string& error) HYADES_REQUIRES(mutex_);
   /// The scheduler counts batches from the first that is rendered; renderer, films and log from the
   /// job's first.
   core::Unit to_render(core::Unit unit) const;
   uint64_t samples_of(const core::Unit& unit) const;
   uint64_t samples_per_frame() const;
-  void count_locked(const core::Unit& unit, bool done);
+  void count_locked(const core::Unit& unit, bool done) HYADES_REQUIRES(mutex_);
   void note_film(int32_t frame, const core::Film& film);
 
   // FilmStore::Owner
@@ -124,27 +121,29 @@ class LocalRun : private FilmStore::Owner {
   std::atomic<bool> stop_{false};  ///< seen by whoever renders or loads
 
   /// Everything up to the film store.
-  mutable std::mutex mutex_;
-  Scheduler scheduler_;
-  std::vector<std::unique_ptr<Seat>> seats_;
-  std::deque<int32_t> to_load_;
-  std::condition_variable load_wake_;
-  std::deque<Completed> to_finish_;
-  std::condition_variable finish_wake_;
-  std::condition_variable over_wake_;
-  std::map<int32_t, std::shared_ptr<const FrameWork>> works_;
-  std::map<int32_t, std::shared_ptr<const core::Film>> complete_;  ///< until their frame is over
-  std::set<int32_t> in_flight_;
-  std::map<int32_t, uint64_t> frame_samples_;  ///< done, of frames in flight
-  Progress progress_;
-  uint64_t samples_before_ = 0;  ///< done by earlier runs
-  TimePoint started_;
-  std::optional<TimePoint> first_lease_;
-  TimePoint last_noise_;
-  LocalOutcome outcome_;
-  int rendering_ = 0;  ///< render threads that have not ended
-  bool ending_ = false;
-  bool over_ = false;
+  mutable core::Mutex mutex_;
+  Scheduler scheduler_ HYADES_GUARDED_BY(mutex_);
+  std::vector<std::unique_ptr<TaskQueue>> task_queues_;  ///< their tasks with the lock
+  std::deque<int32_t> to_load_ HYADES_GUARDED_BY(mutex_);
+  core::CondVar load_wake_;
+  std::deque<Completed> to_finish_ HYADES_GUARDED_BY(mutex_);
+  core::CondVar finish_wake_;
+  core::CondVar over_wake_;
+  std::map<int32_t, std::shared_ptr<const FrameWork>> works_ HYADES_GUARDED_BY(mutex_);
+  std::map<int32_t, std::shared_ptr<const core::Film>> complete_
+      HYADES_GUARDED_BY(mutex_);  ///< until their frame is over
+  std::set<int32_t> in_flight_ HYADES_GUARDED_BY(mutex_);
+  std::map<int32_t, uint64_t> frame_samples_
+      HYADES_GUARDED_BY(mutex_);  ///< done, of frames in flight
+  Progress progress_ HYADES_GUARDED_BY(mutex_);
+  uint64_t samples_before_ HYADES_GUARDED_BY(mutex_) = 0;  ///< done by earlier runs
+  TimePoint started_ HYADES_GUARDED_BY(mutex_);
+  std::optional<TimePoint> first_lease_ HYADES_GUARDED_BY(mutex_);
+  TimePoint last_noise_;  ///< of the store's thread
+  LocalOutcome outcome_ HYADES_GUARDED_BY(mutex_);
+  int rendering_ HYADES_GUARDED_BY(mutex_) = 0;  ///< render threads that have not ended
+  bool ending_ HYADES_GUARDED_BY(mutex_) = false;
+  bool over_ HYADES_GUARDED_BY(mutex_) = false;
 
   FilmStore film_store_;
   std::vector<std::thread> threads_;

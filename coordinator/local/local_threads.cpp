@@ -1,6 +1,14 @@
 // What the threads of a run do.
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <exception>
+#include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -50,29 +58,29 @@ void LocalRun::render_loop(int thread) {
                                 task->unit, film.error().message + " (" + describe(unit) + ")"}));
     }
   }
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   if (--rendering_ == 0) film_store_.drain();
 }
 
 std::optional<LocalRun::Task> LocalRun::next_task(int thread) {
-  Seat& seat = *seats_[static_cast<size_t>(thread)];
-  std::unique_lock lock(mutex_);
-  if (!ending_ && seat.tasks.empty()) {
+  TaskQueue& queue = *task_queues_[static_cast<size_t>(thread)];
+  const core::MutexLock lock(mutex_);
+  if (!ending_ && queue.tasks.empty()) {
     // Asking can only lead to leases and frames to load, which tell_locked() deals with.
     tell_locked(WorkRequested{WorkerId{static_cast<uint64_t>(thread)}, 1});
-    seat.wake.wait(lock, [&] { return ending_ || !seat.tasks.empty(); });
+    while (!ending_ && queue.tasks.empty()) queue.wake.wait(mutex_);
   }
   if (ending_) return std::nullopt;
-  Task task = std::move(seat.tasks.front());
-  seat.tasks.pop_front();
+  Task task = std::move(queue.tasks.front());
+  queue.tasks.pop_front();
   return task;
 }
 
 void LocalRun::deliver(int thread, const Task& task, core::Film film, Duration render_time) {
   std::optional<Persist> persist;
   {
-    const std::lock_guard lock(mutex_);
-    for (const Action& action :
+    const core::MutexLock lock(mutex_);
+    for (const DeferredAction& action :
          tell_locked(ResultArrived{WorkerId{static_cast<uint64_t>(thread)}, task.lease, kJob,
                                    task.unit, Digest{}, render_time})) {
       // Or it is rejected, because the frame has failed meanwhile.
@@ -89,8 +97,8 @@ void LocalRun::load_loop() {
   for (;;) {
     int32_t frame = 0;
     {
-      std::unique_lock lock(mutex_);
-      load_wake_.wait(lock, [&] { return ending_ || !to_load_.empty(); });
+      const core::MutexLock lock(mutex_);
+      while (!ending_ && to_load_.empty()) load_wake_.wait(mutex_);
       if (ending_) return;
       frame = to_load_.front();
       to_load_.pop_front();
@@ -103,7 +111,7 @@ void LocalRun::load_loop() {
     }
     if (stop_) return;
     if (work) {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       works_[frame] = std::move(*work);
       tell_locked(FrameOpened{kJob, frame});
     } else {
@@ -117,8 +125,8 @@ void LocalRun::finish_loop() {
   for (;;) {
     Completed completed;
     {
-      std::unique_lock lock(mutex_);
-      finish_wake_.wait(lock, [&] { return ending_ || !to_finish_.empty(); });
+      const core::MutexLock lock(mutex_);
+      while (!ending_ && to_finish_.empty()) finish_wake_.wait(mutex_);
       if (ending_) return;
       completed = std::move(to_finish_.front());
       to_finish_.pop_front();

@@ -1,5 +1,7 @@
 #include "coordinator/meters/meters.h"
 
+#include <cstddef>
+
 #include "core/base/duration.h"
 
 namespace hyades::coordinator {
@@ -13,13 +15,13 @@ using prometheus::Gauge;
 using prometheus::Histogram;
 using Buckets = Histogram::BucketBoundaries;
 
-/// Seconds: of what takes parts of a millisecond, mostly.
+/// Seconds, for what mostly takes parts of a millisecond.
 const Buckets& quick() {
   static const Buckets buckets{0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3};
   return buckets;
 }
 
-/// Of what a disk, or a program, takes.
+/// Seconds, for what waits for a disk or a program.
 const Buckets& slow() {
   static const Buckets buckets{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30};
   return buckets;
@@ -115,7 +117,7 @@ void Meters::answered(const std::string& method, const std::string& route, unsig
 
 Histogram& Meters::histogram_of(Family<Histogram>& family, std::map<std::string, Histogram*>& known,
                                 const char* label, const std::string& text) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   Histogram*& histogram = known[text];
   if (histogram == nullptr) histogram = &family.Add({{label, text}}, quick());
   return *histogram;

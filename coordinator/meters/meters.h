@@ -1,10 +1,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +14,8 @@
 #include <prometheus/gauge.h>
 #include <prometheus/histogram.h>
 #include <prometheus/registry.h>
+
+#include "core/base/mutex.h"
 
 namespace hyades::coordinator {
 
@@ -30,15 +32,16 @@ class Meters {
   /// What became of a unit that was leased, other than a result: "failed", "returned",
   /// "expired", "stalled", "revoked".
   void lost(const char* how);
-  /// A worker is gone that has not said so.
+  /// A worker is gone that had not said that it leaves.
   void worker_lost() { workers_lost_->Increment(); }
   /// What became of a result: "accepted", "duplicate", "waits" (for others that are compared with
   /// it), or why it was refused.
   void result(const char* verdict);
-  /// Of results, as they came.
+  /// Bytes of a result's film, as they came.
   void film_bytes(uint64_t bytes) { film_bytes_->Increment(static_cast<double>(bytes)); }
 
   using Time = std::chrono::nanoseconds;
+  // What took how long.
   void merged(Time took);        ///< a film into its frame's film
   void synced(Time took);        ///< a group of films to the disk
   void made_durable(Time took);  ///< from a result's arrival to its acknowledgement
@@ -46,13 +49,17 @@ class Meters {
 
   /// A call of gRPC is over: "Jobs/List", "OK". `unary`: its time says something.
   void called(const std::string& method, const char* code, bool unary, Time took);
+  /// Bytes of messages of such a call.
   void call_bytes(const std::string& method, uint64_t received, uint64_t sent);
 
   /// A request over HTTP is answered; `route` is the pattern that it matched.
   void answered(const std::string& method, const std::string& route, unsigned status, Time took);
+  /// Bytes of an answer's body.
   void http_bytes(uint64_t sent) { http_bytes_->Increment(static_cast<double>(sent)); }
+  /// How many connections of HTTP are open.
   prometheus::Gauge& http_connections() { return *http_connections_; }
 
+  /// All that is counted, as it is now.
   std::vector<prometheus::MetricFamily> collect() const { return registry_.Collect(); }
 
  private:
@@ -81,7 +88,7 @@ class Meters {
   prometheus::Histogram* sync_;
   prometheus::Histogram* durable_;
   prometheus::Histogram* finish_;
-  std::mutex mutex_;  ///< guards the maps
+  core::Mutex mutex_;  ///< guards the maps below
   std::map<std::string, prometheus::Histogram*> calls_known_;
   std::map<std::string, prometheus::Histogram*> answers_known_;
 };

@@ -1,24 +1,28 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 
 namespace hyades::coordinator {
 
 /// An address that messages are posted to, one after the other, by a thread of its own: however
-/// long the other side takes, nobody waits.
+/// long the other side takes, nobody waits. Where the other side sends it elsewhere, it goes there
+/// on the same scheme, host and port only: else whoever answers could have the coordinator post
+/// to whatever it can reach.
 class Hook {
  public:
   struct Options {
-    std::string url;                             ///< http:// or https://
+    std::string url;  ///< http:// or https://
+    /// Whether its name may stand for an address of this machine or of a private network. A URL
+    /// that says such an address itself, or localhost, may always.
+    bool may_be_private = false;
     std::chrono::milliseconds first_wait{1000};  ///< after a failure; then twice as long each time
     std::chrono::milliseconds longest_wait{300'000};
     std::chrono::milliseconds give_up{std::chrono::hours(24)};  ///< on a message
@@ -44,10 +48,10 @@ class Hook {
   Answer try_once(const std::string& message, std::string& why) const;
 
   const Options options_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<std::string> waiting_;
-  bool stop_ = false;
+  core::Mutex mutex_;
+  core::CondVar wake_;
+  std::deque<std::string> waiting_ HYADES_GUARDED_BY(mutex_);
+  bool stop_ HYADES_GUARDED_BY(mutex_) = false;
   std::thread thread_;
 };
 

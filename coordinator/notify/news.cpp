@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/printable.h"
 #include "core/base/text.h"
 #include "farm/json_form.h"
 
@@ -14,10 +15,6 @@ std::string address_of(const News& news, const std::string& dashboard) {
 
 std::string dump(const farm::Json& json) {
   return json.dump(-1, ' ', false, farm::Json::error_handler_t::replace);
-}
-
-std::string frames(uint32_t count) {
-  return fmt::format("{} frame{}", count, count == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -34,29 +31,53 @@ const char* name_of(News::Kind kind) {
   return "stalled";
 }
 
-std::string text_of(const News& news) {
+std::string text_of(const News& news, QuoteText quote) {
   const v1::Job& job = news.job;
-  const std::string who = fmt::format("Job {}, {}, ", job.id(), job.name());
+  const std::string who = fmt::format("Job {}, {}, ", job.id(), quote(job.name()));
+  const auto because = [&](const std::string& reason) {
+    return reason.empty() ? std::string() : ": " + quote(reason);
+  };
   switch (news.kind) {
     case News::Kind::done:
       return who +
-             fmt::format("is done: {} in {}", frames(job.frames_done()),
+             fmt::format("is done: {} in {}", core::counted(job.frames_done(), "frame"),
                          core::format_duration(
                              1e-3 * static_cast<double>(job.ended_ms() - job.submitted_ms())));
     case News::Kind::failed:
-      return who + fmt::format("failed: {} of {} are done{}{}", job.frames_done(),
-                               frames(job.frames()), job.reason().empty() ? "" : ": ",
-                               job.reason());
+      return who + fmt::format("failed: {} of {} are done{}", job.frames_done(),
+                               core::counted(job.frames(), "frame"), because(job.reason()));
     case News::Kind::stalled:
       break;
   }
-  return who + fmt::format("stands still{}{}", news.reasons.empty() ? "" : ": ",
-                           news.reasons.empty() ? "" : news.reasons.front());
+  return who + "stands still" + because(news.reasons.empty() ? "" : news.reasons.front());
+}
+
+std::string as_code(std::string_view text) {
+  std::string code = "`";
+  for (const char c : core::printable(text)) {
+    switch (c) {
+      case '&':
+        code += "&amp;";
+        break;
+      case '<':
+        code += "&lt;";
+        break;
+      case '>':
+        code += "&gt;";
+        break;
+      case '`':
+        code += '\'';
+        break;
+      default:
+        code += c;
+    }
+  }
+  return code + "`";
 }
 
 std::string program_message(const News& news, const std::string& dashboard) {
   farm::Json json = {{"event", name_of(news.kind)},
-                     {"text", text_of(news)},
+                     {"text", text_of(news, core::printable)},
                      {"job", farm::to_json(news.job)},
                      {"reasons", news.reasons}};
   if (!dashboard.empty()) json["url"] = address_of(news, dashboard);
@@ -65,7 +86,7 @@ std::string program_message(const News& news, const std::string& dashboard) {
 
 std::string chat_message(const News& news, const std::string& dashboard) {
   const std::string address = address_of(news, dashboard);
-  return dump({{"text", text_of(news) + (address.empty() ? "" : "\n" + address)}});
+  return dump({{"text", text_of(news, as_code) + (address.empty() ? "" : "\n" + address)}});
 }
 
 }  // namespace hyades::coordinator

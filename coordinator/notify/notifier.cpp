@@ -1,5 +1,6 @@
 #include "coordinator/notify/notifier.h"
 
+#include <iterator>
 #include <utility>
 
 #include "coordinator/controller/all_pages.h"
@@ -37,27 +38,13 @@ Notifier::Notifier(Controller& controller, Options options)
       options_(std::move(options)),
       hooks_(open_hooks(options_.hooks, options_.hook)),
       chats_(open_hooks(options_.chats, options_.hook)),
-      newest_(newest_job(controller)) {
+      newest_(newest_job(controller)),
+      looks_(1, options_.look) {
   look();
-  thread_ = std::thread([this] { run(); });
-}
-
-Notifier::~Notifier() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_all();
-  thread_.join();
-}
-
-void Notifier::run() {
-  std::unique_lock lock(mutex_);
-  while (!wake_.wait_for(lock, options_.look, [&] { return stop_; })) {
-    lock.unlock();
+  looks_.add(0, [this] {
     look();
-    lock.lock();
-  }
+    return false;  // and again
+  });
 }
 
 void Notifier::look() {
@@ -77,14 +64,11 @@ void Notifier::look() {
       ++seen;  // again with the next look
       continue;
     }
-    if (status.ok() && got.job().state() == v1::JOB_STATE_DONE) tell({News::Kind::done, got.job()});
-    if (status.ok() && got.job().state() == v1::JOB_STATE_FAILED) {
-      tell({News::Kind::failed, got.job()});
-    }
+    if (status.ok()) tell_of_end(got.job());
     const bool open_again = status.ok() && !farm::has_ended(got.job());
     seen = open_again ? std::next(seen) : open_.erase(seen);
   }
-  tell_of_ended();
+  tell_of_unseen();
 }
 
 void Notifier::look_at(const v1::Job& job, Clock::time_point now) {
@@ -105,8 +89,14 @@ void Notifier::look_at(const v1::Job& job, Clock::time_point now) {
   tell(news);
 }
 
-/// Jobs that came and ended between two looks.
-void Notifier::tell_of_ended() {
+/// Tells of a job that is done or has failed, and of no other.
+void Notifier::tell_of_end(const v1::Job& job) {
+  if (job.state() == v1::JOB_STATE_DONE) tell({News::Kind::done, job});
+  if (job.state() == v1::JOB_STATE_FAILED) tell({News::Kind::failed, job});
+}
+
+/// Tells of jobs that came and ended between two looks.
+void Notifier::tell_of_unseen() {
   v1::ListJobsRequest request;
   request.set_ended(true);
   v1::ListJobsResponse response;
@@ -119,9 +109,7 @@ void Notifier::tell_of_ended() {
     const bool seen = open_.contains(job->id());
     if (!seen && !farm::has_ended(*job)) break;
     newest_ = job->id();
-    if (seen) continue;
-    if (job->state() == v1::JOB_STATE_DONE) tell({News::Kind::done, *job});
-    if (job->state() == v1::JOB_STATE_FAILED) tell({News::Kind::failed, *job});
+    if (!seen) tell_of_end(*job);
   }
 }
 

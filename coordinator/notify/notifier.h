@@ -1,18 +1,16 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "coordinator/notify/hook.h"
 #include "coordinator/notify/news.h"
+#include "farm/retry_queue.h"
 
 namespace hyades::coordinator {
 
@@ -28,14 +26,11 @@ class Notifier {
     std::vector<std::string> chats;            ///< URLs that take chat_message()
     std::string dashboard;                     ///< its URL as people reach it; empty: none is told
     std::chrono::milliseconds stall{600'000};  ///< without a new sample of a running job
-    std::chrono::milliseconds look{1000};
-    Hook::Options hook{};  ///< of all; their URLs are those above
+    std::chrono::milliseconds look{1000};      ///< how often it looks at the jobs
+    Hook::Options hook{};                      ///< of all hooks and chats, but for the URL
   };
   /// `controller` outlives the notifier.
   Notifier(Controller& controller, Options options);
-  ~Notifier();
-  Notifier(const Notifier&) = delete;
-  Notifier& operator=(const Notifier&) = delete;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -46,10 +41,10 @@ class Notifier {
     bool told = false;  ///< that it stands still
   };
 
-  void run();
   void look();
   void look_at(const v1::Job& job, Clock::time_point now);
-  void tell_of_ended();
+  void tell_of_end(const v1::Job& job);
+  void tell_of_unseen();
   void tell(const News& news);
 
   Controller& controller_;
@@ -58,10 +53,7 @@ class Notifier {
   std::vector<std::unique_ptr<Hook>> chats_;
   std::map<uint64_t, Seen> open_;
   uint64_t newest_ = 0;  ///< all jobs up to this one have been seen
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool stop_ = false;
-  std::thread thread_;
+  farm::RetryQueue looks_;
 };
 
 }  // namespace hyades::coordinator

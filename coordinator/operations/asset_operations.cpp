@@ -1,6 +1,10 @@
 // Files by content.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/operation.h"
@@ -9,7 +13,6 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr int kMostAsked = 10'000;
 constexpr uint64_t kMostOfPiece = uint64_t{8} << 20U;
 
 const BodyForm kMissingFile = {{{"sha256", true}, {"size", true}},
@@ -19,7 +22,7 @@ const BodyForm kMissingFiles = {{{"files", true, &kMissingFile}},
 
 grpc::Status find_missing(Backend& at, const v1::FindMissingRequest& request,
                           v1::FindMissingResponse& response) {
-  if (request.files_size() > kMostAsked) {
+  if (static_cast<size_t>(request.files_size()) > farm::kMostFilesAsked) {
     return {grpc::StatusCode::INVALID_ARGUMENT, "at most 10,000 files at a time"};
   }
   farm::ContentStore& store = at.controller.assets();
@@ -47,7 +50,7 @@ std::vector<Operation> asset_operations() {
   return {
       {{"file.find", v1::ROLE_SUBMITTER}, "Assets/FindMissing", Runs::in_files, find_missing,
        {{.path = "POST /api/v1/assets/missing", .body = &kMissingFiles}}, farm::kMaxMessageBytes},
-      // Of uploads those that begin are noted (note_upload()).
+      // Of uploads those that begin are noted (begin_upload()).
       {{"file.upload", v1::ROLE_SUBMITTER}, "Assets/Upload", {}, {},
        {{.path = "PUT /api/v1/assets/{sha256}", .query = {{"size"}, {"offset"}}, .most_bytes = kMostOfPiece}}},
       // Who holds a file's SHA-256 has had it, or its job.

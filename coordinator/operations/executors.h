@@ -1,11 +1,12 @@
 #pragma once
 
 #include <chrono>
+#include <mutex>
 #include <new>
 
 #include <grpcpp/support/status.h>
 
-#include "coordinator/controller/thread_pool.h"
+#include "farm/thread_pool.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -21,25 +22,41 @@ enum class Runs {
 /// and results come by them too; HTTP has one. Two pools, so that files on a disk that does not
 /// answer leave those alone who only want to know something.
 struct Executors {
-  ThreadPool store{4, 1000};  ///< what is read from and stored in the job store
-  ThreadPool files{8, 1000};  ///< what reads or writes files besides
+  farm::ThreadPool store{4, 1000};  ///< what is read from and stored in the job store
+  farm::ThreadPool files{8, 1000};  ///< what reads or writes files besides
 
-  /// Null: at once.
-  ThreadPool* of(Runs runs) {
+  /// The pool for what runs so; null: none, it runs at once.
+  farm::ThreadPool* of(Runs runs) {
     if (runs == Runs::at_once) return nullptr;
     return runs == Runs::in_store ? &store : &files;
   }
 };
 
-/// For those before whom too many wait.
+/// RESOURCE_EXHAUSTED: the pool's queue is full.
 inline grpc::Status crowded() {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                            "more requests wait for the coordinator's disk than may",
                            std::chrono::seconds(2));
 }
 
-/// What `question` answers; or that there is no memory for the answer now. For what changes
-/// nothing: a change that breaks off in its middle ends the process (farm/last_words.h).
+/// To be held while a large request is parsed, whether it came by gRPC or by HTTP: many of them at
+/// once would fill the memory that both share. Holds nothing where somebody else holds it: then the
+/// answer is another_is_large().
+inline std::unique_lock<std::mutex> take_large_request() {
+  static std::mutex large;
+  return {large, std::try_to_lock};
+}
+
+/// RESOURCE_EXHAUSTED: another large request is being looked at.
+inline grpc::Status another_is_large() {
+  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                           "another large request is being looked at",
+                           std::chrono::milliseconds(500));
+}
+
+/// What `question` answers, or RESOURCE_EXHAUSTED where there is no memory for the answer now. For
+/// questions that change nothing: a change that breaks off in its middle ends the process
+/// (farm/last_words.h).
 template <class Question>
 grpc::Status within_memory(const Question& question) {
   try {

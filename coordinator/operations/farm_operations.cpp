@@ -1,4 +1,7 @@
 // The farm and its workers.
+#include <utility>
+#include <vector>
+
 #include "coordinator/controller/all_pages.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/operation.h"
@@ -33,9 +36,13 @@ const BodyForm kReason = {
     .fields = {{"reason"}}, .expected = "expected {\"reason\": \"...\"}", .may_be_empty = true};
 
 template <auto what>
-grpc::Status steer_worker(Backend& at, const v1::WorkerRequest& request,
-                          v1::WorkerResponse& response) {
-  return (at.controller.farm().*what)(request, *response.mutable_worker());
+void steer_worker(Backend& at, const v1::WorkerRequest& request,
+                  const Respond<v1::WorkerResponse>& respond) {
+  (at.controller.farm().*what)(request, [respond](const grpc::Status& done, const v1::Worker& now) {
+    v1::WorkerResponse response;
+    *response.mutable_worker() = now;
+    respond(done, response);
+  });
 }
 
 constexpr v1::Role kForAll = v1::ROLE_UNSPECIFIED;

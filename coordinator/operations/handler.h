@@ -16,7 +16,7 @@ class Controller;
 
 using google::protobuf::Message;
 
-/// What handlers work on.
+/// The coordinator, as handlers get it.
 struct Backend {
   Controller& controller;
   Authority& authority;
@@ -65,8 +65,9 @@ class Handler {
     };
   }
 
+  /// Whether there is a function.
   explicit operator bool() const { return types_.request != nullptr; }
-  /// Empty messages of its types.
+  /// Empty messages of the function's types.
   const Message& request() const { return *types_.request; }
   const Message& response() const { return *types_.response; }
 
@@ -76,7 +77,8 @@ class Handler {
   bool answer(Backend& at, Message& request, Message& response) const {
     return known_(at, request, response);
   }
-  /// `reads`: it changes nothing, so that it may break off where there is no memory.
+  /// Calls the function, and `respond` once, perhaps later. `reads`: it changes nothing, so that it
+  /// may break off where there is no memory.
   void run(Backend& at, Message& request, const Caller& caller, bool reads,
            const Respond<Message>& respond) const;
 

@@ -1,6 +1,9 @@
 // What people ask about jobs, and have done with them.
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/operation.h"
@@ -110,20 +113,25 @@ HttpForm timeline_form(const v1::ListTimelineRequest& request,
 
 const BodyForm kFile = {{{"path", true}, {"sha256", true}, {"size", true}}};
 const BodyForm kFrames = {{{"first", true}, {"last", true}, {"step"}}};
-const BodyForm kSubmission = {.fields = {{"spec.name", true},
-                                         {"spec.document", true},
-                                         {"spec.samples"},
-                                         {"spec.files", true, &kFile},
-                                         {"spec.frames", false, &kFrames},
-                                         {"owner"},
-                                         {"priority"},
-                                         {"max_workers"},
-                                         {"idempotency_key"},
-                                         {"tags"},
-                                         {"memory_bytes"},
-                                         {"max_attempts"},
-                                         {"frame_order"}},
-                              .no_object = "expected a JSON object: the submission"};
+/// The spec's fields and what else is asked for stand side by side.
+BodyForm make_submission_form() {
+  BodyForm form = {.fields = {{"spec.name", true},
+                              {"spec.document", true},
+                              {"spec.samples"},
+                              {"spec.files", true, &kFile},
+                              {"spec.frames", false, &kFrames}},
+                   .no_object = "expected a JSON object: the submission"};
+  const auto& type = *v1::SubmitRequest::descriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const std::string& name = type.field(i)->name();
+    if (name != "spec" && name != "login") form.fields.push_back({name.c_str()});
+  }
+  return form;
+}
+const BodyForm* submission_form() {
+  static const BodyForm form = make_submission_form();
+  return &form;
+}
 
 grpc::Status submit(Backend& at, v1::SubmitRequest& request, v1::SubmitResponse& response,
                     const Caller& caller) {
@@ -159,8 +167,8 @@ void set_priority(Backend& at, const v1::SetPriorityRequest& request,
   at.controller.steering().set_priority(request.job(), request.priority(), reply(respond));
 }
 
-grpc::Status retry(Backend& at, const v1::JobRequest& request, v1::JobResponse& response) {
-  return at.controller.jobs().retry(request.job(), *response.mutable_job());
+void retry(Backend& at, const v1::JobRequest& request, const Respond<v1::JobResponse>& respond) {
+  at.controller.jobs().retry(request.job(), reply(respond));
 }
 
 grpc::Status remove(Backend& at, const v1::JobRequest& request, v1::DeleteJobResponse&) {
@@ -170,7 +178,7 @@ grpc::Status remove(Backend& at, const v1::JobRequest& request, v1::DeleteJobRes
 // Videos that people ask for besides those that their jobs make: who may steer a job may, as it
 // costs the coordinator work and writes among the job's outputs.
 
-v1::Video to_wire(const AskedVideo& asked) {
+v1::Video to_wire(const RequestedVideo& asked) {
   v1::Video video;
   video.set_id(asked.number);
   video.set_file(asked.video.file);
@@ -178,16 +186,16 @@ v1::Video to_wire(const AskedVideo& asked) {
   video.set_frames(asked.frames.numbers.size());
   video.set_rate(asked.frames.rate);
   switch (asked.state) {
-    case AskedVideo::State::waiting:
+    case RequestedVideo::State::waiting:
       video.set_state(v1::VIDEO_STATE_WAITING);
       break;
-    case AskedVideo::State::making:
+    case RequestedVideo::State::making:
       video.set_state(v1::VIDEO_STATE_MAKING);
       break;
-    case AskedVideo::State::done:
+    case RequestedVideo::State::done:
       video.set_state(v1::VIDEO_STATE_DONE);
       break;
-    case AskedVideo::State::failed:
+    case RequestedVideo::State::failed:
       video.set_state(v1::VIDEO_STATE_FAILED);
       break;
   }
@@ -197,9 +205,9 @@ v1::Video to_wire(const AskedVideo& asked) {
 
 grpc::Status list_videos(Backend& at, const v1::JobRequest& request,
                          v1::ListVideosResponse& response) {
-  std::vector<AskedVideo> videos;
+  std::vector<RequestedVideo> videos;
   const grpc::Status known = at.controller.videos().asked(request.job(), videos);
-  for (const AskedVideo& video : videos) *response.add_videos() = to_wire(video);
+  for (const RequestedVideo& video : videos) *response.add_videos() = to_wire(video);
   return known;
 }
 
@@ -209,7 +217,7 @@ const BodyForm kVideo = {.fields = {{"file"}, {"pictures"}, {"rate"}},
 
 grpc::Status make_video(Backend& at, const v1::MakeVideoRequest& request,
                         v1::MakeVideoResponse& response) {
-  AskedVideo video;
+  RequestedVideo video;
   const grpc::Status taken = at.controller.videos().ask(
       request.job(), {request.file(), request.pictures(), request.rate()}, video);
   if (taken.ok()) *response.mutable_video() = to_wire(video);
@@ -248,7 +256,7 @@ std::vector<Operation> job_operations() {
        {{"GET /api/v1/jobs/{job}/frames/{frame}/picture",
          {{"format"}, {"width", 16, 8192}, {"layer"}, {"mask"}}}}},
       {kMaySubmit, "Jobs/Submit", in_files, submit,
-       {{.path = "POST /api/v1/jobs", .body = &kSubmission, .show = submitted}}, farm::kMaxMessageBytes},
+       {{.path = "POST /api/v1/jobs", .body = submission_form(), .show = submitted}}, farm::kMaxMessageBytes},
       {may_steer_job("job.pause"), "Jobs/Pause", in_store, steer_job<&JobSteering::pause>,
        {{.path = "POST /api/v1/jobs/{job}/pause", .only = "job"}}},
       {may_steer_job("job.resume"), "Jobs/Resume", in_store, steer_job<&JobSteering::resume>,

@@ -1,13 +1,23 @@
 #include "coordinator/operations/operation.h"
 
+#include <cstddef>
 #include <iterator>
 #include <map>
 #include <string>
+#include <utility>
 
+#include <google/protobuf/descriptor.h>
+
+#include "coordinator/access/audit_log.h"
+#include "coordinator/access/authority.h"
 #include "coordinator/operations/ownership.h"
 
 namespace hyades::coordinator {
 namespace {
+
+using google::protobuf::FieldDescriptor;
+
+constexpr size_t kMostDetail = 500;  ///< bytes of a request that the audit log tells
 
 /// What is on no row.
 const Operation& unknown() {
@@ -19,6 +29,43 @@ const Operation& unknown() {
 uint64_t job_of(const Message& request) {
   const auto* job = request.GetDescriptor()->FindFieldByName("job");
   return request.GetReflection()->GetUInt64(request, job);
+}
+
+/// A field that holds one number, text or message; as text.
+std::string field_text(const Message& message, const char* name) {
+  const FieldDescriptor* field = message.GetDescriptor()->FindFieldByName(name);
+  if (field == nullptr || field->is_repeated()) return {};
+  const auto* reflection = message.GetReflection();
+  switch (field->cpp_type()) {
+    case FieldDescriptor::CPPTYPE_UINT64: {
+      const uint64_t number = reflection->GetUInt64(message, field);
+      return number == 0 ? std::string() : std::to_string(number);
+    }
+    case FieldDescriptor::CPPTYPE_STRING:
+      return reflection->GetString(message, field);
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return reflection->HasField(message, field)
+                 ? field_text(reflection->GetMessage(message, field), "id")
+                 : std::string();
+    default:
+      return {};
+  }
+}
+
+/// What a request was about, for the audit log: its job, worker or token; of one that makes
+/// something, what the response has.
+std::string audit_target(const Message& request, const Message& response) {
+  for (const Message* message : {&request, &response}) {
+    for (const char* name : {"job", "worker", "id", "token"}) {
+      if (std::string text = field_text(*message, name); !text.empty()) return text;
+    }
+  }
+  return {};
+}
+
+/// What a request says, in one line; nothing of one that is long.
+std::string audit_detail(const Message& request) {
+  return request.ByteSizeLong() > kMostDetail ? std::string() : request.ShortDebugString();
 }
 
 using Index = std::map<std::string_view, const Operation*>;
@@ -73,11 +120,20 @@ const Route& find_route(const Operation& operation, std::string_view route) {
 
 void carry_out(const Operation& operation, const Handler& handle, Backend& at, Message& request,
                const Caller& caller, const Respond<Message>& respond) {
-  if (operation.rule.steers_job) {
-    const grpc::Status his = may_steer(at.controller, caller, job_of(request));
-    if (!his.ok()) return respond(his, handle.response());
+  Respond<Message> then = respond;
+  if (AuditLog* log = at.authority.audit(); log != nullptr && operation.rule.audited) {
+    then = [log, &operation, &request, caller, respond](const grpc::Status& done,
+                                                        const Message& response) {
+      log->note(caller, operation.rule.action, audit_target(request, response), done,
+                audit_detail(request));
+      respond(done, response);
+    };
   }
-  handle.run(at, request, caller, !operation.rule.audited, respond);
+  if (operation.rule.steers_job) {
+    const grpc::Status allowed = may_steer(at.controller, caller, job_of(request));
+    if (!allowed.ok()) return then(allowed, handle.response());
+  }
+  handle.run(at, request, caller, !operation.rule.audited, then);
 }
 
 }  // namespace hyades::coordinator

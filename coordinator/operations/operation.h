@@ -25,17 +25,22 @@ struct Operation {
   uint64_t most_bytes = farm::kMaxRequestBytes;  ///< of a request
 };
 
-/// All of them.
+/// All rows of the table.
 std::span<const Operation> all_operations();
 
-/// That of a method of gRPC, or of a route as Route::path has it. What is on no row is for admins.
+/// The operation of a gRPC method ("Jobs/Cancel"). For a method on no row: one that only admins
+/// may.
 const Operation& operation_of_method(std::string_view method);
+/// The operation of an HTTP route, as Route::path has it. For a route on no row: one that only
+/// admins may.
 const Operation& operation_of_route(std::string_view route);
-/// That of the operation's routes; one without a query where it is none.
+/// The operation's route with this path; one without a query where it has none.
 const Route& find_route(const Operation& operation, std::string_view route);
 
 /// Carries out what an admitted caller asks for by `handle`, the operation's or a route's: looks
-/// whose job it is first. On the thread that the operation runs on.
+/// first whether the caller may steer the job that it is about, and notes in the audit log what
+/// becomes of it. To be called on the thread that the operation runs on. `respond` keeps `request`
+/// alive.
 void carry_out(const Operation& operation, const Handler& handle, Backend& at, Message& request,
                const Caller& caller, const Respond<Message>& respond);
 

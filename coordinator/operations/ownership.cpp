@@ -8,13 +8,6 @@
 #include "coordinator/access/rules.h"
 
 namespace hyades::coordinator {
-namespace {
-
-bool steers_all(const Caller& caller) {
-  return caller.role == v1::ROLE_OPERATOR || caller.role == v1::ROLE_ADMIN;
-}
-
-}  // namespace
 
 grpc::Status may_steer(Controller& controller, const Caller& caller, uint64_t job) {
   if (steers_all(caller)) return grpc::Status::OK;
@@ -25,7 +18,7 @@ grpc::Status may_steer(Controller& controller, const Caller& caller, uint64_t jo
 }
 
 grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request, bool& proven) {
-  // An operator vouches for the name that he gives; where no token is asked for everybody is one.
+  // An operator vouches for the name that they give; where no token is asked for everybody is one.
   proven = !request.owner().empty() ? !caller.token_id.empty() : !caller.name.empty();
   if (request.owner().empty()) {
     request.set_owner(caller.name.empty() ? request.login() : caller.name);

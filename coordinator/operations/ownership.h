@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include <grpcpp/support/status.h>
 
 #include "coordinator/access/caller.h"
@@ -7,7 +9,7 @@
 
 namespace hyades::coordinator {
 
-/// Whether the caller may steer that job: its owner may, and operators. NOT_FOUND, or
+/// OK where the caller may steer the job: its owner may, and operators. NOT_FOUND, or
 /// PERMISSION_DENIED. May wait for the store.
 grpc::Status may_steer(Controller& controller, const Caller& caller, uint64_t job);
 

@@ -10,19 +10,18 @@
 
 namespace hyades::coordinator {
 
-/// A field of the request that the query of an HTTP request may give; a number from `least` to
-/// `most`, where that is not all there are.
+/// A field of the request that the query of an HTTP request may give.
 struct QueryField {
   const char* name;
-  int64_t least = INT64_MIN;
+  int64_t least = INT64_MIN;  ///< that it may be, where it is a number
   int64_t most = INT64_MAX;
 };
 
 struct BodyForm;
 /// A field of the request that the body of an HTTP request gives.
 struct BodyField {
-  const char* path;  ///< "spec.name": the JSON's `name` goes there
-  bool needed = false;
+  const char* path;                 ///< "spec.name": the JSON's `name` goes there
+  bool needed = false;              ///< the request makes no sense without
   const BodyForm* items = nullptr;  ///< of a list of objects
 };
 /// The JSON object that the body of an HTTP request is.
@@ -40,7 +39,7 @@ struct HttpForm {
   farm::Json body;  ///< null: there is none
   unsigned status = 200;
 };
-/// Makes it of a response. Made of HttpForm f(const Request&, const Response&).
+/// Makes an HttpForm of a response. It is made of HttpForm f(const Request&, const Response&).
 class Show {
  public:
   Show() = default;

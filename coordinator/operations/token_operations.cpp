@@ -1,7 +1,12 @@
 // Who may do what.
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include "coordinator/access/authority.h"
 #include "coordinator/access/token.h"
 #include "coordinator/operations/operation.h"
+#include "core/base/wall_clock.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -23,7 +28,7 @@ HttpForm session_form(const v1::WhoAmIRequest&, const v1::WhoAmIResponse& respon
   farm::Json json = farm::to_json(response);
   json.erase("warn_ms");
   json["expiring"] =
-      farm::expiry_warning({response.expires_ms(), response.warn_ms()}, token_clock_ms());
+      farm::expiry_warning({response.expires_ms(), response.warn_ms()}, core::wall_ms());
   return {std::move(json)};
 }
 

@@ -38,14 +38,18 @@ struct Revoke {
 };
 
 // Records: what is to be durable.
+
+/// The film of the unit.
 struct UnitRecord {
   JobId job{};
   AcceptedUnit accepted;
 };
+/// The frame's outputs are there; its films are not needed any more.
 struct FrameFinishedRecord {
   JobId job{};
   int32_t frame = 0;
 };
+/// The frame is given up.
 struct FrameFailedRecord {
   JobId job{};
   FailedFrame failed;
@@ -168,11 +172,12 @@ struct FinishFrame {
   std::vector<WorkerId> unconfirmed;
 };
 
-/// The frame is over, and that is durable: its films may be dropped.
+/// The frame's outputs are there, and that is durable: its films may be dropped.
 struct FrameDone {
   JobId job{};
   int32_t frame = 0;
 };
+/// The frame is given up, and that is durable: its films may be dropped.
 struct FrameFailed {
   JobId job{};
   int32_t frame = 0;

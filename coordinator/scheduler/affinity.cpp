@@ -56,7 +56,7 @@ void Affinity::prefetch(Worker& worker, const std::optional<FrameId>& frame) con
 }
 
 FrameSlot* Affinity::find(const std::optional<FrameId>& frame) const {
-  return frame ? jobs_.find_frame(*frame) : nullptr;
+  return frame ? jobs_.find_frame(*frame).slot : nullptr;
 }
 
 double Affinity::load_seconds(const ScheduledJob& job) const {

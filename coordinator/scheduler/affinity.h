@@ -17,6 +17,7 @@ class Affinity {
   Affinity(const SchedulerOptions& options, const Step& step, const ScheduledJobs& jobs)
       : options_(options), step_(step), jobs_(jobs) {}
 
+  /// Whether the worker should have this frame's scene in memory.
   static bool has_scene(const Worker& worker, const FrameId& frame);
   /// The worker will have this frame's scene in memory; it keeps a few. `ahead`: it still renders
   /// another.
@@ -37,15 +38,15 @@ class Affinity {
   bool crowded(const FramePlace& place, const Worker& worker) const;
   /// Whether more workers may begin with the frame, and some more that come meanwhile.
   bool has_room(const FramePlace& place) const;
-  /// Whether those who have the frame's scene will have leased all of it before another has loaded
-  /// it. Not where they cannot, or do not.
+  /// Whether those who have the frame's scene will have leased all of it before this worker has
+  /// loaded it. No where they may not (a unit has failed, or is disputed) or do not come for it.
   bool too_late(const FramePlace& place, const Worker& worker) const;
   /// Whether it is time to load what comes after this frame.
   bool nearly_leased(const FramePlace& place) const;
   /// Whether the worker still loads what it last began with.
   bool still_loads(const Worker& worker) const;
-  /// The scene is there. Where a worker had nothing else to do, what its first unit did not take to
-  /// render went into loading.
+  /// The first film of a scene has come, so that the worker has loaded it. Where it had nothing
+  /// else to do, the time that went by and was not spent on rendering is what loading takes.
   void learn_load(ScheduledJob& job, Worker& worker, const ResultArrived& result);
 
  private:

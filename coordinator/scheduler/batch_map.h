@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -13,7 +14,9 @@ class BatchMap {
  public:
   BatchMap(uint32_t tiles, uint32_t batches);
 
+  /// Sets the bits of the range to one.
   void set(uint32_t tile, core::BatchRange range);
+  /// Sets the bits of the range to zero.
   void clear(uint32_t tile, core::BatchRange range);
   /// How many bits of the range are set.
   uint32_t count(uint32_t tile, core::BatchRange range) const;

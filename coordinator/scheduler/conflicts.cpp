@@ -9,47 +9,55 @@
 
 #include <fmt/format.h>
 
-#include "core/base/overloaded.h"
-
 namespace hyades::coordinator {
 namespace {
 
 /// With so many different answers it is not the machines: the unit is no pure function.
 constexpr size_t kMostAnswers = 5;
 
+/// How many voices there are among those opinions that `counts`.
+template <class Counts>
+size_t voices(const std::vector<Opinion>& opinions, Counts counts) {
+  std::set<Voice> heard;
+  for (const Opinion& o : opinions) {
+    if (counts(o)) heard.insert(o.voice);
+  }
+  return heard.size();
+}
+
 }  // namespace
 
-bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
+bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Voice voice,
                       const ResultArrived& e) {
   FrameLedger& ledger = *slot.ledger;
   const HeldRecord held = *ledger.find_held(extent);
   Dispute* dispute = ledger.find_dispute(extent);
   if (dispute == nullptr) {
     if (held.digest == e.digest) {
-      // Who sends the same again agrees with nobody, and who it was before a restart is not known.
-      if (held.worker != WorkerId{} && held.worker != e.worker) {
+      // Who sends the same again, under whatever name, agrees with nobody, and who it was before a
+      // restart is not known.
+      if (held.worker != WorkerId{} && held.voice != voice) {
         ledger.verify(extent);
         confirm(job, slot, held.worker);
         confirm(job, slot, e.worker);
       }
       return false;
     }
-    dispute = &ledger.open_dispute(extent, {held.worker, held.digest});
+    dispute = &ledger.open_dispute(extent, {held.worker, held.digest, held.voice});
     mark_disputed(job);
   }
   std::vector<Opinion>& opinions = dispute->opinions;
   if (std::none_of(opinions.begin(), opinions.end(),
                    [&](const Opinion& o) { return o.worker == e.worker; })) {
     if (held.digest != e.digest) step_.say(Conflict{e.job, e.unit, held.worker, e.worker});
-    opinions.push_back({e.worker, e.digest});
-    const auto agree = std::count_if(opinions.begin(), opinions.end(), [&](const Opinion& o) {
-      return o.worker != WorkerId{} && o.digest == e.digest;
-    });
+    opinions.push_back({e.worker, e.digest, voice});
+    const size_t agree = voices(
+        opinions, [&](const Opinion& o) { return o.worker != WorkerId{} && o.digest == e.digest; });
     if (agree > 1) {
       decide(job, slot, Dispute(*dispute), e);
       return held.digest != e.digest;
     }
-    if (opinions.size() >= kMostAnswers) {
+    if (voices(opinions, [](const Opinion&) { return true; }) >= kMostAnswers) {
       const core::PixelRect tile = job.grid.tile(extent.tile);
       frames_.fail(job, slot,
                    fmt::format("{} workers rendered tile {},{} batches {}-{} to {} different films",
@@ -62,7 +70,7 @@ bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
   return false;
 }
 
-/// Two workers agree, of whom `e` is the second: the others are wrong.
+/// Two voices agree, of which that of `e` is the second: the others are wrong.
 void Conflicts::decide(ScheduledJob& job, FrameSlot& slot, const Dispute& dispute,
                        const ResultArrived& e) {
   FrameLedger& ledger = *slot.ledger;
@@ -153,30 +161,22 @@ void Conflicts::suspect_frame(ScheduledJob& job, FrameSlot& slot) {
 
 void Conflicts::persisted(const TileVoidedRecord& record) {
   if (!still_wanted(record)) return;
-  ScheduledJob& job = *jobs_.find(record.job);
-  auto batches = job.slot(record.frame)->ledger->void_tile(*job.grid.index_of(record.tile));
+  const auto [job, slot] = jobs_.find_frame({record.job, record.frame});
+  auto batches = slot->ledger->void_tile(*job->grid.index_of(record.tile));
   step_.say(TileVoided{record.job, record.frame, record.tile, std::move(batches)});
-  jobs_.update_offer(job);
-  frames_.open(job);
+  jobs_.update_offer(*job);
+  frames_.open(*job);
 }
 
 bool Conflicts::still_wanted(const Record& record) const {
-  return std::visit(
-      core::Overloaded{
-          [](const UnitRecord&) { return true; },
-          [](const FrameFinishedRecord&) { return true; },
-          [](const FrameFailedRecord&) { return true; },
-          [](const FrameRestartedRecord&) { return true; },
-          [this](const TileVoidedRecord& voided) {
-            ScheduledJob* job = jobs_.find(voided.job);
-            const FrameSlot* slot = job ? job->slot(voided.frame) : nullptr;
-            return slot != nullptr && slot->phase == FramePhase::rendering &&
-                   slot->ledger->is_suspect(*job->grid.index_of(voided.tile));
-          },
-          [this](const DisputeRecord& dispute) { return jobs_.find(dispute.job) != nullptr; },
-          [](const DivergentWorkerRecord&) { return true; },
-      },
-      record);
+  const auto* voided = std::get_if<TileVoidedRecord>(&record);
+  return voided == nullptr || still_wanted(*voided);
+}
+
+bool Conflicts::still_wanted(const TileVoidedRecord& record) const {
+  const auto [job, slot] = jobs_.find_frame({record.job, record.frame});
+  return slot->phase == FramePhase::rendering &&
+         slot->ledger->is_suspect(*job->grid.index_of(record.tile));
 }
 
 /// The job's log says that its films may be wrong, until end_marks(): should the coordinator die
@@ -189,13 +189,12 @@ void Conflicts::mark_disputed(ScheduledJob& job) {
 }
 
 void Conflicts::persisted(const DisputeRecord& record) {
-  ScheduledJob* job = jobs_.find(record.job);
-  if (job == nullptr) return;
-  job->mark = record.open ? DisputeMark::open : DisputeMark::none;
+  ScheduledJob& job = *jobs_.find(record.job);
+  job.mark = record.open ? DisputeMark::open : DisputeMark::none;
   if (record.open) return;
-  marked_.erase(job->id);
+  marked_.erase(job.id);
   // Another one may have begun meanwhile.
-  if (has_dispute(*job) || any_suspect()) mark_disputed(*job);
+  if (has_dispute(job) || any_suspect()) mark_disputed(job);
 }
 
 void Conflicts::persisted(const DivergentWorkerRecord&) { --divergent_records_; }

@@ -21,25 +21,30 @@ class Conflicts {
         frames_(frames),
         workers_(workers) {}
 
-  /// One more answer for a unit that is held. True where it is now known that it is right and what
-  /// is held is wrong.
-  bool weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, const ResultArrived& result);
+  /// Compares one more rendering of a unit that is held, by a worker of this voice, with those that
+  /// came before. True where it is now known that this one is right and what is held is wrong.
+  bool weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Voice voice,
+             const ResultArrived& result);
   /// The job has been restored: films of nobody are suspect where a dispute was open then.
   void restored(ScheduledJob& job, bool disputed);
 
-  // These are durable.
+  /// It is durable that the tile's films are void: they are taken out of the frame's, if the tile
+  /// is suspect still.
   void persisted(const TileVoidedRecord& record);
+  /// What the job's log says of its films is durable.
   void persisted(const DisputeRecord& record);
+  /// It is durable who is divergent, and what that one had a part in.
   void persisted(const DivergentWorkerRecord& record);
 
-  /// Whether a record that could not be made durable still says something: a tile that has begun
-  /// again with its frame must not be voided once more, for its films are new.
+  /// Whether a record that could not be made durable is worth another try. Not one that voids a
+  /// tile whose frame has begun again since: the films that it has now are new.
   bool still_wanted(const Record& record) const;
-  /// Says of jobs whose disputes are over, and all that followed from them, that their films are
-  /// right.
+  /// Where a job's disputes are over, and all that followed from them, its log is told that its
+  /// films are right.
   void end_marks();
 
  private:
+  bool still_wanted(const TileVoidedRecord& record) const;
   void decide(ScheduledJob& job, FrameSlot& slot, const Dispute& dispute,
               const ResultArrived& result);
   void confirm(const ScheduledJob& job, const FrameSlot& slot, WorkerId worker);

@@ -21,15 +21,19 @@ struct JobAdded {
   JobPlan plan;
   RestoredJob restored;
 };
+/// Nothing more of the job is leased until JobResumed. What is out goes on, and counts.
 struct JobPaused {
   JobId job{};
 };
+/// A paused job goes on.
 struct JobResumed {
   JobId job{};
 };
+/// The job ends at once: what is out is taken back. Answered by JobEnded.
 struct JobCancelled {
   JobId job{};
 };
+/// The job has another priority from now on; higher goes first.
 struct JobReprioritised {
   JobId job{};
   int priority = 0;
@@ -64,6 +68,7 @@ struct FinishDone {
   JobId job{};
   int32_t frame = 0;
 };
+/// The frame's outputs could not be made; tried again as often as JobPlan::max_attempts allows.
 struct FinishFailed {
   JobId job{};
   int32_t frame = 0;
@@ -88,6 +93,9 @@ struct WorkerJoined {
   std::vector<UnitInHand> in_hand;
   std::vector<std::string> tags = {};
   uint64_t memory = 0;  ///< bytes for scenes; 0: it knows no limit
+  /// By what it was let in: workers of one credential count as one witness. Empty: nobody else has
+  /// its own.
+  std::string credential = {};
 };
 
 /// The worker can take `units` more. The wish stands until it is fulfilled.
@@ -97,7 +105,7 @@ struct WorkRequested {
 };
 
 /// Nothing is leased (the disk is nearly full, say) until it is told again with `held` = false.
-/// Wishes stand; what is out goes on.
+/// Requests stand; what is out goes on.
 struct LeasingHeld {
   bool held = false;
 };
@@ -142,6 +150,7 @@ struct UnitReturned {
 struct WorkerBarred {
   WorkerId worker{};
   bool barred = true;
+  bool pardoned = false;  ///< its quarantine has ended, even where it stays barred
 };
 
 /// The worker is gone. No blame. Whoever watches the connections must not report the loss of an old
@@ -157,9 +166,11 @@ struct WorkerForgotten {
 
 // The store: answers to Persist.
 
+/// The record is durable.
 struct Persisted {
   RecordId record{};
 };
+/// The record could not be made durable. A unit's film is lost; other records are tried again.
 struct PersistFailed {
   RecordId record{};
   std::string reason;

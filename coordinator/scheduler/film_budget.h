@@ -7,23 +7,27 @@
 
 namespace hyades::coordinator {
 
-/// The memory of films: how much those of frames that have begun take.
+/// How much memory the films of all frames take that have begun and are not over [bytes], and how
+/// much they may.
 class FilmBudget {
  public:
   FilmBudget(uint64_t limit, Step& step) : limit_(limit), step_(step) {}
 
   /// The frame's film is in memory from now on, or will be with the first unit.
   void take(const ScheduledJob& job, FrameSlot& slot);
+  /// The frame's film is gone, if there was one: there is room for another.
   void drop(const ScheduledJob& job, FrameSlot& slot);
 
+  /// What all films take.
   uint64_t bytes() const { return bytes_; }
   /// Whether a film of the job fits beside those that are there.
   bool has_room(const ScheduledJob& job) const;
 
-  /// A frame goes without units, as its film does not fit.
+  /// Some frame gets no units, as its film does not fit.
   void refuse() { refused_ = true; }
+  /// Whether that has happened since serve_refused().
   bool refused() const { return refused_; }
-  /// There is more room, or nothing is in work any more: those who were refused are served again.
+  /// There is more room, or nothing is in work any more: whoever waits for units is served again.
   void serve_refused();
 
  private:

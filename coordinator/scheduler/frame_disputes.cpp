@@ -23,17 +23,17 @@ void FrameLedger::end_dispute(const Extent& e) {
   std::erase_if(disputes_, [&](const Dispute& d) { return d.extent == e; });
 }
 
-std::optional<Extent> FrameLedger::next_check(WorkerId worker, const MayTry& may_try) const {
+std::optional<Extent> FrameLedger::next_check(Voice voice, const MayTry& may_try) const {
   for (const Dispute& d : disputes_) {
-    const bool heard = std::any_of(d.opinions.begin(), d.opinions.end(),
-                                   [&](const Opinion& o) { return o.worker == worker; });
-    if (heard || being_checked(d.extent)) continue;
+    const bool known = std::any_of(d.opinions.begin(), d.opinions.end(),
+                                   [&](const Opinion& o) { return o.voice == voice; });
+    if (known || being_checked(d.extent)) continue;
     const Blame* blame = find_blame(d.extent);
     if (blame == nullptr) return d.extent;
     // Those who have said what they think are no help: who failed it may be the only one left.
-    std::vector<WorkerId> others = blame->workers;
-    for (const Opinion& o : d.opinions) others.push_back(o.worker);
-    if (may_try(others)) return d.extent;
+    std::vector<Voice> heard;
+    for (const Opinion& o : d.opinions) heard.push_back(o.voice);
+    if (may_try(blame->workers, heard)) return d.extent;
   }
   return std::nullopt;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -78,7 +79,7 @@ std::optional<Extent> FrameLedger::next_retry(const MayTry& may_try) {
       retries_.erase(retries_.begin() + static_cast<ptrdiff_t>(i));
       continue;
     }
-    if (may_try(find_blame(e)->workers)) {
+    if (may_try(find_blame(e)->workers, {})) {
       retries_.erase(retries_.begin() + static_cast<ptrdiff_t>(i));
       return e;
     }
@@ -102,7 +103,7 @@ std::optional<Extent> FrameLedger::cut_open(const Extent& front, uint32_t run) {
 bool FrameLedger::has_work(const MayTry& may_try) const {
   uint64_t barred = 0;
   for (const Extent& e : retries_) {
-    if (all_free(e) && !may_try(find_blame(e)->workers)) barred += e.batches.count;
+    if (all_free(e) && !may_try(find_blame(e)->workers, {})) barred += e.batches.count;
   }
   return free_ > barred;
 }
@@ -166,19 +167,25 @@ const FrameLedger::Blame* FrameLedger::find_blame(const Extent& e) const {
   return nullptr;
 }
 
-void FrameLedger::blame(const Extent& e, WorkerId worker, const std::string& reason) {
+void FrameLedger::blame(const Extent& e, WorkerId worker, Voice voice, const std::string& reason) {
   for (Blame& b : blamed_) {
     if (b.extent != e) continue;
     b.workers.push_back(worker);
+    b.voices.push_back(voice);
     b.reason = reason;
     return;
   }
-  blamed_.push_back({e, {worker}, reason});
+  blamed_.push_back({e, {worker}, {voice}, reason});
 }
 
 std::vector<WorkerId> FrameLedger::blamed(const Extent& e) const {
   const Blame* blame = find_blame(e);
   return blame == nullptr ? std::vector<WorkerId>() : blame->workers;
+}
+
+std::vector<Voice> FrameLedger::blamed_voices(const Extent& e) const {
+  const Blame* blame = find_blame(e);
+  return blame == nullptr ? std::vector<Voice>() : blame->voices;
 }
 
 FrameLedger::Failures FrameLedger::take_blame(const Extent& e) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -7,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 #include "coordinator/scheduler/batch_map.h"
@@ -37,8 +37,9 @@ struct Assignment {
   std::vector<Holder> holders;
 };
 
-/// Whether a worker may try a unit that has failed with these workers.
-using MayTry = std::function<bool(const std::vector<WorkerId>&)>;
+/// Whether a worker may try a unit that has failed with these workers, and about which these voices
+/// have said what they think.
+using MayTry = std::function<bool(const std::vector<WorkerId>&, const std::vector<Voice>&)>;
 
 /// A film that counts, or will once it is durable.
 struct HeldRecord {
@@ -46,38 +47,45 @@ struct HeldRecord {
   Digest digest{};
   WorkerId worker{};
   RecordId pending{};     ///< 0 once durable
-  bool verified = false;  ///< another worker rendered the same bits
+  Voice voice{};          ///< of the worker
+  bool verified = false;  ///< another voice rendered the same bits
 };
 
 /// What a worker rendered a unit to.
 struct Opinion {
   WorkerId worker{};  ///< 0: not known any more; it counts for nobody
   Digest digest{};
+  Voice voice{};  ///< of the worker
 };
 
-/// A held unit of which two renderings differ, until two workers agree.
+/// A held unit of which two renderings differ, until two voices agree.
 struct Dispute {
   Extent extent;
   std::vector<Opinion> opinions;
 };
 
-/// The allocation ledger of one frame (invariant 3). Every batch of every tile is free, leased, or
-/// held, and is counted once; held means that its film has arrived, durable or about to be.
+/// The ledger of one frame. Every batch of every tile is free, leased or held, and so counts once
+/// in the frame's film; held means that its film has arrived, durable or about to be.
 class FrameLedger {
  public:
   FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches);
 
   uint64_t total() const { return total_; }
-  uint64_t free() const { return free_; }  ///< tile-batches neither leased nor held
-  uint64_t durable() const { return durable_; }
+  uint64_t free() const { return free_; }        ///< tile-batches neither leased nor held
+  uint64_t durable() const { return durable_; }  ///< tile-batches whose films are durable
+  /// Whether all films are durable and none is suspect.
   bool complete() const { return durable_ == total_ && settled(); }
+  /// Whether all films have come, durable or not, and nobody has to render anything.
   bool all_held() const { return free_ == 0 && assignments_.empty() && disputes_.empty(); }
   bool any_assigned() const { return !assignments_.empty(); }
-  size_t holders() const;  ///< of all assignments together
+  /// Workers of all assignments together: a copied unit has two.
+  size_t holders() const;
 
   // Held batches.
 
+  /// Whether some of its batches are held.
   bool any_held(const Extent& e) const { return held_.count(e.tile, e.batches) != 0; }
+  /// The film of the extent, of which nothing is held, has come.
   void hold(const Extent& e, const HeldRecord& record);
   /// The record of exactly this extent, if there is one.
   const HeldRecord* find_held(const Extent& e) const;
@@ -86,6 +94,7 @@ class FrameLedger {
     const HeldRecord* held = find_held(e);
     return held != nullptr && held->pending == record;
   }
+  /// The film that is held of exactly this extent is durable.
   void made_durable(const Extent& e);
   /// The film was lost before it was durable: its batches are free again.
   void unhold(const Extent& e);
@@ -113,9 +122,12 @@ class FrameLedger {
 
   /// Whether all batches are free, so that the extent can be assigned to a worker that has it.
   bool all_free(const Extent& e) const;
+  /// The holder renders the extent from now on, whose batches are free or disputed. `serial` is one
+  /// that no assignment had before.
   Assignment& assign(const Extent& e, const Holder& holder, uint64_t serial);
+  /// Who renders exactly this extent; null where nobody does.
   Assignment* find_assignment(const Extent& e);
-  /// The assignment that `lease` holds and that covers `part`.
+  /// The assignment that `lease` holds and that covers `part`; null where there is none.
   Assignment* find_covering(const Extent& part, const LeaseId& lease);
   /// This lease no longer renders the unit; without another holder its batches are free again.
   void release(const Extent& e, const LeaseId& lease);
@@ -124,15 +136,17 @@ class FrameLedger {
 
   // Blame.
 
-  void blame(const Extent& e, WorkerId worker, const std::string& reason);
+  /// The worker, which has this voice, could not render the unit, for this reason.
+  void blame(const Extent& e, WorkerId worker, Voice voice, const std::string& reason);
   /// With whom this unit has failed, one entry per failure.
   std::vector<WorkerId> blamed(const Extent& e) const;
-  /// Who failed this unit that has been rendered after all, each once, and how the last one failed.
-  /// Forgets it.
+  /// The voices of those with whom it has failed, one entry per failure.
+  std::vector<Voice> blamed_voices(const Extent& e) const;
   struct Failures {
-    std::vector<WorkerId> workers;
-    std::string reason;
+    std::vector<WorkerId> workers;  ///< that failed a unit, each once
+    std::string reason;             ///< of the last failure
   };
+  /// The unit has been rendered after all: who had failed it. They are forgotten here.
   Failures take_blame(const Extent& e);
 
   // Conflicts (frame_disputes.cpp).
@@ -140,15 +154,19 @@ class FrameLedger {
   /// Whether no film is suspect.
   bool settled() const { return disputes_.empty() && voiding_.empty(); }
   size_t disputes() const { return disputes_.size(); }
+  /// Whether the films of some tile are about to be void.
   bool any_suspect() const { return !voiding_.empty(); }
+  /// The dispute about exactly this extent; null where there is none.
   Dispute* find_dispute(const Extent& e);
+  /// Two renderings of the extent, which is held, differ; `first` is the one that is held.
   Dispute& open_dispute(const Extent& e, const Opinion& first);
   void end_dispute(const Extent& e);
-  /// A disputed unit that nobody renders, for a worker without an opinion of it that may try it.
-  std::optional<Extent> next_check(WorkerId worker, const MayTry& may_try) const;
+  /// A disputed unit that nobody renders, for a worker whose voice was not heard about it and that
+  /// may try it.
+  std::optional<Extent> next_check(Voice voice, const MayTry& may_try) const;
   /// Disputed units that nobody renders.
   uint64_t waiting_checks() const;
-  /// Another worker agreed on the film that is held.
+  /// Another voice agreed on the film that is held.
   void verify(const Extent& e);
   /// Tiles that hold films of this worker on which no other agreed, in order.
   std::vector<uint32_t> unverified_tiles(WorkerId worker) const;
@@ -159,8 +177,8 @@ class FrameLedger {
   bool is_suspect(uint32_t tile) const { return voiding_.contains(tile); }
   /// The suspect tiles that it has not named before, in order.
   std::vector<uint32_t> newly_suspect();
-  /// Its films do not count: all that is held of the tile is free again.
-  /// Returns the runs that did.
+  /// The films of the tile do not count any more: all that was held of it is free again. Returns
+  /// the runs of batches that were.
   std::vector<core::BatchRange> void_tile(uint32_t tile);
 
   /// What is wrong with the ledger, or nothing. Slow; for tests and audits.
@@ -170,6 +188,7 @@ class FrameLedger {
   struct Blame {
     Extent extent;
     std::vector<WorkerId> workers;
+    std::vector<Voice> voices;  ///< theirs
     std::string reason;
   };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -9,8 +10,7 @@
 namespace hyades::coordinator {
 
 void FrameLifecycle::on(const FrameOpened& e) {
-  ScheduledJob* job = jobs_.find(e.job);
-  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
   if (slot == nullptr || slot->phase != FramePhase::opening) return;
   slot->phase = FramePhase::rendering;
   if (slot->suspect) return restart(*job, *slot);
@@ -20,15 +20,13 @@ void FrameLifecycle::on(const FrameOpened& e) {
 }
 
 void FrameLifecycle::on(const FrameRefused& e) {
-  ScheduledJob* job = jobs_.find(e.job);
-  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
   if (slot == nullptr || slot->phase != FramePhase::opening) return;
   fail(*job, *slot, e.reason);
 }
 
 void FrameLifecycle::on(const FinishDone& e) {
-  ScheduledJob* job = jobs_.find(e.job);
-  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
   if (job->begins_again(*slot)) return restart(*job, *slot);
   if (!slot->ledger->settled()) return reopen(*job, *slot);
@@ -38,8 +36,7 @@ void FrameLifecycle::on(const FinishDone& e) {
 }
 
 void FrameLifecycle::on(const FinishFailed& e) {
-  ScheduledJob* job = jobs_.find(e.job);
-  FrameSlot* slot = job ? job->slot(e.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
   if (slot == nullptr || slot->phase != FramePhase::finishing) return;
   if (job->begins_again(*slot)) return restart(*job, *slot);
   if (!slot->ledger->settled()) return reopen(*job, *slot);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -36,24 +35,29 @@ class FrameLifecycle {
   void open(ScheduledJob& job);
   /// Every film of the frame is durable: its outputs are made.
   void finish(ScheduledJob& job, FrameSlot& slot);
+  /// Finishes a frame that is being rendered, if every film of it is durable and none is suspect.
   void finish_if_complete(ScheduledJob& job, FrameSlot& slot);
+  /// Gives the frame up, which is in flight, for this reason.
   void fail(ScheduledJob& job, FrameSlot& slot, std::string reason);
-  /// Begins the frame again, which is in flight. What is on its way to the disk of its films is
-  /// durable before the record, and void.
+  /// Begins the frame again, which is in flight. Films of it that are on their way to the disk get
+  /// there before the record that says so, and are void with it.
   void restart(ScheduledJob& job, FrameSlot& slot);
   /// Begins a frame again that is over, or has films from before a restart of the coordinator and
   /// was not opened since.
   void bring_back(ScheduledJob& job, FrameSlot& slot);
-  /// Has suspect tiles voided; of a frame whose outputs are being made when that is over.
+  /// Has the suspect tiles of a frame that is being rendered voided. (Where its outputs are being
+  /// made, that happens once they are.)
   void void_suspect_tiles(ScheduledJob& job, FrameSlot& slot);
 
-  /// Its end, or its restart, is durable.
+  /// It is durable that the frame is done or has failed, as `phase` says.
   void over(ScheduledJob& job, FrameSlot& slot, FramePhase phase);
+  /// It is durable that the frame begins again: it waits to be opened.
   void restarted(ScheduledJob& job, FrameSlot& slot);
 
   /// Frames whose class has been gone for too long begin again, if there is somebody to render
   /// them.
   void restart_orphans();
+  /// When restart_orphans() may have something to do next.
   std::optional<TimePoint> next_wake() const;
 
  private:

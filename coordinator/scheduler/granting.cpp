@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "coordinator/scheduler/run_length.h"
 
@@ -21,6 +24,14 @@ constexpr size_t kPlacesLookedAt = 12;
 /// tile has had 2^p.
 uint32_t pass_of(const FrameLedger& ledger, uint32_t tiles) {
   return static_cast<uint32_t>(std::bit_width((ledger.total() - ledger.free()) / tiles));
+}
+
+/// A MayTry of the worker, which lives no longer than what it is made of.
+auto judge_of(const ScheduledWorkers& workers, const ScheduledJob& job, WorkerId id,
+              const Worker& worker) {
+  return [&, id](const std::vector<WorkerId>& blamed, const std::vector<Voice>& heard) {
+    return workers.may_try(job, id, worker, blamed, heard);
+  };
 }
 
 }  // namespace
@@ -80,77 +91,90 @@ std::optional<TimePoint> Granting::next_wake() const {
 /// bounds. A scene that it does not have begins with one unit, which waits while the worker goes on
 /// with what it has.
 bool Granting::grant(WorkerId id, Worker& worker) {
-  const auto first = in_turn(id, worker, false);
+  const auto first = next_in_line(id, worker, false);
   if (!first) return false;
   const bool fresh = !Affinity::has_scene(worker, first->id());
   const bool loads = worker.prefetch == first->id() && affinity_.still_loads(worker);
   const bool here = !fresh && !loads;
   const auto loaded = here ? std::nullopt : find_loaded(id, worker, *first->job, loads);
-  if (!loaded) worker.in_turn = step_.now;
+  if (!loaded) worker.in_line = step_.now;
   if (fresh && !loaded && options_.scene_time > Duration{0} &&
       find_loaded(id, worker, *first->job, true)) {
     return grant_from(*first, id, worker, true);
   }
   const FramePlace place = loaded.value_or(*first);
   if (place.id() == worker.affinity && !worker.prefetch && affinity_.nearly_leased(place)) {
-    const auto next = in_turn(id, worker, true);
+    const auto next = next_in_line(id, worker, true);
     if (next && grant_from(*next, id, worker, true)) return true;
   }
   return grant_from(place, id, worker, false);
 }
 
-/// Priorities first, then who has less, then the older job, then the earlier frame: what is first
-/// in turn for this worker. A frame that has workers enough is in turn for those who have its scene
-/// only; where all have, the one with most to do is. `fresh`: of the scenes that the worker does
-/// not have.
-std::optional<FramePlace> Granting::in_turn(WorkerId id, const Worker& worker, bool fresh) {
-  // Where a frame waits for room for its film none behind it begins, so that a large one gets some.
+/// Priorities first, then who has less, then the older job, then the earlier frame. `fresh`: of the
+/// scenes that the worker does not have.
+std::optional<FramePlace> Granting::next_in_line(WorkerId id, const Worker& worker, bool fresh) {
   bool begun = false;
-  for (const auto& [priority, running, index] : jobs_.ready_shares()) {
-    std::optional<FramePlace> roomiest;
-    double most = -1;
-    size_t looked = 0;
-    for (const auto& [serial, job] : jobs_.share(index).ready) {
-      if (looked == kPlacesLookedAt) break;
-      if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
-      if (job->plan.order == FrameOrder::progressive) {
-        const auto slot = find_pass(*job, id, worker, begun);
-        if (slot && !(fresh && Affinity::has_scene(worker, FramePlace{job, *slot}.id()))) {
-          return FramePlace{job, *slot};
-        }
-        continue;
-      }
-      for (const uint32_t slot : job->in_flight) {
-        const FramePlace place{job, slot};
-        const FrameSlot& frame = job->slots[slot];
-        if (frame.phase == FramePhase::rendering && !frame.film) {
-          begun = begun || !film_fits(*job, frame);
-          if (begun) continue;
-        }
-        if (!has_work_for(*job, frame, id, worker)) continue;
-        const bool here = Affinity::has_scene(worker, place.id());
-        if (here && fresh) continue;
-        if (!here && affinity_.still_loads(worker)) {
-          // Scenes are loaded one after the other.
-          turned_away_ = true;
-          continue;
-        }
-        if (here || !affinity_.crowded(place, worker)) return place;
-        if (affinity_.too_late(place, worker)) {
-          turned_away_ = true;
-          continue;
-        }
-        const double left = affinity_.seconds_left(place, frame.threads() + worker.threads);
-        if (left > most) {
-          most = left;
-          roomiest = place;
-        }
-        if (++looked == kPlacesLookedAt) break;
-      }
-    }
-    if (roomiest) return roomiest;
+  for (const auto& [order, share] : jobs_.ready_shares()) {
+    if (const auto place = next_of(*share, id, worker, fresh, begun)) return place;
   }
   return std::nullopt;
+}
+
+/// The first frame of the share that the worker had better take; where all have workers enough, the
+/// one with most to do. Where a frame waits for room for its film `begun` is set, for all that
+/// follow: of these only frames that have begun count, so that a large film gets room some time.
+std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
+                                            const Worker& worker, bool fresh, bool& begun) {
+  std::optional<FramePlace> roomiest;
+  double most = -1;
+  size_t looked = 0;
+  for (const auto& [serial, job] : share.ready) {
+    if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
+    if (job->plan.order == FrameOrder::progressive) {
+      const auto slot = find_pass(*job, id, worker, begun);
+      if (slot && !(fresh && Affinity::has_scene(worker, FramePlace{job, *slot}.id()))) {
+        return FramePlace{job, *slot};
+      }
+      continue;
+    }
+    for (const uint32_t slot : job->in_flight) {
+      const FramePlace place{job, slot};
+      const FrameSlot& frame = place.frame();
+      if (frame.phase == FramePhase::rendering && !frame.film) {
+        begun = begun || !film_fits(*job, frame);
+        if (begun) continue;
+      }
+      const Welcome welcome = welcome_at(place, id, worker, fresh);
+      if (welcome == Welcome::yes) return place;
+      if (welcome == Welcome::no) continue;
+      const double left = affinity_.seconds_left(place, frame.threads() + worker.threads);
+      if (left > most) {
+        most = left;
+        roomiest = place;
+      }
+      if (++looked == kPlacesLookedAt) return roomiest;
+    }
+  }
+  return roomiest;
+}
+
+/// Who has the frame's scene is welcome as long as there is something for them; others while it has
+/// too few workers. Those who come too late are turned away.
+Granting::Welcome Granting::welcome_at(const FramePlace& place, WorkerId id, const Worker& worker,
+                                       bool fresh) {
+  if (!has_work_for(*place.job, place.frame(), id, worker)) return Welcome::no;
+  if (Affinity::has_scene(worker, place.id())) return fresh ? Welcome::no : Welcome::yes;
+  // Scenes are loaded one after the other.
+  if (affinity_.still_loads(worker)) {
+    turned_away_ = true;
+    return Welcome::no;
+  }
+  if (!affinity_.crowded(place, worker)) return Welcome::yes;
+  if (affinity_.too_late(place, worker)) {
+    turned_away_ = true;
+    return Welcome::no;
+  }
+  return Welcome::if_nothing_else;
 }
 
 /// Whether there is something of the frame for this worker.
@@ -158,11 +182,10 @@ bool Granting::has_work_for(const ScheduledJob& job, const FrameSlot& slot, Work
                             const Worker& worker) const {
   if (slot.phase != FramePhase::rendering || !film_fits(job, slot)) return false;
   if (slot.worker_class != 0 && slot.worker_class != worker.worker_class) return false;
-  const auto judge = [&](const std::vector<WorkerId>& blamed) {
-    return workers_.may_try(job, id, worker, blamed);
-  };
+  const auto judge = judge_of(workers_, job, id, worker);
   const MayTry allowed = std::ref(judge);
-  return slot.ledger->has_work(allowed) || slot.ledger->next_check(id, allowed).has_value();
+  return slot.ledger->has_work(allowed) ||
+         slot.ledger->next_check(worker.voice, allowed).has_value();
 }
 
 /// Of a progressive job, the frame in the lowest pass; `begun`: of those that have begun.
@@ -186,9 +209,7 @@ std::optional<uint32_t> Granting::find_pass(const ScheduledJob& job, WorkerId id
 bool Granting::grant_from(const FramePlace& place, WorkerId id, Worker& worker, bool ahead) {
   ScheduledJob& job = *place.job;
   FrameSlot& slot = place.frame();
-  const auto judge = [&](const std::vector<WorkerId>& blamed) {
-    return workers_.may_try(job, id, worker, blamed);
-  };
+  const auto judge = judge_of(workers_, job, id, worker);
   const MayTry allowed = std::ref(judge);
   if (!Affinity::has_scene(worker, place.id())) {
     affinity_.begin_loading(worker, place.id(), worker.leases.empty());
@@ -235,20 +256,20 @@ uint32_t Granting::run_length_of(const ScheduledJob& job, const FrameLedger& led
   return static_cast<uint32_t>(run);
 }
 
-/// A frame out of turn whose scene the worker has. Bounded in three ways, so that nobody starves:
-/// the priority is that of `first`, the owner has not much more than the one who is in turn, and
-/// after `affinity_time` the worker takes what is in turn. While it `loads` that scene, only the
-/// priority counts.
+/// A frame whose scene the worker has, though `first` is next in line. Bounded in three ways, so
+/// that nobody starves: the priority is that of `first`, the owner has not much more out than that
+/// of `first`, and after `affinity_time` the worker takes what is next in line. While it `loads`
+/// the scene of `first`, only the priority counts.
 std::optional<FramePlace> Granting::find_loaded(WorkerId id, const Worker& worker,
                                                 const ScheduledJob& first, bool loads) const {
-  if (!loads && step_.now - worker.in_turn >= options_.affinity_time) return std::nullopt;
-  const FairShare& turn = jobs_.share(first.share);
-  const uint64_t most = turn.running + turn.running / 4 + 2 * uint64_t{worker.threads};
+  if (!loads && step_.now - worker.in_line >= options_.affinity_time) return std::nullopt;
+  const FairShare& next = *first.share;
+  const uint64_t most = next.running + next.running / 4 + 2 * uint64_t{worker.threads};
   for (auto scene = worker.scenes.rbegin(); scene != worker.scenes.rend(); ++scene) {
     ScheduledJob* job = jobs_.find(scene->job);
     if (job == nullptr || !job->ready || job->plan.order != FrameOrder::sequential) continue;
-    const FairShare& share = jobs_.share(job->share);
-    if (share.priority != turn.priority || (!loads && share.running > most)) continue;
+    const FairShare& share = *job->share;
+    if (share.priority != next.priority || (!loads && share.running > most)) continue;
     if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
     const FrameSlot* slot = job->slot(scene->frame);
     if (!has_work_for(*job, *slot, id, worker)) continue;
@@ -289,7 +310,7 @@ bool Granting::waits_for_film(const ScheduledJob& job) const {
 /// Gives the worker a disputed unit that it has not rendered.
 bool Granting::grant_check(const FramePlace& place, WorkerId id, Worker& worker,
                            const MayTry& may_try) {
-  const auto extent = place.frame().ledger->next_check(id, may_try);
+  const auto extent = place.frame().ledger->next_check(worker.voice, may_try);
   if (!extent) return false;
   leases_.assign(place.frame(), *extent, id);
   --worker.wanted;

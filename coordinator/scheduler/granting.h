@@ -31,17 +31,28 @@ class Granting {
 
   /// Serves those who wait, where something has turned up for them.
   void dispatch();
+  /// When somebody who waits may be served without any other event.
   std::optional<TimePoint> next_wake() const;
   /// Whether a frame of the job could begin if there were more room for films.
   bool waits_for_film(const ScheduledJob& job) const;
 
  private:
+  /// Whether a worker had better take units of a frame that is next in line.
+  enum class Welcome : uint8_t {
+    no,
+    if_nothing_else,  ///< the frame has workers enough
+    yes,
+  };
+
   bool may_lease() const { return !held_ && step_.now >= records_.blocked_until(); }
   void serve(WorkerId id, Worker& worker, bool copies);
   bool grant(WorkerId id, Worker& worker);
   bool grant_from(const FramePlace& place, WorkerId id, Worker& worker, bool ahead);
   bool grant_check(const FramePlace& place, WorkerId id, Worker& worker, const MayTry& may_try);
-  std::optional<FramePlace> in_turn(WorkerId id, const Worker& worker, bool fresh);
+  std::optional<FramePlace> next_in_line(WorkerId id, const Worker& worker, bool fresh);
+  std::optional<FramePlace> next_of(const FairShare& share, WorkerId id, const Worker& worker,
+                                    bool fresh, bool& begun);
+  Welcome welcome_at(const FramePlace& place, WorkerId id, const Worker& worker, bool fresh);
   std::optional<uint32_t> find_pass(const ScheduledJob& job, WorkerId id, const Worker& worker,
                                     bool begun) const;
   std::optional<FramePlace> find_loaded(WorkerId id, const Worker& worker,

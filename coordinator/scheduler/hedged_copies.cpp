@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
-#include <vector>
 
 namespace hyades::coordinator {
 namespace {

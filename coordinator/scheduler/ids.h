@@ -17,6 +17,9 @@ using core::seconds;
 
 enum class JobId : uint64_t {};
 enum class WorkerId : uint64_t {};
+/// Whose word a worker's is: its own, or that of the credential it shares with others, who are one
+/// witness together. 0: nobody's.
+enum class Voice : uint64_t {};
 /// A thing to be made durable; unique within one incarnation.
 enum class RecordId : uint64_t {};
 

@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/leases.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,6 +21,12 @@ Leases::Entry* Leases::find(const LeaseId& id) {
   if (id.incarnation != options_.incarnation) return nullptr;
   const auto it = leases_.find(id.number);
   return it == leases_.end() ? nullptr : &it->second;
+}
+
+bool Leases::is_of(const LeaseId& id, WorkerId worker) const {
+  const auto found = leases_.find(id.number);
+  return id.incarnation == options_.incarnation && found != leases_.end() &&
+         found->second.worker == worker;
 }
 
 std::vector<UnitInHand> Leases::units_of(WorkerId worker, const LeaseId& lease) const {
@@ -161,7 +168,7 @@ std::vector<UnitInHand> Leases::units_of(WorkerId worker) const {
   const Worker* found = std::as_const(workers_).find(worker);
   if (found == nullptr) return units;
   for (const uint64_t number : found->leases) {
-    for (UnitInHand& unit : units_of(worker, id_of(number))) units.push_back(std::move(unit));
+    for (const UnitInHand& unit : units_of(worker, id_of(number))) units.push_back(unit);
   }
   return units;
 }
@@ -171,8 +178,8 @@ std::vector<std::pair<WorkerId, UnitInHand>> Leases::units_of(JobId id) const {
   const ScheduledJob* job = jobs_.find(id);
   if (job == nullptr) return units;
   for (const auto& [worker, leases] : job->workers) {
-    for (UnitInHand& unit : units_of(worker)) {
-      if (unit.job == id) units.emplace_back(worker, std::move(unit));
+    for (const UnitInHand& unit : units_of(worker)) {
+      if (unit.job == id) units.emplace_back(worker, unit);
     }
   }
   return units;

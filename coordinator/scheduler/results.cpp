@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -13,72 +12,82 @@
 namespace hyades::coordinator {
 
 void Results::on(const ResultArrived& e) {
-  const auto reject = [&](RejectReason reason) {
-    step_.say(Reject{e.worker, e.lease, e.job, e.unit, reason});
-  };
-  ScheduledJob* job = jobs_.find(e.job);
-  FrameSlot* slot = job ? job->slot(e.unit.frame) : nullptr;
-  if (slot == nullptr || slot->over()) return reject(RejectReason::unknown);
+  const auto [job, slot] = jobs_.find_frame({e.job, e.unit.frame});
+  if (slot == nullptr || slot->over()) return reject(e, RejectReason::unknown);
   const auto extent = job->extent_of(e.unit);
-  if (!extent) return reject(RejectReason::malformed);
+  if (!extent) return reject(e, RejectReason::malformed);
   Worker* worker = workers_.find(e.worker);
   if (worker == nullptr || slot->phase == FramePhase::waiting ||
       slot->phase == FramePhase::opening) {
-    return reject(RejectReason::not_now);
+    return reject(e, RejectReason::not_now);
   }
-  if (workers_.quarantined(e.worker)) return reject(RejectReason::unknown);
+  if (workers_.quarantined(e.worker)) return reject(e, RejectReason::unknown);
   FrameLedger& ledger = *slot->ledger;
   // Its films are about to be void; this one may count then.
   if (ledger.is_suspect(extent->tile) || job->begins_again(*slot)) {
-    return reject(RejectReason::not_now);
+    return reject(e, RejectReason::not_now);
   }
   const HeldRecord* held = ledger.find_held(*extent);
-  if (const Dispute* dispute = held ? ledger.find_dispute(*extent) : nullptr;
-      dispute != nullptr && job->mark != DisputeMark::open) {
+  // After a restart what was merged has no digest any more.
+  const bool differs = held && held->digest != Digest{} && held->digest != e.digest;
+  if (held && ledger.find_dispute(*extent) && job->mark != DisputeMark::open) {
     // Who has heard an answer may forget its film, and that there is a dispute must be known then.
-    reject(RejectReason::not_now);
-  } else if (held != nullptr) {
-    // After a restart what was merged has no digest any more.
-    if (held->digest != Digest{} && held->digest != e.digest) {
-      if (slot->worker_class != worker->worker_class) return reject(RejectReason::unknown);
-      // What is held may not become durable after all, and the dispute is over then: that the two
-      // differ would be forgotten with the film of this one.
-      const bool durable = held->pending == RecordId{};
-      const bool right = conflicts_.weigh(*job, *slot, *extent, e);
-      const bool known = durable && job->mark == DisputeMark::open;
-      reject(right || !known ? RejectReason::not_now : RejectReason::conflict);
-    } else {
-      if (held->pending == RecordId{}) {
-        step_.say(Acknowledge{e.worker, e.lease, e.job, e.unit});
-      } else {
-        records_.await(held->pending, {e.worker, e.lease});
-      }
-      if (held->digest != Digest{}) conflicts_.weigh(*job, *slot, *extent, e);
-    }
+    reject(e, RejectReason::not_now);
+  } else if (differs) {
+    if (slot->worker_class != worker->worker_class) return reject(e, RejectReason::unknown);
+    dispute(*job, *slot, *extent, *held, worker->voice, e);
+  } else if (held) {
+    answer_again(*job, *slot, *extent, *held, worker->voice, e);
   } else if (ledger.any_held(*extent)) {
-    reject(RejectReason::overlap);
+    reject(e, RejectReason::overlap);
   } else if (slot->worker_class != 0 && slot->worker_class != worker->worker_class) {
-    reject(RejectReason::unknown);
+    reject(e, RejectReason::unknown);
   } else {
-    slot->worker_class = worker->worker_class;
-    accept(*job, *slot, *extent, e);
-    lifecycle_.forgive_and_blame(*job, *slot, *extent, e.worker);
-    learn_cost(*job, *extent, e.render_time);
-    affinity_.learn_load(*job, *worker, e);
+    accept(*job, *slot, *extent, *worker, e);
   }
-  leases_.end_unit(*job, *slot, *extent, e.lease);
+  if (leases_.is_of(e.lease, e.worker)) leases_.end_unit(*job, *slot, *extent, e.lease);
   jobs_.update_offer(*job);
   frames_.open(*job);
 }
 
+void Results::reject(const ResultArrived& e, RejectReason reason) {
+  step_.say(Reject{e.worker, e.lease, e.job, e.unit, reason});
+}
+
+/// The film differs from the one that is held.
+void Results::dispute(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
+                      const HeldRecord& held, Voice voice, const ResultArrived& e) {
+  // What is held may not become durable after all, and the dispute is over then: that the two
+  // differ would be forgotten with the film of this one.
+  const bool durable = held.pending == RecordId{};
+  const bool right = conflicts_.weigh(job, slot, extent, voice, e);
+  const bool known = durable && job.mark == DisputeMark::open;
+  reject(e, right || !known ? RejectReason::not_now : RejectReason::conflict);
+}
+
+/// The film is the one that is held, as far as is known: it is acknowledged when that is durable.
+void Results::answer_again(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
+                           const HeldRecord& held, Voice voice, const ResultArrived& e) {
+  if (held.pending == RecordId{}) {
+    step_.say(Acknowledge{e.worker, e.lease, e.job, e.unit});
+  } else {
+    records_.await(held.pending, {e.worker, e.lease});
+  }
+  if (held.digest != Digest{}) conflicts_.weigh(job, slot, extent, voice, e);
+}
+
 /// The film counts once it is durable. Whoever else renders the unit can stop.
-void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
+void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Worker& worker,
                      const ResultArrived& e) {
+  slot.worker_class = worker.worker_class;
   films_.take(job, slot);
-  slot.ledger->hold(extent, {extent.batches, e.digest, e.worker, records_.next_id()});
+  slot.ledger->hold(extent, {extent.batches, e.digest, e.worker, records_.next_id(), worker.voice});
   leases_.end_assignment(job, slot, extent, e.lease);
   records_.persist(UnitRecord{job.id, {e.unit, e.digest, workers_.class_name(slot.worker_class)}},
                    extent, {{e.worker, e.lease}});
+  lifecycle_.forgive_and_blame(job, slot, extent, e.worker);
+  learn_cost(job, extent, e.render_time);
+  affinity_.learn_load(job, worker, e);
 }
 
 void Results::learn_cost(ScheduledJob& job, const Extent& extent, Duration render_time) {
@@ -91,30 +100,30 @@ void Results::learn_cost(ScheduledJob& job, const Extent& extent, Duration rende
 }
 
 void Results::on(const UnitReturned& e) {
-  ScheduledJob* job = jobs_.find(e.job);
-  FrameSlot* slot = job ? job->slot(e.unit.frame) : nullptr;
+  if (!leases_.is_of(e.lease, e.worker)) return;
+  const auto [job, slot] = jobs_.find_frame({e.job, e.unit.frame});
   const auto extent = job ? job->extent_of(e.unit) : std::nullopt;
-  if (slot != nullptr && extent) leases_.end_unit(*job, *slot, *extent, e.lease);
+  if (extent) leases_.end_unit(*job, *slot, *extent, e.lease);
 }
 
 void Results::on(const UnitFailed& e) {
-  ScheduledJob* job = jobs_.find(e.job);
-  FrameSlot* slot = job ? job->slot(e.unit.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({e.job, e.unit.frame});
   const auto extent = job ? job->extent_of(e.unit) : std::nullopt;
   // A failure under a lease that has ended proves nothing that its successor would not show.
-  if (slot == nullptr || !slot->ledger || !extent) return;
+  if (!extent || !slot->ledger || !leases_.is_of(e.lease, e.worker)) return;
   const Assignment* assignment = slot->ledger->find_covering(*extent, e.lease);
   if (assignment == nullptr) return;
   const Extent whole = assignment->extent;
-  slot->ledger->blame(whole, e.worker, e.reason);
+  const Worker* worker = workers_.find(e.worker);  // whose lease it is, so that it is there
+  slot->ledger->blame(whole, e.worker, worker->voice, e.reason);
   leases_.end_unit(*job, *slot, *extent, e.lease);
   if (hopeless(*job, *slot, whole)) frames_.fail(*job, *slot, e.reason);
 }
 
-/// Whether a unit has failed with so many different workers that it is the unit's fault; or that
-/// often in all, and nobody is there who has not tried.
+/// Whether a unit has failed with so many different voices that it is the unit's fault; or that
+/// often in all, and nobody is there whose voice is another.
 bool Results::hopeless(const ScheduledJob& job, const FrameSlot& slot, const Extent& extent) const {
-  std::vector<WorkerId> tried = slot.ledger->blamed(extent);
+  std::vector<Voice> tried = slot.ledger->blamed_voices(extent);
   const size_t failures = tried.size();
   std::sort(tried.begin(), tried.end());
   tried.erase(std::unique(tried.begin(), tried.end()), tried.end());
@@ -122,16 +131,17 @@ bool Results::hopeless(const ScheduledJob& job, const FrameSlot& slot, const Ext
   if (failures < job.plan.max_attempts) return false;
   // Those whose films of it are the matter are not asked again.
   if (const Dispute* dispute = slot.ledger->find_dispute(extent)) {
-    for (const Opinion& o : dispute->opinions) tried.push_back(o.worker);
+    for (const Opinion& o : dispute->opinions) tried.push_back(o.voice);
   }
-  return !workers_.anybody_besides(tried, job, slot.worker_class);
+  return !workers_.anybody_besides({}, tried, job, slot.worker_class);
 }
 
 void Results::on(const Persisted& e) {
   const std::optional<PendingRecord> pending = records_.take(e.record);
   if (!pending) return;
   const auto over = [this](JobId id, int32_t frame, FramePhase phase) {
-    if (ScheduledJob* job = jobs_.find(id)) frames_.over(*job, *job->slot(frame), phase);
+    const auto [job, slot] = jobs_.find_frame({id, frame});
+    frames_.over(*job, *slot, phase);
   };
   std::visit(core::Overloaded{
                  [&](const UnitRecord& unit) { unit_persisted(unit, *pending, e.record); },
@@ -142,8 +152,8 @@ void Results::on(const Persisted& e) {
                    over(failed.job, failed.failed.frame, FramePhase::failed);
                  },
                  [&](const FrameRestartedRecord& again) {
-                   ScheduledJob* job = jobs_.find(again.job);
-                   if (job != nullptr) frames_.restarted(*job, *job->slot(again.frame));
+                   const auto [job, slot] = jobs_.find_frame({again.job, again.frame});
+                   frames_.restarted(*job, *slot);
                  },
                  [&](const TileVoidedRecord& voided) { conflicts_.persisted(voided); },
                  [&](const DisputeRecord& dispute) { conflicts_.persisted(dispute); },
@@ -154,8 +164,8 @@ void Results::on(const Persisted& e) {
 
 void Results::unit_persisted(const UnitRecord& record, const PendingRecord& pending, RecordId id) {
   const core::Unit& unit = record.accepted.unit;
-  ScheduledJob* job = jobs_.find(record.job);
-  FrameSlot* slot = job ? job->slot(unit.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({record.job, unit.frame});
+  // The job may have ended meanwhile, and the frame or its tile may have begun again.
   const bool counts = slot != nullptr && slot->phase == FramePhase::rendering &&
                       slot->ledger->waits_for(pending.extent, id);
   if (counts) {
@@ -172,11 +182,9 @@ void Results::on(const PersistFailed& e) {
   const std::optional<PendingRecord> lost = records_.failed(e.record);
   if (!lost) return;
   const auto& record = std::get<UnitRecord>(lost->record);
-  ScheduledJob* job = jobs_.find(record.job);
-  FrameSlot* slot = job ? job->slot(record.accepted.unit.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({record.job, record.accepted.unit.frame});
   // Its tile or frame may have begun again, and hold another film of these extents.
-  if (slot != nullptr && slot->phase == FramePhase::rendering &&
-      slot->ledger->waits_for(lost->extent, e.record)) {
+  if (slot->phase == FramePhase::rendering && slot->ledger->waits_for(lost->extent, e.record)) {
     slot->ledger->unhold(lost->extent);
     jobs_.update_offer(*job);
   }

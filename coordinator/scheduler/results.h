@@ -28,7 +28,13 @@ class Results {
   void on(const PersistFailed& e);
 
  private:
-  void accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, const ResultArrived& e);
+  void reject(const ResultArrived& e, RejectReason reason);
+  void dispute(ScheduledJob& job, FrameSlot& slot, const Extent& extent, const HeldRecord& held,
+               Voice voice, const ResultArrived& e);
+  void answer_again(ScheduledJob& job, FrameSlot& slot, const Extent& extent,
+                    const HeldRecord& held, Voice voice, const ResultArrived& e);
+  void accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Worker& worker,
+              const ResultArrived& e);
   bool hopeless(const ScheduledJob& job, const FrameSlot& slot, const Extent& extent) const;
   static void learn_cost(ScheduledJob& job, const Extent& extent, Duration render_time);
   void unit_persisted(const UnitRecord& record, const PendingRecord& pending, RecordId id);

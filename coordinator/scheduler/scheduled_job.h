@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -21,6 +22,7 @@ struct FrameId {
   friend bool operator==(const FrameId&, const FrameId&) = default;
 };
 
+/// How far a frame is.
 enum class FramePhase : uint8_t {
   waiting,     ///< not opened yet
   opening,     ///< OpenFrame was said
@@ -44,15 +46,18 @@ struct FrameSlot {
   uint64_t assigned_threads = 0;     ///< of the workers that render it
   uint64_t prefetching_threads = 0;  ///< of those that load its scene while they render another
   TimePoint last_leased;
-  /// Since when nobody is there who may render it.
+  /// Since when no worker is there that may render it; nothing where one is.
   std::optional<TimePoint> orphaned;
   std::unique_ptr<FrameLedger> ledger;
   std::string reason;  ///< why it failed
 
+  /// Threads of all workers that have units of it.
   uint64_t threads() const { return assigned_threads + prefetching_threads; }
+  /// Whether it has been begun with, or begins again, and that it is over is not durable yet.
   bool in_flight() const {
     return phase != FramePhase::waiting && phase != FramePhase::done && phase != FramePhase::failed;
   }
+  /// Whether it takes no films any more.
   bool over() const {
     return phase == FramePhase::closing || phase == FramePhase::restarting ||
            phase == FramePhase::done || phase == FramePhase::failed;
@@ -67,11 +72,13 @@ enum class DisputeMark : uint8_t {
   ending,  ///< will say that they are right
 };
 
+struct FairShare;
+
 /// A job that has not ended: its plan, its frames, and what their rendering has shown so far.
 struct ScheduledJob {
   JobId id{};
-  uint64_t serial = 0;  ///< order of arrival
-  uint32_t share = 0;   ///< index of its (priority, owner)
+  uint64_t serial = 0;         ///< order of arrival
+  FairShare* share = nullptr;  ///< of its owner at its priority
   JobPlan plan;
   std::vector<uint32_t> tags;  ///< that a worker needs; interned, sorted
   TileGrid grid;
@@ -98,7 +105,8 @@ struct ScheduledJob {
   uint64_t costs_known = 0;  ///< films that told
   double load_seconds = -1;  ///< what it takes to load a scene, measured; -1: not known
 
-  /// Whether the frame begins again when what it waits for is over.
+  /// Whether all of the frame begins again as soon as what it waits for is over: to be opened, or
+  /// to have its outputs made.
   bool begins_again(const FrameSlot& slot) const { return plan.whole_frames && slot.suspect; }
 
   /// What a batch of the tile takes one thread, as far as is known [s]; 0: nothing is known.
@@ -106,10 +114,12 @@ struct ScheduledJob {
     return tile_cost[tile] > 0 ? tile_cost[tile] : mean_cost;
   }
 
+  /// The frame of this number; null where the job has none.
   FrameSlot* slot(int32_t frame) {
     const auto it = by_number.find(frame);
     return it == by_number.end() ? nullptr : &slots[it->second];
   }
+  /// The place of one of its slots.
   uint32_t index_of(const FrameSlot& slot) const {
     return static_cast<uint32_t>(&slot - slots.data());
   }
@@ -121,6 +131,7 @@ struct ScheduledJob {
     if (!tile || unit.batches.count == 0 || end > plan.batches) return std::nullopt;
     return Extent{*tile, unit.batches};
   }
+  /// The unit that the extent is in this frame.
   core::Unit unit_of(const FrameSlot& slot, const Extent& extent) const {
     return {slot.frame, grid.tile(extent.tile), extent.batches};
   }

@@ -1,23 +1,31 @@
 #include "coordinator/scheduler/scheduled_jobs.h"
 
 namespace hyades::coordinator {
+namespace {
+
+ScheduledJobs::ShareOrder order_of(const FairShare& share) {
+  return {-share.priority, share.running, share.serial};
+}
+
+}  // namespace
 
 ScheduledJob* ScheduledJobs::find(JobId id) const {
   const auto it = jobs_.find(id);
   return it == jobs_.end() ? nullptr : it->second.get();
 }
 
-FrameSlot* ScheduledJobs::find_frame(const FrameId& id) const {
+FoundFrame ScheduledJobs::find_frame(const FrameId& id) const {
   ScheduledJob* job = find(id.job);
-  return job == nullptr ? nullptr : job->slot(id.frame);
+  FrameSlot* slot = job ? job->slot(id.frame) : nullptr;
+  return slot ? FoundFrame{job, slot} : FoundFrame{};
 }
 
 ScheduledJob& ScheduledJobs::add(JobId id, const JobPlan& plan) {
   ScheduledJob& job = *jobs_.emplace(id, std::make_unique<ScheduledJob>()).first->second;
   job.id = id;
   job.serial = next_serial_++;
-  job.share = share_of(plan.priority, plan.owner);
   job.plan = plan;
+  join_share(job);
   job.grid = TileGrid(plan.region, plan.tile_size, plan.shuffle);
   job.tile_cost.assign(job.grid.size(), 0.0F);
   for (const int32_t frame : plan.frames) {
@@ -30,6 +38,8 @@ ScheduledJob& ScheduledJobs::add(JobId id, const JobPlan& plan) {
 void ScheduledJobs::end(ScheduledJob& job, bool cancelled) {
   update_offer(job);
   step_.say(JobEnded{job.id, job.frames_done, job.frames_failed, cancelled});
+  leave_share(job);
+  records_.forget(job.id);
   jobs_.erase(job.id);
 }
 
@@ -41,27 +51,35 @@ void ScheduledJobs::reprioritise(ScheduledJob& job, int priority) {
   const auto running = static_cast<int64_t>(job.running);
   list_ready(job, false);
   count_running(job, -running);
+  leave_share(job);
   job.plan.priority = priority;
   step_.work_appeared = true;
-  job.share = share_of(priority, job.plan.owner);
+  join_share(job);
   count_running(job, running);
   update_offer(job);
 }
 
-uint32_t ScheduledJobs::share_of(int priority, const std::string& owner) {
-  const auto [it, fresh] =
-      share_index_.try_emplace({priority, owner}, static_cast<uint32_t>(shares_.size()));
-  if (fresh) shares_.push_back({priority, owner, 0, {}});
-  return it->second;
+void ScheduledJobs::join_share(ScheduledJob& job) {
+  const auto [at, fresh] = shares_.try_emplace({job.plan.priority, job.plan.owner});
+  job.share = &at->second;
+  if (fresh) {
+    job.share->priority = job.plan.priority;
+    job.share->serial = job.serial;
+  }
+  ++job.share->jobs;
+}
+
+void ScheduledJobs::leave_share(ScheduledJob& job) {
+  if (--job.share->jobs == 0) shares_.erase({job.plan.priority, job.plan.owner});
+  job.share = nullptr;
 }
 
 void ScheduledJobs::count_running(ScheduledJob& job, int64_t change) {
   job.running += static_cast<uint64_t>(change);
-  const uint32_t index = job.share;
-  FairShare& share = shares_[index];
-  if (!share.ready.empty()) ready_shares_.erase({-share.priority, share.running, index});
+  FairShare& share = *job.share;
+  ready_shares_.erase(order_of(share));
   share.running += static_cast<uint64_t>(change);
-  if (!share.ready.empty()) ready_shares_.insert({-share.priority, share.running, index});
+  if (!share.ready.empty()) ready_shares_.emplace(order_of(share), &share);
 }
 
 /// Those who wait are served again only where there is more than before: what was there did not
@@ -82,15 +100,13 @@ void ScheduledJobs::update_offer(ScheduledJob& job) {
 void ScheduledJobs::list_ready(ScheduledJob& job, bool ready) {
   if (ready == job.ready) return;
   job.ready = ready;
-  FairShare& share = shares_[job.share];
+  FairShare& share = *job.share;
   if (ready) {
     share.ready.emplace(job.serial, &job);
-    if (share.ready.size() == 1) {
-      ready_shares_.insert({-share.priority, share.running, job.share});
-    }
+    ready_shares_.emplace(order_of(share), &share);
   } else {
     share.ready.erase(job.serial);
-    if (share.ready.empty()) ready_shares_.erase({-share.priority, share.running, job.share});
+    if (share.ready.empty()) ready_shares_.erase(order_of(share));
   }
 }
 

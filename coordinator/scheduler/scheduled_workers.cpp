@@ -1,9 +1,28 @@
 #include "coordinator/scheduler/scheduled_workers.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
+#include "core/base/hash.h"
+
 namespace hyades::coordinator {
+namespace {
+
+/// No table of credentials is kept, as whoever invents many would fill it: they are hashed.
+Voice voice_of(const WorkerJoined& joined) {
+  constexpr uint64_t kOfCredential = uint64_t{1} << 63U;  // no worker has such a number
+  if (joined.credential.empty()) return Voice{static_cast<uint64_t>(joined.worker)};
+  const core::Sha256 digest = core::sha256(joined.credential);
+  uint64_t number = 0;
+  for (size_t i = 0; i < sizeof number; ++i) {
+    number = (number << 8U) | static_cast<uint64_t>(digest[i]);
+  }
+  return Voice{number | kOfCredential};
+}
+
+}  // namespace
 
 ScheduledWorkers::ScheduledWorkers(Step& step) : step_(step) {
   class_names_.emplace_back();
@@ -23,11 +42,12 @@ const Worker* ScheduledWorkers::find(WorkerId id) const {
 
 Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   Worker& worker = workers_[joined.worker];
+  worker.voice = voice_of(joined);
   worker.threads = joined.threads;
   worker.worker_class = intern_class(joined.worker_class);
   worker.tags = intern_tags(joined.tags);
   worker.memory = joined.memory;
-  worker.in_turn = step_.now;
+  worker.in_line = step_.now;
   threads_ += worker.threads;
   worker.barred = quarantined(joined.worker);
   if (!worker.barred) count_class(worker.worker_class, 1);
@@ -107,17 +127,20 @@ bool ScheduledWorkers::suits(const ScheduledJob& job, const Worker& worker) {
 }
 
 bool ScheduledWorkers::may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
-                               const std::vector<WorkerId>& blamed) const {
+                               const std::vector<WorkerId>& blamed,
+                               const std::vector<Voice>& heard) const {
   return std::find(blamed.begin(), blamed.end(), id) == blamed.end() ||
-         !anybody_besides(blamed, job, worker.worker_class);
+         !anybody_besides(blamed, heard, job, worker.worker_class);
 }
 
-bool ScheduledWorkers::anybody_besides(const std::vector<WorkerId>& tried, const ScheduledJob& job,
+bool ScheduledWorkers::anybody_besides(const std::vector<WorkerId>& tried,
+                                       const std::vector<Voice>& heard, const ScheduledJob& job,
                                        uint32_t worker_class) const {
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     return !entry.second.barred && entry.second.worker_class == worker_class &&
            suits(job, entry.second) &&
-           std::find(tried.begin(), tried.end(), entry.first) == tried.end();
+           std::find(tried.begin(), tried.end(), entry.first) == tried.end() &&
+           std::find(heard.begin(), heard.end(), entry.second.voice) == heard.end();
   });
 }
 

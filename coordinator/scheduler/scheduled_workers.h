@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -23,6 +24,7 @@ struct Worker {
     bool alone = false;  ///< the worker had nothing else to do
   };
 
+  Voice voice{};
   uint32_t threads = 1;
   uint32_t worker_class = 0;
   std::vector<uint32_t> tags;       ///< interned, sorted
@@ -31,7 +33,7 @@ struct Worker {
   std::optional<FrameId> affinity;  ///< the frame that it renders and stays with
   std::optional<FrameId> prefetch;  ///< ... that it will render then; it has a unit of it already
   std::optional<Loading> loading;   ///< what it last began with, until the first film
-  TimePoint in_turn;                ///< when it last got what was in turn
+  TimePoint in_line;                ///< when it last got what was next in line
   uint32_t wanted = 0;              ///< units it asked for and did not get yet
   uint64_t waiting = 0;             ///< its place among those who wait, or 0
   bool barred = false;              ///< gets nothing
@@ -52,27 +54,32 @@ class ScheduledWorkers {
 
   Worker* find(WorkerId id);
   const Worker* find(WorkerId id) const;
-  /// The worker is not there yet.
+  /// Adds a worker that is not there yet.
   Worker& add(const WorkerJoined& joined);
+  /// Removes a worker that is there; what it had is the caller's business.
   void remove(WorkerId id);
   uint64_t threads() const { return threads_; }  ///< of all
 
+  /// From now on the worker gets nothing, or gets units again.
   void bar(Worker& worker, bool barred);
   bool quarantined(WorkerId id) const { return quarantined_.contains(id); }
-  /// Stays when the worker goes and comes. False where that is so already.
+  /// Puts a worker into quarantine, which stays when it goes and comes back. False where it is in
+  /// it already.
   bool quarantine(WorkerId id) { return quarantined_.insert(id).second; }
   /// Ends its quarantine and forgets its failures.
   void pardon(WorkerId id);
+  /// What the worker could not render, to be counted on.
   Failures& failures(WorkerId id) { return failures_[id]; }
   void forget_failures(WorkerId id) { failures_.erase(id); }
 
   // Classes by number; 0 stands for 'none yet'.
 
+  /// The number of the class; a new one where the name was not known.
   uint32_t intern_class(const std::string& name);
   const std::string& class_name(uint32_t number) const { return class_names_[number]; }
   /// How many of the class may get units.
   uint32_t workers_of(uint32_t worker_class) const { return class_workers_[worker_class]; }
-  /// Since when there are none.
+  /// Since when no worker of the class may get units, where that is so.
   TimePoint gone_since(uint32_t worker_class) const { return class_gone_[worker_class]; }
   /// Numbers of tags, sorted.
   std::vector<uint32_t> intern_tags(const std::vector<std::string>& tags);
@@ -81,13 +88,14 @@ class ScheduledWorkers {
   static bool may_join(const ScheduledJob& job, WorkerId id, const Worker& worker);
   /// Whether a worker of the class may get units of the job.
   bool anybody_for(const ScheduledJob& job, uint32_t worker_class) const;
-  /// Whether a worker of the class is there that may get units of the job and is none of `tried`.
-  bool anybody_besides(const std::vector<WorkerId>& tried, const ScheduledJob& job,
-                       uint32_t worker_class) const;
-  /// A unit that has failed with `blamed` goes to somebody who has not failed it yet, if there is
-  /// anybody.
+  /// Whether a worker of the class is there that may get units of the job, is none of `tried` and
+  /// has none of the voices that were `heard`.
+  bool anybody_besides(const std::vector<WorkerId>& tried, const std::vector<Voice>& heard,
+                       const ScheduledJob& job, uint32_t worker_class) const;
+  /// Whether the worker may get a unit that has failed with `blamed`: not as one of them, as long
+  /// as somebody is there who has not failed it, and whose voice was not `heard`.
   bool may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
-               const std::vector<WorkerId>& blamed) const;
+               const std::vector<WorkerId>& blamed, const std::vector<Voice>& heard = {}) const;
 
   /// To be called when its wish has changed.
   void update_waiting(WorkerId id, Worker& worker);

@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/scheduler.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <utility>
 #include <variant>
@@ -21,10 +22,10 @@ struct Scheduler::Parts {
 
   const SchedulerOptions options;
   Step step;
-  ScheduledJobs jobs{step};
+  PendingRecords records{options, step};
+  ScheduledJobs jobs{step, records};
   ScheduledWorkers workers{step};
   FilmBudget films{options.film_memory, step};
-  PendingRecords records{options, step};
   Leases leases{options, step, jobs, workers, films};
   Affinity affinity{options, step, jobs};
   HedgedCopies copies{options, step, jobs, workers, leases, affinity};
@@ -94,6 +95,8 @@ std::optional<TimePoint> Scheduler::next_wake() const {
   return wake;
 }
 
+bool Scheduler::knows(JobId id) const { return parts_->jobs.find(id) != nullptr; }
+
 uint32_t Scheduler::leased_units(JobId id) const {
   const ScheduledJob* job = parts_->jobs.find(id);
   return job == nullptr ? 0 : static_cast<uint32_t>(job->running);
@@ -137,9 +140,12 @@ bool Scheduler::waits_for_film(JobId id) const {
 std::string Scheduler::audit() const {
   std::map<std::pair<JobId, uint32_t>, size_t> out;
   if (std::string wrong = parts_->leases.audit(out); !wrong.empty()) return wrong;
-  std::vector<uint64_t> running(parts_->jobs.shares().size());
+  const auto is_open = [this](JobId id) { return knows(id); };
+  if (std::string wrong = parts_->records.audit(is_open); !wrong.empty()) return wrong;
+  std::map<const FairShare*, uint64_t> running;
   uint64_t films = 0;
   for (const auto& [id, job] : parts_->jobs.all()) {
+    running.try_emplace(job->share, 0);
     for (uint32_t i = 0; i < job->slots.size(); ++i) {
       const FrameSlot& slot = job->slots[i];
       films += slot.film ? job->plan.film_bytes : 0;
@@ -159,10 +165,9 @@ std::string Scheduler::audit() const {
       }
     }
   }
-  for (size_t i = 0; i < running.size(); ++i) {
-    if (parts_->jobs.share(static_cast<uint32_t>(i)).running != running[i]) {
-      return "an owner's running units are miscounted";
-    }
+  for (const auto& [of, share] : parts_->jobs.shares()) {
+    if (!running.contains(&share)) return "an owner without jobs is not forgotten";
+    if (share.running != running[&share]) return "an owner's running units are miscounted";
   }
   if (films != parts_->films.bytes()) {
     return fmt::format("films take {} bytes, {} counted", films, parts_->films.bytes());

@@ -13,9 +13,9 @@
 
 namespace hyades::coordinator {
 
-/// Who renders what (invariants 3 and 5): a deterministic state machine. Events and a clock in,
-/// actions out; no input or output, no threads, no clock of its own. The same machine serves the
-/// coordinator, the single machine and the simulator. Not thread-safe.
+/// Decides who renders what and when: a deterministic state machine. Events and the time go in,
+/// actions come out; it has no input or output, no threads and no clock of its own, so that the
+/// same code serves the coordinator, a single machine and simulations. Not thread-safe.
 class Scheduler {
  public:
   explicit Scheduler(const SchedulerOptions& options);
@@ -25,24 +25,26 @@ class Scheduler {
   /// actions out in order.
   std::vector<Action> handle(const Event& event, TimePoint now);
 
-  /// When a Tick is needed at the latest, if nothing else happens before.
+  /// When a Tick is needed at the latest, if nothing else happens before; nothing where none is.
   std::optional<TimePoint> next_wake() const;
 
-  /// How many units of the job are out with workers.
+  /// Whether the job has not ended.
+  bool knows(JobId job) const;
+  /// How many units of the job are out with workers; 0 where the job is not known.
   uint32_t leased_units(JobId job) const;
-  /// How many units the worker has.
+  /// How many units are out with the worker; 0 where it is not known.
   uint32_t leased_units(WorkerId worker) const;
 
-  /// What the worker has under the lease; nothing where it has no such lease.
+  /// The units that the worker has under the lease; none where it has no such lease.
   std::vector<UnitInHand> units_of(WorkerId worker, const LeaseId& lease) const;
 
-  /// All that the worker has.
+  /// All units that the worker has, under whatever lease.
   std::vector<UnitInHand> units_of(WorkerId worker) const;
-  /// What is out of the job, and with whom.
+  /// All units of the job that are out, and the worker that has each.
   std::vector<std::pair<WorkerId, UnitInHand>> units_of(JobId job) const;
 
-  /// How many units of the job, rendered differently by two workers, wait for one who has not
-  /// rendered them.
+  /// How many units of the job have been rendered differently by two workers, and wait for another
+  /// worker to render them too.
   uint32_t disputed_units(JobId job) const;
 
   /// Bytes of the films of all frames that have begun and are not over.

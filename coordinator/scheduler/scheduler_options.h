@@ -20,8 +20,8 @@ struct SchedulerOptions {
   /// A frame whose class of workers has been gone for this long begins again with another; 0:
   /// never.
   Duration class_patience{0};
-  /// A worker stays with scenes that it has loaded for this long though another job or frame would
-  /// be in turn; 0: never.
+  /// A worker stays with scenes that it has loaded for this long though another job or frame is
+  /// next in line; 0: never.
   Duration affinity_time = std::chrono::seconds(20);
   /// What loading a scene is taken to take until films have shown it; 0: it takes no time (all
   /// workers are threads of one machine), and never shows.

@@ -30,7 +30,9 @@ class TileGrid {
   /// is the seed of a random order.
   TileGrid(core::PixelRect region, int32_t tile_size, uint64_t shuffle = 0);
 
+  /// How many tiles there are.
   uint32_t size() const { return columns_ * rows_; }
+  /// The pixels of the tile, cut off where the region ends; `index` is below size().
   core::PixelRect tile(uint32_t index) const;
   /// The index of exactly this rectangle, if it is a tile of the grid.
   std::optional<uint32_t> index_of(const core::PixelRect& tile) const;

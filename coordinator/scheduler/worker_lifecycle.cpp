@@ -15,8 +15,7 @@ void WorkerLifecycle::on(const WorkerJoined& e) {
 }
 
 void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held) {
-  ScheduledJob* job = jobs_.find(held.job);
-  FrameSlot* slot = job ? job->slot(held.unit.frame) : nullptr;
+  const auto [job, slot] = jobs_.find_frame({held.job, held.unit.frame});
   const auto extent = job ? job->extent_of(held.unit) : std::nullopt;
   if (slot == nullptr || !extent || workers_.quarantined(id) ||
       slot->phase != FramePhase::rendering ||
@@ -40,7 +39,7 @@ void WorkerLifecycle::on(const WorkerAlive& e) {
 }
 
 void WorkerLifecycle::on(const WorkerBarred& e) {
-  if (!e.barred) workers_.pardon(e.worker);
+  if (!e.barred || e.pardoned) workers_.pardon(e.worker);
   Worker* worker = workers_.find(e.worker);
   if (worker == nullptr || worker->barred == e.barred) return;
   workers_.bar(*worker, e.barred);

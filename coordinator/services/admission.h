@@ -2,7 +2,7 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
+#include <utility>
 
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/status.h>
@@ -20,31 +20,25 @@ class Admission {
   Admission(Authority& authority, bool workers_show)
       : authority_(authority), workers_show_(workers_show) {}
 
-  /// OK and who calls; or UNAUTHENTICATED, FAILED_PRECONDITION or PERMISSION_DENIED with the
-  /// reason.
+  /// OK, with who calls in `caller`; or why the call may not come in: UNAUTHENTICATED,
+  /// FAILED_PRECONDITION or PERMISSION_DENIED. Who has no right to call is noted in the audit log.
   grpc::Status check(const grpc::CallbackServerContext& context, const Rule& rule,
                      Caller& caller) const;
 
-  /// Registers who stays (Authority::visit).
+  /// Registers a caller's open stream; `leave` is called when the caller's token is of no use any
+  /// more (Authority::visit).
   std::unique_ptr<Visit> visit(const Caller& caller,
                                std::function<void(const grpc::Status&)> leave) const {
     return authority_.visit(caller, std::move(leave));
   }
 
-  /// Where it is kept who did what; null where it is not.
+  /// The audit log; null where none is kept.
   AuditLog* audit() const { return authority_.audit(); }
-
-  /// To be held while a large request is parsed and answered, so that many of them do not fill the
-  /// memory; not held where another one is.
-  std::unique_lock<std::mutex> alone() const {
-    return std::unique_lock<std::mutex>(large_, std::try_to_lock);
-  }
 
  private:
   grpc::Status admit(const grpc::CallbackServerContext& context, const Rule& rule,
                      Caller& caller) const;
 
-  mutable std::mutex large_;
   Authority& authority_;
   const bool workers_show_;
 };

@@ -1,18 +1,19 @@
 // Files by content, up and down.
-#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/operations/audit.h"
+#include "coordinator/operations/file_transfer.h"
 #include "coordinator/services/file_stream.h"
 #include "coordinator/services/service.h"
+#include "farm/message_bytes.h"
 #include "farm/wire.h"
-#include "farm/wire_status.h"
 #include "hyades/v1/assets.pb.h"
 
 namespace hyades::coordinator {
@@ -23,17 +24,13 @@ grpc::Status invalid(const std::string& message) {
 }
 
 /// Takes one file in. Writes as it reads, so that a client is never faster than the disk.
-class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
+class UploadStream final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
   /// `caller` has been admitted, or not.
-  Uploading(Controller& controller, ThreadPool& pool, const Admission& admission,
-            grpc::CallbackServerContext& context, const Caller& caller,
-            const grpc::Status& admitted)
-      : controller_(controller),
-        pool_(pool),
-        store_(controller.assets()),
-        caller_(caller),
-        audit_(admission.audit()) {
+  UploadStream(Controller& controller, farm::ThreadPool& pool, const Admission& admission,
+               grpc::CallbackServerContext& context, const Caller& caller,
+               const grpc::Status& admitted)
+      : controller_(controller), pool_(pool), caller_(caller), audit_(admission.audit()) {
     if (admitted.ok()) {
       visit_ = admission.visit(caller, [&context](const grpc::Status&) { context.TryCancel(); });
       StartRead(&bytes_);
@@ -55,7 +52,7 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
       return;
     }
     v1::UploadPart part;  // not kept: an emptied message holds on to its memory
-    grpc::Status taken = parse(bytes_, farm::kMaxPartBytes, part);
+    grpc::Status taken = farm::parse(bytes_, farm::kMaxPartBytes, part);
     bytes_.Clear();
     if (taken.ok()) taken = take(part);
     if (!taken.ok()) {
@@ -81,27 +78,16 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     const auto digest = farm::digest_from_wire(part.sha256());
     if (!digest) return invalid(digest.error().message);
     const std::string name = core::to_hex(*digest);
-    if (store_.contains(name, part.size())) {
-      done_ = true;
-      return grpc::Status::OK;
-    }
-    const uint64_t begun = std::min(store_.begun(name), part.size());
-    if (grpc::Status room = controller_.disk().admit(part.size() - begun); !room.ok()) return room;
-    auto writer = store_.write(name, part.size());
-    if (!writer) {
-      return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, writer.error().message,
-                               std::chrono::seconds(10));
-    }
-    writer_.emplace(std::move(*writer));
-    note_upload(audit_, caller_, name, part.size(), writer_->offset());
-    return grpc::Status::OK;
+    grpc::Status begun = begin_upload(controller_, audit_, caller_, name, part.size(), writer_);
+    done_ = begun.ok() && !writer_;
+    return begun;
   }
 
   grpc::Status take(const v1::UploadPart& part) {
     if (!writer_) {
       if (const grpc::Status begun = begin(part); !begun.ok() || done_) return begun;
     }
-    std::span<const std::byte> data = std::as_bytes(std::span(part.chunk().data()));
+    const std::span<const std::byte> data = std::as_bytes(std::span(part.chunk().data()));
     if (data.size() > farm::kMaxChunkBytes) return invalid("a chunk has at most 1 MiB");
     // A stream that goes on for ever says nothing, or the same again. Where all bytes are here from
     // before a crash, there is nothing left to say.
@@ -110,42 +96,18 @@ class Uploading final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     if (received_ > writer_->size()) {
       return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
     }
-    const uint64_t offset = part.chunk().offset();
-    if (offset > writer_->offset()) {
-      return {grpc::StatusCode::OUT_OF_RANGE,
-              fmt::format("bytes from {} on are missing", writer_->offset())};
-    }
-    // What is here already comes again where the client did not know of it.
-    const uint64_t known = std::min<uint64_t>(writer_->offset() - offset, data.size());
-    data = data.subspan(known);
-    if (data.size() > writer_->size() - writer_->offset()) {
-      return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
-    }
-    if (controller_.disk().is_full()) {
-      // What has come stays for a later upload to go on with.
-      if (grpc::Status room = controller_.disk().admit(0); !room.ok()) return room;
-    }
-    if (auto written = writer_->append(data); !written) {
-      return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, written.error().message,
-                               std::chrono::seconds(10));
-    }
-    if (writer_->offset() < writer_->size()) return grpc::Status::OK;
-    if (auto whole = writer_->commit(); !whole) {
-      if (grpc::Status room = controller_.disk().admit(0); !room.ok()) return room;
-      return {grpc::StatusCode::DATA_LOSS, whole.error().message};
-    }
-    done_ = true;
-    return grpc::Status::OK;
+    grpc::Status taken = take_piece(controller_, *writer_, part.chunk().offset(), data);
+    done_ = taken.ok() && writer_->offset() == writer_->size();
+    return taken;
   }
 
   Controller& controller_;
-  ThreadPool& pool_;
-  farm::ContentStore& store_;
+  farm::ThreadPool& pool_;
   const Caller caller_;
   AuditLog* const audit_;
   std::unique_ptr<Visit> visit_;
   grpc::ByteBuffer bytes_;
-  std::optional<farm::ContentWriter> writer_;
+  std::unique_ptr<farm::ContentWriter> writer_;
   uint64_t received_ = 0;  ///< on this stream
   bool done_ = false;
 };
@@ -158,8 +120,8 @@ void add_asset_streams(Service& service) {
       "Assets/Upload",
       [&service, &controller](Service::Context& context, const Caller& caller,
                               const grpc::Status& admitted) {
-        return new Uploading(controller, service.executors().files, service.admission(), context,
-                             caller, admitted);
+        return new UploadStream(controller, service.executors().files, service.admission(), context,
+                                caller, admitted);
       },
       v1::UploadResponse::default_instance());
   service.add_reader<v1::DownloadRequest>(

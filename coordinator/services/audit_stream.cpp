@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -7,9 +8,10 @@
 namespace hyades::coordinator {
 namespace {
 
+/// Sends what the audit log holds from a time on.
 class AuditEntries final : public Producer<v1::AuditEntry> {
  public:
-  AuditEntries(grpc::CallbackServerContext& context, ThreadPool& pool, AuditLog* log,
+  AuditEntries(grpc::CallbackServerContext& context, farm::ThreadPool& pool, AuditLog* log,
                int64_t since_ms)
       : Producer(context, pool), log_(log), since_ms_(since_ms) {}
 
@@ -19,7 +21,7 @@ class AuditEntries final : public Producer<v1::AuditEntry> {
       status = {grpc::StatusCode::FAILED_PRECONDITION, "this coordinator keeps no audit log"};
       return Step::end;
     }
-    if (!may_wait) return Step::hand;
+    if (!may_wait) return Step::needs_thread;
     if (!reader_) {
       log_->flush();
       reader_ = log_->read();

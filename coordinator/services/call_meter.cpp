@@ -1,11 +1,14 @@
 #include "coordinator/services/call_meter.h"
 
-#include <array>
+#include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <cstddef>
 #include <string>
 
 #include <grpcpp/support/byte_buffer.h>
 
+#include "coordinator/access/audit_log.h"
 #include "coordinator/meters/meters.h"
 
 namespace hyades::coordinator {
@@ -16,26 +19,12 @@ using grpc::experimental::Interceptor;
 using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
 
-const char* name_of(grpc::StatusCode code) {
-  static constexpr std::array<const char*, 17> kNames = {"OK",
-                                                         "CANCELLED",
-                                                         "UNKNOWN",
-                                                         "INVALID_ARGUMENT",
-                                                         "DEADLINE_EXCEEDED",
-                                                         "NOT_FOUND",
-                                                         "ALREADY_EXISTS",
-                                                         "PERMISSION_DENIED",
-                                                         "RESOURCE_EXHAUSTED",
-                                                         "FAILED_PRECONDITION",
-                                                         "ABORTED",
-                                                         "OUT_OF_RANGE",
-                                                         "UNIMPLEMENTED",
-                                                         "INTERNAL",
-                                                         "UNAVAILABLE",
-                                                         "DATA_LOSS",
-                                                         "UNAUTHENTICATED"};
-  const auto number = static_cast<size_t>(code);
-  return number < kNames.size() ? kNames[number] : "UNKNOWN";
+/// As gRPC writes it: "NOT_FOUND".
+std::string name_of(grpc::StatusCode code) {
+  std::string name = result_name({code, ""});
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return name;
 }
 
 /// "/hyades.v1.Jobs/List" -> "Jobs/List".
@@ -54,14 +43,15 @@ class CallMeter final : public Interceptor {
 
   /// A call that was broken off has no status.
   ~CallMeter() override {
-    meters_.called(method_, name_of(code_), unary_, std::chrono::steady_clock::now() - begun_);
+    meters_.called(method_, name_of(code_).c_str(), unary_,
+                   std::chrono::steady_clock::now() - begun_);
   }
   CallMeter(const CallMeter&) = delete;
   CallMeter& operator=(const CallMeter&) = delete;
 
   void Intercept(InterceptorBatchMethods* batch) override {
     if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_MESSAGE)) {
-      // All our services take bytes (raw.h).
+      // All our services take bytes (farm/message_bytes.h).
       if (const auto* bytes = static_cast<const grpc::ByteBuffer*>(batch->GetRecvMessage())) {
         if (bytes->Valid()) meters_.call_bytes(method_, bytes->Length(), 0);
       }

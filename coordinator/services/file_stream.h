@@ -1,7 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,17 +16,29 @@
 
 namespace hyades::coordinator {
 
-/// A file's bytes from an offset on, in chunks. To touch them is to read the disk.
+/// Puts what `bytes` holds from `offset` on into `chunk`, a mebibyte at most, and moves `offset`
+/// behind it. False where nothing is left.
+inline bool take_chunk(std::span<const std::byte> bytes, uint64_t& offset, v1::Chunk& chunk) {
+  if (offset >= bytes.size()) return false;
+  const uint64_t count = std::min<uint64_t>(farm::kMaxChunkBytes, bytes.size() - offset);
+  chunk.set_offset(offset);
+  chunk.set_data(bytes.data() + offset, count);
+  offset += count;
+  return true;
+}
+
+/// Sends a file's bytes from an offset on, in chunks. To touch them is to read the disk.
 class FileStream final : public Producer<v1::Chunk> {
  public:
-  /// `open` finds the bytes, or says why not; called once, by one of the pool.
+  /// Finds the bytes, or says why there are none; called once, by a thread of the pool.
   using Open = std::function<grpc::Status(core::Bytes&)>;
-  FileStream(grpc::CallbackServerContext& context, ThreadPool& pool, Open open, uint64_t offset)
+  FileStream(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Open open,
+             uint64_t offset)
       : Producer(context, pool), open_(std::move(open)), offset_(offset) {}
 
  private:
   Step next(v1::Chunk& chunk, grpc::Status& status, bool may_wait) override {
-    if (!may_wait) return Step::hand;
+    if (!may_wait) return Step::needs_thread;
     if (const Open open = std::exchange(open_, nullptr)) {
       status = open(bytes_);
       if (status.ok() && offset_ > bytes_.size()) {
@@ -32,12 +47,7 @@ class FileStream final : public Producer<v1::Chunk> {
       }
       if (!status.ok()) return Step::end;
     }
-    if (offset_ >= bytes_.size()) return Step::end;
-    const uint64_t count = std::min<uint64_t>(farm::kMaxChunkBytes, bytes_.size() - offset_);
-    chunk.set_offset(offset_);
-    chunk.set_data(bytes_.chars() + offset_, count);
-    offset_ += count;
-    return Step::message;
+    return take_chunk(bytes_.span(), offset_, chunk) ? Step::message : Step::end;
   }
 
   Open open_;

@@ -1,8 +1,7 @@
-// What of a job comes as a stream.
+// What comes as a stream of a job: its changes, outputs and log, and its files.
 #include <algorithm>
-#include <atomic>
+#include <cstdint>
 #include <deque>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,11 +10,10 @@
 #include <fmt/format.h>
 
 #include "coordinator/controller/controller.h"
+#include "coordinator/operations/file_transfer.h"
 #include "coordinator/services/file_stream.h"
 #include "coordinator/services/service.h"
-#include "core/base/assets.h"
-#include "core/film/film_codec.h"
-#include "farm/wire.h"
+#include "core/base/result.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -23,44 +21,36 @@ namespace {
 
 constexpr uint32_t kRowsAtOnce = 500;
 
-constexpr int kMostAsked = 10'000;
-/// Films on their way at once: each is in memory as a whole.
-constexpr int kMostFilms = 4;
+/// Frames, or ranges of them, in one question.
+constexpr int kMostFrames = 10'000;
 
 grpc::Status too_many(const char* what) {
-  return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("at most {} {}", kMostAsked, what)};
+  return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("at most {} {}", kMostFrames, what)};
 }
 
 /// Follows a job: wakes up whenever it has changed.
 template <class Message>
 class Follower : public Producer<Message> {
  protected:
-  Follower(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
+  Follower(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
            uint64_t job)
       : Producer<Message>(context, pool), controller_(controller), job_(job) {
-    watch_ = controller.watchers().watch(job, [poker = this->poker()] { poker->poke(); });
+    watch_ = controller.watchers().watch(job, [waker = this->waker()] { waker->wake(); });
   }
   void over() override { controller_.watchers().unwatch(watch_); }
 
-  /// Whether nothing can come any more, or why the job cannot be followed.
-  grpc::Status ended(bool& ended) {
-    v1::WatchEvent event;
-    cursor_.version = std::max<uint64_t>(cursor_.version, 1);
-    return controller_.queries().changes(job_, cursor_, event, ended);
-  }
-
   Controller& controller_;
   const uint64_t job_;
-  ChangeCursor cursor_;
 
  private:
   uint64_t watch_ = 0;
 };
 
-class Watching final : public Follower<v1::WatchEvent> {
+/// Tells of a job and its frames as they change.
+class JobChanges final : public Follower<v1::WatchEvent> {
  public:
-  Watching(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
-           uint64_t job)
+  JobChanges(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
+             uint64_t job)
       : Follower(context, pool, controller, job) {}
 
  private:
@@ -69,7 +59,7 @@ class Watching final : public Follower<v1::WatchEvent> {
     const ChangeCursor before = cursor_;
     bool over = false;
     if (!controller_.queries().changes_of_open(job_, cursor_, event)) {
-      if (!may_wait) return Step::hand;
+      if (!may_wait) return Step::needs_thread;
       status = controller_.queries().changes(job_, cursor_, event, over);
       if (!status.ok()) return Step::end;
     }
@@ -77,17 +67,98 @@ class Watching final : public Follower<v1::WatchEvent> {
     const bool news = over || before.after || event.more() || cursor_.version != before.version;
     return news ? Step::message : Step::wait;
   }
+
+  ChangeCursor cursor_;
   bool ended_ = false;
 };
 
-class OutputList final : public Follower<v1::OutputFile> {
- public:
-  OutputList(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
-             const v1::OutputsRequest& request)
-      : Follower(context, pool, controller, request.job()), request_(request) {}
+/// Tells of rows that the store has of a job, in the order of their numbers.
+template <class Message, class Row>
+class RowFollower : public Follower<Message> {
+ protected:
+  using Step = typename Producer<Message>::Step;
+
+  /// Begins behind the row with number `after`. `follow`: waits for more until the job has ended.
+  RowFollower(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
+              uint64_t job, uint64_t after, bool follow)
+      : Follower<Message>(context, pool, controller, job), after_(after), follow_(follow) {}
 
  private:
-  bool wanted(int32_t frame) const {
+  /// The next rows behind `after`.
+  virtual core::Result<std::vector<Row>> read(uint64_t after) = 0;
+  /// Whether a row that was just read is told.
+  virtual bool wants(const Row& row, bool job_has_ended) = 0;
+  /// Puts a row into an empty message.
+  virtual void tell(const Row& row, Message& message) = 0;
+  /// The job has ended, and all rows have been read: whether they are to be read once more.
+  virtual bool wants_again() { return false; }
+
+  Step next(Message& message, grpc::Status& status, bool may_wait) final {
+    for (;;) {
+      if (!ready_.empty()) {
+        tell(ready_.front(), message);
+        ready_.pop_front();
+        return Step::message;
+      }
+      if (!may_wait) return Step::needs_thread;
+      bool job_has_ended = false;
+      status = look(job_has_ended);
+      if (!status.ok()) return Step::end;
+      auto rows = read(after_);
+      if (!rows) {
+        status = farm::unavailable(rows.error());
+        return Step::end;
+      }
+      if (!rows->empty()) {
+        after_ = rows->back().number;
+        for (Row& row : *rows) {
+          if (wants(row, job_has_ended)) ready_.push_back(std::move(row));
+        }
+      } else if (job_has_ended && wants_again()) {
+        after_ = 0;
+      } else {
+        return job_has_ended || !follow_ ? Step::end : Step::wait;
+      }
+    }
+  }
+
+  /// Whether the job has ended, or why it cannot be followed.
+  grpc::Status look(bool& job_has_ended) {
+    v1::WatchEvent event;
+    cursor_.version = std::max<uint64_t>(cursor_.version, 1);
+    return this->controller_.queries().changes(this->job_, cursor_, event, job_has_ended);
+  }
+
+  ChangeCursor cursor_;
+  std::deque<Row> ready_;
+  uint64_t after_;  ///< the number of the row that was read last
+  const bool follow_;
+};
+
+/// Tells of finished files.
+class OutputList final : public RowFollower<v1::OutputFile, StoredOutput> {
+ public:
+  OutputList(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
+             const v1::OutputsRequest& request)
+      : RowFollower(context, pool, controller, request.job(), 0, request.follow()),
+        request_(request) {}
+
+ private:
+  core::Result<std::vector<StoredOutput>> read(uint64_t after) override {
+    return controller_.store().outputs(job_, after, kRowsAtOnce);
+  }
+
+  bool wants(const StoredOutput& output, bool job_has_ended) override {
+    if (!is_asked_for(output.frame)) return false;
+    // Those for a video go when it is made, and are of use only where it never will be.
+    if (!job_has_ended && controller_.queries().is_for_video(job_, output.path)) {
+      passed_over_.insert(output.path);
+      return false;
+    }
+    return !again_ || passed_over_.contains(output.path);
+  }
+
+  bool is_asked_for(int32_t frame) const {
     if (request_.frames().empty()) return true;
     return std::any_of(request_.frames().begin(), request_.frames().end(),
                        [&](const v1::FrameRange& r) {
@@ -97,226 +168,75 @@ class OutputList final : public Follower<v1::OutputFile> {
                        });
   }
 
-  Step next(v1::OutputFile& message, grpc::Status& status, bool may_wait) override {
-    for (;;) {
-      while (!ready_.empty()) {
-        const StoredOutput output = std::move(ready_.front());
-        ready_.pop_front();
-        if (!wanted(output.frame)) continue;
-        message.set_path(output.path);
-        message.set_frame(output.frame);
-        message.set_size(output.size);
-        message.set_sha256(output.sha256);
-        return Step::message;
-      }
-      if (phase_ == Phase::all_told) return Step::end;
-      if (!may_wait) return Step::hand;
-      bool over = false;
-      status = ended(over);
-      if (!status.ok()) return Step::end;
-      auto outputs = controller_.store().outputs(job_, seen_, kRowsAtOnce);
-      if (!outputs) {
-        status = farm::unavailable(outputs.error());
-        return Step::end;
-      }
-      if (!outputs->empty()) {
-        seen_ = outputs->back().number;
-        take(*outputs, over);
-      } else if (over && phase_ == Phase::as_finished && !passed_over_.empty()) {
-        phase_ = Phase::left_over;
-        seen_ = 0;
-      } else if (over || !request_.follow()) {
-        phase_ = Phase::all_told;
-      } else {
-        return Step::wait;
-      }
-    }
+  void tell(const StoredOutput& output, v1::OutputFile& message) override {
+    message.set_path(output.path);
+    message.set_frame(output.frame);
+    message.set_size(output.size);
+    message.set_sha256(output.sha256);
   }
 
-  void take(const std::vector<StoredOutput>& outputs, bool job_is_over) {
-    for (const StoredOutput& output : outputs) {
-      // Those for a video go when it is made, and are of use only where it never will be.
-      if (!job_is_over && controller_.queries().is_for_video(job_, output.path)) {
-        passed_over_.insert(output.path);
-      } else if (phase_ == Phase::as_finished || passed_over_.contains(output.path)) {
-        ready_.push_back(output);
-      }
-    }
-  }
-
-  enum class Phase {
-    as_finished,  ///< in the order of their numbers
-    left_over,    ///< the job has ended: those that were passed over and are still there
-    all_told
-  };
+  bool wants_again() override { return !std::exchange(again_, true) && !passed_over_.empty(); }
 
   const v1::OutputsRequest request_;
-  std::deque<StoredOutput> ready_;
-  Phase phase_ = Phase::as_finished;
-  uint64_t seen_ = 0;                  ///< the number of the phase's last one
   std::set<std::string> passed_over_;  ///< paths of a video's pictures, as long as the job was open
+  bool again_ = false;  ///< only those that were passed over, and are still there, are told
 };
 
-class LogLines final : public Follower<v1::LogLine> {
+/// Tells of the lines of the log.
+class LogLines final : public RowFollower<v1::LogLine, StoredLine> {
  public:
-  LogLines(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
+  LogLines(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
            const v1::LogsRequest& request)
-      : Follower(context, pool, controller, request.job()),
-        request_(request),
-        seen_(request.after()) {
-    frames_.insert(request.frames().begin(), request.frames().end());
-  }
+      : RowFollower(context, pool, controller, request.job(), request.after(), request.follow()),
+        frames_(request.frames().begin(), request.frames().end()) {}
 
  private:
-  Step next(v1::LogLine& message, grpc::Status& status, bool may_wait) override {
-    for (;;) {
-      while (!ready_.empty()) {
-        const StoredLine line = std::move(ready_.front());
-        ready_.pop_front();
-        if (!frames_.empty() && (!line.frame || !frames_.contains(*line.frame))) continue;
-        message.set_time_ms(line.time_ms);
-        message.set_level(static_cast<v1::LogLevel>(line.level));
-        message.set_of_frame(line.frame.has_value());
-        message.set_frame(line.frame.value_or(0));
-        message.set_worker(line.worker);
-        message.set_text(line.text);
-        message.set_number(line.number);
-        return Step::message;
-      }
-      if (last_) return Step::end;
-      if (!may_wait) return Step::hand;
-      bool over = false;
-      status = ended(over);
-      if (!status.ok()) return Step::end;
-      auto lines = controller_.store().lines(job_, seen_, kRowsAtOnce);
-      if (!lines) {
-        status = farm::unavailable(lines.error());
-        return Step::end;
-      }
-      if (!lines->empty()) seen_ = lines->back().number;
-      ready_.insert(ready_.end(), lines->begin(), lines->end());
-      if (!ready_.empty()) continue;
-      last_ = over || !request_.follow();
-      if (!last_) return Step::wait;
-    }
+  core::Result<std::vector<StoredLine>> read(uint64_t after) override {
+    return controller_.store().lines(job_, after, kRowsAtOnce);
   }
 
-  const v1::LogsRequest request_;
-  std::set<int32_t> frames_;
-  std::deque<StoredLine> ready_;
-  uint64_t seen_;  ///< the number of the last line
-  bool last_ = false;
-};
-
-class FilmStream final : public Producer<v1::FilmPart> {
- public:
-  /// `open` counts such streams.
-  FilmStream(grpc::CallbackServerContext& context, ThreadPool& pool, Controller& controller,
-             v1::FilmRequest request, std::shared_ptr<std::atomic<int>> open)
-      : Producer(context, pool),
-        controller_(controller),
-        request_(std::move(request)),
-        open_(std::move(open)),
-        found_(std::make_shared<Found>()) {
-    ++*open_;
+  bool wants(const StoredLine& line, bool /*job_has_ended*/) override {
+    return frames_.empty() || (line.frame && frames_.contains(*line.frame));
   }
 
-  ~FilmStream() override { --*open_; }
-
- private:
-  struct Found {
-    std::atomic<bool> there{false};
-    grpc::Status status;
-    core::FilmInfo info;
-    std::shared_ptr<const core::Film> film;
-  };
-
-  /// The stream may be over before the film is found.
-  void ask() {
-    const grpc::Status asked = controller_.queries().film(
-        request_.job(), request_.frame(),
-        [found = found_, poker = poker()](const grpc::Status& said, const core::FilmInfo& info,
-                                          std::shared_ptr<const core::Film> film) {
-          found->status = said;
-          found->info = info;
-          found->film = std::move(film);
-          found->there = true;
-          poker->poke();
-        });
-    if (asked.ok()) return;
-    found_->status = asked;
-    found_->there = true;
+  void tell(const StoredLine& line, v1::LogLine& message) override {
+    message.set_time_ms(line.time_ms);
+    message.set_level(static_cast<v1::LogLevel>(line.level));
+    message.set_of_frame(line.frame.has_value());
+    message.set_frame(line.frame.value_or(0));
+    message.set_worker(line.worker);
+    message.set_text(line.text);
+    message.set_number(line.number);
   }
 
-  Step next(v1::FilmPart& part, grpc::Status& status, bool may_wait) override {
-    if (!may_wait) return Step::hand;
-    if (!std::exchange(asked_, true)) ask();
-    if (!found_->there) return Step::wait;
-    if (!found_->status.ok()) {
-      status = found_->status;
-      return Step::end;
-    }
-    if (found_->film) {
-      bytes_ = core::encode_film(*found_->film);
-      found_->film.reset();
-      *part.mutable_header() = farm::to_wire(found_->info);
-      part.mutable_header()->set_size(bytes_.size());
-      return Step::message;
-    }
-    if (offset_ >= bytes_.size()) return Step::end;
-    const uint64_t count = std::min<uint64_t>(farm::kMaxChunkBytes, bytes_.size() - offset_);
-    part.mutable_chunk()->set_offset(offset_);
-    part.mutable_chunk()->set_data(bytes_.data() + offset_, count);
-    offset_ += count;
-    return Step::message;
-  }
-
-  Controller& controller_;
-  const v1::FilmRequest request_;
-  const std::shared_ptr<std::atomic<int>> open_;
-  const std::shared_ptr<Found> found_;
-  bool asked_ = false;
-  std::vector<std::byte> bytes_;
-  uint64_t offset_ = 0;
+  const std::set<int32_t> frames_;  ///< none: all
 };
 
 /// The bytes of an output as it was listed.
-grpc::Status open_output(Controller& controller, const v1::FetchRequest& request,
-                         core::Bytes& file) {
-  // The path is looked up among the job's outputs and never taken for one of the file system's.
-  const auto output = controller.store().output(request.job(), request.path());
-  if (!output) return farm::unavailable(output.error());
-  if (!*output) {
-    return {grpc::StatusCode::NOT_FOUND,
-            fmt::format("job {} has no output '{}' (yet)", request.job(), request.path())};
-  }
-  if (!request.sha256().empty() && request.sha256() != (*output)->sha256) {
-    return {grpc::StatusCode::FAILED_PRECONDITION,
-            request.path() + " has been rendered again: fetch it from its beginning"};
-  }
-  auto bytes = core::map_file(controller.output_folder(request.job()) + "/" + (*output)->path);
-  if (!bytes || bytes->size() != (*output)->size) {
-    return {grpc::StatusCode::DATA_LOSS, request.path() + " is damaged on the coordinator's disk"};
-  }
-  file = std::move(*bytes);
-  return grpc::Status::OK;
+grpc::Status fetch(Controller& controller, const v1::FetchRequest& request, core::Bytes& file) {
+  StoredOutput output;
+  grpc::Status opened = open_output(controller, request.job(), request.path(), output, file);
+  const bool other = !request.sha256().empty() && request.sha256() != output.sha256;
+  if (!opened.ok() || !other) return opened;
+  return {grpc::StatusCode::FAILED_PRECONDITION,
+          request.path() + " has been rendered again: fetch it from its beginning"};
 }
 
 }  // namespace
 
 void add_job_streams(Service& service) {
   Controller& controller = service.backend().controller;
-  ThreadPool& store = service.executors().store;
-  ThreadPool& files = service.executors().files;
+  farm::ThreadPool& store = service.executors().store;
+  farm::ThreadPool& files = service.executors().files;
   using Context = Service::Context;
   service.add_reader<v1::WatchRequest>(
       "Jobs/Watch", [&](Context& context, v1::WatchRequest&& request, grpc::Status&) {
-        return new Watching(context, store, controller, request.job());
+        return new JobChanges(context, store, controller, request.job());
       });
   service.add_reader<v1::OutputsRequest>("Jobs/Outputs",
                                          [&](Context& context, v1::OutputsRequest&& request,
                                              grpc::Status& refused) -> OutgoingStream* {
-                                           if (request.frames_size() <= kMostAsked) {
+                                           if (request.frames_size() <= kMostFrames) {
                                              return new OutputList(context, store, controller,
                                                                    request);
                                            }
@@ -326,7 +246,7 @@ void add_job_streams(Service& service) {
   service.add_reader<v1::LogsRequest>(
       "Jobs/Logs",
       [&](Context& context, v1::LogsRequest&& request, grpc::Status& refused) -> OutgoingStream* {
-        if (request.frames_size() <= kMostAsked) {
+        if (request.frames_size() <= kMostFrames) {
           return new LogLines(context, store, controller, request);
         }
         refused = too_many("frames");
@@ -338,21 +258,9 @@ void add_job_streams(Service& service) {
         return new FileStream(
             context, files,
             [&controller, request = std::move(request)](core::Bytes& file) {
-              return open_output(controller, request, file);
+              return fetch(controller, request, file);
             },
             offset);
-      });
-  service.add_reader<v1::FilmRequest>(
-      "Jobs/Film",
-      [&, films = std::make_shared<std::atomic<int>>(0)](
-          Context& context, v1::FilmRequest&& request, grpc::Status& refused) -> OutgoingStream* {
-        if (*films < kMostFilms) {
-          return new FilmStream(context, files, controller, std::move(request), films);
-        }
-        refused =
-            farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                              "enough films are on their way to others", std::chrono::seconds(2));
-        return nullptr;
       });
 }
 

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <memory>
-#include <mutex>
 
 #include <grpcpp/alarm.h>
 #include <grpcpp/server_context.h>
@@ -11,18 +10,20 @@
 
 #include "coordinator/operations/executors.h"
 #include "coordinator/services/admission.h"
-#include "coordinator/services/raw.h"
+#include "core/base/mutex.h"
+#include "farm/message_bytes.h"
 
 namespace hyades::coordinator {
 
-/// What a stream waits for while its reader takes nothing; then it is broken off.
+/// How long a stream waits for its reader to take a message; then it is broken off.
 inline constexpr std::chrono::milliseconds kReaderPatience{60'000};
 
-/// Lets others wake a stream that may be over already.
-class Poker {
+/// Lets any thread wake a stream, which may be over already.
+class Waker {
  public:
-  virtual ~Poker() = default;
-  virtual void poke() = 0;
+  virtual ~Waker() = default;
+  /// Has the stream ask again what to send next; nothing where it is over.
+  virtual void wake() = 0;
 };
 
 /// A stream of messages to a client. Deletes itself.
@@ -35,21 +36,27 @@ class OutgoingStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
   virtual void begin() = 0;
 };
 
-/// A stream that says no.
+/// A stream that sends nothing and ends with `status`. Deletes itself.
 class Refusal final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
   explicit Refusal(const grpc::Status& status) { Finish(status); }
   void OnDone() override { delete this; }
 };
 
-/// A stream whose messages are produced as fast as it reads: next() is called again when the
-/// last message is on its way, or, after it had nothing, when somebody pokes. Where it would have
-/// to wait (for the disk, say) it has itself called by a thread of the pool. Broken off where the
-/// client does not read, or the pool has too much to do. Deletes itself.
+/// A stream whose messages are made as fast as its client reads: next() is called again when the
+/// last message is on its way, or, after it had nothing, when somebody wakes the stream.
+/// Where it may have to wait (for the disk, say) a thread of the pool calls it. Broken off where
+/// the client does not read, or the pool has too much to do. Deletes itself.
 template <class Message>
 class Producer : public OutgoingStream {
  public:
-  enum class Step { message, wait, hand, end };
+  /// What next() has done.
+  enum class Step {
+    message,       ///< put the next message
+    wait,          ///< nothing: there is none before somebody wakes the stream
+    needs_thread,  ///< nothing: it may have to wait, and must not
+    end            ///< put the status with which the stream ends
+  };
 
   void begin() override { advance(false); }
 
@@ -68,10 +75,10 @@ class Producer : public OutgoingStream {
   }
   void OnCancel() override {
     {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       cancelled_ = true;
     }
-    poke();
+    wake();
   }
   void OnDone() override {
     handle_->drop();
@@ -80,59 +87,60 @@ class Producer : public OutgoingStream {
   }
 
  protected:
-  Producer(grpc::CallbackServerContext& context, ThreadPool& pool,
+  Producer(grpc::CallbackServerContext& context, farm::ThreadPool& pool,
            std::chrono::milliseconds patience = kReaderPatience)
       : handle_(std::make_shared<Handle>(this)),
         context_(context),
         pool_(pool),
         patience_(patience) {}
 
-  /// Puts the next message, or, where it says end, the status. May say `hand` where it may not
-  /// wait: then it is called again, with nothing in `message`, and may. Never called twice at once.
+  /// Puts the next message into `message`, which is empty, or the end into `status`. Where
+  /// `may_wait` is false it must not wait; after needs_thread it is called again, and may. Never
+  /// called twice at once.
   virtual Step next(Message& message, grpc::Status& status, bool may_wait) = 0;
-  /// The call is over: nobody may poke any more.
+  /// Called once, when the call is over: what would wake the stream can be let go of.
   virtual void over() {}
 
-  std::shared_ptr<Poker> poker() const { return handle_; }
+  std::shared_ptr<Waker> waker() const { return handle_; }
 
  private:
-  class Handle final : public Poker {
+  class Handle final : public Waker {
    public:
     explicit Handle(Producer* producer) : producer_(producer) {}
-    void poke() override {
-      const std::lock_guard lock(mutex_);
-      if (producer_ != nullptr) producer_->poke();
+    void wake() override {
+      const core::MutexLock lock(mutex_);
+      if (producer_ != nullptr) producer_->wake();
     }
     void send_away(const grpc::Status& why) {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       if (producer_ != nullptr) producer_->send_away(why);
     }
     void break_off() {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       if (producer_ != nullptr) producer_->context_.TryCancel();
     }
     void drop() {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       producer_ = nullptr;
     }
 
    private:
-    std::mutex mutex_;
-    Producer* producer_;
+    core::Mutex mutex_;
+    Producer* producer_ HYADES_GUARDED_BY(mutex_);
   };
 
   void send_away(const grpc::Status& why) {
     {
-      const std::lock_guard lock(mutex_);
-      farewell_ = why;
+      const core::MutexLock lock(mutex_);
+      end_status_ = why;
     }
-    poke();
+    wake();
   }
 
-  void poke() {
+  void wake() {
     {
-      const std::lock_guard lock(mutex_);
-      poked_ = true;
+      const core::MutexLock lock(mutex_);
+      woken_ = true;
       if (busy_) return;
       busy_ = true;
     }
@@ -144,10 +152,10 @@ class Producer : public OutgoingStream {
       grpc::Status status;
       bool cancelled = false;
       {
-        const std::lock_guard lock(mutex_);
-        poked_ = false;
+        const core::MutexLock lock(mutex_);
+        woken_ = false;
         cancelled = cancelled_;
-        status = farewell_;
+        status = end_status_;
       }
       Step step = Step::end;
       message_.Clear();
@@ -160,18 +168,23 @@ class Producer : public OutgoingStream {
           return end;
         });
         if (step == Step::message) {
-          status = serialise(message_, bytes_);
+          status = farm::serialise(message_, bytes_);
           if (!status.ok()) step = Step::end;
         }
       }
-      if (step == Step::message) return write();
-      if (step == Step::end) return Finish(status);
-      if (step == Step::hand) {
-        if (!pool_.submit([this] { advance(true); })) Finish(crowded());
-        return;
+      switch (step) {
+        case Step::message:
+          return write();
+        case Step::end:
+          return Finish(status);
+        case Step::needs_thread:
+          if (!pool_.submit([this] { advance(true); })) Finish(crowded());
+          return;
+        case Step::wait:
+          break;
       }
-      const std::lock_guard lock(mutex_);
-      if (poked_) continue;
+      const core::MutexLock lock(mutex_);
+      if (woken_) continue;
       busy_ = false;
       return;
     }
@@ -187,17 +200,18 @@ class Producer : public OutgoingStream {
 
   const std::shared_ptr<Handle> handle_;
   grpc::CallbackServerContext& context_;
-  ThreadPool& pool_;
+  farm::ThreadPool& pool_;
   const std::chrono::milliseconds patience_;
   std::unique_ptr<grpc::Alarm> too_slow_;  ///< while a message is on its way
   Message message_;
   grpc::ByteBuffer bytes_;  ///< the message on its way
-  std::mutex mutex_;
-  bool busy_ = true;    ///< not begun, next() or a write is going on, or all is over
-  bool poked_ = false;  ///< since next() was last called
-  bool cancelled_ = false;
-  grpc::Status farewell_;         ///< not OK: the caller may stay no longer
-  std::unique_ptr<Visit> visit_;  ///< of who reads
+  core::Mutex mutex_;
+  bool busy_ HYADES_GUARDED_BY(mutex_) =
+      true;  ///< not begun, next() or a write is going on, or all is over
+  bool woken_ HYADES_GUARDED_BY(mutex_) = false;  ///< since next() was last called
+  bool cancelled_ HYADES_GUARDED_BY(mutex_) = false;
+  grpc::Status end_status_ HYADES_GUARDED_BY(mutex_);  ///< not OK: the caller may stay no longer
+  std::unique_ptr<Visit> visit_;                       ///< of who reads
 };
 
 }  // namespace hyades::coordinator

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include <grpcpp/resource_quota.h>
@@ -33,6 +34,7 @@ struct Server::Parts {
   Parts(Controller& controller, Authority& authority, bool workers_show)
       : admission(authority, workers_show), service({controller, authority}, admission, executors) {
     add_job_streams(service);
+    add_film_stream(service);
     add_asset_streams(service);
     add_audit_stream(service);
     add_worker_stream(service);
@@ -84,6 +86,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   std::unique_ptr<Server> server(new Server(std::move(parts)));
   server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
   controller.farm().listens_at(server->address_);
+  authority.listens_at(static_cast<uint16_t>(port));
   return server;
 }
 

@@ -1,13 +1,13 @@
 #include "coordinator/services/service.h"
 
 #include <chrono>
+#include <cstdint>
 #include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 #include <grpcpp/impl/codegen/server_callback_handlers.h>
 
-#include "coordinator/operations/audit.h"
 #include "coordinator/services/part_count.h"
 
 namespace hyades::coordinator {
@@ -19,7 +19,7 @@ using grpc::internal::CallbackServerStreamingHandler;
 using grpc::internal::CallbackUnaryHandler;
 
 /// Messages in one request; a job with as many files as it may have has about half of that.
-constexpr uint64_t kMostParts = 200'000;
+constexpr uint64_t kMostContributors = 200'000;
 
 }  // namespace
 
@@ -34,28 +34,24 @@ struct Service::UnaryCall {
 
   grpc::Status read() {
     request.reset(operation.handle.request().New());
-    return parse(asked, operation.most_bytes, *request);
+    return farm::parse(asked, operation.most_bytes, *request);
   }
-  /// Of requests larger than usual one at a time is looked at: by who holds `alone`.
-  grpc::Status read_alone(const Admission& admission, std::unique_lock<std::mutex>& alone) {
+  /// Reads a request that may be large; `alone` holds take_large_request() then.
+  grpc::Status read_alone(std::unique_lock<std::mutex>& alone) {
     if (asked.Length() > farm::kMaxRequestBytes && asked.Length() <= operation.most_bytes) {
-      alone = admission.alone();
-      if (!alone) {
-        return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                                 "another large request is being looked at",
-                                 std::chrono::milliseconds(500));
-      }
+      alone = take_large_request();
+      if (!alone) return another_is_large();
       const auto& type = *operation.handle.request().GetDescriptor();
-      if (!has_few_parts(asked, type, kMostParts)) {
-        return {
-            grpc::StatusCode::INVALID_ARGUMENT,
-            fmt::format("more than {} parts in one request, or no {}", kMostParts, type.name())};
+      if (!has_few_parts(asked, type, kMostContributors)) {
+        return {grpc::StatusCode::INVALID_ARGUMENT,
+                fmt::format("more than {} parts in one request, or no {}", kMostContributors,
+                            type.name())};
       }
     }
     return read();
   }
   void finish(const grpc::Status& status, const Message& response) const {
-    reactor->Finish(status.ok() ? serialise(response, said) : status);
+    reactor->Finish(status.ok() ? farm::serialise(response, said) : status);
   }
 };
 
@@ -94,7 +90,7 @@ void Service::add_writer(const char* method,
   add(method, Method::CLIENT_STREAMING,
       new CallbackClientStreamingHandler<Bytes, Bytes>(
           [this, &rule, &response, make](Context* context, Bytes* said) {
-            (void)serialise(response, *said);
+            (void)farm::serialise(response, *said);
             Caller caller;
             const grpc::Status admitted = admission_.check(*context, rule, caller);
             return make(*context, caller, admitted);
@@ -118,14 +114,17 @@ grpc::ServerUnaryReactor* Service::begin(const Operation& operation, Context& co
   const auto call = std::make_shared<UnaryCall>(UnaryCall{operation, asked, said, reactor});
   grpc::Status status = admission_.check(context, operation.rule, call->caller);
   if (status.ok() && operation.handle.has_memory()) {
-    status = call->read();
-    const std::unique_ptr<Message> response(operation.handle.response().New());
-    if (status.ok() && operation.handle.answer(at_, *call->request, *response)) {
-      call->finish(status, *response);
-      return reactor;
-    }
+    bool answered = false;
+    status = within_memory([&] {
+      const std::unique_ptr<Message> response(operation.handle.response().New());
+      grpc::Status read = call->read();
+      answered = read.ok() && operation.handle.answer(at_, *call->request, *response);
+      if (answered) call->finish(read, *response);
+      return read;
+    });
+    if (answered && status.ok()) return reactor;
   }
-  ThreadPool* executor = executors_.of(operation.runs);
+  farm::ThreadPool* executor = executors_.of(operation.runs);
   if (!status.ok()) {
     reactor->Finish(status);
   } else if (executor == nullptr) {
@@ -139,16 +138,11 @@ grpc::ServerUnaryReactor* Service::begin(const Operation& operation, Context& co
 void Service::proceed(const std::shared_ptr<UnaryCall>& call) {
   std::unique_lock<std::mutex> alone;
   if (!call->request) {
-    const grpc::Status read = within_memory([&] { return call->read_alone(admission_, alone); });
+    const grpc::Status read = within_memory([&] { return call->read_alone(alone); });
     if (!read.ok()) return call->reactor->Finish(read);
   }
   carry_out(call->operation, call->operation.handle, at_, *call->request, call->caller,
-            [this, call](const grpc::Status& status, const Message& response) {
-              const Rule& rule = call->operation.rule;
-              if (AuditLog* log = admission_.audit(); log != nullptr && rule.audited) {
-                log->note(call->caller, rule.action, audit_target(*call->request, response), status,
-                          audit_detail(*call->request));
-              }
+            [call](const grpc::Status& status, const Message& response) {
               call->finish(status, response);
             });
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <grpcpp/impl/rpc_service_method.h>
 #include <grpcpp/impl/service_type.h>
@@ -13,24 +14,26 @@
 #include "coordinator/operations/operation.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/producer.h"
-#include "coordinator/services/raw.h"
+#include "farm/message_bytes.h"
+#include "farm/wire.h"
 
 namespace hyades::coordinator {
 
-/// All methods of all services of the wire, by bytes (raw.h): those that one message answers come
-/// from the table of operations; streams are added by hand.
+/// All methods of all gRPC services. They take bytes (farm/message_bytes.h). Those that one message
+/// answers come from the table of operations; streams are added by hand.
 class Service final : public grpc::Service {
  public:
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
 
-  /// All of it outlives the service.
+  /// Has the methods of the table. What the arguments refer to outlives the service.
   Service(Backend at, const Admission& admission, Executors& executors);
 
-  /// A method that answers a Request with a stream. `make` makes it, or says why there is none; it
-  /// is guarded and begun here.
+  /// Makes the stream that answers a Request; or null, with the reason in `refused`.
   template <class Request>
   using MakeStream = std::function<OutgoingStream*(Context&, Request&&, grpc::Status& refused)>;
+  /// Adds a method that answers a Request of an admitted caller with the stream that `make` makes.
+  /// The stream ends with the caller's token.
   template <class Request>
   void add_reader(const char* method, MakeStream<Request> make) {
     const Rule& rule = operation_of_method(method).rule;
@@ -40,7 +43,7 @@ class Service final : public grpc::Service {
                      Caller caller;
                      Request request;
                      grpc::Status status = admission_.check(*context, rule, caller);
-                     if (status.ok()) status = parse(*asked, farm::kMaxRequestBytes, request);
+                     if (status.ok()) status = farm::parse(*asked, farm::kMaxRequestBytes, request);
                      OutgoingStream* stream =
                          status.ok() ? make(*context, std::move(request), status) : nullptr;
                      if (stream == nullptr) return new Refusal(status);
@@ -49,13 +52,15 @@ class Service final : public grpc::Service {
                      return stream;
                    });
   }
-  /// One that takes a stream, and one of which both sides do: the reactor is told whether its
-  /// caller was admitted.
+  /// Makes the reactor of a call that sends a stream. Where the caller was not admitted, the
+  /// reactor ends the call with `admitted`.
   template <class Reactor>
   using MakeReactor =
       std::function<Reactor*(Context&, const Caller&, const grpc::Status& admitted)>;
+  /// Adds a method that takes a stream and answers it with `response`, which outlives the service.
   void add_writer(const char* method, const MakeReactor<grpc::ServerReadReactor<Bytes>>& make,
                   const Message& response);
+  /// Adds a method of which both sides send a stream.
   void add_talker(const char* method,
                   const MakeReactor<grpc::ServerBidiReactor<Bytes, Bytes>>& make);
 
@@ -77,11 +82,12 @@ class Service final : public grpc::Service {
   Backend at_;
   const Admission& admission_;
   Executors& executors_;
-  std::deque<std::string> names_;  ///< that gRPC points to
+  std::deque<std::string> names_;  ///< of the methods; gRPC keeps pointers to them
 };
 
-// The streams, by subject.
+// Each adds the streams of one subject.
 void add_job_streams(Service& service);
+void add_film_stream(Service& service);
 void add_asset_streams(Service& service);
 void add_audit_stream(Service& service);
 void add_worker_stream(Service& service);

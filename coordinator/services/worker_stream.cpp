@@ -1,16 +1,18 @@
 // One stream per worker.
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/services/raw.h"
 #include "coordinator/services/service.h"
 #include "coordinator/services/worker_bytes.h"
+#include "core/base/mutex.h"
+#include "farm/message_bytes.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -34,12 +36,11 @@ class Link final : public WorkerLink {
 
   explicit Link(Wire& wire) : wire_(&wire) {}
 
-  void send(v1::CoordinatorMessage message) override {
-    const std::lock_guard lock(mutex_);
+  void send(grpc::ByteBuffer message) override {
+    const core::MutexLock lock(mutex_);
     if (wire_ == nullptr || closed_) return;
-    const uint64_t size = message.ByteSizeLong();
-    queue_.push_back({std::move(message), size});
-    waiting_ += queue_.back().size;
+    waiting_ += message.Length();
+    queue_.push_back(std::move(message));
     // One message may be as large as it is: a large job's files.
     const bool much = waiting_ > kMostWaitingBytes && queue_.size() > 2;
     if (queue_.size() > kMostWaiting || much) {
@@ -53,12 +54,12 @@ class Link final : public WorkerLink {
   }
 
   void close(const grpc::Status& status) override {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (wire_ != nullptr && !closed_) close_locked(status);
   }
 
   void written(bool ok) {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     writing_ = false;
     if (!ok) {
       queue_.clear();
@@ -69,7 +70,7 @@ class Link final : public WorkerLink {
 
   /// Ends the stream without regard to what waits to be sent.
   void cut(const grpc::Status& status) {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (wire_ == nullptr || finished_) return;
     queue_.clear();
     waiting_ = 0;
@@ -81,25 +82,25 @@ class Link final : public WorkerLink {
 
   /// The call is over: nothing more is written.
   void detach() {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     wire_ = nullptr;
     queue_.clear();
   }
 
  private:
-  void close_locked(const grpc::Status& status) {
+  void close_locked(const grpc::Status& status) HYADES_REQUIRES(mutex_) {
     closed_ = true;
     status_ = status;
     proceed();
   }
 
   /// Starting an operation never calls back on this thread, so the lock may be held.
-  void proceed() {
+  void proceed() HYADES_REQUIRES(mutex_) {
     if (writing_) return;
     if (!queue_.empty()) {
       writing_ = true;
-      (void)serialise(queue_.front().message, bytes_);  // fails for no message of ours
-      waiting_ -= queue_.front().size;
+      bytes_ = queue_.front();
+      waiting_ -= bytes_.Length();
       queue_.pop_front();
       wire_->write(bytes_);
     } else if (closed_ && !finished_) {
@@ -108,27 +109,24 @@ class Link final : public WorkerLink {
     }
   }
 
-  std::mutex mutex_;
-  Wire* wire_;
-  struct Waiting {
-    v1::CoordinatorMessage message;
-    uint64_t size = 0;
-  };
-  std::deque<Waiting> queue_;
-  uint64_t waiting_ = 0;    ///< bytes in queue_
-  grpc::ByteBuffer bytes_;  ///< the message that is being written
-  bool writing_ = false;
-  bool closed_ = false;
-  bool finished_ = false;
-  grpc::Status status_;
+  core::Mutex mutex_;
+  Wire* wire_ HYADES_GUARDED_BY(mutex_);
+  std::deque<grpc::ByteBuffer> queue_ HYADES_GUARDED_BY(mutex_);
+  uint64_t waiting_ HYADES_GUARDED_BY(mutex_) = 0;    ///< bytes in queue_
+  grpc::ByteBuffer bytes_ HYADES_GUARDED_BY(mutex_);  ///< the message that is being written
+  bool writing_ HYADES_GUARDED_BY(mutex_) = false;
+  bool closed_ HYADES_GUARDED_BY(mutex_) = false;
+  bool finished_ HYADES_GUARDED_BY(mutex_) = false;
+  grpc::Status status_ HYADES_GUARDED_BY(mutex_);
 };
 
-class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
-                         public Link::Wire {
+/// A worker's stream: passes what the worker says to the controller, and ends with its token.
+class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>,
+                           public Link::Wire {
  public:
   /// `caller` has been admitted, or not.
-  Attendance(Controller& controller, grpc::CallbackServerContext& context,
-             const Admission& admission, const Caller& caller, const grpc::Status& admitted)
+  WorkerStream(Controller& controller, grpc::CallbackServerContext& context,
+               const Admission& admission, const Caller& caller, const grpc::Status& admitted)
       : controller_(controller),
         context_(context),
         link_(std::make_shared<Link>(*this)),
@@ -192,7 +190,7 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
     if (!besides) {
       return {grpc::StatusCode::INVALID_ARGUMENT, "these bytes are not a worker's message"};
     }
-    const grpc::Status read = parse(bytes_, farm::kMaxResultBytes, message);
+    const grpc::Status read = farm::parse(bytes_, farm::kMaxResultBytes, message);
     bytes_.Clear();
     return read;
   }
@@ -217,8 +215,8 @@ class Attendance final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::
 void add_worker_stream(Service& service) {
   service.add_talker("Work/Attend", [&service](Service::Context& context, const Caller& caller,
                                                const grpc::Status& admitted) {
-    return new Attendance(service.backend().controller, context, service.admission(), caller,
-                          admitted);
+    return new WorkerStream(service.backend().controller, context, service.admission(), caller,
+                            admitted);
   });
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 
@@ -11,46 +11,45 @@
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/router.h"
+#include "core/base/mutex.h"
 #include "farm/content_writer.h"
 #include "hyades/v1/web.pb.h"
 
 namespace hyades::coordinator {
 
-/// Uploads of files by content, in pieces.
+/// Uploads of files by content, in pieces (openapi.yaml, PUT /assets/{sha256}). Thread-safe.
 class AssetsApi {
  public:
-  /// `audit` (where it is kept who did what; null: nowhere) outlives it, as the others do.
+  /// `audit`: the audit log; null where none is kept. All three outlive it.
   AssetsApi(Controller& controller, Executors& executors, AuditLog* audit)
       : controller_(controller), executors_(executors), audit_(audit) {}
   void add_routes(Router& router);
-  /// Lets go of files whose pieces do not come any more; now and then.
+  /// Closes files of which no piece has come for a minute; to be called now and then.
   void sweep();
 
  private:
-  WebReply take(const Caller& caller, const v1::PieceRequest& asked, const std::string& piece);
-  WebReply append(farm::ContentWriter& writer, uint64_t offset, const std::string& piece);
+  class Hold;
+  /// Takes a piece of a file; `offset` becomes how many bytes of the file are here then.
+  grpc::Status take(const Caller& caller, const v1::PieceRequest& asked, const std::string& piece,
+                    uint64_t& offset);
 
-  /// A file in the making, between two pieces: to open it anew is to read what is there of it.
+  /// A file of which not all has come. It is kept open between two pieces, as opening it again
+  /// reads all that is there of it.
   struct Open {
     std::unique_ptr<farm::ContentWriter> writer;
     std::chrono::steady_clock::time_point used;
   };
-  struct Taken {
-    std::unique_ptr<farm::ContentWriter> writer;
-    grpc::Status status;
-    bool ok() const { return writer != nullptr; }
-  };
-  Taken take_writer(const Caller& caller, const std::string& name, uint64_t size);
+  std::unique_ptr<farm::ContentWriter> take_open(const std::string& name, uint64_t size);
   void put_back(const std::string& name, std::unique_ptr<farm::ContentWriter> writer);
-  void let_go_of_old();
-  void done_with(const std::string& name);
+  void let_go_of_old() HYADES_REQUIRES(mutex_);
 
   Controller& controller_;
   Executors& executors_;
   AuditLog* const audit_;
-  std::mutex mutex_;
-  std::map<std::string, Open> open_;  ///< by the file's name
-  std::set<std::string> busy_;        ///< files of which a piece is being written
+  core::Mutex mutex_;
+  std::map<std::string, Open> open_ HYADES_GUARDED_BY(mutex_);  ///< by the file's name
+  std::set<std::string> busy_
+      HYADES_GUARDED_BY(mutex_);  ///< files of which a piece is being written
 };
 
 }  // namespace hyades::coordinator

@@ -5,27 +5,20 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "core/base/text.h"
+#include "core/base/wall_clock.h"
 
 namespace hyades::coordinator {
 namespace {
 
 constexpr int64_t kSessionSeconds = int64_t{30} * 24 * 3600;
 
-int64_t now_seconds() {
-  return std::chrono::duration_cast<std::chrono::seconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-std::string small_letters(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
+int64_t now_seconds() { return core::wall_ms() / 1000; }
 
 /// The value of a cookie ("name=") among those of a Cookie header.
 std::string_view find_cookie(std::string_view cookies, std::string_view name) {
@@ -58,14 +51,14 @@ bool is_address(std::string_view name) {
 
 std::string own_name() {
   std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? small_letters(name.data()) : "";
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? core::lower_case(name.data()) : "";
 }
 
 }  // namespace
 
 Authenticator::Authenticator(Authority& authority, std::vector<std::string> names, bool secure)
     : authority_(authority), names_(std::move(names)), secure_(secure) {
-  for (std::string& name : names_) name = small_letters(name);
+  for (std::string& name : names_) name = core::lower_case(name);
   names_.push_back(own_name());
 }
 
@@ -76,14 +69,14 @@ grpc::Status Authenticator::check(const WebRequest& request, Caller& caller) con
   if (const grpc::Status site = check_site(request); !site.ok()) return site;
   const std::string& shown = request.header("authorization");
   if (shown.empty()) {
-    const std::string_view session = find_cookie(request.header("cookie"), cookie_);
+    const std::string_view session = find_cookie(request.header("cookie"), cookie_of(request));
     if (!session.empty() && authority_.guarded()) return admit_session(session, caller);
   }
   return authority_.admit(shown, caller);
 }
 
 grpc::Status Authenticator::check_site(const WebRequest& request) const {
-  const std::string host = small_letters(request.header("host"));
+  const std::string host = core::lower_case(request.header("host"));
   // A page that has its own name resolve to this machine's address would be here without any token,
   // and by a browser that may reach what its site may not.
   if (!authority_.guarded() && !host.empty() && !is_ours(name_of(host))) {
@@ -97,9 +90,9 @@ grpc::Status Authenticator::check_site(const WebRequest& request) const {
   const bool other_site = request.header("sec-fetch-site") == "cross-site";
   const std::string& origin = request.header("origin");
   const bool other_origin = changes_something(request.method) && !origin.empty() &&
-                            small_letters(origin) != (secure_ ? "https://" : "http://") + host &&
+                            core::lower_case(origin) != (secure_ ? "https://" : "http://") + host &&
                             // A proxy in front may speak TLS where we do not.
-                            !(small_letters(origin) == "https://" + host && !secure_);
+                            !(core::lower_case(origin) == "https://" + host && !secure_);
   if ((other_site && request.header("sec-fetch-mode") != "navigate") || other_origin) {
     return {grpc::StatusCode::PERMISSION_DENIED, "pages of other sites may not use this one"};
   }
@@ -114,9 +107,22 @@ bool Authenticator::is_ours(std::string_view name) const {
   return std::find(names_.begin(), names_.end(), name) != names_.end();
 }
 
-std::optional<std::string> Authenticator::open_session(const std::string& token,
+/// To us, or to a proxy in front of us.
+bool Authenticator::came_by_tls(const WebRequest& request) const {
+  return secure_ || core::lower_case(request.header("x-forwarded-proto")) == "https";
+}
+
+/// "NAME=". With __Host- in front neither another host of the domain nor plain text can set it
+/// (RFC 6265bis, 4.1.3.2).
+std::string Authenticator::cookie_of(const WebRequest& request) const {
+  return (came_by_tls(request) ? "__Host-" : "") + cookie_;
+}
+
+std::optional<std::string> Authenticator::open_session(const WebRequest& request,
+                                                       const std::string& token,
                                                        grpc::Status& why) {
   Caller caller;
+  caller.address = request.address;
   why = authority_.guarded()
             ? authority_.admit("Bearer " + token, caller)
             : grpc::Status(grpc::StatusCode::UNAUTHENTICATED, "this coordinator asks for no token");
@@ -126,16 +132,17 @@ std::optional<std::string> Authenticator::open_session(const std::string& token,
     why = {grpc::StatusCode::INTERNAL, "the system gives no random numbers"};
     return std::nullopt;
   }
-  return fmt::format("{}{}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}{}", cookie_, *secret,
-                     kSessionSeconds, secure_ ? "; Secure" : "");
+  return fmt::format("{}{}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}{}", cookie_of(request),
+                     *secret, kSessionSeconds, came_by_tls(request) ? "; Secure" : "");
 }
 
 std::string Authenticator::end_session(const WebRequest& request) {
-  if (const auto ended = sessions_.end(find_cookie(request.header("cookie"), cookie_))) {
+  const std::string cookie = cookie_of(request);
+  if (const auto ended = sessions_.end(find_cookie(request.header("cookie"), cookie))) {
     authority_.end_session(ended->key);
   }
-  return fmt::format("{}; Path=/; HttpOnly; SameSite=Strict; Max-Age=0{}", cookie_,
-                     secure_ ? "; Secure" : "");
+  return fmt::format("{}; Path=/; HttpOnly; SameSite=Strict; Max-Age=0{}", cookie,
+                     came_by_tls(request) ? "; Secure" : "");
 }
 
 grpc::Status Authenticator::admit_session(std::string_view secret, Caller& caller) const {

@@ -12,34 +12,39 @@
 
 namespace hyades::coordinator {
 
-/// Who comes in over HTTP. The same tokens as over gRPC; besides, no page of another site may act
-/// in the name of a person whose browser reaches the coordinator.
+/// Tells who asks over HTTP: by the tokens of gRPC, or by the session of a browser. No page of
+/// another site may act in the name of a person whose browser reaches the coordinator.
 class Authenticator {
  public:
-  /// `names`: by which browsers may reach it besides those that no stranger can have (see
-  /// check()). `secure`: TLS. `authority` outlives it.
+  /// `names`: those by which browsers may reach the coordinator, besides the names that no stranger
+  /// can have (see check()). `secure`: it speaks TLS. `authority` outlives it.
   Authenticator(Authority& authority, std::vector<std::string> names, bool secure);
 
-  /// Cookies are the same for all ports of a machine: a coordinator's are named by its own.
+  /// Names the cookie by the port that the coordinator listens on: browsers send a machine's
+  /// cookies to all its ports.
   void set_port(uint16_t port);
 
-  /// OK and who asks; UNAUTHENTICATED; or PERMISSION_DENIED for requests that another site's page
-  /// has made, or, where no token guards, that came by a name which a stranger may have led here
-  /// (DNS rebinding). No stranger can have an address, a name without a dot, one below .local,
-  /// .localhost, .internal or home.arpa, or this machine's own name; others have to be among
-  /// `names`.
+  /// OK, with who asks in `caller`; UNAUTHENTICATED; or PERMISSION_DENIED for requests that another
+  /// site's page has made, or, where no token guards, that came by a name which a stranger may have
+  /// led here (DNS rebinding). No stranger can have an address, a name without a dot, one below
+  /// .local, .localhost, .internal or home.arpa, or this machine's own name; others have to be
+  /// among `names`.
   grpc::Status check(const WebRequest& request, Caller& caller) const;
 
-  /// The header Set-Cookie of a session for who shows this token; or why there is none.
-  std::optional<std::string> open_session(const std::string& token, grpc::Status& why);
-  /// Ends the session of the request, if it has one, with all that is open in it; the header that
-  /// makes the browser forget it.
+  /// Opens a session for who shows this token: the value of the header Set-Cookie; or nothing, with
+  /// the reason in `why`.
+  std::optional<std::string> open_session(const WebRequest& request, const std::string& token,
+                                          grpc::Status& why);
+  /// Ends the session of the request, if it has one, with all streams that are open in it. The
+  /// value of the header Set-Cookie that makes the browser forget it.
   std::string end_session(const WebRequest& request);
 
  private:
   grpc::Status admit_session(std::string_view session, Caller& caller) const;
   grpc::Status check_site(const WebRequest& request) const;
   bool is_ours(std::string_view host) const;
+  bool came_by_tls(const WebRequest& request) const;
+  std::string cookie_of(const WebRequest& request) const;
 
   Authority& authority_;
   Sessions sessions_;

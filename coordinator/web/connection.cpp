@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,8 @@
 
 #include "coordinator/access/address.h"
 #include "coordinator/meters/meters.h"
-#include "coordinator/web/target.h"
+#include "coordinator/web/message_heads.h"
+#include "coordinator/web/request_target.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -34,10 +36,15 @@ using ErrorCode = beast::error_code;
 using Plain = beast::tcp_stream;
 using Tls = beast::ssl_stream<beast::tcp_stream>;
 
-/// Between requests, and for a handshake.
+/// A year without plain text to this host, for browsers (RFC 6797).
+constexpr const char* kOnlyByTls = "max-age=31536000";
+/// Between requests.
 constexpr std::chrono::seconds kIdle{75};
-/// For a request's body: 8 MiB over a slow line.
-constexpr std::chrono::minutes kReceive{5};
+/// For a handshake, until the first request begins, and for a request's head from its first byte.
+constexpr std::chrono::seconds kBegin{10};
+/// For a request's body: a little, and what its bytes take over a slow line (64 KiB/s).
+constexpr std::chrono::seconds kReceive{20};
+constexpr uint64_t kSlowLine = 64U << 10U;
 /// What a reader may take for a piece of at most a megabyte.
 constexpr std::chrono::seconds kSend{60};
 constexpr uint32_t kMostHeaderBytes = 16U << 10U;
@@ -76,13 +83,13 @@ class ConnectionOver final : public Connection,
     from_ = from.address();
     world_.count.enter(from_);
     if constexpr (std::is_same_v<Stream, Tls>) {
-      tcp(stream_).expires_after(kIdle);
+      tcp(stream_).expires_after(kBegin);
       stream_.async_handshake(asio::ssl::stream_base::server, [me = self()](ErrorCode error) {
         if (error) return me->close();
-        me->read();
+        me->wait_for_request(kBegin);
       });
     } else {
-      read();
+      wait_for_request(kBegin);
     }
   }
 
@@ -102,12 +109,25 @@ class ConnectionOver final : public Connection,
   std::shared_ptr<ConnectionOver> self() { return this->shared_from_this(); }
   std::weak_ptr<ConnectionOver> weak_from_this_() { return this->weak_from_this(); }
 
+  /// What came with the request before may have begun one.
+  void wait_for_request(std::chrono::seconds patience) {
+    if (buffer_.size() > 0) return read();
+    tcp(stream_).expires_after(patience);
+    stream_.async_read_some(buffer_.prepare(kMostHeaderBytes),
+                            [me = self()](ErrorCode error, size_t count) {
+                              if (error == asio::error::eof) return me->shut_down();
+                              if (error) return me->close();
+                              me->buffer_.commit(count);
+                              me->read();
+                            });
+  }
+
   void read() {
     parser_.emplace();
     parser_->header_limit(kMostHeaderBytes);
     // It is set once the header has been looked at. (None at all refuses every body in Boost 1.74.)
     parser_->body_limit(std::numeric_limits<uint64_t>::max());
-    tcp(stream_).expires_after(kIdle);
+    tcp(stream_).expires_after(kBegin);
     http::async_read_header(stream_, buffer_, *parser_,
                             [me = self()](ErrorCode error, size_t) { me->on_header(error); });
   }
@@ -119,16 +139,11 @@ class ConnectionOver final : public Connection,
     keep_alive_ = header.keep_alive();
     version_ = header.version();
     head_only_ = header.method() == http::verb::head;
-    request_ = {};
-    request_.method = head_only_ ? "GET" : std::string(header.method_string());
-    for (const auto& field : header) {
-      std::string name(field.name_string());
-      for (char& c : name) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-      }
-      request_.headers[name] = std::string(field.value());
-    }
+    request_ = request_of(header);
     known_ = request_.header("if-none-match");
+    if (const grpc::Status framed = check_framing(header); !framed.ok()) {
+      return send_away(error_reply(framed));
+    }
     auto target = parse_target(std::string(header.target()));
     if (!target) {
       return send_away(
@@ -155,7 +170,8 @@ class ConnectionOver final : public Connection,
     }
     world_.body_bytes += granted_;
     parser_->body_limit(most_bytes);
-    tcp(stream_).expires_after(kReceive);
+    tcp(stream_).expires_after(kReceive + std::chrono::seconds(static_cast<int64_t>(
+                                              length.value_or(most_bytes) / kSlowLine)));
     if (!beast::iequals(parser_->get()[http::field::expect], "100-continue")) return read_body();
     static const std::string kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
     asio::async_write(stream_, asio::buffer(kContinue), [me = self()](ErrorCode bad, size_t) {
@@ -205,19 +221,7 @@ class ConnectionOver final : public Connection,
 
   void send(WebReply reply) {
     reply_ = std::move(reply);
-    if (is_known(reply_)) {
-      reply_.status = 304;
-      reply_.type.clear();
-      reply_.source.reset();
-      reply_.text = std::make_shared<const std::string>();
-    }
-    header_.emplace();
-    header_->version(version_);
-    header_->result(reply_.status);
-    header_->set(http::field::server, "Hyades");
-    if (!reply_.type.empty()) header_->set(http::field::content_type, reply_.type);
-    header_->set("X-Content-Type-Options", "nosniff");
-    for (const auto& [name, value] : reply_.headers) header_->set(name, value);
+    leave_out_known(reply_, known_);
     if (reply_.topic || reply_.source) {
       // Its token may be revoked meanwhile.
       visit_ =
@@ -227,36 +231,16 @@ class ConnectionOver final : public Connection,
             });
           });
     }
-    const bool sized = reply_.text || (reply_.source && reply_.source->size());
-    const uint64_t size = reply_.source ? reply_.source->size().value_or(0)
-                          : reply_.text ? reply_.text->size()
-                                        : 0;
-    if (reply_.topic) keep_alive_ = false;
-    if (reply_.status == 204 || reply_.status == 304) {
-      // No body, so no length.
-    } else if (sized) {
-      header_->set(http::field::content_length, std::to_string(size));
-    } else if (!reply_.topic && version_ >= 11) {
-      header_->chunked(true);
-    } else {
-      keep_alive_ = false;  // the end of the body is that of the connection
+    header_ = head_of(reply_, version_, keep_alive_);
+    if constexpr (std::is_same_v<Stream, Tls>) {
+      header_->set(http::field::strict_transport_security, kOnlyByTls);
     }
-    header_->keep_alive(keep_alive_);
     serializer_.emplace(*header_);
     tcp(stream_).expires_after(kSend);
     http::async_write_header(stream_, *serializer_, [me = self()](ErrorCode error, size_t) {
       if (error) return me->close();
       me->send_body();
     });
-  }
-
-  /// Whether the client has told that it has just this.
-  bool is_known(const WebReply& reply) const {
-    if (reply.status != 200 || known_.empty()) return false;
-    for (const auto& [name, value] : reply.headers) {
-      if (name == "ETag") return known_.find(value) != std::string::npos;
-    }
-    return false;
   }
 
   void send_body() {
@@ -324,7 +308,7 @@ class ConnectionOver final : public Connection,
     serializer_.reset();
     header_.reset();
     if (!keep_alive_) return shut_down();
-    read();
+    wait_for_request(kIdle);
   }
 
   // What happens, as it happens.
@@ -434,8 +418,8 @@ class ConnectionOver final : public Connection,
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   WebRequest request_;
-  std::string address_;     ///< of the other side
-  asio::ip::address from_;  ///< likewise
+  std::string address_;     ///< of the other side, as address_text() has it
+  asio::ip::address from_;  ///< of the other side, without the port
   Caller caller_;           ///< of the request in work
   std::unique_ptr<Visit> visit_;
   uint64_t granted_ = 0;  ///< bytes that its body may have, out of those of all
@@ -444,7 +428,7 @@ class ConnectionOver final : public Connection,
   bool head_only_ = false;
   std::string known_;  ///< If-None-Match
   WebReply reply_;
-  std::optional<http::response<http::empty_body>> header_;
+  std::optional<ReplyHead> header_;
   std::optional<http::response_serializer<http::empty_body>> serializer_;
   std::string piece_;
   asio::steady_timer heartbeat_;

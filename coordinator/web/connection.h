@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -8,10 +9,10 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "coordinator/access/authority.h"
-#include "coordinator/controller/thread_pool.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/io_handle.h"
+#include "farm/thread_pool.h"
 
 namespace boost::asio::ssl {
 class context;
@@ -25,33 +26,35 @@ class Meters;
 /// happens on the network's thread.
 class Connection : public LiveReader {
  public:
+  /// Begins to read requests. From then on ConnectionWorld::open keeps the connection alive.
   virtual void begin() = 0;
 };
 
-/// What all connections share.
+/// What all connections of a server share.
 struct ConnectionWorld {
-  /// What is said of a request before its body is read: how many bytes that may have; or, where it
-  /// may not come in at all, the answer.
+  /// What becomes of a request whose body has not been read yet.
   struct Admitted {
-    uint64_t most_bytes = 0;
-    std::optional<WebReply> refusal{};
+    uint64_t most_bytes = 0;            ///< that its body may have
+    std::optional<WebReply> refusal{};  ///< the answer, where it may not come in
   };
-  /// Puts in who asks.
+  /// Looks whether a request may come in, by all but its body, and puts in who asks.
   std::function<Admitted(WebRequest&)> admit;
-  /// Registers one whose answer takes its time (Authority::visit).
+  /// Registers a caller whose answer takes its time (Authority::visit).
   std::function<std::unique_ptr<Visit>(const Caller&, std::function<void(const grpc::Status&)>)>
       visit;
   /// Answers a request; called by the network's thread.
   std::function<void(WebRequest, Answer)> serve;
-  ThreadPool& files;  ///< who reads what is sent from the disk
+  farm::ThreadPool& files;  ///< who reads what is sent from the disk
   std::shared_ptr<IoHandle> io;
   Meters& meters;
-  ConnectionCount count;                         ///< of the network's thread
-  std::set<std::shared_ptr<Connection>> open{};  ///< likewise
-  uint64_t body_bytes = 0;                       ///< that requests have been granted; likewise
+
+  // Of the network's thread.
+  ConnectionCount count;
+  std::set<std::shared_ptr<Connection>> open{};
+  uint64_t body_bytes = 0;  ///< that the bodies of requests in work may have together
 };
 
-/// `tls`: null for plain text. The world outlives the connection.
+/// A connection over an accepted socket. `tls`: null for plain text. The world outlives it.
 std::shared_ptr<Connection> make_connection(boost::asio::ip::tcp::socket socket,
                                             const std::shared_ptr<boost::asio::ssl::context>& tls,
                                             ConnectionWorld& world);

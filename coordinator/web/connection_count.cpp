@@ -1,7 +1,8 @@
 #include "coordinator/web/connection_count.h"
 
 #include <algorithm>
-#include <cstdint>
+
+#include "coordinator/access/address.h"
 
 namespace hyades::coordinator {
 namespace asio = boost::asio;
@@ -10,7 +11,8 @@ bool ConnectionCount::may_come(const asio::ip::address& from) const {
   if (open_ >= most_) return false;
   if (from.is_loopback()) return true;
   const auto known = open_of_.find(owner_of(from));
-  return known == open_of_.end() || known->second < most_of_one_;
+  if (known == open_of_.end()) return true;
+  return known->second < std::max(sure_, std::min(most_of_one_, (most_ - open_) / 4));
 }
 
 void ConnectionCount::enter(const asio::ip::address& from) {
@@ -26,12 +28,7 @@ void ConnectionCount::leave(const asio::ip::address& from) {
 }
 
 std::string ConnectionCount::owner_of(const asio::ip::address& address) {
-  if (!address.is_v6()) return address.to_string();
-  const auto six = address.to_v6();
-  if (six.is_v4_mapped()) return asio::ip::make_address_v4(asio::ip::v4_mapped, six).to_string();
-  auto bytes = six.to_bytes();
-  std::fill(bytes.begin() + 8, bytes.end(), uint8_t{0});
-  return asio::ip::address_v6(bytes).to_string();
+  return neighbourhood_of(address_text(address.to_string(), "0"));
 }
 
 }  // namespace hyades::coordinator

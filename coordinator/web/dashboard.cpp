@@ -1,8 +1,11 @@
 #include "coordinator/web/dashboard.h"
 
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "coordinator/web/gzip.h"
+#include "coordinator/web/routes.h"
 #include "core/base/hash.h"
 
 namespace hyades::coordinator {

@@ -3,8 +3,6 @@
 #include <string_view>
 #include <vector>
 
-#include "coordinator/web/router.h"
-
 namespace hyades::coordinator {
 
 /// A file of the dashboard, which the program carries within itself.
@@ -15,8 +13,5 @@ struct DashboardFile {
 
 /// All of them (made by embed_files.cmake from dashboard/ and api/).
 std::vector<DashboardFile> dashboard_files();
-
-/// GET / (its views have addresses behind a '#'), /dashboard/NAME, /openapi.yaml.
-void add_dashboard(Router& router);
 
 }  // namespace hyades::coordinator

@@ -2,41 +2,26 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/access/audit_log.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
 namespace {
 
-struct Code {
-  grpc::StatusCode code;
-  const char* name;
-  unsigned http;
-};
-
-constexpr Code kCodes[] = {
-    {grpc::StatusCode::CANCELLED, "cancelled", 499},
-    {grpc::StatusCode::INVALID_ARGUMENT, "invalid_argument", 400},
-    {grpc::StatusCode::DEADLINE_EXCEEDED, "deadline_exceeded", 504},
-    {grpc::StatusCode::NOT_FOUND, "not_found", 404},
-    {grpc::StatusCode::ALREADY_EXISTS, "already_exists", 409},
-    {grpc::StatusCode::PERMISSION_DENIED, "permission_denied", 403},
-    {grpc::StatusCode::UNAUTHENTICATED, "unauthenticated", 401},
-    {grpc::StatusCode::RESOURCE_EXHAUSTED, "resource_exhausted", 503},
-    {grpc::StatusCode::FAILED_PRECONDITION, "failed_precondition", 409},
-    {grpc::StatusCode::ABORTED, "aborted", 409},
-    {grpc::StatusCode::OUT_OF_RANGE, "out_of_range", 416},
-    {grpc::StatusCode::UNIMPLEMENTED, "unimplemented", 501},
-    {grpc::StatusCode::INTERNAL, "internal", 500},
-    {grpc::StatusCode::UNAVAILABLE, "unavailable", 503},
-    {grpc::StatusCode::DATA_LOSS, "data_loss", 422},
-};
-
-Code code_of(grpc::StatusCode code) {
-  for (const Code& known : kCodes) {
-    if (known.code == code) return known;
+unsigned http_status_of(grpc::StatusCode code) {
+  constexpr std::pair<grpc::StatusCode, unsigned> kStatuses[] = {
+      {grpc::StatusCode::CANCELLED, 499},           {grpc::StatusCode::INVALID_ARGUMENT, 400},
+      {grpc::StatusCode::DEADLINE_EXCEEDED, 504},   {grpc::StatusCode::NOT_FOUND, 404},
+      {grpc::StatusCode::ALREADY_EXISTS, 409},      {grpc::StatusCode::PERMISSION_DENIED, 403},
+      {grpc::StatusCode::UNAUTHENTICATED, 401},     {grpc::StatusCode::RESOURCE_EXHAUSTED, 503},
+      {grpc::StatusCode::FAILED_PRECONDITION, 409}, {grpc::StatusCode::ABORTED, 409},
+      {grpc::StatusCode::OUT_OF_RANGE, 416},        {grpc::StatusCode::UNIMPLEMENTED, 501},
+      {grpc::StatusCode::UNAVAILABLE, 503},         {grpc::StatusCode::DATA_LOSS, 422}};
+  for (const auto& [known, http] : kStatuses) {
+    if (known == code) return http;
   }
-  return {code, "unknown", 500};
+  return 500;
 }
 
 std::shared_ptr<const std::string> dump(const farm::Json& json) {
@@ -76,9 +61,9 @@ WebReply empty_reply(unsigned status) {
 }
 
 WebReply error_reply(const grpc::Status& status) {
-  const Code code = code_of(status.error_code());
+  const unsigned code = http_status_of(status.error_code());
   const v1::ErrorDetail detail = farm::detail_of(status);
-  farm::Json error = {{"code", code.name}, {"message", status.error_message()}};
+  farm::Json error = {{"code", result_name(status)}, {"message", status.error_message()}};
   if (detail.retry_after_ms() > 0) error["retry_after_ms"] = detail.retry_after_ms();
   if (detail.missing_size() > 0) {
     farm::Json missing = farm::Json::array();
@@ -88,12 +73,12 @@ WebReply error_reply(const grpc::Status& status) {
     error["missing"] = std::move(missing);
   }
   WebReply reply = json_reply({{"error", std::move(error)}});
-  reply.status = code.http;
+  reply.status = code;
   if (detail.retry_after_ms() > 0) {
     reply.headers.emplace_back("Retry-After",
                                std::to_string((detail.retry_after_ms() + 999) / 1000));
   }
-  if (code.http == 401) reply.headers.emplace_back("WWW-Authenticate", "Bearer");
+  if (code == 401) reply.headers.emplace_back("WWW-Authenticate", "Bearer");
   return reply;
 }
 

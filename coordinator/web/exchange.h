@@ -61,6 +61,8 @@ class LiveTopic {
   virtual void join(std::weak_ptr<LiveReader> reader) = 0;
 };
 
+/// What a request is answered with, whatever connection it goes by: a status, headers, and a body
+/// that comes from one of three places, or none.
 struct WebReply {
   unsigned status = 200;
   std::string type = "application/json; charset=utf-8";
@@ -75,11 +77,11 @@ using Answer = std::function<void(WebReply)>;
 
 /// 200 with JSON.
 WebReply json_reply(const farm::Json& json);
-/// A text of another type.
+/// 200 with a text of this media type.
 WebReply text_reply(std::string text, const char* type);
-/// No body: 204, or 304.
+/// `status` without a body: 204, say.
 WebReply empty_reply(unsigned status);
-/// What went wrong, in the form that openapi.yaml gives it.
+/// What went wrong, as openapi.yaml's Error; the HTTP status follows from the code.
 WebReply error_reply(const grpc::Status& status);
 
 }  // namespace hyades::coordinator

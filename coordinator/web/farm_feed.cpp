@@ -1,6 +1,7 @@
 #include "coordinator/web/farm_feed.h"
 
 #include <cmath>
+#include <cstddef>
 #include <set>
 #include <string>
 #include <utility>
@@ -59,7 +60,7 @@ FarmFeed::FarmFeed(Controller& controller, Executors& executors)
 
 void FarmFeed::join(std::weak_ptr<LiveReader> reader) {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     readers_.add(std::move(reader));
   }
   tick();
@@ -81,8 +82,10 @@ void FarmFeed::tick() {
 void FarmFeed::step() {
   const std::vector<v1::Worker> workers = all_workers(controller_);
   note_throughput(workers);
+  bool fresh = false;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
+    fresh = readers_.has_fresh();
     if (readers_.empty()) {
       // Nobody has to be told what changes meanwhile.
       jobs_.clear();
@@ -92,6 +95,26 @@ void FarmFeed::step() {
       return;
     }
   }
+  const farm::Json change = changes(workers);
+  // The bytes first: the network's thread waits for the lock.
+  const auto changed = LiveReaders::event("change", change);
+  LiveReaders::Bytes all;
+  if (fresh) {
+    all = LiveReaders::event("snapshot", {{"info", info_},
+                                          {"jobs", jobs_.all()},
+                                          {"workers", workers_.all()},
+                                          {"samples_per_second", throughput_}});
+  }
+  const core::MutexLock lock(mutex_);
+  if (!change.empty()) readers_.tell(changed);
+  if (!fresh) return;
+  LiveReaders::Group newcomers = readers_.take_fresh();
+  LiveReaders::tell(newcomers, all);
+  readers_.know(std::move(newcomers));
+}
+
+/// What is other than with the last step.
+farm::Json FarmFeed::changes(const std::vector<v1::Worker>& workers) {
   farm::Json change = farm::Json::object();
   v1::InfoResponse asked;
   controller_.farm().info(asked);
@@ -123,17 +146,7 @@ void FarmFeed::step() {
   if (!deleted.empty()) change["removed_jobs"] = std::move(deleted);
   if (new_value_) change["samples_per_second"] = *new_value_;
   new_value_.reset();
-
-  const std::lock_guard lock(mutex_);
-  if (!change.empty()) readers_.tell("change", change);
-  LiveReaders::Group fresh = readers_.take_fresh();
-  if (fresh.empty()) return;
-  LiveReaders::tell(fresh, "snapshot",
-                    {{"info", info_},
-                     {"jobs", jobs_.all()},
-                     {"workers", workers_.all()},
-                     {"samples_per_second", throughput_}});
-  readers_.know(std::move(fresh));
+  return change;
 }
 
 /// The open jobs; and, as JSON, those that were told of as open and have ended.
@@ -154,13 +167,15 @@ farm::Json FarmFeed::tell_jobs(LiveRows::Rows& jobs) {
 }
 
 void FarmFeed::note_throughput(const std::vector<v1::Worker>& workers) {
+  std::map<uint64_t, uint64_t> samples;
   for (const v1::Worker& worker : workers) {
-    const auto [known, first] = samples_.try_emplace(worker.id(), worker.samples_done());
-    if (!first && worker.samples_done() > known->second) {
+    samples[worker.id()] = worker.samples_done();
+    const auto known = samples_.find(worker.id());
+    if (known != samples_.end() && worker.samples_done() > known->second) {
       new_samples_ += worker.samples_done() - known->second;
     }
-    known->second = worker.samples_done();
   }
+  samples_ = std::move(samples);
   const auto now = std::chrono::steady_clock::now();
   if (value_since_.time_since_epoch().count() == 0) value_since_ = now;
   if (now - value_since_ < kPerValue) return;

@@ -6,36 +6,40 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
-#include <string>
+#include <optional>
+#include <vector>
 
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/live_readers.h"
 #include "coordinator/web/live_rows.h"
+#include "core/base/mutex.h"
+#include "farm/json_form.h"
 
 namespace hyades::coordinator {
 
 /// What happens on the farm (openapi.yaml, /events).
 class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<FarmFeed> {
  public:
+  /// `controller` and `executors` outlive it.
   FarmFeed(Controller& controller, Executors& executors);
 
   void join(std::weak_ptr<LiveReader> reader) override;
-  /// Once a second.
+  /// Tells what has changed since it was last called; to be called once a second.
   void tick();
 
  private:
   void step();
   void note_throughput(const std::vector<v1::Worker>& workers);
+  farm::Json changes(const std::vector<v1::Worker>& workers);
   farm::Json tell_jobs(LiveRows::Rows& jobs);
 
   Controller& controller_;
   Executors& executors_;
   std::atomic<bool> stepping_{false};
-  std::mutex mutex_;  ///< guards readers_
-  LiveReaders readers_;
+  core::Mutex mutex_;
+  LiveReaders readers_ HYADES_GUARDED_BY(mutex_);
 
   // Of the thread that steps.
   farm::Json info_;
@@ -44,8 +48,8 @@ class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<Far
   std::map<uint64_t, uint64_t> samples_;  ///< that workers had done
   uint64_t new_samples_ = 0;              ///< since the last value of the row
   std::chrono::steady_clock::time_point value_since_;
-  std::deque<double> throughput_;
-  std::optional<double> new_value_;
+  std::deque<double> throughput_;    ///< samples per second, of the last hour
+  std::optional<double> new_value_;  ///< of throughput_, which nobody was told of yet
 };
 
 }  // namespace hyades::coordinator

@@ -2,31 +2,35 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
+#include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 
+#include "core/base/mutex.h"
+
 namespace hyades::coordinator {
 
-/// The way from other threads to the network's, which may end before they do.
+/// Lets other threads hand work to the network's thread, which may end before they do.
+/// Thread-safe.
 class IoHandle {
  public:
   explicit IoHandle(boost::asio::io_context& network) : network_(&network) {}
 
   /// Has the network's thread call `what`; after close() nothing happens.
   void post(std::function<void()> what) {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (network_ != nullptr) boost::asio::post(*network_, std::move(what));
   }
+  /// To be called before the io_context ends.
   void close() {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     network_ = nullptr;
   }
 
  private:
-  std::mutex mutex_;
-  boost::asio::io_context* network_;
+  core::Mutex mutex_;
+  boost::asio::io_context* network_ HYADES_GUARDED_BY(mutex_);
 };
 
 }  // namespace hyades::coordinator

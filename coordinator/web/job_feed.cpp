@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "farm/json_form.h"
-
 namespace hyades::coordinator {
 
 JobFeed::~JobFeed() {
@@ -12,7 +10,7 @@ JobFeed::~JobFeed() {
 
 void JobFeed::join(std::weak_ptr<LiveReader> reader) {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     readers_.add(std::move(reader));
   }
   if (watch_ == 0)
@@ -23,7 +21,7 @@ void JobFeed::join(std::weak_ptr<LiveReader> reader) {
 
 bool JobFeed::tick() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     if (readers_.empty()) return false;
   }
   if (!*changed_ || stepping_.exchange(true)) return true;
@@ -47,62 +45,71 @@ bool JobFeed::tick() {
 /// everything, so that nobody ever sees a frame go back; what happens in between both hear of
 /// next time, the newer ones perhaps twice.
 void JobFeed::step() {
-  LiveReaders::Group fresh;
+  bool fresh = false;
   {
-    const std::lock_guard lock(mutex_);
-    fresh = readers_.take_fresh();
+    const core::MutexLock lock(mutex_);
+    fresh = readers_.has_fresh();
   }
-  farm::Json change;
-  farm::Json snapshot;
-  bool ended = false;
-  bool ended_for_fresh = false;
+  // What cannot be told now is told with the next step.
+  Changes changes{.cursor = cursor_};
+  Changes all;
   grpc::Status status;
-  if (begun_) status = changes(cursor_, change, ended);
-  if (status.ok() && !fresh.empty()) {
-    ChangeCursor all;
-    status = changes(all, snapshot, ended_for_fresh);
-    if (status.ok() && !std::exchange(begun_, true)) cursor_ = all;
-  }
-  const std::lock_guard lock(mutex_);
-  if (status.error_code() == grpc::StatusCode::NOT_FOUND) {
-    const farm::Json gone = {{"message", status.error_message()}};
-    LiveReaders::tell(fresh, "gone", gone);
-    readers_.tell("gone", gone);
-    LiveReaders::end(fresh);
-    return readers_.end();
-  }
+  if (begun_) status = read(changes);
+  if (status.ok() && fresh) status = read(all);
+  if (status.error_code() == grpc::StatusCode::NOT_FOUND) return tell_gone(status.error_message());
   if (!status.ok()) {  // the store does not answer: again
-    readers_.put_back(std::move(fresh));
     *changed_ = true;
     return;
   }
-  if (!change.is_null()) readers_.tell(ended ? "end" : "change", change);
-  if (ended) readers_.end();
-  if (fresh.empty()) return;
-  LiveReaders::tell(fresh, "snapshot", snapshot);
-  if (ended_for_fresh) {
-    const farm::Json last = {{"job", snapshot["job"]}, {"frames", farm::Json::array()}};
-    LiveReaders::tell(fresh, "end", last);
-    LiveReaders::end(fresh);
-    // Those who knew before hear of the end with the next step.
-    if (!ended) *changed_ = true;
-  } else {
-    readers_.know(std::move(fresh));
-  }
+  if (begun_) tell_those_who_know(changes);
+  if (fresh) tell_newcomers(all);
+  // Those who knew before hear of the end with the next step.
+  if (all.ended && !changes.ended) *changed_ = true;
 }
 
-/// All pages of what has changed, as one.
-grpc::Status JobFeed::changes(ChangeCursor& cursor, farm::Json& change, bool& ended) {
+/// All pages of what has changed since news.cursor, as one.
+grpc::Status JobFeed::read(Changes& news) {
   farm::Json frames = farm::Json::array();
   for (;;) {
     v1::WatchEvent event;
-    const grpc::Status status = controller_.queries().changes(job_, cursor, event, ended);
+    const grpc::Status status = controller_.queries().changes(job_, news.cursor, event, news.ended);
     if (!status.ok()) return status;
     for (const v1::Frame& frame : event.changed()) frames.push_back(farm::to_json(frame));
     if (event.more()) continue;
-    change = {{"job", farm::to_json(event.job())}, {"frames", std::move(frames)}};
+    news.json = {{"job", farm::to_json(event.job())}, {"frames", std::move(frames)}};
     return grpc::Status::OK;
   }
+}
+
+// Bytes are made before the lock is taken, as the network's thread waits for it.
+
+void JobFeed::tell_those_who_know(const Changes& changes) {
+  const auto event = LiveReaders::event(changes.ended ? "end" : "change", changes.json);
+  cursor_ = changes.cursor;
+  const core::MutexLock lock(mutex_);
+  readers_.tell(event);
+  if (changes.ended) readers_.end();
+}
+
+void JobFeed::tell_newcomers(const Changes& all) {
+  const auto first = LiveReaders::event("snapshot", all.json);
+  const auto last =
+      LiveReaders::event("end", {{"job", all.json["job"]}, {"frames", farm::Json::array()}});
+  if (!std::exchange(begun_, true)) cursor_ = all.cursor;
+  const core::MutexLock lock(mutex_);
+  LiveReaders::Group newcomers = readers_.take_fresh();
+  LiveReaders::tell(newcomers, first);
+  if (!all.ended) return readers_.know(std::move(newcomers));
+  LiveReaders::tell(newcomers, last);
+  LiveReaders::end(newcomers);
+}
+
+void JobFeed::tell_gone(const std::string& message) {
+  const auto gone = LiveReaders::event("gone", {{"message", message}});
+  const core::MutexLock lock(mutex_);
+  readers_.know(readers_.take_fresh());
+  readers_.tell(gone);
+  readers_.end();
 }
 
 }  // namespace hyades::coordinator

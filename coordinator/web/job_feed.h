@@ -3,18 +3,21 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
+#include <string>
 
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/live_readers.h"
+#include "core/base/mutex.h"
+#include "farm/json_form.h"
 
 namespace hyades::coordinator {
 
 /// What happens to one job (openapi.yaml, /jobs/{job}/events).
 class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobFeed> {
  public:
+  /// `controller` and `executors` outlive it.
   JobFeed(Controller& controller, Executors& executors, uint64_t job)
       : controller_(controller), executors_(executors), job_(job) {}
   ~JobFeed() override;
@@ -28,8 +31,17 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
   bool tick();
 
  private:
+  /// What has changed up to `cursor`.
+  struct Changes {
+    farm::Json json{};  ///< the job and its frames that have changed
+    ChangeCursor cursor{};
+    bool ended = false;  ///< the job has, and nothing follows
+  };
   void step();
-  grpc::Status changes(ChangeCursor& cursor, farm::Json& change, bool& ended);
+  grpc::Status read(Changes& news);
+  void tell_those_who_know(const Changes& changes);
+  void tell_newcomers(const Changes& all);
+  void tell_gone(const std::string& message);
 
   Controller& controller_;
   Executors& executors_;
@@ -37,9 +49,11 @@ class JobFeed final : public LiveTopic, public std::enable_shared_from_this<JobF
   uint64_t watch_ = 0;
   std::shared_ptr<std::atomic<bool>> changed_ = std::make_shared<std::atomic<bool>>(true);
   std::atomic<bool> stepping_{false};
-  std::mutex mutex_;  ///< guards readers_
-  LiveReaders readers_;
-  ChangeCursor cursor_;  ///< to those who know; of the thread that steps
+  core::Mutex mutex_;
+  LiveReaders readers_ HYADES_GUARDED_BY(mutex_);
+
+  // Of the thread that steps.
+  ChangeCursor cursor_;  ///< up to which those who know have been told
   bool begun_ = false;   ///< cursor_ means something
 };
 

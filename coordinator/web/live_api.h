@@ -20,12 +20,13 @@ namespace hyades::coordinator {
 /// many read it.
 class LiveApi {
  public:
+  /// What the arguments refer to outlives it.
   LiveApi(Controller& controller, Executors& executors, boost::asio::io_context& network,
           std::shared_ptr<IoHandle> io);
   void add_routes(Router& router);
-  /// From now on the farm's throughput is noted, whether anybody looks or not.
+  /// Begins to note the farm's throughput, whether anybody looks or not.
   void begin();
-  /// Nobody is told anything any more; after the network's thread has ended.
+  /// Lets go of all readers; to be called after the network's thread has ended.
   void stop();
 
  private:

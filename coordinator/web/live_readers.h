@@ -12,35 +12,42 @@
 
 namespace hyades::coordinator {
 
-/// Those who read a topic: some know how things are and are told of changes, some have just come
+/// The readers of a topic: some know how things are and are told of changes, some have just come
 /// and are told everything first. Not thread-safe.
 class LiveReaders {
  public:
   using Group = std::vector<std::weak_ptr<LiveReader>>;
+  using Bytes = std::shared_ptr<const std::string>;
 
+  /// Adds one who has just come.
   void add(std::weak_ptr<LiveReader> reader) { fresh_.push_back(std::move(reader)); }
-  /// Those who have just come, to be told everything.
+  bool has_fresh() const { return !fresh_.empty(); }
+  /// Takes out those who have just come, to be told everything.
   Group take_fresh() { return std::exchange(fresh_, {}); }
-  /// They could not be.
-  void put_back(Group readers) { append(fresh_, std::move(readers)); }
-  /// They have been: from now on they know.
-  void know(Group readers) { append(known_, std::move(readers)); }
+  /// Adds those who have been told everything: from now on they know.
+  void know(Group readers) {
+    known_.insert(known_.end(), std::make_move_iterator(readers.begin()),
+                  std::make_move_iterator(readers.end()));
+  }
 
-  /// An event for those who know.
-  void tell(const char* event, const farm::Json& data) const { tell(known_, event, data); }
-  /// Nothing more will come for those who know.
+  /// Sends an event to those who know.
+  void tell(const Bytes& event) const { tell(known_, event); }
+  /// Ends the streams of those who know.
   void end() { end(std::exchange(known_, {})); }
 
-  /// The same bytes for all of a group.
-  static void tell(const Group& readers, const char* event, const farm::Json& data) {
-    if (readers.empty()) return;
-    const auto bytes = std::make_shared<const std::string>(
-        fmt::format("event: {}\ndata: {}\n\n", event,
+  /// An event as bytes of server-sent events. Takes its time where `data` is large.
+  static Bytes event(const char* name, const farm::Json& data) {
+    return std::make_shared<const std::string>(
+        fmt::format("event: {}\ndata: {}\n\n", name,
                     data.dump(-1, ' ', false, farm::Json::error_handler_t::replace)));
+  }
+  /// Sends an event to all of a group, who share its bytes.
+  static void tell(const Group& readers, const Bytes& event) {
     for (const auto& weak : readers) {
-      if (const auto reader = weak.lock()) reader->push(bytes);
+      if (const auto reader = weak.lock()) reader->push(event);
     }
   }
+  /// Ends the streams of a group.
   static void end(const Group& readers) {
     for (const auto& weak : readers) {
       if (const auto reader = weak.lock()) reader->end();
@@ -55,11 +62,6 @@ class LiveReaders {
   }
 
  private:
-  static void append(Group& to, Group readers) {
-    to.insert(to.end(), std::make_move_iterator(readers.begin()),
-              std::make_move_iterator(readers.end()));
-  }
-
   Group known_;
   Group fresh_;
 };

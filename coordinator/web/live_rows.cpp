@@ -43,56 +43,54 @@ void put_into(const farm::Json& part, farm::Json& row) {
 farm::Json LiveRows::changes(const Rows& now, farm::Json& removed) {
   ++step_;
   farm::Json told = farm::Json::array();
-  struct Late {
-    uint64_t told;
-    uint64_t id;
-    farm::Json part;
-  };
-  std::vector<Late> lively;
+  std::vector<Change> lively;
   for (const auto& [id, row] : now) {
-    const auto found = known_.find(id);
-    if (found == known_.end()) {
-      known_[id] = {row, step_};
+    const auto [known, is_new] = known_.try_emplace(id, Known{row, step_});
+    if (is_new) {
       told.push_back(row);
       continue;
     }
-    Known& known = found->second;
-    farm::Json part = difference(known.row, row);
-    if (part.empty()) continue;
-    const bool waits =
-        std::all_of(part.items().begin(), part.items().end(),
-                    [&](const auto& field) { return lively_.contains(field.key()); });
-    if (waits) {
-      lively.push_back({known.told, id, std::move(part)});
-      continue;
+    Change change{id, known->second, difference(known->second.row, row)};
+    if (change.fields.empty()) continue;
+    if (is_lively(change.fields)) {
+      lively.push_back(std::move(change));
+    } else {
+      tell(change, told);
     }
-    put_into(part, known.row);
-    known.told = step_;
-    part["id"] = id;
-    told.push_back(std::move(part));
   }
-  std::stable_sort(lively.begin(), lively.end(),
-                   [](const Late& a, const Late& b) { return a.told < b.told; });
+  tell_lively(lively, told);
+  std::erase_if(known_, [&](const auto& known) {
+    const bool gone = !now.contains(known.first);
+    if (gone) removed.push_back(known.first);
+    return gone;
+  });
+  return told;
+}
+
+bool LiveRows::is_lively(const farm::Json& fields) const {
+  return std::all_of(fields.items().begin(), fields.items().end(),
+                     [&](const auto& field) { return lively_.contains(field.key()); });
+}
+
+void LiveRows::tell(Change& change, farm::Json& told) const {
+  put_into(change.fields, change.known.get().row);
+  change.known.get().told_in_step = step_;
+  change.fields["id"] = change.id;
+  told.push_back(std::move(change.fields));
+}
+
+/// As many as the budget has, those first that were told longest ago.
+void LiveRows::tell_lively(std::vector<Change>& lively, farm::Json& told) const {
+  std::stable_sort(lively.begin(), lively.end(), [](const Change& a, const Change& b) {
+    return a.known.get().told_in_step < b.known.get().told_in_step;
+  });
   size_t left = budget_;
-  for (Late& late : lively) {
-    Known& known = known_[late.id];
-    put_into(late.part, known.row);
-    known.told = step_;
-    late.part["id"] = late.id;
-    const size_t bytes = bytes_of(late.part);
-    told.push_back(std::move(late.part));
-    if (bytes >= left) break;
+  for (Change& change : lively) {
+    tell(change, told);
+    const size_t bytes = bytes_of(told.back());
+    if (bytes >= left) return;
     left -= bytes;
   }
-  for (auto known = known_.begin(); known != known_.end();) {
-    if (now.contains(known->first)) {
-      ++known;
-      continue;
-    }
-    removed.push_back(known->first);
-    known = known_.erase(known);
-  }
-  return told;
 }
 
 farm::Json LiveRows::all() const {

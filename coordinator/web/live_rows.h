@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "farm/json_form.h"
 
@@ -21,6 +23,7 @@ class LiveRows {
  public:
   using Rows = std::map<uint64_t, farm::Json>;
 
+  /// `lively`: the fields that always change; `budget`: bytes of them that are told each time.
   LiveRows(std::set<std::string> lively, size_t budget)
       : lively_(std::move(lively)), budget_(budget) {}
 
@@ -30,22 +33,31 @@ class LiveRows {
   farm::Json changes(const Rows& now, farm::Json& removed);
   /// All rows, whole, as they are known.
   farm::Json all() const;
-  bool knows(uint64_t id) const { return known_.contains(id); }
-  const farm::Json& row(uint64_t id) const { return known_.at(id).row; }
+  /// Calls `visit(id, row)` for each row as it is known.
   template <class Visit>
   void each(const Visit& visit) const {
     for (const auto& [id, known] : known_) visit(id, known.row);
   }
+  /// Nothing is known any more: all rows are new then.
   void clear() { known_.clear(); }
 
  private:
   struct Known {
     farm::Json row;
-    uint64_t told = 0;  ///< step of the last time that its lively fields were told
+    uint64_t told_in_step = 0;  ///< the last one in which a change of it was told
   };
+  struct Change {
+    uint64_t id;
+    std::reference_wrapper<Known> known;
+    farm::Json fields;  ///< that have changed
+  };
+  bool is_lively(const farm::Json& fields) const;
+  void tell(Change& change, farm::Json& told) const;
+  void tell_lively(std::vector<Change>& lively, farm::Json& told) const;
+
   std::set<std::string> lively_;
   size_t budget_;
-  uint64_t step_ = 0;
+  uint64_t step_ = 0;  ///< how often changes() was called
   std::map<uint64_t, Known> known_;
 };
 

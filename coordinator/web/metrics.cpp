@@ -1,5 +1,3 @@
-#include "coordinator/web/metrics.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +13,8 @@
 #include "coordinator/controller/all_pages.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
+#include "coordinator/web/route_helpers.h"
+#include "coordinator/web/routes.h"
 #include "core/base/version.h"
 #include "farm/json_form.h"
 
@@ -141,8 +141,7 @@ void add_jobs(Page& page, const std::vector<v1::Job>& jobs) {
   }
 }
 
-}  // namespace
-
+/// The coordinator's numbers in Prometheus' text format.
 std::string metrics_text(Controller& controller) {
   v1::InfoResponse info;
   controller.farm().info(info);
@@ -158,6 +157,16 @@ std::string metrics_text(Controller& controller) {
   add_workers(page, all_workers(controller));
   page.add(controller.meters().collect());
   return page.text();
+}
+
+}  // namespace
+
+void add_metrics(Router& router, Controller& controller, Executors& executors) {
+  router.add("GET", "/metrics", [&](const WebRequest&, const Answer& answer) {
+    answer_by(executors.store, answer, [&controller] {
+      return text_reply(metrics_text(controller), "text/plain; version=0.0.4; charset=utf-8");
+    });
+  });
 }
 
 }  // namespace hyades::coordinator

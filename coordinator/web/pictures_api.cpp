@@ -1,11 +1,16 @@
 #include "coordinator/web/pictures_api.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
-#include "coordinator/web/preview.h"
+#include <fmt/format.h>
+
+#include "coordinator/operations/file_transfer.h"
+#include "coordinator/web/picture_encoding.h"
 #include "coordinator/web/route_helpers.h"
 #include "core/image/read_image.h"
+#include "core/job/output_path.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
 #include "hyades/v1/web.pb.h"
@@ -25,9 +30,10 @@ bool is_over(const v1::Frame& frame) { return frame.state() == v1::FRAME_STATE_D
 /// How well a finished file shows a frame: 0 not at all.
 int worth_of(const std::string& path, bool half) {
   if (path.ends_with(".film.exr")) return 0;
-  if (path.ends_with(".exr")) return half ? 3 : 1;
-  for (const char* ending : {".png", ".jpg", ".jpeg", ".tif", ".tiff"}) {
-    if (path.ends_with(ending)) return 2;
+  const std::string extension = core::file_extension(path);
+  if (extension == ".exr") return half ? 3 : 1;
+  for (const char* known : {".png", ".jpg", ".jpeg", ".tif", ".tiff"}) {
+    if (extension == known) return 2;
   }
   return 0;
 }
@@ -69,20 +75,10 @@ WebReply show(const PicturesApi::Asked& asked, const FrameNow& now, const Shot& 
   return reply;
 }
 
-/// `make`, or that there is no memory for it.
-WebReply in_memory(const std::function<WebReply()>& make) {
-  WebReply reply;
-  const grpc::Status done = within_memory([&] {
-    reply = make();
-    return grpc::Status::OK;
-  });
-  return done.ok() ? reply : error_reply(done);
-}
-
 }  // namespace
 
 void PicturesApi::close() {
-  const std::lock_guard lock(gate_->mutex);
+  const core::MutexLock lock(gate_->mutex);
   gate_->open = false;
 }
 
@@ -112,7 +108,7 @@ void PicturesApi::answer_picture(const Asked& asked, const Answer& answer) {
       !known.ok()) {
     answer(error_reply(known));
   } else if (is_over(now.frame)) {
-    answer(in_memory([&] { return of_file(asked, now); }));
+    answer(reply_in_memory([&] { return of_file(asked, now); }));
   } else if (const auto made = find(asked, now.tag, false)) {
     answer(*made);
   } else {
@@ -135,40 +131,39 @@ WebReply PicturesApi::of_file(const Asked& asked, const FrameNow& now) {
   const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
   if (const auto made = find(asked, tag, true)) return *made;
   auto image = core::read_image_file(controller_.output_folder(asked.job) + "/" + best->path);
-  if (!image) {
-    return error_reply(
-        {grpc::StatusCode::DATA_LOSS, best->path + " is damaged on the coordinator's disk"});
-  }
+  if (!image) return error_reply(damaged_output(best->path));
   FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own
   plain.exposure = 0;
-  WebReply reply = show(asked, plain, {std::move(*image), {}, best->path.ends_with(".exr")}, tag);
+  const bool exact = core::file_extension(best->path) == ".exr";
+  WebReply reply = show(asked, plain, {std::move(*image), {}, exact}, tag);
   keep(asked, tag, true, reply);
   return reply;
 }
 
-/// Of a film, when its turn comes.
+/// Answers with a picture of the frame's film, when its turn comes.
 void PicturesApi::want(const Asked& asked, const Answer& answer) {
-  const FrameId id{asked.job, asked.frame};
-  {
-    const std::lock_guard lock(mutex_);
-    const auto [frame, first] = frames_.try_emplace(id);
-    if (first && frames_.size() > kMostFrames) {
-      frames_.erase(frame);
-    } else {
-      frame->second.wanted[asked].push_back(answer);
-      if (first) queue_.push_back(id);
-    }
-    if (!frames_.contains(id)) return answer(error_reply(crowded()));
-  }
+  if (!enqueue(asked, answer)) return answer(error_reply(crowded()));
   begin_some();
+}
+
+/// False where too many frames wait.
+bool PicturesApi::enqueue(const Asked& asked, const Answer& answer) {
+  const FrameId id{asked.job, asked.frame};
+  const core::MutexLock lock(mutex_);
+  if (!wanted_.contains(id)) {
+    if (wanted_.size() >= kMostFrames) return false;
+    queue_.push_back(id);
+  }
+  wanted_[id][asked].push_back(answer);
+  return true;
 }
 
 void PicturesApi::begin_some() {
   for (;;) {
     FrameId id;
     {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       if (queue_.empty() || films_ >= kMostFilms) return;
       ++films_;
       id = queue_.front();
@@ -187,7 +182,7 @@ void PicturesApi::take_film(FrameId id) {
         id.first, id.second,
         [this, gate = gate_, id, now](const grpc::Status& found, const core::FilmInfo&,
                                       std::shared_ptr<const core::Film> film) {
-          const std::lock_guard lock(gate->mutex);
+          const core::MutexLock lock(gate->mutex);
           if (!gate->open) return;
           const bool taken = pool_.submit([this, id, now, found, film = std::move(film)] {
             make_all(id, now, found, film.get());
@@ -214,7 +209,7 @@ void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& 
   });
   end(id, [&](const Asked& asked) {
     if (!made.ok()) return error_reply(made);
-    WebReply reply = in_memory([&] { return show(asked, now, shot, now.tag); });
+    WebReply reply = reply_in_memory([&] { return show(asked, now, shot, now.tag); });
     keep(asked, now.tag, false, reply);
     return reply;
   });
@@ -222,25 +217,25 @@ void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& 
 
 /// Everybody who waits for pictures of the frame gets them.
 void PicturesApi::end(FrameId id, const std::function<WebReply(const Asked&)>& reply) {
-  std::map<Asked, std::vector<Answer>> wanted;
+  Wanted wanted;
   {
-    const std::lock_guard lock(mutex_);
-    wanted = std::move(frames_[id].wanted);
-    frames_.erase(id);
+    const core::MutexLock lock(mutex_);
+    wanted = std::move(wanted_[id]);
+    wanted_.erase(id);
   }
   for (const auto& [asked, answers] : wanted) {
     const WebReply made = reply(asked);
     for (const Answer& answer : answers) answer(made);
   }
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     --films_;
   }
   (void)pool_.submit([this] { begin_some(); });
 }
 
 std::optional<WebReply> PicturesApi::find(const Asked& asked, const std::string& tag, bool over) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   const auto found = index_.find(asked);
   if (found == index_.end()) return std::nullopt;
   const Made& made = found->second->second;
@@ -253,7 +248,7 @@ std::optional<WebReply> PicturesApi::find(const Asked& asked, const std::string&
 void PicturesApi::keep(const Asked& asked, const std::string& tag, bool over,
                        const WebReply& reply) {
   if (reply.status != 200) return;
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   const auto old = index_.find(asked);
   if (old != index_.end()) {
     kept_bytes_ -= old->second->second.reply.text->size();

@@ -1,20 +1,22 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <list>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "coordinator/controller/controller.h"
-#include "coordinator/controller/thread_pool.h"
 #include "coordinator/web/router.h"
+#include "core/base/mutex.h"
+#include "farm/thread_pool.h"
 
 namespace hyades::coordinator {
 
@@ -29,10 +31,11 @@ class PicturesApi {
   PicturesApi& operator=(const PicturesApi&) = delete;
 
   void add_routes(Router& router);
-  /// Films that come later are let go of; before the destructor, which may wait for pool.
+  /// Drops the films that come from now on. To be called before the destructor, which waits for the
+  /// threads that make pictures.
   void close();
 
-  /// What is asked for.
+  /// A picture that somebody asks for.
   struct Asked {
     uint64_t job = 0;
     int32_t frame = 0;
@@ -54,20 +57,19 @@ class PicturesApi {
     WebReply reply;
   };
   using Kept = std::list<std::pair<Asked, Made>>;
-  /// All that is wanted of a frame in work.
-  struct Frame {
-    std::map<Asked, std::vector<Answer>> wanted;
-  };
+  /// The pictures that are wanted of a frame in work, and who waits for them.
+  using Wanted = std::map<Asked, std::vector<Answer>>;
   using FrameId = std::pair<uint64_t, int32_t>;
   /// Films come by threads that may outlive this.
   struct Gate {
-    std::mutex mutex;
-    bool open = true;
+    core::Mutex mutex;
+    bool open HYADES_GUARDED_BY(mutex) = true;
   };
 
   void answer_picture(const Asked& asked, const Answer& answer);
   WebReply of_file(const Asked& asked, const FrameNow& now);
   void want(const Asked& asked, const Answer& answer);
+  bool enqueue(const Asked& asked, const Answer& answer);
   void begin_some();
   void take_film(FrameId id);
   void make_all(FrameId id, const FrameNow& now, const grpc::Status& found, const core::Film* film);
@@ -77,14 +79,15 @@ class PicturesApi {
 
   Controller& controller_;
   const std::shared_ptr<Gate> gate_;
-  std::mutex mutex_;
-  Kept kept_;  ///< what was asked for last is in front
-  std::map<Asked, Kept::iterator> index_;
-  size_t kept_bytes_ = 0;
-  std::map<FrameId, Frame> frames_;
-  std::deque<FrameId> queue_;  ///< of frames whose films nobody fetches yet
-  int films_ = 0;              ///< that are being fetched or shown
-  ThreadPool pool_{2, 1000};   ///< they end first
+  core::Mutex mutex_;
+  Kept kept_ HYADES_GUARDED_BY(mutex_);  ///< what was asked for last is in front
+  std::map<Asked, Kept::iterator> index_ HYADES_GUARDED_BY(mutex_);
+  size_t kept_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
+  std::map<FrameId, Wanted> wanted_ HYADES_GUARDED_BY(mutex_);
+  std::deque<FrameId> queue_
+      HYADES_GUARDED_BY(mutex_);             ///< of frames whose films nobody fetches yet
+  int films_ HYADES_GUARDED_BY(mutex_) = 0;  ///< that are being fetched or shown
+  farm::ThreadPool pool_{2, 1000};           ///< ends first: its threads use all of the above
 };
 
 }  // namespace hyades::coordinator

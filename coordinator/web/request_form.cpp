@@ -1,9 +1,12 @@
 #include "coordinator/web/request_form.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,8 +39,8 @@ bool set_word(Message& message, const FieldDescriptor& field, const std::string&
   return false;
 }
 
-/// Has `set` called with a number of the field's type: the whole number that `read` gives of that
-/// type. False where it gives none.
+/// Sets a field to the whole number that `read` gives: read(int32_t{}), say, gives an optional
+/// int32_t. False where it gives none, or the field holds no whole numbers.
 template <class Read>
 bool set_whole(Message& message, const FieldDescriptor& field, const Read& read) {
   const auto& reflection = *message.GetReflection();
@@ -53,8 +56,10 @@ bool set_whole(Message& message, const FieldDescriptor& field, const Read& read)
       return set(&R::SetInt64, read(int64_t{}));
     case FieldDescriptor::CPPTYPE_UINT32:
       return set(&R::SetUInt32, read(uint32_t{}));
-    default:
+    case FieldDescriptor::CPPTYPE_UINT64:
       return set(&R::SetUInt64, read(uint64_t{}));
+    default:
+      return false;
   }
 }
 
@@ -66,7 +71,7 @@ grpc::Status refused(const std::string& message) {
   return {grpc::StatusCode::INVALID_ARGUMENT, message};
 }
 
-/// A value of the query.
+/// Sets the field that a value of the query is for.
 grpc::Status set_from_query(Message& message, const QueryField& query, const std::string& text) {
   const FieldDescriptor& field = *message.GetDescriptor()->FindFieldByName(query.name);
   const auto& reflection = *message.GetReflection();
@@ -120,37 +125,53 @@ std::optional<Number> whole_of(const Json& value) {
   return std::nullopt;
 }
 
-/// A value that is no list.
+core::Status set_text(const std::string& text, const std::string& name,
+                      const FieldDescriptor& field, Message& message) {
+  const auto& reflection = *message.GetReflection();
+  if (field.type() != FieldDescriptor::TYPE_BYTES) {
+    reflection.SetString(&message, &field, text);
+    return {};
+  }
+  const auto digest = farm::digest_from_hex(text);
+  if (!digest) return wrong(name, "64 hexadecimal digits");
+  reflection.SetString(&message, &field, farm::to_wire(*digest));
+  return {};
+}
+
+core::Status set_json_number(const Json& value, const std::string& name,
+                             const FieldDescriptor& field, Message& message) {
+  const auto read = [&](auto zero) { return whole_of<decltype(zero)>(value); };
+  if (set_whole(message, field, read)) return {};
+  const bool natural = field.cpp_type() == FieldDescriptor::CPPTYPE_UINT32 ||
+                       field.cpp_type() == FieldDescriptor::CPPTYPE_UINT64;
+  return wrong(name, natural ? "a whole number, 0 or more" : "a whole number");
+}
+
+/// Sets a field to a value that is no list.
 core::Status set_single(const Json& value, const std::string& name, const FieldDescriptor& field,
                         Message& message) {
   const auto& reflection = *message.GetReflection();
-  const auto type = field.cpp_type();
-  if (type == FieldDescriptor::CPPTYPE_DOUBLE) {
-    if (!value.is_number()) return wrong(name, "a number");
-    reflection.SetDouble(&message, &field, value.get<double>());
-    return {};
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      if (!value.is_number()) return wrong(name, "a number");
+      reflection.SetDouble(&message, &field, value.get<double>());
+      return {};
+    case FieldDescriptor::CPPTYPE_BOOL:
+      if (!value.is_boolean()) return wrong(name, "true or false");
+      reflection.SetBool(&message, &field, value.get<bool>());
+      return {};
+    case FieldDescriptor::CPPTYPE_ENUM: {
+      if (!value.is_string()) return wrong(name, "a text");
+      const auto word = value.get<std::string>();
+      if (word.empty() || set_word(message, field, word)) return {};
+      return wrong(name, core::join_names(words_of(*field.enum_type())));
+    }
+    case FieldDescriptor::CPPTYPE_STRING:
+      if (!value.is_string()) return wrong(name, "a text");
+      return set_text(value.get<std::string>(), name, field, message);
+    default:
+      return set_json_number(value, name, field, message);
   }
-  if (type != FieldDescriptor::CPPTYPE_STRING && type != FieldDescriptor::CPPTYPE_ENUM) {
-    const auto read = [&](auto zero) { return whole_of<decltype(zero)>(value); };
-    if (set_whole(message, field, read)) return {};
-    const bool natural =
-        type == FieldDescriptor::CPPTYPE_UINT32 || type == FieldDescriptor::CPPTYPE_UINT64;
-    return wrong(name, natural ? "a whole number, 0 or more" : "a whole number");
-  }
-  if (!value.is_string()) return wrong(name, "a text");
-  const auto text = value.get<std::string>();
-  if (type == FieldDescriptor::CPPTYPE_ENUM) {
-    if (text.empty() || set_word(message, field, text)) return {};
-    return wrong(name, core::join_names(words_of(*field.enum_type())));
-  }
-  if (field.type() == FieldDescriptor::TYPE_BYTES) {
-    const auto digest = farm::digest_from_hex(text);
-    if (!digest) return wrong(name, "64 hexadecimal digits");
-    reflection.SetString(&message, &field, farm::to_wire(*digest));
-    return {};
-  }
-  reflection.SetString(&message, &field, text);
-  return {};
 }
 
 core::Status set_object(const Json& json, const std::string& where, const BodyForm& form,

@@ -14,7 +14,8 @@ namespace hyades::coordinator {
 /// holds what cannot be.
 grpc::Status read_target(const WebRequest& request, const Route& route, Message& message);
 
-/// Puts the body of a request into `message`; INVALID_ARGUMENT with what was wrong.
+/// Puts what the body of a request (JSON) holds into `message`, as `form` has it. INVALID_ARGUMENT
+/// with what was wrong.
 grpc::Status read_body(const std::string& body, const BodyForm& form, Message& message);
 
 }  // namespace hyades::coordinator

@@ -10,23 +10,27 @@
 
 namespace hyades::coordinator {
 
-/// Has a thread of `pool` answer with what `what` gives, a WebReply: for what may wait for the
+/// The WebReply that `make()` gives; an error where there is no memory for it.
+template <class Make>
+WebReply reply_in_memory(const Make& make) {
+  WebReply reply;
+  const grpc::Status done = within_memory([&] {
+    reply = make();
+    return grpc::Status::OK;
+  });
+  return done.ok() ? reply : error_reply(done);
+}
+
+/// Has a thread of `pool` answer with the WebReply that `what()` gives: for what may wait for the
 /// disk.
 template <class What>
-void answer_by(ThreadPool& pool, const Answer& answer, What what) {
-  const bool taken = pool.submit([answer, what = std::move(what)]() mutable {
-    WebReply reply;
-    const grpc::Status done = within_memory([&] {
-      reply = what();
-      return grpc::Status::OK;
-    });
-    answer(done.ok() ? std::move(reply) : error_reply(done));
-  });
+void answer_by(farm::ThreadPool& pool, const Answer& answer, const What& what) {
+  const bool taken = pool.submit([answer, what] { answer(reply_in_memory(what)); });
   if (!taken) answer(error_reply(crowded()));
 }
 
-/// Adds a route that is served by hand: `what(asked, request, answer)`, with what the path and the
-/// query say as an Asked.
+/// Adds a route that is served by hand: `what(asked, request, answer)` is called by the network's
+/// thread, with what the path and the query say as an Asked (a message).
 template <class Asked, class What>
 void add_by_hand(Router& router, const std::string& method, const std::string& pattern, What what) {
   const std::string name = method + " " + pattern;
@@ -40,9 +44,10 @@ void add_by_hand(Router& router, const std::string& method, const std::string& p
              });
 }
 
-/// Adds one where a thread of `pool` answers with what `what(asked, request)` gives.
+/// Adds a route that is served by hand, where a thread of `pool` answers with the WebReply that
+/// `what(asked, request)` gives. `asked`: what the path and the query say.
 template <class Asked, class What>
-void add_by_hand(Router& router, ThreadPool& pool, const std::string& method,
+void add_by_hand(Router& router, farm::ThreadPool& pool, const std::string& method,
                  const std::string& pattern, What what) {
   add_by_hand<Asked>(
       router, method, pattern,

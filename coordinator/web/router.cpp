@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/web/target.h"
+#include "coordinator/web/request_target.h"
 
 namespace hyades::coordinator {
 namespace {

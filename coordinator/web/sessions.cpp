@@ -1,6 +1,7 @@
 #include "coordinator/web/sessions.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "core/base/hash.h"
 #include "core/base/random_id.h"
@@ -23,7 +24,7 @@ std::optional<std::string> Sessions::open(const std::string& token_id, int64_t u
   const auto rest = core::random_id();
   if (!half || !rest) return std::nullopt;
   const std::string secret = *half + *rest;
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   if (open_.size() >= kMostSessions) {
     open_.erase(std::min_element(open_.begin(), open_.end(), [](const auto& a, const auto& b) {
       return a.second.until < b.second.until;
@@ -35,7 +36,7 @@ std::optional<std::string> Sessions::open(const std::string& token_id, int64_t u
 
 std::optional<Sessions::Session> Sessions::find(std::string_view secret, int64_t now) const {
   if (secret.size() != kSecretLength) return std::nullopt;
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   const auto found = open_.find(key_of(secret));
   if (found == open_.end() || now >= found->second.until) return std::nullopt;
   return Session{found->first, found->second.token_id};
@@ -43,7 +44,7 @@ std::optional<Sessions::Session> Sessions::find(std::string_view secret, int64_t
 
 std::optional<Sessions::Session> Sessions::end(std::string_view secret) {
   if (secret.size() != kSecretLength) return std::nullopt;
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   const auto found = open_.find(key_of(secret));
   if (found == open_.end()) return std::nullopt;
   Session ended{found->first, found->second.token_id};

@@ -2,31 +2,32 @@
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "core/base/mutex.h"
+
 namespace hyades::coordinator {
 
-/// Who has signed in with a browser: random names for tokens that were shown, in memory alone, so
-/// that they end with the process. Thread-safe.
+/// The sessions of browsers: a random name for each token that was shown. They are in memory alone,
+/// so they end with the process. Thread-safe.
 class Sessions {
  public:
   struct Session {
-    std::string key;       ///< names it among us, and is no secret: a hash of what the browser has
-    std::string token_id;  ///< that has opened it
+    std::string key;       ///< tells it from others, and is no secret: a hash of its secret name
+    std::string token_id;  ///< of the token that has opened it
   };
 
-  /// A new one for the token, until `until` (seconds since 1970): its secret name, 64 hexadecimal
-  /// digits; nothing where the system gives no random numbers. Of more than 10,000 those that end
-  /// first go.
+  /// Opens a session for a token, until `until` (seconds since 1970): its secret name, 64
+  /// hexadecimal digits; nothing where the system gives no random numbers. Where there are 10,000,
+  /// the one that would end first goes.
   std::optional<std::string> open(const std::string& token_id, int64_t until);
 
-  /// Which one this is, if it is open at `now`.
+  /// The session of this secret name; nothing where it is not open at `now` (seconds since 1970).
   std::optional<Session> find(std::string_view secret, int64_t now) const;
 
-  /// It is of no use from now on; which one it was, if it was one.
+  /// Ends the session of this secret name: what it was; nothing where there is none.
   std::optional<Session> end(std::string_view secret);
 
  private:
@@ -34,8 +35,8 @@ class Sessions {
     std::string token_id;
     int64_t until = 0;
   };
-  mutable std::mutex mutex_;
-  std::map<std::string, Open> open_;  ///< by key
+  mutable core::Mutex mutex_;
+  std::map<std::string, Open> open_ HYADES_GUARDED_BY(mutex_);  ///< by key
 };
 
 }  // namespace hyades::coordinator

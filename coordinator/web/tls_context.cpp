@@ -54,12 +54,12 @@ TlsContext::Stamps TlsContext::stamps() const {
 
 bool TlsContext::changed() const {
   const Stamps now = stamps();
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   return now != taken_;
 }
 
 void TlsContext::taken(const Stamps& stamps) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   taken_ = stamps;
 }
 

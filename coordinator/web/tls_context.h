@@ -1,12 +1,12 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include <boost/asio/ssl/context.hpp>
 
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "farm/channel.h"
 
@@ -19,23 +19,24 @@ class TlsContext {
   using Context = std::shared_ptr<boost::asio::ssl::context>;
   using Stamps = std::vector<std::string>;  ///< others whenever a file is another
 
+  /// `listen` names the files: certificate, key and, where clients have to show one, authority.
   explicit TlsContext(const farm::Listen& listen) : listen_(listen) {}
 
-  /// What the files say now; an error that names the one that is wrong.
+  /// Reads the files as they are now. The error names the one that is wrong.
   core::Result<Context> load() const;
 
-  /// Of the files as they are; to be asked for before they are read. Reads none of them.
+  /// The stamps of the files as they are, to be asked for before load(). Reads no file.
   Stamps stamps() const;
 
-  /// Whether a file is another than when what was read was last taken.
+  /// Whether a file has changed since the last taken().
   bool changed() const;
-  /// What was read after `stamps` is in use.
+  /// Says that what load() gave after `stamps` were asked for is in use.
   void taken(const Stamps& stamps);
 
  private:
   farm::Listen listen_;
-  mutable std::mutex mutex_;
-  Stamps taken_;
+  mutable core::Mutex mutex_;
+  Stamps taken_ HYADES_GUARDED_BY(mutex_);
 };
 
 }  // namespace hyades::coordinator

@@ -3,8 +3,10 @@
 #include <fcntl.h>
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <exception>
-#include <mutex>
+#include <functional>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -20,15 +22,13 @@
 #include "coordinator/web/assets_api.h"
 #include "coordinator/web/authenticator.h"
 #include "coordinator/web/connection.h"
-#include "coordinator/web/dashboard.h"
-#include "coordinator/web/farm_api.h"
-#include "coordinator/web/jobs_api.h"
 #include "coordinator/web/live_api.h"
 #include "coordinator/web/operation_routes.h"
-#include "coordinator/web/outputs_api.h"
 #include "coordinator/web/pictures_api.h"
 #include "coordinator/web/router.h"
+#include "coordinator/web/routes.h"
 #include "coordinator/web/tls_context.h"
+#include "core/base/mutex.h"
 #include "farm/log.h"
 #include "farm/wire.h"
 
@@ -41,6 +41,8 @@ using asio::ip::tcp;
 constexpr size_t kMostConnections = 4000;
 /// From one address: a person has some ten, a proxy in front of many people more.
 constexpr size_t kMostOfAddress = 1000;
+/// ... that it has however many there are.
+constexpr size_t kSureOfAddress = 8;
 constexpr std::chrono::milliseconds kAcceptAgain{200};
 constexpr std::chrono::seconds kSweep{30};
 /// How soon certificates that have changed are noticed.
@@ -67,16 +69,14 @@ void close_on_exec(Socket& socket) {
 }  // namespace
 
 struct WebServer::Parts {
-  Parts(Controller& controller, Authority& known, std::vector<std::string> names, bool secure)
+  Parts(Controller& controller, Authority& known, std::vector<std::string> names, bool secure,
+        Serves serves)
       : meters(controller.meters()),
         authority(known),
         authenticator(known, std::move(names), secure),
         io(std::make_shared<IoHandle>(network)),
         operations({controller, known}, executors),
-        farm(controller, executors),
-        jobs(controller, executors),
         assets(controller, executors, known.audit()),
-        outputs(controller, executors),
         pictures(controller),
         live(controller, executors, network, io),
         world{[this](WebRequest& request) { return admit(request); },
@@ -87,18 +87,20 @@ struct WebServer::Parts {
               executors.files,
               io,
               meters,
-              ConnectionCount(kMostConnections, kMostOfAddress)},
+              ConnectionCount(kMostConnections, kMostOfAddress, kSureOfAddress)},
         acceptor(network),
         again(network),
         sweep(network),
         look(network) {
+    add_health_routes(router, controller, executors);
+    add_metrics(router, controller, executors);
+    if (serves == Serves::health) return;
     add_dashboard(router);
     add_session(router);
     operations.add_routes(router);
-    farm.add_routes(router);
-    jobs.add_routes(router);
+    add_job_routes(router, controller, executors);
+    add_output_routes(router, controller, executors);
     assets.add_routes(router);
-    outputs.add_routes(router);
     pictures.add_routes(router);
     live.add_routes(router);
   }
@@ -124,7 +126,7 @@ struct WebServer::Parts {
               ? json["token"].get<std::string>()
               : std::string();
       grpc::Status why;
-      const auto cookie = authenticator.open_session(token, why);
+      const auto cookie = authenticator.open_session(request, token, why);
       if (!cookie) {
         if (why.error_code() == grpc::StatusCode::UNAUTHENTICATED) {
           note_refusal(request.caller, operation_of_route("POST /api/v1/session").rule, why);
@@ -220,7 +222,7 @@ struct WebServer::Parts {
     });
   }
 
-  /// Certificates that were renewed are taken up; where they are none the last ones go on.
+  /// Certificates that were renewed are used; where they are none the last ones go on.
   void look_at_certificates() {
     if (!certificates) return;
     look.expires_after(kLook);
@@ -239,7 +241,7 @@ struct WebServer::Parts {
     const TlsContext::Stamps stamps = certificates->stamps();
     auto fresh = certificates->load();
     std::string trouble = fresh ? std::string() : fresh.error().message;
-    const std::lock_guard lock(certificates_mutex);
+    const core::MutexLock lock(certificates_mutex);
     if (fresh) {
       io->post([this, context = std::move(*fresh)] { tls = context; });
       certificates->taken(stamps);
@@ -268,24 +270,21 @@ struct WebServer::Parts {
   Authenticator authenticator;
   std::shared_ptr<IoHandle> io;
   OperationRoutes operations;
-  FarmApi farm;
-  JobsApi jobs;
   AssetsApi assets;
-  OutputsApi outputs;
   PicturesApi pictures;
   LiveApi live;
   Router router;
   ConnectionWorld world;
   std::optional<TlsContext> certificates;  ///< none: plain text
   TlsContext::Context tls;                 ///< of those who come from now on
-  std::mutex certificates_mutex;
-  std::string certificates_trouble;  ///< as it was told
+  core::Mutex certificates_mutex;
+  std::string certificates_trouble HYADES_GUARDED_BY(certificates_mutex);  ///< as it was told
   tcp::acceptor acceptor;
   asio::steady_timer again;
   asio::steady_timer sweep;
   asio::steady_timer look;
   std::thread thread;
-  Executors executors;  ///< ends first: its pool use all of the above
+  Executors executors;  ///< ends first: its threads use all of the above
 };
 
 WebServer::WebServer(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -311,11 +310,12 @@ std::vector<std::string> WebServer::routes() const {
 core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& listen,
                                                           Controller& controller,
                                                           Authority& authority,
-                                                          std::vector<std::string> names) {
+                                                          std::vector<std::string> names,
+                                                          Serves serves) {
   auto door = farm::open_door(listen);  // its rules are ours
   if (!door) return door.error();
   const bool secure = !listen.cert_file.empty();
-  auto parts = std::make_unique<Parts>(controller, authority, std::move(names), secure);
+  auto parts = std::make_unique<Parts>(controller, authority, std::move(names), secure, serves);
   if (secure) {
     parts->certificates.emplace(listen);
     const TlsContext::Stamps stamps = parts->certificates->stamps();
@@ -330,11 +330,14 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   boost::system::error_code error;
   const uint16_t port = running.acceptor.local_endpoint(error).port();
   running.authenticator.set_port(port);
+  authority.listens_at(port);
   server->url_ = (secure ? "https://" : "http://") +
                  listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
   running.accept();
-  running.live.begin();
-  running.sweep_now_and_then();
+  if (serves == Serves::everything) {
+    running.live.begin();
+    running.sweep_now_and_then();
+  }
   running.look_at_certificates();
   running.thread = std::thread([&running] { running.run(); });
   return server;

@@ -12,10 +12,16 @@ namespace hyades::coordinator {
 class Authority;
 class Controller;
 
+/// Which routes a server has.
+enum class Serves {
+  everything,  ///< the dashboard and the API
+  health,      ///< /healthz, /readyz and /metrics alone: for a place that strangers cannot crowd
+};
+
 /// The coordinator's HTTP server: the dashboard and the API of openapi.yaml over a controller.
 ///
 /// One thread does all that concerns connections, so that thousands of them cost no more than what
-/// they ask for; what may wait for the disk is done by pool, as for gRPC.
+/// they ask for; pools of threads do what may wait for the disk, as for gRPC.
 class WebServer {
  public:
   /// Listens at listen.address, with its certificate and token (farm::open_door has the rules). An
@@ -26,16 +32,17 @@ class WebServer {
   static core::Result<std::unique_ptr<WebServer>> start(const farm::Listen& listen,
                                                         Controller& controller,
                                                         Authority& authority,
-                                                        std::vector<std::string> names = {});
+                                                        std::vector<std::string> names = {},
+                                                        Serves serves = Serves::everything);
 
   /// Breaks off all connections and stops listening.
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  /// "http://HOST:PORT" as bound.
+  /// "http://HOST:PORT", or https: what it listens on.
   const std::string& url() const { return url_; }
-  /// What it answers: "GET /api/v1/jobs/{job}", ...
+  /// Its routes: "GET /api/v1/jobs/{job}", ...
   std::vector<std::string> routes() const;
 
  private:

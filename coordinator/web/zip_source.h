@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +14,8 @@ struct archive;
 
 namespace hyades::coordinator {
 
-/// Files as a .zip in the making: stored as they are (pictures do not shrink), in any number and
-/// size (zip64).
+/// Makes a .zip of files while it is sent. They are stored as they are (pictures do not shrink), in
+/// any number and size (zip64).
 class ZipSource final : public BodySource {
  public:
   struct File {
@@ -27,6 +30,7 @@ class ZipSource final : public BodySource {
   std::optional<uint64_t> size() const override { return std::nullopt; }
 
  private:
+  /// False where it cannot go on: a file is gone, say.
   bool step();
 
   std::vector<File> files_;

@@ -15,7 +15,10 @@
 #include <cstring>
 #include <filesystem>
 #include <sstream>
+#include <system_error>
 #include <utility>
+
+#include "core/base/posix_file.h"
 
 namespace hyades::core {
 namespace {
@@ -39,9 +42,10 @@ std::optional<std::string> find_program(const std::string& name) {
 }
 
 Result<ChildProcess> ChildProcess::start(const std::string& path,
-                                         const std::vector<std::string>& arguments) {
+                                         const std::vector<std::string>& arguments,
+                                         const std::string& name) {
   ChildProcess child;
-  child.name_ = std::filesystem::path(path).filename().string();
+  child.name_ = name.empty() ? std::filesystem::path(path).filename().string() : name;
   const auto failure = [&](int why) {
     return Error{child.name_ + " could not be started: " + std::strerror(why)};
   };
@@ -86,8 +90,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
 ChildProcess::~ChildProcess() {
   if (pid_ < 0) return;
   ::kill(pid_, SIGKILL);
-  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
-  }
+  uninterrupted([this] { return ::waitpid(pid_, nullptr, 0); });
 }
 
 /// Keeps the end of what the child says.

@@ -24,9 +24,11 @@ class ChildProcess {
   /// Asked many times a second while somebody waits; an error ends the child and is returned.
   using MayGoOn = std::function<Status()>;
 
-  /// Starts the program at `path`; the error says why it could not be.
+  /// Starts the program at `path`; the error says why it could not be. Errors call it `name`, or as
+  /// its file is called.
   static Result<ChildProcess> start(const std::string& path,
-                                    const std::vector<std::string>& arguments);
+                                    const std::vector<std::string>& arguments,
+                                    const std::string& name = {});
 
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;

@@ -2,6 +2,7 @@
 
 #include <nmmintrin.h>
 #include <openssl/evp.h>
+#include <openssl/hmac.h>
 
 #include <cstring>
 #include <new>
@@ -20,6 +21,14 @@ Sha256 sha256(std::span<const std::byte> bytes) {
 }
 
 Sha256 sha256(std::string_view text) { return sha256(std::as_bytes(std::span(text))); }
+
+Sha256 hmac_sha256(std::string_view key, std::string_view message) {
+  Sha256 code{};
+  unsigned size = 0;
+  HMAC(EVP_sha256(), key.data(), static_cast<int>(key.size()),
+       reinterpret_cast<const unsigned char*>(message.data()), message.size(), code.data(), &size);
+  return code;
+}
 
 struct Sha256Stream::Context {
   EVP_MD_CTX* openssl = EVP_MD_CTX_new();

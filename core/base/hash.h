@@ -29,6 +29,9 @@ using Sha256 = std::array<uint8_t, 32>;
 Sha256 sha256(std::span<const std::byte> bytes);
 Sha256 sha256(std::string_view text);
 
+/// HMAC-SHA-256 of `message` (RFC 2104; OpenSSL does the work): nobody without `key` can make it.
+Sha256 hmac_sha256(std::string_view key, std::string_view message);
+
 /// SHA-256 of bytes that come in pieces.
 class Sha256Stream {
  public:

@@ -29,4 +29,8 @@ std::string io_reason(int error) {
   }
 }
 
+std::string lock_reason(int error) {
+  return error == EWOULDBLOCK ? "another process has it and does not let go" : io_reason(error);
+}
+
 }  // namespace hyades::core

@@ -8,4 +8,8 @@ namespace hyades::core {
 /// ".
 std::string io_reason(int error);
 
+/// Why a file could not be locked, in words, by the errno of lock_file(): that another process has
+/// the lock (EWOULDBLOCK), or as io_reason() has it.
+std::string lock_reason(int error);
+
 }  // namespace hyades::core

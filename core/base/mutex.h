@@ -4,7 +4,7 @@
 #include <condition_variable>
 #include <mutex>
 
-// What lock guards what, said in code: Clang checks it (-Wthread-safety, tests/style/check_locks),
+// What lock guards what, said in code: Clang checks it (-Wthread-safety, tests/style/lint),
 // and other compilers see nothing of it.
 #if defined(__clang__)
 #define HYADES_THREAD_ANNOTATION(x) __attribute__((x))
@@ -76,8 +76,9 @@ class CondVar {
     condition_.wait(held);
     held.release();
   }
-  /// Waits until `time` at the latest.
-  void wait_until(Mutex& mutex, std::chrono::steady_clock::time_point time) HYADES_REQUIRES(mutex) {
+  /// Waits until `time`, of any clock, at the latest.
+  template <class Time>
+  void wait_until(Mutex& mutex, const Time& time) HYADES_REQUIRES(mutex) {
     std::unique_lock held(mutex.mutex_, std::adopt_lock);
     condition_.wait_until(held, time);
     held.release();

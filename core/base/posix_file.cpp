@@ -1,21 +1,15 @@
 #include "core/base/posix_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <thread>
 
 namespace hyades::core {
 namespace {
-
-/// Calls `call` again as long as signals interrupt it.
-template <class Call>
-auto uninterrupted(Call call) {
-  for (;;) {
-    const auto result = call();
-    if (result >= 0 || errno != EINTR) return result;
-  }
-}
 
 /// Has `read` read what is left and where that begins, until all is there or the file ends.
 template <class Read>
@@ -35,7 +29,8 @@ bool write_with(std::span<const std::byte> bytes, Write write) {
   size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t put = uninterrupted([&] { return write(bytes.subspan(done), done); });
-    if (put < 0) return false;
+    if (put == 0) errno = ENOSPC;
+    if (put <= 0) return false;
     done += static_cast<size_t>(put);
   }
   return true;
@@ -75,6 +70,15 @@ bool sync_folder(const std::string& folder) {
   const Descriptor handle = open_file(folder, O_RDONLY | O_DIRECTORY);
   if (!handle.valid()) return errno == EACCES;
   return ::fsync(handle.get()) == 0 || errno == EINVAL || errno == ENOTSUP;
+}
+
+bool lock_file(int file, int kind, std::chrono::milliseconds patience) {
+  const auto until = std::chrono::steady_clock::now() + patience;
+  for (std::chrono::milliseconds nap{1};; nap = std::min(2 * nap, std::chrono::milliseconds(50))) {
+    if (uninterrupted([&] { return ::flock(file, kind | LOCK_NB); }) == 0) return true;
+    if (errno != EWOULDBLOCK || std::chrono::steady_clock::now() >= until) return false;
+    std::this_thread::sleep_for(nap);
+  }
 }
 
 }  // namespace hyades::core

@@ -12,7 +12,7 @@ namespace hyades::core {
 struct Error {
   std::string message;
 
-  /// The same error with "context: " put before it.
+  /// This error with "context: " put before it.
   Error in(const std::string& context) const { return {context + ": " + message}; }
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <vector>
 
@@ -13,10 +14,9 @@ namespace {
 // Longer names are never compared letter by letter: the work grows with the product of lengths.
 constexpr size_t kLongestName = 100;
 
-char folded(char c) {
-  if (c >= 'A' && c <= 'Z') return static_cast<char>(c - 'A' + 'a');
-  return c == '_' ? '-' : c;
-}
+char small(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+char folded(char c) { return c == '_' ? '-' : small(c); }
 
 }  // namespace
 
@@ -66,6 +66,17 @@ std::string did_you_mean(std::string_view name, std::span<const std::string> can
   return near ? ", did you mean '" + *near + "'?" : std::string();
 }
 
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), small);
+  return lower;
+}
+
+bool is_letter_or_digit(char c) {
+  const char letter = small(c);
+  return (letter >= 'a' && letter <= 'z') || (c >= '0' && c <= '9');
+}
+
 std::string join_names(std::span<const std::string> names) {
   std::string text;
   for (size_t i = 0; i < names.size(); ++i) {
@@ -107,6 +118,13 @@ std::string format_count(uint64_t count) {
     digits.insert(place, 1, ',');
   }
   return digits;
+}
+
+std::string counted(uint64_t count, std::string_view word) {
+  std::string text = std::to_string(count) + " ";
+  text += word;
+  if (count != 1) text += 's';
+  return text;
 }
 
 size_t utf8_length(std::string_view text) {

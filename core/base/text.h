@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -20,6 +21,12 @@ std::optional<std::string> closest_name(std::string_view name,
 /// ", did you mean 'x'?" or, where nothing is near, "": what errors append to an unknown name.
 std::string did_you_mean(std::string_view name, std::span<const std::string> candidates);
 
+/// `text` with a to z in place of A to Z; all other bytes stay.
+std::string lower_case(std::string_view text);
+
+/// Whether `c` is one of a to z, A to Z and 0 to 9.
+bool is_letter_or_digit(char c);
+
 /// "a, b or c".
 std::string join_names(std::span<const std::string> names);
 
@@ -32,6 +39,9 @@ std::string format_bytes(uint64_t bytes);
 
 /// Thousands in groups: "1,234,567".
 std::string format_count(uint64_t count);
+
+/// "1 unit", "2 units"; of words whose plural ends with s.
+std::string counted(uint64_t count, std::string_view word);
 
 /// How many bytes the first character of `text`, which is not empty, has; 0 where it is not UTF-8
 /// (RFC 3629, section 4: no overlong forms, no surrogates, nothing above U+10FFFF).

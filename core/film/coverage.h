@@ -37,7 +37,7 @@ class Coverage {
 
   const std::vector<CoverageBox>& boxes() const { return boxes_; }
 
-  /// The same set cut and joined by a fixed rule, sorted: equal sets give equal vectors. The rule:
+  /// This set cut and joined by a fixed rule, sorted: equal sets give equal vectors. The rule:
   /// runs of rows whose content is the same, in them runs of columns that hold the same batches,
   /// in those the runs of batches, each as long as possible.
   std::vector<CoverageBox> canonical() const;

@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -161,10 +161,7 @@ class OcioTransform final : public DisplayTransform {
   }
 
   std::string transfer() const override {
-    std::string name = names_.display;
-    for (char& c : name) {
-      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
+    const std::string name = lower_case(names_.display);
     const auto says = [&](const char* word) { return name.find(word) != std::string::npos; };
     if (says("srgb")) return "srgb";
     return says("709") || says("1886") ? "bt709" : "";

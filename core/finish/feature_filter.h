@@ -26,7 +26,7 @@ struct GuidedPicture {
 /// weights); a pixel's value is the weighted mean of what all fits around it say of it: Bitterli,
 /// Rousselle, Moon et al. 2016, "Nonlinearly Weighted First-order Regression for Denoising Monte
 /// Carlo Renderings", in one pass. Biased: what is finer than the noise is lost.
-/// The same whatever the number of `threads` (<= 0: as many as the machine has).
+/// The result does not depend on the number of `threads` (<= 0: as many as the machine has).
 std::vector<Rgb> filter_by_features(const GuidedPicture& picture, int threads = 0);
 
 }  // namespace hyades::core

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <system_error>
+#include <utility>
 
 #include "core/base/atomic_file.h"
 #include "core/base/child_process.h"
@@ -54,6 +57,13 @@ Result<RawPicture> read_picture(const std::string& path) {
   return raw;
 }
 
+// R'G'B' to Y'CbCr by Rec.709's matrix; the transfer curve stays what it is. The frames say so
+// themselves: what encoders are told beside them, ffmpeg 7 overrides with what frames say.
+constexpr const char* kToVideo =
+    "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+full_chroma_int,"
+    "format=yuv420p,"
+    "setparams=range=tv:color_primaries=bt709:colorspace=bt709:color_trc=";
+
 /// What the pictures of one video have in common.
 constexpr std::array<const char*, 4> kCommon = {"hyades.job", "hyades.samples", "hyades.build",
                                                 "hyades.display"};
@@ -98,18 +108,12 @@ Status check_alike(const RawPicture& first, const RawPicture& picture, const std
 std::vector<std::string> ffmpeg_arguments(const VideoDesc& video, const VideoFrames& frames,
                                           const RawPicture& first, const std::string& path) {
   const std::string ending = file_extension(video.file);
-  std::vector<std::string> words = {
-      "-hide_banner", "-nostdin", "-loglevel", "error", "-y",
-      // What comes in.
-      "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size",
-      fmt::format("{}x{}", first.width, first.height), "-framerate", fmt::format("{}", frames.rate),
-      "-i", "pipe:0",
-      // R'G'B' to Y'CbCr by Rec.709's matrix; the transfer curve stays what it is.
-      "-vf",
-      "scale=out_color_matrix=bt709:out_range=tv:flags=bicubic+accurate_rnd+full_chroma_int,"
-      "format=yuv420p",
-      "-color_primaries", "bt709", "-colorspace", "bt709", "-color_range", "tv", "-color_trc",
-      transfer_of(first)};
+  std::vector<std::string> words = {"-hide_banner", "-nostdin", "-loglevel", "error", "-y",
+                                    // What comes in.
+                                    "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size",
+                                    fmt::format("{}x{}", first.width, first.height), "-framerate",
+                                    fmt::format("{}", frames.rate), "-i", "pipe:0", "-vf",
+                                    kToVideo + transfer_of(first)};
   const auto add = [&](std::initializer_list<std::string> more) {
     words.insert(words.end(), more.begin(), more.end());
   };
@@ -159,8 +163,12 @@ Status encode(const std::string& ffmpeg, const VideoDesc& video, const VideoFram
   const std::vector<std::string> pictures = video_pictures(video, frames);
   const auto first = read_picture(pictures.front());
   if (!first) return first.error();
-  auto child =
-      ChildProcess::start(ffmpeg, ffmpeg_arguments(video, frames, *first, fs::absolute(path)));
+  std::vector<std::string> words = patience.starter;
+  words.push_back(ffmpeg);
+  for (std::string& word : ffmpeg_arguments(video, frames, *first, fs::absolute(path))) {
+    words.push_back(std::move(word));
+  }
+  auto child = ChildProcess::start(words.front(), {words.begin() + 1, words.end()}, "ffmpeg");
   if (!child) return child.error();
   Progress progress(*child, path, patience);
   const auto may_go_on = [&] { return progress.check(); };

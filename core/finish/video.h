@@ -20,6 +20,9 @@ bool have_ffmpeg();
 
 /// How long making a video may take, and who may end it.
 struct VideoPatience {
+  /// A program and its arguments that start ffmpeg, whose path and arguments follow: for who holds
+  /// it in. Empty: it is started itself.
+  std::vector<std::string> starter;
   std::chrono::milliseconds still{120'000};  ///< ffmpeg may make no progress for so long
   std::function<bool()> stop;                ///< asked often; true ends it
 };

@@ -1,8 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "core/image/exr_support.h"
@@ -45,32 +49,86 @@ struct Part {
   int64_t tile_height = 0;
 };
 
-int64_t count_channels(std::span<const std::byte> value) {
+/// How many channels a list has; nothing where it does not end with its value.
+std::optional<int64_t> count_channels(std::span<const std::byte> value) {
   // Each: a name, then 16 bytes; the list ends with an empty name.
   HeaderCursor cursor{value};
   int64_t count = 0;
-  for (auto name = cursor.name(); name && !name->empty(); name = cursor.name()) {
-    if (cursor.left.size() < 16) break;
+  auto name = cursor.name();
+  for (; name && !name->empty(); name = cursor.name()) {
+    if (cursor.left.size() < 16) return std::nullopt;
     cursor.left = cursor.left.subspan(16);
     ++count;
   }
+  if (!name || !cursor.left.empty()) return std::nullopt;
   return count;
 }
 
+/// Whether a list of texts, each behind its length, ends with its value.
+bool is_string_vector(std::span<const std::byte> value) {
+  HeaderCursor cursor{value};
+  while (!cursor.left.empty()) {
+    const auto length = cursor.number();
+    if (!length || *length < 0 || static_cast<size_t>(*length) > cursor.left.size()) return false;
+    cursor.left = cursor.left.subspan(static_cast<size_t>(*length));
+  }
+  return true;
+}
+
+/// A width, a height and four bytes for each pixel.
+bool is_preview(std::span<const std::byte> value) {
+  HeaderCursor cursor{value};
+  const auto width = cursor.number();
+  const auto height = cursor.number();
+  return width && height && *width >= 0 && *height >= 0 &&
+         uint64_t{static_cast<uint32_t>(*width)} * static_cast<uint32_t>(*height) * 4 ==
+             cursor.left.size();
+}
+
+struct FixedSize {
+  std::string_view type;
+  size_t bytes;
+};
+
+/// OpenEXR File Layout, "Predefined Attribute Types".
+constexpr FixedSize kFixedSizes[] = {
+    {"box2i", 16},      {"box2f", 16},   {"chromaticities", 32},
+    {"compression", 1}, {"double", 8},   {"envmap", 1},
+    {"float", 4},       {"int", 4},      {"keycode", 28},
+    {"lineOrder", 1},   {"m33f", 36},    {"m33d", 72},
+    {"m44f", 64},       {"m44d", 128},   {"rational", 8},
+    {"tiledesc", 9},    {"timecode", 8}, {"v2i", 8},
+    {"v2f", 8},         {"v2d", 16},     {"v3i", 12},
+    {"v3f", 12},        {"v3d", 24},     {"deepImageState", 1},
+};
+
+/// Whether a value is as long as its type says. OpenEXR does not look at the length of most: it
+/// would go on in the midst of another attribute, and believe whatever length it finds there.
+bool ends_where_it_should(std::string_view type, std::span<const std::byte> value) {
+  if (type == "chlist") return count_channels(value).has_value();
+  if (type == "stringvector") return is_string_vector(value);
+  if (type == "preview") return is_preview(value);
+  if (type == "floatvector") return value.size() % 4 == 0;
+  const auto* const fixed = std::find_if(std::begin(kFixedSizes), std::end(kFixedSizes),
+                                         [&](const FixedSize& row) { return row.type == type; });
+  return fixed == std::end(kFixedSizes) || value.size() == fixed->bytes;
+}
+
+/// Of a value that ends where it should.
 void note(std::string_view name, std::string_view type, std::span<const std::byte> value,
           Part& part) {
   HeaderCursor cursor{value};
-  if (name == "dataWindow" && type == "box2i" && value.size() == 16) {
+  if (name == "dataWindow" && type == "box2i") {
     const int64_t x0 = *cursor.number();
     const int64_t y0 = *cursor.number();
     part.width = *cursor.number() - x0 + 1;
     part.height = *cursor.number() - y0 + 1;
-  } else if (name == "tiles" && type == "tiledesc" && value.size() == 9) {
+  } else if (name == "tiles" && type == "tiledesc") {
     // Sizes are unsigned; those above 2^31 show up as negative.
     part.tile_width = *cursor.number();
     part.tile_height = *cursor.number();
   } else if (name == "channels" && type == "chlist") {
-    part.channels = count_channels(value);
+    part.channels = *count_channels(value);
   }
 }
 
@@ -113,7 +171,12 @@ Status check_exr_header(std::span<const std::byte> file, const ImageLimits& limi
         return Error{fmt::format("attribute '{}' is longer than the file", *name)};
       }
       if (++attributes > kMaxAttributes) return Error{"too many attributes"};
-      note(*name, *type, cursor.left.first(static_cast<size_t>(*size)), part);
+      const auto value = cursor.left.first(static_cast<size_t>(*size));
+      if (!ends_where_it_should(*type, value)) {
+        return Error{
+            fmt::format("attribute '{}' has {} bytes, which is no {}", *name, *size, *type)};
+      }
+      note(*name, *type, value, part);
       cursor.left = cursor.left.subspan(static_cast<size_t>(*size));
     }
     if (multi_part && !any) {

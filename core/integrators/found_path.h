@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/integrators/path_vertex.h"
 
 namespace hyades::core {

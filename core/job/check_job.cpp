@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <set>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/base/text.h"
 #include "core/base/udim.h"
@@ -28,7 +32,7 @@ constexpr size_t kMostChecks = 2'000'000;             ///< of animated values
 /// recursion this deep (and about 20 groups written in place, see kMaxYamlDepth).
 constexpr int kLongestChain = 32;
 /// What one lookup of a texture or a material may cost: each use of another counts.
-constexpr uint64_t kMostParts = 4096;
+constexpr uint64_t kMostContributors = 4096;
 
 template <class Desc>
 std::vector<std::string> names_of(const std::vector<Desc>& list) {
@@ -63,10 +67,10 @@ template <class Desc>
 void check_parts(ReadContext& context, const std::vector<Desc>& list, ReferenceGraph& graph,
                  const char* noun) {
   for (const Desc& desc : list) {
-    if (graph.unfolded(desc.name) <= kMostParts) continue;
+    if (graph.unfolded(desc.name) <= kMostContributors) continue;
     context.complain(desc.where, fmt::format("{} '{}' is made of more than {} others, each counted "
                                              "as often as it is used",
-                                             noun, desc.name, kMostParts));
+                                             noun, desc.name, kMostContributors));
     return;
   }
 }
@@ -76,7 +80,7 @@ void check_texture_cycles(ReadContext& context) {
   ReferenceGraph graph(names_of(job.textures));
   for (size_t i = 0; i < job.textures.size(); ++i) {
     graph.weigh(i, 1);
-    for (const std::string& name : textures_used(job.textures[i])) graph.add(i, name);
+    for (const std::string& name : names_in(job.textures[i], NameKind::texture)) graph.add(i, name);
   }
   const std::vector<size_t> cycles = graph.in_cycles();
   for (const size_t i : cycles) {

@@ -2,6 +2,8 @@
 
 #include <map>
 #include <set>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -91,12 +93,13 @@ void read_normal_maps_as_numbers(ReadContext& context) {
     if (material.normal_map) maps.insert(material.normal_map->texture);
   }
   for (TextureDesc& texture : context.job.textures) {
-    if (texture.type != "image" || !maps.contains(texture.name)) continue;
-    if (texture.image.color_space == "auto") texture.image.color_space = "linear";
-    if (texture.image.color_space == "linear") continue;
+    auto* image = std::get_if<textures::Image>(&texture.kind);
+    if (image == nullptr || !maps.contains(texture.name)) continue;
+    if (image->color_space == "auto") image->color_space = "linear";
+    if (image->color_space == "linear") continue;
     context.complain(texture.where, fmt::format("texture '{}' is a normal map with color_space "
                                                 "'{}', expected linear",
-                                                texture.name, texture.image.color_space));
+                                                texture.name, image->color_space));
   }
 }
 

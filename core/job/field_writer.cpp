@@ -45,8 +45,9 @@ std::string bits(const Animated<T>& value, const std::vector<JobTime>& moments) 
 
 }  // namespace
 
-FieldWriter::FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRecord>& assets)
-    : moments_(std::move(moments)) {
+FieldWriter::FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRecord>& assets,
+                         bool ahead)
+    : moments_(std::move(moments)), ahead_(ahead) {
   for (const AssetRecord& asset : assets) hashes_[asset.reference] = asset.sha256;
 }
 
@@ -131,15 +132,12 @@ void FieldWriter::put_file(std::string_view key, const std::string& reference) {
   }
 }
 
-void FieldWriter::put_mesh_file(std::string_view key, const std::string& reference, bool ahead) {
-  if (!is_mesh_sequence(reference)) {
-    put_file(key, reference);
-    return;
-  }
+void FieldWriter::mesh_file(const KeyName& key, const std::string& reference) {
+  if (!is_mesh_sequence(reference)) return put_file(key.line, reference);
   const JobTime& now = moments_.front();
-  put_file(key, mesh_file_at(reference, now));
+  put_file(key.line, mesh_file_at(reference, now));
   const std::string next = mesh_file_at(reference, {now.seconds, now.frame + 1.0});
-  if (ahead && hashes_.contains(next)) put_file("next", next);
+  if (ahead_ && hashes_.contains(next)) put_file("next", next);
   for (const auto& [file, hash] : hashes_) {
     if (is_of_sequence(reference, file)) named_.insert(file);
   }
@@ -156,15 +154,16 @@ void FieldWriter::put_other_files(const std::vector<std::string>& except) {
 std::vector<FieldWriter::Line> FieldWriter::collect(const std::function<void()>& write) {
   std::vector<Line> lines;
   const std::string outside = std::exchange(path_, "");
-  collected_ = &lines;
+  std::vector<Line>* const before = std::exchange(collected_, &lines);
   write();
-  collected_ = nullptr;
+  collected_ = before;
   path_ = outside;
   return lines;
 }
 
 void FieldWriter::enter(std::string_view name) {
   starts_.push_back(path_.size());
+  if (name.empty()) return;
   path_ += name;
   path_ += '.';
 }

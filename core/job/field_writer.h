@@ -1,12 +1,14 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/assets.h"
@@ -25,7 +27,9 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
     bool operator==(const Line&) const = default;
   };
 
-  FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRecord>& assets);
+  /// `ahead`: frames look at the meshes of the one after them.
+  FieldWriter(std::vector<JobTime> moments, const std::vector<AssetRecord>& assets,
+              bool ahead = false);
 
   void put(std::string_view key, const std::string& text);
   void put(std::string_view key, const char* text) { put(key, std::string(text)); }
@@ -49,9 +53,6 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
 
   /// A file by the hash of its content, or by its name where the hash is not known.
   void put_file(std::string_view key, const std::string& reference);
-  /// The file of a mesh at a frame of the job, of a sequence that and, where `ahead`, the next one,
-  /// as far as they are known. All of a sequence count as named.
-  void put_mesh_file(std::string_view key, const std::string& reference, bool ahead);
   /// Assets that no put_file has named, but for those in `except`.
   void put_other_files(const std::vector<std::string>& except);
 
@@ -66,6 +67,10 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
 
   // As a visitor of keys.
   void file(const KeyName& key, const std::string& reference) { put_file(key.line, reference); }
+  /// The file of a mesh at a frame of the job, of a sequence that and, where frames look ahead, the
+  /// next one, as far as they are known. All of a sequence count as named.
+  void mesh_file(const KeyName& key, const std::string& reference);
+  void children(const KeyName& key, const std::vector<ObjectDesc>& children);
   void light_group(const KeyName& key, const std::string& group) {
     if (!group.empty()) put(key.line, group);
   }
@@ -73,18 +78,13 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   void value(std::string_view key, const T& value) {
     put(key, value);
   }
+  using FieldVisitor::map;
+  /// Its lines stand beside those of what it belongs to where it has no name there.
   template <class Desc>
-  void map(const KeyName& key, const char* /*section*/, const std::optional<Desc>& desc) {
-    if (!desc) return;
+  void map(const KeyName& key, const char* /*section*/, const Desc& desc) {
     enter(key.line);
-    Desc::fields(*desc, *this);
+    Desc::fields(desc, *this);
     leave();
-  }
-  /// Its lines stand beside those of what it belongs to.
-  template <class Desc>
-  void color_or_map(const KeyName& /*key*/, const char* /*section*/,
-                    const std::optional<Desc>& desc, const Range& /*range*/) {
-    if (desc) Desc::fields(*desc, *this);
   }
 
   std::string take() { return std::move(text_); }
@@ -93,6 +93,7 @@ class FieldWriter : public FieldVisitor<FieldWriter> {
   std::vector<JobTime> moments_;
   std::map<std::string, std::string> hashes_;
   std::set<std::string> named_;
+  bool ahead_;
   std::string path_;
   std::vector<size_t> starts_;
   std::string text_;

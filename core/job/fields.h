@@ -6,12 +6,15 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "core/job/inputs.h"
+#include "core/job/source.h"
 #include "core/job/transform_desc.h"
 #include "core/job/value_checks.h"
 
-/// The materials, lights and media of a job state their keys once, in
+/// What a job is described by states its keys once, in
 ///
 ///   template <class Self, class Visitor>
 ///   static void fields(Self& self, Visitor& visit) {
@@ -60,6 +63,21 @@ class FieldVisitor {
               std::span<const std::string> /*names*/) {
     put(key, value);
   }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void choice(const KeyName& key, Enum value, std::span<const std::string> /*names*/) {
+    put(key, static_cast<int32_t>(value));
+  }
+  void integers(const KeyName& /*key*/, const char* a_line, int32_t a, const char* b_line,
+                int32_t b, int64_t /*low*/, int64_t /*high*/) {
+    put(a_line, a);
+    put(b_line, b);
+  }
+  void choices(const KeyName& key, const std::string& first, const char* second_line,
+               const std::string& second, std::span<const std::string> /*names*/) {
+    put(key, first);
+    if (second != first) put(second_line, second);
+  }
   void name_of(const KeyName& key, const std::string& value, NameKind /*kind*/) { put(key, value); }
   void mesh_file(const KeyName& key, const std::string& value) { derived().file(key, value); }
   void file(const KeyName& key, const std::string& value) { put(key, value); }
@@ -93,8 +111,12 @@ class FieldVisitor {
     derived().name_of(key, name, NameKind::texture);
   }
   template <class Desc>
-  void map(const KeyName& /*key*/, const char* /*section*/, const std::optional<Desc>& desc) {
-    if (desc) Desc::fields(*desc, derived());
+  void map(const KeyName& /*key*/, const char* /*section*/, const Desc& desc) {
+    Desc::fields(desc, derived());
+  }
+  template <class Desc>
+  void map(const KeyName& key, const char* section, const std::optional<Desc>& desc) {
+    if (desc) derived().map(key, section, *desc);
   }
   template <class Desc>
   void map_beside_value(const KeyName& key, const char* section, const std::optional<Desc>& desc) {
@@ -105,16 +127,55 @@ class FieldVisitor {
                     const Range& /*range*/) {
     derived().map(key, section, desc);
   }
+  template <class Desc>
+  void type_or_map(const KeyName& key, const char* section, const Desc& desc,
+                   std::span<const std::string> /*types*/) {
+    derived().map(key, section, desc);
+  }
+  void focus(const KeyName& /*key*/, const std::optional<Animated<float>>& distance,
+             const std::string& object, const SourceLocation& /*where*/) {
+    put("focus_distance", distance);
+    derived().name_of("focus_object", object, NameKind::object);
+  }
+  template <class Stop>
+  void stops(const KeyName& /*key*/, const std::vector<Stop>& stops) {
+    for (const Stop& stop : stops) {
+      put("stop.at", stop.at);
+      put("stop.color", stop.color);
+    }
+  }
+  template <class Unit, class T>
+  void either(const KeyName& /*a_key*/, const Range& /*a_range*/, const KeyName& /*b_key*/,
+              const Range& /*b_range*/, Unit unit, const T& value) {
+    put("unit", static_cast<int32_t>(unit));
+    put("amount", value);
+  }
+  template <class Pair>
+  void overrides(const KeyName& key, const std::vector<Pair>& overrides) {
+    for (const Pair& pair : overrides) {
+      derived().name_of(key, pair.first, NameKind::material);
+      derived().name_of("with", pair.second, NameKind::material);
+    }
+  }
+  template <class Object>
+  void children(const KeyName& /*key*/, const std::vector<Object>& children) {
+    for (const Object& child : children) Object::fields(child, derived());
+  }
   void place(const TransformList& steps, const Animated<Vec3>& at) {
     transform("transform", steps);
-    put(KeyName("at"), at);
+    put("at", at);
   }
+
+  /// Which pixels are rendered, not what they show.
+  template <class Film>
+  void crop(const KeyName& /*key*/, const Film& /*film*/) {}
 
   // What only readers need to know.
   template <class Desc>
   void preset(const KeyName& /*key*/, const Desc& /*desc*/) {}
   void enter_section(std::string_view /*section*/) {}
   void require(const KeyName& /*key*/, std::string_view /*expected*/) {}
+  void starts_at(float /*value*/, float /*start*/) {}
   void keep_apart(std::string_view /*a_key*/, const Animated<Vec3>& /*a*/,
                   std::string_view /*b_key*/, const Animated<Vec3>& /*b*/) {}
 

@@ -1,9 +1,12 @@
 #include "core/job/include.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "core/job/join_trees.h"
@@ -100,7 +103,8 @@ class Loader {
     return open_file(name.scalar, name, from, what);
   }
 
-  /// The same for file `wanted`, relative to `from`, that `name` means.
+  /// Opens the file `wanted`, relative to `from`, that `name` means. Nothing where it was read
+  /// already, or after a complaint.
   std::optional<Opened> open_file(const std::string& wanted, const YamlNode& name,
                                   const std::string& from, const std::string& what) {
     const std::string reference = resolve_reference(wanted, from);

@@ -6,7 +6,7 @@ namespace {
 
 /// From when one struct held the keys of all types.
 constexpr OldLine kOldLightLines[] = {
-    {"at", "00000000,00000000,00000000"},
+    {"at", kZeroBits},
     {"look_at", "00000000,bf800000,00000000"},
     {"direction", "00000000,bf800000,00000000"},
     {"color", kWhiteBits},
@@ -24,16 +24,7 @@ constexpr OldLine kOldLightLines[] = {
 }  // namespace
 
 void write_light(FieldWriter& out, const LightDesc& light) {
-  out.enter("light");
-  out.put("name", light.name);
-  out.put("type", KindsOf<LightKind>::name(light.kind));
-  LightDesc plain;
-  plain.kind = KindsOf<LightKind>::make(light.kind.index());
-  const auto lines_of = [&](const LightDesc& desc) {
-    return out.collect([&] { LightDesc::fields(desc, out); });
-  };
-  write_in_old_order(out, kOldLightLines, lines_of(light), lines_of(plain));
-  out.leave();
+  write_desc(out, "light", light, kOldLightLines);
 }
 
 }  // namespace hyades::core

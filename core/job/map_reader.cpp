@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
+#include <set>
+#include <system_error>
+#include <utility>
 
 #include "core/base/text.h"
 #include "core/job/read_color.h"
@@ -67,14 +71,20 @@ const YamlNode* MapReader::find(std::string_view key, std::string_view hint) {
   const YamlEntry* entry = map_.find(key);
   if (entry == nullptr) return nullptr;
   if (entry->value->kind == YamlNode::Kind::null) {
+    has_empty_ = true;
     complain(entry->key_where, fmt::format("{} is empty, expected a value{}", key, hint));
     return nullptr;
   }
   return entry->value.get();
 }
 
+bool MapReader::has(std::string_view key) const {
+  const YamlEntry* entry = map_.find(key);
+  return entry != nullptr && entry->value->kind != YamlNode::Kind::null;
+}
+
 void MapReader::require(std::string_view key, std::string_view expected) {
-  if (has(key) || listing() || map_.kind != YamlNode::Kind::map) return;
+  if (map_.find(key) != nullptr || listing() || map_.kind != YamlNode::Kind::map) return;
   complain(where_, fmt::format("{} has no '{}', expected {}", what_.empty() ? "the job" : what_,
                                key, expected));
 }
@@ -158,14 +168,14 @@ void MapReader::name_of(std::string_view key, std::string& target, NameKind kind
   if (name.empty()) return;
   target = name;
   const std::string label = what_.empty() ? std::string(key) : fmt::format("{} of {}", key, what_);
-  context_.names.push_back({kind, name, map_.find(key)->value->where, label});
+  context_.names.push_back({kind, name, where_of(key), label});
 }
 
 void MapReader::file(std::string_view key, std::string& target) {
   std::string name;
   text(key, name, "a file name");
   if (name.empty()) return;
-  const SourceLocation where = map_.find(key)->value->where;
+  const SourceLocation where = where_of(key);
   target = context_.job_relative(name, where);
   context_.files.push_back({target, where, fmt::format("{} of {}", key, what_)});
 }

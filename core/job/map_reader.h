@@ -1,11 +1,16 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/base/text.h"
@@ -46,7 +51,10 @@ class MapReader {
 
   /// The value of `key`, or null where it is absent (or empty, which is a complaint).
   const YamlNode* find(std::string_view key);
-  bool has(std::string_view key) const { return map_.find(key) != nullptr; }
+  /// Whether `key` is there with a value.
+  bool has(std::string_view key) const;
+  /// Whether a key that was asked for is there without a value, which has been complained about.
+  bool has_empty() const { return has_empty_; }
   /// Where the value of `key`, which is there, stands.
   SourceLocation where_of(std::string_view key) const { return map_.find(key)->value->where; }
   /// Complains unless `key` is there.
@@ -59,17 +67,39 @@ class MapReader {
   void flag(std::string_view key, bool& target);
   void text(std::string_view key, std::string& target, std::string_view expected);
   void choice(std::string_view key, std::string& target, std::span<const std::string> names);
+  /// An enum whose values are the places among `names`.
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  void choice(std::string_view key, Enum& target, std::span<const std::string> names) {
+    std::string name = names[static_cast<size_t>(target)];
+    choice(key, name, names);
+    target = static_cast<Enum>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+  /// One of `names` for both, or a list of two.
+  void choices(std::string_view key, std::string& first, const char* second_line,
+               std::string& second, std::span<const std::string> names);
   /// The name of something that the job defines; that it exists is checked at the end.
   void name_of(std::string_view key, std::string& target, NameKind kind);
   /// The name of a texture, or one written in place. It must be there.
   void texture(std::string_view key, std::string& target);
   /// A file, relative to where it is written; that it opens is checked at the end.
   void file(std::string_view key, std::string& target);
-  /// The same of a mesh, which may have a file for each frame.
+  /// The file of a mesh, which may be one for each frame, relative to where it is written; that it
+  /// opens is checked at the end.
   void mesh_file(std::string_view key, std::string& target);
   /// A list of exactly as many numbers as `target` has.
   bool numbers(std::string_view key, std::span<float> target, const Range& range);
   bool integers(std::string_view key, std::span<int32_t> target, int64_t low, int64_t high);
+  /// A list of two whole numbers.
+  void integers(std::string_view key, const char* a_line, int32_t& a, const char* b_line,
+                int32_t& b, int64_t low, int64_t high);
+  /// What `target` is where the key that follows is absent; it depends on keys before.
+  void starts_at(float& target, float start) { target = start; }
+  /// The pixels to render, all of them within the film.
+  void crop(std::string_view key, FilmDesc& film);
+  /// A distance or the name of an object.
+  void focus(std::string_view key, std::optional<Animated<float>>& distance, std::string& object,
+             SourceLocation& where);
 
   void animated(std::string_view key, Animated<float>& target, const Range& range);
   void animated(std::string_view key, Animated<Vec2>& target, const Range& range);
@@ -118,6 +148,15 @@ class MapReader {
     });
   }
 
+  /// The keys of a description that is there in any case.
+  template <class Desc>
+  requires std::is_class_v<Desc> && requires(Desc& desc, MapReader& reader) {
+    Desc::fields(desc, reader);
+  }
+  void map(std::string_view key, const std::string& section, Desc& desc) {
+    map(key, section, [&](MapReader& inner) { read_fields(inner, desc); });
+  }
+
   /// As map(), but where the value is no map (or one of keys over time) it is another member's.
   template <class Desc>
   void map_beside_value(std::string_view key, const std::string& section,
@@ -128,13 +167,39 @@ class MapReader {
   template <class Desc>
   void color_or_map(std::string_view key, const std::string& section, std::optional<Desc>& desc,
                     const Range& range) {
-    if (is_map_of_keys(find(key)) || listing()) return map(key, section, desc);
+    if (is_map_of_keys(find_color(key)) || listing()) return map(key, section, desc);
     Animated<Rgb> value(Rgb(0.0F));
     color(key, value, range);
     if (!has(key)) return;
     desc.emplace();
     desc->color = value;
   }
+  /// A map, or in its place desc.type alone.
+  template <class Desc>
+  void type_or_map(std::string_view key, const std::string& section, Desc& desc,
+                   std::span<const std::string> types) {
+    const YamlNode* node = find(key);
+    const bool is_map = node != nullptr && node->kind == YamlNode::Kind::map;
+    if (is_map || listing()) return map(key, section, desc);
+    if (node == nullptr) return;
+    choice(key, desc.type, types);
+    MapReader inner(context_, empty_map(), what_, path_, section);
+    read_fields(inner, desc);
+  }
+  /// Numbers and the colours that stand there.
+  void stops(std::string_view key, std::vector<textures::Stop>& stops);
+  /// One number by either of two keys; `unit` becomes 0 or 1.
+  template <class Unit>
+  void either(std::string_view a_key, const Range& a_range, std::string_view b_key,
+              const Range& b_range, Unit& unit, Animated<float>& value) {
+    animated(a_key, value, a_range);
+    animated(b_key, value, b_range);
+    if (has(b_key)) unit = static_cast<Unit>(1);
+  }
+  /// Materials and those that stand in for them; both may be new ones.
+  void overrides(std::string_view key, std::vector<std::pair<std::string, std::string>>& overrides);
+  /// The objects of a group that is written in place.
+  void children(std::string_view key, std::vector<ObjectDesc>& children);
   /// What a measured medium brings.
   void preset(std::string_view key, MediumDesc& medium);
 
@@ -152,7 +217,7 @@ class MapReader {
   static bool is_map_of_keys(const YamlNode* node);
   void ask(std::string_view key);
   const YamlNode* find(std::string_view key, std::string_view hint);
-  /// The same; where it is empty, the complaint tells of the commonest reason.
+  /// Finds the node of a colour; where it is empty, the complaint tells of the commonest reason.
   const YamlNode* find_color(std::string_view key);
 
   /// Notes a value that was read as a curve of the job.
@@ -169,10 +234,11 @@ class MapReader {
   std::string section_;
   SourceLocation where_;
   std::vector<std::string> asked_;
+  bool has_empty_ = false;
 };
 
-/// What the keys of a description ask of each other, beyond what each takes. Of most nothing; for
-/// the others there are overloads, which complain.
+/// What the keys of a description ask of each other, beyond what each takes, where none is empty.
+/// Of most nothing; for the others there are overloads, which complain.
 template <class Desc>
 void check_keys(MapReader& /*reader*/, Desc& /*desc*/) {}
 
@@ -180,22 +246,7 @@ void check_keys(MapReader& /*reader*/, Desc& /*desc*/) {}
 template <class Desc>
 void read_fields(MapReader& reader, Desc& desc) {
   Desc::fields(desc, reader);
-  if (!reader.listing()) check_keys(reader, desc);
-}
-
-/// One row of a table "type name -> who reads its keys".
-template <class Desc>
-struct TypeRow {
-  const char* name;
-  void (*read)(MapReader& reader, Desc& desc);
-};
-
-/// Names of a table's rows.
-template <class Desc>
-std::vector<std::string> type_names(std::span<const TypeRow<Desc>> table) {
-  std::vector<std::string> names;
-  for (const auto& row : table) names.emplace_back(row.name);
-  return names;
+  if (!reader.listing() && !reader.has_empty()) check_keys(reader, desc);
 }
 
 /// Reads `key` as one of `names` into `type` (which holds the default, "" = required) and lets
@@ -205,13 +256,14 @@ bool read_by_type(MapReader& reader, std::string_view key, const std::string& se
                   std::string& type, std::span<const std::string> names,
                   const std::function<void(size_t)>& read);
 
-/// Reads `key` into desc.type as the name of a row of `table`, whose reader reads the rest. False
-/// where the type is unknown.
+/// Reads `type` into desc.type, and then the keys of `desc`, from section "section.type" on.
 template <class Desc>
-bool read_by_type(MapReader& reader, std::string_view key, const std::string& section, Desc& desc,
-                  std::span<const TypeRow<Desc>> table) {
-  return read_by_type(reader, key, section, desc.type, type_names(table),
-                      [&](size_t row) { table[row].read(reader, desc); });
+void read_typed(MapReader& reader, const std::string& section, Desc& desc,
+                std::span<const std::string> types) {
+  read_by_type(reader, "type", section, desc.type, types, [&](size_t type) {
+    desc.type = types[type];
+    read_fields(reader, desc);
+  });
 }
 
 /// Reads `type` into desc.kind, a variant (KindsOf), and then all keys of `desc`, from section
@@ -223,7 +275,7 @@ bool read_kind(MapReader& reader, const std::string& section, Desc& desc) {
   return read_by_type(reader, "type", section, type, Kinds::names(), [&](size_t kind) {
     desc.kind = Kinds::make(kind);
     Desc::fields(desc, reader);
-    if (reader.listing()) return;
+    if (reader.listing() || reader.has_empty()) return;
     std::visit([&](auto& of_type) { check_keys(reader, of_type); }, desc.kind);
   });
 }

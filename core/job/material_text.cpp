@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "core/job/old_lines.h"
@@ -65,8 +66,8 @@ bool has_old_line(std::string_view key) {
 }
 
 /// The lines of `material`, by the old names.
-std::vector<FieldWriter::Line> lines_of(FieldWriter& out, const MaterialDesc& material) {
-  auto lines = out.collect([&] { MaterialDesc::fields(material, out); });
+std::vector<FieldWriter::Line> old_lines_of(FieldWriter& out, const MaterialDesc& material) {
+  auto lines = lines_of(out, material);
   if (std::holds_alternative<PrincipledDesc>(material.kind)) {
     // Its roughness and ior were those of all types.
     for (FieldWriter::Line& line : lines) {
@@ -87,13 +88,8 @@ std::vector<FieldWriter::Line> lines_of(FieldWriter& out, const MaterialDesc& ma
 }  // namespace
 
 void write_material(FieldWriter& out, const MaterialDesc& material) {
-  out.enter("material");
-  out.put("name", material.name);
-  out.put("type", KindsOf<MaterialKind>::name(material.kind));
-  MaterialDesc plain;
-  plain.kind = KindsOf<MaterialKind>::make(material.kind.index());
-  write_in_old_order(out, kOldMaterialLines, lines_of(out, material), lines_of(out, plain));
-  out.leave();
+  write_desc(out, "material", material, kOldMaterialLines,
+             [&](const MaterialDesc& desc) { return old_lines_of(out, desc); });
 }
 
 }  // namespace hyades::core

@@ -1,6 +1,5 @@
 #include "core/job/measured_media.h"
-
-#include <cctype>
+#include "core/base/text.h"
 
 namespace hyades::core {
 namespace {
@@ -115,12 +114,8 @@ std::vector<MeasuredMedium> make_media() {
 
 /// Letters and digits alone, in lower case.
 std::string plain(std::string_view name) {
-  std::string result;
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == ' ' || c == '-' || c == '_') continue;
-    result += static_cast<char>(std::tolower(byte));
-  }
+  std::string result = lower_case(name);
+  std::erase_if(result, [](char c) { return c == ' ' || c == '-' || c == '_'; });
   return result;
 }
 

@@ -20,12 +20,13 @@ struct EmissionDesc {
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit.color(KeyName{"color", "emission"}, self.color, kNotNegative.in("W/(length³ sr)"));
-    visit.animated(KeyName{"strength", "emission_strength"}, self.strength, kNotNegative);
+    visit.color(KeyName{"color", "emission"}, self.color, kNotNegative);
+    visit.animated(KeyName{"strength", "emission_strength"}, self.strength,
+                   kNotNegative.in("W/(length³ sr)"));
     visit.text(KeyName{"grid", "glow.grid"}, self.grid, "the name of a grid of numbers");
     visit.text(KeyName{"temperature", "glow.temperature"}, self.temperature,
                "the name of a grid of numbers");
-    visit.animated(KeyName{"kelvin", "glow.kelvin"}, self.kelvin, kPositive.in("kelvin"));
+    visit.animated(KeyName{"kelvin", "glow.kelvin"}, self.kelvin, kPositive.in("K"));
   }
 
   /// Whether it varies in its own way.
@@ -69,7 +70,7 @@ struct MediumDesc {
     visit.color("g2", self.g2, kCosine);
     visit.animated("blend", self.blend, kUnitInterval);
     visit.animated("index", self.index, {0.01, 100.0});
-    visit.color_or_map("emission", "media.emission", self.emission, kNotNegative);
+    visit.color_or_map(KeyName{"emission", ""}, "media.emission", self.emission, kNotNegative);
     visit.animated("scale", self.scale, kNotNegative);
     visit.light_group("light_group", self.light_group);
   }

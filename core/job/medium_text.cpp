@@ -19,7 +19,7 @@ constexpr OldLine kOldMediumLines[] = {
     {"g"},
     {"g2"},
     {"blend"},
-    {"emission", "00000000,00000000,00000000"},
+    {"emission", kZeroBits},
     {"emission_strength", "3f800000"},
     {"scale"},
     {"density.vdb"},
@@ -38,8 +38,8 @@ constexpr OldLine kOldMediumLines[] = {
     {"index"},
 };
 
-std::vector<FieldWriter::Line> lines_of(FieldWriter& out, const MediumDesc& medium) {
-  auto lines = out.collect([&] { MediumDesc::fields(medium, out); });
+std::vector<FieldWriter::Line> old_lines_of(FieldWriter& out, const MediumDesc& medium) {
+  auto lines = lines_of(out, medium);
   const auto leave_out = [&](std::initializer_list<std::string_view> keys) {
     std::erase_if(lines, [&](const FieldWriter::Line& line) {
       return std::find(keys.begin(), keys.end(), line.key) != keys.end();
@@ -57,10 +57,8 @@ std::vector<FieldWriter::Line> lines_of(FieldWriter& out, const MediumDesc& medi
 }  // namespace
 
 void write_medium(FieldWriter& out, const MediumDesc& medium) {
-  out.enter("medium");
-  out.put("name", medium.name);
-  write_in_old_order(out, kOldMediumLines, lines_of(out, medium), lines_of(out, MediumDesc()));
-  out.leave();
+  write_desc(out, "medium", medium, kOldMediumLines,
+             [&](const MediumDesc& desc) { return old_lines_of(out, desc); });
 }
 
 }  // namespace hyades::core

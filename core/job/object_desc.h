@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,11 +19,20 @@ namespace hyades::core {
 struct EmitDesc {
   ColorInput color{Animated<Rgb>(Rgb(1.0F)), {}};
   enum class Unit { radiance, power } unit = Unit::radiance;
-  /// W/(m^2 sr), multiplied with color; or W over the whole shape, multiplied with a plain color (a
-  /// texture only shares it out).
+  /// Multiplied with color: how bright it looks; or what the whole shape gives off, with a plain
+  /// color (a texture only shares it out).
   Animated<float> amount{1.0F};
   bool two_sided = false;   ///< open shapes: give light from the back too
   std::string light_group;  ///< empty: none
+
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit.color_input("color", self.color, kNotNegative);
+    visit.either("radiance", kNotNegative.in("W/(m² sr)"), "power", kNotNegative.in("W"), self.unit,
+                 self.amount);
+    visit.flag("two_sided", self.two_sided);
+    visit.light_group("light_group", self.light_group);
+  }
 };
 
 /// Most triangles that a displacement's budget may allow.
@@ -46,10 +56,14 @@ struct DisplacementDesc {
   }
 };
 
+inline const std::array<std::string, 5> kShapeNames = {"sphere", "rectangle", "disk", "box",
+                                                       "cylinder"};
+inline const std::array<std::string, 3> kMeshNormalsNames = {"file", "flat", "smooth"};
+
 struct ObjectDesc {
   std::string name;
   SourceLocation where;
-  std::string shape;  ///< mesh | sphere | rectangle | disk | box | cylinder | instance | group
+  std::string shape;  ///< of kShapeNames, mesh, instance or group
   std::string mesh;   ///< file, or one for each frame (mesh_files.h)
   std::string part;   ///< mesh: the material of the file whose triangles are meant; empty: all
   std::string instance_of;            ///< name in Job::groups
@@ -60,7 +74,7 @@ struct ObjectDesc {
   Animated<Vec3> size{Vec3(1.0F)};    ///< box
   Animated<float> height{1.0F};       ///< cylinder, along y
   bool caps = true;                   ///< cylinder
-  std::string smooth = "file";        ///< mesh normals: file | flat | smooth
+  std::string smooth = kMeshNormalsNames[0];  ///< mesh: its normals
   std::string material;  ///< empty: inherited from the group, else of the medium's index
                          ///< of refraction, else grey lambert
   std::string interior;  ///< name in Job::media of what fills it; empty: nothing
@@ -72,9 +86,61 @@ struct ObjectDesc {
   std::vector<std::pair<std::string, std::string>> overrides;
   std::optional<EmitDesc> emit;
   bool visible_to_camera = true;
-  /// Of meshes.
-  std::optional<DisplacementDesc> displacement;
+  std::optional<DisplacementDesc> displacement;  ///< of meshes
+
+  /// The keys of all objects, then those of its shape.
+  template <class Self, class Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit.enter_section("objects");
+    visit.name_of("material", self.material, NameKind::material);
+    visit.overrides("override", self.overrides);
+    visit.place(self.transform, self.at);
+    visit.flag("visible_to_camera", self.visible_to_camera);
+    if (self.shape == "instance") {
+      visit.name_of(KeyName{"instance", "instance_of"}, self.instance_of, NameKind::group);
+      visit.enter_section("objects.instance");
+      visit.file("places", self.places);
+    } else if (self.shape == "group") {
+      visit.children("group", self.children);
+    } else if (!self.shape.empty()) {
+      fields_of_shape(self, visit);
+      visit.enter_section("objects.bodies");
+      visit.name_of("interior", self.interior, NameKind::medium);
+      visit.name_of("exterior", self.exterior, NameKind::medium);
+      visit.integer("priority", self.priority, -1000, 1000);
+    }
+    visit.enter_section("objects." + self.shape);
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void fields_of_shape(Self& self, Visitor& visit) {
+    if (self.shape == "mesh") visit.mesh_file("mesh", self.mesh);
+    visit.enter_section("objects.shapes");
+    visit.map("emit", "objects.emit", self.emit);
+    visit.enter_section("objects." + self.shape);
+    if (self.shape == "mesh") {
+      visit.choice(KeyName{"normals", "smooth"}, self.smooth, kMeshNormalsNames);
+      visit.text("part", self.part, "the name of a material in the mesh's file (usemtl)");
+      visit.map("displacement", "objects.mesh.displacement", self.displacement);
+    } else if (self.shape == "rectangle") {
+      visit.animated(KeyName{"size", "extent"}, self.extent, kPositive.in("length"));
+    } else if (self.shape == "box") {
+      visit.animated("size", self.size, kPositive.in("length"));
+    } else {
+      visit.animated("radius", self.radius, kPositive.in("length"));
+    }
+    if (self.shape != "cylinder") return;
+    visit.animated("height", self.height, kPositive.in("length"));
+    visit.flag("caps", self.caps);
+  }
 };
+
+/// Whether a shape is closed, so that something can be inside of it; of meshes it is believed.
+inline bool has_inside(const ObjectDesc& object) {
+  return object.shape == "mesh" || object.shape == "sphere" || object.shape == "box" ||
+         (object.shape == "cylinder" && object.caps);
+}
 
 struct GroupDesc {
   std::string name;

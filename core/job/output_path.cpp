@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <filesystem>
 
+#include "core/base/text.h"
+
 namespace hyades::core {
 
 namespace {
@@ -30,11 +32,7 @@ std::string output_path(const std::string& file, int32_t frame) {
 }
 
 std::string file_extension(const std::string& file) {
-  std::string extension = std::filesystem::path(file).extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
+  return lower_case(std::filesystem::path(file).extension().string());
 }
 
 bool same_output_path(const std::string& a, const std::string& b) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/job/read_values.h"
 
 namespace hyades::core {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <set>
 
 #include "core/base/text.h"
 #include "core/job/job_keys.h"
@@ -67,9 +68,9 @@ void read_units(MapReader& top, Job& job) {
 
 /// Splats are weighed by the filter around where they land, and this one has no around.
 void check_splats(MapReader& top, const Job& job) {
-  if (!makes_splats(job.integrator) || job.film.filter != FilterKind::center) return;
+  if (!makes_splats(job.integrator) || job.film.filter.type != FilterKind::center) return;
   top.complain(
-      top.find("integrator")->where,
+      top.where_of("integrator"),
       fmt::format("the integrator is {}, whose light paths may end anywhere on the film, but "
                   "film.filter is center; expected a filter with a radius",
                   job.integrator.type));

@@ -1,9 +1,10 @@
-#include "core/job/kinds.h"
+#include <optional>
+#include <string>
+#include <utility>
+
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
-
-std::vector<std::string> light_types() { return KindsOf<LightKind>::names(); }
 
 void check_keys(MapReader& reader, SkyDesc& /*sky*/) {
   if (!reader.has("sun_direction")) return;

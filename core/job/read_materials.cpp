@@ -1,7 +1,7 @@
 #include <memory>
 #include <string>
+#include <utility>
 
-#include "core/job/kinds.h"
 #include "core/job/read_sections.h"
 
 namespace hyades::core {
@@ -41,8 +41,6 @@ void check_keys(MapReader& reader, PrincipledDesc& principled) {
                         "with a subsurface light goes in anyway");
   }
 }
-
-std::vector<std::string> material_types() { return KindsOf<MaterialKind>::names(); }
 
 void read_material(MapReader& reader, const std::string& name) {
   MaterialDesc material;

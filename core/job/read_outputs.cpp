@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/text.h"
 #include "core/job/output_names.h"
@@ -21,7 +25,7 @@ void read_exr(MapReader& reader, OutputDesc& output) {
 
 void read_picture(MapReader& reader, OutputDesc& output) {
   if (reader.context().job.color && reader.has("tone_map")) {
-    reader.complain(reader.find("tone_map")->where,
+    reader.complain(reader.where_of("tone_map"),
                     "tone_map stands beside 'color', whose configuration makes the display values; "
                     "expected one of them");
   }
@@ -115,7 +119,7 @@ void read_output(MapReader& reader, Job& job) {
     return;
   }
   if (output.file.empty()) return;
-  const SourceLocation where = reader.find("file")->where;
+  const SourceLocation where = reader.where_of("file");
   const std::string extension = file_extension(output.file);
   const auto row = std::find_if(kFormats.begin(), kFormats.end(),
                                 [&](const FormatRow& r) { return extension == r.extension; });

@@ -3,106 +3,80 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "core/base/udim.h"
-#include "core/job/kinds.h"
 #include "core/job/read_sections.h"
-#include "core/job/read_texture_kinds.h"
 #include "core/job/read_values.h"
 
 namespace hyades::core {
 
-namespace {
-
-const std::array<std::string, 3> kColorSpaces = {"auto", "srgb", "linear"};
-const std::array<std::string, 4> kWraps = {"repeat", "clamp", "mirror", "black"};
-const std::array<std::string, 4> kFilters = {"trilinear", "anisotropic", "bilinear", "nearest"};
-
-void read_constant(MapReader& reader, TextureDesc& texture) {
-  reader.require("value", "a colour");
-  reader.color_input("value", texture.a, kNotNegative);
-}
-
-/// One mode, or [along u, along v].
-void read_wrap(MapReader& reader, TextureImage& image) {
-  const YamlNode* node = reader.find("wrap");
+void MapReader::choices(std::string_view key, std::string& first, const char* /*second_line*/,
+                        std::string& second, std::span<const std::string> names) {
+  const YamlNode* node = find(key);
   if (node == nullptr || node->kind != YamlNode::Kind::list) {
-    reader.choice("wrap", image.wrap, kWraps);
-    image.wrap_v = image.wrap;
+    choice(key, first, names);
+    second = first;
     return;
   }
-  const auto is_mode = [](const YamlPtr& item) {
+  const auto is_one = [&](const YamlPtr& item) {
     return item->kind == YamlNode::Kind::scalar &&
-           std::find(kWraps.begin(), kWraps.end(), item->scalar) != kWraps.end();
+           std::find(names.begin(), names.end(), item->scalar) != names.end();
   };
-  if (node->list.size() != 2 || !std::all_of(node->list.begin(), node->list.end(), is_mode)) {
-    reader.complain(node->where, "wrap is a list, expected one or two of " + join_names(kWraps) +
-                                     ": [along u, along v]");
-    return;
+  if (node->list.size() != 2 || !std::all_of(node->list.begin(), node->list.end(), is_one)) {
+    return complain(node->where, fmt::format("{} is a list, expected one or two of {}: [along u, "
+                                             "along v]",
+                                             key, join_names(names)));
   }
-  image.wrap = node->list[0]->scalar;
-  image.wrap_v = node->list[1]->scalar;
+  first = node->list[0]->scalar;
+  second = node->list[1]->scalar;
 }
 
-void read_image(MapReader& reader, TextureDesc& texture) {
-  TextureImage& image = texture.image;
-  reader.require("file", "an image file");
-  reader.file("file", image.file);
-  reader.choice("color_space", image.color_space, kColorSpaces);
-  read_wrap(reader, image);
-  reader.choice("filter", image.filter, kFilters);
-  reader.choice("channel", texture.channel, channel_names());
-  read_mapping(reader, texture);
-  if (is_udim(image.file) && reader.has("wrap")) {
-    reader.complain(reader.find("wrap")->where,
-                    "wrap is given, but the tiles of <UDIM> lie side by side and do not wrap");
+void MapReader::stops(std::string_view key, std::vector<textures::Stop>& stops) {
+  const YamlNode* node = find(key);
+  if (node == nullptr) return;
+  if (node->kind != YamlNode::Kind::map || node->map.size() < 2) {
+    return mismatch(key, *node, "two or more of 'number: colour', such as {0: 0.1, 1: \"#fd8\"}");
+  }
+  MapReader map(context_, *node, fmt::format("{} of {}", key, what_),
+                fmt::format("{}.{}", path_, key), section_);
+  for (const auto& entry : node->map) {
+    textures::Stop stop;
+    double at = 0.0;
+    if (!parse_number(entry.key, at)) {
+      complain(entry.value->where,
+               fmt::format("a stop stands at '{}', expected a number", entry.key));
+      continue;
+    }
+    stop.at = static_cast<float>(at);
+    map.color_input(entry.key, stop.color, kNotNegative);
+    const bool twice = std::any_of(stops.begin(), stops.end(),
+                                   [&](const auto& other) { return other.at == stop.at; });
+    if (twice) complain(entry.value->where, fmt::format("two stops stand at {}", entry.key));
+    stops.push_back(std::move(stop));
   }
 }
 
-void read_vertex_color(MapReader& reader, TextureDesc& texture) {
-  reader.choice("channel", texture.channel, channel_names());
+void check_keys(MapReader& reader, textures::Mapping& mapping) {
+  const bool triplanar = mapping.type == "triplanar";
+  const bool projects = triplanar || mapping.type == "planar" || mapping.type == "spherical" ||
+                        mapping.type == "cylindrical";
+  if (reader.has("space") && !projects) {
+    reader.complain(reader.where_of("space"),
+                    "space belongs to the mappings planar, spherical, cylindrical and triplanar");
+  }
+  if (reader.has("blend") && !triplanar) {
+    reader.complain(reader.where_of("blend"), "blend belongs to the mapping triplanar");
+  }
 }
 
-const std::array<TypeRow<TextureDesc>, 30> kTextureTypes = {{
-    {"constant", read_constant},
-    {"image", read_image},
-    {"vertex-color", read_vertex_color},
-    {"checker", read_checker},
-    {"brick", read_brick},
-    {"stripes", read_lines},
-    {"grid", read_lines},
-    {"gradient", read_gradient},
-    {"perlin3d", read_perlin},
-    {"perlin4d", read_perlin_4d},
-    {"fbm3d", read_fbm},
-    {"fbm4d", read_fbm_4d},
-    {"turbulence", read_fractal},
-    {"ridged", read_fractal},
-    {"marble", read_layers},
-    {"wood", read_layers},
-    {"cellular", read_cellular},
-    {"scale", read_product},
-    {"add", read_pair},
-    {"divide", read_pair},
-    {"min", read_pair},
-    {"max", read_pair},
-    {"mix", read_texture_mix},
-    {"invert", read_invert},
-    {"remap", read_remap},
-    {"power", read_power},
-    {"threshold", read_threshold},
-    {"ramp", read_ramp},
-    {"hue-saturation", read_hue_saturation},
-    {"channel", read_channel},
-}};
-
-}  // namespace
-
-std::vector<std::string> texture_types() { return type_names<TextureDesc>(kTextureTypes); }
-std::span<const std::string> color_space_names() { return kColorSpaces; }
-std::span<const std::string> wrap_names() { return kWraps; }
-std::span<const std::string> texture_filter_names() { return kFilters; }
+void check_keys(MapReader& reader, textures::Image& image) {
+  if (!is_udim(image.file) || !reader.has("wrap")) return;
+  reader.complain(reader.where_of("wrap"),
+                  "wrap is given, but the tiles of <UDIM> lie side by side and do not wrap");
+}
 
 void read_textures(MapReader& top) {
   read_named(top, "textures", "texture", NameKind::texture, read_texture);
@@ -112,7 +86,7 @@ void read_texture(MapReader& reader, const std::string& name) {
   TextureDesc texture;
   texture.name = name;
   texture.where = reader.where();
-  if (!read_by_type<TextureDesc>(reader, "type", "textures", texture, kTextureTypes)) return;
+  if (!read_kind(reader, "textures", texture)) return;
   reader.finish();
   reader.context().job.textures.push_back(std::move(texture));
 }

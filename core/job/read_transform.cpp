@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "core/base/text.h"
 #include "core/job/read_sections.h"
@@ -29,11 +33,11 @@ void read_matrix(MapReader& reader, std::string_view key, Mat4& matrix) {
 /// rotate: {axis: [x, y, z], angle: degrees} or {quaternion: [x, y, z, w]}
 void read_rotation(MapReader& reader, TransformStep& step) {
   reader.map("rotate", "transform.rotate", [&](MapReader& map) {
-    if (map.has("quaternion")) {
+    if (map.node().find("quaternion") != nullptr) {
       step.kind = TransformStep::Kind::quaternion;
       for (const char* key : {"axis", "angle"}) {
         if (!map.has(key)) continue;
-        map.complain(map.find(key)->where,
+        map.complain(map.where_of(key),
                      fmt::format("rotate has both quaternion and {}, expected quaternion, or axis "
                                  "and angle",
                                  key));

@@ -16,12 +16,8 @@ class FileList {
   void add(const std::vector<std::string>& all) {
     for (const std::string& file : all) add(file);
   }
-  void add_meshes(const std::vector<ObjectDesc>& objects) {
-    for (const ObjectDesc& object : objects) {
-      add(object.mesh);
-      add(object.places);
-      add_meshes(object.children);
-    }
+  void add(const std::vector<ObjectDesc>& objects) {
+    for (const ObjectDesc& object : objects) add(files_in(object));
   }
 
   std::vector<std::string> files;
@@ -34,12 +30,10 @@ class FileList {
 
 std::vector<std::string> referenced_files(const Job& job) {
   FileList list;
-  for (const TextureDesc& texture : job.textures) list.add(texture.image.file);
-  for (const MediumDesc& medium : job.media) {
-    list.add(files_in(medium));
-  }
-  for (const GroupDesc& group : job.groups) list.add_meshes(group.objects);
-  list.add_meshes(job.objects);
+  for (const TextureDesc& texture : job.textures) list.add(files_in(texture));
+  for (const MediumDesc& medium : job.media) list.add(files_in(medium));
+  for (const GroupDesc& group : job.groups) list.add(group.objects);
+  list.add(job.objects);
   for (const LightDesc& light : job.lights) list.add(files_in(light));
   if (job.environment) list.add(job.environment->image);
   return list.files;

@@ -1,5 +1,6 @@
 #include "core/job/references.h"
 
+#include <string_view>
 #include <utility>
 
 namespace hyades::core {
@@ -60,8 +61,13 @@ std::vector<std::string> files(const Desc& desc) {
 std::vector<std::string> names_in(const MaterialDesc& material, NameKind kind) {
   return names(material, kind);
 }
+std::vector<std::string> names_in(const TextureDesc& texture, NameKind kind) {
+  return names(texture, kind);
+}
 
+std::vector<std::string> files_in(const TextureDesc& texture) { return files(texture); }
 std::vector<std::string> files_in(const LightDesc& light) { return files(light); }
 std::vector<std::string> files_in(const MediumDesc& medium) { return files(medium); }
+std::vector<std::string> files_in(const ObjectDesc& object) { return files(object); }
 
 }  // namespace hyades::core

@@ -1,83 +1,57 @@
+#include "core/job/old_lines.h"
 #include "core/job/resolved_parts.h"
 
 namespace hyades::core {
-
 namespace {
 
-void write(FieldWriter& out, const TextureImage& image) {
-  out.enter("image");
-  out.put_file("file", image.file);
-  out.put("color_space", image.color_space);
-  out.put("wrap", image.wrap);
-  if (image.wrap_v != image.wrap) out.put("wrap_v", image.wrap_v);
-  out.put("filter", image.filter);
-  out.leave();
-}
-
-void write(FieldWriter& out, const TextureMapping& mapping) {
-  out.enter("mapping");
-  out.put("type", mapping.type);
-  out.put("space", mapping.space);
-  out.put("transform", mapping.transform);
-  out.put("blend", mapping.blend);
-  out.put("scale", mapping.scale);
-  out.put("offset", mapping.offset);
-  out.leave();
-}
-
-void write(FieldWriter& out, const TextureNoise& noise) {
-  out.enter("noise");
-  out.put("octaves", noise.octaves);
-  out.put("lacunarity", noise.lacunarity);
-  out.put("gain", noise.gain);
-  if (noise.time) out.put("time", *noise.time);
-  out.put("distortion", noise.distortion);
-  out.leave();
-}
-
-void write(FieldWriter& out, const TextureRemap& remap) {
-  out.enter("remap");
-  out.put("low", remap.low);
-  out.put("high", remap.high);
-  out.put("to_low", remap.to_low);
-  out.put("to_high", remap.to_high);
-  out.put("ends", remap.ends);
-  out.leave();
-}
+/// From when one struct held the keys of all types.
+constexpr OldLine kOldTextureLines[] = {
+    {"a", kWhiteBits},
+    {"b", kWhiteBits},
+    {"amount", "3f000000"},
+    {"image.file", kNoText},
+    {"image.color_space", "4:auto"},
+    {"image.wrap", "6:repeat"},
+    {"image.wrap_v"},
+    {"image.filter", "9:trilinear"},
+    {"mapping.type", "7:default"},
+    {"mapping.space", "6:object"},
+    {"mapping.step.*"},
+    {"mapping.blend", "3e99999a"},
+    {"mapping.scale", kWhiteBits},
+    {"mapping.offset", kZeroBits},
+    {"noise.octaves", "1"},
+    {"noise.lacunarity", "40000000"},
+    {"noise.gain", "3f000000"},
+    {"noise.time"},
+    {"noise.distortion", "00000000"},
+    {"metric", "9:euclidean"},
+    {"feature", "2:f1"},
+    {"jitter", "3f800000"},
+    {"width", "3dcccccd"},
+    {"shift", "3f000000"},
+    {"line_softness", "00000000"},
+    {"shape", "6:linear"},
+    {"remap.low", "00000000"},
+    {"remap.high", "3f800000"},
+    {"remap.to_low", "00000000"},
+    {"remap.to_high", "3f800000"},
+    {"remap.ends", "5:clamp"},
+    {"stop.*"},
+    {"between", "6:linear"},
+    {"exponent", "3f800000"},
+    {"level", "3f000000"},
+    {"softness", "00000000"},
+    {"hue", "00000000"},
+    {"saturation", "3f800000"},
+    {"value", "3f800000"},
+    {"channel", "5:color"},
+};
 
 }  // namespace
 
 void write_texture(FieldWriter& out, const TextureDesc& texture) {
-  out.enter("texture");
-  out.put("name", texture.name);
-  out.put("type", texture.type);
-  out.put("a", texture.a);
-  out.put("b", texture.b);
-  out.put("amount", texture.amount);
-  write(out, texture.image);
-  write(out, texture.mapping);
-  write(out, texture.noise);
-  out.put("metric", texture.cells.metric);
-  out.put("feature", texture.cells.feature);
-  out.put("jitter", texture.cells.jitter);
-  out.put("width", texture.lines.width);
-  out.put("shift", texture.lines.shift);
-  out.put("line_softness", texture.lines.softness);
-  out.put("shape", texture.shape);
-  write(out, texture.remap);
-  for (const TextureStop& stop : texture.stops) {
-    out.put("stop.at", stop.at);
-    out.put("stop.color", stop.color);
-  }
-  out.put("between", texture.between);
-  out.put("exponent", texture.exponent);
-  out.put("level", texture.level);
-  out.put("softness", texture.softness);
-  out.put("hue", texture.hue);
-  out.put("saturation", texture.saturation);
-  out.put("value", texture.value);
-  out.put("channel", texture.channel);
-  out.leave();
+  write_desc(out, "texture", texture, kOldTextureLines);
 }
 
 }  // namespace hyades::core

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/lights/light.h"
 
 namespace hyades::core {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/base/vec.h"
 #include "core/lights/light.h"
 

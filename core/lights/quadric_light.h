@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "core/geometry/world.h"
 #include "core/lights/area_light.h"
 

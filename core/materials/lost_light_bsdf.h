@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "core/base/warp.h"
 #include "core/materials/bsdf.h"

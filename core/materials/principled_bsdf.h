@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/materials/anisotropic_energy.h"
 #include "core/materials/bsdf.h"
 #include "core/materials/coat_lobe.h"

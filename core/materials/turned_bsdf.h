@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/materials/material.h"
 #include "core/materials/shading_normal_correction.h"
 

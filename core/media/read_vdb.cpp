@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -140,6 +143,7 @@ Grid<T> read_grid(VdbCursor& cursor, const Entry& entry) {
   Grid<T> grid;
   VdbEncoding encoding;
   encoding.compression = cursor.read<uint32_t>();
+  // NOLINTNEXTLINE(bugprone-sizeof-expression): one where T is float
   encoding.components = sizeof(T) / sizeof(float);
   encoding.component_bytes = entry.type == kDoubles ? 8 : 4;
   encoding.half = entry.half;

@@ -1,6 +1,7 @@
 #include "core/render/frame_renderer.h"
 
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <utility>
 
@@ -97,14 +98,14 @@ FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const Job& job,
                              const LayerSet& layers, std::unique_ptr<Integrator> integrator)
     : scene_(std::move(scene)),
       integrator_(std::move(integrator)),
-      filter_(make_pixel_filter(filter_shape(job.film.filter), job.film.filter_radius)),
+      filter_(make_pixel_filter(filter_shape(job.film.filter.type), job.film.filter.radius)),
       layout_(make_film_layout(layers)),
       part_table_(part_table(layout_, *scene_)),
       sampling_(job.sampling),
       frame_(static_cast<uint32_t>(frame)),
       needs_time_(job.frames.shutter > 0.0F) {
-  chain_film_ = {job.film.filter_radius, needs_time_};
-  if (layers.splats) placer_.emplace(*filter_, job.film.filter_radius, scene_->window);
+  chain_film_ = {job.film.filter.radius, needs_time_};
+  if (layers.splats) placer_.emplace(*filter_, job.film.filter.radius, scene_->window);
 }
 
 TakenSample FrameRenderer::sample_pixel(const Vec2i& pixel, uint32_t sample, Sampler& sampler,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/render/frame_renderer.h"
 
 namespace hyades::core {

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <set>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "core/geometry/affine.h"
-#include "core/job/kinds.h"
 #include "core/job/layers.h"
 #include "core/scene/rank_bodies.h"
 #include "core/scene/transforms.h"

@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/film/id_counts.h"
 #include "core/geometry/placement_check.h"
 #include "core/job/check_frame.h"
-#include "core/job/kinds.h"
 #include "core/job/layers.h"
 #include "core/job/mesh_files.h"
 #include "core/scene/add_bodies.h"

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -65,11 +67,11 @@ Result<CameraPose> pose_at(const Job& job, int32_t frame, float shutter_time,
     pose.focus_distance = glm::dot(pose.at - pose.from, axis);
   }
   pose.focus_distance = std::max(pose.focus_distance, 1e-6F * job.units);
-  if (camera.f_stop) {
+  if (camera.aperture.f_stop) {
     const float focal_length = 0.5F * kSensorHeight / tan(0.5F * pose.fov);
-    pose.lens_radius = focal_length / (2.0F * camera.f_stop->at(time));
+    pose.lens_radius = focal_length / (2.0F * camera.aperture.f_stop->at(time));
   } else {
-    pose.lens_radius = camera.aperture_radius.at(time) * job.units;
+    pose.lens_radius = camera.aperture.radius.at(time) * job.units;
   }
   return pose;
 }
@@ -87,8 +89,8 @@ Result<std::unique_ptr<Camera>> make_camera(const Job& job, int32_t frame,
     if (!pose) return pose.error();
     poses.push_back(*pose);
   }
-  const float rotation = job.camera.aperture_rotation.at(job.time_of(frame));
-  return make_of_type(job, std::move(poses), {job.camera.aperture_blades, rotation * kRadians});
+  const float rotation = job.camera.aperture.rotation.at(job.time_of(frame));
+  return make_of_type(job, std::move(poses), {job.camera.aperture.blades, rotation * kRadians});
 }
 
 std::unique_ptr<Camera> make_sharp_camera(const Job& job, const JobTime& time) {

@@ -1,13 +1,16 @@
 #include "core/scene/displacement.h"
 
 #include <algorithm>
-#include <array>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "core/geometry/displace.h"
 #include "core/job/field_writer.h"
 #include "core/job/mesh_files.h"
+#include "core/job/references.h"
 #include "core/job/resolved_parts.h"
 #include "core/scene/shape_makers.h"
 
@@ -26,29 +29,26 @@ std::vector<const TextureDesc*> textures_read(const Job& job, const std::string&
     if (texture == job.textures.end()) continue;
     if (std::find(found.begin(), found.end(), &*texture) != found.end()) continue;
     found.push_back(&*texture);
-    for (const std::string& used : textures_used(*texture)) names.push_back(used);
+    for (const std::string& used : names_in(*texture, NameKind::texture)) names.push_back(used);
   }
   return found;
 }
 
 bool looks_at_world(const TextureDesc& texture) {
-  const TextureMapping& mapping = texture.mapping;
+  const textures::Mapping mapping = mapping_of(texture);
   return mapping.type == "world" || mapping.space == "world";
 }
 
-/// Of these the mapping is uv where the job says none.
-constexpr std::array<std::string_view, 6> kOnUv = {"image",   "checker", "brick",
-                                                   "stripes", "grid",    "gradient"};
-
 /// Colours and second coordinates of vertices are known of surfaces, and not while one is made.
 bool looks_at_vertices(const TextureDesc& texture) {
-  return texture.type == "vertex-color" || texture.mapping.type == "uv1";
+  return std::holds_alternative<textures::VertexColor>(texture.kind) ||
+         mapping_of(texture).type == "uv1";
 }
 
 bool looks_at_uv(const TextureDesc& texture) {
-  const std::string& type = texture.mapping.type;
-  return type == "uv" ||
-         (type == "default" && std::find(kOnUv.begin(), kOnUv.end(), texture.type) != kOnUv.end());
+  const std::string type = mapping_of(texture).type;
+  const bool on_uv = std::visit([](const auto& kind) { return kind.kTraits.on_uv; }, texture.kind);
+  return type == "uv" || (type == "default" && on_uv);
 }
 
 /// All that decides the mesh.

@@ -39,6 +39,7 @@ class MediumStack {
   MediumStack(const MediumStack& other) : atmosphere_(other.atmosphere_), size_(other.size_) {
     std::copy_n(other.inside_.begin(), size_, inside_.begin());
   }
+  // NOLINTNEXTLINE(bugprone-unhandled-self-assignment): it would come out the same
   MediumStack& operator=(const MediumStack& other) {
     atmosphere_ = other.atmosphere_;
     size_ = other.size_;

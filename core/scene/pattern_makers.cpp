@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "core/scene/texture_kind_makers.h"
 #include "core/scene/texture_mapping.h"
 #include "core/scene/texture_names.h"
@@ -5,107 +7,123 @@
 namespace hyades::core {
 namespace {
 
-/// `pattern` between the two colours.
-Result<TexturePtr> between_colors(const TextureDesc& desc, Appearance& looks,
-                                  MappingSpace preferred, const PatternPtr& pattern) {
+/// make(a, b, mapping) of the two colours of `desc`.
+template <class Kind, class Make>
+Result<TexturePtr> between_colors(const Kind& desc, Appearance& looks, const Make& make) {
   const auto a = looks.color_texture(desc.a);
   if (!a) return a.error();
   const auto b = looks.color_texture(desc.b);
   if (!b) return b.error();
-  return make_mapped(desc, looks, preferred, [&](const MappingDesc& mapping) -> Result<TexturePtr> {
-    return make_pattern_texture(*a, *b, pattern, mapping);
+  return make_mapped(
+      desc, Kind::kTraits.on_uv, looks,
+      [&](const MappingDesc& mapping) -> Result<TexturePtr> { return make(*a, *b, mapping); });
+}
+
+template <class Kind>
+Result<TexturePtr> between_colors(const Kind& desc, Appearance& looks, const PatternPtr& pattern) {
+  return between_colors(desc, looks, [&](auto& a, auto& b, const MappingDesc& mapping) {
+    return make_pattern_texture(a, b, pattern, mapping);
   });
 }
 
-std::optional<float> time_of(const TextureDesc& desc, const Appearance& looks) {
-  if (!desc.noise.time) return std::nullopt;
-  return desc.noise.time->at(looks.time());
+std::optional<float> at(const Animated<float>& value, const JobTime& time) {
+  return value.at(time);
+}
+std::optional<float> at(const std::optional<Animated<float>>& value, const JobTime& time) {
+  return value ? at(*value, time) : std::nullopt;
 }
 
-FractalDesc fractal_of(const TextureDesc& desc, const Appearance& looks) {
-  return {desc.noise.octaves, desc.noise.lacunarity.at(looks.time()),
-          desc.noise.gain.at(looks.time()), time_of(desc, looks)};
+template <class Noise>
+FractalDesc fractal_of(const Noise& desc, const JobTime& time) {
+  FractalDesc fractal{desc.octaves, desc.lacunarity.at(time), desc.gain.at(time), {}};
+  if constexpr (requires { desc.time; }) fractal.time = at(desc.time, time);
+  return fractal;
 }
 
-Result<TexturePtr> make_fractal(FractalKind kind, const TextureDesc& desc, Appearance& looks) {
-  return between_colors(desc, looks, MappingSpace::object,
-                        make_fractal_pattern(kind, fractal_of(desc, looks)));
+template <class Noise>
+Result<TexturePtr> make_fractal(FractalKind kind, const Noise& desc, Appearance& looks) {
+  return between_colors(desc, looks, make_fractal_pattern(kind, fractal_of(desc, looks.time())));
 }
 
-Result<TexturePtr> make_lines(bool grid, const TextureDesc& desc, Appearance& looks) {
+template <class Lines>
+Result<TexturePtr> make_lines(bool grid, const Lines& desc, Appearance& looks) {
   const JobTime& time = looks.time();
-  return between_colors(
-      desc, looks, MappingSpace::uv,
-      make_line_pattern(grid, desc.lines.width.at(time), desc.lines.softness.at(time)));
+  return between_colors(desc, looks,
+                        make_line_pattern(grid, desc.width.at(time), desc.softness.at(time)));
 }
 
 }  // namespace
 
-Result<TexturePtr> make_checker(const TextureDesc& desc, Appearance& looks) {
-  const auto a = looks.color_texture(desc.a);
-  if (!a) return a.error();
-  const auto b = looks.color_texture(desc.b);
-  if (!b) return b.error();
-  return make_mapped(desc, looks, MappingSpace::uv,
-                     [&](const MappingDesc& mapping) -> Result<TexturePtr> {
-                       return make_checker_texture(*a, *b, mapping);
-                     });
+Result<TexturePtr> make_texture(const textures::Checker& desc, Appearance& looks) {
+  return between_colors(desc, looks, make_checker_texture);
 }
 
-Result<TexturePtr> make_brick(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Brick& desc, Appearance& looks) {
   const JobTime& time = looks.time();
-  return between_colors(desc, looks, MappingSpace::uv,
-                        make_brick_pattern(desc.lines.width.at(time), desc.lines.shift.at(time),
-                                           desc.lines.softness.at(time)));
+  return between_colors(
+      desc, looks,
+      make_brick_pattern(desc.mortar.at(time), desc.shift.at(time), desc.softness.at(time)));
 }
 
-Result<TexturePtr> make_stripes(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Stripes& desc, Appearance& looks) {
   return make_lines(false, desc, looks);
 }
 
-Result<TexturePtr> make_grid(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Grid& desc, Appearance& looks) {
   return make_lines(true, desc, looks);
 }
 
-Result<TexturePtr> make_gradient(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Gradient& desc, Appearance& looks) {
   const auto shape = look_up(kGradientShapes, desc.shape, "shape of gradients");
   if (!shape) return shape.error();
-  return between_colors(desc, looks, MappingSpace::uv, make_gradient_pattern((*shape)->value));
+  return between_colors(desc, looks, make_gradient_pattern((*shape)->value));
 }
 
-Result<TexturePtr> make_fbm(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Perlin3d& desc, Appearance& looks) {
   return make_fractal(FractalKind::fbm, desc, looks);
 }
 
-Result<TexturePtr> make_turbulence(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Perlin4d& desc, Appearance& looks) {
+  return make_fractal(FractalKind::fbm, desc, looks);
+}
+
+Result<TexturePtr> make_texture(const textures::Fbm3d& desc, Appearance& looks) {
+  return make_fractal(FractalKind::fbm, desc, looks);
+}
+
+Result<TexturePtr> make_texture(const textures::Fbm4d& desc, Appearance& looks) {
+  return make_fractal(FractalKind::fbm, desc, looks);
+}
+
+Result<TexturePtr> make_texture(const textures::Turbulence& desc, Appearance& looks) {
   return make_fractal(FractalKind::turbulence, desc, looks);
 }
 
-Result<TexturePtr> make_ridged(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Ridged& desc, Appearance& looks) {
   return make_fractal(FractalKind::ridged, desc, looks);
 }
 
-Result<TexturePtr> make_marble(const TextureDesc& desc, Appearance& looks) {
-  const float distortion = desc.noise.distortion.at(looks.time());
-  return between_colors(desc, looks, MappingSpace::object,
-                        make_marble_pattern(fractal_of(desc, looks), distortion));
+Result<TexturePtr> make_texture(const textures::Marble& desc, Appearance& looks) {
+  const JobTime& time = looks.time();
+  return between_colors(desc, looks,
+                        make_marble_pattern(fractal_of(desc, time), desc.distortion.at(time)));
 }
 
-Result<TexturePtr> make_wood(const TextureDesc& desc, Appearance& looks) {
-  const float distortion = desc.noise.distortion.at(looks.time());
-  return between_colors(desc, looks, MappingSpace::object,
-                        make_wood_pattern(fractal_of(desc, looks), distortion));
+Result<TexturePtr> make_texture(const textures::Wood& desc, Appearance& looks) {
+  const JobTime& time = looks.time();
+  return between_colors(desc, looks,
+                        make_wood_pattern(fractal_of(desc, time), desc.distortion.at(time)));
 }
 
-Result<TexturePtr> make_cellular(const TextureDesc& desc, Appearance& looks) {
-  const auto metric = look_up(kCellMetrics, desc.cells.metric, "metric");
+Result<TexturePtr> make_texture(const textures::Cellular& desc, Appearance& looks) {
+  const auto metric = look_up(kCellMetrics, desc.metric, "metric");
   if (!metric) return metric.error();
-  const auto feature = look_up(kCellFeatures, desc.cells.feature, "feature of cells");
+  const auto feature = look_up(kCellFeatures, desc.feature, "feature of cells");
   if (!feature) return feature.error();
-  return between_colors(
-      desc, looks, MappingSpace::object,
-      make_cellular_pattern({(*metric)->value, (*feature)->value,
-                             desc.cells.jitter.at(looks.time()), time_of(desc, looks)}));
+  const JobTime& time = looks.time();
+  return between_colors(desc, looks,
+                        make_cellular_pattern({(*metric)->value, (*feature)->value,
+                                               desc.jitter.at(time), at(desc.time, time)}));
 }
 
 }  // namespace hyades::core

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <compare>
+#include <cstddef>
 #include <deque>
 #include <memory>
 #include <mutex>

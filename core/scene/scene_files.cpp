@@ -1,10 +1,12 @@
 #include "core/scene/scene_files.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/base/parallel.h"
@@ -136,15 +138,15 @@ class Walk {
     if (found == textures_.end() || !seen_textures_.insert(name).second) return;
     const TextureDesc& texture = *found->second;
     add_image(texture);
-    for (const std::string& used : textures_used(texture)) visit_texture(used);
+    for (const std::string& used : names_in(texture, NameKind::texture)) visit_texture(used);
   }
 
   void add_image(const TextureDesc& texture) {
-    if (texture.image.file.empty()) return;
-    const auto use = image_use_of(texture);
-    if (use && seen_images_.insert({texture.image.file, *use}).second) {
-      files_.images.push_back(
-          {texture.image.file, *use, "texture '" + texture.name + "'", texture.where});
+    const auto* image = std::get_if<textures::Image>(&texture.kind);
+    if (image == nullptr || image->file.empty()) return;
+    const auto use = image_use_of(*image);
+    if (use && seen_images_.insert({image->file, *use}).second) {
+      files_.images.push_back({image->file, *use, "texture '" + texture.name + "'", texture.where});
     }
   }
 

@@ -1,6 +1,10 @@
 #include "core/scene/shape_makers.h"
 
 #include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -146,8 +150,8 @@ MeshExtras mesh_extras_of(const Job& job) {
       std::any_of(job.materials.begin(), job.materials.end(),
                   [](const MaterialDesc& material) { return material.normal_map.has_value(); });
   for (const TextureDesc& texture : job.textures) {
-    extras.colors |= texture.type == "vertex-color";
-    extras.second_uvs |= texture.mapping.type == "uv1";
+    extras.colors |= std::holds_alternative<textures::VertexColor>(texture.kind);
+    extras.second_uvs |= mapping_of(texture).type == "uv1";
   }
   return extras;
 }

@@ -40,7 +40,7 @@ MeshUse base_use_of(const ObjectDesc& object, const MeshExtras& extras);
 /// What of meshes the materials and textures of the job look at.
 MeshExtras mesh_extras_of(const Job& job);
 
-/// The names that can be made: those of core/job/kinds.h.
+/// The names that can be made: those of core/job/object_desc.h.
 std::vector<std::string> made_shapes();
 std::vector<std::string> made_mesh_normals();
 

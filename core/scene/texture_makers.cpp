@@ -1,5 +1,8 @@
 #include "core/scene/texture_makers.h"
 
+#include <utility>
+#include <variant>
+
 #include "core/base/udim.h"
 #include "core/scene/texture_kind_makers.h"
 #include "core/scene/texture_mapping.h"
@@ -8,8 +11,8 @@
 namespace hyades::core {
 namespace {
 
-Result<TexturePtr> make_constant(const TextureDesc& desc, Appearance& looks) {
-  return looks.color_texture(desc.a);
+Result<TexturePtr> make_texture(const textures::Constant& desc, Appearance& looks) {
+  return looks.color_texture(desc.value);
 }
 
 /// One file, on `mapping`.
@@ -37,82 +40,47 @@ Result<TexturePtr> make_tiles(const std::string& pattern, const ImageUse& use, T
   return make_udim_texture(std::move(tiles), mapping);
 }
 
-Result<TexturePtr> make_image(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Image& desc, Appearance& looks) {
   const auto use = image_use_of(desc);
   if (!use) return use.error();
-  const auto filter = look_up(kFilters, desc.image.filter, "filter of textures");
+  const auto filter = look_up(kFilters, desc.filter, "filter of textures");
   if (!filter) return filter.error();
   const auto channel = look_up(kChannels, desc.channel, "channel");
   if (!channel) return channel.error();
-  const auto make = is_udim(desc.image.file) ? make_tiles : make_file;
-  auto image = make_mapped(desc, looks, MappingSpace::uv, [&](const MappingDesc& mapping) {
-    return make(desc.image.file, *use, (*filter)->value, mapping, looks);
-  });
+  const auto make = is_udim(desc.file) ? make_tiles : make_file;
+  auto image =
+      make_mapped(desc, textures::Image::kTraits.on_uv, looks, [&](const MappingDesc& mapping) {
+        return make(desc.file, *use, (*filter)->value, mapping, looks);
+      });
   if (!image || !(*channel)->value) return image;
   return make_channel_texture(*image, *(*channel)->value);
 }
 
-Result<TexturePtr> make_vertex_color(const TextureDesc& desc, Appearance& /*looks*/) {
+Result<TexturePtr> make_texture(const textures::VertexColor& desc, Appearance& /*looks*/) {
   const auto channel = look_up(kChannels, desc.channel, "channel");
   if (!channel) return channel.error();
   const TexturePtr colors = make_vertex_color_texture();
   return (*channel)->value ? make_channel_texture(colors, *(*channel)->value) : colors;
 }
 
-constexpr std::array<NameRow<TextureMaker>, 30> kTextureMakers = {{
-    {"constant", make_constant},
-    {"image", make_image},
-    {"vertex-color", make_vertex_color},
-    {"checker", make_checker},
-    {"brick", make_brick},
-    {"stripes", make_stripes},
-    {"grid", make_grid},
-    {"gradient", make_gradient},
-    {"perlin3d", make_fbm},
-    {"perlin4d", make_fbm},
-    {"fbm3d", make_fbm},
-    {"fbm4d", make_fbm},
-    {"turbulence", make_turbulence},
-    {"ridged", make_ridged},
-    {"marble", make_marble},
-    {"wood", make_wood},
-    {"cellular", make_cellular},
-    {"scale", make_scale},
-    {"add", make_add},
-    {"divide", make_divided},
-    {"min", make_least},
-    {"max", make_greatest},
-    {"mix", make_mixed},
-    {"invert", make_inverted},
-    {"remap", make_remapped},
-    {"power", make_power},
-    {"threshold", make_threshold},
-    {"ramp", make_ramp},
-    {"hue-saturation", make_hue_saturation},
-    {"channel", make_channel},
-}};
-
 }  // namespace
 
 Result<TexturePtr> make_texture(const TextureDesc& desc, Appearance& looks) {
-  const auto make = look_up(kTextureMakers, desc.type, "type of texture");
-  if (!make) return make.error();
-  return (*make)->value(desc, looks);
+  return std::visit([&](const auto& kind) { return make_texture(kind, looks); }, desc.kind);
 }
 
-Result<ImageUse> image_use_of(const TextureDesc& desc) {
-  const auto space = look_up(kColorSpaces, desc.image.color_space, "color_space");
+Result<ImageUse> image_use_of(const textures::Image& desc) {
+  const auto space = look_up(kColorSpaces, desc.color_space, "color_space");
   if (!space) return space.error();
-  const auto wrap = look_up(kWraps, desc.image.wrap, "wrap");
+  const auto wrap = look_up(kWraps, desc.wrap, "wrap");
   if (!wrap) return wrap.error();
-  const auto upwards = look_up(kWraps, desc.image.wrap_v, "wrap");
+  const auto upwards = look_up(kWraps, desc.wrap_v, "wrap");
   if (!upwards) return upwards.error();
   // Tiles lie side by side: none repeats.
   const WrapModes wraps((*wrap)->value, (*upwards)->value);
-  return ImageUse{(*space)->value, is_udim(desc.image.file) ? WrapMode::clamp : wraps};
+  return ImageUse{(*space)->value, is_udim(desc.file) ? WrapMode::clamp : wraps};
 }
 
-std::vector<std::string> made_texture_types() { return names_of(kTextureMakers); }
 std::vector<std::string> made_color_spaces() { return names_of(kColorSpaces); }
 std::vector<std::string> made_wraps() { return names_of(kWraps); }
 std::vector<std::string> made_texture_filters() { return names_of(kFilters); }

@@ -12,10 +12,9 @@ namespace hyades::core {
 Result<TexturePtr> make_texture(const TextureDesc& desc, Appearance& looks);
 
 /// How an image texture reads its file.
-Result<ImageUse> image_use_of(const TextureDesc& desc);
+Result<ImageUse> image_use_of(const textures::Image& desc);
 
-/// The names that can be made: those of core/job/kinds.h.
-std::vector<std::string> made_texture_types();
+/// The names that can be made: those of core/job/texture_desc.h.
 std::vector<std::string> made_color_spaces();
 std::vector<std::string> made_wraps();
 std::vector<std::string> made_texture_filters();

@@ -1,5 +1,9 @@
 #include "core/scene/texture_mapping.h"
 
+#include <array>
+#include <cstddef>
+#include <utility>
+
 #include "core/scene/texture_names.h"
 #include "core/scene/transforms.h"
 
@@ -14,10 +18,9 @@ Mat4 scaling(float factor) {
 
 }  // namespace
 
-Result<TexturePtr> make_mapped(const TextureDesc& desc, const Appearance& looks,
-                               MappingSpace preferred,
+Result<TexturePtr> make_mapped(const textures::Mapped& desc, bool on_uv, const Appearance& looks,
                                const std::function<Result<TexturePtr>(const MappingDesc&)>& make) {
-  const TextureMapping& says = desc.mapping;
+  const textures::Mapping& says = desc.mapping;
   const auto kind = look_up(kMappings, says.type, "mapping");
   if (!kind) return kind.error();
   const auto space = look_up(kMappingSpaces, says.space, "space of mappings");
@@ -25,10 +28,11 @@ Result<TexturePtr> make_mapped(const TextureDesc& desc, const Appearance& looks,
   const MappingKind& named = (*kind)->value;
   MappingDesc mapping;
   mapping.projection = named.projection;
+  const MappingSpace preferred = on_uv ? MappingSpace::uv : MappingSpace::object;
   mapping.space =
       named.projection != Projection::none ? (*space)->value : named.space.value_or(preferred);
-  mapping.scale = says.scale.at(looks.time());
-  mapping.offset = says.offset.at(looks.time());
+  mapping.scale = desc.scale.at(looks.time());
+  mapping.offset = desc.offset.at(looks.time());
   mapping.transform = transform_at(says.transform, Animated<Vec3>(Vec3(0.0F)), looks.time());
   // World positions are in metres, the job's lengths and scales in its own unit.
   if (mapping.space == MappingSpace::world)

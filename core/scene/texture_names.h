@@ -1,11 +1,12 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "core/scene/name_table.h"
 #include "core/textures/make_texture.h"
 
-/// What the names in textures stand for: those of core/job/kinds.h.
+/// What the names in textures stand for: those of core/job/texture_desc.h.
 namespace hyades::core {
 
 inline constexpr std::array<NameRow<ColorSpace>, 3> kColorSpaces = {{

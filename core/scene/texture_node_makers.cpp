@@ -1,102 +1,101 @@
+#include <utility>
+#include <vector>
+
 #include "core/scene/texture_kind_makers.h"
 #include "core/scene/texture_names.h"
 
 namespace hyades::core {
 namespace {
 
-struct Pair {
-  TexturePtr a, b;
-};
-
-Result<Pair> pair_of(const TextureDesc& desc, Appearance& looks) {
-  auto a = looks.color_texture(desc.a);
-  if (!a) return a.error();
-  auto b = looks.color_texture(desc.b);
-  if (!b) return b.error();
-  return Pair{*a, *b};
-}
-
-/// The number of `desc` as a texture.
-Result<TexturePtr> amount_of(const TextureDesc& desc, Appearance& looks) {
-  if (!desc.amount.texture.empty()) return looks.texture(desc.amount.texture);
-  return make_constant_texture(Rgb(desc.amount.value.at(looks.time())));
+/// The number of `input` as a texture.
+Result<TexturePtr> amount_of(const ScalarInput& input, Appearance& looks) {
+  if (!input.texture.empty()) return looks.texture(input.texture);
+  return make_constant_texture(Rgb(input.value.at(looks.time())));
 }
 
 /// make(input), where that can be had.
 template <class Make>
-Result<TexturePtr> of_input(const TextureDesc& desc, Appearance& looks, const Make& make) {
-  auto input = looks.color_texture(desc.a);
+Result<TexturePtr> of_input(const ColorInput& from, Appearance& looks, const Make& make) {
+  auto input = looks.color_texture(from);
   if (!input) return input;
   return make(*input);
 }
 
+/// make(a, b), where they can be had.
 template <class Make>
-Result<TexturePtr> of_pair(const TextureDesc& desc, Appearance& looks, const Make& make) {
-  auto pair = pair_of(desc, looks);
-  if (!pair) return pair.error();
-  return make(pair->a, pair->b);
+Result<TexturePtr> of_two(const ColorInput& from_a, const ColorInput& from_b, Appearance& looks,
+                          const Make& make) {
+  auto a = looks.color_texture(from_a);
+  if (!a) return a;
+  auto b = looks.color_texture(from_b);
+  if (!b) return b;
+  return make(*a, *b);
 }
 
 }  // namespace
 
-Result<TexturePtr> make_scale(const TextureDesc& desc, Appearance& looks) {
-  return of_pair(desc, looks, make_scale_texture);
+Result<TexturePtr> make_texture(const textures::Scale& desc, Appearance& looks) {
+  return of_two(desc.input, desc.factor, looks, make_scale_texture);
 }
 
-Result<TexturePtr> make_add(const TextureDesc& desc, Appearance& looks) {
-  return of_pair(desc, looks, make_sum_texture);
+Result<TexturePtr> make_texture(const textures::Add& desc, Appearance& looks) {
+  return of_two(desc.a, desc.b, looks, make_sum_texture);
 }
 
-Result<TexturePtr> make_divided(const TextureDesc& desc, Appearance& looks) {
-  return of_pair(desc, looks, make_quotient_texture);
+Result<TexturePtr> make_texture(const textures::Divide& desc, Appearance& looks) {
+  return of_two(desc.a, desc.b, looks, make_quotient_texture);
 }
 
-Result<TexturePtr> make_least(const TextureDesc& desc, Appearance& looks) {
-  return of_pair(desc, looks, [](auto& a, auto& b) { return make_extreme_texture(a, b, false); });
+Result<TexturePtr> make_texture(const textures::Min& desc, Appearance& looks) {
+  return of_two(desc.a, desc.b, looks,
+                [](auto& a, auto& b) { return make_extreme_texture(a, b, false); });
 }
 
-Result<TexturePtr> make_greatest(const TextureDesc& desc, Appearance& looks) {
-  return of_pair(desc, looks, [](auto& a, auto& b) { return make_extreme_texture(a, b, true); });
+Result<TexturePtr> make_texture(const textures::Max& desc, Appearance& looks) {
+  return of_two(desc.a, desc.b, looks,
+                [](auto& a, auto& b) { return make_extreme_texture(a, b, true); });
 }
 
-Result<TexturePtr> make_mixed(const TextureDesc& desc, Appearance& looks) {
-  const auto amount = amount_of(desc, looks);
+Result<TexturePtr> make_texture(const textures::Mix& desc, Appearance& looks) {
+  const auto amount = amount_of(desc.amount, looks);
   if (!amount) return amount;
-  return of_pair(desc, looks, [&](auto& a, auto& b) { return make_mix_texture(a, b, *amount); });
+  return of_two(desc.a, desc.b, looks,
+                [&](auto& a, auto& b) { return make_mix_texture(a, b, *amount); });
 }
 
-Result<TexturePtr> make_inverted(const TextureDesc& desc, Appearance& looks) {
-  return of_input(desc, looks, make_invert_texture);
+Result<TexturePtr> make_texture(const textures::Invert& desc, Appearance& looks) {
+  return of_input(desc.input, looks, make_invert_texture);
 }
 
-Result<TexturePtr> make_remapped(const TextureDesc& desc, Appearance& looks) {
-  const auto ends = look_up(kRemapEnds, desc.remap.ends, "ends of remap");
+Result<TexturePtr> make_texture(const textures::Remap& desc, Appearance& looks) {
+  const auto ends = look_up(kRemapEnds, desc.ends, "ends of remap");
   if (!ends) return ends.error();
   const JobTime& time = looks.time();
-  const RemapDesc remap{desc.remap.low.at(time), desc.remap.high.at(time),
-                        desc.remap.to_low.at(time), desc.remap.to_high.at(time), (*ends)->value};
-  return of_input(desc, looks, [&](auto& input) { return make_remap_texture(input, remap); });
+  const RemapDesc remap{desc.low.at(time), desc.high.at(time), desc.to_low.at(time),
+                        desc.to_high.at(time), (*ends)->value};
+  return of_input(desc.input, looks, [&](auto& input) { return make_remap_texture(input, remap); });
 }
 
-Result<TexturePtr> make_power(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Power& desc, Appearance& looks) {
   const float exponent = desc.exponent.at(looks.time());
-  return of_input(desc, looks, [&](auto& input) { return make_power_texture(input, exponent); });
+  return of_input(desc.input, looks,
+                  [&](auto& input) { return make_power_texture(input, exponent); });
 }
 
-Result<TexturePtr> make_threshold(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Threshold& desc, Appearance& looks) {
   const float level = desc.level.at(looks.time());
   const float softness = desc.softness.at(looks.time());
-  return of_input(desc, looks,
+  return of_input(desc.input, looks,
                   [&](auto& input) { return make_threshold_texture(input, level, softness); });
 }
 
-Result<TexturePtr> make_ramp(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::Ramp& desc, Appearance& looks) {
   const auto shape = look_up(kRampShapes, desc.between, "value of between");
   if (!shape) return shape.error();
-  const auto input = amount_of(desc, looks);
+  const auto input = amount_of(desc.input, looks);
   if (!input) return input;
   std::vector<RampStop> stops;
-  for (const TextureStop& stop : desc.stops) {
+  for (const textures::Stop& stop : desc.stops) {
     auto color = looks.color_texture(stop.color);
     if (!color) return color;
     stops.push_back({stop.at, *color});
@@ -104,16 +103,16 @@ Result<TexturePtr> make_ramp(const TextureDesc& desc, Appearance& looks) {
   return make_ramp_texture(*input, std::move(stops), (*shape)->value);
 }
 
-Result<TexturePtr> make_hue_saturation(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::HueSaturation& desc, Appearance& looks) {
   const JobTime& time = looks.time();
   const HueDesc hue{desc.hue.at(time), desc.saturation.at(time), desc.value.at(time)};
-  return of_input(desc, looks, [&](auto& input) { return make_hue_texture(input, hue); });
+  return of_input(desc.input, looks, [&](auto& input) { return make_hue_texture(input, hue); });
 }
 
-Result<TexturePtr> make_channel(const TextureDesc& desc, Appearance& looks) {
+Result<TexturePtr> make_texture(const textures::ChannelOf& desc, Appearance& looks) {
   const auto channel = look_up(kChannels, desc.channel, "channel");
   if (!channel) return channel.error();
-  return of_input(desc, looks, [&](auto& input) {
+  return of_input(desc.input, looks, [&](auto& input) {
     const auto& which = (*channel)->value;
     return which ? make_channel_texture(input, *which) : input;
   });

@@ -21,7 +21,7 @@ struct PlacedVolume {
 Result<PlacedVolume> make_volume(const MediumDesc& desc, const JobTime& time, const Bounds& body,
                                  SceneCache& cache);
 
-/// The names that can be made: those of core/job/kinds.h.
+/// The names that can be made: those of core/job/medium_desc.h and density_desc.h.
 std::vector<std::string> made_vdb_places();
 
 }  // namespace hyades::core

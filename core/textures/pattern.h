@@ -39,8 +39,8 @@ PatternPtr make_fractal_pattern(FractalKind kind, const FractalDesc& desc);
 /// 0.5 + 0.5 sin(2 pi (x + distortion fbm)).
 PatternPtr make_marble_pattern(const FractalDesc& desc, float distortion);
 
-/// Rings around the y axis, one per unit, bent likewise: each rises slowly from 0 to 1 and falls
-/// back within the last tenth of its width, smoothly.
+/// Rings around the y axis, one per unit, bent by `distortion` [units] times fbm: each rises slowly
+/// from 0 to 1 and falls back within the last tenth of its width, smoothly.
 PatternPtr make_wood_pattern(const FractalDesc& desc, float distortion);
 
 enum class CellMetric {

@@ -5,14 +5,18 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <filesystem>
 #include <mutex>
+#include <span>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "core/base/io_reason.h"
 #include "core/base/machine.h"
+#include "core/base/posix_file.h"
 #include "core/base/text.h"
 
 namespace hyades::core {
@@ -24,19 +28,6 @@ std::string temporary_folder() {
   std::error_code error;
   const auto folder = std::filesystem::temp_directory_path(error);
   return error ? std::string("/tmp") : folder.string();
-}
-
-/// 0, or what went wrong.
-int write_all(int descriptor, off_t begin, const std::vector<std::byte>& bytes) {
-  size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t written = ::pwrite(descriptor, bytes.data() + done, bytes.size() - done,
-                                     begin + static_cast<off_t>(done));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return written < 0 ? errno : ENOSPC;
-    done += static_cast<size_t>(written);
-  }
-  return 0;
 }
 
 }  // namespace
@@ -146,7 +137,10 @@ Result<Bytes> TexelStore::keep_in_file(const std::vector<std::byte>& bytes) cons
   if (!place) return failed(place.error().message);
   // All room is taken now: a page that found none later would be the end of the process.
   int error = ::posix_fallocate(place->descriptor(), place->begin, static_cast<off_t>(size));
-  if (error == 0) error = write_all(place->descriptor(), place->begin, bytes);
+  if (error == 0 &&
+      !write_all_at(place->descriptor(), bytes, static_cast<uint64_t>(place->begin))) {
+    error = errno;
+  }
   void* address = MAP_FAILED;
   if (error == 0) {
     address = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, place->descriptor(), place->begin);

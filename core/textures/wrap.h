@@ -9,7 +9,7 @@ namespace hyades::core {
 /// What lies outside of an image.
 enum class WrapMode { repeat, clamp, mirror, black };
 
-/// The same along u, from left to right, and along v, from bottom to top.
+/// What lies outside of an image along u, from left to right, and along v, from bottom to top.
 struct WrapModes {
   WrapMode u = WrapMode::repeat;
   WrapMode v = WrapMode::repeat;

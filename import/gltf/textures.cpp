@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string_view>
+#include "core/base/text.h"
 
 namespace hyades::core {
 
@@ -38,16 +38,9 @@ std::string ending_of(const GltfModel& model, const GltfImage& image) {
   return {};
 }
 
-bool ends_in(const std::string& file, const char* ending) {
-  if (file.size() < 5) return false;
-  std::string end = file.substr(file.size() - std::string_view(ending).size());
-  std::transform(end.begin(), end.end(), end.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return end == ending;
-}
-
 bool can_be_shown(const std::string& file) {
-  return ends_in(file, ".png") || ends_in(file, ".jpg") || ends_in(file, ".jpeg");
+  const std::string name = lower_case(file);
+  return name.ends_with(".png") || name.ends_with(".jpg") || name.ends_with(".jpeg");
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "import/within_folder.h"
@@ -14,11 +16,11 @@ namespace {
 constexpr std::string_view kAlphabet =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-std::array<int8_t, 256> make_values() {
-  std::array<int8_t, 256> values{};
+std::array<int, 256> make_values() {
+  std::array<int, 256> values{};
   values.fill(-1);
   for (size_t i = 0; i < kAlphabet.size(); ++i) {
-    values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<int8_t>(i);
+    values[static_cast<unsigned char>(kAlphabet[i])] = static_cast<int>(i);
   }
   return values;
 }
@@ -44,7 +46,7 @@ std::string data_uri_type(std::string_view uri) {
 }
 
 Result<Bytes> decode_data_uri(std::string_view uri) {
-  static const std::array<int8_t, 256> kValues = make_values();
+  static const std::array<int, 256> kValues = make_values();
   const size_t comma = uri.find(',');
   if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
     return Error{"a data: URI is not in base64: '" + shown(uri) + "'"};

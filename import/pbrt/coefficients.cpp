@@ -1,6 +1,7 @@
 #include "import/pbrt/coefficients.h"
 
 #include <optional>
+#include <string>
 
 #include "core/base/text.h"
 #include "core/job/measured_media.h"

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+
+#include "core/base/text.h"
 
 namespace hyades::core::pbrt {
 namespace {
@@ -48,15 +49,8 @@ Vec3d xyz_of_chromaticity(double x, double y) { return {x / y, 1.0, (1.0 - x - y
 const RgbSpace* srgb_space() { return spaces().data(); }
 
 const RgbSpace* find_rgb_space(std::string_view name) {
-  for (const RgbSpace& space : spaces()) {
-    const auto same = [](char a, char b) {
-      return a == static_cast<char>(std::tolower(static_cast<unsigned char>(b)));
-    };
-    if (std::equal(space.name.begin(), space.name.end(), name.begin(), name.end(), same)) {
-      return &space;
-    }
-  }
-  return nullptr;
+  const auto found = std::ranges::find(spaces(), lower_case(name), &RgbSpace::name);
+  return found == spaces().end() ? nullptr : &*found;
 }
 
 Vec3d rec709_from_xyz(const Vec3d& xyz) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 #include "import/pbrt/context.h"
 
 namespace hyades::core::pbrt {

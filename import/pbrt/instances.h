@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "import/pbrt/shapes.h"
 
 namespace hyades::core::pbrt {

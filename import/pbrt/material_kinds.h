@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "import/pbrt/layer_walk.h"
 #include "import/pbrt/materials.h"
 

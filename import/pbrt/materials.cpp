@@ -1,6 +1,7 @@
 #include "import/pbrt/materials.h"
 
 #include <cstddef>
+#include <string>
 
 #include <fmt/format.h>
 

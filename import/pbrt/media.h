@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
+#include <unordered_map>
+
 #include "import/pbrt/context.h"
 
 namespace hyades::core::pbrt {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "core/media/write_vdb.h"
 #include "import/pbrt/context.h"
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
+#include <vector>
+
 #include "import/pbrt/context.h"
 
 namespace hyades::core::pbrt {

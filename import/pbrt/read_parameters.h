@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string_view>
+
 #include "core/base/result.h"
 #include "import/pbrt/parameters.h"
 #include "import/pbrt/tokenizer.h"

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "import/pbrt/materials.h"
 #include "import/pbrt/media.h"
 

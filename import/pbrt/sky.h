@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "import/pbrt/context.h"
 
 namespace hyades::core::pbrt {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 namespace hyades::core::pbrt {
 namespace {

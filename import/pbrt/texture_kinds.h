@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "import/pbrt/textures.h"
 
 namespace hyades::core::pbrt {

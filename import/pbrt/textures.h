@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <string>
+#include <unordered_map>
+
 #include "import/pbrt/context.h"
 
 namespace hyades::core::pbrt {

@@ -1,5 +1,6 @@
 #include <array>
 #include <cstddef>
+#include <string>
 
 #include "import/pbrt/directives.h"
 #include "import/pbrt/transforms.h"

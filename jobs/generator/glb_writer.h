@@ -19,7 +19,7 @@ class GlbWriter {
   /// Bounds are told, as positions and times of keys must.
   int floats(std::span<const float> numbers, int width);
 
-  /// The same of bytes, four to an element; `normalized`: 255 means 1.
+  /// Appends an accessor of bytes, four to an element; its number. `normalized`: 255 means 1.
   int bytes(std::span<const uint8_t> numbers, bool normalized);
 
   /// Indices of triangles.

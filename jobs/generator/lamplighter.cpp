@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/scene/transforms.h"
 #include "jobs/generator/glb_writer.h"
 #include "jobs/generator/implicit.h"
 #include "jobs/generator/shapes.h"
@@ -14,8 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr float kTurn = 6.2831853F;
-constexpr float kRadians = kTurn / 360.0F;
+using core::kRadians;
+constexpr float kTurn = 2.0F * core::kPi;
 
 /// A joint at rest: where it is, where its bone ends, and what it hangs on.
 struct Joint {

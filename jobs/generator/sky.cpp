@@ -52,8 +52,10 @@ core::Image make_sky(const SkyShape& shape) {
       const Vec3 d(std::sin(polar) * std::cos(azimuth), std::cos(polar),
                    std::sin(polar) * std::sin(azimuth));
       Rgb color = sky_color(d, sun);
-      // Two degrees of sun, bright enough to throw shadows.
-      if (glm::dot(d, sun) > std::cos(0.035F)) color = {900.0F, 520.0F, 260.0F};
+      if (glm::dot(d, sun) > std::cos(shape.sun_radius)) {
+        const float narrower = 0.035F / shape.sun_radius;
+        color = Rgb(900.0F, 520.0F, 260.0F) * (narrower * narrower);
+      }
       if (d.y < 0.0F) color = mix(color, {0.09F, 0.075F, 0.07F}, std::min(1.0F, -d.y * 12.0F));
       for (int c = 0; c < 3; ++c) image.at(x, y, c) = color[c];
     }

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <vector>
 
-#include "coordinator/store/film_log.h"
+#include "coordinator/film_store/film_log.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {

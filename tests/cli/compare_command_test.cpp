@@ -1,4 +1,4 @@
-#include "cli/compare_command.h"
+#include "cli/film_commands.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 namespace hyades::farm {
 namespace {
 
-std::string text_of(const std::function<void(BIO*)>& write) {
+std::string pem_of(const std::function<void(BIO*)>& write) {
   const std::unique_ptr<BIO, decltype(&BIO_free)> bio(BIO_new(BIO_s_mem()), &BIO_free);
   write(bio.get());
   char* bytes = nullptr;
@@ -38,11 +38,11 @@ struct Made {
     X509_gmtime_adj(X509_getm_notAfter(x509.get()), 3600);
     X509_set_pubkey(x509.get(), own.get());
     X509_sign(x509.get(), own.get(), EVP_sha256());
-    cert = text_of([&](BIO* bio) { PEM_write_bio_X509(bio, x509.get()); });
-    key = text_of([&](BIO* bio) {
+    cert = pem_of([&](BIO* bio) { PEM_write_bio_X509(bio, x509.get()); });
+    key = pem_of([&](BIO* bio) {
       PEM_write_bio_PrivateKey(bio, own.get(), nullptr, nullptr, 0, nullptr, nullptr);
     });
-    encrypted = text_of([&](BIO* bio) {
+    encrypted = pem_of([&](BIO* bio) {
       const unsigned char phrase[] = "secret";
       PEM_write_bio_PrivateKey(bio, own.get(), EVP_aes_128_cbc(), phrase, 6, nullptr, nullptr);
     });

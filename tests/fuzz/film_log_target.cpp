@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "coordinator/store/segment.h"
+#include "coordinator/film_store/segment.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/fuzz_files.h"
 

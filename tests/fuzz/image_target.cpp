@@ -44,8 +44,9 @@ std::vector<std::string> seeds() {
               "abcdefgh" + std::string("\1\0\0\0\0\1\0\0", 8),
           "qoif" + std::string("\0\0\0\3\0\0\0\3\4\0\xFE"
                                "abc\x55\xA0\x88\xC1\x05\xFF"
-                               "abcd\xC2",
-                               27),
+                               "abcd\xC2"
+                               "\0\0\0\0\0\0\0\1",
+                               33),
           "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 9\n" +
               std::string("\x02\x02\x00\x09\x89\x80\x89\x81\x89\x82\x89\x83", 12)};
 }

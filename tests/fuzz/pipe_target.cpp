@@ -11,14 +11,14 @@
 
 #include "farm/wire.h"
 #include "tests/fuzz/fuzz.h"
-#include "tests/worker/desk_testing.h"
+#include "tests/worker/state_machine_testing.h"
 #include "worker/pipe/message_pipe.h"
 #include "worker/renderer_talk.h"
 
 namespace hyades::fuzz {
 namespace {
 
-using worker::DeskWorld;
+using worker::WorkerWorld;
 
 constexpr std::array kPlaces = {0, 8, 16};
 constexpr uint32_t kBatches = 4;
@@ -33,15 +33,15 @@ std::string digest() { return std::string(32, '\x11'); }
 class Books {
  public:
   Books() : world_(2, 1) {
-    world_.desk->stream_opened(world_.now);
+    world_.machine->stream_opened(world_.now);
     world_.welcome(1000, 4'000'000'000);
     v1::CoordinatorMessage job;
-    job.mutable_job()->set_job(DeskWorld::kJob);
+    job.mutable_job()->set_job(WorkerWorld::kJob);
     job.mutable_job()->mutable_spec()->set_document("job.yaml");
     job.mutable_job()->mutable_spec()->add_files()->set_sha256(digest());
-    world_.desk->coordinator_says(job, world_.now);
+    world_.machine->coordinator_says(job, world_.now);
     for (const int x : kPlaces) world_.lease(unit(x));
-    world_.desk->files_are_there(DeskWorld::kJob);
+    world_.machine->files_are_there(WorkerWorld::kJob);
   }
 
   /// Whether all of `input` was sound.
@@ -53,7 +53,7 @@ class Books {
       input.remove_prefix(count);
       return count;
     };
-    world_.desk->renderer_started();
+    world_.machine->renderer_started();
     bool sound = true;
     while (sound && world_.ports.kills.empty()) {
       pipe::FromRenderer message;
@@ -63,38 +63,38 @@ class Books {
       sound = more && talk.hear(message, std::move(load));
       if (!sound || message.has_not_ready()) break;
       if (message.has_ready()) {
-        world_.desk->renderer_ready(message.ready());
+        world_.machine->renderer_ready(message.ready());
       } else {
-        world_.desk->renderer_says(std::move(message), world_.now);
+        world_.machine->renderer_says(message);
       }
       world_.now += std::chrono::milliseconds(100);
-      world_.desk->tick(world_.now, true);
+      world_.machine->tick(world_.now, true);
       answer();
     }
     sound = sound && world_.ports.kills.empty() && input.empty();
-    world_.desk->renderer_died("ended");
+    world_.machine->renderer_died("ended");
     answer();
     return sound;
   }
 
   /// Another child renders what is left.
   void finish() {
-    world_.desk->renderer_started();
+    world_.machine->renderer_started();
     world_.renderer_up();
-    for (int round = 0; round < 20 && !world_.desk->empty(); ++round) {
+    for (int round = 0; round < 20 && !world_.machine->empty(); ++round) {
       const std::vector<pipe::ToRenderer> told = std::exchange(world_.ports.told, {});
       for (const pipe::ToRenderer& message : told) {
         if (message.has_unit()) world_.film(message.unit().token(), kBatches);
       }
       answer();
     }
-    demand(world_.desk->empty());
+    demand(world_.machine->empty());
     for (const int x : kPlaces) demand(settled_[x] == 1);
   }
 
  private:
   static v1::LeasedUnit unit(int x) {
-    return DeskWorld::unit(x, static_cast<uint64_t>(x) + 1, DeskWorld::kJob, kBatches);
+    return WorkerWorld::unit(x, static_cast<uint64_t>(x) + 1, WorkerWorld::kJob, kBatches);
   }
 
   /// What a coordinator answers, and what it may count on.
@@ -116,13 +116,13 @@ class Books {
         ++settled_[message.failure().unit().unit().tile().x0()];
       }
     }
-    for (const std::string& file : world_.ports.doubted) {
+    for (const std::string& file : world_.ports.rechecked) {
       demand(file == farm::hex_from_wire(digest()));
     }
-    demand(world_.desk->in_hand() <= kPlaces.size());
+    demand(world_.machine->in_hand() <= kPlaces.size());
   }
 
-  DeskWorld world_;
+  WorkerWorld world_;
   std::map<int, int> settled_;  ///< answers for a unit, by its place
 };
 

@@ -64,11 +64,18 @@ bool try_orders(const v1::JobRequest& request) {
 }
 
 bool try_worker_orders(const v1::WorkerRequest& request) {
-  Controller& controller = *farm().controller;
-  v1::Worker now;
-  const bool drained = controller.farm().drain_worker(request, now).ok();
-  const bool barred = controller.farm().quarantine_worker(request, now).ok();
-  const bool freed = controller.farm().release_worker(request, now).ok();
+  coordinator::FarmControl& farm_control = farm().controller->farm();
+  const auto known = [&](auto order) {
+    auto said = std::make_shared<std::promise<bool>>();
+    auto answer = said->get_future();
+    (farm_control.*order)(request, [said](const grpc::Status& status, const v1::Worker&) {
+      said->set_value(status.ok());
+    });
+    return answer.get();
+  };
+  const bool drained = known(&coordinator::FarmControl::drain_worker);
+  const bool barred = known(&coordinator::FarmControl::quarantine_worker);
+  const bool freed = known(&coordinator::FarmControl::release_worker);
   return drained || barred || freed;
 }
 
@@ -84,7 +91,7 @@ bool try_token(const v1::CreateTokenRequest& request) {
 
 class Deaf : public coordinator::WorkerLink {
  public:
-  void send(v1::CoordinatorMessage /*message*/) override {}
+  void send(grpc::ByteBuffer /*message*/) override {}
   void close(const grpc::Status& /*status*/) override {}
 };
 

@@ -5,7 +5,7 @@
 #include "coordinator/operations/operation.h"
 #include "coordinator/web/byte_range.h"
 #include "coordinator/web/request_form.h"
-#include "coordinator/web/target.h"
+#include "coordinator/web/request_target.h"
 #include "tests/fuzz/fuzz.h"
 
 namespace hyades::fuzz {

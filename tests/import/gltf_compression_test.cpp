@@ -13,7 +13,6 @@ namespace hyades::test {
 namespace {
 
 using ::testing::HasSubstr;
-using Triangles = std::vector<std::array<uint32_t, 3>>;
 
 constexpr uint32_t kSide = 12;  ///< vertices of a wavy sheet along each side
 

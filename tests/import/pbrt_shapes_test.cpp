@@ -37,15 +37,16 @@ double area(const core::TriangleMesh& mesh) {
   return sum;
 }
 
-constexpr const char* kTriangle = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
+constexpr const char* kTriangleMesh = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
 
 TEST(PbrtShapes, ReverseOrientationTurnsMeshesInsideOut) {
-  EXPECT_THAT(facing(*mesh_in(kTriangle)), ElementsAre(1.0F));
-  EXPECT_THAT(facing(*mesh_in(std::string("ReverseOrientation ") + kTriangle)), ElementsAre(-1.0F));
+  EXPECT_THAT(facing(*mesh_in(kTriangleMesh)), ElementsAre(1.0F));
+  EXPECT_THAT(facing(*mesh_in(std::string("ReverseOrientation ") + kTriangleMesh)),
+              ElementsAre(-1.0F));
 }
 
 TEST(PbrtShapes, NormalsSayWhichSideIsTheOuterOne) {
-  const auto mesh = mesh_in(std::string(kTriangle) + " \"normal N\" [0 0 -2 0 0 -2 0 0 -2]");
+  const auto mesh = mesh_in(std::string(kTriangleMesh) + " \"normal N\" [0 0 -2 0 0 -2 0 0 -2]");
   EXPECT_THAT(facing(*mesh), ElementsAre(-1.0F));
   EXPECT_THAT(mesh->normals, Each(Vec3(0, 0, -1)));
 }

@@ -42,7 +42,7 @@ inline std::string nanovdb_file(const std::vector<NanoHandle>& grids,
   return stream.str();
 }
 
-/// The same of grids of numbers, as floats.
+/// The bytes of a .nvdb file of grids of numbers, stored as floats.
 inline std::string nanovdb_file(const std::vector<openvdb::FloatGrid::Ptr>& grids,
                                 nanovdb::io::Codec codec = nanovdb::io::Codec::NONE) {
   std::vector<NanoHandle> handles;

@@ -1,5 +1,6 @@
-// The gallery, small and with few events, by two estimators: path tracing and bidirectional path
-// tracing give the same picture.
+// The gallery, small, by two estimators: path tracing and bidirectional path tracing give the same
+// picture. Left out: lamplighter, whose scene is a .glb that `hyades render` imports first;
+// cloudscape and atlas, where even 20 % would take minutes.
 
 #include <gtest/gtest.h>
 
@@ -19,6 +20,7 @@ struct GalleryJob {
   const char* name;
   int path_samples;
   int bdpt_samples;
+  int max_depth;
   double relative_error;  ///< of the picture's mean that is noticed with 99 % probability
 };
 
@@ -26,17 +28,19 @@ void PrintTo(const GalleryJob& job, std::ostream* out) { *out << job.name; }
 
 constexpr int kRuns = 12;
 
-const GalleryJob kJobs[] = {{"quickstart", 320, 144, 0.1},
-                            {"cornell", 128, 64, 0.05},
-                            {"depth-of-field", 512, 320, 0.15},
-                            {"antialiasing", 64, 32, 0.05},
-                            {"perlin-sphere", 192, 112, 0.1},
-                            {"mesh-100k", 64, 32, 0.05},
-                            {"glass-caustics", 640, 64, 0.12},
-                            {"god-rays", 176, 88, 0.1},
-                            {"cloud", 64, 32, 0.1},
-                            {"sky-shell", 48, 20, 0.1},
-                            {"media", 64, 32, 0.1}};
+const GalleryJob kJobs[] = {
+    {"quickstart", 320, 144, 10, 0.1},      {"cornell", 128, 64, 10, 0.05},
+    {"color-bleeding", 64, 32, 10, 0.015},  {"soft-shadows", 576, 288, 6, 0.2},
+    {"depth-of-field", 512, 320, 10, 0.15}, {"antialiasing", 64, 32, 10, 0.025},
+    {"perlin-sphere", 256, 128, 10, 0.1},   {"mesh-100k", 64, 32, 10, 0.015},
+    {"glass-caustics", 640, 64, 10, 0.06},  {"gloss", 128, 64, 10, 0.06},
+    {"textured", 64, 32, 10, 0.1},          {"textured-gloss", 320, 160, 10, 0.12},
+    {"leaves", 64, 32, 10, 0.01},           {"island", 64, 32, 8, 0.015},
+    {"lanterns", 64, 32, 6, 0.1},           {"panorama", 192, 96, 6, 0.1},
+    {"stained-glass", 128, 64, 8, 0.1},     {"metropolis", 320, 64, 10, 0.1},
+    {"materials", 128, 64, 64, 0.1},        {"media", 64, 32, 64, 0.1},
+    {"god-rays", 224, 112, 10, 0.1},        {"cloud", 64, 32, 32, 0.1},
+    {"sky-shell", 48, 24, 10, 0.06}};
 
 YamlScene small(const GalleryJob& job, const std::string& integrator, int samples) {
   const std::string folder = std::string("jobs/") + job.name;
@@ -53,7 +57,7 @@ YamlScene small(const GalleryJob& job, const std::string& integrator, int sample
   };
   set("film", "{size: [24, 14], filter: {type: gaussian, radius: 1}}");
   set("sampling", "{samples: " + std::to_string(samples) + "}");
-  set("integrator", "{type: " + integrator + ", max_depth: 6}");
+  set("integrator", "{type: " + integrator + ", max_depth: " + std::to_string(job.max_depth) + "}");
   return YamlScene(text, 1, {}, folder);
 }
 

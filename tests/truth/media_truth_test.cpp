@@ -168,7 +168,7 @@ TEST(MediaTruth, LongWalksOfBdptLoseNothing) {
 hyades: 1
 name: vanish
 film: {size: [8, 8], filter: box}
-sampling: {samples: 16, seed: 2}
+sampling: {samples: 64, seed: 2}
 integrator: {type: bdpt, max_depth: 5000}
 camera: {look_from: [0, 0, 4], look_at: [0, 0, 0], fov: 12}
 materials: {skin: {type: dielectric, ior: 2}}
@@ -180,7 +180,7 @@ environment: {color: 1}
   const Replicates found = render_replicates(scene, 48, 8);
   EXPECT_EQ(found.bad_samples, 0U);
   Promise promise = kPromise;
-  promise.relative_error = 0.08;
+  promise.relative_error = 0.045;
   for (const Moments& channel : found.picture) EXPECT_TRUE(mean_is(channel, 1.0, promise));
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -57,6 +58,17 @@ std::vector<Block> blocks_of(const core::Image& picture) {
     }
   }
   return blocks;
+}
+
+// Where the shared folder is not here every reference failed, also those that need nothing of it.
+TEST(SharedFolder, IsNotAskedForWhereNothingOfItIsNamed) {
+  const char* const before = std::getenv("HYADES_SHARED");
+  const std::string kept = before != nullptr ? before : "";
+  ::setenv("HYADES_SHARED", "/nowhere", 1);
+  EXPECT_EQ(shared_folder(), "");
+  EXPECT_EQ(with_shared_folder("name: alone"), "name: alone");
+  ::setenv("HYADES_SHARED", kept.c_str(), 1);
+  if (before == nullptr) ::unsetenv("HYADES_SHARED");
 }
 
 /// What a scene is allowed, besides the general rule.

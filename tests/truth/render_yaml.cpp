@@ -107,7 +107,7 @@ std::string shared_folder() {
 
 std::string with_shared_folder(std::string text) {
   const std::string written = "../../../shared/";
-  const std::string there = std::filesystem::absolute(shared_folder()).string() + "/";
+  const std::string there = (std::filesystem::current_path() / shared_folder() / "").string();
   for (size_t at = 0; (at = text.find(written, at)) != std::string::npos; at += there.size())
     text.replace(at, written.size(), there);
   return text;

@@ -20,7 +20,8 @@ struct Replicates {
 /// side.
 Replicates render_replicates(const YamlScene& scene, int runs, int block);
 
-/// The same with other settings of the integrator than the job's.
+/// Renders the job `runs` times with different seeds, and with other settings of the integrator
+/// than the job's; `block` pixels make a block's side.
 Replicates render_replicates(const YamlScene& scene, const core::IntegratorDesc& integrator,
                              int runs, int block);
 

@@ -164,7 +164,7 @@ TEST(AssetFetcher, AFileThatIsDoubtedIsFetchedAgainWhereItIsDamaged) {
   ASSERT_TRUE((*store)->contains(name, small.size())) << "nobody has noticed";
   Reports reports;
   AssetFetcher fetcher(served.channel(), "", **store, reports, seconds(60));
-  fetcher.doubt(name);
+  fetcher.recheck(name);
   fetcher.fetch(2, spec_of(small));
   ASSERT_EQ(reports.first().at(0).second, "there");
   EXPECT_EQ(fetcher.misses(), 1U);

@@ -82,7 +82,7 @@ class Script {
   test::TempFolder folder_;
 };
 
-std::string ready() {
+std::string ready_frame() {
   pipe::FromRenderer message;
   message.mutable_ready()->set_worker_class("class");
   return pipe::frame_message(message);
@@ -121,7 +121,8 @@ TEST(RendererProcess, InheritsNoSecretsAndNoInput) {
 TEST(RendererProcess, OneThatSaysLateThatItIsNotReadyIsKilled) {
   pipe::FromRenderer late;
   late.mutable_not_ready()->set_reason("this machine cannot render");
-  Script script("cat words >&3; exec sleep 60", ready() + started(1) + pipe::frame_message(late));
+  Script script("cat words >&3; exec sleep 60",
+                ready_frame() + started(1) + pipe::frame_message(late));
   Ears ears;
   const auto process = script.start(ears);
   EXPECT_EQ(ears.wait_for_end(), "said twice whether it is ready and was killed");
@@ -130,14 +131,14 @@ TEST(RendererProcess, OneThatSaysLateThatItIsNotReadyIsKilled) {
 
 TEST(RendererProcess, OneThatAnnouncesMoreThanAnyFilmIsKilled) {
   Script script("cat words >&3; exec sleep 60",
-                ready() + std::string("\0\0\0\0\xFF\xFF\xFF\x7F", 8));
+                ready_frame() + std::string("\0\0\0\0\xFF\xFF\xFF\x7F", 8));
   Ears ears;
   const auto process = script.start(ears);
   EXPECT_EQ(ears.wait_for_end(), "sent more than any message has and was killed");
 }
 
 TEST(RendererProcess, OneThatEndsWithinAMessageHasEndedAsItDid) {
-  Script script("cat words >&3; kill -SEGV $$", ready() + "\1");
+  Script script("cat words >&3; kill -SEGV $$", ready_frame() + "\1");
   Ears ears;
   const auto process = script.start(ears);
   EXPECT_NE(ears.wait_for_end().find("crashed with signal 11"), std::string::npos);
@@ -145,7 +146,7 @@ TEST(RendererProcess, OneThatEndsWithinAMessageHasEndedAsItDid) {
 
 TEST(RendererProcess, OneThatTalksWithoutEndIsReadOnlyAsItIsHeard) {
   constexpr size_t kMost = RendererProcess::kMostUnheard;
-  std::string words = ready();
+  std::string words = ready_frame();
   for (size_t i = 0; i < 3 * kMost; ++i) words += started(i);
   Script script("cat words >&3; exec sleep 60", words);
   Ears ears;

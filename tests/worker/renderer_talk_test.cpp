@@ -8,29 +8,29 @@
 namespace hyades::worker {
 namespace {
 
-using Message = pipe::FromRenderer;
+using FromRenderer = pipe::FromRenderer;
 
-Message ready() {
-  Message message;
+FromRenderer ready() {
+  FromRenderer message;
   message.mutable_ready()->set_worker_class("class");
   return message;
 }
 
-Message not_ready() {
-  Message message;
+FromRenderer not_ready() {
+  FromRenderer message;
   message.mutable_not_ready()->set_reason("no");
   return message;
 }
 
-Message film(uint32_t batches = 1) {
-  Message message;
+FromRenderer film(uint32_t batches = 1) {
+  FromRenderer message;
   message.mutable_film()->set_batches(batches);
   message.mutable_film()->set_digest(std::string(32, 'd'));
   return message;
 }
 
 /// What is wrong with the last of `messages`; the others are sound.
-std::string wrong_with(std::vector<Message> messages, const std::string& load = {}) {
+std::string wrong_with(std::vector<FromRenderer> messages, const std::string& load = {}) {
   RendererTalk talk;
   std::string wrong;
   for (size_t i = 0; i < messages.size(); ++i) {
@@ -43,7 +43,7 @@ std::string wrong_with(std::vector<Message> messages, const std::string& load = 
 
 /// A unit whose file breaks the renderer could end one worker after the other with it.
 TEST(RendererTalk, WhetherItIsReadyIsSaidFirstAndOnce) {
-  Message started;
+  FromRenderer started;
   started.mutable_started()->set_token(1);
   EXPECT_EQ(wrong_with({ready()}), "");
   EXPECT_EQ(wrong_with({not_ready()}), "");
@@ -51,21 +51,21 @@ TEST(RendererTalk, WhetherItIsReadyIsSaidFirstAndOnce) {
   EXPECT_EQ(wrong_with({ready(), started, not_ready()}), "said twice whether it is ready");
   EXPECT_EQ(wrong_with({ready(), ready()}), "said twice whether it is ready");
   EXPECT_EQ(wrong_with({started}), "spoke before it was ready");
-  EXPECT_EQ(wrong_with({Message()}), "spoke before it was ready");
-  EXPECT_EQ(wrong_with({ready(), Message()}), "said nothing that is known");
+  EXPECT_EQ(wrong_with({FromRenderer()}), "spoke before it was ready");
+  EXPECT_EQ(wrong_with({ready(), FromRenderer()}), "said nothing that is known");
 }
 
 TEST(RendererTalk, FilmsHaveWhatFilmsHave) {
   EXPECT_EQ(wrong_with({ready(), film()}, "bytes"), "");
   EXPECT_EQ(wrong_with({ready(), film()}), "sent a film without bytes");
   EXPECT_EQ(wrong_with({ready(), film(0)}, "bytes"), "sent a film of no batches");
-  Message short_digest = film();
+  FromRenderer short_digest = film();
   short_digest.mutable_film()->set_digest("d");
   EXPECT_EQ(wrong_with({ready(), short_digest}, "bytes"), "sent a film without a digest");
-  Message talkative = film();
+  FromRenderer talkative = film();
   for (int i = 0; i < 17; ++i) talkative.mutable_film()->add_notes("a note");
   EXPECT_EQ(wrong_with({ready(), talkative}, "bytes"), "sent a film with too many notes");
-  Message started;
+  FromRenderer started;
   started.mutable_started()->set_token(1);
   EXPECT_EQ(wrong_with({ready(), started}, "bytes"), "sent bytes that are no film");
 }
@@ -73,7 +73,7 @@ TEST(RendererTalk, FilmsHaveWhatFilmsHave) {
 /// Memory for what was announced would be taken by a word.
 TEST(RendererTalk, LengthsBeyondTheLimitsAreRefusedAndOthersTakeNoMemoryBeforeTheyCome) {
   const auto read_from = [](std::string_view bytes, std::string& load, size_t& asked) {
-    Message message;
+    FromRenderer message;
     return pipe::read_message(
         [&](char* to, size_t size) {
           asked = std::max(asked, size);

@@ -1,10 +1,14 @@
 #include "worker/clouds/preemption_watch.h"
 
+#include <chrono>
+
 #include "worker/clouds/metadata.h"
 #include "worker/clouds/notice_source.h"
 
 namespace hyades::worker {
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 /// Where all three have it. A name would have to be looked up, and could be anybody's.
 constexpr const char* kLinkLocal = "http://169.254.169.254";
@@ -18,7 +22,7 @@ PreemptionWatch::PreemptionWatch(Cloud cloud, const std::string& endpoint, Owner
 
 PreemptionWatch::~PreemptionWatch() {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     metadata_->stop();
   }
   wake_.notify_all();
@@ -38,8 +42,9 @@ void PreemptionWatch::run(Cloud cloud) {
     const std::string trouble = looked ? std::string() : looked.error().message;
     if (!trouble.empty() && trouble != told) owner_.watch_trouble(trouble);
     if (!trouble.empty()) told = trouble;
-    std::unique_lock lock(mutex_);
-    wake_.wait_for(lock, source->pause(), [this] { return metadata_->stopped(); });
+    const auto again = Clock::now() + source->pause();
+    const core::MutexLock lock(mutex_);
+    while (!metadata_->stopped() && Clock::now() < again) wake_.wait_until(mutex_, again);
   }
 }
 

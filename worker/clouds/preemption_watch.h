@@ -1,11 +1,10 @@
 #pragma once
 
-#include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 
+#include "core/base/mutex.h"
 #include "worker/clouds/cloud.h"
 #include "worker/clouds/notice.h"
 
@@ -36,11 +35,12 @@ class PreemptionWatch {
   PreemptionWatch& operator=(const PreemptionWatch&) = delete;
 
  private:
-  void run(Cloud cloud);
+  void run(Cloud cloud) HYADES_EXCLUDES(mutex_);
+
   Owner& owner_;
-  std::unique_ptr<Metadata> metadata_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
+  const std::unique_ptr<Metadata> metadata_;
+  core::Mutex mutex_;  ///< with it the thread looks whether it was stopped before it waits
+  core::CondVar wake_;
   std::thread thread_;
 };
 

@@ -1,4 +1,5 @@
 #include "worker/pipe/message_pipe.h"
+#include "core/base/posix_file.h"
 
 #include <sys/socket.h>
 #include <unistd.h>
@@ -70,8 +71,8 @@ MessagePipe::~MessagePipe() { ::close(fd_); }
 
 core::Status MessagePipe::send_all(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t count = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (count < 0 && errno == EINTR) continue;
+    const ssize_t count =
+        core::uninterrupted([&] { return ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL); });
     if (count < 0) {
       return core::Error{std::string("the pipe cannot be written: ") + std::strerror(errno)};
     }
@@ -87,7 +88,7 @@ core::Status MessagePipe::send(const google::protobuf::MessageLite& message,
   }
   std::string bytes = head_of(message.ByteSizeLong(), load.size());
   message.AppendToString(&bytes);
-  const std::lock_guard lock(send_mutex_);
+  const core::MutexLock lock(send_mutex_);
   if (auto sent = send_all(bytes); !sent) return sent;
   return send_all(load);
 }
@@ -96,8 +97,8 @@ core::Result<bool> MessagePipe::receive(google::protobuf::MessageLite& message, 
   const auto read = [this](char* to, size_t size) {
     size_t have = 0;
     while (have < size) {
-      const ssize_t count = ::recv(fd_, to + have, size - have, 0);
-      if (count < 0 && errno == EINTR) continue;
+      const ssize_t count =
+          core::uninterrupted([&] { return ::recv(fd_, to + have, size - have, 0); });
       if (count <= 0) break;
       have += static_cast<size_t>(count);
     }

@@ -2,13 +2,14 @@
 
 #include <google/protobuf/message_lite.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 
 namespace hyades::pipe {
@@ -43,7 +44,8 @@ class MessagePipe {
   MessagePipe& operator=(const MessagePipe&) = delete;
 
   /// Blocks while the other side does not read. Errors: it is gone.
-  core::Status send(const google::protobuf::MessageLite& message, std::string_view load = {});
+  core::Status send(const google::protobuf::MessageLite& message, std::string_view load = {})
+      HYADES_EXCLUDES(send_mutex_);
 
   /// Blocks until a message is there; false where the other side is gone, be it within a message.
   /// Errors as read_message() has them.
@@ -53,11 +55,11 @@ class MessagePipe {
   void shut_down();
 
  private:
-  core::Status send_all(std::string_view bytes);
+  core::Status send_all(std::string_view bytes) HYADES_REQUIRES(send_mutex_);
 
   const int fd_;
   const PipeLimits limits_;
-  std::mutex send_mutex_;
+  core::Mutex send_mutex_;  ///< of who writes to the socket
 };
 
 }  // namespace hyades::pipe

@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <new>
@@ -55,21 +54,24 @@ void RenderServer::run() {
   for (;;) {
     const auto more = parent_.receive(message, load);
     if (!more || !*more) return;
-    if (message.has_job()) {
-      shelf_.add_job(message.job().job(), message.job().spec());
-    } else if (message.has_unit()) {
-      add(message.unit());
-    } else if (message.has_stop()) {
-      stop(message.stop().token(), false);
-    } else if (message.has_hand_over()) {
-      std::vector<uint64_t> tokens;
-      {
-        const std::lock_guard lock(mutex_);
-        for (const auto& [token, task] : tasks_) tokens.push_back(token);
-      }
-      for (const uint64_t token : tokens) stop(token, true);
-    } else if (message.has_forget()) {
-      shelf_.forget_job(message.forget().job());
+    switch (message.message_case()) {
+      case pipe::ToRenderer::kJob:
+        shelf_.add_job(message.job().job(), message.job().spec());
+        break;
+      case pipe::ToRenderer::kUnit:
+        add(message.unit());
+        break;
+      case pipe::ToRenderer::kStop:
+        stop(message.stop().token(), false);
+        break;
+      case pipe::ToRenderer::kHandOver:
+        hand_over();
+        break;
+      case pipe::ToRenderer::kForget:
+        shelf_.forget_job(message.forget().job());
+        break;
+      case pipe::ToRenderer::MESSAGE_NOT_SET:
+        break;
     }
   }
 }
@@ -84,7 +86,7 @@ void RenderServer::add(const pipe::UnitToRender& message) {
   task->token = message.token();
   task->job = message.job();
   task->unit = *unit;
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   task->frame = shelf_.find(task->job, unit->frame);
   task->state = task->frame ? Task::State::ready : Task::State::waiting;
   tasks_[task->token] = task;
@@ -93,7 +95,7 @@ void RenderServer::add(const pipe::UnitToRender& message) {
 
 void RenderServer::stop(uint64_t token, bool keep_batches) {
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     const auto found = tasks_.find(token);
     if (found == tasks_.end()) return;
     Task& task = *found->second;
@@ -107,27 +109,37 @@ void RenderServer::stop(uint64_t token, bool keep_batches) {
   send(returned);
 }
 
-RenderServer::TaskPtr RenderServer::next_ready() {
-  std::unique_lock lock(mutex_);
+void RenderServer::hand_over() {
+  std::vector<uint64_t> tokens;
+  {
+    const core::MutexLock lock(mutex_);
+    for (const auto& [token, task] : tasks_) tokens.push_back(token);
+  }
+  for (const uint64_t token : tokens) stop(token, true);
+}
+
+/// Waits for a task that is `from`; it is `to` from then on.
+RenderServer::TaskPtr RenderServer::take(Task::State from, Task::State to, core::CondVar& wake) {
+  const core::MutexLock lock(mutex_);
   for (;;) {
     for (const auto& [token, task] : tasks_) {
-      if (task->state != Task::State::ready) continue;
-      task->state = Task::State::rendering;
+      if (task->state != from) continue;
+      task->state = to;
       return task;
     }
-    render_wake_.wait(lock);
+    wake.wait(mutex_);
   }
 }
 
 void RenderServer::render_loop(int thread) {
   const core::FpMode mode;
   for (;;) {
-    const TaskPtr task = next_ready();
+    const TaskPtr task = take(Task::State::ready, Task::State::rendering, render_wake_);
     pipe::FromRenderer started;
     started.mutable_started()->set_token(task->token);
     send(started);
     render(*task, thread);
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     tasks_.erase(task->token);
   }
 }
@@ -143,7 +155,7 @@ void RenderServer::render(Task& task, int thread) {
     const uint32_t batches = unit.stopped ? task.batches_done.load() : task.unit.batches.count;
     bool keep = !unit.stopped;
     if (unit.stopped) {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       keep = task.keep_batches && batches > 0;
     }
     if (!keep) {
@@ -187,16 +199,7 @@ void RenderServer::render(Task& task, int thread) {
 void RenderServer::load_loop() {
   const core::FpMode mode;
   for (;;) {
-    TaskPtr first;
-    {
-      std::unique_lock lock(mutex_);
-      const auto waiting = [](const auto& entry) {
-        return entry.second->state == Task::State::waiting;
-      };
-      load_wake_.wait(lock, [&] { return std::any_of(tasks_.begin(), tasks_.end(), waiting); });
-      first = std::find_if(tasks_.begin(), tasks_.end(), waiting)->second;
-      first->state = Task::State::loading;
-    }
+    const TaskPtr first = take(Task::State::waiting, Task::State::loading, load_wake_);
     pipe::FromRenderer started;
     started.mutable_started()->set_token(first->token);
     started.mutable_started()->set_loading(true);
@@ -204,7 +207,7 @@ void RenderServer::load_loop() {
     const auto frame = guarded([&] { return shelf_.load(first->job, first->unit.frame); });
     std::vector<uint64_t> failed;
     {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       for (auto it = tasks_.begin(); it != tasks_.end();) {
         Task& task = *it->second;
         const bool same = task.job == first->job && task.unit.frame == first->unit.frame &&
@@ -232,7 +235,7 @@ void RenderServer::progress_loop() {
     std::this_thread::sleep_for(kProgressEvery);
     pipe::FromRenderer message;
     {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       if (tasks_.empty()) continue;
       for (const auto& [token, task] : tasks_) {
         if (task->state != Task::State::rendering) continue;

@@ -1,16 +1,15 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "core/base/mutex.h"
 #include "core/film/unit.h"
 #include "worker/pipe/message_pipe.h"
 #include "worker/pipe/render_pipe.pb.h"
@@ -34,32 +33,33 @@ class RenderServer {
     uint64_t token = 0;
     uint64_t job = 0;
     core::Unit unit;
-    State state = State::waiting;
-    std::shared_ptr<const ShelvedFrame> frame;
-    bool keep_batches = false;  ///< when stopped, the batches that are done count
+    std::shared_ptr<const ShelvedFrame> frame;  ///< from State::ready on
+    State state = State::waiting;               ///< with the lock
+    bool keep_batches = false;  ///< with the lock: when stopped, the batches that are done count
     std::atomic<bool> stop{false};
     std::atomic<uint32_t> batches_done{0};
     std::atomic<uint64_t> samples_done{0};
   };
   using TaskPtr = std::shared_ptr<Task>;
 
-  void add(const pipe::UnitToRender& message);
-  void stop(uint64_t token, bool keep_batches);
-  void render_loop(int thread);
-  void load_loop();
-  void progress_loop();
-  void render(Task& task, int thread);
-  TaskPtr next_ready();
+  void add(const pipe::UnitToRender& message) HYADES_EXCLUDES(mutex_);
+  void stop(uint64_t token, bool keep_batches) HYADES_EXCLUDES(mutex_);
+  void hand_over() HYADES_EXCLUDES(mutex_);
+  void render_loop(int thread) HYADES_EXCLUDES(mutex_);
+  void load_loop() HYADES_EXCLUDES(mutex_);
+  void progress_loop() HYADES_EXCLUDES(mutex_);
+  void render(Task& task, int thread) HYADES_EXCLUDES(mutex_);
+  TaskPtr take(Task::State from, Task::State to, core::CondVar& wake) HYADES_EXCLUDES(mutex_);
   void send(const pipe::FromRenderer& message, const std::string& film = {});
   void say_failed(uint64_t token, const std::string& reason,
                   const std::set<std::string>& damaged = {});
 
   pipe::MessagePipe& parent_;
   SceneShelf& shelf_;
-  std::mutex mutex_;
-  std::condition_variable render_wake_;
-  std::condition_variable load_wake_;
-  std::map<uint64_t, TaskPtr> tasks_;  ///< guarded by mutex_, as are the tasks' plain fields
+  core::Mutex mutex_;
+  core::CondVar render_wake_;
+  core::CondVar load_wake_;
+  std::map<uint64_t, TaskPtr> tasks_ HYADES_GUARDED_BY(mutex_);
   std::vector<std::thread> threads_;
 };
 

@@ -9,8 +9,9 @@
 #include <cstring>
 #include <vector>
 
-#include "core/base/landlock.h"
-#include "worker/render/sandbox_calls.h"
+#include "core/sandbox/call_filter.h"
+#include "core/sandbox/landlock.h"
+#include "core/sandbox/private_root.h"
 
 namespace hyades::worker {
 
@@ -34,8 +35,10 @@ core::Result<std::string> enter_sandbox(SandboxMode mode, const std::string& cac
   // The cache not to remove from either: there are other jobs' files, and the worker's id.
   std::vector<core::FileRule> rules = core::system_files();
   rules.push_back({cache, core::FileAccess::read, true});
+  // Where there are no namespaces names and sizes of other files can be asked for, no more.
+  (void)core::hide_other_files(rules);
   try_to(core::restrict_files(rules));
-  try_to(restrict_calls());
+  try_to(core::allow_calls(core::AllowedCalls::render));
   if (!lacking.empty() && mode == SandboxMode::required) {
     return core::Error{"this machine has no whole sandbox (" + lacking +
                        "); with 'auto' instead of 'require' as the worker's --sandbox it renders "

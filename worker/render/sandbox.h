@@ -21,10 +21,10 @@ core::Result<SandboxMode> read_sandbox_mode(const std::string& word);
 /// - can gain no privileges (no_new_privs);
 /// - reads programs, libraries and what the kernel tells (/usr, /lib, /proc, /sys), and the files
 ///   of `cache`; it opens no other file, writes and removes none (Landlock, since Linux 5.13; its
-///   ABI 1 is enough);
-/// - makes no sockets, no connections and no processes, touches no other process, takes no memory
-///   that RLIMIT_DATA does not count, and changes nothing of the system (seccomp: such calls fail
-///   with EPERM).
+///   ABI 1 is enough), and signals nobody (ABI 6);
+/// - makes only the system calls that rendering needs (core/sandbox/call_filter.h);
+/// - sees no other files at all, where the machine allows user namespaces
+///   (core/sandbox/private_root.h); nothing else depends on that, so that it is not required.
 /// What is open stays open, so that the pipe to the worker does; everything from file descriptor
 /// `first_closed` on is closed.
 ///

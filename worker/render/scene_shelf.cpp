@@ -28,17 +28,17 @@ std::shared_ptr<core::TexelStore> SceneShelf::make_texel_store(uint64_t memory,
 }
 
 void SceneShelf::add_job(uint64_t job, hyades::v1::JobSpec spec) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   jobs_[job].spec = std::move(spec);
 }
 
 void SceneShelf::forget_job(uint64_t job) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   jobs_.erase(job);
 }
 
 std::shared_ptr<const ShelvedFrame> SceneShelf::find(uint64_t job, int32_t frame) {
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   const auto shelved = jobs_.find(job);
   if (shelved == jobs_.end()) return nullptr;
   shelved->second.used = ++uses_;
@@ -53,7 +53,7 @@ core::Result<std::shared_ptr<const ShelvedFrame>> SceneShelf::load(uint64_t job,
   hyades::v1::JobSpec spec;
   std::shared_ptr<LoadedJob> loaded;
   {
-    const std::lock_guard lock(mutex_);
+    const core::MutexLock lock(mutex_);
     const auto shelved = jobs_.find(job);
     if (shelved == jobs_.end()) return core::Error{"the job is not there"};
     spec = shelved->second.spec;
@@ -70,7 +70,7 @@ core::Result<std::shared_ptr<const ShelvedFrame>> SceneShelf::load(uint64_t job,
   auto ready = std::make_shared<const ShelvedFrame>(ShelvedFrame{
       core::FrameRenderer(*scene, loaded->job, frame, loaded->layers),
       core::render_window(loaded->job.film), loaded->job.sampling.samples, spec.document()});
-  const std::lock_guard lock(mutex_);
+  const core::MutexLock lock(mutex_);
   const auto shelved = jobs_.find(job);
   if (shelved != jobs_.end()) {
     shelved->second.loaded = loaded;
@@ -129,7 +129,7 @@ void SceneShelf::make_room(uint64_t job) {
   const auto tight = [this] { return memory_ > 0 && resident_memory() > memory_ / 3 * 2; };
   for (;;) {
     {
-      const std::lock_guard lock(mutex_);
+      const core::MutexLock lock(mutex_);
       if (!drop_one_locked(job, kFramesKept - 1) && (!tight() || !drop_one_locked(job, 0))) return;
     }
     trim_memory();

@@ -1,15 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "core/base/descriptor.h"
+#include "core/base/mutex.h"
 #include "core/base/result.h"
 #include "core/film/layout.h"
 #include "core/job/job.h"
@@ -40,18 +41,19 @@ class SceneShelf {
   SceneShelf(farm::ContentStore& store, uint64_t memory, core::Descriptor texels)
       : store_(store), memory_(memory), texels_(make_texel_store(memory, std::move(texels))) {}
 
-  void add_job(uint64_t job, hyades::v1::JobSpec spec);
-  void forget_job(uint64_t job);
+  void add_job(uint64_t job, hyades::v1::JobSpec spec) HYADES_EXCLUDES(mutex_);
+  void forget_job(uint64_t job) HYADES_EXCLUDES(mutex_);
 
   /// The names of files that were found damaged since the last call.
   std::set<std::string> take_damaged() { return store_.take_damaged(); }
 
   /// The frame, if it is loaded.
-  std::shared_ptr<const ShelvedFrame> find(uint64_t job, int32_t frame);
+  std::shared_ptr<const ShelvedFrame> find(uint64_t job, int32_t frame) HYADES_EXCLUDES(mutex_);
 
   /// Loads a frame, and its job before its first frame. One thread at a time. Errors: what is wrong
   /// with the job, or why the scene cannot be built.
-  core::Result<std::shared_ptr<const ShelvedFrame>> load(uint64_t job, int32_t frame);
+  core::Result<std::shared_ptr<const ShelvedFrame>> load(uint64_t job, int32_t frame)
+      HYADES_EXCLUDES(mutex_);
 
  private:
   struct LoadedFrame {
@@ -73,15 +75,15 @@ class SceneShelf {
 
   static std::shared_ptr<core::TexelStore> make_texel_store(uint64_t memory, core::Descriptor file);
   core::Result<std::shared_ptr<LoadedJob>> read(const hyades::v1::JobSpec& spec) const;
-  bool drop_one_locked(uint64_t but_job, size_t frames_kept);
-  void make_room(uint64_t job);
+  bool drop_one_locked(uint64_t but_job, size_t frames_kept) HYADES_REQUIRES(mutex_);
+  void make_room(uint64_t job) HYADES_EXCLUDES(mutex_);
 
   farm::ContentStore& store_;
   const uint64_t memory_;
   const std::shared_ptr<core::TexelStore> texels_;  ///< of all jobs together
-  std::mutex mutex_;
-  std::map<uint64_t, ShelvedJob> jobs_;  ///< guarded by mutex_
-  uint64_t uses_ = 0;                    ///< guarded by mutex_
+  core::Mutex mutex_;
+  std::map<uint64_t, ShelvedJob> jobs_ HYADES_GUARDED_BY(mutex_);
+  uint64_t uses_ HYADES_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace hyades::worker

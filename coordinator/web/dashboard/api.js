@@ -99,7 +99,7 @@ export async function outputs(id, signal) {
   }
   return { outputs: all };
 }
-/** Films that somebody has asked for, and how far they are. */
+/** Videos that somebody has asked for, and how far they are. */
 export const videos = (id, signal) => json('GET', `api/v1/jobs/${id}/videos`, { signal });
 export const askForVideo = (id, wish) => json('POST', `api/v1/jobs/${id}/videos`, { body: wish });
 export const timeline = (id, after, signal) => json('GET', `api/v1/jobs/${id}/timeline`, { query: { after }, signal });

@@ -93,7 +93,7 @@ export class Compare {
     return this.mode !== 'off';
   }
 
-  /** What an address says of it. */
+  /** What the page's address says of the comparison. */
   query() {
     if (!this.on || !this.other) return {};
     const { job, frame } = this.other;

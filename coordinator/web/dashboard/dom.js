@@ -22,7 +22,7 @@ function fill(node, props, children) {
  */
 export const h = (name, props, ...children) => fill(document.createElement(name), props, children);
 
-/** The same for SVG. */
+/** An element of SVG, with props and children as those of h(). */
 export const s = (name, props, ...children) => fill(document.createElementNS(SVG, name), props, children);
 
 /** Sets a text where it is another one: layout stays where nothing changed. */

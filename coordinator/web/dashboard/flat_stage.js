@@ -5,7 +5,7 @@ import { halfTable } from './half.js';
 /** More pixels than these are drawn at half the resolution. */
 const MOST_PIXELS = 2e6;
 
-/** As glStage: {largest, set(slot, picture), draw(scene), leave()}. */
+/** A stage on `canvas`, used like glStage() (gl_stage.js): {largest, set(slot, picture), draw(scene), leave()}. */
 export function flatStage(canvas) {
   const pen = canvas.getContext('2d', { alpha: false });
   const values = halfTable();

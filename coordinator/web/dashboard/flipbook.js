@@ -1,4 +1,4 @@
-// The job's frames as a film, while they render: pictures are loaded ahead, and looked at again when there is more of them.
+// The job's frames as a video, while they render: pictures are loaded ahead, and looked at again when there is more of them.
 import { h, oncePerFrame, setAttribute, setText } from './dom.js';
 import { icon } from './icons.js';
 import { nothing } from './parts.js';
@@ -36,7 +36,7 @@ class Flipbook {
   }
 
   make() {
-    this.canvas = h('canvas', { class: 'stage-canvas', role: 'img', 'aria-label': 'The film', testid: 'film-stage' });
+    this.canvas = h('canvas', { class: 'stage-canvas', role: 'img', 'aria-label': 'The video', testid: 'video-stage' });
     this.message = h(
       'div',
       { class: 'stage-message' },
@@ -86,7 +86,7 @@ class Flipbook {
       },
     });
     this.loaded = h('canvas', { class: 'loaded', 'aria-hidden': 'true' });
-    this.label = h('output', { class: 'mono', testid: 'film-frame' });
+    this.label = h('output', { class: 'mono', testid: 'video-frame' });
     this.speed = h(
       'select',
       { 'aria-label': 'Frames per second', testid: 'fps', onchange: () => this.setFps(Number(this.speed.value)) },
@@ -96,7 +96,7 @@ class Flipbook {
     this.loop = h('input', { type: 'checkbox', checked: true, testid: 'loop' });
     this.size = h(
       'select',
-      { 'aria-label': 'Size of pictures', testid: 'film-size', onchange: () => this.resize() },
+      { 'aria-label': 'Size of pictures', testid: 'video-size', onchange: () => this.resize() },
       [
         [480, 'Small'],
         [960, 'Medium'],
@@ -108,7 +108,7 @@ class Flipbook {
     this.heading = h('h1', { text: 'Flip-book' });
     this.back = h('a', { class: 'viewer-back', href: to('job', { job: this.id }), testid: 'back' });
     this.open = h('a', { class: 'button', text: 'Look at this frame', testid: 'open-frame' });
-    this.note = h('span', { class: 'soft', testid: 'film-note' });
+    this.note = h('span', { class: 'soft', testid: 'video-note' });
     this.node = h(
       'div',
       { class: 'viewer' },
@@ -121,7 +121,7 @@ class Flipbook {
       this.stage,
       h(
         'div',
-        { class: 'film-bar' },
+        { class: 'video-bar' },
         step(-1, 'left', 'Frame before'),
         this.playButton,
         step(1, 'right', 'Next frame'),

@@ -34,7 +34,7 @@ export function rate(value) {
   return `${text}${/[a-zA-Z]$/.test(text) ? '' : ' '}S/s`;
 }
 
-/** The same in words: '12.3 Msamples/s'. */
+/** Samples per second in words: '12.3 Msamples/s'. */
 export const rateInWords = (value) => (value > 0 ? rate(value).replace(/S\/s$/, 'samples/s') : '0 samples/s');
 
 /** 1536 -> '1.50 KiB'. */

@@ -13,7 +13,7 @@ const STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800
 /** Neighbouring frames in colours that differ. */
 const colorOf = (frame, dark) => `hsl(${(frame * 137.508) % 360} ${dark ? '52% 62%' : '55% 48%'})`;
 
-const STEP_WORDS = { merge: 'merged', finish: 'finished', video: 'film written' };
+const STEP_WORDS = { merge: 'merged', finish: 'finished', video: 'video written' };
 
 /** What a unit or step of the coordinator was. */
 function nameOf({ kind, frame, tile, first_batch: first, batches }) {

@@ -95,7 +95,7 @@ void main() {
 const SLOTS = ['picA', 'besideA', 'picB', 'besideB'];
 const SIZES = ['sizeA', 'sizeBesideA', 'sizeB', 'sizeBesideB'];
 
-/** Where there is WebGL 2: {largest, set(slot, picture), draw(scene), leave()}; else null. */
+/** A stage on `canvas`: {largest, set(slot, picture), draw(scene), leave()}; null where there is no WebGL 2. */
 export function glStage(canvas) {
   const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false });
   if (!gl) return null;

@@ -347,7 +347,7 @@ class JobView {
             h(
               'a',
               { class: 'button', href: to('play', { job: this.id }), testid: 'open-flipbook' },
-              icon('film'),
+              icon('video'),
               'Flip-book',
             ),
           ]

@@ -8,7 +8,7 @@ const KEPT_FOR = 8000;
 
 const open = new Map();
 
-class JobState {
+class WatchedJob {
   constructor(id) {
     this.id = id;
     /** As in the API; null until known. */
@@ -98,7 +98,7 @@ class JobState {
  */
 export function watchJob(id, listener) {
   let state = open.get(id);
-  if (!state) open.set(id, (state = new JobState(id)));
+  if (!state) open.set(id, (state = new WatchedJob(id)));
   clearTimeout(state.timer);
   ++state.users;
   state.listeners.add(listener);

@@ -1,7 +1,7 @@
-// Who is signed in, and what his role lets him do. The coordinator decides; buttons that it would refuse say so before.
+// Who is signed in, and what their role lets them do. The coordinator decides; buttons that it would refuse say so before.
 import * as api from './api.js';
 
-/** As GET api/v1/session has it. Until that is known everything may be tried. */
+/** Who is signed in, as GET api/v1/session has it. Until that is known everything may be tried. */
 export const me = { guarded: false, role: 'admin', name: '', token_id: '', expiring: '' };
 
 const RANKS = { viewer: 1, submitter: 2, operator: 3, admin: 4 };
@@ -26,13 +26,13 @@ export async function learnMe() {
   for (const listener of listeners) listener();
 }
 
-/** Why the person may not submit jobs; empty: he may. */
+/** Why the person who is signed in may not submit jobs; empty: they may. */
 export const whyNotSubmit = () => (rank() >= RANKS.submitter ? '' : `Needs the role submitter: yours is ${me.role}.`);
 
-/** Why he may not steer workers. */
+/** Why the person who is signed in may not steer workers; empty: they may. */
 export const whyNotWorkers = () => (rank() >= RANKS.operator ? '' : `Needs the role operator: yours is ${me.role}.`);
 
-/** Why he may not steer this job. */
+/** Why the person who is signed in may not steer this job; empty: they may. */
 export function whyNotJob(job) {
   if (rank() >= RANKS.operator) return '';
   if (rank() < RANKS.submitter) return whyNotSubmit();

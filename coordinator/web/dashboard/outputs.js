@@ -1,12 +1,12 @@
 // The finished files of a job.
 import { archiveAddress, outputAddress, outputs } from './api.js';
-import { filmMaker } from './ask_film.js';
+import { videoMaker } from './ask_video.js';
 import { bytes, counted } from './format.js';
 import { h, keyed, setText } from './dom.js';
 import { icon } from './icons.js';
 import { Table } from './table.js';
 
-const FILM = /\.(mp4|mov|webm)$/i;
+const VIDEO = /\.(mp4|mov|webm)$/i;
 /** What browsers show themselves; others are saved. */
 const SHOWN = /\.(png|jpe?g|mp4|webm|mov|txt|json)$/i;
 
@@ -27,7 +27,7 @@ function pathCell(state) {
 
 /** The tab. */
 export function outputsTab(state) {
-  const films = h('div', { class: 'films' });
+  const videos = h('div', { class: 'videos' });
   const summary = h('p', { class: 'soft' });
   const search = h('input', {
     type: 'search',
@@ -101,9 +101,9 @@ export function outputsTab(state) {
       },
     ],
   });
-  const maker = filmMaker(state, () => ask());
+  const maker = videoMaker(state, () => ask());
   const head = h('div', { class: 'outputs-head pad' }, search, summary, h('span', { class: 'spring' }), maker.button, all);
-  const node = h('div', {}, head, maker.lines, films, table.node);
+  const node = h('div', {}, head, maker.lines, videos, table.node);
   const stop = new AbortController();
   let list = [];
   let known = -1;
@@ -119,8 +119,8 @@ export function outputsTab(state) {
     );
     head.hidden = list.length === 0;
     keyed(
-      films,
-      list.filter(({ id }) => FILM.test(id)),
+      videos,
+      list.filter(({ id }) => VIDEO.test(id)),
       ({ id, sha256 }) => `${id} ${sha256}`,
       ({ id }) =>
         h('video', {
@@ -128,8 +128,8 @@ export function outputsTab(state) {
           controls: true,
           preload: 'metadata',
           loop: true,
-          'aria-label': `Film ${id}`,
-          testid: 'film',
+          'aria-label': `Video ${id}`,
+          testid: 'video',
         }),
     );
   };
@@ -151,7 +151,7 @@ export function outputsTab(state) {
       ask();
     }
   };
-  // Files come with frames, a film with the end of the job.
+  // Files come with frames, a video with the end of the job.
   const update = () => {
     maker.update();
     const { job } = state;

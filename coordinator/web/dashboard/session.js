@@ -57,7 +57,7 @@ export function signOutButton() {
         setText(button, error.message);
         return;
       }
-      location.reload(); // nothing that he has seen stays
+      location.reload(); // nothing that they have seen stays
     },
   });
   onMe(() => {

@@ -61,7 +61,7 @@ export class Options {
         h(
           'div',
           { class: 'option-grid' },
-          h('div', { class: 'wide' }, field('Order', f.order, 'the second shows the whole film early')),
+          h('div', { class: 'wide' }, field('Order', f.order, 'the second shows the whole video early')),
           field('Tags', f.tags, 'workers need all of them'),
           field('Workers at once', f.workers),
           field('Memory, GiB', f.memory, 'a worker needs at least'),

@@ -93,7 +93,7 @@ export function heat(share) {
 
 const vec3 = (list) => `vec3(${list.map((x) => x.toFixed(4)).join(', ')})`;
 
-/** The same in GLSL ES 3: toneMap(light, curve) and heat(share). */
+/** Tone mapping and the colours of heat in GLSL ES 3: toneMap(light, curve) and heat(share). */
 export const TONE_GLSL = `
 float srgbEncode(float x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055; }
 float hable(float x) { return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.3; }

@@ -13,8 +13,10 @@ double milliseconds_since(Timer::Clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(Timer::Clock::now() - begin).count();
 }
 
-std::string key(const v1::LeasedUnit& unit) {
-  return std::to_string(unit.job()) + "/" + unit.unit().SerializeAsString();
+std::string key(const v1::LeasedUnit& leased) {
+  v1::Unit unit = leased.unit();
+  unit.clear_proof();
+  return std::to_string(leased.job()) + "/" + unit.SerializeAsString();
 }
 
 }  // namespace

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/client/commands.h"
 #include "cli/client/failure.h"
 #include "cli/client/finish_time.h"
 #include "cli/client/scale_call.h"
 #include "cli/client/scale_decision.h"
+#include "cli/client_commands.h"
 #include "tests/cli/client/fake_farm.h"
 #include "tests/support/temp_folder.h"
 

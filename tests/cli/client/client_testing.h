@@ -13,10 +13,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/client/commands.h"
 #include "cli/client/failure.h"
 #include "cli/client/fetch.h"
 #include "cli/client/patience.h"
+#include "cli/client_commands.h"
 #include "core/base/hash.h"
 #include "farm/wire.h"
 #include "tests/cli/client/fake_farm.h"

@@ -130,6 +130,7 @@ TEST_F(Client, FetchStaysInItsFolder) {
   }
   for (const char* good : {"a.exr", "a/b.exr", "..a", "a/..b"})
     EXPECT_TRUE(is_safe_output(good)) << good;
+  EXPECT_FALSE(is_safe_output("a\nb.exr"));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "cli/client/commands.h"
+#include "cli/client_commands.h"
 #include "core/image/write_image.h"
 #include "tests/cli/client/fake_farm.h"
 #include "tests/support/fake_viewer.h"

@@ -4,26 +4,19 @@
 #include <string>
 #include <vector>
 
-#include "cli/client/commands.h"
 #include "coordinator/access/audit_log.h"
-#include "coordinator/state/job_store.h"
-#include "tests/support/temp_folder.h"
+#include "coordinator/job_store/job_store.h"
+#include "tests/cli/client/client_testing.h"
 
 namespace hyades::cli {
 namespace {
 
-int run(std::vector<std::string> words) {
-  words.insert(words.begin(), "token");
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  return token_command(static_cast<int>(argv.size()), argv.data());
-}
-
 TEST(TokenCommand, WhatIsDoneToAFolderIsInItsAuditLog) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   const std::string data = folder.path().string();
-  ASSERT_EQ(run({"create", "--data", data, "--role", "admin", "--name", "ada", "--output",
-                 folder.file("ada")}),
+  ASSERT_EQ(run(token_command, {"create", "--data", data, "--role", "admin", "--name", "ada",
+                                "--output", folder.file("ada")})
+                .status,
             0);
   std::string id;
   {
@@ -34,8 +27,8 @@ TEST(TokenCommand, WhatIsDoneToAFolderIsInItsAuditLog) {
     ASSERT_EQ(rows->size(), 1U);
     id = rows->front().id;
   }
-  ASSERT_EQ(run({"revoke", "--data", data, id}), 0);
-  EXPECT_NE(run({"revoke", "--data", data, "00000000"}), 0);
+  ASSERT_EQ(run(token_command, {"revoke", "--data", data, id}).status, 0);
+  EXPECT_NE(run(token_command, {"revoke", "--data", data, "00000000"}).status, 0);
   const auto log = coordinator::AuditLog::open({.folder = data});
   ASSERT_TRUE(log.ok());
   auto reader = (*log)->read();

@@ -10,16 +10,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/client/commands.h"
 #include "cli/client/failure.h"
 #include "cli/client/trace_writer.h"
-#include "tests/cli/client/fake_farm.h"
-#include "tests/support/temp_folder.h"
+#include "tests/cli/client/client_testing.h"
 
 namespace hyades::cli {
 namespace {
-
-using nlohmann::json;
 
 constexpr int64_t kEpochMs = 1'700'000'000'000;
 constexpr int kTile = 16;
@@ -253,26 +249,17 @@ TEST(Trace, AMillionUnitsGoThrough) {
   EXPECT_LT(peak_kib() - before, 8 * 1024);
 }
 
-int run(std::vector<std::string> words) {
-  words.insert(words.begin(), "trace");
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  return trace_command(static_cast<int>(argv.size()), argv.data());
-}
-
 TEST(Trace, TheCommandBringsAllPagesAndTheLog) {
-  const test::TempFolder folder;
+  const TempFolder folder;
   FakeFarm farm;
   farm.jobs.push_back(job_of(40));
   do_frames(40, [&](const v1::TimelineStep& step) { farm.steps.push_back(step); });
   farm.dropped_steps = 7;
   const std::string file = folder.file("trace.json");
-  ::testing::internal::CaptureStderr();
-  const int status = run({"walk", "-o", file, "--coordinator", farm.address()});
-  const std::string said = ::testing::internal::GetCapturedStderr();
-  EXPECT_EQ(status, kDone) << said;
-  EXPECT_THAT(said, testing::HasSubstr("7 older steps are not kept"));
-  EXPECT_THAT(said, testing::HasSubstr("1080 units of job 1"));
+  const Ran ran = run(trace_command, {"walk", "-o", file, "--coordinator", farm.address()});
+  EXPECT_EQ(ran.status, kDone) << ran.err;
+  EXPECT_THAT(ran.err, testing::HasSubstr("7 older steps are not kept"));
+  EXPECT_THAT(ran.err, testing::HasSubstr("1080 units of job 1"));
   const Checked checked = check(json::parse(std::ifstream(file)));
   EXPECT_EQ(checked.samples, farm.jobs[0].samples());
   EXPECT_EQ(checked.slices.at("finish"), 40);
@@ -282,12 +269,10 @@ TEST(Trace, TheCommandBringsAllPagesAndTheLog) {
 TEST(Trace, AFileThatCannotBeWrittenIsAFailure) {
   FakeFarm farm;
   farm.jobs.push_back(job_of(1));
-  ::testing::internal::CaptureStderr();
-  const int status =
-      run({"walk", "-o", "/nonexistent/trace.json", "--coordinator", farm.address()});
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(),
-              testing::HasSubstr("cannot write /nonexistent/trace.json"));
-  EXPECT_EQ(status, kFailed);
+  const Ran ran = run(trace_command,
+                      {"walk", "-o", "/nonexistent/trace.json", "--coordinator", farm.address()});
+  EXPECT_THAT(ran.err, testing::HasSubstr("cannot write /nonexistent/trace.json"));
+  EXPECT_EQ(ran.status, kFailed);
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST_F(Audit, ADeedStaysWhateverStrangersFromManyAddressesAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("audit.1.jsonl")));
 }
 
-TEST_F(Audit, AddressesWithoutEndShareOnePurse) {
+TEST_F(Audit, AddressesWithoutEndShareOneLimit) {
   uint64_t calls = 0;
   for (int network = 0; network < 20'000; ++network, ++calls) {
     log->refuse(stranger(network), "job.list", kNoToken);
@@ -162,7 +162,7 @@ TEST_F(Audit, AddressesWithoutEndShareOnePurse) {
   EXPECT_TRUE(told) << "what stands for many addresses says so";
 }
 
-TEST_F(Audit, DeedsHaveRoomWhileRefusalsWaitForTheDisk) {
+TEST_F(Audit, ActionsHaveRoomWhileRefusalsWaitForTheDisk) {
   log.reset();
   const std::string pipe = folder.file("refusals.jsonl");
   std::filesystem::remove(pipe);
@@ -197,9 +197,9 @@ TEST_F(Audit, DeedsHaveRoomWhileRefusalsWaitForTheDisk) {
   stop = true;
   drain.join();
   ::close(reader);
-  std::ifstream deeds(folder.file("audit.jsonl"));
+  std::ifstream actions(folder.file("audit.jsonl"));
   std::string line;
-  EXPECT_TRUE(std::getline(deeds, line)) << "the deed is lost";
+  EXPECT_TRUE(std::getline(actions, line)) << "the action is lost";
   EXPECT_NE(line.find("job.delete"), std::string::npos) << line;
   EXPECT_NE(refused.find("audit.lost"), std::string::npos) << "it was no flood";
 }
@@ -215,10 +215,10 @@ TEST_F(Audit, AllKindsAreReadInOrderOfTime) {
   log->note(kAlice, "job.cancel", "1", grpc::Status::OK, {});
   pause();
   log->upload(kAlice, "file.upload", "cd34", "8 bytes");
-  std::vector<std::string> deeds;
-  for (const v1::AuditEntry& entry : entries()) deeds.push_back(entry.deed());
-  EXPECT_EQ(deeds, (std::vector<std::string>{"file.upload", "job.submit", "job.list", "job.cancel",
-                                             "file.upload"}));
+  std::vector<std::string> actions;
+  for (const v1::AuditEntry& entry : entries()) actions.push_back(entry.deed());
+  EXPECT_EQ(actions, (std::vector<std::string>{"file.upload", "job.submit", "job.list",
+                                               "job.cancel", "file.upload"}));
   EXPECT_TRUE(std::filesystem::exists(folder.file("uploads.jsonl")));
 }
 

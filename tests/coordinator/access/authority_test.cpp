@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "coordinator/access/token.h"
+#include "core/base/wall_clock.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
@@ -97,7 +98,7 @@ TEST_F(Tokens, TellWhoCalls) {
 TEST_F(Tokens, ThoseInUseAreToldOfBeforeTheyExpire) {
   close();
   store = open_sqlite_job_store(folder.file("state.db")).value();
-  const int64_t now = token_clock_ms();
+  const int64_t now = core::wall_ms();
   constexpr int64_t kDay = int64_t{24} * 3600 * 1000;
   const auto add = [&](const std::string& made_id, int64_t expires, int64_t used, int64_t revoked) {
     const StoredToken row{

@@ -12,8 +12,8 @@
 
 #include "coordinator/backup/copy_database.h"
 #include "coordinator/backup/manifest.h"
-#include "coordinator/state/database.h"
-#include "coordinator/state/incarnation_file.h"
+#include "coordinator/job_store/database.h"
+#include "coordinator/job_store/incarnation_file.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {

@@ -185,19 +185,19 @@ await step('a second job ends and its files are downloaded whole', async () => {
   assert.ok(bytes.equals(readFileSync(`${scratch}/truth/balls.0001.exr`)), 'the download is what render writes');
 });
 
-await step('a film is made of a job that has none', async () => {
-  await at('make-film').click();
-  const dialog = at('film-dialog');
+await step('a video is made of a job that has none', async () => {
+  await at('make-video').click();
+  const dialog = at('video-dialog');
   await dialog.waitFor();
-  await at('film-file').fill('balls.avi');
+  await at('video-file').fill('balls.avi');
   await at('dialog-make').click();
-  await until('a file that is no film is refused', async () => /\.mp4/.test(await dialog.getByRole('alert').textContent()));
-  await at('film-file').fill('cut.mp4');
-  await at('film-rate').fill('12');
+  await until('a file that is no video is refused', async () => /\.mp4/.test(await dialog.getByRole('alert').textContent()));
+  await at('video-file').fill('cut.mp4');
+  await at('video-rate').fill('12');
   await at('dialog-make').click();
-  await at('film').waitFor();
-  await until('the film plays', async () => (await at('film').evaluate((video) => video.videoWidth)) === 96);
-  await shot('film');
+  await at('video').waitFor();
+  await until('the video plays', async () => (await at('video').evaluate((video) => video.videoWidth)) === 96);
+  await shot('video');
   const { videos } = await (await fetch(`${url}/api/v1/jobs/${second}/videos`)).json();
   assert.deepEqual(
     videos.map(({ file, frames, rate, state: now }) => [file, frames, rate, now]),

@@ -117,16 +117,16 @@ await step('noise and samples have their scales', async () => {
   await until('noise', async () => /relative error/.test(await at('legend').textContent()));
 });
 
-const film = at('film-stage');
-const frameNow = async () => Number(/\d+/.exec(await at('film-frame').textContent())?.[0]);
+const video = at('video-stage');
+const frameNow = async () => Number(/\d+/.exec(await at('video-frame').textContent())?.[0]);
 
 await step('the flip-book shows each frame, forth and back', async () => {
   await page.goto(`${url}/#/jobs/${id}/play`);
-  await at('film-frame').waitFor();
+  await at('video-frame').waitFor();
   // Both the number and the picture follow a key with the next drawing, not at once.
   const isAt = (frame) =>
     until(`frame ${frame}`, async () => {
-      const [colour] = await colours(film, centre);
+      const [colour] = await colours(video, centre);
       return (await frameNow()) === frame && alike(colour, shown(lightOf(frame)));
     });
   await page.keyboard.press('Home');
@@ -147,7 +147,7 @@ await step('the flip-book plays, round and round, until it is stopped', async ()
   await at('play').click();
   const seen = new Set();
   await until('every frame was shown', async () => {
-    const [colour] = await colours(film, centre);
+    const [colour] = await colours(video, centre);
     for (let frame = 1; frame <= FRAMES; ++frame) if (alike(colour, shown(lightOf(frame)))) seen.add(frame);
     return seen.size === FRAMES;
   });
@@ -157,7 +157,7 @@ await step('the flip-book plays, round and round, until it is stopped', async ()
   await page.waitForTimeout(400);
   assert.equal(await frameNow(), frame);
   assert.ok(
-    alike((await colours(film, centre))[0], shown(lightOf(frame))),
+    alike((await colours(video, centre))[0], shown(lightOf(frame))),
     'the frame that it names is the one that it shows',
   );
 });

@@ -52,7 +52,7 @@ const show = async (hash, node) => {
   await page.mouse.move(0, 0);
   await page.waitForTimeout(2000);
 };
-const film = idOf('perlin-sphere');
+const sequence = idOf('perlin-sphere');
 const running = idOf('lamplighter');
 
 mkdirSync(folder, { recursive: true });
@@ -71,17 +71,17 @@ await step('a job', async () => {
   await take('job');
 });
 await step('a frame', async () => {
-  await show(`jobs/${film}/frames/12`, at('zoom'));
+  await show(`jobs/${sequence}/frames/12`, at('zoom'));
   await until('its picture', async () => /%/.test(await at('zoom').textContent()));
   await page.mouse.move(WIDTH * 0.55, HEIGHT * 0.45);
   await take('frame');
 });
 await step('two frames', async () => {
-  await show(`jobs/${film}/frames/12?with=24`, at('split'));
+  await show(`jobs/${sequence}/frames/12?with=24`, at('split'));
   await take('compare');
 });
 await step('the flip-book', async () => {
-  await show(`jobs/${film}/play?frame=8`, at('film-stage'));
+  await show(`jobs/${sequence}/play?frame=8`, at('video-stage'));
   await take('flip-book');
 });
 await step('the timeline', async () => {

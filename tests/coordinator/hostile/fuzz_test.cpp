@@ -8,7 +8,6 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint64_t kUsual = 150;  // MiB
 constexpr int kThreads = 4;
 constexpr int kRounds = 40;
 

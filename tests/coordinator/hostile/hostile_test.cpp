@@ -8,9 +8,7 @@
 namespace hyades::coordinator {
 namespace {
 
-/// MiB. What nobody's bytes explain: program, gRPC's threads and arenas, the honest job.
-constexpr uint64_t kUsual = 150;
-/// What may have come and not be dealt with (server.cpp), and as much again for what is.
+/// MiB. What may have come and not be dealt with (server.cpp), and as much again for what is.
 constexpr uint64_t kReceived = 512;
 
 TEST_F(Hostile, MessagesThatAreAnnouncedAndNeverEndAreBrokenOff) {

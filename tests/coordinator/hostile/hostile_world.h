@@ -13,6 +13,9 @@
 
 namespace hyades::coordinator {
 
+/// MiB. What nobody's bytes explain: program, gRPC's threads and arenas, the honest job.
+inline constexpr uint64_t kUsual = 150;
+
 /// A coordinator in a process of its own, somebody honest who uses it, and whoever the test lets
 /// loose on it.
 class Hostile : public testing::Test {

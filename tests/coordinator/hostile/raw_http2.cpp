@@ -33,7 +33,7 @@ std::string big_endian(uint32_t value, int bytes) {
   return out;
 }
 
-uint32_t number(std::string_view bytes) {
+uint32_t from_big_endian(std::string_view bytes) {
   uint32_t value = 0;
   for (const char c : bytes) value = value << 8U | static_cast<uint8_t>(c);
   return value;
@@ -147,10 +147,10 @@ void RawHttp2::read(int milliseconds) {
   incoming_.append(buffer.data(), static_cast<size_t>(count));
   std::string_view rest = incoming_;
   while (rest.size() >= kFrameHead) {
-    const size_t size = number(rest.substr(0, 3));
+    const size_t size = from_big_endian(rest.substr(0, 3));
     if (rest.size() < kFrameHead + size) break;
     take(static_cast<uint8_t>(rest[3]), static_cast<uint8_t>(rest[4]),
-         number(rest.substr(5, 4)) & 0x7FFFFFFFU, rest.substr(kFrameHead, size));
+         from_big_endian(rest.substr(5, 4)) & 0x7FFFFFFFU, rest.substr(kFrameHead, size));
     rest.remove_prefix(kFrameHead + size);
   }
   incoming_.erase(0, incoming_.size() - rest.size());
@@ -159,8 +159,8 @@ void RawHttp2::read(int milliseconds) {
 void RawHttp2::take(uint8_t type, uint8_t flags, uint32_t stream, std::string_view payload) {
   if (type == kSettings && (flags & kAck) == 0) {
     for (; payload.size() >= 6; payload.remove_prefix(6)) {
-      if (number(payload.substr(0, 2)) != kInitialWindowSize) continue;
-      const int64_t size = number(payload.substr(2, 4));
+      if (from_big_endian(payload.substr(0, 2)) != kInitialWindowSize) continue;
+      const int64_t size = from_big_endian(payload.substr(2, 4));
       for (auto& [id, window] : windows_) window += size - initial_window_;
       initial_window_ = size;
     }
@@ -168,7 +168,7 @@ void RawHttp2::take(uint8_t type, uint8_t flags, uint32_t stream, std::string_vi
   } else if (type == kPing && (flags & kAck) == 0) {
     frame(kPing, kAck, 0, payload);
   } else if (type == kWindowUpdate) {
-    (stream == 0 ? window_ : windows_[stream]) += number(payload);
+    (stream == 0 ? window_ : windows_[stream]) += from_big_endian(payload);
   } else if (type == kReset || ((type == kHeaders || type == kData) && (flags & kEndStream) != 0)) {
     ended_[stream] = true;
   } else if (type == kGoAway) {

@@ -15,7 +15,7 @@
 
 #include "coordinator/local/frame_work.h"
 #include "coordinator/local/local_run.h"
-#include "tests/coordinator/store/fake_film.h"
+#include "tests/coordinator/film_store/fake_film.h"
 
 namespace hyades::coordinator {
 

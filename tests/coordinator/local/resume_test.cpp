@@ -10,8 +10,8 @@
 #include <random>
 
 #include "coordinator/local/local_run.h"
+#include "tests/coordinator/film_store/faulty_files.h"
 #include "tests/coordinator/local/fake_render.h"
-#include "tests/coordinator/store/faulty_files.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {

@@ -41,6 +41,12 @@ class FakeHook {
     const std::lock_guard lock(mutex_);
     statuses_ = std::move(statuses);
   }
+  /// Where answers of 3xx send whoever asks; of itself where nobody has said.
+  void send_to(std::string location) {
+    const std::lock_guard lock(mutex_);
+    location_ = std::move(location);
+  }
+  uint16_t port() const { return port_; }
   std::vector<std::string> bodies() const {
     const std::lock_guard lock(mutex_);
     return bodies_;
@@ -65,9 +71,11 @@ class FakeHook {
           length = std::strtoul(bytes.c_str() + field + 16, nullptr, 10);
       }
       int status = 200;
+      std::string location = url();
       {
         const std::lock_guard lock(mutex_);
         if (head != std::string::npos) bodies_.push_back(bytes.substr(head + 4));
+        if (!location_.empty()) location = location_;
         if (!statuses_.empty()) {
           status = statuses_.front();
           statuses_.erase(statuses_.begin());
@@ -75,7 +83,8 @@ class FakeHook {
       }
       const std::string reply = "HTTP/1.1 " + std::to_string(status) +
                                 " X\r\nContent-Length: 0\r\nConnection: close\r\n" +
-                                (status / 100 == 3 ? "Location: " + url() + "\r\n" : "") + "\r\n";
+                                (status / 100 == 3 ? "Location: " + location + "\r\n" : "") +
+                                "\r\n";
       (void)::send(one, reply.data(), reply.size(), MSG_NOSIGNAL);
       ::close(one);
     }
@@ -85,6 +94,7 @@ class FakeHook {
   uint16_t port_ = 0;
   mutable std::mutex mutex_;
   std::vector<int> statuses_;
+  std::string location_;
   std::vector<std::string> bodies_;
   std::thread thread_;
 };

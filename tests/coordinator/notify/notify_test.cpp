@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "coordinator/notify/notifier.h"
+#include "core/base/printable.h"
 #include "farm/json_form.h"
 #include "tests/coordinator/notify/fake_hook.h"
 #include "tests/coordinator/services/farm_world.h"
@@ -65,6 +66,86 @@ TEST(Hook, WhatIsRefusedIsToldAndDoesNotComeAgain) {
   }
   EXPECT_NE(told.find("404"), std::string::npos);
   EXPECT_EQ(told.find("secret"), std::string::npos) << "an address may hold a key";
+}
+
+/// What a hook says last of messages that it gives up.
+class Told {
+ public:
+  std::function<void(const std::string&)> listener() {
+    return [this](const std::string& line) {
+      const std::lock_guard lock(mutex_);
+      line_ = line;
+    };
+  }
+  std::string line() const {
+    const std::lock_guard lock(mutex_);
+    return line_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string line_;
+};
+
+// A hook that answered 307 once had the coordinator post to itself, as an admin.
+TEST(Hook, NobodyIsSentToAnotherPlace) {
+  for (const int status : {301, 302, 307, 308}) {
+    FakeHook victim;
+    FakeHook server;
+    server.send_to(victim.url());
+    server.answer_with({status});
+    Told told;
+    Hook::Options options = quick(server.url());
+    options.tell = told.listener();
+    Hook hook(options);
+    hook.post("one");
+    ASSERT_TRUE(eventually([&] { return !told.line().empty(); }));
+    EXPECT_NE(told.line().find("has moved to"), std::string::npos) << told.line();
+    EXPECT_TRUE(victim.bodies().empty()) << status;
+  }
+}
+
+TEST(Hook, ANameDoesNotStandForThisMachineUnlessToldSo) {
+  FakeHook server;
+  // Names below localhost are this machine, without any name server (RFC 6761, section 6.3).
+  const std::string url = "http://hook.localhost:" + std::to_string(server.port()) + "/";
+  Told told;
+  Hook::Options options = quick(url);
+  options.give_up = 50ms;
+  options.tell = told.listener();
+  {
+    Hook hook(options);
+    hook.post("one");
+    ASSERT_TRUE(eventually([&] { return !told.line().empty(); }));
+  }
+  EXPECT_NE(told.line().find("--notify-private"), std::string::npos) << told.line();
+  EXPECT_TRUE(server.bodies().empty());
+  options.may_be_private = true;
+  Hook hook(options);
+  hook.post("two");
+  EXPECT_TRUE(eventually([&] { return server.bodies().size() == 1; }));
+}
+
+TEST(Hook, LocalhostInCapitalsIsThisMachineToo) {
+  FakeHook server;
+  Hook hook(quick("http://LOCALHOST:" + std::to_string(server.port()) + "/"));
+  hook.post("one");
+  EXPECT_TRUE(eventually([&] { return server.bodies().size() == 1; }));
+}
+
+// Slack calls everybody for <!channel>, Mattermost for @channel; both draw links.
+TEST(News, ChatServersCallNobodyByANameOfSomebodyElse) {
+  News news;
+  news.kind = News::Kind::failed;
+  news.job.set_id(7);
+  news.job.set_name("<!channel> @all [x](http://evil.example) `& \u202Eevil");
+  news.job.set_reason("`@here`");
+  EXPECT_EQ(chat_message(news, ""),
+            R"({"text":"Job 7, `&lt;!channel&gt; @all [x](http://evil.example) '&amp; ?evil`, )"
+            R"(failed: 0 of 0 frames are done: `'@here'`"})");
+  EXPECT_EQ(text_of(news, core::printable),
+            "Job 7, <!channel> @all [x](http://evil.example) `& ?evil, failed: 0 of 0 frames are "
+            "done: `@here`");
 }
 
 TEST(Hook, NobodyThereIsGivenUpInTheEnd) {

@@ -71,14 +71,14 @@ struct BigWorldReport {
 void print(const BigWorldReport& report);
 
 /// A big farm on a good day: the real scheduler, thousands of workers, realistic links, unit times
-/// and scenes, workers pre-empted by rate. What a worker does is what worker/desk.h does: as many
-/// units wait as it has threads, the wish for the next travels with a result, heartbeats every five
-/// seconds, one scene is loaded at a time beside what is rendered. Efficiency is rendering that
-/// counts over the time that threads were there, from the first worker's start to the last frame's
-/// end; `enough` is the same up to the moment when less is left to render than what fills all
-/// threads and their queues (two units each): no order of work could keep all of them busy after
-/// that. Deterministic, except for `cpu_seconds`. Throws a std::string where a batch counts twice,
-/// or a frame ends without one.
+/// and scenes, workers pre-empted by rate. What a worker does is what worker/state_machine.h does:
+/// as many units wait as it has threads, the wish for the next travels with a result, heartbeats
+/// every five seconds, one scene is loaded at a time beside what is rendered. Efficiency is
+/// rendering that counts over the time that threads were there, from the first worker's start to
+/// the last frame's end; `enough` is the same up to the moment when less is left to render than
+/// what fills all threads and their queues (two units each): no order of work could keep all of
+/// them busy after that. Deterministic, except for `cpu_seconds`. Throws a std::string where a
+/// batch counts twice, or a frame ends without one.
 class BigWorld {
  public:
   explicit BigWorld(const BigWorldOptions& options);

@@ -1,12 +1,15 @@
-// The scheduler's parts: how a frame is cut into tiles, and bits per batch.
+// The scheduler's parts: how a frame is cut into tiles, bits per batch, and how long units are.
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "coordinator/scheduler/batch_map.h"
+#include "coordinator/scheduler/run_length.h"
 #include "coordinator/scheduler/tile_grid.h"
 
 namespace hyades::coordinator {
@@ -107,6 +110,22 @@ TEST(BatchMap, AgreesWithOneBoolPerBatch) {
     ASSERT_EQ(BatchMap::first_free(a, b, 1, range), run);
   }
   EXPECT_EQ(a.count(0, {0, kBatches}), 0U) << "another tile was touched";
+}
+
+TEST(RunLength, IsWhatTakesTheUnitsTime) {
+  constexpr Duration kUnit = std::chrono::milliseconds(500);
+  constexpr uint64_t kPlenty = 1'000'000'000;
+  EXPECT_EQ(run_length(0.125, kUnit, kPlenty, 4), 4U);
+  EXPECT_EQ(run_length(10, kUnit, kPlenty, 4), 1U) << "a batch is not divided";
+  EXPECT_EQ(run_length(1e-12, kUnit, kPlenty, 4), 1'000'000U);
+}
+
+TEST(RunLength, LetsTheThreadsEndTogetherWhereLittleIsLeft) {
+  constexpr Duration kUnit = std::chrono::milliseconds(500);
+  EXPECT_EQ(run_length(0.125, kUnit, 48, 4), 3U) << "four runs for each thread";
+  EXPECT_EQ(run_length(0.125, kUnit, 3, 4), 1U);
+  EXPECT_EQ(run_length(0.125, kUnit, 0, 4), 1U);
+  EXPECT_EQ(run_length(0.125, kUnit, 8, 0), 2U) << "nobody is there yet: as for one thread";
 }
 
 }  // namespace

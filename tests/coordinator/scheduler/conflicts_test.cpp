@@ -49,7 +49,7 @@ TEST_F(Conflicts, TheSecondWasWrong) {
   ASSERT_EQ(sure.size(), 2U);
   EXPECT_EQ(sure[0].worker, kAnna);
   EXPECT_EQ(sure[1].worker, kCora);
-  odd_is_stored();
+  divergence_is_stored();
   EXPECT_FALSE(std::get<DisputeRecord>(b.only<Persist>().record).open) << "all is well";
 }
 
@@ -112,10 +112,10 @@ TEST_F(Conflicts, WhereThreeDifferAFourthDecides) {
   b.deliver(b.ask(kCora), 0, 3);
   EXPECT_TRUE(b.all<Quarantine>().empty());
   b.deliver(b.ask(kDora), 0, 2);
-  const auto odd = b.all<Quarantine>();
-  ASSERT_EQ(odd.size(), 2U);
-  EXPECT_EQ(odd[0].worker, kAnna);
-  EXPECT_EQ(odd[1].worker, kCora);
+  const auto divergent = b.all<Quarantine>();
+  ASSERT_EQ(divergent.size(), 2U);
+  EXPECT_EQ(divergent[0].worker, kAnna);
+  EXPECT_EQ(divergent[1].worker, kCora);
 }
 
 TEST_F(Conflicts, FiveDifferentAnswersFailTheFrameAndBlameNobody) {
@@ -132,7 +132,7 @@ TEST_F(Conflicts, FiveDifferentAnswersFailTheFrameAndBlameNobody) {
 TEST_F(Conflicts, ThatShowWhileTheOutputsAreMadeAreStillDecided) {
   b.join(kCora);
   b.deliver(b.ask(kCora), 0, 1);
-  odd_is_stored();
+  divergence_is_stored();
   b.tell(Persisted{b.only<Persist>().id});
   const Lease last = b.ask(kAnna);
   deliver_durably(last, 1);
@@ -156,7 +156,7 @@ TEST_F(Conflicts, NobodyIsAnsweredBeforeTheLogKnowsOfTheDispute) {
   const Lease other = b.ask(kAnna);
   deliver_durably(other, 1);
   b.deliver(b.ask(kCora), 0, 1);
-  odd_is_stored();
+  divergence_is_stored();
   b.tell(Persisted{b.only<Persist>().id});  // that it is over
   Lease late = other;
   late.worker = kCora;
@@ -227,6 +227,90 @@ TEST_F(Conflicts, AVoidThatIsNotDurableIsTriedAgain) {
   b.now = *b.scheduler.next_wake();
   b.tell(Tick{});
   EXPECT_EQ(b.only<Persist>().id, first.id);
+}
+
+/// Anna has a credential of her own, and rendered one of two tiles. Bert, Cora and more are let in
+/// by one credential: whoever has that may call himself what he likes.
+class OneCredential : public testing::Test {
+ protected:
+  void SetUp() override {
+    b.join_by("anna's", kAnna);
+    for (const WorkerId worker : {kBert, kCora, kDora, kEmil}) b.join_by("shared", worker);
+    b.add(small_plan({1}, 1));
+    b.tell(FrameOpened{kJob, 1});
+    unit_ = b.ask(kAnna);
+    deliver_durably(kAnna, 1);
+  }
+  void deliver(WorkerId worker, uint8_t bits) {
+    Lease lease = unit_;
+    lease.worker = worker;
+    b.deliver(lease, 0, bits);
+  }
+  void deliver_durably(WorkerId worker, uint8_t bits) {
+    deliver(worker, bits);
+    b.tell(Persisted{b.only<Persist>().id});
+  }
+  SchedulerBench b;
+  Lease unit_;
+};
+
+TEST_F(OneCredential, IsOneWitnessWhateverItsWorkersAreCalled) {
+  deliver_durably(kBert, 2);
+  deliver(kCora, 2);
+  deliver(kDora, 2);
+  EXPECT_TRUE(b.all<Quarantine>().empty());
+  EXPECT_NE(b.ask(kEmil).units, unit_.units) << "who is no other witness is not asked either";
+  const WorkerId frida{6};
+  b.join_by("frida's", frida);
+  EXPECT_EQ(b.ask(frida).units, unit_.units);
+  deliver(frida, 1);
+  const auto liars = b.all<Quarantine>();
+  ASSERT_EQ(liars.size(), 3U);
+  EXPECT_EQ(liars[0].worker, kBert);
+  EXPECT_EQ(liars[1].worker, kCora);
+  EXPECT_EQ(liars[2].worker, kDora);
+}
+
+TEST_F(OneCredential, OverrulesNoneOfItsOwnButByAnother) {
+  deliver_durably(kBert, 2);
+  deliver(kCora, 1);  // who is honest, and agrees with Anna
+  EXPECT_EQ(b.only<Quarantine>().worker, kBert);
+}
+
+TEST_F(OneCredential, ConfirmsNothingOfItsOwn) {
+  const Lease first = b.ask(kBert);
+  b.deliver_durably(first);
+  Lease again = first;
+  again.worker = kCora;
+  b.deliver(again);
+  EXPECT_TRUE(b.all<Confirmed>().empty());
+  again.worker = kAnna;
+  b.deliver(again);
+  EXPECT_EQ(b.all<Confirmed>().size(), 2U);
+}
+
+TEST_F(OneCredential, ThatAnswersInManyWaysFailsNoFrame) {
+  deliver_durably(kBert, 2);
+  deliver(kCora, 3);
+  deliver(kDora, 4);
+  deliver(kEmil, 5);
+  EXPECT_TRUE(b.all<Persist>().empty());
+  EXPECT_TRUE(b.all<Quarantine>().empty());
+}
+
+TEST_F(OneCredential, FailsNoFrameWhileAnotherMayTry) {
+  const std::vector<core::Unit> other = b.ask(kBert).units;
+  const auto fail = [&](const Lease& lease) {
+    EXPECT_EQ(lease.units, other);
+    b.tell(UnitFailed{lease.worker, lease.lease, kJob, lease.units.at(0), "it is evil"});
+    EXPECT_TRUE(b.all<Persist>().empty());
+  };
+  b.tell(WorkerBarred{kAnna, true});
+  b.tell(WorkerLost{kBert});
+  for (const WorkerId worker : {kCora, kDora}) fail(b.ask(worker));
+  b.tell(WorkerBarred{kAnna, false});
+  fail(b.ask(kEmil));
+  EXPECT_EQ(b.ask(kAnna).units, other);
 }
 
 }  // namespace

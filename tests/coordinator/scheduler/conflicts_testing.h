@@ -43,11 +43,11 @@ class Conflicts : public testing::Test {
     b.tell(Persisted{b.only<Persist>().id});
   }
 
-  /// What a worker is found odd for has followed, and is durable.
-  void odd_is_stored() {
-    const Persist odd = b.all<Persist>().back();
-    ASSERT_TRUE(std::holds_alternative<DivergentWorkerRecord>(odd.record));
-    b.tell(Persisted{odd.id});
+  /// What a worker is found divergent for has followed, and is durable.
+  void divergence_is_stored() {
+    const Persist divergent = b.all<Persist>().back();
+    ASSERT_TRUE(std::holds_alternative<DivergentWorkerRecord>(divergent.record));
+    b.tell(Persisted{divergent.id});
   }
 
   SchedulerBench b;

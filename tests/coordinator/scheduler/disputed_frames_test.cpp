@@ -1,4 +1,4 @@
-// Frames that conflicts put in doubt, and what a restart finds of them.
+// Frames that conflicts make suspect, and what a restart finds of them.
 #include "tests/coordinator/scheduler/conflicts_testing.h"
 
 namespace hyades::coordinator {
@@ -7,7 +7,7 @@ namespace {
 using Bench = SchedulerBench;
 
 /// A job of two frames; Anna has rendered the first, and its outputs are made.
-class DoubtedFrames : public testing::Test {
+class SuspectFrames : public testing::Test {
  protected:
   void SetUp() override {
     b.join(kAnna);
@@ -23,7 +23,7 @@ class DoubtedFrames : public testing::Test {
     b.tell(FinishDone{kJob, 1});
     stored_ = b.only<Persist>().id;
   }
-  void doubt() { b.tell(FramesSuspected{kJob, {1, 2, 7}}); }
+  void suspect() { b.tell(FramesSuspected{kJob, {1, 2, 7}}); }
   void expect_again() {
     const Persist again = b.only<Persist>();
     EXPECT_EQ(std::get<FrameRestartedRecord>(again.record).frame, 1);
@@ -34,10 +34,10 @@ class DoubtedFrames : public testing::Test {
   RecordId stored_{};
 };
 
-TEST_F(DoubtedFrames, BeginAgain) {
+TEST_F(SuspectFrames, BeginAgain) {
   b.tell(Persisted{stored_});
   EXPECT_EQ(b.only<FrameDone>().frame, 1);
-  doubt();
+  suspect();
   expect_again();
   b.tell(FrameOpened{kJob, 2});
   b.deliver_durably(b.ask(kAnna));
@@ -51,15 +51,15 @@ TEST_F(DoubtedFrames, BeginAgain) {
   EXPECT_EQ(b.only<JobEnded>().done, 2U);
 }
 
-TEST_F(DoubtedFrames, BeginAgainWhenTheirEndIsStored) {
-  doubt();
+TEST_F(SuspectFrames, BeginAgainWhenTheirEndIsStored) {
+  suspect();
   EXPECT_TRUE(b.all<Persist>().empty());
   b.tell(Persisted{stored_});
   EXPECT_TRUE(b.all<FrameDone>().empty());
   expect_again();
 }
 
-TEST_F(DoubtedFrames, BeginAgainWhereTheWorkerIsFoundOutWhileTheirEndIsStored) {
+TEST_F(SuspectFrames, BeginAgainWhereTheWorkerIsFoundOutWhileTheirEndIsStored) {
   // Its films of frame 2 differ from two others'.
   b.join(kBert);
   b.join(WorkerId{3});
@@ -97,7 +97,7 @@ TEST_F(ConflictsBeforeARestart, LetNoFilmFromThenCount) {
   b.add(small_plan({1}, 1), with_a_film(false), JobId{2});
   b.tell(FrameOpened{JobId{2}, 1});
   b.add(small_plan({1}, 1), with_a_film(true), JobId{1});
-  // The other one's too: who was odd is not known.
+  // The other one's too: who was divergent is not known.
   const auto said = b.all<Persist>();
   ASSERT_EQ(said.size(), 3U);
   EXPECT_EQ(std::get<FrameRestartedRecord>(said[0].record).job, JobId{1});
@@ -107,10 +107,10 @@ TEST_F(ConflictsBeforeARestart, LetNoFilmFromThenCount) {
   b.tell(Persisted{said[0].id});
   EXPECT_EQ(b.all<OpenFrame>().size(), 1U);
   b.tell(Persisted{said[1].id});
-  EXPECT_TRUE(b.all<Persist>().empty()) << "a film is in doubt still";
+  EXPECT_TRUE(b.all<Persist>().empty()) << "a film is suspect still";
   b.tell(Persisted{said[2].id});
   EXPECT_EQ(b.all<Persist>().size(), 2U) << "both disputes are over";
-  // A job that is taken up later is no better.
+  // A job that is recovered later is no better.
   b.add(small_plan({1}, 1), with_a_film(false), JobId{3});
   EXPECT_EQ(std::get<FrameRestartedRecord>(b.all<Persist>().at(1).record).job, JobId{3});
 }
@@ -124,7 +124,7 @@ TEST_F(ConflictsBeforeARestart, LetNoCompleteFilmBeFinished) {
 }
 
 TEST_F(ConflictsBeforeARestart, AreNotTheOnlyReasonToDoubtWhatNobodyIsKnownToHaveDone) {
-  // No dispute was open; but a worker is found odd that may have rendered the film from then.
+  // No dispute was open; but a worker is found divergent that may have rendered the film from then.
   b.add(small_plan({1}, 2), with_a_film(false));
   b.tell(FrameOpened{kJob, 1});
   for (const WorkerId worker : {kAnna, kBert, kCora}) b.join(worker);
@@ -196,7 +196,7 @@ TEST_F(WholeFrames, BeginAgainOnceTheirOutputsAreMade) {
   b.join(kCora);
   b.deliver(b.ask(kCora), 0, 1);
   EXPECT_EQ(b.only<Quarantine>().worker, kBert);
-  odd_is_stored();
+  divergence_is_stored();
   b.tell(Persisted{b.only<Persist>().id});
   deliver_durably(b.ask(kAnna), 1);
   ASSERT_EQ(b.all<FinishFrame>().size(), 1U);

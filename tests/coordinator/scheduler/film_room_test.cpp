@@ -94,6 +94,24 @@ TEST_F(FilmRoom, JobsWithoutWorkersHoldNobodyUp) {
   expect_bert_gets(kOther);
 }
 
+TEST_F(FilmRoom, RecordsOfACancelledJobThatNobodyAnswersHoldNobodyUp) {
+  add(kJob, plan(60, 2));
+  b.deliver_durably(b.ask(kAnna));
+  b.tell(JobPaused{kJob});
+  add(kThird, plan(10));
+  b.deliver(b.ask(kAnna));
+  const RecordId film = b.only<Persist>().id;
+  add(kOther, plan(60, 2));
+  expect_bert_waits();  // for the film on its way to the disk
+  // Its store ends before it has begun.
+  b.tell(JobCancelled{kThird});
+  expect_bert_gets(kOther);
+  // Should an answer come after all, nothing follows from it.
+  b.tell(PersistFailed{film, "disk full"});
+  EXPECT_TRUE(b.said.empty());
+  EXPECT_EQ(b.ask(kAnna).job, kOther) << "work is not held back for it";
+}
+
 TEST_F(FilmRoom, SmallFilmsDoNotOvertakeForEver) {
   add(kJob, plan(60));
   add(kOther, plan(60));

@@ -129,7 +129,7 @@ TEST(Preference, AWorkerStaysWithTheSceneThatItHas) {
   b.add(plan_of("fay"), {}, JobId{2});
   for (const uint64_t j : {1, 2}) b.tell(FrameOpened{JobId{j}, 1});
   for (int round = 0; round < 10; ++round) {
-    // In the first round each owner gets one; later Eve, who has nothing then, is in turn.
+    // In the first round each owner gets one; later Eve, who has nothing then, is next in line.
     const Lease first = b.ask(round == 0 ? kAnna : kBert);
     const Lease second = b.ask(round == 0 ? kBert : kAnna);
     EXPECT_EQ((first.worker == kAnna ? first : second).job, JobId{1});
@@ -140,7 +140,7 @@ TEST(Preference, AWorkerStaysWithTheSceneThatItHas) {
   }
 }
 
-TEST(Preference, AfterItsTimeAWorkerTakesWhatIsInTurn) {
+TEST(Preference, AfterItsTimeAWorkerTakesWhatIsNextInLine) {
   SchedulerOptions options;
   options.affinity_time = seconds(20);
   options.unit_time = milliseconds(1);  // a batch
@@ -181,6 +181,24 @@ TEST(Preference, AffinityLeavesOwnersTheirShares) {
   EXPECT_EQ(got[JobId{1}], 50);
 }
 
+TEST(Preference, OwnersAreForgottenWithTheirLastJob) {
+  Bench b;
+  b.join(kAnna);
+  for (uint64_t j = 1; j <= 3; ++j) {
+    b.add(plan_of("eve"), {}, JobId{j});
+    b.tell(FrameOpened{JobId{j}, 1});
+  }
+  b.ask(kAnna);
+  // The audit after each step finds an owner without jobs.
+  b.tell(JobReprioritised{JobId{1}, 5});
+  EXPECT_EQ(b.ask(kAnna).job, JobId{1});
+  b.tell(JobReprioritised{JobId{1}, 0});
+  for (uint64_t j = 1; j <= 3; ++j) b.tell(JobCancelled{JobId{j}});
+  b.add(plan_of("eve"), {}, JobId{4});
+  b.tell(FrameOpened{JobId{4}, 1});
+  EXPECT_EQ(b.ask(kAnna).job, JobId{4});
+}
+
 TEST(Preference, AffinityNeverOverridesPriority) {
   Bench b;
   b.join(kAnna);
@@ -214,22 +232,39 @@ TEST(Preference, AWorkerThatFailsWhatOthersCanRenderIsQuarantined) {
   EXPECT_EQ(b.only<Lease>().worker, kAnna) << "released";
 }
 
+TEST(Preference, AReleasedWorkerThatIsToLeaveGetsUnitsOnlyWhenItComesAgain) {
+  SchedulerOptions options;
+  options.max_failures = 1;
+  Bench b(options);
+  b.begin(plan_of("eve", 100));
+  const Lease failed = b.ask(kAnna);
+  b.tell(UnitFailed{kAnna, failed.lease, kJob, failed.units[0], "bad memory"});
+  b.deliver(b.ask(kBert));
+  ASSERT_EQ(b.only<Quarantine>().worker, kAnna);
+  b.tell(WorkerBarred{kAnna, true, true});
+  b.tell(WorkRequested{kAnna, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.tell(WorkerLost{kAnna});
+  b.join(kAnna);
+  EXPECT_EQ(b.ask(kAnna).worker, kAnna) << "its quarantine is over";
+}
+
 TEST(Preference, AForgottenWorkerLeavesNothingBehind) {
   SchedulerOptions options;
   options.max_failures = 2;
   Bench b(options);
   b.begin(plan_of("eve", 100));
-  const auto strike = [&] {
+  const auto failure = [&] {
     const Lease failed = b.ask(kAnna);
     b.tell(UnitFailed{kAnna, failed.lease, kJob, failed.units[0], "bad memory"});
     b.deliver(b.ask(kBert));
   };
-  strike();
+  failure();
   b.tell(WorkerForgotten{kAnna});
   b.join(kAnna);
-  strike();
-  EXPECT_TRUE(b.all<Quarantine>().empty()) << "a strike of another life";
-  strike();
+  failure();
+  EXPECT_TRUE(b.all<Quarantine>().empty()) << "a failure of another life";
+  failure();
   EXPECT_EQ(b.only<Quarantine>().worker, kAnna);
   b.tell(WorkerForgotten{kAnna});
   b.join(kAnna);

@@ -152,6 +152,25 @@ TEST(Scheduler, AFinishedRecordThatFailsIsTriedAgain) {
   EXPECT_EQ(b.all<JobEnded>().size(), 1U);
 }
 
+TEST(Scheduler, AFinishedRecordOfACancelledJobIsNotTriedAgain) {
+  Bench b;
+  b.join(kAnna);
+  JobPlan plan = small_plan({1}, 1);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  b.deliver_durably(b.ask(kAnna));
+  b.tell(FinishDone{kJob, 1});
+  const RecordId finished = b.only<Persist>().id;
+  b.tell(PersistFailed{finished, "disk full"});
+  b.tell(JobCancelled{kJob});
+  b.now = *b.scheduler.next_wake();
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Persist>().empty());
+  b.tell(Persisted{finished});
+  EXPECT_TRUE(b.said.empty());
+}
+
 TEST(Scheduler, RestartContinuesWithWhatWasAccepted) {
   Bench b;
   RestoredJob restored;

@@ -52,6 +52,10 @@ class SchedulerBench {
   void join(WorkerId worker, std::vector<UnitInHand> in_hand = {}) {
     tell(WorkerJoined{worker, 1, "class", std::move(in_hand)});
   }
+  /// The worker joins by a credential that others may have.
+  void join_by(const std::string& credential, WorkerId worker) {
+    tell(WorkerJoined{worker, 1, "class", {}, {}, 0, credential});
+  }
   /// Anna and Bert are there, and the job's frame 1 is open.
   void begin(JobPlan plan) {
     join(kAnna);

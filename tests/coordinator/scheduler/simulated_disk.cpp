@@ -26,8 +26,8 @@ LogContents SimulatedDisk::open() {
   options.max_pending_bytes = 30'000;
   auto log = FilmLog::open(kFolder, "job", options);
   if (!log) throw "the film log does not open: " + log.error().message;
-  LogWish wish{{plan_.frames.begin(), plan_.frames.end()}, plan_.region, samples(), {}};
-  auto contents = read_log(**log, wish);
+  LogFilter filter{{plan_.frames.begin(), plan_.frames.end()}, plan_.region, samples(), {}};
+  auto contents = read_log(**log, filter);
   if (!contents) throw "the film log cannot be read: " + contents.error().message;
   log_ = std::move(*log);
   if (contents->empty) {
@@ -62,7 +62,7 @@ core::Result<uint64_t> SimulatedDisk::append(const Record& record, uint8_t mark)
           [](const TileVoidedRecord& voided) { return encode(voided); },
           [](const DisputeRecord& dispute) { return encode(dispute); },
           [](const DivergentWorkerRecord&) -> Bytes {
-            throw "an odd worker is not in the film log";
+            throw "a divergent worker is not in the film log";
           },
       },
       record));

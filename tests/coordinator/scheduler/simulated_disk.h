@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "coordinator/film_store/film_records.h"
 #include "coordinator/scheduler/actions.h"
-#include "coordinator/store/film_records.h"
 #include "core/film/film.h"
-#include "tests/coordinator/store/faulty_files.h"
+#include "tests/coordinator/film_store/faulty_files.h"
 
 namespace hyades::coordinator {
 

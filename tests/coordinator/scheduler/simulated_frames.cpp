@@ -113,34 +113,34 @@ void SimulatedWorld::act(const FrameReopened& a) {
   jobs_.at(a.job).rows.erase(a.frame);
 }
 
-/// The worker is odd, and that is durable: so is the doubt about what it had a part in.
-void SimulatedWorld::store(const DivergentWorkerRecord& odd) {
-  workers_[index_of(odd.worker)].known_odd = true;
+/// The worker is divergent, and that is durable: so is the suspicion of what it had a part in.
+void SimulatedWorld::store(const DivergentWorkerRecord& divergent) {
+  workers_[index_of(divergent.worker)].known_divergent = true;
   for (auto& [id, job] : jobs_) {
-    FramesSuspected doubted{id, {}};
+    FramesSuspected suspected{id, {}};
     for (auto& [frame, row] : job.rows) {
       const auto& by = row.unconfirmed;
-      if (std::find(by.begin(), by.end(), odd.worker) == by.end() &&
+      if (std::find(by.begin(), by.end(), divergent.worker) == by.end() &&
           std::find(by.begin(), by.end(), WorkerId{}) == by.end()) {
         continue;
       }
       row.doubtful = true;
-      doubted.frames.push_back(frame);
+      suspected.frames.push_back(frame);
     }
-    if (doubted.frames.empty() || job.ended) continue;
-    frames_doubted += doubted.frames.size();
-    tell_later(doubted);
+    if (suspected.frames.empty() || job.ended) continue;
+    frames_suspected += suspected.frames.size();
+    tell_later(suspected);
   }
 }
 
-/// All jobs have ended: whatever shows what an odd worker did must be known to be doubtful.
+/// All jobs have ended: whatever shows what a divergent worker did must be known to be suspect.
 void SimulatedWorld::check_rows() {
   for (const auto& [id, job] : jobs_) {
     for (const auto& [frame, row] : job.rows) {
-      left_doubtful += row.doubtful;
+      left_suspect += row.doubtful;
       for (const uint8_t by : row.corrupted_by) {
-        if (workers_[by - 1U].known_odd && !row.doubtful) {
-          fail("outputs show what an odd worker did, and nobody knows");
+        if (workers_[by - 1U].known_divergent && !row.doubtful) {
+          fail("outputs show what a divergent worker did, and nobody knows");
         }
       }
     }

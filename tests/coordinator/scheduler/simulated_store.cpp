@@ -31,7 +31,7 @@ void SimulatedWorld::act(const Persist& a) {
   if (const auto* again = std::get_if<FrameRestartedRecord>(&a.record)) {
     jobs_.at(again->job).rows.erase(again->frame);
   }
-  // What failed, and who is odd, is not in the film log.
+  // What failed, and who is divergent, is not in the film log.
   if (real_store_ && !std::holds_alternative<FrameFailedRecord>(a.record) &&
       !std::holds_alternative<DivergentWorkerRecord>(a.record)) {
     return append(jobs_.at(frame_of(a.record).first), a);

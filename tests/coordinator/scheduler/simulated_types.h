@@ -46,7 +46,7 @@ struct SimWorker {
   uint64_t memory = 0;
   /// The coordinator (by generation) that found it out; 0: none.
   uint64_t quarantined_by = 0;
-  bool known_odd = false;             ///< ... and that is durable
+  bool known_divergent = false;       ///< ... and that is durable
   std::map<uint64_t, UnitHeld> held;  ///< by order of arrival
 };
 

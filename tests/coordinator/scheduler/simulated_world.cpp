@@ -101,8 +101,8 @@ void SimulatedWorld::start_coordinator() {
   for (auto& [id, job] : jobs_) {
     if (job.ended) continue;
     if (real_store_) take_up(job);
-    // What is in doubt is rendered again; a frame without a row is not done, whatever its log says.
-    frames_doubted += static_cast<uint64_t>(
+    // What is suspect is rendered again; a frame without a row is not done, whatever its log says.
+    frames_suspected += static_cast<uint64_t>(
         std::erase_if(job.rows, [](const auto& row) { return row.second.doubtful; }));
     std::erase_if(job.stored.finished, [&](int32_t f) { return !job.rows.contains(f); });
     for (auto& [number, frame] : job.frames) {
@@ -134,7 +134,7 @@ void SimulatedWorld::crash_coordinator(bool power) {
   storing_.clear();
   unsettled_.clear();
   for (SimWorker& w : workers_) {
-    if (!w.known_odd) w.quarantined_by = 0;
+    if (!w.known_divergent) w.quarantined_by = 0;
   }
   for (SimWorker& w : workers_) w.connected = false;
   after(std::chrono::milliseconds(number(1, 5000)), [this] {

@@ -46,10 +46,11 @@ class SimulatedWorld {
   uint64_t quarantines = 0;
   uint64_t tiles_voided = 0;
   uint64_t frames_reopened = 0;
-  uint64_t frames_doubted = 0;  ///< finished, with a part of a worker that was found odd later
-  uint64_t left_doubtful = 0;   ///< ... after their job had ended
-  uint64_t struck_out = 0;      ///< workers in quarantine because they failed unit after unit
-  uint64_t frames_wrong = 0;    ///< finished before anybody compared
+  uint64_t frames_suspected =
+      0;                      ///< finished, with a part of a worker that was found divergent later
+  uint64_t left_suspect = 0;  ///< ... after their job had ended
+  uint64_t struck_out = 0;    ///< workers in quarantine because they failed unit after unit
+  uint64_t frames_wrong = 0;  ///< finished before anybody compared
   // Of the real store.
   uint64_t films_replayed = 0;
   uint64_t power_cuts = 0;
@@ -99,7 +100,7 @@ class SimulatedWorld {
   void store(const FrameRestartedRecord& again);
   void store(const TileVoidedRecord& voided);
   void store(const DisputeRecord& dispute);
-  void store(const DivergentWorkerRecord& odd);
+  void store(const DivergentWorkerRecord& divergent);
   bool is_stored(JobId job, const core::Unit& unit) {
     return jobs_.at(job).stored_units.contains(name(unit));
   }

@@ -42,7 +42,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   uint64_t quarantines = 0;
   uint64_t voided = 0;
   uint64_t reopened = 0;
-  uint64_t doubted = 0;
+  uint64_t suspected = 0;
   uint64_t left = 0;
   uint64_t struck = 0;
   uint64_t wrong = 0;
@@ -71,8 +71,8 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
     quarantines += world.quarantines;
     voided += world.tiles_voided;
     reopened += world.frames_reopened;
-    doubted += world.frames_doubted;
-    left += world.left_doubtful;
+    suspected += world.frames_suspected;
+    left += world.left_suspect;
     struck += world.struck_out;
     wrong += world.frames_wrong;
     replayed += world.films_replayed;
@@ -97,7 +97,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
       "compared in time\n",
       static_cast<unsigned long long>(conflicts), static_cast<unsigned long long>(quarantines),
       static_cast<unsigned long long>(voided), static_cast<unsigned long long>(reopened),
-      static_cast<unsigned long long>(doubted), static_cast<unsigned long long>(left),
+      static_cast<unsigned long long>(suspected), static_cast<unsigned long long>(left),
       static_cast<unsigned long long>(wrong));
   std::printf(
       "%llu power cuts, %llu groups not stored, %llu films refused, %llu compactions, %llu films "
@@ -119,7 +119,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   EXPECT_GE(quarantines, worlds / 50);
   EXPECT_GE(voided, worlds / 20);
   EXPECT_GE(reopened, 1U);
-  EXPECT_GE(doubted, worlds / 100);
+  EXPECT_GE(suspected, worlds / 100);
   EXPECT_GE(left, worlds / 500);
   EXPECT_GE(struck, worlds / 50);
   EXPECT_GE(replayed, worlds);

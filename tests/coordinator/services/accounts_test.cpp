@@ -4,6 +4,7 @@
 #include <set>
 
 #include "tests/coordinator/services/farm_world.h"
+#include "tests/coordinator/services/troubled_store.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -80,6 +81,35 @@ TEST(Accounts, OfAnOpenJobSurviveARestart) {
   world.stop();
   world.start();
   EXPECT_GT(world.get(job).job().core_seconds(), 0);
+}
+
+TEST(Accounts, AJobThatIsCancelledWhileItWaitsToBeTakenUpTellsItsCost) {
+  FarmWorld world;
+  world.options.unit_time = 1ms;
+  world.options.price = {3600 * 2.0, "EUR"};  // two a second
+  const auto trouble = std::make_shared<Trouble>();
+  world.wrap_store = [&](std::unique_ptr<JobStore> store) {
+    return std::make_unique<TroubledStore>(std::move(store), trouble);
+  };
+  world.start();
+  const uint64_t job = world.submit(3);
+  v1::JobRequest about;
+  about.set_job(job);
+  v1::JobResponse now;
+  {
+    ScriptedWorker::Script script = world.script();
+    script.unit_time = 5ms;
+    const ScriptedWorker worker(world.address, script);
+    ASSERT_TRUE(eventually([&] { return world.get(job).job().core_seconds() > 0; }));
+    ASSERT_TRUE(world.jobs->Pause(world.context().get(), about, &now).ok());  // stores the job
+  }
+  world.stop();
+  trouble->of_frames(Trouble::Kind::fails);
+  world.start();
+  ASSERT_TRUE(world.jobs->Cancel(world.context().get(), about, &now).ok());
+  EXPECT_EQ(now.job().state(), v1::JOB_STATE_CANCELLED);
+  EXPECT_GT(now.job().core_seconds(), 0);
+  EXPECT_NEAR(now.job().cost(), 2 * now.job().core_seconds(), 1e-9);
 }
 
 TEST(Accounts, AResultThatDoesNotCountCostsNothing) {

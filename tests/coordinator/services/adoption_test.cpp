@@ -11,13 +11,18 @@
 namespace hyades::coordinator {
 namespace {
 
-/// Time runs faster here: waits of workers and coordinator, and the outage, are this much shorter.
+/// Time runs faster here: the outage and the waits of workers are this much shorter.
 constexpr int kFaster = 10;
+/// ... and what the coordinator waits for them only this much: else a busy machine had less than a
+/// quarter of a second to connect a worker in.
+constexpr int kLessFaster = 2;
 
 TEST(Adoption, AfterHalfAMinuteWithoutACoordinatorUnitsStayWithTheirWorkers) {
+  EXPECT_LE(farm::kLongestReconnect + 1500ms, ControllerOptions().adoption_time)
+      << "the last to try again has to be connected, too";
   FarmWorld world;
   world.options.unit_time = 1ms;  // a batch: so there are many units
-  world.options.adoption_time = ControllerOptions().adoption_time / kFaster;
+  world.options.adoption_time = ControllerOptions().adoption_time / kLessFaster;
   world.start();
   std::string text = FarmWorld::document(1);
   text.replace(text.find("[80, 48]"), 8, "[1280, 768]");  // 720 units
@@ -52,10 +57,10 @@ TEST(Adoption, AfterHalfAMinuteWithoutACoordinatorUnitsStayWithTheirWorkers) {
   script.hold = true;
   const ScriptedWorker thief(world.address, script);
   ASSERT_TRUE(eventually([&] { return thief.unacknowledged() > 0; }));
-  const auto adopted = sum([](const auto& w) { return w.adopted(); });
-  std::printf("%llu of %llu held units were adopted\n", static_cast<unsigned long long>(adopted),
-              static_cast<unsigned long long>(before));
-  EXPECT_GE(adopted * 10, before * 9) << "others render them again";
+  // Their leases may still be on the way.
+  const auto adopted = [&] { return sum([](const auto& w) { return w.adopted(); }); };
+  EXPECT_TRUE(eventually([&] { return adopted() * 10 >= before * 9; }))
+      << adopted() << " of " << before << ": others render them again";
 }
 
 TEST(Adoption, WithoutOpenJobsNobodyIsWaitedFor) {

@@ -31,6 +31,13 @@ namespace hyades::coordinator {
 
 using namespace std::chrono_literals;
 
+/// What asks for something about the job.
+inline v1::JobRequest about(uint64_t job) {
+  v1::JobRequest request;
+  request.set_job(job);
+  return request;
+}
+
 /// Waits until `what` holds, a minute at most.
 inline bool eventually(const std::function<bool()>& what) {
   for (int i = 0; i < 12'000; ++i) {
@@ -163,6 +170,14 @@ class FarmWorld {
 
   bool wait_for(uint64_t job, v1::JobState state) const {
     return eventually([&] { return get(job).job().state() == state; });
+  }
+
+  /// The unit as if it had been leased to this worker, too.
+  v1::LeasedUnit leased_to(const ScriptedWorker& worker, v1::LeasedUnit unit) const {
+    const LeaseProofs proofs(*controller->store().secret());
+    unit.mutable_unit()->set_proof(
+        proofs.make(worker.id(), JobId{unit.job()}, *farm::from_wire(unit.unit())));
+    return unit;
   }
 
   ScriptedWorker::Script script(int number = 1) const {

@@ -10,6 +10,7 @@
 #include "core/film/film_codec.h"
 #include "core/film/film_exr.h"
 #include "tests/coordinator/services/farm_world.h"
+#include "tests/coordinator/services/troubled_store.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -72,12 +73,6 @@ TEST(Keeping, FilmsOfFinishedFramesStayWhereTheJobSaysSo) {
   const grpc::Status gone = fetch_film(world, other, 1, nothing);
   EXPECT_EQ(gone.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   EXPECT_NE(gone.error_message().find("keep_films"), std::string::npos) << gone.error_message();
-}
-
-v1::JobRequest about(uint64_t job) {
-  v1::JobRequest request;
-  request.set_job(job);
-  return request;
 }
 
 void finish_and_delete(FarmWorld& world, uint64_t job) {
@@ -169,6 +164,22 @@ TEST(Keeping, WhatACrashLeftOfADeletedJobGoesAfterTheNextStart) {
   EXPECT_GT(world.get(open).job().samples_done(), 0U);
 }
 
+TEST(Keeping, WhatACrashLeftGoesThoughTheStoreDidNotAnswerAtFirst) {
+  FarmWorld world;
+  world.options.asset_grace = 400ms;  // it is looked for several times a second
+  const auto trouble = std::make_shared<Trouble>();
+  world.wrap_store = [&](std::unique_ptr<JobStore> store) {
+    return std::make_unique<TroubledStore>(std::move(store), trouble);
+  };
+  std::filesystem::create_directories(folder_of(world, "films", 999));
+  trouble->of_states(Trouble::Kind::fails);
+  world.start();
+  ASSERT_TRUE(eventually([&] { return trouble->failed() > 0; }));
+  EXPECT_TRUE(std::filesystem::exists(folder_of(world, "films", 999))) << "it may be a job's";
+  trouble->of_states(Trouble::Kind::none);
+  EXPECT_TRUE(eventually([&] { return !std::filesystem::exists(folder_of(world, "films", 999)); }));
+}
+
 TEST(Keeping, AJobThatWasTakenInHasItsFilesHoweverEagerTheSweeperIs) {
   FarmWorld world;
   world.options.asset_grace = 0ms;
@@ -232,7 +243,9 @@ TEST(Keeping, AFullDiskTakesNothingInLeasesNothingAndGoesOnByItself) {
   world.options.disk.budget = 20 << 20U;  // of which a twentieth is the reserve
   world.options.disk.reserve = 0;
   world.start();
-  const uint64_t job = world.submit(3);
+  const std::string key = "0123456789abcdef";
+  const uint64_t job =
+      world.submit(3, [&](v1::SubmitRequest& asked) { asked.set_idempotency_key(key); });
   const std::string ballast = world.options.folder + "/ballast";
   std::ofstream(ballast) << std::string((19 << 20U) + (1 << 18U), 'x');
   const auto reason = [&] {
@@ -250,9 +263,15 @@ TEST(Keeping, AFullDiskTakesNothingInLeasesNothingAndGoesOnByItself) {
   EXPECT_NE(upload.error_message().find("--disk-budget"), std::string::npos);
   EXPECT_GT(farm::detail_of(upload).retry_after_ms(), 0U);
   v1::SubmitResponse response;
-  const grpc::Status submit = world.jobs->Submit(
-      world.context().get(), FarmWorld::request(FarmWorld::document(3)), &response);
+  v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(3));
+  const grpc::Status submit = world.jobs->Submit(world.context().get(), request, &response);
   EXPECT_EQ(submit.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << submit.error_message();
+  // What it has taken in already is no new job.
+  request.set_idempotency_key(key);
+  const grpc::Status again = world.jobs->Submit(world.context().get(), request, &response);
+  EXPECT_TRUE(again.ok()) << again.error_message();
+  EXPECT_TRUE(response.existed());
+  EXPECT_EQ(response.job().id(), job);
 
   const ScriptedWorker worker(world.address, world.script());
   std::this_thread::sleep_for(600ms);

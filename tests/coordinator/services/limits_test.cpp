@@ -144,7 +144,7 @@ TEST_F(Limits, OfAnswersWhichComeInParts) {
 /// Hears nothing.
 class DeafLink final : public WorkerLink {
  public:
-  void send(v1::CoordinatorMessage) override {}
+  void send(grpc::ByteBuffer) override {}
   void close(const grpc::Status&) override {}
 };
 
@@ -211,7 +211,7 @@ TEST_F(Limits, OfTheMemoryThatAFilmTakes) {
   expect_refused(submitted(huge), StatusCode::INVALID_ARGUMENT, "--film-memory");
   const uint64_t job = world.submit(3);
 
-  // A coordinator that has less takes up all but this job, instead of ending again and again.
+  // A coordinator that has less recovers all but this job, instead of ending again and again.
   world.stop();
   world.options.film_memory = 1000;
   world.start();

@@ -158,7 +158,7 @@ TEST_F(Losses, LinesThatCannotBeStoredWait) {
   expect_one_line("is lost: 2 units of frame 1 go to others");
 }
 
-TEST(LossesAtTheDesk, LinesThatCannotBeStoredAreBounded) {
+TEST(LossesOfTheCoordinator, LinesThatCannotBeStoredAreBounded) {
   ActiveJob active({}, {});
   const auto line_of = [](const std::string& text) {
     StoredLine line;

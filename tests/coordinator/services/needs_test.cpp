@@ -1,5 +1,6 @@
 // Jobs that ask something of their workers.
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 
 #include "tests/coordinator/services/farm_world.h"
 
@@ -53,6 +54,37 @@ TEST(Needs, AreMetOrNamedAlsoAfterARestart) {
   ScriptedWorker fit(world.address, script("fit", {"gpu", "other", "quiet"}, 1000));
   EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
   EXPECT_EQ(plain.delivered() + small.delivered(), 0U);
+}
+
+TEST(Needs, OfOlderJobStoresAreTakenOver) {
+  FarmWorld world;
+  world.start();
+  const uint64_t asking = world.submit(1, [](v1::SubmitRequest& request) {
+    for (const char* tag : {"gpu", "quiet"}) request.add_tags(tag);
+    request.set_max_workers(300);
+    request.set_memory_bytes(uint64_t{1} << 40U);
+    request.set_max_attempts(7);
+    request.set_frame_order(v1::FRAME_ORDER_PROGRESSIVE);
+  });
+  const uint64_t plain = world.submit(1);
+  const v1::Job before = world.get(asking).job();
+  const v1::Job plain_before = world.get(plain).job();
+  EXPECT_EQ(before.max_workers(), 300U);
+  EXPECT_EQ(plain_before.max_attempts(), 3U);
+  world.stop();
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open((world.options.folder + "/state.db").c_str(), &db), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(db,
+                         "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret;"
+                         "PRAGMA user_version=7;"
+                         "UPDATE jobs SET max_workers = 300, tags = 'gpu,quiet', max_attempts = 7,"
+                         "memory = 1099511627776, frame_order = 2 WHERE id = 1",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(db);
+  world.start();
+  EXPECT_EQ(world.get(asking).job().SerializeAsString(), before.SerializeAsString());
+  EXPECT_EQ(world.get(plain).job().SerializeAsString(), plain_before.SerializeAsString());
 }
 
 TEST(Needs, ThatMakeNoSenseAreRefused) {

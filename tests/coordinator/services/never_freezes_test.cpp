@@ -15,12 +15,6 @@
 namespace hyades::coordinator {
 namespace {
 
-v1::JobRequest about(uint64_t job) {
-  v1::JobRequest request;
-  request.set_job(job);
-  return request;
-}
-
 class NeverFreezes : public testing::Test {
  protected:
   void SetUp() override {
@@ -135,6 +129,43 @@ TEST_F(NeverFreezes, WhileTheJobStoreIsFull) {
     EXPECT_TRUE(i % 2 == 0 ? remove(ended[i]).ok() : retry(ended[i]).ok());
   }
   EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+}
+
+TEST_F(NeverFreezes, NothingIsPromisedThatACrashWouldUndo) {
+  ScriptedWorker::Script script = world.script();
+  script.threads = 64;
+  script.meddle = [](ScriptedWorker& self, const v1::LeasedUnit& unit) {
+    if (unit.unit().frame() != 1) return false;  // it keeps them
+    v1::WorkerMessage message;
+    *message.mutable_failure()->mutable_unit() = unit;
+    self.write(message);
+    return false;
+  };
+  const ScriptedWorker holder(world.address, script);
+  const uint64_t job = world.submit(2, [](v1::SubmitRequest& asked) { asked.set_max_attempts(1); });
+  const auto first = [&] { return world.get(job).frames(0).state(); };
+  ASSERT_TRUE(eventually([&] { return first() == v1::FRAME_STATE_FAILED; }));
+  v1::WorkerRequest asked;
+  asked.set_worker("scripted/1");
+  v1::WorkerResponse now;
+  const auto quarantine = [&] {
+    return world.farm_->QuarantineWorker(world.context().get(), asked, &now).error_code();
+  };
+  const auto release = [&] {
+    return world.farm_->ReleaseWorker(world.context().get(), asked, &now).error_code();
+  };
+  trouble->of_writes(Trouble::Kind::fails);
+  EXPECT_EQ(quarantine(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(release(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(retry(job).error_code(), grpc::StatusCode::UNAVAILABLE);
+  trouble->of_writes(Trouble::Kind::none);
+  EXPECT_EQ(quarantine(), grpc::StatusCode::OK);
+  EXPECT_EQ(now.worker().state(), v1::WORKER_STATE_QUARANTINED);
+  EXPECT_EQ(world.controller->store().quarantines()->size(), 1U);
+  EXPECT_EQ(release(), grpc::StatusCode::OK);
+  EXPECT_TRUE(world.controller->store().quarantines()->empty());
+  EXPECT_TRUE(retry(job).ok());
+  EXPECT_TRUE(eventually([&] { return world.get(job).frames(0).restarts() > 0; }));
 }
 
 TEST_F(NeverFreezes, WhileTheJobStoreDoesNotAnswer) {
@@ -252,6 +283,27 @@ TEST_F(NeverFreezes, AJobThatCannotBeTakenUpNowWaitsAndSaysWhy) {
   EXPECT_EQ(world.get(job).job().reason(), "");
 }
 
+TEST_F(NeverFreezes, AJobWhoseFailureCannotBeStoredIsAmongThoseThatWait) {
+  const uint64_t job = world.submit(2);
+  world.stop();
+  const std::string file = core::to_hex(core::sha256(FarmWorld::document(2)));
+  ASSERT_TRUE(std::filesystem::remove(world.options.folder + "/assets/" + file));
+  trouble->of_writes(Trouble::Kind::fails);
+  world.start();
+  v1::ListJobsResponse list;
+  ASSERT_TRUE(world.jobs->List(world.context().get(), {}, &list).ok());
+  ASSERT_EQ(list.jobs_size(), 1);
+  EXPECT_EQ(list.jobs(0).id(), job);
+  EXPECT_NE(list.jobs(0).reason().find("job.yaml is gone"), std::string::npos)
+      << list.jobs(0).reason();
+  trouble->of_writes(Trouble::Kind::none);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_FAILED));
+  list.Clear();
+  EXPECT_TRUE(eventually([&] {
+    return world.jobs->List(world.context().get(), {}, &list).ok() && list.jobs_size() == 0;
+  })) << "it waits no longer";
+}
+
 TEST_F(NeverFreezes, AJobThatWaitsToBeTakenUpCanBeCancelled) {
   const uint64_t first = world.submit(1);
   const uint64_t job = world.submit(2);
@@ -325,12 +377,7 @@ TEST_F(NeverFreezes, WhatIsExplainedOfAMillionFramesIsShort) {
       world.submit(1000, [](v1::SubmitRequest& request) { request.set_max_attempts(1); });
   ScriptedWorker::Script script = world.script();
   script.meddle = [](ScriptedWorker& self, const v1::LeasedUnit& unit) {
-    v1::WorkerMessage message;
-    *message.mutable_failure()->mutable_unit() = unit;
-    message.mutable_failure()->set_reason("it was not meant to be");
-    message.mutable_failure()->set_want(1);
-    self.write(message);
-    return false;
+    return self.fail(unit, "it was not meant to be");
   };
   const ScriptedWorker broken(world.address, script);
   ASSERT_TRUE(eventually([&] { return world.get(job).job().frames_failed() > 40; }));

@@ -17,15 +17,15 @@ namespace {
 /// Whoever wakes it may do so as soon as it is told of it, which is before the stream is made.
 class Woken : public Producer<v1::Chunk> {
  protected:
-  Woken(grpc::CallbackServerContext& context, ThreadPool& pool) : Producer(context, pool) {
-    poker()->poke();
+  Woken(grpc::CallbackServerContext& context, farm::ThreadPool& pool) : Producer(context, pool) {
+    waker()->wake();
   }
 };
 
 class Counting final : public Woken {
  public:
-  using Woken::poker;
-  Counting(grpc::CallbackServerContext& context, ThreadPool& pool) : Woken(context, pool) {}
+  using Woken::waker;
+  Counting(grpc::CallbackServerContext& context, farm::ThreadPool& pool) : Woken(context, pool) {}
   int asked = 0;
 
  private:
@@ -37,20 +37,20 @@ class Counting final : public Woken {
 
 TEST(Producer, IsNotAskedBeforeItBegins) {
   grpc::CallbackServerContext context;
-  ThreadPool pool(1, 1);
+  farm::ThreadPool pool(1, 1);
   Counting stream(context, pool);  // a stream that is asked here calls a pure virtual function
-  stream.poker()->poke();
+  stream.waker()->wake();
   EXPECT_EQ(stream.asked, 0);
   stream.begin();
   EXPECT_EQ(stream.asked, 1);
-  stream.poker()->poke();
+  stream.waker()->wake();
   EXPECT_EQ(stream.asked, 2);
 }
 
 /// 64 MiB for anybody, of whom it expects to take something every 200 ms.
 class Chunks final : public Producer<v1::Chunk> {
  public:
-  Chunks(grpc::CallbackServerContext& context, ThreadPool& pool, bool hungry)
+  Chunks(grpc::CallbackServerContext& context, farm::ThreadPool& pool, bool hungry)
       : Producer(context, pool, std::chrono::milliseconds(200)), hungry_(hungry) {
     begin();
   }
@@ -75,7 +75,7 @@ class ChunkService final : public v1::Assets::WithRawCallbackMethod_Download<v1:
   bool hungry = false;
 
  private:
-  ThreadPool pool_{1, 1};
+  farm::ThreadPool pool_{1, 1};
 };
 
 TEST(Producer, BreaksOffWhereNobodyReads) {

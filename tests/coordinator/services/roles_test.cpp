@@ -7,6 +7,7 @@
 
 #include "coordinator/access/token.h"
 #include "coordinator/operations/operation.h"
+#include "core/base/wall_clock.h"
 #include "hyades/v1/admin.grpc.pb.h"
 #include "tests/coordinator/services/farm_world.h"
 
@@ -75,7 +76,7 @@ TEST_F(Roles, EveryMethodIsRefusedToThoseBelowIt) {
       const grpc::StatusCode code = call(method, token).error_code();
       EXPECT_NE(code, grpc::StatusCode::UNAUTHENTICATED) << method;
       EXPECT_EQ(code == grpc::StatusCode::PERMISSION_DENIED, !may(role, operation.rule))
-          << method << " " << role_name(role) << " " << code;
+          << method << " " << farm::role_name(role) << " " << code;
       refused += code == grpc::StatusCode::PERMISSION_DENIED ? 1 : 0;
     }
   }
@@ -151,7 +152,7 @@ TEST(OpenFarm, ANameThatNoTokenProvedGivesNobodyRights) {
 
 TEST_F(Roles, ATokenIsToldHowLongItHolds) {
   constexpr int64_t kHour = 3'600'000;
-  const int64_t before = token_clock_ms();
+  const int64_t before = core::wall_ms();
   world.token = make(v1::ROLE_SUBMITTER, "alice", 8 * kHour);
   v1::WhoAmIResponse me;
   const auto admin_service = v1::Admin::NewStub(world.channel);

@@ -50,6 +50,7 @@ class ScriptedWorker {
     std::function<bool(ScriptedWorker&, const v1::LeasedUnit&)> meddle;
     /// Changes a film before it is delivered.
     std::function<void(core::Film&)> corrupt;
+    std::vector<v1::LeasedUnit> claims{};  ///< that it says to have in hand
     bool reconnect = true;
     bool hold = false;  ///< units are rendered and never delivered
     /// Heartbeats, by a thread of their own, for what it holds; none without.
@@ -73,6 +74,7 @@ class ScriptedWorker {
     thread_.join();
   }
 
+  const std::string& id() const { return script_.id; }
   uint64_t delivered() const { return delivered_; }
   uint64_t acknowledged() const { return acknowledged_; }
   uint64_t adopted() const { return adopted_; }
@@ -101,13 +103,22 @@ class ScriptedWorker {
     const std::lock_guard lock(write_mutex_);
     stream_->Write(message);
   }
-  /// The same: renders a unit and delivers it.
+  /// Renders a unit and delivers it.
   void deliver(const v1::LeasedUnit& leased) {
     std::this_thread::sleep_for(script_.unit_time);
     if (over_) return;
     const v1::WorkerMessage message = render(leased);
     ++delivered_;
     write(message);
+  }
+  /// Says why it cannot be rendered, and wants another; that it is not delivered, for `meddle`.
+  bool fail(const v1::LeasedUnit& leased, const std::string& reason) {
+    v1::WorkerMessage message;
+    *message.mutable_failure()->mutable_unit() = leased;
+    message.mutable_failure()->set_reason(reason);
+    message.mutable_failure()->set_want(1);
+    write(message);
+    return false;
   }
 
  private:
@@ -136,8 +147,10 @@ class ScriptedWorker {
 
   using Stream = grpc::ClientReaderWriter<v1::WorkerMessage, v1::CoordinatorMessage>;
 
-  static std::string key(const v1::LeasedUnit& unit) {
-    return std::to_string(unit.job()) + "/" + unit.unit().SerializeAsString();
+  static std::string key(const v1::LeasedUnit& leased) {
+    v1::Unit unit = leased.unit();
+    unit.clear_proof();
+    return std::to_string(leased.job()) + "/" + unit.SerializeAsString();
   }
 
   void live() {
@@ -177,6 +190,7 @@ class ScriptedWorker {
     for (const std::string& tag : script_.tags) hello.add_tags(tag);
     hello.set_memory_bytes(script_.memory);
     hello.set_want(script_.threads);
+    for (const v1::LeasedUnit& claimed : script_.claims) *hello.add_in_hand() = claimed;
     for (const auto& [name, result] : kept_) {
       v1::LeasedUnit& held = *hello.add_in_hand();
       *held.mutable_lease() = result.lease();

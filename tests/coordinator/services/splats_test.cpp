@@ -95,13 +95,13 @@ TEST_F(Splats, OfAnOddWorkerTakeTheirFrameWithThem) {
   };
   const uint64_t job = submit();
   {
-    ScriptedWorker odd(world_.address, wrong);
-    ASSERT_TRUE(eventually([&] { return odd.acknowledged() > 0; }));
+    ScriptedWorker divergent(world_.address, wrong);
+    ASSERT_TRUE(eventually([&] { return divergent.acknowledged() > 0; }));
     ScriptedWorker bert(world_.address, script(2));
     ScriptedWorker cora(world_.address, script(3));
     ASSERT_TRUE(eventually([&] { return bert.streams() > 0 && cora.streams() > 0; }));
-    bert.deliver(*disputed);
-    cora.deliver(*disputed);
+    bert.deliver(world_.leased_to(bert, *disputed));
+    cora.deliver(world_.leased_to(cora, *disputed));
     ASSERT_TRUE(world_.wait_for(job, v1::JOB_STATE_DONE));
   }
   expect_truth(job);

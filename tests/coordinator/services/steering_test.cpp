@@ -1,6 +1,8 @@
 // What people do with jobs and workers while they run, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/coordinator/services/farm_world.h"
 
 namespace hyades::coordinator {
@@ -8,15 +10,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-v1::JobRequest about(uint64_t job) {
-  v1::JobRequest request;
-  request.set_job(job);
-  return request;
-}
-
 /// A worker of other bits, which gives four films and keeps the first unit that it was leased.
-struct OddWorker {
-  explicit OddWorker(const FarmWorld& world) : script(world.script(1)) {
+struct DivergentRun {
+  explicit DivergentRun(const FarmWorld& world) : script(world.script(1)) {
     script.corrupt = [](core::Film& film) { film.mutable_plane(0)[0] += core::Fixed128{0, 1}; };
     script.meddle = [this](ScriptedWorker&, const v1::LeasedUnit& unit) {
       if (given == 0) first = unit;
@@ -114,12 +110,7 @@ TEST(Steering, AUnitThatFailsThreeTimesFailsItsFrameAndRetryMendsIt) {
     ScriptedWorker::Script script = world.script();
     script.meddle = [](ScriptedWorker& worker, const v1::LeasedUnit& unit) {
       if (unit.unit().frame() != 1) return true;
-      v1::WorkerMessage message;
-      *message.mutable_failure()->mutable_unit() = unit;
-      message.mutable_failure()->set_reason("the scene does not load");
-      message.mutable_failure()->set_want(1);
-      worker.write(message);
-      return false;
+      return worker.fail(unit, "the scene does not load");
     };
     const ScriptedWorker worker(world.address, script);
     ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_FAILED));
@@ -134,6 +125,28 @@ TEST(Steering, AUnitThatFailsThreeTimesFailsItsFrameAndRetryMendsIt) {
   ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
   world.expect_truth(job, 1);
   world.expect_truth(job, 2);
+}
+
+TEST(Steering, ARetriedFrameIsShownAsRenderedWhenOneWorkerTakesAllOfItAtOnce) {
+  FarmWorld world;
+  world.start();
+  std::atomic<bool> mended{false};
+  ScriptedWorker::Script script = world.script();
+  script.threads = 64;
+  script.meddle = [&](ScriptedWorker& worker, const v1::LeasedUnit& unit) {
+    if (unit.unit().frame() != 1 || mended) return false;  // it keeps the rest
+    return worker.fail(unit, "the scene does not load");
+  };
+  const ScriptedWorker worker(world.address, script);
+  const uint64_t job = world.submit(2, [](v1::SubmitRequest& asked) { asked.set_max_attempts(1); });
+  const auto first = [&] { return world.get(job).frames(0); };
+  ASSERT_TRUE(eventually([&] { return first().state() == v1::FRAME_STATE_FAILED; }));
+  mended = true;
+  v1::JobResponse now;
+  ASSERT_TRUE(world.jobs->Retry(world.context().get(), about(job), &now).ok());
+  EXPECT_TRUE(eventually([&] { return first().state() == v1::FRAME_STATE_RENDERING; }));
+  EXPECT_EQ(first().worker_class(), "class-a");
+  EXPECT_EQ(first().restarts(), 1U);
 }
 
 TEST(Steering, AFrameWhoseClassHasVanishedBeginsAgain) {
@@ -204,18 +217,84 @@ TEST(Steering, AQuarantinedWorkerGetsNothingUntilItIsReleased) {
   EXPECT_TRUE(eventually([&] { return worker.drained(); }));
 }
 
+TEST(Steering, AWorkerThatIsToLeaveIsNotActiveWhenItIsReleased) {
+  FarmWorld world;
+  world.start();
+  ScriptedWorker drained(world.address, world.script(1));
+  ScriptedWorker leaving(world.address, world.script(2));
+  ASSERT_TRUE(eventually([&] { return drained.streams() == 1 && leaving.streams() == 1; }));
+  v1::WorkerResponse now;
+  const auto about_worker = [](const char* name, const char* reason) {
+    v1::WorkerRequest request;
+    request.set_worker(name);
+    request.set_reason(reason);
+    return request;
+  };
+  const auto drain = about_worker("scripted/1", "its disk is failing");
+  ASSERT_TRUE(world.farm_->DrainWorker(world.context().get(), drain, &now).ok());
+  EXPECT_EQ(now.worker().reason(), "its disk is failing");
+  v1::WorkerMessage message;
+  message.mutable_leaving()->set_reason("the cloud wants its machine");
+  leaving.write(message);
+  for (const char* name : {"scripted/1", "scripted/2"}) {
+    ASSERT_TRUE(eventually([&] {
+      v1::WorkersResponse workers;
+      (void)world.farm_->Workers(world.context().get(), {}, &workers);
+      return std::any_of(workers.workers().begin(), workers.workers().end(), [&](const auto& w) {
+        return w.name() == name && w.state() == v1::WORKER_STATE_DRAINING;
+      });
+    })) << name;
+    const auto smoke = about_worker(name, "smells of smoke");
+    ASSERT_TRUE(world.farm_->QuarantineWorker(world.context().get(), smoke, &now).ok());
+    EXPECT_EQ(now.worker().state(), v1::WORKER_STATE_QUARANTINED);
+    const auto clear = about_worker(name, "the smoke is gone");
+    ASSERT_TRUE(world.farm_->ReleaseWorker(world.context().get(), clear, &now).ok());
+    EXPECT_EQ(now.worker().state(), v1::WORKER_STATE_DRAINING) << name;
+  }
+  const auto again = about_worker("scripted/1", "once more");
+  ASSERT_TRUE(world.farm_->ReleaseWorker(world.context().get(), again, &now).ok());
+  EXPECT_EQ(now.worker().reason(), "its disk is failing") << "nothing has changed";
+  world.submit(1);
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(drained.delivered() + leaving.delivered(), 0U);
+}
+
+TEST(Steering, ADrainedWorkerIsToldAgainWhenItComesBack) {
+  FarmWorld world;
+  world.start();
+  ScriptedWorker::Script script = world.script();
+  script.instance = "the-same-process";
+  std::optional<ScriptedWorker> worker(std::in_place, world.address, script);
+  ASSERT_TRUE(eventually([&] { return worker->streams() == 1; }));
+  worker.reset();
+  v1::WorkerRequest request;
+  request.set_worker("scripted/1");
+  v1::WorkerResponse now;
+  ASSERT_TRUE(world.farm_->DrainWorker(world.context().get(), request, &now).ok());
+  worker.emplace(world.address, script);
+  EXPECT_TRUE(eventually([&] { return worker->drained(); }));
+  const uint64_t job = world.submit(1);
+  std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(worker->delivered(), 0U);
+  worker.reset();
+  script.instance = "another-process-of-it";
+  worker.emplace(world.address, script);
+  EXPECT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  EXPECT_FALSE(worker->drained());
+}
+
 TEST(Steering, AWorkerWithOtherBitsThanTwoOthersIsQuarantinedAndItsFilmsDoNotCount) {
   FarmWorld world;
   world.start();
   const uint64_t job = world.submit(1);
-  OddWorker odd(world);
-  const ScriptedWorker broken(world.address, odd.script);
+  DivergentRun divergent(world);
+  const ScriptedWorker broken(world.address, divergent.script);
   ASSERT_TRUE(eventually([&] { return broken.acknowledged() >= 4; }));
   // Another renders one of its units too, and then a third is asked.
   std::atomic<bool> compared{false};
   ScriptedWorker::Script good = world.script(2);
   good.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
-    if (!compared.exchange(true)) self.deliver(odd.first);
+    if (!compared.exchange(true)) self.deliver(world.leased_to(self, divergent.first));
     return true;
   };
   const ScriptedWorker second(world.address, good);
@@ -250,13 +329,13 @@ TEST(Steering, WhatWorkersDisagreedAboutDoesNotCountAfterARestart) {
   world.start();
   const uint64_t job = world.submit(1);
   {
-    OddWorker odd(world);
-    const ScriptedWorker broken(world.address, odd.script);
+    DivergentRun divergent(world);
+    const ScriptedWorker broken(world.address, divergent.script);
     ASSERT_TRUE(eventually([&] { return broken.acknowledged() >= 4; }));
     std::atomic<bool> compared{false};
     ScriptedWorker::Script good = world.script(2);
     good.meddle = [&](ScriptedWorker& self, const v1::LeasedUnit&) {
-      if (!compared.exchange(true)) self.deliver(odd.first);
+      if (!compared.exchange(true)) self.deliver(world.leased_to(self, divergent.first));
       return false;
     };
     const ScriptedWorker second(world.address, good);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/state/job_store.h"
+#include "coordinator/job_store/job_store.h"
 
 namespace hyades::coordinator {
 
@@ -20,17 +20,25 @@ class Trouble {
   /// What becomes of calls that write, and of those that read.
   void of_writes(Kind kind) { set(writes_, kind); }
   void of_reads(Kind kind) { set(reads_, kind); }
-  /// The frames of a job alone.
+  /// What becomes of reading the frames of a job, and of reading its state, alone.
   void of_frames(Kind kind) { set(frames_, kind); }
+  void of_states(Kind kind) { set(states_, kind); }
   /// How many calls were waiting at once at most.
   int most_waiting() const {
     const std::lock_guard lock(mutex_);
     return most_waiting_;
   }
 
+  /// How many calls have failed.
+  int failed() const {
+    const std::lock_guard lock(mutex_);
+    return failed_;
+  }
+
   core::Status write() { return pass(writes_); }
   core::Status read() { return pass(reads_); }
   core::Status read_frames() { return pass(frames_); }
+  core::Status read_state() { return pass(states_); }
 
  private:
   void set(Kind& which, Kind kind) {
@@ -43,8 +51,9 @@ class Trouble {
     most_waiting_ = std::max(most_waiting_, ++waiting_);
     wake_.wait(lock, [&] { return kind != Kind::waits; });
     --waiting_;
-    if (kind == Kind::fails) return core::Error{"the job store: database or disk is full"};
-    return {};
+    if (kind != Kind::fails) return {};
+    ++failed_;
+    return core::Error{"the job store: database or disk is full"};
   }
 
   mutable std::mutex mutex_;
@@ -52,8 +61,10 @@ class Trouble {
   Kind writes_ = Kind::none;
   Kind reads_ = Kind::none;
   Kind frames_ = Kind::none;
+  Kind states_ = Kind::none;
   int waiting_ = 0;
   int most_waiting_ = 0;
+  int failed_ = 0;
 };
 
 /// A job store whose disk fails or does not answer when a test wants it.
@@ -66,6 +77,9 @@ class TroubledStore final : public JobStore {
   core::Result<Added> add_job(const StoredJob& job) override {
     return written([&] { return store_->add_job(job); });
   }
+  core::Result<std::optional<uint64_t>> job_of_key(const std::string& key) override {
+    return read([&] { return store_->job_of_key(key); });
+  }
   core::Status update_job(const StoredJob& job) override {
     return written([&] { return store_->update_job(job); });
   }
@@ -77,6 +91,7 @@ class TroubledStore final : public JobStore {
     return read([&] { return store_->job(id); });
   }
   core::Result<std::optional<StoredState>> state(uint64_t id) override {
+    if (core::Status passed = trouble_->read_state(); !passed) return passed.error();
     return read([&] { return store_->state(id); });
   }
   core::Result<std::vector<StoredSpec>> specs(uint64_t after, uint32_t limit) override {
@@ -113,6 +128,7 @@ class TroubledStore final : public JobStore {
   core::Result<std::optional<StoredOutput>> output(uint64_t job, const std::string& path) override {
     return read([&] { return store_->output(job, path); });
   }
+  core::Result<std::string> secret() override { return store_->secret(); }
   core::Status quarantine(const StoredQuarantine& worker) override {
     return written([&] { return store_->quarantine(worker); });
   }
@@ -126,9 +142,10 @@ class TroubledStore final : public JobStore {
     return written([&] { return store_->trust(workers); });
   }
   core::Result<std::vector<StoredTrust>> trusted() override { return store_->trusted(); }
-  core::Result<std::vector<JobFrames>> found_odd(const StoredQuarantine& worker, uint64_t since,
-                                                 const StoredLine& line) override {
-    return written([&] { return store_->found_odd(worker, since, line); });
+  core::Result<std::vector<JobFrames>> mark_divergent(const StoredQuarantine& worker,
+                                                      uint64_t since,
+                                                      const StoredLine& line) override {
+    return written([&] { return store_->mark_divergent(worker, since, line); });
   }
   core::Result<std::vector<int32_t>> doubtful(uint64_t job, uint32_t limit) override {
     return read([&] { return store_->doubtful(job, limit); });

@@ -9,7 +9,7 @@ namespace {
 boost::asio::ip::address at(const char* text) { return boost::asio::ip::make_address(text); }
 
 TEST(ConnectionCount, NobodyTakesAll) {
-  ConnectionCount count(6, 2);
+  ConnectionCount count(60, 2, 1);
   count.enter(at("192.0.2.1"));
   EXPECT_TRUE(count.may_come(at("192.0.2.1")));
   count.enter(at("192.0.2.1"));
@@ -21,7 +21,7 @@ TEST(ConnectionCount, NobodyTakesAll) {
 }
 
 TEST(ConnectionCount, AProxyHereHasAsManyAsThereAre) {
-  ConnectionCount count(6, 2);
+  ConnectionCount count(6, 2, 1);
   for (int i = 0; i < 6; ++i) {
     EXPECT_TRUE(count.may_come(at(i % 2 == 0 ? "127.0.0.1" : "::1")));
     count.enter(at(i % 2 == 0 ? "127.0.0.1" : "::1"));

@@ -9,6 +9,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "coordinator/operations/operation.h"
+#include "tests/coordinator/services/troubled_store.h"
 #include "tests/coordinator/web/web_world.h"
 
 namespace hyades::coordinator {
@@ -60,8 +61,9 @@ class OpenApi : public ::testing::Test {
     } else if (type == "string") {
       ASSERT_TRUE(value.is_string()) << where;
       if (!schema["enum"]) return;
+      const auto text = value.get<std::string>();
       bool known = false;
-      for (const YAML::Node& one : schema["enum"]) known |= one.as<std::string>() == value;
+      for (const YAML::Node& one : schema["enum"]) known |= one.as<std::string>() == text;
       EXPECT_TRUE(known) << where << ": " << value;
     } else if (type == "integer") {
       EXPECT_TRUE(value.is_number_integer()) << where << ": " << value;
@@ -239,6 +241,35 @@ TEST_F(OpenApi, AnswersHaveTheMediaTypesThatItGives) {
   for (const char* path : {"/healthz", "/readyz", "/metrics"}) media_type(path, path);
   HttpClient::Events events(*world.client, "/api/v1/events");
   EXPECT_EQ(events.status(), 200);
+}
+
+TEST_F(OpenApi, TellsThatWhatCannotBeStoredIsAnsweredLater) {
+  world.stop();
+  const auto trouble = std::make_shared<Trouble>();
+  world.farm.wrap_store = [&](std::unique_ptr<JobStore> store) {
+    return std::make_unique<TroubledStore>(std::move(store), trouble);
+  };
+  world.start();
+  const std::string job = std::to_string(world.farm.submit(1));
+  const ScriptedWorker worker(world.farm.address, world.farm.script());
+  ASSERT_TRUE(eventually([&] { return worker.streams() == 1; }));
+  trouble->of_writes(Trouble::Kind::fails);
+  const auto expect_told = [&](const std::string& method, const std::string& path,
+                               const std::string& target, const std::string& body = {}) {
+    const auto response = world.client->send(method, "/api/v1/" + target, body);
+    EXPECT_EQ(response.status, 503) << target << ": " << response.body;
+    EXPECT_TRUE(
+        api["paths"]["/api/v1/" + path][method == "PUT" ? "put" : "post"]["responses"]["503"]
+            .IsDefined())
+        << path;
+    expect_form(Json::parse(response.body), schema_of("Error"), target);
+  };
+  expect_told("POST", "jobs/{job}/{action}", "jobs/" + job + "/pause");
+  expect_told("POST", "jobs/{job}/{action}", "jobs/" + job + "/retry");
+  expect_told("PUT", "jobs/{job}/priority", "jobs/" + job + "/priority", R"({"priority": 3})");
+  expect_told("POST", "workers/{worker}/{action}", "workers/1/quarantine", "{}");
+  expect_told("POST", "workers/{worker}/{action}", "workers/1/release", "{}");
+  trouble->of_writes(Trouble::Kind::none);
 }
 
 // A value that a parameter may not have is refused: so it is read, and as it is told.

@@ -57,5 +57,22 @@ TEST_F(Outputs, WhatIsNoNumberIsTold) {
   }
 }
 
+// A job may write "a.PNG", which is a picture for jobs, but was none here.
+TEST(Pictures, AreFoundWhereTheirEndingsAreCapitals) {
+  WebWorld world;
+  world.start();
+  std::string document = FarmWorld::document(1);
+  document.erase(document.find("outputs:"));
+  const uint64_t job = world.farm.submit_text(document + "outputs: [{file: balls.####.PNG}]\n");
+  const ScriptedWorker worker(world.farm.address, world.farm.script());
+  ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_DONE));
+  const std::string path = "/api/v1/jobs/" + std::to_string(job);
+  const auto shown = world.client->get(path + "/frames/1/picture");
+  EXPECT_EQ(shown.status, 200) << shown.body;
+  const auto file = world.client->get(path + "/outputs/balls.0001.PNG");
+  ASSERT_EQ(file.status, 200) << file.body;
+  EXPECT_EQ(file.headers.at("content-type"), "image/png");
+}
+
 }  // namespace
 }  // namespace hyades::coordinator

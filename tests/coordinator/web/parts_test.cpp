@@ -7,10 +7,11 @@
 
 #include "coordinator/operations/operation.h"
 #include "coordinator/web/byte_range.h"
-#include "coordinator/web/preview.h"
+#include "coordinator/web/picture_encoding.h"
 #include "coordinator/web/request_form.h"
-#include "coordinator/web/target.h"
+#include "coordinator/web/request_target.h"
 #include "coordinator/web/zip_source.h"
+#include "hyades/v1/web.pb.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
@@ -192,6 +193,15 @@ TEST(Submission, FieldsThatAreWrongAreNamed) {
   EXPECT_EQ(read->priority(), -3);
   EXPECT_EQ(read->spec().frames(0).step(), 2);
   EXPECT_EQ(read->tags(0), "big");
+}
+
+TEST(Submission, FlagsAreReadOutOfABody) {
+  const BodyForm form = {.fields = {{"download"}}};
+  v1::OutputRequest asked;
+  EXPECT_TRUE(read_body(R"({"download": true})", form, asked).ok());
+  EXPECT_TRUE(asked.download());
+  EXPECT_EQ(read_body(R"({"download": 1})", form, asked).error_message(),
+            "download: expected true or false");
 }
 
 }  // namespace

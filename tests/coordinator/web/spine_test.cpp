@@ -52,7 +52,7 @@ TEST(WebSpine, AJobIsSubmittedWatchedLookedAtAndDownloaded) {
   for (const Json& output : outputs) {
     const auto file = world.client->get(path + "/outputs/" + output["id"].get<std::string>());
     ASSERT_EQ(file.status, 200);
-    EXPECT_EQ(core::to_hex(core::sha256(file.body)), output["sha256"]);
+    EXPECT_EQ(core::to_hex(core::sha256(file.body)), output["sha256"].get<std::string>());
   }
   const std::string file = path + "/outputs/balls.0001.exr";
   const auto part = world.client->get(file, {{"Range", "bytes=0-3"}});

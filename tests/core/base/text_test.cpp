@@ -34,6 +34,12 @@ TEST(Text, ClosestName) {
   EXPECT_EQ(did_you_mean("velvet", names), "");
 }
 
+TEST(Text, LettersAreThoseOfAscii) {
+  EXPECT_EQ(lower_case("AZaz09[@`{_\xC4"), "azaz09[@`{_\xC4");
+  for (const char c : std::string("azAZ09")) EXPECT_TRUE(is_letter_or_digit(c)) << c;
+  for (const char c : std::string("[@`{/:-_. \xC4\xE4")) EXPECT_FALSE(is_letter_or_digit(c)) << c;
+}
+
 TEST(Text, JoinNames) {
   EXPECT_EQ(join_names({}), "");
   EXPECT_EQ(join_names(std::vector<std::string>{"a"}), "a");
@@ -54,6 +60,12 @@ TEST(Text, Durations) {
   EXPECT_EQ(format_duration(-1.0), "?");
   EXPECT_EQ(format_duration(std::numeric_limits<double>::infinity()), "?");
   EXPECT_EQ(format_duration(std::numeric_limits<double>::quiet_NaN()), "?");
+}
+
+TEST(Text, CountedWordsHaveTheirPlural) {
+  EXPECT_EQ(counted(0, "unit"), "0 units");
+  EXPECT_EQ(counted(1, "unit"), "1 unit");
+  EXPECT_EQ(counted(2, "more worker"), "2 more workers");
 }
 
 TEST(Text, SizesAndCounts) {

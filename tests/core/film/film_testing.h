@@ -47,7 +47,8 @@ inline Film render(const FilmLayout& layout, const PixelRect& tile, BatchRange b
   return render(layout, tile, batches, samples, tile);
 }
 
-/// The same with splats in `region`: two of each sample, a pure function of pixel and batch.
+/// A film of `tile` with splats in `region`: two of each sample, a pure function of pixel and
+/// batch.
 inline Film render_with_splats(const FilmLayout& layout, const PixelRect& tile, BatchRange batches,
                                const PixelRect& region, uint32_t samples = 1000000) {
   Film film = render(layout, tile, batches, samples, region);

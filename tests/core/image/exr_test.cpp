@@ -255,6 +255,11 @@ TEST(Exr, BombsAreRefusedBeforeMemoryIsTaken) {
   std::memcpy(long_attribute.data() + size_at, &huge, 4);
   EXPECT_EQ(error_of(long_attribute),
             "bomb.exr: OpenEXR: attribute 'compression' is longer than the file");
+  // OpenEXR would take what is behind an early end for the next attribute, and its bytes for a
+  // size.
+  std::string early_end = scanlines;
+  early_end[early_end.find(std::string("channels\0chlist\0", 16)) + 20] = '\0';
+  EXPECT_NE(error_of(early_end).find("attribute 'channels' has "), std::string::npos);
 }
 
 TEST(Exr, SrgbOnRequestLeavesAlpha) {

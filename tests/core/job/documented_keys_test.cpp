@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -418,6 +419,42 @@ TEST(DocumentedKeys, DefaultsAreWhatHappensWithoutTheKey) {
     ++checked;
   }
   EXPECT_GT(checked, 80);
+}
+
+TEST(DocumentedKeys, WithoutAValueAreOneComplaintWithItsPlace) {
+  for (const DocumentedKey& key : read_page()) {
+    SCOPED_TRACE("docs/job.md:" + std::to_string(key.line) + " " + key.id.section + " / " +
+                 key.id.key);
+    Pairs pairs = base_pairs(key.id);
+    pairs.emplace_back("like", "");
+    const std::string text = key.id.key == "like" ? job_text(key.id, pairs) : text_with(key.id, "");
+    const std::string complaints = read(text).complaints;
+    EXPECT_TRUE(complaints.starts_with("sample.yaml:")) << complaints << "\n" << text;
+    EXPECT_THAT(complaints, testing::HasSubstr(key.id.key));
+    EXPECT_LE(std::count(complaints.begin(), complaints.end(), '\n'), 1) << complaints << "\n"
+                                                                         << text;
+  }
+}
+
+/// What one key asks of another must not trip over one that is empty.
+TEST(DocumentedKeys, WithoutAValueAreComplaintsBesideAnyOther) {
+  const std::vector<DocumentedKey> all = read_page();
+  for (const DocumentedKey& key : all) {
+    for (const DocumentedKey& other : all) {
+      if (other.id.section != key.id.section || other.id.key == key.id.key) continue;
+      Pairs pairs = {{key.id.key, ""}, {other.id.key, other.example}};
+      for (const auto& pair : base_pairs(key.id)) {
+        if (pair.first != key.id.key && pair.first != other.id.key) pairs.push_back(pair);
+      }
+      EXPECT_THAT(read(job_text(key.id, pairs)).complaints, testing::HasSubstr("sample.yaml:"))
+          << job_text(key.id, pairs);
+    }
+  }
+  for (const char* text :
+       {"hyades: 1\ncolor: {config: view.ocio}\noutputs: [{file: a.png, tone_map: }]\n",
+        "hyades: 1\ntextures: {x: {type: image, file: a.<UDIM>.png, wrap: }}\n"}) {
+    EXPECT_THAT(read(text).complaints, testing::HasSubstr("is empty, expected a value"));
+  }
 }
 
 /// A plain value of the key, to be given at two frames; empty where the page has names and

@@ -58,7 +58,7 @@ TEST(Include, FilesAreRelativeToWhereTheyAreWritten) {
   const Reading r = read("hyades: 1\ninclude: parts/room.yaml\n", assets, "jobs/shot/job.yaml");
   ASSERT_EQ(r.complaints, "");
   EXPECT_EQ(r.job.objects[0].mesh, "parts/chairs/chair.obj");
-  EXPECT_EQ(r.job.textures[0].image.file, "images/wall.png");
+  EXPECT_EQ(std::get<textures::Image>(r.job.textures[0].kind).file, "images/wall.png");
   EXPECT_EQ(r.job.environment->image, "parts/sky.hdr");
   EXPECT_EQ(
       referenced_files(r.job),

@@ -80,7 +80,7 @@ TEST(SceneObjects, AreGroupsOfWhatTheSceneHas) {
   ASSERT_EQ(group.overrides.size(), 1U);
   EXPECT_EQ(group.overrides[0].first, "a.Skin");
   ASSERT_FALSE(r.job.textures.empty());
-  EXPECT_EQ(r.job.textures[0].image.file, "in/skin.png");
+  EXPECT_EQ(std::get<textures::Image>(r.job.textures[0].kind).file, "in/skin.png");
   EXPECT_NE(r.job.camera.fov.at({}), 12.0F) << "the camera is the job's";
   EXPECT_EQ(r.job.frames.last, 2);
 }

@@ -92,10 +92,10 @@ textures:
                             "job.yaml", assets, diagnostics);
   EXPECT_EQ(diagnostics.to_string(), "");
   ASSERT_EQ(job.textures.size(), 2U);
-  EXPECT_EQ(job.textures[0].mapping.type, "world");
-  EXPECT_EQ(job.textures[1].mapping.type, "spherical");
-  EXPECT_EQ(job.textures[1].mapping.space, "world");
-  EXPECT_EQ(job.textures[1].mapping.transform.size(), 2U);
+  EXPECT_EQ(mapping_of(job.textures[0]).type, "world");
+  EXPECT_EQ(mapping_of(job.textures[1]).type, "spherical");
+  EXPECT_EQ(mapping_of(job.textures[1]).space, "world");
+  EXPECT_EQ(mapping_of(job.textures[1]).transform.size(), 2U);
   expect_said("type: checker, mapping: sideways", "mapping is 'sideways', expected default, uv");
   expect_said("type: checker, mapping: {type: uv, space: world}", "space belongs to the mappings");
   expect_said("type: checker, mapping: {type: planar, blend: 1}", "blend belongs to the mapping");

@@ -182,7 +182,7 @@ TEST(Texture, WrittenInPlaceGetsANameOfItsOwn) {
   ASSERT_EQ(job.textures.size(), 3U);
   EXPECT_EQ(job.textures[0].name, "(materials.a.color.a)");
   EXPECT_EQ(job.textures[1].name, "(materials.a.color)");
-  EXPECT_EQ(job.textures[1].a.texture, "(materials.a.color.a)");
+  EXPECT_EQ(std::get<textures::Checker>(job.textures[1].kind).a.texture, "(materials.a.color.a)");
   EXPECT_EQ(std::get<LambertDesc>(job.materials[0].kind).color.texture, "(materials.a.color)");
   EXPECT_EQ(std::get<ConductorDesc>(job.materials[1].kind).roughness.texture,
             "(materials.b.roughness)");
@@ -192,8 +192,8 @@ TEST(Job, ShortForms) {
   const Job job = read("frames: 5\nfilm: {filter: box}\nintegrator: path\nunits: 2.5\n");
   EXPECT_EQ(job.frames.first, 5);
   EXPECT_EQ(job.frames.last, 5);
-  EXPECT_EQ(job.film.filter, FilterKind::box);
-  EXPECT_FLOAT_EQ(job.film.filter_radius, 0.5F);
+  EXPECT_EQ(job.film.filter.type, FilterKind::box);
+  EXPECT_FLOAT_EQ(job.film.filter.radius, 0.5F);
   EXPECT_FLOAT_EQ(job.units, 2.5F);
   EXPECT_FLOAT_EQ(read("units: in\n").units, 0.0254F);
 }

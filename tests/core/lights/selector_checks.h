@@ -46,7 +46,7 @@ inline void expect_consistent(
   EXPECT_GE(kSamples, required_chi_squared_samples(std::max(result.degrees, 1), 0.01, alpha, 0.99));
 }
 
-/// The same for a place with a normal (zero: none).
+/// Expects that a selector draws as often as it says at a place with a normal (zero: none).
 inline void expect_consistent_at(const core::LightSelector& selector, size_t count,
                                  const core::Vec3& from, const core::Vec3& normal, int tests = 1) {
   expect_consistent(

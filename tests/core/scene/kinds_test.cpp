@@ -1,5 +1,3 @@
-#include "core/job/kinds.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,20 +54,21 @@ void expect_builds(const std::string& text) {
 }
 
 TEST(Kinds, EveryNameOfAJobHasAMaker) {
-  EXPECT_THAT(made_texture_types(), UnorderedElementsAreArray(texture_types()));
-  EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shape_names()));
-  EXPECT_THAT(made_color_spaces(), UnorderedElementsAreArray(color_space_names()));
-  EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(wrap_names()));
-  EXPECT_THAT(made_texture_filters(), UnorderedElementsAreArray(texture_filter_names()));
-  EXPECT_THAT(made_mappings(), UnorderedElementsAreArray(mapping_names()));
-  EXPECT_THAT(made_mapping_spaces(), UnorderedElementsAreArray(mapping_space_names()));
-  EXPECT_THAT(made_channels(), UnorderedElementsAreArray(channel_names()));
-  EXPECT_THAT(made_cell_metrics(), UnorderedElementsAreArray(cell_metric_names()));
-  EXPECT_THAT(made_cell_features(), UnorderedElementsAreArray(cell_feature_names()));
-  EXPECT_THAT(made_gradient_shapes(), UnorderedElementsAreArray(gradient_shape_names()));
-  EXPECT_THAT(made_remap_ends(), UnorderedElementsAreArray(remap_end_names()));
-  EXPECT_THAT(made_ramp_shapes(), UnorderedElementsAreArray(ramp_shape_names()));
-  EXPECT_THAT(made_mesh_normals(), UnorderedElementsAreArray(mesh_normals_names()));
+  std::vector<std::string> shapes(kShapeNames.begin(), kShapeNames.end());
+  shapes.emplace_back("mesh");
+  EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shapes));
+  EXPECT_THAT(made_color_spaces(), UnorderedElementsAreArray(textures::kColorSpaces));
+  EXPECT_THAT(made_wraps(), UnorderedElementsAreArray(textures::kWraps));
+  EXPECT_THAT(made_texture_filters(), UnorderedElementsAreArray(textures::kFilters));
+  EXPECT_THAT(made_mappings(), UnorderedElementsAreArray(textures::kMappings));
+  EXPECT_THAT(made_mapping_spaces(), UnorderedElementsAreArray(textures::kMappingSpaces));
+  EXPECT_THAT(made_channels(), UnorderedElementsAreArray(textures::kChannels));
+  EXPECT_THAT(made_cell_metrics(), UnorderedElementsAreArray(textures::kMetrics));
+  EXPECT_THAT(made_cell_features(), UnorderedElementsAreArray(textures::kFeatures));
+  EXPECT_THAT(made_gradient_shapes(), UnorderedElementsAreArray(textures::kGradientShapes));
+  EXPECT_THAT(made_remap_ends(), UnorderedElementsAreArray(textures::kRemapEnds));
+  EXPECT_THAT(made_ramp_shapes(), UnorderedElementsAreArray(textures::kRampShapes));
+  EXPECT_THAT(made_mesh_normals(), UnorderedElementsAreArray(kMeshNormalsNames));
   EXPECT_THAT(made_vdb_places(), UnorderedElementsAreArray(kVdbPlaceNames));
 }
 
@@ -95,9 +94,11 @@ std::vector<std::string> documented(const std::string& section, const std::strin
 }
 
 TEST(Kinds, TheReferenceListsTheSameNames) {
-  EXPECT_THAT(made_texture_types(), UnorderedElementsAreArray(documented("textures", "type")));
-  EXPECT_THAT(material_types(), UnorderedElementsAreArray(documented("materials", "type")));
-  EXPECT_THAT(light_types(), UnorderedElementsAreArray(documented("lights", "type")));
+  EXPECT_THAT(KindsOf<TextureKind>::names(),
+              UnorderedElementsAreArray(documented("textures", "type")));
+  EXPECT_THAT(KindsOf<MaterialKind>::names(),
+              UnorderedElementsAreArray(documented("materials", "type")));
+  EXPECT_THAT(KindsOf<LightKind>::names(), UnorderedElementsAreArray(documented("lights", "type")));
   std::vector<std::string> shapes = documented("objects", "shape");
   shapes.emplace_back("mesh");
   EXPECT_THAT(made_shapes(), UnorderedElementsAreArray(shapes));
@@ -124,7 +125,7 @@ TEST(Kinds, TheReferenceListsTheSameNames) {
 }
 
 TEST(Kinds, ASceneIsBuiltOfEach) {
-  for (const std::string& type : texture_types()) {
+  for (const std::string& type : KindsOf<TextureKind>::names()) {
     std::string more;
     if (type == "constant") more = ", value: 0.5";
     if (type == "image") more = ", file: pixel.hdr";
@@ -141,7 +142,7 @@ TEST(Kinds, ASceneIsBuiltOfEach) {
                   "}}\nmaterials: {m: {type: lambert, color: x}}\n"
                   "objects: {o: {shape: sphere, material: m}}\n");
   }
-  for (const std::string& type : material_types()) {
+  for (const std::string& type : KindsOf<MaterialKind>::names()) {
     std::string more;
     if (type == "mix") more = ", first: a, second: a";
     if (type == "coat") more = ", base: a";
@@ -149,15 +150,15 @@ TEST(Kinds, ASceneIsBuiltOfEach) {
     expect_builds("materials: {a: {type: lambert}, m: {type: '" + type + "'" + more +
                   "}}\nobjects: {o: {shape: sphere, material: m}}\n");
   }
-  for (const std::string& type : light_types()) {
+  for (const std::string& type : KindsOf<LightKind>::names()) {
     const std::string more = type == "projector" ? ", image: pixel.hdr" : "";
     expect_builds("lights: {l: {type: " + type + more + "}}\n");
   }
-  for (const std::string& shape : shape_names()) {
-    const std::string what = shape == "mesh" ? "mesh: triangle.ply" : "shape: " + shape;
-    expect_builds("objects: {o: {" + what + "}}\n");
+  for (const std::string& shape : kShapeNames) {
+    expect_builds("objects: {o: {shape: " + shape + "}}\n");
   }
-  for (const std::string& name : wrap_names()) {
+  expect_builds("objects: {o: {mesh: triangle.ply}}\n");
+  for (const std::string& name : textures::kWraps) {
     expect_builds("textures: {x: {type: image, file: pixel.hdr, wrap: " + name +
                   "}}\nmaterials: {m: {type: lambert, color: x}}\n"
                   "objects: {o: {shape: sphere, material: m}}\n");
@@ -170,13 +171,11 @@ float beyond_the_edge(const std::string& wrap) {
   assets.add("two.hdr", std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n") +
                             std::string("\0\0\0\0", 4) + "\x80\x80\x80\x81");
   Job job;
-  TextureDesc texture;
-  texture.name = "x";
-  texture.type = "image";
-  texture.image.file = "two.hdr";
-  texture.image.filter = "nearest";
-  texture.image.wrap = wrap;
-  job.textures.push_back(texture);
+  textures::Image image;
+  image.file = "two.hdr";
+  image.filter = "nearest";
+  image.wrap = wrap;
+  job.textures.push_back({.name = "x", .where = {}, .kind = image});
   SceneCache cache(assets);
   Appearance looks(job, job.time_of(1), cache);
   const auto made = looks.texture("x");
@@ -198,11 +197,9 @@ TEST(Kinds, WrapsDoWhatTheirNamesSay) {
 /// A job that no parser has seen, with one textured ball.
 Job textured_job() {
   Job job;
-  TextureDesc texture;
-  texture.name = "x";
-  texture.type = "image";
-  texture.image.file = "pixel.hdr";
-  job.textures.push_back(texture);
+  textures::Image image;
+  image.file = "pixel.hdr";
+  job.textures.push_back({.name = "x", .where = {}, .kind = image});
   MaterialDesc material;
   material.name = "m";
   material.kind = LambertDesc{.color = {{}, "x"}, .roughness = {}};
@@ -226,14 +223,11 @@ std::string refusal(const Job& job) {
 TEST(Kinds, AnUnknownNameIsAnErrorThatListsTheOthers) {
   EXPECT_EQ(refusal(textured_job()), "");
   Job job = textured_job();
-  job.textures[0].image.wrap = "wound";
+  std::get<textures::Image>(job.textures[0].kind).wrap = "wound";
   EXPECT_THAT(refusal(job), HasSubstr("there is no wrap 'wound', expected one of repeat, clamp"));
   job = textured_job();
-  job.textures[0].image.color_space = "lab";
+  std::get<textures::Image>(job.textures[0].kind).color_space = "lab";
   EXPECT_THAT(refusal(job), HasSubstr("there is no color_space 'lab', expected one of auto"));
-  job = textured_job();
-  job.textures[0].type = "granite";
-  EXPECT_THAT(refusal(job), HasSubstr("there is no type of texture 'granite'"));
   job = textured_job();
   job.objects[0].shape = "torus";
   EXPECT_THAT(refusal(job), HasSubstr("object 'o': there is no shape 'torus'"));

@@ -61,7 +61,7 @@ class FakeCloud {
     waiting_.clear();
   }
 
-  /// Questions of somebody who waits for the change after the last one: he has missed that.
+  /// Questions of somebody who waits for the change after the last one: they have missed that.
   size_t missed() const {
     const std::lock_guard lock(mutex_);
     return missed_;

@@ -314,7 +314,7 @@ TEST(WorkerProcess, IsBackSoonAfterALongOutage) {
   ASSERT_TRUE(coordinator.wait_until([](const auto& s) { return s.hellos.size() == 2; }))
       << worker.log();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, farm::kLongestReconnect + milliseconds(1500))
-      << "or its units go to others: BrainOptions::adoption_time";
+      << "or its units go to others: ControllerOptions::adoption_time";
 }
 
 TEST(WorkerProcess, ASecondSignalEndsItAtOnce) {

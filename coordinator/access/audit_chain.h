@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "hyades/v1/admin.pb.h"
+
+namespace hyades::coordinator {
+
+// The lines of the audit log. Each entry holds the digest of the one before it in its log
+// (AuditEntry::previous), so that none can be changed, left out or put in between without all that
+// follow being written anew; and then the last digest is another than anybody has noted.
+
+/// The entry as it stands in its file, without an end of line; where it is read from
+/// (AuditEntry::log) does not.
+std::string audit_line(const v1::AuditEntry& entry);
+/// The entry of a line; nothing where it is none of ours.
+std::optional<v1::AuditEntry> read_audit_line(const std::string& line);
+/// The SHA-256 of the entry's line, in hexadecimal: what the next one holds.
+std::string audit_digest(const v1::AuditEntry& entry);
+
+/// Follows the chains of a farm's logs, entry by entry, the oldest first.
+class AuditChains {
+ public:
+  /// What is known of one log.
+  struct End {
+    uint64_t entries = 0;
+    std::string first;  ///< the digest that its first entry holds; empty: the log begins there
+    std::string last;   ///< of its last entry, to be noted
+  };
+
+  /// Empty where the entry follows on the one before it; else what is wrong, in words.
+  std::string add(const v1::AuditEntry& entry);
+
+  /// By AuditEntry::log.
+  const std::map<std::string, End>& ends() const { return ends_; }
+
+ private:
+  std::map<std::string, End> ends_;
+  std::map<std::string, bool> chained_;  ///< whether the log's last entry held a digest
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,33 @@
+#include "coordinator/controller/controller_context.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/meters/meters.h"
+#include "core/base/wall_clock.h"
+
+namespace hyades::coordinator {
+
+ControllerContext::ControllerContext(ControllerOptions options_, std::unique_ptr<JobStore> store_,
+                                     std::unique_ptr<farm::ContentStore> assets_,
+                                     uint64_t incarnation_, std::string secret)
+    : options(std::move(options_)),
+      store(std::move(store_)),
+      assets(std::move(assets_)),
+      incarnation(incarnation_),
+      proofs(std::move(secret)),
+      started_ms(core::wall_ms()),
+      meters(std::make_unique<Meters>()) {}
+
+ControllerContext::~ControllerContext() = default;
+
+std::string ControllerContext::output_folder(uint64_t job) const {
+  return fmt::format("{}/outputs/{}", options.folder, job);
+}
+
+std::string ControllerContext::films_folder(uint64_t job) const {
+  return fmt::format("{}/films/{}", options.folder, job);
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "coordinator/controller/controller_options.h"
+#include "coordinator/controller/lease_proof.h"
+#include "coordinator/controller/state_lock.h"
+#include "coordinator/job_store/job_store.h"
+#include "farm/content_store.h"
+#include "farm/retry_queue.h"
+
+namespace hyades::coordinator {
+
+class Meters;
+
+/// What all parts of a controller have in common. It is made before them and outlives them.
+struct ControllerContext {
+  ControllerContext(ControllerOptions options, std::unique_ptr<JobStore> store,
+                    std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation,
+                    std::string secret);
+  ~ControllerContext();
+
+  /// Where the job's finished files lie, and its films.
+  std::string output_folder(uint64_t job) const;
+  std::string films_folder(uint64_t job) const;
+
+  const ControllerOptions options;
+  const std::unique_ptr<JobStore> store;
+  const std::unique_ptr<farm::ContentStore> assets;
+  const uint64_t incarnation;  ///< the number of this start
+  const LeaseProofs proofs;
+  const int64_t started_ms;  ///< since 1970, UTC
+  const std::unique_ptr<Meters> meters;
+  std::atomic<bool> stop{false};  ///< the controller ends
+  StateMutex mutex;               ///< behind state_lock
+  /// One submission at a time, and none while jobs or unused files are removed.
+  std::timed_mutex submissions;
+  /// Waits for other submissions, two seconds at most; a lock that is not held if that is not
+  /// enough.
+  std::unique_lock<std::timed_mutex> wait_for_submissions() {
+    return std::unique_lock(submissions, std::chrono::seconds(2));
+  }
+  /// Stores what has changed; tasks are kept apart by the job's id, or kWorkersKey.
+  farm::RetryQueue background{2};
+  static constexpr uint64_t kWorkersKey = 0;  ///< no job has this number
+};
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,457 @@
+#include "coordinator/film_store/film_store.h"
+
+#include <algorithm>
+#include <chrono>
+#include <span>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "core/base/failpoint.h"
+#include "core/base/overloaded.h"
+#include "core/film/film_codec.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// After something could not be taken: when the scheduler hands out work again.
+constexpr Duration kTryAgain = std::chrono::milliseconds(1100);
+
+/// After a compaction has failed.
+constexpr Duration kCompactAgain = std::chrono::seconds(5);
+
+/// How many complete films whose outputs could not be written are kept for another run. They cost
+/// memory; more would have to be rendered again.
+constexpr size_t kUnfinishedFilms = 2;
+
+/// Whose log it is. What its films are of stands beside each of them.
+constexpr const char* kLogKey = "hyades render, films by frame";
+
+TimePoint now() { return std::chrono::steady_clock::now(); }
+
+/// Whether the film's record may become longer than a log takes: one with splats is in one.
+bool too_large(const core::Film& film) {
+  return film.layout().layers.splats && film.memory() > FilmLog::kMaxRecordBytes;
+}
+
+}  // namespace
+
+FilmStore::FilmStore(FilmSet films, FilmStoreOptions options, Owner& owner)
+    : set_(std::move(films)), options_(std::move(options)), owner_(owner) {}
+
+FilmStore::~FilmStore() {
+  drain();
+  join();
+  // Where it was never started somebody may wait still.
+  std::deque<Item> left;
+  {
+    const core::MutexLock lock(mutex_);
+    left.swap(queue_);
+  }
+  for (const Item& item : left) {
+    if (item.call) item.call();
+  }
+  log_.reset();
+}
+
+void FilmStore::join() {
+  if (thread_.joinable()) thread_.join();
+}
+
+FrameKey FilmStore::key_of(int32_t frame) const {
+  return options_.frame_key ? options_.frame_key(frame) : FrameKey{};
+}
+
+core::Status FilmStore::open_log(bool erase) {
+  log_.reset();
+  LogFiles& files = options_.files != nullptr ? *options_.files : disk_log_files();
+  if (core::Status made = files.make_folder(options_.folder); !made) return made;
+  if (erase) {
+    if (core::Status erased = erase_film_log(options_.folder, &files); !erased) return erased;
+  }
+  FilmLogOptions options;
+  options.files = &files;
+  options.on_sync = options_.on_sync;
+  options.on_durable = [this](uint64_t through) {
+    const core::MutexLock lock(mutex_);
+    durable_ = std::max(durable_, through);
+    trouble_.clear();
+    wake_.notify_one();
+  };
+  options.on_trouble = [this](const core::Error& error) {
+    const core::MutexLock lock(mutex_);
+    if (trouble_.empty()) trouble_since_ = now();
+    trouble_ = error.message;
+    room_wanted_ = true;  // mostly it is the disk that is full
+    wake_.notify_one();
+  };
+  auto log = FilmLog::open(options_.folder, kLogKey, options);
+  if (!log) return log.error();
+  log_ = std::move(*log);
+  return {};
+}
+
+core::Result<LogContents> FilmStore::open() {
+  if (options_.folder.empty()) return LogContents{};
+  if (core::Status opened = open_log(!options_.resume); !opened) return opened.error();
+  const LogFilter filter{
+      {set_.frames.begin(), set_.frames.end()}, set_.region, set_.samples, options_.frame_key};
+  auto contents = read_log(*log_, filter);
+  if (contents && !contents->empty && contents->cut.tile_size == 0) {
+    // Its beginning is damaged: without the cut the films cannot be told apart into units.
+    if (core::Status opened = open_log(true); !opened) return opened.error();
+    auto problems = std::move(contents->problems);
+    contents = read_log(*log_, filter);
+    problems.emplace_back("how the frames were cut is lost: it begins afresh");
+    if (contents) contents->problems = std::move(problems);
+  }
+  if (!contents) {
+    return core::Error{contents.error().in(options_.folder).message +
+                       "; render without --resume to begin afresh, or into another folder"};
+  }
+  finished_ = contents->finished;
+  films_ = contents->films;
+  disputed_ = contents->disputed;
+  // What of it is of use is not known until it is rewritten.
+  useless_bytes_ = contents->bytes;
+  settled_sequence_ = log_->durable();
+  others_films_ = contents->others;
+  for (const auto& [frame, units] : contents->units) classes_[frame] = units.front().worker_class;
+  write_cut_ = contents->empty || contents->cut.region != set_.region;
+  return contents;
+}
+
+core::Status FilmStore::start(int32_t tile_size) {
+  tile_size_ = tile_size;
+  if (log_ && write_cut_) {
+    auto written = log_->append(encode_cut({set_.region, tile_size, set_.samples}));
+    if (!written) return written.error();
+  }
+  thread_ = std::thread([this] { run(); });
+  return {};
+}
+
+void FilmStore::push(Item item, bool may_wait) {
+  const core::MutexLock lock(mutex_);
+  while (may_wait && !hurrying_ && waiting_bytes_ >= options_.max_waiting_bytes) {
+    room_.wait(mutex_);
+  }
+  waiting_bytes_ += item.memory;
+  queue_.push_back(std::move(item));
+  wake_.notify_one();
+}
+
+/// What the log holds of a record whose film is none. A failed frame and a divergent worker are
+/// rows of the job store: here they only come after what was handed over before.
+std::vector<std::byte> FilmStore::encoded(const Record& record) const {
+  if (!logs()) return {};
+  using Bytes = std::vector<std::byte>;
+  return std::visit(core::Overloaded{
+                        [](const UnitRecord&) { return Bytes(); },
+                        [&](const FrameFinishedRecord& done) {
+                          return encode_finished(done.frame, {key_of(done.frame), set_.region});
+                        },
+                        [](const FrameFailedRecord&) { return Bytes(); },
+                        [](const FrameRestartedRecord& restarted) { return encode(restarted); },
+                        [](const TileVoidedRecord& voided) { return encode(voided); },
+                        [](const DisputeRecord& dispute) { return encode(dispute); },
+                        [](const DivergentWorkerRecord&) { return Bytes(); },
+                    },
+                    record);
+}
+
+void FilmStore::append(RecordId id, Record record, core::Film film, std::vector<std::byte> packed) {
+  Item item;
+  item.id = id;
+  item.bytes = encoded(record);
+  item.record = std::move(record);
+  if (std::holds_alternative<UnitRecord>(item.record)) {
+    if (logs()) item.bytes = std::move(packed);
+    item.memory = film.memory() + item.bytes.size();
+    item.film = std::move(film);
+  }
+  push(std::move(item), false);
+}
+
+void FilmStore::append_rendered(RecordId id, const UnitRecord& unit, core::Film film) {
+  Item item;
+  item.id = id;
+  item.record = unit;
+  // Packing takes longer than anything else here and so is done by the thread that hands over.
+  const int32_t frame = unit.accepted.unit.frame;
+  if (logs()) item.bytes = encode_unit(frame, key_of(frame), film);
+  item.memory = film.memory() + item.bytes.size();
+  item.film = std::move(film);
+  push(std::move(item), true);
+}
+
+void FilmStore::call(std::function<void()> what) {
+  Item item;
+  item.call = std::move(what);
+  push(std::move(item), false);
+}
+
+void FilmStore::make_room() {
+  const core::MutexLock lock(mutex_);
+  room_wanted_ = true;
+  wake_.notify_one();
+}
+
+bool FilmStore::crowded() const {
+  const core::MutexLock lock(mutex_);
+  return waiting_bytes_ >= options_.max_waiting_bytes;
+}
+
+void FilmStore::hurry() {
+  const core::MutexLock lock(mutex_);
+  hurrying_ = true;
+  room_.notify_all();
+}
+
+void FilmStore::drain() {
+  const core::MutexLock lock(mutex_);
+  hurrying_ = true;
+  draining_ = true;
+  wake_.notify_one();
+  room_.notify_all();
+}
+
+std::string FilmStore::trouble() const {
+  const core::MutexLock lock(mutex_);
+  return trouble_;
+}
+
+bool FilmStore::has_work() const {
+  return !queue_.empty() || draining_ || room_wanted_ ||
+         (!appended_.empty() && appended_.front().sequence <= durable_);
+}
+
+void FilmStore::wait_for_work() {
+  std::optional<TimePoint> until = try_again_at_;
+  if (!trouble_.empty() && !gave_up_) {
+    const TimePoint end = trouble_since_ + options_.patience;
+    until = until ? std::min(*until, end) : end;
+  }
+  while (!has_work()) {
+    if (!until) {
+      if (!trouble_.empty() && !gave_up_) return;
+      wake_.wait(mutex_);
+    } else if (now() >= *until) {
+      return;
+    } else {
+      wake_.wait_until(mutex_, *until);
+    }
+  }
+}
+
+void FilmStore::run() {
+  for (;;) {
+    core::MutexLock lock(mutex_);
+    wait_for_work();
+    std::deque<Item> items = std::exchange(queue_, {});
+    const uint64_t durable = durable_;
+    const bool room_wanted = std::exchange(room_wanted_, false);
+    const bool last = draining_ && items.empty();
+    const bool patient = trouble_.empty() || now() < trouble_since_ + options_.patience;
+    if (trouble_.empty()) gave_up_ = false;
+    const std::string hopeless = patient || gave_up_ ? "" : trouble_;
+    lock.unlock();
+
+    append(std::move(items));
+    settle(durable);
+    if (try_again_at_ && now() >= *try_again_at_) {
+      try_again_at_.reset();
+      owner_.try_again();
+    }
+    if (!hopeless.empty()) {
+      gave_up_ = true;
+      owner_.storage_failed(hopeless);
+    }
+    if (last) break;
+    compact_if_worthwhile(room_wanted);
+  }
+  if (log_) {
+    const core::Status synced = log_->sync();
+    if (!synced) owner_.storage_failed(synced.error().message);
+    settle(log_->durable());
+  }
+  owner_.drained();
+}
+
+void FilmStore::append(std::deque<Item> items) {
+  for (Item& item : items) {
+    if (item.call) {
+      item.call();
+      continue;
+    }
+    if (log_ && !item.bytes.empty()) {
+      const uint64_t bytes = item.bytes.size();
+      auto sequence = log_->append(std::move(item.bytes));
+      if (!sequence) {
+        release(item.memory);
+        owner_.not_persisted(item.id, sequence.error().message);
+        try_again_at_ = now() + kTryAgain;
+        continue;
+      }
+      item.sequence = *sequence;
+      log_bytes_ += bytes;
+      if (const auto* unit = std::get_if<UnitRecord>(&item.record)) {
+        frame_bytes_[unit->accepted.unit.frame] += bytes;
+      }
+    } else {
+      item.sequence = appended_.empty() ? 0 : appended_.back().sequence;
+    }
+    appended_.push_back(std::move(item));
+  }
+}
+
+void FilmStore::settle(uint64_t durable) {
+  while (!appended_.empty() && appended_.front().sequence <= durable) {
+    Item item = std::move(appended_.front());
+    appended_.pop_front();
+    settling_ = &item;
+    settled_sequence_ = std::max(settled_sequence_, item.sequence);
+    apply(item.record);
+    owner_.persisted(item.id);
+    settling_ = nullptr;
+    release(item.memory);
+  }
+}
+
+/// What a record that is durable says of the films in memory. A unit's film waits for merge().
+void FilmStore::apply(const Record& record) {
+  std::visit(core::Overloaded{
+                 [&](const UnitRecord& unit) {
+                   const AcceptedUnit& accepted = unit.accepted;
+                   if (accepted.worker_class.empty()) return;
+                   classes_[accepted.unit.frame] = accepted.worker_class;
+                 },
+                 [&](const FrameFinishedRecord& done) {
+                   finished_[done.frame] = {key_of(done.frame), set_.region};
+                 },
+                 [](const FrameFailedRecord&) {},
+                 [&](const FrameRestartedRecord& restarted) {
+                   films_.erase(restarted.frame);
+                   classes_.erase(restarted.frame);
+                   finished_.erase(restarted.frame);
+                 },
+                 [&](const TileVoidedRecord& voided) {
+                   const auto whole = films_.find(voided.frame);
+                   if (whole == films_.end()) return;
+                   // Whoever looks at the film meanwhile keeps what was there.
+                   if (whole->second.use_count() > 1) {
+                     whole->second = std::make_shared<core::Film>(*whole->second);
+                   }
+                   whole->second->erase(voided.tile);
+                 },
+                 [&](const DisputeRecord& dispute) { disputed_ = dispute.open; },
+                 [](const DivergentWorkerRecord&) {},
+             },
+             record);
+}
+
+void FilmStore::release(uint64_t memory) {
+  const core::MutexLock lock(mutex_);
+  waiting_bytes_ -= memory;
+  room_.notify_all();
+}
+
+core::Status FilmStore::merge(RecordId record) {
+  const UnitRecord* unit = settling_ != nullptr && settling_->id == record
+                               ? std::get_if<UnitRecord>(&settling_->record)
+                               : nullptr;
+  if (unit == nullptr) return core::Error{"a film is to be merged that is not at hand"};
+  auto& whole = films_[unit->accepted.unit.frame];
+  const core::Film& film = settling_->film;
+  if (!whole) {
+    whole = std::make_shared<core::Film>(film.layout(), set_.region, film.splats().region());
+  }
+  const core::Status merged = whole->merge(film);
+  core::failpoint("mid-merge");
+  return merged;
+}
+
+std::shared_ptr<const core::Film> FilmStore::film(int32_t frame) const {
+  const auto it = films_.find(frame);
+  return it == films_.end() ? nullptr : it->second;
+}
+
+void FilmStore::forget(int32_t frame, bool finished) {
+  if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
+  const auto it = films_.find(frame);
+  if (it == films_.end()) return;
+  if (finished) classes_.erase(frame);
+  const uint64_t all = static_cast<uint64_t>(set_.region.area()) * set_.batches;
+  if (!finished && log_ && it->second->coverage().volume() == all &&
+      unfinished_.size() < kUnfinishedFilms) {
+    unfinished_.insert(*it);
+  }
+  films_.erase(it);
+}
+
+/// Rewrites the log when films of finished frames, and units that could lie in it merged, fill it;
+/// where room is wanted, as soon as there is anything to gain.
+void FilmStore::compact_if_worthwhile(bool room_wanted) {
+  if (!log_ || settled_sequence_ == 0 || now() < compact_again_) return;
+  // What nobody asks for now goes only when the log has grown.
+  const bool gain = !others_films_ && (useless_bytes_ > 0 || log_bytes_ > snapshot_bytes_);
+  if (!(room_wanted && gain) &&
+      log_bytes_ < std::max(options_.compact_bytes, 2 * snapshot_bytes_)) {
+    return;
+  }
+  for (const auto* films : {&films_, &unfinished_}) {
+    for (const auto& [frame, film] : *films) {
+      if (too_large(*film)) return;
+    }
+  }
+  const uint64_t snapshot_before = std::exchange(snapshot_bytes_, 0);
+  std::map<int32_t, uint64_t> frames_before = std::exchange(frame_bytes_, {});
+  const core::Status done = log_->compact(
+      settled_sequence_, [this](const FilmLog::Sink& sink) { return write_snapshot(sink); });
+  if (done) {
+    log_bytes_ = useless_bytes_ = 0;
+    others_films_ = false;
+    return;
+  }
+  // The log is as good as before, only longer.
+  snapshot_bytes_ = snapshot_before;
+  frame_bytes_ = std::move(frames_before);
+  compact_again_ = now() + kCompactAgain;
+  const core::MutexLock lock(mutex_);
+  if (draining_) return;
+  if (trouble_.empty()) trouble_since_ = now();
+  trouble_ = done.error().message;
+}
+
+core::Status FilmStore::write_snapshot(const FilmLog::Sink& sink) {
+  const auto put = [&](std::span<const std::byte> bytes) {
+    snapshot_bytes_ += bytes.size();
+    return sink(bytes);
+  };
+  const CutRecord cut{set_.region, tile_size_, set_.samples};
+  core::Status status = put(encode_cut(cut));
+  if (status && disputed_) status = put(encode(DisputeRecord{.open = true}));
+  for (const auto& [frame, finished] : finished_) {
+    if (status) status = put(encode_finished(frame, finished));
+  }
+  std::map<int32_t, std::shared_ptr<core::Film>> films = films_;
+  films.insert(unfinished_.begin(), unfinished_.end());
+  for (const auto& [frame, film] : films) {
+    if (!status) break;
+    const auto known = classes_.find(frame);
+    const auto put_part =
+        [&, &of_frame = frame_bytes_[frame]](std::span<const std::byte> bytes) -> core::Status {
+      of_frame += bytes.size();
+      if (core::Status done = put(bytes); !done) return done;
+      const core::MutexLock lock(mutex_);
+      if (draining_) return core::Error{"the run ends"};
+      return {};
+    };
+    status = write_film(frame, key_of(frame), *film, cut,
+                        known == classes_.end() ? std::string() : known->second, put_part);
+  }
+  return status;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,122 @@
+#include "coordinator/job_store/contributor_rows.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "coordinator/job_store/database.h"
+#include "core/base/hash.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr size_t kMarkBytes = 8;
+constexpr size_t kMostRuns = 40;  // that a line of a log tells
+
+/// What stands for a worker; zeros for one without a name.
+std::string mark_of(const std::string& worker) {
+  if (worker.empty()) return std::string(kMarkBytes, '\0');
+  const core::Sha256 hash = core::sha256(worker);
+  return {reinterpret_cast<const char*>(hash.data()), kMarkBytes};
+}
+
+std::string pack(const std::vector<std::string>& workers) {
+  std::vector<std::string> marks;
+  marks.reserve(workers.size());
+  for (const std::string& worker : workers) marks.push_back(mark_of(worker));
+  std::sort(marks.begin(), marks.end());
+  marks.erase(std::unique(marks.begin(), marks.end()), marks.end());
+  if (marks.size() > kMostContributors) marks.assign(1, mark_of({}));
+  std::string packed;
+  for (const std::string& mark : marks) packed += mark;
+  return packed;
+}
+
+bool holds(const std::string& packed, const std::string& mark) {
+  for (size_t at = 0; at + kMarkBytes <= packed.size(); at += kMarkBytes) {
+    if (packed.compare(at, kMarkBytes, mark) == 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+core::Status store_contributors(sqlite3* db, uint64_t job, const StoredFrame& frame) {
+  if (frame.parts.empty()) return {};
+  return Query(db, "INSERT INTO parts (job, frame, moment, workers) VALUES (?, ?, ?, ?)")
+      .bind(static_cast<int64_t>(job))
+      .bind(int64_t{frame.frame})
+      .bind(static_cast<int64_t>(frame.moment))
+      .bind_blob(pack(frame.parts))
+      .run();
+}
+
+core::Result<std::vector<JobFrames>> suspect_frames_of(sqlite3* db, const std::string& worker,
+                                                       uint64_t since) {
+  const std::string mark = mark_of(worker);
+  const std::string anybody = mark_of({});
+  std::vector<JobFrames> jobs;
+  Query rows(db, "SELECT job, frame, workers FROM parts WHERE moment > ? ORDER BY job, frame");
+  rows.bind(static_cast<int64_t>(since));
+  while (rows.next()) {
+    const std::string workers = rows.bytes(2);
+    if (!holds(workers, mark) && !holds(workers, anybody)) continue;
+    Query suspect(db,
+                  "UPDATE frames SET doubtful = 1 WHERE job = ? AND frame = ? AND NOT doubtful");
+    suspect.bind(rows.integer(0)).bind(rows.integer(1));
+    if (core::Status done = suspect.run(); !done) return done.error();
+    if (sqlite3_changes(db) == 0) continue;
+    const auto job = static_cast<uint64_t>(rows.integer(0));
+    if (jobs.empty() || jobs.back().job != job) jobs.push_back({job, {}});
+    jobs.back().frames.push_back(static_cast<int32_t>(rows.integer(1)));
+  }
+  if (core::Status status = rows.status(); !status) return status.error();
+  return jobs;
+}
+
+core::Status store_trust(sqlite3* db, const std::vector<StoredTrust>& workers) {
+  Transaction transaction(db);
+  if (core::Status begun = transaction.status(); !begun) return begun;
+  for (const StoredTrust& worker : workers) {
+    core::Status done = Query(db, "INSERT OR REPLACE INTO trusted (worker, moment) VALUES (?, ?)")
+                            .bind(worker.worker)
+                            .bind(static_cast<int64_t>(worker.moment))
+                            .run();
+    if (!done) return done;
+  }
+  // Ids of workers that never come again must not heap up; of whom is forgotten more is suspect.
+  core::Status cut = Query(db,
+                           "DELETE FROM trusted WHERE worker NOT IN "
+                           "(SELECT worker FROM trusted ORDER BY moment DESC LIMIT ?)")
+                         .bind(int64_t{kMostTrusted})
+                         .run();
+  if (!cut) return cut;
+  return transaction.commit();
+}
+
+core::Result<std::vector<StoredTrust>> read_trust(sqlite3* db) {
+  std::vector<StoredTrust> workers;
+  Query rows(db, "SELECT worker, moment FROM trusted ORDER BY worker");
+  while (rows.next()) workers.push_back({rows.bytes(0), static_cast<uint64_t>(rows.integer(1))});
+  if (core::Status status = rows.status(); !status) return status.error();
+  return workers;
+}
+
+std::string tell_frames(const std::vector<int32_t>& frames) {
+  std::string text;
+  size_t runs = 0;
+  for (size_t i = 0; i < frames.size();) {
+    if (runs++ == kMostRuns) return text + fmt::format(" and {} more", frames.size() - i);
+    size_t last = i;
+    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
+    if (!text.empty()) text += ", ";
+    text +=
+        last == i ? fmt::format("{}", frames[i]) : fmt::format("{}-{}", frames[i], frames[last]);
+    i = last + 1;
+  }
+  return text;
+}
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,74 @@
+#include "coordinator/job_store/output_rows.h"
+
+#include "coordinator/job_store/database.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr const char* kSelect = "SELECT path, frame, size, sha256, number FROM outputs ";
+
+StoredOutput read_row(const Query& row) {
+  return {row.bytes(0), static_cast<int32_t>(row.integer(1)), static_cast<uint64_t>(row.integer(2)),
+          row.bytes(3), static_cast<uint64_t>(row.integer(4))};
+}
+
+core::Result<std::vector<StoredOutput>> read_all(Query& rows) {
+  std::vector<StoredOutput> outputs;
+  while (rows.next()) outputs.push_back(read_row(rows));
+  if (core::Status status = rows.status(); !status) return status.error();
+  return outputs;
+}
+
+}  // namespace
+
+core::Status put_outputs(sqlite3* db, uint64_t job, const std::vector<StoredOutput>& outputs) {
+  for (const StoredOutput& output : outputs) {
+    Query insert(db,
+                 "INSERT OR REPLACE INTO outputs (job, path, frame, size, sha256) "
+                 "VALUES (?, ?, ?, ?, ?)");
+    const core::Status done = insert.bind(number(job))
+                                  .bind(output.path)
+                                  .bind(int64_t{output.frame})
+                                  .bind(number(output.size))
+                                  .bind_blob(output.sha256)
+                                  .run();
+    if (!done) return done;
+  }
+  return {};
+}
+
+core::Status delete_outputs(sqlite3* db, uint64_t job, const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    Query gone(db,
+               "DELETE FROM outputs WHERE job = ? AND "
+               "(path = ? OR substr(path, 1, length(?)) = ?)");
+    const core::Status done =
+        gone.bind(number(job)).bind(path).bind(path + "/").bind(path + "/").run();
+    if (!done) return done;
+  }
+  return {};
+}
+
+core::Result<std::vector<StoredOutput>> read_outputs(sqlite3* db, uint64_t job, uint64_t after,
+                                                     uint32_t limit) {
+  Query rows(db, std::string(kSelect) + "WHERE job = ? AND number > ? ORDER BY number LIMIT ?");
+  rows.bind(number(job)).bind(number(after)).bind(int64_t{limit});
+  return read_all(rows);
+}
+
+core::Result<std::vector<StoredOutput>> read_outputs_of(sqlite3* db, uint64_t job, int32_t frame) {
+  Query rows(db, std::string(kSelect) + "WHERE job = ? AND frame = ? ORDER BY path");
+  rows.bind(number(job)).bind(int64_t{frame});
+  return read_all(rows);
+}
+
+core::Result<std::optional<StoredOutput>> read_output(sqlite3* db, uint64_t job,
+                                                      const std::string& path) {
+  Query row(db, std::string(kSelect) + "WHERE job = ? AND path = ?");
+  row.bind(number(job)).bind(path);
+  if (row.next()) return std::optional(read_row(row));
+  if (core::Status status = row.status(); !status) return status.error();
+  return std::optional<StoredOutput>();
+}
+
+}  // namespace hyades::coordinator

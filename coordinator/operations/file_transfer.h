@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include <grpcpp/support/status.h>
+
+#include "coordinator/access/caller.h"
+#include "coordinator/job_store/job_store.h"
+#include "core/base/bytes.h"
+#include "farm/content_writer.h"
+
+namespace hyades::coordinator {
+
+class AuditLog;
+class Controller;
+
+// Files that come in, in pieces, and go out, by whichever door.
+
+/// Begins with a file, or goes on with what is there of it, and notes that: once for a file,
+/// however many pieces it comes in. `log` may be null. `writer` stays null where the whole file is
+/// here already. May wait for the disk.
+grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& caller,
+                          const std::string& name, uint64_t size,
+                          std::unique_ptr<farm::ContentWriter>& writer);
+
+/// Takes bytes of the file that begin at `offset`; of those that are here already none. The last
+/// ones make it whole (writer.offset() is writer.size() then). May wait for the disk.
+grpc::Status take_piece(Controller& controller, farm::ContentWriter& writer, uint64_t offset,
+                        std::span<const std::byte> bytes);
+
+/// Reads the bytes of a job's output, and what is stored of it. NOT_FOUND, or DATA_LOSS where they
+/// are not as they were. May wait for the disk.
+grpc::Status open_output(Controller& controller, uint64_t job, const std::string& path,
+                         StoredOutput& output, core::Bytes& bytes);
+/// DATA_LOSS: the bytes of an output are not as they were.
+grpc::Status damaged_output(const std::string& path);
+
+}  // namespace hyades::coordinator

@@ -1,0 +1,110 @@
+// Films of frames in work.
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "coordinator/controller/controller.h"
+#include "coordinator/services/file_stream.h"
+#include "coordinator/services/service.h"
+#include "core/film/film_codec.h"
+#include "farm/wire.h"
+#include "farm/wire_status.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// Films on their way at once: each is in memory as a whole.
+constexpr int kMostFilms = 4;
+
+/// Sends what is rendered of a frame: what it is, then its bytes, in chunks.
+class FilmStream final : public Producer<v1::FilmPart> {
+ public:
+  /// `open`: how many such streams there are, which this one counts into.
+  FilmStream(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
+             v1::FilmRequest request, std::shared_ptr<std::atomic<int>> open)
+      : Producer(context, pool),
+        controller_(controller),
+        request_(std::move(request)),
+        open_(std::move(open)),
+        found_(std::make_shared<Found>()) {
+    ++*open_;
+  }
+
+  ~FilmStream() override { --*open_; }
+
+ private:
+  struct Found {
+    std::atomic<bool> there{false};
+    grpc::Status status;
+    core::FilmInfo info;
+    std::shared_ptr<const core::Film> film;
+  };
+
+  /// The stream may be over before the film is found.
+  void ask() {
+    const grpc::Status asked = controller_.queries().film(
+        request_.job(), request_.frame(),
+        [found = found_, waker = waker()](const grpc::Status& said, const core::FilmInfo& info,
+                                          std::shared_ptr<const core::Film> film) {
+          found->status = said;
+          found->info = info;
+          found->film = std::move(film);
+          found->there = true;
+          waker->wake();
+        });
+    if (asked.ok()) return;
+    found_->status = asked;
+    found_->there = true;
+  }
+
+  Step next(v1::FilmPart& part, grpc::Status& status, bool may_wait) override {
+    if (!may_wait) return Step::needs_thread;
+    if (!std::exchange(asked_, true)) ask();
+    if (!found_->there) return Step::wait;
+    if (!found_->status.ok()) {
+      status = found_->status;
+      return Step::end;
+    }
+    if (found_->film) {
+      bytes_ = core::encode_film(*found_->film);
+      found_->film.reset();
+      *part.mutable_header() = farm::to_wire(found_->info);
+      part.mutable_header()->set_size(bytes_.size());
+      return Step::message;
+    }
+    return take_chunk(bytes_, offset_, *part.mutable_chunk()) ? Step::message : Step::end;
+  }
+
+  Controller& controller_;
+  const v1::FilmRequest request_;
+  const std::shared_ptr<std::atomic<int>> open_;
+  const std::shared_ptr<Found> found_;
+  bool asked_ = false;
+  std::vector<std::byte> bytes_;
+  uint64_t offset_ = 0;
+};
+
+}  // namespace
+
+void add_film_stream(Service& service) {
+  service.add_reader<v1::FilmRequest>(
+      "Jobs/Film",
+      [&service, films = std::make_shared<std::atomic<int>>(0)](
+          Service::Context& context, v1::FilmRequest&& request,
+          grpc::Status& refused) -> OutgoingStream* {
+        if (*films < kMostFilms) {
+          return new FilmStream(context, service.executors().files, service.backend().controller,
+                                std::move(request), films);
+        }
+        refused =
+            farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                              "enough films are on their way to others", std::chrono::seconds(2));
+        return nullptr;
+      });
+}
+
+}  // namespace hyades::coordinator

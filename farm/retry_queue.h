@@ -1,0 +1,55 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <thread>
+#include <vector>
+
+#include "core/base/mutex.h"
+
+namespace hyades::farm {
+
+/// What has to be done in the background, by threads of its own. Tasks of one key (a job, say) are
+/// done in the order in which they were added, one at a time; one that is not done comes again
+/// after a pause, and those of other keys go on meanwhile. What goes on for ever is a task that is
+/// never done. Thread-safe.
+class RetryQueue {
+ public:
+  /// Whether it is done; false: it comes again after the queue's pause. Called without any lock.
+  using Task = std::function<bool()>;
+
+  explicit RetryQueue(size_t threads, std::chrono::nanoseconds pause = std::chrono::seconds(1));
+  /// Ends as end() does.
+  ~RetryQueue();
+  RetryQueue(const RetryQueue&) = delete;
+  RetryQueue& operator=(const RetryQueue&) = delete;
+
+  /// Never waits.
+  void add(uint64_t key, Task task) HYADES_EXCLUDES(mutex_);
+  /// Tries all that is left once more, without pauses, and ends; what is not done then is given up,
+  /// with all that would have come after it. What is added afterwards is not done.
+  void end() HYADES_EXCLUDES(mutex_);
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+  void work() HYADES_EXCLUDES(mutex_);
+  void wake_due(Time now) HYADES_REQUIRES(mutex_);
+
+  const std::chrono::nanoseconds pause_;
+  core::Mutex mutex_;
+  core::CondVar wake_;
+  /// A key with tasks is in exactly one place: ready, put off, or in some thread's hands.
+  std::map<uint64_t, std::deque<Task>> tasks_ HYADES_GUARDED_BY(mutex_);
+  std::deque<uint64_t> ready_ HYADES_GUARDED_BY(mutex_);
+  std::multimap<Time, uint64_t> put_off_ HYADES_GUARDED_BY(mutex_);
+  size_t in_work_ HYADES_GUARDED_BY(mutex_) = 0;
+  bool end_ HYADES_GUARDED_BY(mutex_) = false;
+  bool ended_ HYADES_GUARDED_BY(mutex_) = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace hyades::farm

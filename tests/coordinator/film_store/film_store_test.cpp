@@ -1,0 +1,146 @@
+// Films of finished frames leave the log when the disk is short.
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <set>
+
+#include "coordinator/film_store/film_store.h"
+#include "tests/coordinator/film_store/fake_film.h"
+#include "tests/coordinator/film_store/faulty_files.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint32_t kSamples = 16;
+
+/// A film store on files in memory, and somebody who merges what is durable.
+class Kept final : public FilmStore::Owner {
+ public:
+  explicit Kept(FaultyFiles& files, Duration patience = std::chrono::seconds(30))
+      : film_store_(films(), log(files, patience), *this) {
+    EXPECT_TRUE(film_store_.open().ok());
+    EXPECT_TRUE(film_store_.start(16).ok());
+  }
+
+  /// Whether the film of `tile` is durable within some seconds.
+  bool keep(int32_t frame, const core::PixelRect& tile) {
+    const RecordId record{++records_};
+    const core::Unit unit{frame, tile, {0, 1}};
+    film_store_.append_rendered(record, {{}, {unit, {}, {}}}, fake_film(unit, kSamples));
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, std::chrono::seconds(20),
+                             [&] { return durable_.contains(record); });
+  }
+  /// Hands a film over to a disk that is full; whether the owner is told of that within some
+  /// seconds.
+  bool is_told_of_trouble(int32_t frame, const core::PixelRect& tile) {
+    const core::Unit unit{frame, tile, {0, 1}};
+    film_store_.append_rendered(RecordId{++records_}, {{}, {unit, {}, {}}},
+                                fake_film(unit, kSamples));
+    std::unique_lock lock(mutex_);
+    const bool told = changed_.wait_for(lock, std::chrono::seconds(20), [&] { return told_ > 0; });
+    told_ = 0;
+    return told;
+  }
+  void finish(int32_t frame) {
+    on_its_thread([&] { film_store_.forget(frame, true); });
+  }
+  void make_room() {
+    film_store_.make_room();
+    on_its_thread([] {});  // it has been seen
+    on_its_thread([] {});  // and dealt with
+  }
+
+  void persisted(RecordId record) override {
+    EXPECT_TRUE(film_store_.merge(record).ok());
+    const std::lock_guard lock(mutex_);
+    durable_.insert(record);
+    changed_.notify_all();
+  }
+  void not_persisted(RecordId, const std::string& reason) override { ADD_FAILURE() << reason; }
+  void try_again() override {}
+  void storage_failed(const std::string&) override {
+    const std::lock_guard lock(mutex_);
+    ++told_;
+    changed_.notify_all();
+  }
+  void drained() override {}
+
+ private:
+  static FilmSet films() { return {{1, 2}, {0, 0, 64, 16}, kSamples, 1}; }
+  static FilmStoreOptions log(FaultyFiles& files, Duration patience) {
+    FilmStoreOptions log;
+    log.patience = patience;
+    log.folder = "films";
+    log.files = &files;
+    log.compact_bytes = uint64_t{1} << 30U;
+    return log;
+  }
+  void on_its_thread(const std::function<void()>& what) {
+    bool done = false;
+    film_store_.call([&] {
+      what();
+      const std::lock_guard lock(mutex_);
+      done = true;
+      changed_.notify_all();
+    });
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return done; });
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<RecordId> durable_;
+  uint64_t records_ = 0;
+  int told_ = 0;  ///< of trouble
+  FilmStore film_store_;
+};
+
+uint64_t size_of(FaultyFiles& files) {
+  uint64_t bytes = 0;
+  for (const std::string& path : files.paths()) bytes += files.bytes(path).size();
+  return bytes;
+}
+
+core::PixelRect tile(int number) { return {16 * number, 0, 16 * number + 16, 16}; }
+
+TEST(FilmStore, FinishedFramesLeaveTheLogWhenRoomIsAskedFor) {
+  FaultyFiles files;
+  Kept kept(files);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+  ASSERT_TRUE(kept.keep(2, tile(0)));
+  const uint64_t before = size_of(files);
+  kept.finish(1);
+  kept.make_room();
+  EXPECT_LT(size_of(files), before / 2);
+  const uint64_t writes = files.operations();
+  kept.make_room();
+  EXPECT_EQ(files.operations(), writes) << "there is nothing to gain any more";
+}
+
+TEST(FilmStore, AFullDiskIsRelievedByThem) {
+  FaultyFiles files;
+  Kept kept(files);
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(kept.keep(1, tile(i)));
+  ASSERT_TRUE(kept.keep(2, tile(0)));
+  kept.finish(1);
+  const uint64_t used = size_of(files);
+  // Not enough for two tiles, but for what is still of use.
+  files.set_capacity(used + used / 3);
+  EXPECT_TRUE(kept.keep(2, {16, 0, 64, 16}));
+}
+
+TEST(FilmStore, EachOutageOfTheDiskIsTold) {
+  FaultyFiles files;
+  Kept kept(files, std::chrono::milliseconds(50));
+  for (int outage = 0; outage < 2; ++outage) {
+    ASSERT_TRUE(kept.keep(1, tile(2 * outage)));
+    files.set_capacity(size_of(files));
+    EXPECT_TRUE(kept.is_told_of_trouble(1, tile(2 * outage + 1))) << outage;
+    files.set_capacity(UINT64_MAX);
+  }
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

@@ -1,0 +1,117 @@
+#include "farm/retry_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <mutex>
+#include <new>
+#include <vector>
+
+#include "farm/last_words.h"
+#include "farm/thread_pool.h"
+
+namespace hyades::farm {
+namespace {
+
+TEST(RetryQueue, OfOneOwnerKeepTheirOrderWhileOthersGoOn) {
+  std::mutex mutex;
+  std::vector<int> done;
+  std::atomic<bool> full{true};
+  const auto note = [&](int what) {
+    const std::lock_guard lock(mutex);
+    done.push_back(what);
+    return true;
+  };
+  RetryQueue queue(2);
+  std::promise<void> other;
+  queue.add(1, [&] { return !full && note(1); });
+  queue.add(3, [&] { return !full; });  // as many as there are threads
+  for (int i = 2; i <= 50; ++i) queue.add(1, [&, i] { return note(i); });
+  queue.add(2, [&] {
+    other.set_value();
+    return true;
+  });
+  ASSERT_EQ(other.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready)
+      << "it waits for a task that cannot be done";
+  {
+    const std::lock_guard lock(mutex);
+    EXPECT_TRUE(done.empty());
+  }
+  full = false;
+  std::promise<void> last;
+  queue.add(1, [&] {
+    last.set_value();
+    return true;
+  });
+  ASSERT_EQ(last.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  ASSERT_EQ(done.size(), 50U);
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(done[static_cast<size_t>(i)], i + 1);
+}
+
+TEST(RetryQueue, AreTriedOnceMoreInTheEnd) {
+  int tried = 0;
+  int after = 0;
+  int done = 0;
+  {
+    RetryQueue queue(1);
+    queue.add(1, [&] { return ++tried > 100; });
+    queue.add(1, [&] { return ++after > 0; });
+    for (uint64_t owner = 2; owner < 10; ++owner) queue.add(owner, [&] { return ++done > 0; });
+  }
+  EXPECT_GE(tried, 1);
+  EXPECT_LE(tried, 2);
+  EXPECT_EQ(after, 0) << "what comes after something that was not done";
+  EXPECT_EQ(done, 8);
+}
+
+TEST(RetryQueue, WhatIsNeverDoneComesAgainUntilTheEnd) {
+  std::atomic<int> rounds{0};
+  std::promise<void> third;
+  RetryQueue queue(1, std::chrono::milliseconds(1));
+  queue.add(1, [&] {
+    if (++rounds == 3) third.set_value();
+    return false;
+  });
+  ASSERT_EQ(third.get_future().wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  queue.end();
+  const int last = rounds;
+  queue.add(1, [&] { return ++rounds > 0; });
+  EXPECT_EQ(rounds, last) << "nothing is done after the end";
+}
+
+TEST(RetryQueueDeathTest, WithoutMemoryTheProcessSaysSoAndEnds) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_DEATH(
+      {
+        farm::die_with_words("hyades coordinator", "start it again");
+        RetryQueue queue(1);
+        queue.add(1, []() -> bool { throw std::bad_alloc(); });
+      },
+      "hyades coordinator stops: it has no memory left; start it again");
+}
+
+TEST(ThreadPool, TakeNoMoreThanMayWait) {
+  std::promise<void> go;
+  const std::shared_future<void> gone = go.get_future().share();
+  std::atomic<int> done{0};
+  {
+    ThreadPool pool(2, 3);
+    std::atomic<int> begun{0};
+    for (int i = 0; i < 2; ++i) {
+      ASSERT_TRUE(pool.submit([&, gone] {
+        ++begun;
+        gone.wait();
+        ++done;
+      }));
+    }
+    while (begun < 2) std::this_thread::yield();
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(pool.submit([&] { ++done; }));
+    EXPECT_FALSE(pool.submit([&] { ++done; }));
+    go.set_value();
+  }
+  EXPECT_EQ(done, 5) << "all that was taken is done, and nothing else";
+}
+
+}  // namespace
+}  // namespace hyades::farm

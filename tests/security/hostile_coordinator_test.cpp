@@ -1,0 +1,53 @@
+// What a coordinator that is hostile, or was taken over, can do to those who fetch from it.
+#include "tests/cli/client/client_testing.h"
+
+namespace hyades::cli {
+namespace {
+
+using HostileCoordinator = Client;
+
+TEST_F(HostileCoordinator, WritesNoHiddenFiles) {
+  add_job("a", v1::JOB_STATE_DONE);
+  const std::string out = folder_.file("out");
+  for (const char* path :
+       {".bashrc", ".ssh/authorized_keys", ".git/hooks/post-checkout", "a/.b/c"}) {
+    farm_.outputs = {{path, "evil"}};
+    const Ran ran = run(fetch_command, at({"a", "--output", out}));
+    EXPECT_EQ(ran.status, kFailed) << path;
+    EXPECT_TRUE(has(ran.err, "hidden files are not written (--hidden writes them)")) << ran.err;
+    EXPECT_FALSE(fs::exists(out + "/" + path));
+  }
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out, "--hidden"})).status, kDone);
+  EXPECT_TRUE(fs::exists(out + "/a/.b/c"));
+}
+
+TEST_F(HostileCoordinator, ReplacesNoFileThatFetchHasNotWritten) {
+  add_job("a", v1::JOB_STATE_DONE);
+  const std::string out = folder_.file("out");
+  fs::create_directories(out);
+  std::ofstream(out + "/thesis.tex") << "mine";
+  farm_.outputs = {{"thesis.tex", "evil"}};
+  const Ran ran = run(fetch_command, at({"a", "--output", out}));
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "was not written by hyades fetch (--overwrite replaces it")) << ran.err;
+  EXPECT_EQ(read_file(out + "/thesis.tex"), "mine");
+
+  // What was fetched is replaced by a later rendering, also by a later run.
+  farm_.outputs = {{"a.exr", "first"}};
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out})).status, kDone);
+  farm_.outputs = {{"a.exr", "second"}};
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out})).status, kDone);
+  EXPECT_EQ(read_file(out + "/a.exr"), "second");
+
+  // Links are not followed to what they lead to.
+  std::ofstream(folder_.file("elsewhere")) << "mine";
+  fs::create_symlink(folder_.file("elsewhere"), out + "/link.exr");
+  farm_.outputs = {{"link.exr", "evil"}};
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out})).status, kFailed);
+  EXPECT_EQ(run(fetch_command, at({"a", "--output", out, "--overwrite"})).status, kDone);
+  EXPECT_EQ(read_file(folder_.file("elsewhere")), "mine");
+  EXPECT_EQ(read_file(out + "/link.exr"), "evil");
+}
+
+}  // namespace
+}  // namespace hyades::cli

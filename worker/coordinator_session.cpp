@@ -1,0 +1,158 @@
+#include "worker/coordinator_session.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/base/wall_clock.h"
+#include "farm/wire.h"
+
+namespace hyades::worker {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using farm::LogLevel;
+using std::chrono::milliseconds;
+
+/// How long a worker whose token is unknown all at once looks for another in its file.
+constexpr std::chrono::minutes kTokenPatience{5};
+constexpr std::chrono::hours kTellExpiryAgain{24};
+/// However long a coordinator asks not to be called.
+constexpr milliseconds kLongestAskedPause{60'000};
+
+}  // namespace
+
+CoordinatorSession::CoordinatorSession(const WorkerContext& worker, WorkerId id,
+                                       std::shared_ptr<grpc::Channel> channel, std::string token,
+                                       std::function<void(const std::string&)> new_token)
+    : worker_(worker),
+      id_(std::move(id)),
+      token_(std::move(token)),
+      new_token_(std::move(new_token)),
+      link_(std::move(channel), token_, *this) {}
+
+void CoordinatorSession::tick(TimePoint now, bool ready) {
+  if (ever_connected_ ? connect_at_ && now >= *connect_at_ : ready) connect(now);
+  tell_expiry(now);
+}
+
+void CoordinatorSession::connect(TimePoint now) {
+  connect_at_.reset();
+  ever_connected_ = true;
+  streaming_ = true;
+  link_.open();
+  worker_.machine.stream_opened(now);
+}
+
+void CoordinatorSession::finish() {
+  finished_ = true;
+  link_.finish();
+}
+
+void CoordinatorSession::stream_says(v1::CoordinatorMessage message) {
+  worker_.loop.post([this, message = std::move(message)]() mutable {
+    if (message.has_welcome() && !welcomed(message.welcome())) return;
+    worker_.machine.coordinator_says(std::move(message), Clock::now());
+  });
+}
+
+/// Whether the two understand each other.
+bool CoordinatorSession::welcomed(const v1::Welcome& welcome) {
+  if (welcome.protocol() < farm::kOldestProtocol) {
+    worker_.log.note(
+        LogLevel::error,
+        fmt::format("the coordinator speaks protocol {}, this worker {} to {}: update it",
+                    welcome.protocol(), farm::kOldestProtocol, farm::kProtocol));
+    worker_.loop.end(2);
+    return false;
+  }
+  backoff_.reset();
+  told_trouble_.clear();
+  ever_welcomed_ = true;
+  unknown_since_.reset();
+  worker_.log.rename(welcome.name());
+  token_term_ = {welcome.token_expires_ms(), welcome.token_warn_ms()};
+  worker_.log.note(
+      LogLevel::info,
+      fmt::format("working for {} as {}", worker_.options.coordinator.address, welcome.name()));
+  return true;
+}
+
+void CoordinatorSession::stream_ended(StreamEnd end, const std::string& reason,
+                                      milliseconds retry_after) {
+  worker_.loop.post([this, end, reason, retry_after] { ended(end, reason, retry_after); });
+}
+
+void CoordinatorSession::ended(StreamEnd end, const std::string& reason, milliseconds retry_after) {
+  streaming_ = false;
+  worker_.machine.stream_closed();
+  if (worker_.loop.ended()) return;
+  if (end == StreamEnd::unknown && take_new_token()) {
+    connect_at_ = Clock::now();
+    return;
+  }
+  if (end == StreamEnd::refused || (end == StreamEnd::unknown && !may_hope())) {
+    worker_.log.note(LogLevel::error, "the coordinator refuses this worker: " + reason);
+    worker_.loop.end(2);
+    return;
+  }
+  if (end == StreamEnd::id_taken) renew_id();
+  const Duration pause = backoff_.next(std::min<Duration>(retry_after, kLongestAskedPause));
+  connect_at_ = Clock::now() + pause;
+  std::string trouble = farm::connection_trouble(reason, worker_.options.coordinator);
+  if (finished_ || trouble == told_trouble_) return;
+  worker_.log.note(
+      LogLevel::warning,
+      fmt::format(
+          "no connection to {} ({}); {} units in hand, {} films not acknowledged; trying again",
+          worker_.options.coordinator.address, trouble, worker_.machine.in_hand(),
+          worker_.machine.unacknowledged()));
+  told_trouble_ = std::move(trouble);
+}
+
+/// There are two with one id, and the other was first.
+void CoordinatorSession::renew_id() {
+  if (auto renewed = id_.renew(); !renewed) {
+    worker_.log.note(LogLevel::error, renewed.error().message);
+    worker_.loop.end(1);
+    return;
+  }
+  worker_.machine.rename(id_.text());
+  worker_.log.note(
+      LogLevel::warning,
+      "another worker has this one's id (a copied cache, or machine): it takes a new one");
+}
+
+/// Whether the token's file holds another one than was shown: tokens are changed under workers
+/// that run.
+bool CoordinatorSession::take_new_token() {
+  const std::string& file = worker_.options.coordinator.token_file;
+  auto token = farm::read_token(file);
+  if (!token || *token == token_) return false;
+  token_ = std::move(*token);
+  link_.set_token(token_);
+  new_token_(token_);
+  worker_.log.note(LogLevel::info, "shows the coordinator the token that " + file + " holds now");
+  return true;
+}
+
+/// Who was known once waits for their new token a while, with the films in their hand.
+bool CoordinatorSession::may_hope() {
+  if (!ever_welcomed_) return false;
+  if (!unknown_since_) unknown_since_ = Clock::now();
+  return Clock::now() - *unknown_since_ < kTokenPatience;
+}
+
+/// Once a day, in the token's last days.
+void CoordinatorSession::tell_expiry(TimePoint now) {
+  if (told_expiry_ && now - *told_expiry_ < kTellExpiryAgain) return;
+  const std::string when = farm::expiry_warning(token_term_, core::wall_ms());
+  if (when.empty()) return;
+  told_expiry_ = now;
+  worker_.log.note(LogLevel::warning, "the token of this worker " + when +
+                                          ": put another one into " +
+                                          worker_.options.coordinator.token_file);
+}
+
+}  // namespace hyades::worker

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "farm/backoff.h"
+#include "farm/token_term.h"
+#include "worker/coordinator_link.h"
+#include "worker/worker_context.h"
+#include "worker/worker_id.h"
+
+namespace hyades::worker {
+
+/// The streams to the coordinator, one after the other: when the next one begins, under which id
+/// and with which token, and what is told of all that. For the loop's thread.
+class CoordinatorSession : private CoordinatorLink::Owner {
+ public:
+  /// `new_token` is told of a token that comes in place of the first.
+  CoordinatorSession(const WorkerContext& worker, WorkerId id,
+                     std::shared_ptr<grpc::Channel> channel, std::string token,
+                     std::function<void(const std::string&)> new_token);
+
+  /// Opens a stream where it is time for one: the first when the rendering child is `ready`.
+  void tick(TimePoint now, bool ready);
+
+  /// Queued on the stream that is open.
+  void send(v1::WorkerMessage message) { link_.send(std::move(message)); }
+  /// Whether everything that was sent has left this process.
+  bool flowing() const { return link_.flowing(); }
+
+  /// Nothing more will be sent.
+  void finish();
+  /// Whether a stream is open, or is being opened.
+  bool open() const { return streaming_; }
+
+ private:
+  void connect(TimePoint now);
+  void stream_says(v1::CoordinatorMessage message) override;
+  void stream_ended(StreamEnd end, const std::string& reason,
+                    std::chrono::milliseconds retry_after) override;
+  bool welcomed(const v1::Welcome& welcome);
+  void ended(StreamEnd end, const std::string& reason, std::chrono::milliseconds retry_after);
+  void renew_id();
+  bool take_new_token();
+  bool may_hope();
+  void tell_expiry(TimePoint now);
+
+  const WorkerContext worker_;
+  WorkerId id_;
+  std::string token_;
+  const std::function<void(const std::string&)> new_token_;
+  farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
+  bool streaming_ = false;
+  bool ever_connected_ = false;
+  bool ever_welcomed_ = false;
+  bool finished_ = false;
+  std::optional<TimePoint> connect_at_;
+  std::optional<TimePoint> unknown_since_;  ///< the coordinator does not know the token any more
+  std::string told_trouble_;
+  farm::TokenTerm token_term_;
+  std::optional<TimePoint> told_expiry_;
+  CoordinatorLink link_;  ///< last: its threads post
+};
+
+}  // namespace hyades::worker

@@ -1,0 +1,232 @@
+// The worker's side of the stream: hello, leases, answers to films, wishes.
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "farm/wire.h"
+#include "worker/state_machine.h"
+
+namespace hyades::worker {
+namespace {
+
+constexpr Duration kShortestHeartbeat = std::chrono::milliseconds(100);
+constexpr Duration kShortestLease = std::chrono::seconds(1);
+constexpr Duration kResendAfter = std::chrono::milliseconds(200);
+
+Duration in_milliseconds(uint64_t count) { return std::chrono::milliseconds(count); }
+
+}  // namespace
+
+void StateMachine::stream_opened(TimePoint now) {
+  fence(now);
+  open_ = true;
+  welcomed_ = false;
+  wished_ = 0;
+  hello_sent_ = now;
+  unanswered_.clear();
+  if (!worker_class_.empty()) send_hello();
+}
+
+void StateMachine::stream_closed() {
+  open_ = false;
+  welcomed_ = false;
+  wished_ = 0;
+}
+
+void StateMachine::send_hello() {
+  v1::WorkerMessage message;
+  v1::Hello& hello = *message.mutable_hello();
+  hello.set_protocol(farm::kProtocol);
+  hello.set_worker_id(options_.worker_id);
+  hello.set_instance(options_.instance);
+  hello.set_name(options_.name);
+  hello.set_host(options_.host);
+  hello.set_worker_class(worker_class_);
+  hello.set_build(build_);
+  hello.set_threads(options_.threads);
+  hello.set_memory_bytes(options_.memory_bytes);
+  for (const std::string& tag : options_.tags) hello.add_tags(tag);
+  for (const auto& [token, item] : items_) *hello.add_in_hand() = item.leased;
+  hello.set_want(take_wish());
+  ports_.send(std::move(message));
+}
+
+void StateMachine::coordinator_says(v1::CoordinatorMessage message, TimePoint now) {
+  fence(now);
+  switch (message.message_case()) {
+    case v1::CoordinatorMessage::kWelcome:
+      welcomed(message.welcome(), now);
+      break;
+    case v1::CoordinatorMessage::kJob:
+      add_job(std::move(*message.mutable_job()));
+      break;
+    case v1::CoordinatorMessage::kLease:
+      if (!renewed_) renewed_ = now;  // units were given up, and here are others
+      take(message.lease());
+      break;
+    case v1::CoordinatorMessage::kAcknowledge:
+      acknowledged(message.acknowledge().unit());
+      break;
+    case v1::CoordinatorMessage::kRejected:
+      rejected(message.rejected(), now);
+      break;
+    case v1::CoordinatorMessage::kStop:
+      unwanted(message.stop().unit());
+      break;
+    case v1::CoordinatorMessage::kDrain:
+      drained(message.drain().reason());
+      break;
+    case v1::CoordinatorMessage::kOver:
+      job_over(message.over().job());
+      break;
+    case v1::CoordinatorMessage::kEcho:
+      echoed(message.echo().number());
+      break;
+    case v1::CoordinatorMessage::MESSAGE_NOT_SET:
+      break;
+  }
+  dispatch();
+  top_up();
+}
+
+void StateMachine::welcomed(const v1::Welcome& welcome, TimePoint now) {
+  heartbeat_every_ = std::max(in_milliseconds(welcome.heartbeat_ms()), kShortestHeartbeat);
+  lease_time_ = std::max(in_milliseconds(welcome.lease_ms()), kShortestLease);
+  if (welcome.max_message_bytes() > 0) max_message_bytes_ = welcome.max_message_bytes();
+  welcomed_ = true;
+  renewed_ = hello_sent_;
+  last_heartbeat_ = now;
+  for (auto& [token, item] : items_) {
+    if (item.state == Item::State::kept) send_result(item);
+    item.send_again.reset();
+  }
+  if (leaving_) say_leaving();
+}
+
+void StateMachine::add_job(v1::JobBrief brief) {
+  Job& job = jobs_[brief.job()];
+  job.spec = std::move(*brief.mutable_spec());
+  job.over = false;
+}
+
+void StateMachine::job_over(uint64_t id) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end()) return;
+  job->second.over = true;
+  for (auto it = items_.begin(); it != items_.end();) {
+    const auto item = it++;
+    if (item->second.leased.job() != id) continue;
+    stop_rendering(item);
+    drop(item);
+  }
+  forget_idle_job(id);
+}
+
+void StateMachine::take(const v1::Lease& lease) {
+  const auto units = static_cast<uint32_t>(lease.units_size());
+  if (!lease.adopted()) wished_ -= std::min(wished_, units);
+  for (const v1::Unit& unit : lease.units()) {
+    v1::LeasedUnit leased;
+    *leased.mutable_lease() = lease.lease();
+    leased.set_job(lease.job());
+    *leased.mutable_unit() = unit;
+    take_unit(leased, lease.adopted());
+  }
+}
+
+void StateMachine::take_unit(const v1::LeasedUnit& leased, bool adopted) {
+  if (const auto there = find(leased); there != items_.end()) {
+    Item& item = there->second;
+    *item.leased.mutable_lease() = leased.lease();
+    if (item.state != Item::State::kept) return;
+    *item.result.mutable_lease() = leased.lease();
+    // After Welcome every film was sent; a new lease means that this one did not count.
+    if (!adopted) send_result(item);
+    return;
+  }
+  const auto job = jobs_.find(leased.job());
+  // Asked for before the rest began.
+  const bool rests = rests_until_ && job != jobs_.end() && !job->second.has_files;
+  if (job == jobs_.end() || adopted || leaving_ || rests) {
+    v1::WorkerMessage message;
+    *message.mutable_returned()->add_units() = leased;
+    message.mutable_returned()->set_reason(leaving_  ? leaving_reason_
+                                           : adopted ? "given up meanwhile"
+                                           : rests   ? files_trouble_
+                                                     : "the job is not known");
+    ports_.send(std::move(message));
+    return;
+  }
+  Item item;
+  item.leased = leased;
+  item.state = job->second.has_files ? Item::State::waiting : Item::State::fetching;
+  items_.emplace(next_token_++, std::move(item));
+  if (!job->second.has_files && !job->second.fetching) {
+    job->second.fetching = true;
+    ports_.note(farm::LogLevel::debug, "fetches its files", {leased.job(), {}, {}, {}});
+    ports_.fetch(leased.job(), job->second.spec);
+  }
+}
+
+void StateMachine::acknowledged(const v1::LeasedUnit& unit) {
+  const auto item = find(unit);
+  if (item == items_.end() || item->second.state != Item::State::kept) return;
+  ports_.note(farm::LogLevel::debug, "its film is kept", about(item->second.leased));
+  drop(item);
+}
+
+void StateMachine::unwanted(const v1::LeasedUnit& unit) {
+  const auto item = find(unit);
+  if (item == items_.end()) return;
+  stop_rendering(item);
+  drop(item);
+}
+
+void StateMachine::rejected(const v1::Rejected& message, TimePoint now) {
+  const auto item = find(message.unit());
+  if (item == items_.end()) return;
+  if (message.reason() == v1::Rejected::REASON_NOT_NOW) {
+    item->second.send_again =
+        now + std::max(in_milliseconds(message.retry_after_ms()), kResendAfter);
+    return;
+  }
+  ports_.note(
+      farm::LogLevel::warning,
+      "a film was refused: " +
+          (message.text().empty() ? v1::Rejected::Reason_Name(message.reason()) : message.text()),
+      about(message.unit()));
+  stop_rendering(item);
+  drop(item);
+}
+
+void StateMachine::send_result(const Item& item) {
+  v1::WorkerMessage message;
+  *message.mutable_result() = item.result;
+  ports_.send(std::move(message));
+}
+
+// ---- wishes ----
+
+/// How many units more to ask for now; they are counted as asked for.
+uint32_t StateMachine::take_wish() {
+  if (leaving_ || rests_until_ || kept_bytes_ > options_.max_kept_bytes) return 0;
+  const size_t in_work = items_.size() - kept_ + wished_;
+  const size_t enough = size_t{options_.threads} + options_.ahead;
+  const auto wish = static_cast<uint32_t>(enough - std::min(enough, in_work));
+  wished_ += wish;
+  return wish;
+}
+
+void StateMachine::top_up() {
+  if (!welcomed_) return;
+  const uint32_t wish = take_wish();
+  if (wish == 0) return;
+  v1::WorkerMessage message;
+  message.mutable_request()->set_units(wish);
+  ports_.send(std::move(message));
+}
+
+}  // namespace hyades::worker
