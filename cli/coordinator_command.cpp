@@ -29,6 +29,7 @@
 #include "cli/number_range.h"
 #include "coordinator/access/authority.h"
 #include "coordinator/access/first_admin.h"
+#include "coordinator/access/machine_key.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/notify/notifier.h"
 #include "coordinator/services/server.h"
@@ -180,7 +181,10 @@ bool is_beyond(const Arguments& arguments) {
 hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments& arguments,
                                                                 const std::string& shared_token,
                                                                 Controller& controller) {
+  auto key = hyades::coordinator::machine_key(arguments.controller.folder);
+  if (!key) return key.error();
   Authority::Options options;
+  options.machine_key = std::move(*key);
   options.shared_token = shared_token;
   options.beyond = is_beyond(arguments);
   options.audit_folder = arguments.controller.folder;

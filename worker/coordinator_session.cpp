@@ -24,13 +24,13 @@ constexpr milliseconds kLongestAskedPause{60'000};
 }  // namespace
 
 CoordinatorSession::CoordinatorSession(const WorkerContext& worker, WorkerId id,
-                                       std::shared_ptr<grpc::Channel> channel, std::string token,
+                                       std::shared_ptr<grpc::Channel> channel, WorkerToken token,
                                        std::function<void(const std::string&)> new_token)
     : worker_(worker),
       id_(std::move(id)),
       token_(std::move(token)),
       new_token_(std::move(new_token)),
-      link_(std::move(channel), token_, *this) {}
+      link_(std::move(channel), token_.text(), *this) {}
 
 void CoordinatorSession::tick(TimePoint now, bool ready) {
   if (ever_connected_ ? connect_at_ && now >= *connect_at_ : ready) connect(now);
@@ -72,6 +72,7 @@ bool CoordinatorSession::welcomed(const v1::Welcome& welcome) {
   ever_welcomed_ = true;
   unknown_since_.reset();
   worker_.log.rename(welcome.name());
+  if (!welcome.machine_token().empty()) keep_token(welcome.machine_token());
   token_term_ = {welcome.token_expires_ms(), welcome.token_warn_ms()};
   worker_.log.note(
       LogLevel::info,
@@ -119,22 +120,41 @@ void CoordinatorSession::renew_id() {
     return;
   }
   worker_.machine.rename(id_.text());
+  if (auto joins = token_.forget(id_.text()); !joins) {
+    worker_.log.note(LogLevel::error, "this worker cannot join anew: " + joins.error().message);
+    worker_.loop.end(2);
+    return;
+  }
+  show_token();
   worker_.log.note(
       LogLevel::warning,
       "another worker has this one's id (a copied cache, or machine): it takes a new one");
 }
 
-/// Whether the token's file holds another one than was shown: tokens are changed under workers
-/// that run.
+/// The worker's own token from its next stream on. Where it cannot be kept the one that it has
+/// joined with goes on to do.
+void CoordinatorSession::keep_token(const std::string& own) {
+  if (auto kept = token_.keep(own); !kept) {
+    worker_.log.note(LogLevel::warning,
+                     "the token of this worker's own cannot be kept: " + kept.error().message);
+    return;
+  }
+  show_token();
+}
+
+/// Whether there is another token than was shown: tokens are changed under workers that run.
 bool CoordinatorSession::take_new_token() {
-  const std::string& file = worker_.options.coordinator.token_file;
-  auto token = farm::read_token(file);
-  if (!token || *token == token_) return false;
-  token_ = std::move(*token);
-  link_.set_token(token_);
-  new_token_(token_);
-  worker_.log.note(LogLevel::info, "shows the coordinator the token that " + file + " holds now");
+  if (!token_.replace(id_.text())) return false;
+  show_token();
+  worker_.log.note(LogLevel::info, "shows the coordinator the token that " +
+                                       worker_.options.coordinator.token_file + " holds now");
   return true;
+}
+
+/// With all that begins from now on.
+void CoordinatorSession::show_token() {
+  link_.set_token(token_.text());
+  new_token_(token_.text());
 }
 
 /// Who was known once waits for their new token a while, with the films in their hand.

@@ -12,6 +12,7 @@
 #include "worker/coordinator_link.h"
 #include "worker/worker_context.h"
 #include "worker/worker_id.h"
+#include "worker/worker_token.h"
 
 namespace hyades::worker {
 
@@ -21,7 +22,7 @@ class CoordinatorSession : private CoordinatorLink::Owner {
  public:
   /// `new_token` is told of a token that comes in place of the first.
   CoordinatorSession(const WorkerContext& worker, WorkerId id,
-                     std::shared_ptr<grpc::Channel> channel, std::string token,
+                     std::shared_ptr<grpc::Channel> channel, WorkerToken token,
                      std::function<void(const std::string&)> new_token);
 
   /// Opens a stream where it is time for one: the first when the rendering child is `ready`.
@@ -45,13 +46,15 @@ class CoordinatorSession : private CoordinatorLink::Owner {
   bool welcomed(const v1::Welcome& welcome);
   void ended(StreamEnd end, const std::string& reason, std::chrono::milliseconds retry_after);
   void renew_id();
+  void keep_token(const std::string& own);
   bool take_new_token();
+  void show_token();
   bool may_hope();
   void tell_expiry(TimePoint now);
 
   const WorkerContext worker_;
   WorkerId id_;
-  std::string token_;
+  WorkerToken token_;
   const std::function<void(const std::string&)> new_token_;
   farm::Backoff backoff_{farm::kFirstReconnect, farm::kLongestReconnect};
   bool streaming_ = false;

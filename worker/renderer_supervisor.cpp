@@ -29,9 +29,10 @@ void RendererSupervisor::start() {
   process_.reset();
   started_ = Clock::now();
   ready_ = false;
-  cache_identity_ = folder_identity(options.cache);
+  cache_identity_ = folder_identity(files_folder(options));
   auto started = RendererProcess::start(
-      {options.renderer, options.cache, options.threads, options.memory, options.sandbox}, *this);
+      {options.renderer, files_folder(options), options.threads, options.memory, options.sandbox},
+      *this);
   if (!started) {
     worker_.log.note(LogLevel::error, started.error().message);
     worker_.loop.end(1);
@@ -48,7 +49,8 @@ void RendererSupervisor::tick(TimePoint now) {
 void RendererSupervisor::tell(pipe::ToRenderer message) {
   // A sandbox opens the folder that was there when the child began, whatever its name means
   // later.
-  if (process_ && message.has_job() && folder_identity(worker_.options.cache) != cache_identity_) {
+  if (process_ && message.has_job() &&
+      folder_identity(files_folder(worker_.options)) != cache_identity_) {
     process_->kill("began with another folder as its cache");
   }
   if (process_) process_->send(std::move(message));

@@ -42,6 +42,7 @@ void StateMachine::send_hello() {
   hello.set_protocol(farm::kProtocol);
   hello.set_worker_id(options_.worker_id);
   hello.set_instance(options_.instance);
+  hello.set_keeps_token(true);
   hello.set_name(options_.name);
   hello.set_host(options_.host);
   hello.set_worker_class(worker_class_);

@@ -13,8 +13,24 @@
 #include "farm/tags.h"
 #include "worker/worker_id.h"
 #include "worker/worker_loop.h"
+#include "worker/worker_token.h"
 
 namespace hyades::worker {
+
+namespace {
+
+/// Older workers had the files of jobs in the cache folder itself. What cannot be moved is fetched
+/// again.
+void move_old_files(const std::string& cache, const std::string& files) {
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(cache, failed)) {
+    const std::string name = entry.path().filename().string();
+    if (farm::is_content_name(name))
+      std::filesystem::rename(entry.path(), files + "/" + name, failed);
+  }
+}
+
+}  // namespace
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -27,8 +43,6 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
     return status;
   };
   constexpr int kWrongInput = 2;
-  auto token = farm::read_token(options.coordinator.token_file);
-  if (!token) return refuse(token.error(), kWrongInput);
   auto channel = farm::connect(options.coordinator);
   if (!channel) return refuse(channel.error(), kWrongInput);
   if (const std::string warning = farm::plaintext_warning(options.coordinator); !warning.empty()) {
@@ -37,15 +51,19 @@ int run_worker(const WorkerOptions& options, const volatile std::sig_atomic_t& s
   auto tags = farm::check_tags(options.tags);
   if (!tags) return refuse(tags.error(), kWrongInput);
   std::error_code failed;
-  std::filesystem::create_directories(options.cache, failed);
-  if (failed) return refuse({options.cache + ": cannot be made: " + failed.message()});
-  auto store = farm::ContentStore::open({options.cache, options.cache_size});
+  const std::string files = files_folder(options);
+  std::filesystem::create_directories(files, failed);
+  if (failed) return refuse({files + ": cannot be made: " + failed.message()});
+  move_old_files(options.cache, files);
+  auto store = farm::ContentStore::open({files, options.cache_size});
   if (!store) return refuse(store.error());
   auto id = WorkerId::take(options.cache, machine_name(host_name()));
   if (!id) return refuse(id.error());
+  WorkerToken token(options.coordinator.token_file, id->token_file());
+  if (auto read = token.read(id->text()); !read) return refuse(read.error(), kWrongInput);
   const auto instance = core::random_id();
   if (!instance) return refuse(instance.error());
-  return work(options, std::move(*id), *instance, *channel, *token, **store, signals);
+  return work(options, std::move(*id), *instance, *channel, std::move(token), **store, signals);
 }
 
 }  // namespace hyades::worker

@@ -15,7 +15,7 @@ struct WorkerOptions {
   farm::Peer coordinator;
   int threads = 1;
   uint64_t memory = 0;      ///< bytes for scenes and all else of the rendering child; 0: no limit
-  std::string cache;        ///< folder for assets; made if it is missing
+  std::string cache;        ///< folder for files_folder(), ids and tokens; made if it is missing
   uint64_t cache_size = 0;  ///< bytes; 0: no limit
   std::string name;         ///< for people
   std::vector<std::string> tags;
@@ -29,6 +29,9 @@ struct WorkerOptions {
   std::string cloud_endpoint;    ///< instead of the cloud's own metadata service; empty: that one
   std::string renderer;          ///< path of hyades-worker-render
 };
+
+/// Where in the cache the files of jobs are: all of it that the rendering child may open.
+inline std::string files_folder(const WorkerOptions& options) { return options.cache + "/files"; }
 
 /// Works for a coordinator until `signals` is not 0, it is drained, or it was idle for long enough.
 /// Returns the process' exit status: 0 when it was drained or idle, `told_status` when a signal or

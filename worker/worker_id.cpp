@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <span>
 #include <utility>
@@ -77,6 +78,10 @@ core::Status WorkerId::renew() {
   }
   text_ = *fresh;
   return {};
+}
+
+std::string WorkerId::token_file() const {
+  return std::filesystem::path(path_).replace_extension(".token").string();
 }
 
 std::string machine_name(const std::string& host, const std::string& id_file) {

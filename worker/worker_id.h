@@ -24,6 +24,9 @@ class WorkerId {
 
   const std::string& text() const { return text_; }
 
+  /// The file beside the id's for the token of the worker of this id (worker_token.h).
+  std::string token_file() const;
+
  private:
   WorkerId(std::string path, std::string machine, core::Descriptor lock)
       : path_(std::move(path)), machine_(std::move(machine)), lock_(std::move(lock)) {}

@@ -41,6 +41,7 @@ struct TokenOptions {
   std::string role;
   std::string expires;  ///< a time or never; empty: the command's default
   std::string output;
+  std::string pool;
   std::string id;
   bool of_existing = false;  ///< what is asked needs a store that is there
   bool json = false;
@@ -118,8 +119,7 @@ class LocalTokens final : public Tokens {
   LocalTokens& operator=(const LocalTokens&) = delete;
   Outcome create(const v1::CreateTokenRequest& request, v1::Token& token,
                  std::string& secret) override {
-    const auto fresh = coordinator::make_token(request.name(), request.role(),
-                                               request.lifetime_ms(), core::wall_ms());
+    const auto fresh = coordinator::make_token(request, core::wall_ms());
     if (!fresh) return Failure{kBadArguments, fresh.error().message};
     const auto added = store_->add_token(fresh->row);
     note("token.create", fresh->row.id, added, request.ShortDebugString());
@@ -253,6 +253,7 @@ int create(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
     // What is no time is told by the option's check.
     request.set_lifetime_ms(static_cast<int64_t>(1e3 * *core::parse_duration(options.expires)));
   }
+  request.set_pool(options.pool);
   v1::Token token;
   std::string secret;
   if (auto failure = tokens.create(request, token, secret)) return app.report(*failure);
@@ -315,6 +316,7 @@ int rotate(const ClientApp& app, TokenOptions options, Tokens& tokens) {
     }
     options.name = old.name();
     options.role = farm::role_name(old.role());
+    options.pool = old.pool();
     if (options.expires.empty()) options.expires = as_long_as(old);
     if (const int status = create(app, options, tokens); status != kDone) return status;
     v1::Token gone;
@@ -370,6 +372,9 @@ int token_command(int argc, char** argv) {
       ->required();
   made->add_option("--name", options.name, "whose it is: jobs submitted with it are this owner's")
       ->required();
+  made->add_option("--pool", options.pool,
+                   "of workers that are in one hand: all of a pool count as one witness of what a "
+                   "unit's pixels are (default: each machine is one)");
   fresh(*made, kLifetime);
   const CLI::App* listed = app.add_subcommand("list", "all tokens, and when they were last used");
   CLI::App* revoked =

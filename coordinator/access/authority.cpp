@@ -15,6 +15,7 @@
 #include "coordinator/access/address.h"
 #include "coordinator/access/peer_user.h"
 #include "coordinator/access/token.h"
+#include "core/base/random_id.h"
 #include "core/base/wall_clock.h"
 #include "farm/json_form.h"
 #include "farm/wire_status.h"
@@ -64,6 +65,11 @@ Authority::Authority(JobStore& store, Options options)
 core::Result<std::unique_ptr<Authority>> Authority::open(JobStore& store, Options options) {
   const auto rows = store.tokens();
   if (!rows) return rows.error();
+  if (options.machine_key.empty()) {
+    auto key = core::random_id();
+    if (!key) return key.error();
+    options.machine_key = std::move(*key);
+  }
   std::unique_ptr<Authority> authority(new Authority(store, std::move(options)));
   {
     const core::MutexLock lock(authority->mutex_);
@@ -128,6 +134,10 @@ grpc::Status Authority::admit(std::string_view authorization, Caller& caller) {
   const std::string_view shown = authorization.substr(kBearer.size());
   if (!options_.shared_token.empty() && same(shown, options_.shared_token)) {
     return admit_known(kSharedToken, caller);
+  }
+  if (auto machine = read_machine_token(options_.machine_key, shown)) {
+    caller.worker = std::move(machine->worker);
+    return admit_known(machine->id, caller);
   }
   const auto id = token_id(shown);
   if (!id) return refuse_unknown(caller.address);
@@ -201,7 +211,26 @@ grpc::Status Authority::admit_known(const std::string& id, Caller& caller) {
   found->second.row.used_ms = now;
   caller.name = found->second.row.name;
   caller.role = static_cast<v1::Role>(found->second.row.role);
+  caller.pool = found->second.row.pool;
   caller.term = farm::term_of(found->second.row.created_ms, found->second.row.expires_ms);
+  return grpc::Status::OK;
+}
+
+grpc::Status Authority::admit_worker(const Caller& caller, const std::string& worker, bool keeps,
+                                     WorkerCredential& credential) const {
+  credential = {};
+  if (!caller.worker.empty() && caller.worker != worker) {
+    return {grpc::StatusCode::PERMISSION_DENIED, "this token is another worker's"};
+  }
+  // Whoever else may work here may do everything.
+  if (caller.role != v1::ROLE_WORKER) return grpc::Status::OK;
+  if (caller.worker.empty() && keeps) {
+    credential.machine_token = machine_token(options_.machine_key, {caller.token_id, worker});
+  }
+  const bool own = !caller.worker.empty() || !credential.machine_token.empty();
+  credential.name = !caller.pool.empty() ? "pool " + caller.pool
+                    : own                ? "machine " + caller.token_id + " " + worker
+                                         : "token " + caller.token_id;
   return grpc::Status::OK;
 }
 
@@ -276,10 +305,15 @@ void Authority::end_expired() {
 }
 
 grpc::Status Authority::create(const std::string& name, v1::Role role, int64_t lifetime_ms,
-                               std::string& text, StoredToken& row) {
+                               std::string& text, StoredToken& row, const std::string& pool) {
   const core::MutexLock one(change_mutex_);
   const int64_t now = core::wall_ms();
-  auto fresh = make_token(name, role, lifetime_ms, now);
+  v1::CreateTokenRequest asked;
+  asked.set_name(name);
+  asked.set_role(role);
+  asked.set_lifetime_ms(lifetime_ms);
+  asked.set_pool(pool);
+  auto fresh = make_token(asked, now);
   if (!fresh) return {grpc::StatusCode::INVALID_ARGUMENT, fresh.error().message};
   const bool first = !guarded();
   if (first && role != v1::ROLE_ADMIN) {

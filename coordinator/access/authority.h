@@ -15,6 +15,7 @@
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/caller.h"
+#include "coordinator/access/worker_credential.h"
 #include "coordinator/job_store/job_store.h"
 #include "core/base/mutex.h"
 #include "core/base/result.h"
@@ -54,6 +55,9 @@ class Authority {
     std::function<void(const std::string&)> tell_expiring{};
     /// Where it is kept who did what (audit_log.h); empty: nowhere.
     std::string audit_folder{};
+    /// What machines' tokens are made with (token.h): secret, and best in no back-up. Empty: one
+    /// that ends with this, so that machines join anew then.
+    std::string machine_key{};
   };
   /// Reads the tokens; an error where that fails. `store` has to outlive it.
   static core::Result<std::unique_ptr<Authority>> open(JobStore& store, Options options);
@@ -85,6 +89,12 @@ class Authority {
   /// UNAUTHENTICATED where the token is of no use any more.
   grpc::Status admit_known(const std::string& token_id, Caller& caller);
 
+  /// By what a worker of this id is known that `caller` wants to be. One that has joined with a
+  /// token of many, and `keeps` one of its own, is given that. PERMISSION_DENIED where the caller's
+  /// token is another worker's.
+  grpc::Status admit_worker(const Caller& caller, const std::string& worker, bool keeps,
+                            WorkerCredential& credential) const;
+
   /// Registers a caller's open stream. `leave` is called once the caller's token is of no use any
   /// more, perhaps within this call, by any thread; it must not wait, and not end the visit itself.
   std::unique_ptr<Visit> visit(const Caller& caller,
@@ -96,10 +106,10 @@ class Authority {
   // These may wait for the store.
 
   /// Makes a token: `text` is what its owner shows, `row` what is stored of it. INVALID_ARGUMENT as
-  /// check_token() has it, FAILED_PRECONDITION where it would be the farm's first and not an
+  /// make_token() has it, FAILED_PRECONDITION where it would be the farm's first and not an
   /// admin's.
   grpc::Status create(const std::string& name, v1::Role role, int64_t lifetime_ms,
-                      std::string& text, StoredToken& row);
+                      std::string& text, StoredToken& row, const std::string& pool = {});
   /// Makes the token useless from here on, even where the store refuses (UNAVAILABLE: it may come
   /// back after a restart). NOT_FOUND where there is none of this id.
   grpc::Status revoke(const std::string& id, StoredToken& row);

@@ -23,6 +23,8 @@ struct Caller {
   v1::Role role = v1::ROLE_UNSPECIFIED;
   std::string address;  ///< where the call comes from, for people
   farm::TokenTerm term{};
+  std::string worker{};   ///< the only worker that may come with the token, a machine's; empty: any
+  std::string pool{};     ///< StoredToken::pool
   std::string session{};  ///< of a browser that has signed in: names it (Authority::end_session)
 };
 

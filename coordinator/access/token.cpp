@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
+
+#include <openssl/crypto.h>
 
 #include "core/base/hash.h"
 #include "core/base/random_id.h"
@@ -23,25 +26,34 @@ bool is_name(const std::string& text) {
          });
 }
 
-}  // namespace
-
-core::Status check_token(const std::string& name, v1::Role role, int64_t lifetime_ms) {
-  if (!is_name(name)) {
+core::Status check(const v1::CreateTokenRequest& asked) {
+  if (!is_name(asked.name())) {
     return core::Error{
         "name: expected 1 to 64 letters, digits, '-', '_', '.' or '@' (whose token it is)"};
   }
-  if (role < v1::ROLE_VIEWER || role > v1::ROLE_ADMIN) {
+  if (asked.role() < v1::ROLE_VIEWER || asked.role() > v1::ROLE_ADMIN) {
     return core::Error{"role: expected viewer, submitter, operator, worker or admin"};
   }
-  if (lifetime_ms < 0 || lifetime_ms > kLongestLifetimeMs) {
+  if (asked.lifetime_ms() < 0 || asked.lifetime_ms() > kLongestLifetimeMs) {
     return core::Error{"expires: expected a time of at most a hundred years, or never"};
+  }
+  if (asked.pool().empty()) return {};
+  if (asked.role() != v1::ROLE_WORKER) return core::Error{"pool: only a worker's token has one"};
+  if (!is_name(asked.pool())) {
+    return core::Error{"pool: expected 1 to 64 letters, digits, '-', '_', '.' or '@'"};
   }
   return {};
 }
 
-core::Result<FreshToken> make_token(const std::string& name, v1::Role role, int64_t lifetime_ms,
-                                    int64_t now_ms) {
-  if (core::Status sane = check_token(name, role, lifetime_ms); !sane) return sane.error();
+/// The code of a machine's token, in hexadecimal digits.
+std::string machine_code(const std::string& key, const MachineToken& claim) {
+  return core::to_hex(core::hmac_sha256(key, "machine " + claim.id + " " + claim.worker));
+}
+
+}  // namespace
+
+core::Result<FreshToken> make_token(const v1::CreateTokenRequest& asked, int64_t now_ms) {
+  if (core::Status sane = check(asked); !sane) return sane.error();
   std::string digits;
   while (digits.size() < kIdDigits + kSecretDigits) {
     const auto more = core::random_id();
@@ -51,11 +63,12 @@ core::Result<FreshToken> make_token(const std::string& name, v1::Role role, int6
   FreshToken token;
   token.row.id = digits.substr(0, kIdDigits);
   token.text = std::string(kPrefix) + token.row.id + "-" + digits.substr(kIdDigits, kSecretDigits);
-  token.row.name = name;
-  token.row.role = role;
+  token.row.name = asked.name();
+  token.row.role = asked.role();
   token.row.hash = token_hash(token.text);
   token.row.created_ms = now_ms;
-  token.row.expires_ms = lifetime_ms == 0 ? 0 : now_ms + lifetime_ms;
+  token.row.expires_ms = asked.lifetime_ms() == 0 ? 0 : now_ms + asked.lifetime_ms();
+  token.row.pool = asked.pool();
   return token;
 }
 
@@ -65,6 +78,23 @@ std::optional<std::string> token_id(std::string_view text) {
     return std::nullopt;
   }
   return std::string(text.substr(kPrefix.size(), kIdDigits));
+}
+
+std::string machine_token(const std::string& key, const MachineToken& claim) {
+  if (!is_name(claim.worker)) return {};
+  return std::string(kPrefix) + claim.id + "-" + machine_code(key, claim) + "-" + claim.worker;
+}
+
+std::optional<MachineToken> read_machine_token(const std::string& key, std::string_view text) {
+  constexpr size_t kJoined = kPrefix.size() + kIdDigits + 1 + kSecretDigits;
+  if (text.size() < kJoined + 2 || text[kJoined] != '-') return std::nullopt;
+  const auto id = token_id(text.substr(0, kJoined));
+  if (!id) return std::nullopt;
+  MachineToken claim{*id, std::string(text.substr(kJoined + 1))};
+  const std::string right = machine_token(key, claim);
+  const bool same =
+      right.size() == text.size() && CRYPTO_memcmp(right.data(), text.data(), text.size()) == 0;
+  return same ? std::optional(std::move(claim)) : std::nullopt;
 }
 
 std::string token_hash(std::string_view text) {
@@ -85,6 +115,7 @@ v1::Token to_wire(const StoredToken& token) {
   wire.set_expires_ms(token.expires_ms);
   wire.set_used_ms(token.used_ms);
   wire.set_revoked_ms(token.revoked_ms);
+  wire.set_pool(token.pool);
   return wire;
 }
 

@@ -134,7 +134,7 @@ grpc::Status WorkerSessions::resolve_duplicate_id(WorkerSession& session, const 
 }
 
 grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
-                                    WorkerId& worker, const farm::TokenTerm& token) {
+                                    WorkerId& worker, const WorkerPass& pass) {
   if (const std::string wrong = complaint(hello); !wrong.empty()) {
     return {hello.protocol() < farm::kOldestProtocol ? grpc::StatusCode::FAILED_PRECONDITION
                                                      : grpc::StatusCode::INVALID_ARGUMENT,
@@ -166,7 +166,7 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
   } else {
     session.state = v1::WORKER_STATE_ACTIVE;
   }
-  link->send(bytes_of(welcome(hello, token)));
+  link->send(bytes_of(welcome(hello, pass)));
   for (v1::LeasedUnit& unit : unproven) {
     v1::CoordinatorMessage stop;
     *stop.mutable_stop()->mutable_unit() = std::move(unit);
@@ -174,6 +174,7 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
   }
 
   joined->worker = worker;
+  joined->credential = pass.credential;
   if (new_process) {
     workers_.note_losses(session, dispatcher_.scheduler().units_of(worker),
                          "has been started again");
@@ -192,7 +193,7 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
 }
 
 v1::CoordinatorMessage WorkerSessions::welcome(const v1::Hello& hello,
-                                               const farm::TokenTerm& token) const {
+                                               const WorkerPass& pass) const {
   v1::CoordinatorMessage message;
   v1::Welcome& welcome = *message.mutable_welcome();
   welcome.set_protocol(farm::kProtocol);
@@ -203,8 +204,9 @@ v1::CoordinatorMessage WorkerSessions::welcome(const v1::Hello& hello,
   welcome.set_max_message_bytes(farm::kMaxResultBytes);
   welcome.set_version(core::kVersion);
   welcome.set_name(hello.name());
-  welcome.set_token_expires_ms(token.expires_ms);
-  welcome.set_token_warn_ms(token.warn_ms);
+  welcome.set_token_expires_ms(pass.term.expires_ms);
+  welcome.set_token_warn_ms(pass.term.warn_ms);
+  welcome.set_machine_token(pass.machine_token);
   return message;
 }
 

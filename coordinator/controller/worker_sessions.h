@@ -14,6 +14,13 @@ namespace hyades::coordinator {
 class DiskWatch;
 struct ResultRefusal;
 
+/// With what a worker has come in.
+struct WorkerPass {
+  farm::TokenTerm term{};       ///< how long its token holds
+  std::string credential{};     ///< WorkerJoined::credential
+  std::string machine_token{};  ///< Welcome::machine_token
+};
+
 /// Workers that come, speak and go: their streams, heartbeats and leases on the wire. Thread-safe.
 class WorkerSessions {
  public:
@@ -23,10 +30,9 @@ class WorkerSessions {
 
   /// A worker's stream begins; `link` gets the Welcome. An older stream of the same worker is
   /// closed, unless it is another process' that still speaks: ALREADY_EXISTS then. INVALID_ARGUMENT
-  /// for a Hello that makes no sense. The Welcome tells `token`, how long that of the worker holds.
+  /// for a Hello that makes no sense.
   grpc::Status attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
-                      WorkerId& worker, const farm::TokenTerm& token = {})
-      HYADES_EXCLUDES(state_lock);
+                      WorkerId& worker, const WorkerPass& pass = {}) HYADES_EXCLUDES(state_lock);
   /// What came on the stream; what comes on one that is not the worker's newest is ignored.
   void receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMessage& message)
       HYADES_EXCLUDES(state_lock);
@@ -51,7 +57,7 @@ class WorkerSessions {
   void send_over(JobId job) HYADES_REQUIRES(state_lock);
 
  private:
-  v1::CoordinatorMessage welcome(const v1::Hello& hello, const farm::TokenTerm& token) const;
+  v1::CoordinatorMessage welcome(const v1::Hello& hello, const WorkerPass& pass) const;
   bool has_room(Turn& turn) HYADES_REQUIRES(state_lock);
   grpc::Status resolve_duplicate_id(WorkerSession& session, const v1::Hello& hello)
       HYADES_REQUIRES(state_lock);

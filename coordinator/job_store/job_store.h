@@ -111,6 +111,7 @@ struct StoredToken {
   int64_t expires_ms = 0;  ///< 0: never
   int64_t used_ms = 0;     ///< 0: never; may lag behind
   int64_t revoked_ms = 0;  ///< 0: it has not been
+  std::string pool = {};   ///< of a worker's: all of one pool count as one witness; empty: none
 };
 
 /// A token's last use.

@@ -113,6 +113,9 @@ UPDATE jobs SET options = job_options(max_workers, tags, memory, max_attempts, f
 CREATE TABLE secret (text TEXT NOT NULL);  -- one row: JobStore::secret()
 INSERT INTO secret VALUES (new_secret());
 )",
+    R"(
+ALTER TABLE tokens ADD COLUMN pool TEXT NOT NULL DEFAULT '';
+)",
 };
 
 /// A number as protobuf writes it.

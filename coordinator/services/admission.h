@@ -9,6 +9,7 @@
 
 #include "coordinator/access/authority.h"
 #include "coordinator/access/rules.h"
+#include "hyades/v1/work.pb.h"
 
 namespace hyades::coordinator {
 
@@ -30,6 +31,12 @@ class Admission {
   std::unique_ptr<Visit> visit(const Caller& caller,
                                std::function<void(const grpc::Status&)> leave) const {
     return authority_.visit(caller, std::move(leave));
+  }
+
+  /// By what a worker is known (Authority::admit_worker).
+  grpc::Status admit_worker(const Caller& caller, const v1::Hello& hello,
+                            WorkerCredential& credential) const {
+    return authority_.admit_worker(caller, hello.worker_id(), hello.keeps_token(), credential);
   }
 
   /// The audit log; null where none is kept.

@@ -129,8 +129,9 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
                const Admission& admission, const Caller& caller, const grpc::Status& admitted)
       : controller_(controller),
         context_(context),
-        link_(std::make_shared<Link>(*this)),
-        token_(caller.term) {
+        admission_(admission),
+        caller_(caller),
+        link_(std::make_shared<Link>(*this)) {
     if (admitted.ok()) {
       visit_ = admission.visit(caller, [this](const grpc::Status& why) {
         sent_away_ = true;
@@ -156,8 +157,7 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
     }
     if (!attached_) {
       grpc::Status status{grpc::StatusCode::INVALID_ARGUMENT, "a stream begins with Hello"};
-      if (message.has_hello())
-        status = controller_.workers().attach(message.hello(), link_, worker_, token_);
+      if (message.has_hello()) status = attach(message.hello());
       if (!status.ok()) {
         link_->close(status);
         return;
@@ -179,6 +179,16 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
   }
 
  private:
+  grpc::Status attach(const v1::Hello& hello) {
+    WorkerCredential credential;
+    if (grpc::Status known = admission_.admit_worker(caller_, hello, credential); !known.ok()) {
+      return known;
+    }
+    const WorkerPass pass{caller_.term, std::move(credential.name),
+                          std::move(credential.machine_token)};
+    return controller_.workers().attach(hello, link_, worker_, pass);
+  }
+
   /// What has come, parsed: only what may be large may be.
   grpc::Status take(v1::WorkerMessage& message) {
     const auto besides = bytes_besides_film(bytes_);
@@ -201,8 +211,9 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
 
   Controller& controller_;
   grpc::CallbackServerContext& context_;
+  const Admission& admission_;
+  const Caller caller_;
   const std::shared_ptr<Link> link_;
-  const farm::TokenTerm token_;
   std::unique_ptr<Visit> visit_;
   std::atomic<bool> sent_away_{false};  ///< its token is of no use any more
   grpc::ByteBuffer bytes_;

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "coordinator/controller/lease_proof.h"
 #include "tests/coordinator/services/farm_world.h"
@@ -145,6 +146,117 @@ TEST(LyingWorker, WhatItSaysToHaveFromBeforeARestartItHasToProve) {
   const ScriptedWorker owner(world.address, again);
   EXPECT_TRUE(eventually([&] { return owner.adopted() > 0; })) << "who has a proof keeps his own";
   EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_RUNNING);
+}
+
+/// A farm with tokens, of which one is of many workers.
+class WorkersWithTokens : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    world.start();
+    world.token = make("root", v1::ROLE_ADMIN);
+    joins = make("nodes", v1::ROLE_WORKER);
+  }
+  std::string make(const std::string& name, v1::Role role, const std::string& pool = {}) {
+    std::string text;
+    StoredToken row;
+    const grpc::Status made = world.authority->create(name, role, 0, text, row, pool);
+    EXPECT_TRUE(made.ok()) << made.error_message();
+    return text;
+  }
+  /// Of a worker that takes nothing.
+  ScriptedWorker::Script script(int number, const std::string& token, bool keeps_token) const {
+    ScriptedWorker::Script script = idle_script(world, number);
+    script.token = token;
+    script.keeps_token = keeps_token;
+    script.reconnect = false;
+    return script;
+  }
+  ScriptedWorker::Script liar(int number, const std::string& token, bool keeps_token) const {
+    ScriptedWorker::Script lies = script(number, token, keeps_token);
+    lies.corrupt = [](core::Film& film) { film.mutable_plane(0)[0] += core::Fixed128{0, 1}; };
+    return lies;
+  }
+  /// Honest: it delivers one unit, which is returned.
+  v1::LeasedUnit begin(std::optional<ScriptedWorker>& honest) {
+    world.submit(1);
+    ScriptedWorker::Script delivers = script(1, joins, true);
+    delivers.meddle = [this](ScriptedWorker&, const v1::LeasedUnit& leased) {
+      const std::lock_guard lock(mutex);
+      if (first) return false;
+      first = leased;
+      return true;
+    };
+    honest.emplace(world.address, delivers);
+    EXPECT_TRUE(eventually([&] { return honest->acknowledged() > 0; }));
+    const std::lock_guard lock(mutex);
+    return *first;
+  }
+  bool quarantined(const std::string& name) const {
+    v1::ListWorkersResponse all;
+    EXPECT_TRUE(world.farm_->ListWorkers(world.context().get(), {}, &all).ok());
+    for (const v1::Worker& worker : all.workers()) {
+      if (worker.name() == name) return worker.state() == v1::WORKER_STATE_QUARANTINED;
+    }
+    return false;
+  }
+  /// They say of the unit what they say, one after the other.
+  void say(const std::vector<ScriptedWorker*>& workers, const v1::LeasedUnit& unit) {
+    for (ScriptedWorker* worker : workers) {
+      ASSERT_TRUE(eventually([&] { return worker->streams() > 0; }));
+      worker->deliver(world.leased_to(*worker, unit));
+      ASSERT_TRUE(
+          eventually([&] { return worker->acknowledged() > 0 || !worker->rejections().empty(); }));
+    }
+  }
+
+  FarmWorld world;
+  std::string joins;
+  std::mutex mutex;
+  std::optional<v1::LeasedUnit> first;
+};
+
+TEST_F(WorkersWithTokens, InventedOnesUnderOneTokenAreOneWitness) {
+  std::optional<ScriptedWorker> honest;
+  const v1::LeasedUnit unit = begin(honest);
+  ScriptedWorker a(world.address, liar(2, joins, false));
+  ScriptedWorker b(world.address, liar(3, joins, false));
+  ScriptedWorker c(world.address, liar(4, joins, false));
+  say({&a, &b, &c}, unit);
+  EXPECT_FALSE(quarantined("scripted/1"));
+  // Two machines that have joined are two, and the liars are found out.
+  ScriptedWorker d(world.address, script(5, joins, true));
+  say({&d}, unit);
+  EXPECT_TRUE(eventually([&] { return quarantined("scripted/2"); }));
+  EXPECT_FALSE(quarantined("scripted/1"));
+}
+
+TEST_F(WorkersWithTokens, OnesOfAPoolAreOneWitness) {
+  const std::string cloud = make("cloud", v1::ROLE_WORKER, "cloud");
+  const std::string more = make("more", v1::ROLE_WORKER, "cloud");
+  std::optional<ScriptedWorker> honest;
+  const v1::LeasedUnit unit = begin(honest);
+  ScriptedWorker a(world.address, liar(2, cloud, true));
+  ScriptedWorker b(world.address, liar(3, more, true));
+  say({&a, &b}, unit);
+  EXPECT_FALSE(quarantined("scripted/1"));
+}
+
+TEST_F(WorkersWithTokens, ATokenOfAMachineIsItsWorkersAlone) {
+  std::string own;
+  {
+    const ScriptedWorker joining(world.address, script(1, joins, true));
+    ASSERT_TRUE(eventually([&] { return !joining.welcome().machine_token().empty(); }));
+    own = joining.welcome().machine_token();
+  }
+  const ScriptedWorker other(world.address, script(2, own, true));
+  ASSERT_TRUE(eventually(
+      [&] { return other.last_status().error_code() == grpc::StatusCode::PERMISSION_DENIED; }));
+  EXPECT_EQ(other.last_status().error_message(), "this token is another worker's");
+  ScriptedWorker::Script comes_back = script(1, own, true);
+  comes_back.reconnect = true;  // the coordinator may not have noticed yet that it went
+  const ScriptedWorker same(world.address, comes_back);
+  ASSERT_TRUE(eventually([&] { return same.welcome().incarnation() > 0; }));
+  EXPECT_EQ(same.welcome().machine_token(), "") << "it has one";
 }
 
 }  // namespace

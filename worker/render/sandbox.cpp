@@ -32,7 +32,7 @@ core::Result<std::string> enter_sandbox(SandboxMode mode, const std::string& cac
   if (::syscall(SYS_close_range, first_closed, UINT_MAX, 0) != 0) {
     try_to(core::Error{std::string("close_range: ") + std::strerror(errno)});
   }
-  // The cache not to remove from either: there are other jobs' files, and the worker's id.
+  // The cache not to remove from either: there are other jobs' files.
   std::vector<core::FileRule> rules = core::system_files();
   rules.push_back({cache, core::FileAccess::read, true});
   // Where there are no namespaces names and sizes of other files can be asked for, no more.

@@ -202,6 +202,73 @@ TEST_F(Tokens, OneForAllIsAnAdmins) {
   EXPECT_EQ(caller.name, "bob");
 }
 
+TEST_F(Tokens, AMachineThatHasJoinedHasOneOfItsOwn) {
+  make(v1::ROLE_ADMIN, "ada");
+  const std::string joins = make(v1::ROLE_WORKER, "nodes");
+  const std::string other = make(v1::ROLE_WORKER, "others");
+  ASSERT_TRUE(show(joins).ok());
+  EXPECT_EQ(caller.worker, "");
+  WorkerCredential joined;
+  ASSERT_TRUE(authority->admit_worker(caller, "worker-a", true, joined).ok());
+  const std::string own = joined.machine_token;
+  ASSERT_TRUE(own.ends_with("-worker-a")) << own;
+  ASSERT_TRUE(show(own).ok());
+  EXPECT_EQ(caller.role, v1::ROLE_WORKER);
+  EXPECT_EQ(caller.name, "nodes");
+  EXPECT_EQ(caller.worker, "worker-a");
+  WorkerCredential again;
+  ASSERT_TRUE(authority->admit_worker(caller, "worker-a", true, again).ok());
+  EXPECT_EQ(again.machine_token, "") << "it has one";
+  EXPECT_EQ(again.name, joined.name);
+  EXPECT_EQ(authority->admit_worker(caller, "worker-b", true, again).error_code(),
+            grpc::StatusCode::PERMISSION_DENIED);
+  // Nobody makes another of it.
+  for (size_t i = 0; i < own.size(); ++i) {
+    std::string changed = own;
+    changed[i] = changed[i] == '1' ? '2' : '1';
+    EXPECT_FALSE(show(changed).ok()) << i;
+  }
+  EXPECT_FALSE(show(own + "b").ok());
+  EXPECT_FALSE(show(other.substr(0, 16) + own.substr(16)).ok()) << "of another token";
+}
+
+TEST_F(Tokens, AMachinesEndsWithTheOneThatItHasJoinedWith) {
+  make(v1::ROLE_ADMIN, "ada");
+  const std::string joins = make(v1::ROLE_WORKER, "nodes");
+  ASSERT_TRUE(show(joins).ok());
+  WorkerCredential joined;
+  ASSERT_TRUE(authority->admit_worker(caller, "worker-a", true, joined).ok());
+  ASSERT_TRUE(show(joined.machine_token).ok());
+  StoredToken row;
+  ASSERT_TRUE(authority->revoke(id, row).ok());
+  EXPECT_NE(show(joined.machine_token).error_message().find("was revoked"), std::string::npos);
+}
+
+TEST_F(Tokens, WorkersCountByWhatTheyShow) {
+  make(v1::ROLE_ADMIN, "ada");
+  const auto name_of = [&](const std::string& token, const std::string& worker, bool keeps) {
+    EXPECT_TRUE(show(token).ok());
+    WorkerCredential known;
+    EXPECT_TRUE(authority->admit_worker(caller, worker, keeps, known).ok());
+    return known.name;
+  };
+  const std::string joins = make(v1::ROLE_WORKER, "nodes");
+  EXPECT_EQ(name_of(joins, "worker-a", false), name_of(joins, "worker-b", false));
+  EXPECT_NE(name_of(joins, "worker-a", true), name_of(joins, "worker-b", true));
+  EXPECT_NE(name_of(joins, "worker-a", false), "");
+  EXPECT_EQ(name_of(joins, "no name", true), name_of(joins, "none\neither", true));
+  std::string cloud;
+  std::string more;
+  StoredToken row;
+  ASSERT_TRUE(authority->create("cloud", v1::ROLE_WORKER, 0, cloud, row, "aws").ok());
+  ASSERT_TRUE(authority->create("more", v1::ROLE_WORKER, 0, more, row, "aws").ok());
+  EXPECT_EQ(name_of(cloud, "worker-a", true), name_of(more, "worker-b", true));
+  EXPECT_NE(name_of(cloud, "worker-a", true), name_of(joins, "worker-a", true));
+  open();
+  EXPECT_EQ(name_of(cloud, "worker-a", true), name_of(more, "worker-b", true)) << "it is kept";
+  EXPECT_EQ(name_of(make(v1::ROLE_ADMIN, "eve"), "worker-a", true), "") << "may do everything";
+}
+
 TEST_F(Tokens, NonsenseIsNoToken) {
   std::string text;
   StoredToken row;
@@ -214,6 +281,8 @@ TEST_F(Tokens, NonsenseIsNoToken) {
   EXPECT_FALSE(authority->create("a", static_cast<v1::Role>(9), 0, text, row).ok());
   EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, -1, text, row).ok());
   EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, INT64_MAX, text, row).ok());
+  EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, 0, text, row, "pool").ok());
+  EXPECT_FALSE(authority->create("a", v1::ROLE_WORKER, 0, text, row, "a pool").ok());
 }
 
 TEST_F(Tokens, WhenTheyWereUsedIsKept) {

@@ -362,6 +362,7 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
   ASSERT_EQ(sqlite3_exec(db,
                          "ALTER TABLE jobs DROP COLUMN owner_proven; "
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
+                         "ALTER TABLE tokens DROP COLUMN pool; "
                          "PRAGMA user_version=6",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);

@@ -37,6 +37,7 @@ class ScriptedWorker {
     std::string name = "scripted/1";
     std::string worker_class = "class-a";
     std::string token;
+    bool keeps_token = false;  ///< takes one of its machine's own
     uint32_t threads = 2;
     std::vector<std::string> tags;
     uint64_t memory = 0;
@@ -184,6 +185,7 @@ class ScriptedWorker {
     hello.set_protocol(farm::kProtocol);
     hello.set_worker_id(script_.id);
     hello.set_instance(script_.instance.empty() ? instance_ : script_.instance);
+    hello.set_keeps_token(script_.keeps_token);
     hello.set_name(script_.name);
     hello.set_worker_class(script_.worker_class);
     hello.set_threads(script_.threads);

@@ -64,8 +64,9 @@ TEST(WorkerSandbox, ADamagedFileOfTheCacheIsFetchedAnew) {
   const Made made = make_job();
   const std::string& mesh = made.job.files.at("vase.ply");
   const std::filesystem::path cache = folder.path() / "cache";
-  std::filesystem::create_directory(cache);
-  std::ofstream(cache / core::to_hex(core::sha256(mesh))) << std::string(mesh.size(), '?');
+  std::filesystem::create_directories(cache / "files");
+  std::ofstream(cache / "files" / core::to_hex(core::sha256(mesh)))
+      << std::string(mesh.size(), '?');
   FakeCoordinator coordinator(made.job);
   WorkerProcess worker(coordinator.address(), folder.path().string());
   ASSERT_TRUE(coordinator.wait_for_all()) << worker.log();

@@ -1,0 +1,62 @@
+#include "worker/worker_token.h"
+
+#include <unistd.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <system_error>
+
+#include "farm/channel.h"
+#include "farm/small_file.h"
+
+namespace hyades::worker {
+namespace {
+
+/// Whether a machine's token, "hyades-ID-CODE-WORKER", is the worker's and was made from the token
+/// "hyades-ID-SECRET"; the latter may be empty.
+bool belongs(const std::string& own, const std::string& worker_id, const std::string& join) {
+  constexpr size_t kIdEnd = sizeof "hyades-00000000-" - 1;
+  return own.ends_with("-" + worker_id) &&
+         (join.empty() || own.substr(0, kIdEnd) == join.substr(0, kIdEnd));
+}
+
+}  // namespace
+
+core::Status WorkerToken::read(const std::string& worker_id) {
+  own_.clear();
+  join_.clear();
+  if (join_file_.empty()) return {};
+  auto join = farm::read_token(join_file_);
+  if (join) join_ = *join;
+  std::error_code failed;
+  if (std::filesystem::exists(own_file_, failed)) {
+    const auto own = farm::read_token(own_file_);
+    if (own && belongs(*own, worker_id, join_)) own_ = *own;
+  }
+  return join || !own_.empty() ? core::Status() : core::Status(join.error());
+}
+
+core::Status WorkerToken::keep(const std::string& own) {
+  // Under another name first: whatever happens there is an old one or a new one, and both are good.
+  const std::string fresh = own_file_ + ".new";
+  (void)::unlink(fresh.c_str());
+  if (auto written = farm::write_secret(fresh, own + "\n"); !written) return written;
+  std::error_code failed;
+  std::filesystem::rename(fresh, own_file_, failed);
+  if (failed) return core::Error{own_file_ + ": cannot be written: " + failed.message()};
+  own_ = own;
+  return {};
+}
+
+bool WorkerToken::replace(const std::string& worker_id) {
+  const std::string shown = text();
+  if (!own_.empty()) (void)::unlink(own_file_.c_str());
+  return read(worker_id) && text() != shown && !text().empty();
+}
+
+core::Status WorkerToken::forget(const std::string& worker_id) {
+  if (!own_.empty()) (void)::unlink(own_file_.c_str());
+  return read(worker_id);
+}
+
+}  // namespace hyades::worker
