@@ -46,6 +46,7 @@ struct SubmitOptions {
   std::vector<std::string> tags;
   uint64_t memory = 0;
   uint32_t attempts = 3;
+  uint32_t redundancy = 0;
   std::string order = "sequential";
   bool watch = false;
   bool quiet = false;
@@ -79,6 +80,11 @@ void declare_submit(CLI::App& app, SubmitOptions& options) {
                  "a unit that fails on so many different workers stops its frame (where fewer are "
                  "there: on all of them, and so often in all)")
       ->check(in_range(1U, 100U))
+      ->capture_default_str();
+  app.add_option("--redundancy", options.redundancy,
+                 "percent of the units to be rendered twice, by workers of different tokens or "
+                 "machines, and compared")
+      ->check(in_range(0U, 100U))
       ->capture_default_str();
   app.add_option("--order", options.order,
                  "sequential: frame after frame (default); progressive: a few samples of every "
@@ -135,6 +141,7 @@ Result<v1::SubmitRequest> make_request(const farm::JobPackage& package,
   for (const std::string& tag : *tags) request.add_tags(tag);
   request.set_memory_bytes(options.memory);
   request.set_max_attempts(options.attempts);
+  request.set_redundancy(options.redundancy);
   request.set_frame_order(options.order == "progressive" ? v1::FRAME_ORDER_PROGRESSIVE
                                                          : v1::FRAME_ORDER_SEQUENTIAL);
   const auto key = core::random_id();

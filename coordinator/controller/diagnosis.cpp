@@ -180,6 +180,11 @@ bool Diagnosis::explain_units(const ActiveJob& active, bool anybody, Reasons& re
         core::counted(disputed, "unit") + (disputed == 1 ? " was" : " were"),
         disputed == 1 ? "waits" : "wait"));
   }
+  if (const uint32_t once = scheduler.units_to_confirm(active.id); once > 0) {
+    reasons.say(fmt::format(
+        "{} {} for a second worker, let in by another token, to render {} too (--redundancy)",
+        core::counted(once, "unit"), once == 1 ? "waits" : "wait", once == 1 ? "it" : "them"));
+  }
   if (anybody && scheduler.waits_for_film(active.id)) {
     reasons.say(
         fmt::format("a frame waits for memory for its film of {}: those of frames in work, of all "

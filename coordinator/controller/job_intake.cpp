@@ -71,6 +71,7 @@ core::Result<v1::Job> read_options(const v1::SubmitRequest& request) {
   const auto tags = farm::check_tags({request.tags().begin(), request.tags().end()});
   if (!tags) return tags.error();
   if (request.max_attempts() > kMostAttempts) return core::Error{"max_attempts: at most 100"};
+  if (request.redundancy() > 100) return core::Error{"redundancy: expected 0 to 100 (percent)"};
   if (request.frame_order() < 0 || request.frame_order() > v1::FRAME_ORDER_PROGRESSIVE) {
     return core::Error{"frame_order: expected sequential or progressive"};
   }
@@ -79,6 +80,7 @@ core::Result<v1::Job> read_options(const v1::SubmitRequest& request) {
   options.mutable_tags()->Assign(tags->begin(), tags->end());
   options.set_memory_bytes(request.memory_bytes());
   options.set_max_attempts(request.max_attempts() == 0 ? kUsualAttempts : request.max_attempts());
+  options.set_redundancy(request.redundancy());
   options.set_frame_order(request.frame_order() == 0 ? v1::FRAME_ORDER_SEQUENTIAL
                                                      : request.frame_order());
   return options;

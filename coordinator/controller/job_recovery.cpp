@@ -76,6 +76,7 @@ JobPlan plan_of(const ActiveJob& active, int32_t tile_size, uint64_t film_memory
   plan.owner = active.stored.owner;
   plan.max_workers = options.max_workers();
   plan.max_attempts = options.max_attempts();
+  plan.redundancy = options.redundancy();
   plan.needs = needs_of(options);
   if (options.frame_order() == v1::FRAME_ORDER_PROGRESSIVE) plan.order = FrameOrder::progressive;
   plan.whole_frames = active.layout.layers.splats;
@@ -347,6 +348,7 @@ core::Status JobRecovery::start(std::unique_ptr<ActiveJob> owned, RestoredJob re
   JobAdded added;
   added.job = active.id;
   added.plan = plan_of(active, tile_size, context_.options.film_memory);
+  added.plan.redundancy_seed = context_.proofs.secret_number(active.id);
   added.restored = std::move(restored);
   Turn turn(dispatcher_);
   const JobId id = active.id;

@@ -44,6 +44,14 @@ std::string LeaseProofs::make(const std::string& worker, JobId job, const core::
   return proof;
 }
 
+uint64_t LeaseProofs::secret_number(JobId job) const {
+  const core::Sha256 whole =
+      core::hmac_sha256(secret_, fmt::format("number {}", static_cast<uint64_t>(job)));
+  uint64_t number = 0;
+  for (size_t i = 0; i < sizeof number; ++i) number = (number << 8U) | whole[i];
+  return number;
+}
+
 bool LeaseProofs::holds(const std::string& proof, const std::string& worker, JobId job,
                         const core::Unit& unit) const {
   if (proof.size() != kCode + 2 * kNumber) return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -20,6 +21,9 @@ class LeaseProofs {
 
   /// The proof that the worker of this id (Hello::worker_id) has the unit.
   std::string make(const std::string& worker, JobId job, const core::Unit& unit) const;
+
+  /// A number of the job's that workers cannot tell.
+  uint64_t secret_number(JobId job) const;
 
   /// Whether `proof` is one that the worker has the unit, or one that it is part of.
   bool holds(const std::string& proof, const std::string& worker, JobId job,

@@ -44,8 +44,8 @@ bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, 
       return false;
     }
     dispute = &ledger.open_dispute(extent, {held.worker, held.digest, held.voice});
-    mark_disputed(job);
   }
+  if (held.digest != e.digest) mark_disputed(job);
   std::vector<Opinion>& opinions = dispute->opinions;
   if (std::none_of(opinions.begin(), opinions.end(),
                    [&](const Opinion& o) { return o.worker == e.worker; })) {

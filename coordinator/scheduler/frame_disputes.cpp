@@ -1,5 +1,6 @@
 // Films that differ, and films that are taken back.
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -8,6 +9,16 @@
 #include "coordinator/scheduler/frame_ledger.h"
 
 namespace hyades::coordinator {
+
+bool Dispute::differs() const {
+  return std::any_of(opinions.begin(), opinions.end(),
+                     [&](const Opinion& o) { return o.digest != opinions.front().digest; });
+}
+
+size_t FrameLedger::disputes() const {
+  return static_cast<size_t>(std::count_if(disputes_.begin(), disputes_.end(),
+                                           [](const Dispute& d) { return d.differs(); }));
+}
 
 Dispute* FrameLedger::find_dispute(const Extent& e) {
   const auto it = std::find_if(disputes_.begin(), disputes_.end(),

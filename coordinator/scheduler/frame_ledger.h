@@ -58,10 +58,13 @@ struct Opinion {
   Voice voice{};  ///< of the worker
 };
 
-/// A held unit of which two renderings differ, until two voices agree.
+/// A held unit of which two renderings differ, or that is to be rendered twice in any case, until
+/// two voices agree.
 struct Dispute {
   Extent extent;
   std::vector<Opinion> opinions;
+  /// Whether two renderings differ.
+  bool differs() const;
 };
 
 /// The ledger of one frame. Every batch of every tile is free, leased or held, and so counts once
@@ -153,12 +156,15 @@ class FrameLedger {
 
   /// Whether no film is suspect.
   bool settled() const { return disputes_.empty() && voiding_.empty(); }
-  size_t disputes() const { return disputes_.size(); }
+  /// How many units there are of which two renderings differ.
+  size_t disputes() const;
+  /// How many units wait for another voice to render them too, and nobody differs.
+  size_t unconfirmed_checks() const { return disputes_.size() - disputes(); }
   /// Whether the films of some tile are about to be void.
   bool any_suspect() const { return !voiding_.empty(); }
   /// The dispute about exactly this extent; null where there is none.
   Dispute* find_dispute(const Extent& e);
-  /// Two renderings of the extent, which is held, differ; `first` is the one that is held.
+  /// Two voices have to agree on the extent, which is held; `first` is the one that is held.
   Dispute& open_dispute(const Extent& e, const Opinion& first);
   void end_dispute(const Extent& e);
   /// A disputed unit that nobody renders, for a worker whose voice was not heard about it and that

@@ -7,9 +7,22 @@
 #include <variant>
 #include <vector>
 
+#include "core/base/hash.h"
 #include "core/base/overloaded.h"
 
 namespace hyades::coordinator {
+namespace {
+
+/// Whether the unit is one of those that two voices have to render: the same share of all units,
+/// and always the same ones, which nobody without the seed can tell.
+bool needs_two(const JobPlan& plan, int32_t frame, const Extent& extent) {
+  if (plan.redundancy == 0) return false;
+  const uint64_t place = core::hash_combine(static_cast<uint32_t>(frame),
+                                            (uint64_t{extent.tile} << 32U) | extent.batches.first);
+  return core::hash_combine(plan.redundancy_seed, place) % 100 < plan.redundancy;
+}
+
+}  // namespace
 
 void Results::on(const ResultArrived& e) {
   const auto [job, slot] = jobs_.find_frame({e.job, e.unit.frame});
@@ -30,7 +43,8 @@ void Results::on(const ResultArrived& e) {
   const HeldRecord* held = ledger.find_held(*extent);
   // After a restart what was merged has no digest any more.
   const bool differs = held && held->digest != Digest{} && held->digest != e.digest;
-  if (held && ledger.find_dispute(*extent) && job->mark != DisputeMark::open) {
+  const Dispute* known = held ? ledger.find_dispute(*extent) : nullptr;
+  if (known && known->differs() && job->mark != DisputeMark::open) {
     // Who has heard an answer may forget its film, and that there is a dispute must be known then.
     reject(e, RejectReason::not_now);
   } else if (differs) {
@@ -82,6 +96,9 @@ void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, W
   slot.worker_class = worker.worker_class;
   films_.take(job, slot);
   slot.ledger->hold(extent, {extent.batches, e.digest, e.worker, records_.next_id(), worker.voice});
+  if (needs_two(job.plan, slot.frame, extent)) {
+    slot.ledger->open_dispute(extent, {e.worker, e.digest, worker.voice});
+  }
   leases_.end_assignment(job, slot, extent, e.lease);
   records_.persist(UnitRecord{job.id, {e.unit, e.digest, workers_.class_name(slot.worker_class)}},
                    extent, {{e.worker, e.lease}});

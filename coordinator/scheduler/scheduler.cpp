@@ -36,6 +36,17 @@ struct Scheduler::Parts {
   Results results{step,     jobs,   workers,          films,    leases, records,
                   affinity, frames, worker_lifecycle, conflicts};
   Granting granting{options, step, jobs, workers, films, leases, records, affinity, copies, frames};
+
+  /// The sum of what the ledgers of the job's frames tell.
+  uint32_t count(JobId id, size_t (FrameLedger::*units)() const) const {
+    const ScheduledJob* job = jobs.find(id);
+    size_t all = 0;
+    for (const uint32_t i : job == nullptr ? std::vector<uint32_t>() : job->in_flight) {
+      const FrameSlot& slot = job->slots[i];
+      if (slot.ledger) all += ((*slot.ledger).*units)();
+    }
+    return static_cast<uint32_t>(all);
+  }
 };
 
 Scheduler::Scheduler(const SchedulerOptions& options) : parts_(std::make_unique<Parts>(options)) {}
@@ -120,14 +131,11 @@ std::vector<std::pair<WorkerId, UnitInHand>> Scheduler::units_of(JobId job) cons
 }
 
 uint32_t Scheduler::disputed_units(JobId id) const {
-  const ScheduledJob* job = parts_->jobs.find(id);
-  if (job == nullptr) return 0;
-  size_t units = 0;
-  for (const uint32_t i : job->in_flight) {
-    const FrameSlot& slot = job->slots[i];
-    if (slot.ledger) units += slot.ledger->disputes();
-  }
-  return static_cast<uint32_t>(units);
+  return parts_->count(id, &FrameLedger::disputes);
+}
+
+uint32_t Scheduler::units_to_confirm(JobId id) const {
+  return parts_->count(id, &FrameLedger::unconfirmed_checks);
 }
 
 uint64_t Scheduler::films() const { return parts_->films.bytes(); }

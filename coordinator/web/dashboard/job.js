@@ -274,6 +274,7 @@ class JobView {
       job.frame_order === 'progressive' && 'all frames a little at a time',
       job.tags.length > 0 && `tags ${job.tags.join(', ')}`,
       job.max_workers > 0 && `at most ${counted(job.max_workers, 'worker')}`,
+      job.redundancy > 0 && `${job.redundancy} % rendered twice`,
       job.memory_bytes > 0 && `needs ${bytes(job.memory_bytes)}`,
     ];
     setText(this.meta, meta.filter(Boolean).join(' · '));

@@ -25,6 +25,7 @@ export class Options {
       workers: number('workers-option', 'no limit', 1),
       memory: h('input', { type: 'number', step: 'any', min: 0, placeholder: 'any', testid: 'memory-option' }),
       attempts: number('attempts-option', '3', 1),
+      redundancy: number('redundancy-option', '0', 0),
       order: h(
         'select',
         { testid: 'order-option' },
@@ -66,6 +67,7 @@ export class Options {
           field('Workers at once', f.workers),
           field('Memory, GiB', f.memory, 'a worker needs at least'),
           field('Attempts', f.attempts, 'failures of a unit that stop its frame'),
+          field('Redundancy, %', f.redundancy, 'units rendered twice and compared'),
         ),
       ),
     );
@@ -102,6 +104,7 @@ export class Options {
       tags: tags.length > 0 ? tags : undefined,
       max_workers: number(f.workers),
       max_attempts: number(f.attempts),
+      redundancy: number(f.redundancy),
       memory_bytes: f.memory.value === '' ? undefined : Math.round(Number(f.memory.value) * 2 ** 30),
       frame_order: f.order.value,
     };

@@ -1,4 +1,8 @@
 // Two renderings of one unit that differ.
+#include <algorithm>
+#include <variant>
+#include <vector>
+
 #include "tests/coordinator/scheduler/conflicts_testing.h"
 
 namespace hyades::coordinator {
@@ -227,6 +231,99 @@ TEST_F(Conflicts, AVoidThatIsNotDurableIsTriedAgain) {
   b.now = *b.scheduler.next_wake();
   b.tell(Tick{});
   EXPECT_EQ(b.only<Persist>().id, first.id);
+}
+
+/// All units of a job are to be rendered twice.
+class Redundancy : public testing::Test {
+ protected:
+  void begin(uint32_t percent, int32_t width = 64, uint64_t seed = 7) {
+    JobPlan plan = small_plan({1}, 1);
+    plan.region = {0, 0, width, 32};
+    plan.redundancy = percent;
+    plan.redundancy_seed = seed;
+    b.begin(plan);
+  }
+  SchedulerBench b;
+};
+
+TEST_F(Redundancy, HasAnotherVoiceRenderTheUnitToo) {
+  begin(100);
+  const Lease first = b.ask(kAnna);
+  b.deliver_durably(first);
+  EXPECT_EQ(b.scheduler.units_to_confirm(kJob), 1U);
+  EXPECT_EQ(b.scheduler.disputed_units(kJob), 0U);
+  EXPECT_NE(b.ask(kAnna).units, first.units) << "not by herself";
+  const Lease again = b.ask(kBert);
+  EXPECT_EQ(again.units, first.units);
+  b.deliver(again);
+  EXPECT_EQ(b.all<Confirmed>().size(), 2U);
+  EXPECT_EQ(b.all<Acknowledge>().size(), 1U);
+  EXPECT_EQ(b.scheduler.units_to_confirm(kJob), 0U);
+}
+
+TEST_F(Redundancy, TheFrameWaitsForIt) {
+  begin(100);
+  const Lease both = b.ask(kAnna, 2);
+  b.deliver_durably(both, 0);
+  b.deliver_durably(both, 1);
+  EXPECT_TRUE(b.all<FinishFrame>().empty());
+  EXPECT_EQ(b.scheduler.units_to_confirm(kJob), 2U);
+  b.deliver(b.ask(kBert));
+  EXPECT_TRUE(b.all<FinishFrame>().empty());
+  b.deliver(b.ask(kBert));
+  EXPECT_TRUE(b.only<FinishFrame>().unconfirmed.empty()) << "all of it is confirmed";
+}
+
+TEST_F(Redundancy, WhoDiffersIsFoundOutByAThird) {
+  begin(100);
+  const WorkerId cora{3};
+  b.join(cora);
+  const Lease first = b.ask(kAnna);
+  b.deliver_durably(first);
+  const Lease second = b.ask(kBert);
+  b.deliver(second, 0, 2);
+  EXPECT_EQ(b.only<Reject>().reason, RejectReason::not_now)
+      << "until it is durable that they differ";
+  EXPECT_TRUE(std::holds_alternative<DisputeRecord>(b.only<Persist>().record));
+  b.tell(Persisted{b.only<Persist>().id});
+  EXPECT_EQ(b.scheduler.disputed_units(kJob), 1U);
+  EXPECT_EQ(b.scheduler.units_to_confirm(kJob), 0U);
+  const Lease third = b.ask(cora);
+  EXPECT_EQ(third.units, first.units);
+  b.deliver(third);
+  EXPECT_EQ(b.only<Quarantine>().worker, kBert);
+}
+
+TEST_F(Redundancy, IsOfTheShareThatWasAskedForAndOfUnitsThatTheSeedChooses) {
+  const auto twice = [](uint64_t seed) {
+    SchedulerBench b;
+    JobPlan plan = small_plan({1}, 1);
+    plan.region = {0, 0, 32 * 1000, 32};
+    plan.redundancy = 25;
+    plan.redundancy_seed = seed;
+    b.join(kAnna);
+    b.add(plan);
+    b.tell(FrameOpened{kJob, 1});
+    std::vector<bool> chosen;
+    for (int i = 0; i < 1000; ++i) {
+      const uint32_t before = b.scheduler.units_to_confirm(kJob);
+      b.deliver_durably(b.ask(kAnna));
+      chosen.push_back(b.scheduler.units_to_confirm(kJob) > before);
+    }
+    return chosen;
+  };
+  const std::vector<bool> one = twice(7);
+  // 250 of 1000 with a deviation of 13.7: five of them.
+  EXPECT_NEAR(std::count(one.begin(), one.end(), true), 250, 69);
+  EXPECT_NE(twice(8), one);
+  EXPECT_EQ(twice(7), one);
+}
+
+TEST_F(Redundancy, WithoutItNobodyIsAskedAgain) {
+  begin(0);
+  b.deliver_durably(b.ask(kAnna));
+  b.deliver_durably(b.ask(kBert));
+  EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
 }
 
 /// Anna has a credential of her own, and rendered one of two tiles. Bert, Cora and more are let in
