@@ -119,20 +119,16 @@ void AuditLog::refuse(const Caller& caller, const std::string& action, const grp
   const core::MutexLock lock(mutex_);
   std::string whose = neighbourhood_of(caller.address);
   if (limits_.size() >= kMostLimits && !limits_.contains(whose)) whose = kSharedLimit;
-  const auto [found, fresh] = limits_.try_emplace(whose, RateLimit{kBurst, now, {}});
+  const auto [found, fresh] = limits_.try_emplace(whose, RateLimit{{kBurst, kPerSecond, now}, {}});
   RateLimit& limit = found->second;
-  const std::chrono::duration<double> passed = now - limit.since;
-  limit.left = std::min(kBurst, limit.left + passed.count() * kPerSecond);
-  limit.since = now;
   entry.set_times(limit.held.times() + 1);
   if (whose == kSharedLimit && entry.times() > 1) {
     entry.set_detail("of several addresses, this the last: " + entry.detail());
   }
-  if (limit.left < 1) {
+  if (!limit.bucket.take(now)) {
     limit.held = std::move(entry);
     return;
   }
-  limit.left -= 1;
   limit.held.Clear();
   add(refusals_, std::move(entry));
 }
@@ -146,7 +142,8 @@ void AuditLog::release_held(bool all) {
       add(refusals_, std::move(held));
       held.Clear();
     }
-    const bool idle = held.times() == 0 && Clock::now() - limit->second.since > 10 * kHeldAtMost;
+    const bool idle =
+        held.times() == 0 && Clock::now() - limit->second.bucket.asked() > 10 * kHeldAtMost;
     limit = idle ? limits_.erase(limit) : std::next(limit);
   }
 }

@@ -17,6 +17,7 @@
 
 #include "coordinator/access/caller.h"
 #include "coordinator/access/rotating_log.h"
+#include "coordinator/access/token_bucket.h"
 #include "core/base/descriptor.h"
 #include "core/base/mutex.h"
 #include "core/base/result.h"
@@ -82,11 +83,10 @@ class AuditLog {
   Reader read() const;
 
  private:
-  /// A token bucket of a neighbourhood: it bounds how many of its refusals are noted one by one.
+  /// Of a neighbourhood: bounds how many of its refusals are noted one by one.
   struct RateLimit {
-    double left = 0;                              ///< refusals that may be noted now
-    std::chrono::steady_clock::time_point since;  ///< when `left` was counted
-    v1::AuditEntry held;                          ///< with `times` of those that were not noted
+    TokenBucket bucket;
+    v1::AuditEntry held;  ///< with `times` of those that were not noted
   };
 
   /// Lines of one kind.

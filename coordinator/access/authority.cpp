@@ -181,20 +181,16 @@ grpc::Status Authority::refuse_unknown(const std::string& address) {
   const core::MutexLock lock(wrong_mutex_);
   if (wrong_.size() >= kMostNeighbourhoods && !wrong_.contains(whose)) {
     // Those whose tries are long over make room; else all others count as one.
-    std::erase_if(wrong_, [&](const auto& one) { return now - one.second.since > kForgiven; });
+    std::erase_if(wrong_, [&](const auto& one) { return now - one.second.asked() > kForgiven; });
     if (wrong_.size() >= kMostNeighbourhoods) whose = "others";
   }
-  const auto [found, fresh] = wrong_.try_emplace(whose, WrongTokens{kWrongAtOnce, now});
-  WrongTokens& wrong = found->second;
-  const std::chrono::duration<double> passed = now - wrong.since;
-  wrong.left = std::min(kWrongAtOnce, wrong.left + passed.count() * kWrongPerSecond);
-  wrong.since = now;
-  if (wrong.left < 1) {
+  const auto [found, fresh] =
+      wrong_.try_emplace(whose, TokenBucket(kWrongAtOnce, kWrongPerSecond, now));
+  if (!found->second.take(now)) {
     return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                              "too many tokens from this address were none of this coordinator's",
                              std::chrono::seconds(10));
   }
-  wrong.left -= 1;
   return stranger("this is not a token of this coordinator");
 }
 

@@ -15,6 +15,7 @@
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/caller.h"
+#include "coordinator/access/token_bucket.h"
 #include "coordinator/access/worker_credential.h"
 #include "coordinator/job_store/job_store.h"
 #include "core/base/mutex.h"
@@ -149,13 +150,9 @@ class Authority {
   bool stop_ HYADES_GUARDED_BY(mutex_) = false;
   core::CondVar wake_;
 
-  /// Tokens that were none, by neighbourhood_of() an address: a token bucket each.
-  struct WrongTokens {
-    double left = 0;
-    std::chrono::steady_clock::time_point since;
-  };
   core::Mutex wrong_mutex_;
-  std::map<std::string, WrongTokens> wrong_ HYADES_GUARDED_BY(wrong_mutex_);
+  /// Of tokens that were none, by neighbourhood_of() an address.
+  std::map<std::string, TokenBucket> wrong_ HYADES_GUARDED_BY(wrong_mutex_);
 
   core::Mutex streams_mutex_;  ///< taken before mutex_
   std::map<uint64_t, OpenStream> streams_ HYADES_GUARDED_BY(streams_mutex_);
