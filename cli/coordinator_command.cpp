@@ -48,6 +48,7 @@ using hyades::coordinator::ControllerOptions;
 using hyades::coordinator::Duration;
 using hyades::coordinator::Hook;
 using hyades::coordinator::Notifier;
+using hyades::coordinator::OwnerLimits;
 using hyades::coordinator::Server;
 using hyades::coordinator::Serves;
 using hyades::coordinator::WebServer;
@@ -403,6 +404,29 @@ void add_limits(CLI::App& app, ControllerOptions& options) {
               "seconds that files which no job needs any more stay after their last use");
 }
 
+/// What one owner may have; of what has no default he may have as much as he likes.
+void add_quotas(CLI::App& app, OwnerLimits& limits) {
+  constexpr uint64_t kMost = 1'000'000;
+  app.add_option("--owner-bytes", limits.bytes,
+                 "most bytes that an owner may have in uploads that are unfinished or that no job "
+                 "has had, such as 500G (default: no limit)")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_option("--owner-files", limits.files, "most unfinished uploads of an owner")
+      ->check(hyades::cli::in_range(uint64_t{1}, kMost))
+      ->capture_default_str();
+  app.add_option("--owner-jobs", limits.jobs,
+                 "most jobs of an owner that are not over (default: no limit)")
+      ->check(hyades::cli::in_range(uint64_t{1}, kMost));
+  app.add_option("--owner-core-hours", limits.core_hours,
+                 "an owner whose jobs took so many hours of threads within 24 hours may begin no "
+                 "others (default: no limit)")
+      ->check(hyades::cli::in_range(0.001, 1e9));
+  app.add_option("--owner-connections", limits.connections,
+                 "most streams (uploads, downloads, pages that are open) that tokens of one name "
+                 "may have open (default: no limit)")
+      ->check(hyades::cli::in_range(uint64_t{1}, kMost));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -418,6 +442,7 @@ int main(int argc, char** argv) {
   hyades::cli::add_log_options(app, arguments.log);
   add_times(app, arguments.controller);
   add_limits(app, arguments.controller);
+  add_quotas(app, arguments.controller.per_owner);
   hyades::cli::add_config_option(app);
   app.footer(
       "examples:\n"

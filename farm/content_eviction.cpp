@@ -11,12 +11,14 @@
 #include <chrono>
 #include <cstdint>
 #include <ctime>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/base/hash.h"
 #include "core/base/io_reason.h"
 #include "core/base/posix_file.h"
 #include "core/base/text.h"
@@ -40,13 +42,22 @@ struct StoredFile {
   int64_t modified = 0;  ///< seconds of the wall clock
 };
 
-/// Adds the store's own files of `folder`: what else lies there is not ours to count or remove.
-void list_files(const std::string& folder, std::vector<StoredFile>& files) {
+/// Behind a file's name, in the name of an owner's unfinished one: whatever an owner is called, it
+/// is a name of a file, and no two owners have the same.
+std::string owner_suffix(const std::string& owner) {
+  return owner.empty() ? owner : "-" + core::to_hex(core::sha256(owner));
+}
+
+/// Adds the store's own files of `folder`, all or those of a `wanted` name: what else lies there is
+/// not ours to count or remove.
+void list_files(const std::string& folder, std::vector<StoredFile>& files,
+                const std::function<bool(std::string_view)>& wanted = {}) {
   DIR* open = ::opendir(folder.c_str());
   if (open == nullptr) return;
   while (const dirent* entry = ::readdir(open)) {  // NOLINT(concurrency-mt-unsafe): own stream
     struct stat info {};
     if (!is_content_name(std::string_view(entry->d_name).substr(0, 64))) continue;
+    if (wanted && !wanted(entry->d_name)) continue;
     if (::fstatat(::dirfd(open), entry->d_name, &info, AT_SYMLINK_NOFOLLOW) != 0) continue;
     if (!S_ISREG(info.st_mode)) continue;
     files.push_back({folder + "/" + entry->d_name, static_cast<uint64_t>(info.st_size),
@@ -63,6 +74,59 @@ bool remove_if_free(const std::string& path) {
 }
 
 }  // namespace
+
+std::string ContentStore::partial_path(const std::string& name, const std::string& owner) const {
+  return options_.folder + "/partial/" + name + owner_suffix(owner);
+}
+
+Status ContentStore::admit(const Uploader& whose, const std::string& path) {
+  if (!whose.may_begin) return {};
+  std::vector<StoredFile> files;
+  list_files(options_.folder + "/partial", files,
+             [suffix = owner_suffix(whose.owner)](std::string_view file) {
+               std::string_view rest = file.substr(64);
+               if (!rest.starts_with(suffix)) return false;
+               rest.remove_prefix(suffix.size());
+               return rest.empty() || rest.front() == '.';  // a copy
+             });
+  const int64_t rested = std::time(nullptr) - kPartialRest;
+  std::vector<StoredFile> resting;
+  UnfinishedFiles others;
+  UnfinishedFiles busy;
+  for (StoredFile& file : files) {
+    const auto written = writing_.find(file.path);
+    // What there is of the file itself is among its bytes; one that is written stays beside it.
+    if (file.path == path && written == writing_.end()) continue;
+    if (written != writing_.end()) file.size = std::max(file.size, written->second);
+    others = {others.files + 1, others.bytes + file.size};
+    if (written == writing_.end() && file.modified <= rested) {
+      resting.push_back(file);
+    } else {
+      busy = {busy.files + 1, busy.bytes + file.size};
+    }
+  }
+  const bool would_do = whose.may_begin(busy).ok();  // if all that rest went
+  Status may = whose.may_begin(others);
+  if (may || !would_do) return may;
+  std::sort(resting.begin(), resting.end(),
+            [](const StoredFile& a, const StoredFile& b) { return a.modified < b.modified; });
+  for (const StoredFile& file : resting) {
+    if (may) break;
+    if (!remove_if_free(file.path)) continue;
+    others = {others.files - 1, others.bytes - file.size};
+    may = whose.may_begin(others);
+  }
+  return may;
+}
+
+void ContentStore::drop_partials(const std::string& name) {
+  std::vector<StoredFile> files;
+  // Copies are left to those who write them: nobody else would go on with one.
+  list_files(options_.folder + "/partial", files, [&](std::string_view file) {
+    return file.starts_with(name) && file.find('.') == std::string_view::npos;
+  });
+  for (const StoredFile& file : files) remove_if_free(file.path);
+}
 
 void ContentStore::sweep_partials() {
   const int64_t now = std::chrono::duration_cast<std::chrono::seconds>(
@@ -90,7 +154,7 @@ uint64_t ContentStore::free_partials(uint64_t bytes) {
   return freed;
 }
 
-Status ContentStore::make_room(const std::string& name, uint64_t bytes) {
+Status ContentStore::make_room(const std::string& begun, uint64_t bytes) {
   if (options_.budget == 0) return {};
   if (bytes > options_.budget) {
     return Error{fmt::format("a file of {} is larger than the whole budget of {}, {}",
@@ -107,9 +171,7 @@ Status ContentStore::make_room(const std::string& name, uint64_t bytes) {
   list_files(options_.folder, files);
   list_files(options_.folder + "/partial", files);
   // What there is of the file itself is among its bytes.
-  std::erase_if(files, [&](const StoredFile& file) {
-    return !name.empty() && file.path == options_.folder + "/partial/" + name;
-  });
+  std::erase_if(files, [&](const StoredFile& file) { return file.path == begun; });
   uint64_t used = expected_ + bytes;
   for (const StoredFile& file : files) used += file.size;
   std::sort(files.begin(), files.end(),

@@ -159,13 +159,23 @@ Result<ContentPin> ContentStore::pin(const std::string& name) {
   }
 }
 
-Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size) {
+Result<ContentWriter> ContentStore::write(const std::string& name, uint64_t size,
+                                          const Uploader& whose) {
   if (!is_content_name(name)) return not_a_name(name);
   sweep_partials();
-  if (auto fits = make_room(name, size); !fits) return fits.error();
+  const std::string begun = partial_path(name, whose.owner);
+  if (auto fits = make_room(begun, size); !fits) return fits.error();
   ContentWriter writer(*this, name, size);
   expected_ += size;
-  if (auto taken = writer.take_partial(); !taken) return taken.error();
+  {
+    // One after the other, so that of two that begin at once the second counts the first.
+    const core::MutexLock lock(partials_mutex_);
+    if (auto may = admit(whose, begun); !may) return may.error();
+    if (auto taken = writer.take_partial(begun); !taken) return taken.error();
+    writing_[writer.path_] = size;
+    writer.counted_ = true;
+  }
+  if (auto read = writer.read_partial(); !read) return read.error();
   return writer;
 }
 
@@ -182,6 +192,7 @@ Status ContentStore::commit(ContentWriter& writer) {
   if (auto synced = sync_folder(options_.folder); !synced) return synced;
   writer.file_.close();
   ++commits_;
+  drop_partials(writer.name_);
   if (const auto identity = identify(path)) remember(writer.name_, *identity);
   // Other processes may have written too: never above the budget for long. That all others are in
   // use is no reason to refuse a file that is here.
@@ -189,9 +200,9 @@ Status ContentStore::commit(ContentWriter& writer) {
   return {};
 }
 
-uint64_t ContentStore::begun(const std::string& name) const {
+uint64_t ContentStore::begun(const std::string& name, const std::string& owner) const {
   if (!is_content_name(name)) return 0;
-  const auto identity = identify(options_.folder + "/partial/" + name);
+  const auto identity = identify(partial_path(name, owner));
   return identity ? identity->size : 0;
 }
 

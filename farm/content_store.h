@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -31,6 +32,21 @@ class ContentPin {
 
  private:
   core::Descriptor locked_;
+};
+
+/// What somebody has of files that are not whole.
+struct UnfinishedFiles {
+  uint64_t files = 0;
+  uint64_t bytes = 0;  ///< of those that are being written all that they will have
+};
+
+/// For whom a file is written.
+struct Uploader {
+  /// Each owner has unfinished files of his own: what one writes spoils no other's.
+  std::string owner{};
+  /// Whether he may have one more beside those that he has; none: he may. Asked more than once, of
+  /// which the last answer counts, and must not use the store.
+  std::function<core::Status(const UnfinishedFiles& others)> may_begin{};
 };
 
 /// Files named by the SHA-256 of their bytes, in one folder. A file has its name only once all its
@@ -73,15 +89,19 @@ class ContentStore {
   /// process has locked it for itself and does not let go.
   core::Result<ContentPin> pin(const std::string& name);
 
-  /// Begins or resumes file `name` of `size` bytes: the writer's offset says what is there already.
-  /// Of two that write the same file at once the second begins its own copy. With a budget, files
-  /// that were not used for longest make room; it is an error if those that are not pinned are too
-  /// few. The store must outlive the writer.
-  core::Result<ContentWriter> write(const std::string& name, uint64_t size);
+  /// Begins or resumes file `name` of `size` bytes: the writer's offset says what is there already
+  /// of the same owner's. Of two that write the same file at once for one owner the second begins
+  /// its own copy; the first that is whole and right becomes the file. With a budget, files that
+  /// were not used for longest make room; it is an error if those that are not pinned are too few.
+  /// Where `whose` has as many unfinished files as he may, those of his that rest for longest (a
+  /// minute at least) make room. The store must outlive the writer.
+  core::Result<ContentWriter> write(const std::string& name, uint64_t size,
+                                    const Uploader& whose = {});
 
-  /// How many bytes of file `name` an unfinished write has left: where write() will probably go on.
-  /// Makes nothing and reads nothing, so that answering anybody's question costs little.
-  uint64_t begun(const std::string& name) const;
+  /// How many bytes of file `name` an unfinished write of this owner's has left: where write() will
+  /// probably go on. Makes nothing and reads nothing, so that answering anybody's question costs
+  /// little.
+  uint64_t begun(const std::string& name, const std::string& owner = {}) const;
 
   /// Removes file `name`, pinned or not. No error where it is missing.
   core::Status remove(const std::string& name);
@@ -117,17 +137,29 @@ class ContentStore {
 
   explicit ContentStore(const Options& options) : options_(options) {}
   std::string path_of(const std::string& name) const { return options_.folder + "/" + name; }
+  /// Where the owner's unfinished file lies.
+  std::string partial_path(const std::string& name, const std::string& owner) const;
   static core::Result<Identity> identify(const std::string& path);
   void remember(const std::string& name, const Identity& identity);
-  /// Evicts until `bytes` more fit, which are to become file `name`.
-  core::Status make_room(const std::string& name, uint64_t bytes);
+  /// Evicts until `bytes` more fit, of which there are some in the unfinished file `begun` (empty:
+  /// none).
+  core::Status make_room(const std::string& begun, uint64_t bytes);
   void sweep_partials();
+  /// Whether the uploader may have the unfinished file at `path` beside his others, some of which
+  /// may have to go.
+  core::Status admit(const Uploader& whose, const std::string& path)
+      HYADES_REQUIRES(partials_mutex_);
+  /// Removes what all owners have of file `name`, which is whole, but for those who write it.
+  void drop_partials(const std::string& name);
   core::Status commit(ContentWriter& writer);
 
   Options options_;
   std::atomic<uint64_t> expected_{0};   ///< bytes that this process' writers have still to write
   std::atomic<int64_t> next_sweep_{0};  ///< seconds of the steady clock
   std::atomic<uint64_t> commits_{0};
+  core::Mutex partials_mutex_;
+  /// Unfinished files that this process writes, by their path, and how large they will be.
+  std::map<std::string, uint64_t> writing_ HYADES_GUARDED_BY(partials_mutex_);
   core::Mutex mutex_;
   std::map<std::string, Identity> verified_ HYADES_GUARDED_BY(mutex_);
   std::set<std::string> damaged_ HYADES_GUARDED_BY(mutex_);

@@ -46,29 +46,37 @@ ContentWriter::ContentWriter(ContentWriter&& other) noexcept
       offset_(other.offset_),
       path_(std::move(other.path_)),
       resumable_(other.resumable_),
+      counted_(std::exchange(other.counted_, false)),
       file_(std::move(other.file_)),
       hash_(std::move(other.hash_)) {}
 
 ContentWriter::~ContentWriter() {
   if (store_ == nullptr) return;
   store_->expected_ -= size_ - offset_;
-  // Nobody would find a copy with a name of its own again.
-  if (file_.valid() && !resumable_) ::unlink(path_.c_str());
+  // Nobody would find a copy with a name of its own again, nor look for what is whole by now.
+  const bool useless = file_.valid() && (!resumable_ || !store_->missing(name_));
+  if (useless && still_named(file_.get(), path_)) ::unlink(path_.c_str());
+  stop_counting();
 }
 
-Status ContentWriter::take_partial() {
-  const std::string common = store_->options_.folder + "/partial/" + name_;
+void ContentWriter::stop_counting() {
+  if (!std::exchange(counted_, false)) return;
+  const core::MutexLock lock(store_->partials_mutex_);
+  store_->writing_.erase(path_);
+}
+
+Status ContentWriter::take_partial(const std::string& begun) {
   for (int attempt = 0; attempt < 100; ++attempt) {
-    path_ = common;
+    path_ = begun;
     file_ = core::Descriptor(::open(path_.c_str(), kOpenFlags, 0600));
     if (!file_.valid()) return write_failure(path_, errno);
     if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) {
       // Between opening and locking it the last writer may have finished or thrown it away.
       if (!still_named(file_.get(), path_)) continue;
-      return read_partial();
+      return {};
     }
     if (errno != EWOULDBLOCK) return write_failure(path_, errno);
-    path_ = fmt::format("{}.{}.{}", common, ::getpid(), attempt);
+    path_ = fmt::format("{}.{}.{}", begun, ::getpid(), attempt);
     file_ = core::Descriptor(::open(path_.c_str(), kOpenFlags | O_EXCL, 0600));
     if (file_.valid()) {
       resumable_ = false;
@@ -77,7 +85,7 @@ Status ContentWriter::take_partial() {
     }
     if (errno != EEXIST) return write_failure(path_, errno);
   }
-  return Error{"cannot write " + common + ": too many write it at once"};
+  return Error{"cannot write " + begun + ": too many write it at once"};
 }
 
 Status ContentWriter::read_partial() {
@@ -113,6 +121,7 @@ Status ContentWriter::commit() {
   if (offset_ != size_) {
     return Error{fmt::format("{}: {} of {} bytes are there", name_, offset_, size_)};
   }
+  stop_counting();  // from here on somebody else may begin with its path
   const std::string digest = core::to_hex(hash_.digest());
   if (digest != name_) {
     ::unlink(path_.c_str());

@@ -25,6 +25,8 @@ class ContentWriter {
   /// Bytes that are there: what comes next begins here.
   uint64_t offset() const { return offset_; }
   uint64_t size() const { return size_; }
+  /// The SHA-256 that the whole file has to have.
+  const std::string& name() const { return name_; }
 
   /// Errors: more bytes than the file's size, a full disk.
   core::Status append(std::span<const std::byte> bytes);
@@ -38,9 +40,12 @@ class ContentWriter {
   ContentWriter(ContentStore& store, std::string name, uint64_t size)
       : store_(&store), name_(std::move(name)), size_(size) {}
 
-  /// Takes hold of an unfinished file that no one else writes to, and reads what it has.
-  core::Status take_partial();
+  /// Takes hold of the unfinished file `begun`, or, where someone else writes to it, of a new one.
+  core::Status take_partial(const std::string& begun);
+  /// Reads what it has.
   core::Status read_partial();
+  /// The unfinished file is not written any more.
+  void stop_counting();
 
   ContentStore* store_;
   std::string name_;
@@ -48,6 +53,7 @@ class ContentWriter {
   uint64_t offset_ = 0;
   std::string path_;       ///< of the unfinished file
   bool resumable_ = true;  ///< whether a later writer will find it
+  bool counted_ = false;   ///< among ContentStore::writing_
   core::Descriptor file_;  ///< locked exclusively
   core::Sha256Stream hash_;
 };

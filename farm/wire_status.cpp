@@ -20,6 +20,12 @@ grpc::Status retry_later(grpc::StatusCode code, const std::string& message,
   return wire_status(code, message, detail);
 }
 
+grpc::Status over_quota(const std::string& message) {
+  v1::ErrorDetail detail;
+  detail.set_quota(true);
+  return wire_status(grpc::StatusCode::RESOURCE_EXHAUSTED, message, detail);
+}
+
 grpc::Status unavailable(const core::Error& error) {
   return retry_later(grpc::StatusCode::UNAVAILABLE, error.message, std::chrono::seconds(1));
 }
@@ -37,8 +43,9 @@ v1::ErrorDetail detail_of(const grpc::Status& status) {
 
 bool is_retryable(const grpc::Status& status) {
   switch (status.error_code()) {
-    case grpc::StatusCode::UNAVAILABLE:
     case grpc::StatusCode::RESOURCE_EXHAUSTED:
+      return !detail_of(status).quota();
+    case grpc::StatusCode::UNAVAILABLE:
     case grpc::StatusCode::ABORTED:
     case grpc::StatusCode::DEADLINE_EXCEEDED:
     case grpc::StatusCode::INTERNAL:

@@ -54,6 +54,7 @@ struct Controller::Parts {
   Parts(const ControllerOptions& options, std::unique_ptr<JobStore> store,
         std::unique_ptr<farm::ContentStore> assets, uint64_t incarnation, std::string secret)
       : context(options, std::move(store), std::move(assets), incarnation, std::move(secret)),
+        quotas(context.options.per_owner),
         dispatcher(context.mutex, scheduler_options(options, incarnation)) {
     dispatcher.set_executor(executor);
   }
@@ -61,6 +62,9 @@ struct Controller::Parts {
   void tick() HYADES_EXCLUDES(state_lock);
 
   ControllerContext context;
+  OwnerQuotas quotas;
+  UnclaimedFiles unclaimed;
+  OwnerConnections connections{quotas};
   Timelines timelines;
   Dispatcher dispatcher;
   JobTable jobs{context.mutex};
@@ -77,8 +81,9 @@ struct Controller::Parts {
   FrameProgress frames{context, jobs, workers, finisher, timelines};
   VideoMaker videos{context, jobs, records, disk, timelines};
   JobRecovery recovery{context, dispatcher, jobs, films};
-  Sweeper sweeper{context};
-  JobIntake intake{context, dispatcher, jobs, queries, records, recovery, disk, sweeper, timelines};
+  Sweeper sweeper{context, unclaimed};
+  JobIntake intake{context, dispatcher, jobs,      queries, records,  recovery,
+                   disk,    sweeper,    timelines, quotas,  unclaimed};
   JobSteering steering{context, dispatcher, jobs, queries, records, videos};
   Diagnosis diagnosis{context, dispatcher, jobs, workers, sessions, disk, videos};
   ActionExecutor executor{context, jobs,      workers, sessions, films,
@@ -173,6 +178,10 @@ Diagnosis& Controller::diagnosis() { return parts_->diagnosis; }
 VideoMaker& Controller::videos() { return parts_->videos; }
 Watchers& Controller::watchers() { return parts_->watchers; }
 DiskWatch& Controller::disk() { return parts_->disk; }
+
+const OwnerQuotas& Controller::quotas() const { return parts_->quotas; }
+UnclaimedFiles& Controller::unclaimed() { return parts_->unclaimed; }
+OwnerConnections& Controller::connections() { return parts_->connections; }
 
 Meters& Controller::meters() { return *parts_->context.meters; }
 farm::ContentStore& Controller::assets() { return *parts_->context.assets; }

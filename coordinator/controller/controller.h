@@ -12,6 +12,9 @@
 #include "coordinator/controller/job_intake.h"
 #include "coordinator/controller/job_queries.h"
 #include "coordinator/controller/job_steering.h"
+#include "coordinator/controller/owner_connections.h"
+#include "coordinator/controller/owner_quotas.h"
+#include "coordinator/controller/unclaimed_files.h"
 #include "coordinator/controller/video_maker.h"
 #include "coordinator/controller/watchers.h"
 #include "coordinator/controller/worker_sessions.h"
@@ -49,6 +52,11 @@ class Controller {
   VideoMaker& videos();
   Watchers& watchers();
   DiskWatch& disk();
+
+  /// What owners may have, and what of it is counted where it comes in.
+  const OwnerQuotas& quotas() const;
+  UnclaimedFiles& unclaimed();
+  OwnerConnections& connections();
 
   /// What is counted, by the controller and by its callers.
   Meters& meters();

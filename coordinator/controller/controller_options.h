@@ -17,6 +17,16 @@ struct Price {
   std::string currency;      ///< three capital letters (ISO 4217), or empty
 };
 
+/// What one owner may have of the farm at a time, so that nobody takes all of it; 0: as much as he
+/// likes.
+struct OwnerLimits {
+  uint64_t bytes = 0;        ///< of unfinished uploads, and of files that no job has had
+  uint64_t files = 1000;     ///< unfinished uploads
+  uint64_t jobs = 0;         ///< that are not over
+  double core_hours = 0;     ///< within kCoreHoursWindow, beyond which no job is taken in
+  uint64_t connections = 0;  ///< open streams with tokens of one name
+};
+
 /// How a controller works, and where.
 struct ControllerOptions {
   std::string folder;                            ///< where all state lies; made if it is missing
@@ -47,6 +57,7 @@ struct ControllerOptions {
   /// A job's film log is rewritten when it has grown by this much.
   uint64_t compact_bytes = FilmStoreOptions{}.compact_bytes;
   Price price;
+  OwnerLimits per_owner;
 };
 
 }  // namespace hyades::coordinator

@@ -116,16 +116,22 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   if (!options) return wrong(options.error().message);
   const auto files = files_of(request.spec());
   if (!files) return wrong(files.error().message);
+  // Before its files are missed: who may have no other job need not upload them.
+  if (const grpc::Status may = may_have_one_more(request.owner()); !may.ok()) return may;
   if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
   const auto one = context_.wait_for_submissions();
   if (!one) return others_submit();
+  if (const grpc::Status may = may_have_one_more(request.owner()); !may.ok()) return may;
   // What was not needed may have been removed meanwhile; from here on nothing is.
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
   auto active = make_active_job(new_row(request, *options, owner_proven), request.spec(),
                                 *context_.assets, context_.options.film_memory);
   if (!active) return wrong(active.error().message);
-  return take_in(std::move(*active), response);
+  const grpc::Status taken = take_in(std::move(*active), response);
+  if (!taken.ok()) return taken;
+  for (const core::AssetRecord& file : *files) unclaimed_.remove(file.sha256);
+  return taken;
 }
 
 /// Stores a new job, which nobody else knows yet, and begins with it.
@@ -156,6 +162,29 @@ grpc::Status JobIntake::answer_with(uint64_t id, bool existed, v1::SubmitRespons
   *response.mutable_job() = now.job();
   response.set_existed(existed);
   return got;
+}
+
+/// Whether the owner may have one more open job.
+grpc::Status JobIntake::may_have_one_more(const std::string& owner) {
+  uint64_t open = 0;
+  uint64_t not_stored_ns = 0;
+  {
+    const StateLock lock(context_.mutex);
+    for (const auto& [id, active] : jobs_.all()) {
+      if (active->stored.owner != owner) continue;
+      not_stored_ns += active->stored.core_ns - active->core_ns_stored;
+      if (!active->ending) ++open;
+    }
+    for (const auto& [id, job] : jobs_.waiting()) {
+      if (job.owner == owner) ++open;
+    }
+  }
+  if (const grpc::Status may = quotas_.may_add_job(owner, open); !may.ok()) return may;
+  if (!quotas_.limits_core_hours()) return grpc::Status::OK;
+  const int64_t since = core::wall_ms() - std::chrono::milliseconds(kCoreHoursWindow).count();
+  const auto stored_ns = context_.store->core_ns_of(owner, since);
+  if (!stored_ns) return farm::unavailable(stored_ns.error());
+  return quotas_.may_render(owner, *stored_ns + not_stored_ns);
 }
 
 /// Whether the memory that open jobs may take holds another one.
@@ -252,6 +281,7 @@ grpc::Status JobIntake::may_reopen(uint64_t id, StoredJob& job) {
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   job = std::move(**stored);
   if (!has_ended(job.state)) return why_not_open(*context_.store, id);
+  if (const grpc::Status may = may_have_one_more(job.owner); !may.ok()) return may;
   const auto doubtful = context_.store->doubtful(id, 1);
   if (!doubtful) return farm::unavailable(doubtful.error());
   if (job.state == StoredState::done && doubtful->empty()) {

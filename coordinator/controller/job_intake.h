@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include <grpcpp/support/status.h>
 
@@ -9,7 +10,9 @@
 #include "coordinator/controller/dispatcher.h"
 #include "coordinator/controller/job_records.h"
 #include "coordinator/controller/job_table.h"
+#include "coordinator/controller/owner_quotas.h"
 #include "coordinator/controller/timeline.h"
+#include "coordinator/controller/unclaimed_files.h"
 
 namespace hyades::coordinator {
 
@@ -24,7 +27,7 @@ class JobIntake {
  public:
   JobIntake(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs, JobQueries& queries,
             JobRecords& records, JobRecovery& recovery, DiskWatch& disk, Sweeper& sweeper,
-            Timelines& timelines)
+            Timelines& timelines, const OwnerQuotas& quotas, UnclaimedFiles& unclaimed)
       : context_(context),
         dispatcher_(dispatcher),
         jobs_(jobs),
@@ -33,7 +36,9 @@ class JobIntake {
         recovery_(recovery),
         disk_(disk),
         sweeper_(sweeper),
-        timelines_(timelines) {}
+        timelines_(timelines),
+        quotas_(quotas),
+        unclaimed_(unclaimed) {}
 
   /// Takes in a job, or answers with the one that has come with the same key. `owner_proven`: a
   /// token has shown who the owner is.
@@ -54,6 +59,7 @@ class JobIntake {
   core::Status forget(uint64_t job);
   grpc::Status answer_with(uint64_t job, bool existed, v1::SubmitResponse& response)
       HYADES_EXCLUDES(state_lock);
+  grpc::Status may_have_one_more(const std::string& owner) HYADES_EXCLUDES(state_lock);
   bool has_room_for(const StoredJob& job) const HYADES_EXCLUDES(state_lock);
   grpc::Status files_are_here(const v1::JobSpec& spec);
   grpc::Status wait_until_left(uint64_t job) HYADES_EXCLUDES(state_lock);
@@ -67,6 +73,8 @@ class JobIntake {
   DiskWatch& disk_;
   Sweeper& sweeper_;
   Timelines& timelines_;
+  const OwnerQuotas& quotas_;
+  UnclaimedFiles& unclaimed_;
 };
 
 }  // namespace hyades::coordinator

@@ -92,15 +92,18 @@ core::Status Sweeper::sweep_assets(Duration grace) {
     if (core::Status spared = spare_needed(names, seen); !spared) return spared;
     for (const std::string& name : names) {
       if (context_.stop) return {};
-      all = context_.assets->remove_unused(name, grace) && all;
+      const bool gone = context_.assets->remove_unused(name, grace);
+      if (gone) unclaimed_.remove(name);
+      all = all && gone;
     }
   }
   if (all) swept_changes_ = changes;
   return {};
 }
 
-Sweeper::Sweeper(ControllerContext& context)
+Sweeper::Sweeper(ControllerContext& context, UnclaimedFiles& unclaimed)
     : context_(context),
+      unclaimed_(unclaimed),
       rounds_(1, std::clamp(context.options.asset_grace / 4, kShortestRound, kLongestRound)) {}
 
 void Sweeper::start() {

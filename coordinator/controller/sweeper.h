@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "coordinator/controller/controller_context.h"
+#include "coordinator/controller/unclaimed_files.h"
 
 namespace hyades::coordinator {
 
@@ -13,7 +14,7 @@ namespace hyades::coordinator {
 /// no job needs.
 class Sweeper {
  public:
-  explicit Sweeper(ControllerContext& context);
+  Sweeper(ControllerContext& context, UnclaimedFiles& unclaimed);
   /// Sweeps from now on, from time to time, until end().
   void start();
   void end() { rounds_.end(); }
@@ -26,6 +27,7 @@ class Sweeper {
   core::Status spare_needed(std::unordered_set<std::string>& names, uint64_t& after);
 
   ControllerContext& context_;
+  UnclaimedFiles& unclaimed_;
   std::atomic<uint64_t> changes_{0};  ///< jobs that have gone
   // Of the sweeping thread.
   uint64_t swept_changes_ = UINT64_MAX;  ///< when it last left nothing to remove

@@ -161,6 +161,10 @@ class JobStore {
   virtual core::Result<std::vector<StoredJob>> list(bool ended, const std::string& owner,
                                                     uint64_t before, uint32_t limit) = 0;
 
+  /// Nanoseconds that threads took for results of this owner's jobs since then, to the hour; also
+  /// of jobs that are forgotten. What is older than a day may be.
+  virtual core::Result<uint64_t> core_ns_of(const std::string& owner, int64_t since_ms) = 0;
+
   /// Replaces what is known of the frame, and of its outputs.
   virtual core::Status frame_over(uint64_t job, const StoredFrame& frame,
                                   const std::vector<StoredOutput>& outputs) = 0;

@@ -116,6 +116,21 @@ INSERT INTO secret VALUES (new_secret());
     R"(
 ALTER TABLE tokens ADD COLUMN pool TEXT NOT NULL DEFAULT '';
 )",
+    R"(
+CREATE TABLE core_time (  -- what threads took for results, by the hour: jobs may be forgotten
+  owner TEXT NOT NULL,
+  hour INTEGER NOT NULL,  -- since 1970, UTC
+  core_ns INTEGER NOT NULL,
+  PRIMARY KEY (owner, hour)) WITHOUT ROWID;
+CREATE TRIGGER count_core_time AFTER UPDATE OF core_ns ON jobs WHEN NEW.core_ns > OLD.core_ns
+BEGIN
+  DELETE FROM core_time
+    WHERE owner = NEW.owner AND hour < CAST(strftime('%s', 'now') AS INTEGER) / 3600 - 25;
+  INSERT INTO core_time (owner, hour, core_ns)
+    VALUES (NEW.owner, CAST(strftime('%s', 'now') AS INTEGER) / 3600, NEW.core_ns - OLD.core_ns)
+    ON CONFLICT (owner, hour) DO UPDATE SET core_ns = core_ns + excluded.core_ns;
+END;
+)",
 };
 
 /// A number as protobuf writes it.

@@ -26,6 +26,8 @@ constexpr std::string_view kJobColumns =
     "submitted_ms, ended_ms, reason, core_ns, preview, owner_proven, options";
 constexpr int kSpecColumn = 17;  ///< where it is asked for: behind all others
 
+constexpr int64_t kMsPerHour = 3'600'000;
+
 /// A few times what the largest transaction that frees room needs in the WAL.
 constexpr uint64_t kReserve = uint64_t{1} << 20U;
 
@@ -186,6 +188,15 @@ class SqliteJobStore final : public JobStore {
     while (rows.next()) jobs.push_back(read_job(rows));
     if (core::Status status = rows.status(); !status) return status.error();
     return jobs;
+  }
+
+  core::Result<uint64_t> core_ns_of(const std::string& owner, int64_t since_ms) override {
+    const core::MutexLock lock(mutex_);
+    Query sum(db_.get(), "SELECT SUM(core_ns) FROM core_time WHERE owner = ? AND hour >= ?");
+    sum.bind(owner).bind(since_ms / kMsPerHour);
+    const uint64_t total = sum.next() ? static_cast<uint64_t>(sum.integer(0)) : 0;
+    if (core::Status status = sum.status(); !status) return status.error();
+    return total;
   }
 
   core::Status frame_over(uint64_t job, const StoredFrame& frame,

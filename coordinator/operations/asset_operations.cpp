@@ -21,7 +21,7 @@ const BodyForm kMissingFiles = {{{"files", true, &kMissingFile}},
                                 "expected {\"files\": [{\"sha256\": ..., \"size\": ...}, ...]}"};
 
 grpc::Status find_missing(Backend& at, const v1::FindMissingRequest& request,
-                          v1::FindMissingResponse& response) {
+                          v1::FindMissingResponse& response, const Caller& caller) {
   if (static_cast<size_t>(request.files_size()) > farm::kMostFilesAsked) {
     return {grpc::StatusCode::INVALID_ARGUMENT, "at most 10,000 files at a time"};
   }
@@ -38,7 +38,7 @@ grpc::Status find_missing(Backend& at, const v1::FindMissingRequest& request,
     }
     auto* missing = response.add_missing();
     missing->set_sha256(file.sha256());
-    missing->set_offset(std::min(store.begun(name), file.size()));
+    missing->set_offset(std::min(store.begun(name, caller.name), file.size()));
   }
   return grpc::Status::OK;
 }

@@ -27,10 +27,17 @@ grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& c
                           std::unique_ptr<farm::ContentWriter>& writer) {
   farm::ContentStore& assets = controller.assets();
   if (assets.contains(name, size)) return grpc::Status::OK;
-  const uint64_t begun = std::min(assets.begun(name), size);
+  const uint64_t begun = std::min(assets.begun(name, caller.name), size);
   if (grpc::Status room = controller.disk().admit(size - begun); !room.ok()) return room;
-  auto opened = assets.write(name, size);
-  if (!opened) return no_room_for(opened.error());
+  grpc::Status over_quota;
+  const auto may_begin = [&](const farm::UnfinishedFiles& others) -> core::Status {
+    over_quota = controller.quotas().may_upload(caller.name, size, others,
+                                                controller.unclaimed().bytes_of(caller.name));
+    if (over_quota.ok()) return {};
+    return core::Error{over_quota.error_message()};
+  };
+  auto opened = assets.write(name, size, {caller.name, may_begin});
+  if (!opened) return over_quota.ok() ? no_room_for(opened.error()) : over_quota;
   writer = std::make_unique<farm::ContentWriter>(std::move(*opened));
   if (log == nullptr) return grpc::Status::OK;
   const uint64_t there = writer->offset();
@@ -40,8 +47,8 @@ grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& c
   return grpc::Status::OK;
 }
 
-grpc::Status take_piece(Controller& controller, farm::ContentWriter& writer, uint64_t offset,
-                        std::span<const std::byte> bytes) {
+grpc::Status take_piece(Controller& controller, const Caller& caller, farm::ContentWriter& writer,
+                        uint64_t offset, std::span<const std::byte> bytes) {
   if (offset > writer.offset()) {
     return {grpc::StatusCode::OUT_OF_RANGE,
             fmt::format("bytes from {} on are missing", writer.offset())};
@@ -61,6 +68,9 @@ grpc::Status take_piece(Controller& controller, farm::ContentWriter& writer, uin
   if (auto whole = writer.commit(); !whole) {
     if (grpc::Status room = controller.disk().admit(0); !room.ok()) return room;
     return {grpc::StatusCode::DATA_LOSS, whole.error().message};
+  }
+  if (controller.quotas().limits_bytes()) {
+    controller.unclaimed().add(caller.name, writer.name(), writer.size());
   }
   return grpc::Status::OK;
 }

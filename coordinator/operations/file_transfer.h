@@ -20,17 +20,18 @@ class Controller;
 
 // Files that come in, in pieces, and go out, by whichever door.
 
-/// Begins with a file, or goes on with what is there of it, and notes that: once for a file,
-/// however many pieces it comes in. `log` may be null. `writer` stays null where the whole file is
-/// here already. May wait for the disk.
+/// Begins with a file, or goes on with what is there of it from this caller, and notes that: once
+/// for a file, however many pieces it comes in. `log` may be null. `writer` stays null where the
+/// whole file is here already. RESOURCE_EXHAUSTED where the caller has uploads as he may
+/// (OwnerQuotas). May wait for the disk.
 grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& caller,
                           const std::string& name, uint64_t size,
                           std::unique_ptr<farm::ContentWriter>& writer);
 
-/// Takes bytes of the file that begin at `offset`; of those that are here already none. The last
-/// ones make it whole (writer.offset() is writer.size() then). May wait for the disk.
-grpc::Status take_piece(Controller& controller, farm::ContentWriter& writer, uint64_t offset,
-                        std::span<const std::byte> bytes);
+/// Takes bytes of the caller's file that begin at `offset`; of those that are here already none.
+/// The last ones make it whole (writer.offset() is writer.size() then). May wait for the disk.
+grpc::Status take_piece(Controller& controller, const Caller& caller, farm::ContentWriter& writer,
+                        uint64_t offset, std::span<const std::byte> bytes);
 
 /// Reads the bytes of a job's output, and what is stored of it. NOT_FOUND, or DATA_LOSS where they
 /// are not as they were. May wait for the disk.

@@ -2,6 +2,7 @@
 
 #include <climits>
 #include <cstdint>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -29,6 +30,13 @@ grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request, bool& 
                         caller.token_id, caller.name, request.owner())};
   }
   return grpc::Status::OK;
+}
+
+std::unique_ptr<OwnerConnections::Entry> count_connection(Controller& controller,
+                                                          const Caller& caller,
+                                                          grpc::Status& refused) {
+  const bool works = caller.role == v1::ROLE_WORKER;
+  return controller.connections().enter(works ? std::string() : caller.name, refused);
 }
 
 }  // namespace hyades::coordinator

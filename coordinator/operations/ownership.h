@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include <grpcpp/support/status.h>
 
@@ -17,5 +18,11 @@ grpc::Status may_steer(Controller& controller, const Caller& caller, uint64_t jo
 /// is for operators: PERMISSION_DENIED. `proven`: a token stands for the name, the owner's own or
 /// that of an operator; without one it gives nobody any rights.
 grpc::Status name_owner(const Caller& caller, v1::SubmitRequest& request, bool& proven);
+
+/// Counts a stream of the caller's for as long as the entry lives; null, with RESOURCE_EXHAUSTED in
+/// `refused`, where its owner has as many as he may. Workers have as many as they need.
+std::unique_ptr<OwnerConnections::Entry> count_connection(Controller& controller,
+                                                          const Caller& caller,
+                                                          grpc::Status& refused);
 
 }  // namespace hyades::coordinator

@@ -10,6 +10,7 @@
 
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/file_transfer.h"
+#include "coordinator/operations/ownership.h"
 #include "coordinator/services/file_stream.h"
 #include "coordinator/services/service.h"
 #include "farm/message_bytes.h"
@@ -31,11 +32,13 @@ class UploadStream final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
                grpc::CallbackServerContext& context, const Caller& caller,
                const grpc::Status& admitted)
       : controller_(controller), pool_(pool), caller_(caller), audit_(admission.audit()) {
-    if (admitted.ok()) {
+    grpc::Status refused = admitted;
+    if (admitted.ok()) entry_ = count_connection(controller, caller, refused);
+    if (refused.ok()) {
       visit_ = admission.visit(caller, [&context](const grpc::Status&) { context.TryCancel(); });
       StartRead(&bytes_);
     } else {
-      Finish(admitted);
+      Finish(refused);
     }
   }
 
@@ -96,7 +99,7 @@ class UploadStream final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
     if (received_ > writer_->size()) {
       return invalid(fmt::format("more than the {} bytes that were announced", writer_->size()));
     }
-    grpc::Status taken = take_piece(controller_, *writer_, part.chunk().offset(), data);
+    grpc::Status taken = take_piece(controller_, caller_, *writer_, part.chunk().offset(), data);
     done_ = taken.ok() && writer_->offset() == writer_->size();
     return taken;
   }
@@ -105,6 +108,7 @@ class UploadStream final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
   farm::ThreadPool& pool_;
   const Caller caller_;
   AuditLog* const audit_;
+  std::unique_ptr<OwnerConnections::Entry> entry_;
   std::unique_ptr<Visit> visit_;
   grpc::ByteBuffer bytes_;
   std::unique_ptr<farm::ContentWriter> writer_;

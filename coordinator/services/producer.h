@@ -2,12 +2,14 @@
 
 #include <chrono>
 #include <memory>
+#include <utility>
 
 #include <grpcpp/alarm.h>
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 #include <grpcpp/support/status.h>
 
+#include "coordinator/controller/owner_connections.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/services/admission.h"
 #include "core/base/mutex.h"
@@ -31,9 +33,14 @@ class OutgoingStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
  public:
   /// Ends the stream when its caller's token does. Called once.
   virtual void guard(const Admission& admission, const Caller& caller) = 0;
+  /// Counts as the owner's until its end. Called once.
+  void keep(std::unique_ptr<OwnerConnections::Entry> entry) { entry_ = std::move(entry); }
   /// Called once, when everything is set up. gRPC reports nothing, so the end neither, before the
   /// service's method has returned.
   virtual void begin() = 0;
+
+ private:
+  std::unique_ptr<OwnerConnections::Entry> entry_;
 };
 
 /// A stream that sends nothing and ends with `status`. Deletes itself.

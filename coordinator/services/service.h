@@ -12,6 +12,7 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "coordinator/operations/operation.h"
+#include "coordinator/operations/ownership.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/producer.h"
 #include "farm/message_bytes.h"
@@ -44,9 +45,12 @@ class Service final : public grpc::Service {
                      Request request;
                      grpc::Status status = admission_.check(*context, rule, caller);
                      if (status.ok()) status = farm::parse(*asked, farm::kMaxRequestBytes, request);
+                     std::unique_ptr<OwnerConnections::Entry> entry;
+                     if (status.ok()) entry = count_connection(at_.controller, caller, status);
                      OutgoingStream* stream =
                          status.ok() ? make(*context, std::move(request), status) : nullptr;
                      if (stream == nullptr) return new Refusal(status);
+                     stream->keep(std::move(entry));
                      stream->guard(admission_, caller);
                      stream->begin();
                      return stream;

@@ -43,13 +43,13 @@ void AssetsApi::add_routes(Router& router) {
 /// Holds a file for as long as it lives, unless another does.
 class AssetsApi::Hold {
  public:
-  Hold(AssetsApi& api, const std::string& name) : api_(api), name_(name) {
+  Hold(AssetsApi& api, const FileOf& file) : api_(api), file_(file) {
     const core::MutexLock lock(api_.mutex_);
-    held_ = api_.busy_.insert(name_).second;
+    held_ = api_.busy_.insert(file_).second;
   }
   ~Hold() {
     const core::MutexLock lock(api_.mutex_);
-    if (held_) api_.busy_.erase(name_);
+    if (held_) api_.busy_.erase(file_);
   }
   Hold(const Hold&) = delete;
   Hold& operator=(const Hold&) = delete;
@@ -57,30 +57,30 @@ class AssetsApi::Hold {
 
  private:
   AssetsApi& api_;
-  const std::string name_;
+  const FileOf file_;
   bool held_ = false;
 };
 
 grpc::Status AssetsApi::take(const Caller& caller, const v1::PieceRequest& asked,
                              const std::string& piece, uint64_t& offset) {
-  const std::string& name = asked.sha256();
-  const Hold hold(*this, name);
+  const FileOf file{caller.name, asked.sha256()};
+  const Hold hold(*this, file);
   if (!hold.held()) {
     return farm::retry_later(grpc::StatusCode::ABORTED,
                              "another piece of this file is being written",
                              std::chrono::milliseconds(500));
   }
-  auto writer = take_open(name, asked.size());
+  auto writer = take_open(file, asked.size());
   if (!writer) {
     const grpc::Status begun =
-        begin_upload(controller_, audit_, caller, name, asked.size(), writer);
+        begin_upload(controller_, audit_, caller, file.name, asked.size(), writer);
     offset = asked.size();
     if (!begun.ok() || !writer) return begun;
   }
   grpc::Status taken =
-      take_piece(controller_, *writer, asked.offset(), std::as_bytes(std::span(piece)));
+      take_piece(controller_, caller, *writer, asked.offset(), std::as_bytes(std::span(piece)));
   offset = writer->offset();
-  if (offset < asked.size()) put_back(name, std::move(writer));
+  if (offset < asked.size()) put_back(file, std::move(writer));
   return taken;
 }
 
@@ -89,18 +89,18 @@ void AssetsApi::sweep() {
   let_go_of_old();
 }
 
-std::unique_ptr<farm::ContentWriter> AssetsApi::take_open(const std::string& name, uint64_t size) {
+std::unique_ptr<farm::ContentWriter> AssetsApi::take_open(const FileOf& file, uint64_t size) {
   const core::MutexLock lock(mutex_);
   let_go_of_old();
-  const auto open = open_.extract(name);
+  const auto open = open_.extract(file);
   return open && open.mapped().writer->size() == size ? std::move(open.mapped().writer) : nullptr;
 }
 
-void AssetsApi::put_back(const std::string& name, std::unique_ptr<farm::ContentWriter> writer) {
+void AssetsApi::put_back(const FileOf& file, std::unique_ptr<farm::ContentWriter> writer) {
   const core::MutexLock lock(mutex_);
   // Without its writer the next piece reads again what is there.
   if (open_.size() < kMostOpen) {
-    open_[name] = {std::move(writer), std::chrono::steady_clock::now()};
+    open_[file] = {std::move(writer), std::chrono::steady_clock::now()};
   }
 }
 

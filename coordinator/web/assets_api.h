@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -39,17 +40,22 @@ class AssetsApi {
     std::unique_ptr<farm::ContentWriter> writer;
     std::chrono::steady_clock::time_point used;
   };
-  std::unique_ptr<farm::ContentWriter> take_open(const std::string& name, uint64_t size);
-  void put_back(const std::string& name, std::unique_ptr<farm::ContentWriter> writer);
+  /// An owner's file: each has his own, though they have one name.
+  struct FileOf {
+    std::string owner;
+    std::string name;
+    auto operator<=>(const FileOf&) const = default;
+  };
+  std::unique_ptr<farm::ContentWriter> take_open(const FileOf& file, uint64_t size);
+  void put_back(const FileOf& file, std::unique_ptr<farm::ContentWriter> writer);
   void let_go_of_old() HYADES_REQUIRES(mutex_);
 
   Controller& controller_;
   Executors& executors_;
   AuditLog* const audit_;
   core::Mutex mutex_;
-  std::map<std::string, Open> open_ HYADES_GUARDED_BY(mutex_);  ///< by the file's name
-  std::set<std::string> busy_
-      HYADES_GUARDED_BY(mutex_);  ///< files of which a piece is being written
+  std::map<FileOf, Open> open_ HYADES_GUARDED_BY(mutex_);
+  std::set<FileOf> busy_ HYADES_GUARDED_BY(mutex_);  ///< those of which a piece is being written
 };
 
 }  // namespace hyades::coordinator

@@ -223,6 +223,11 @@ class ConnectionOver final : public Connection,
     reply_ = std::move(reply);
     leave_out_known(reply_, known_);
     if (reply_.topic || reply_.source) {
+      grpc::Status refused;
+      entry_ = world_.entry(caller_, refused);
+      if (!refused.ok()) reply_ = error_reply(refused);
+    }
+    if (reply_.topic || reply_.source) {
       // Its token may be revoked meanwhile.
       visit_ =
           world_.visit(caller_, [io = world_.io, weak = weak_from_this_()](const grpc::Status&) {
@@ -304,6 +309,7 @@ class ConnectionOver final : public Connection,
   void sent() {
     give_back();
     visit_.reset();
+    entry_.reset();
     reply_ = {};
     serializer_.reset();
     header_.reset();
@@ -404,6 +410,7 @@ class ConnectionOver final : public Connection,
     live_ = false;
     give_back();
     visit_.reset();
+    entry_.reset();
     heartbeat_.cancel();
     ErrorCode ignored;
     tcp(stream_).socket().close(ignored);
@@ -422,6 +429,7 @@ class ConnectionOver final : public Connection,
   asio::ip::address from_;  ///< of the other side, without the port
   Caller caller_;           ///< of the request in work
   std::unique_ptr<Visit> visit_;
+  std::unique_ptr<OwnerConnections::Entry> entry_;  ///< while its answer takes its time
   uint64_t granted_ = 0;  ///< bytes that its body may have, out of those of all
   unsigned version_ = 11;
   bool keep_alive_ = false;

@@ -9,6 +9,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "coordinator/access/authority.h"
+#include "coordinator/controller/owner_connections.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/io_handle.h"
@@ -42,6 +43,9 @@ struct ConnectionWorld {
   /// Registers a caller whose answer takes its time (Authority::visit).
   std::function<std::unique_ptr<Visit>(const Caller&, std::function<void(const grpc::Status&)>)>
       visit;
+  /// Counts such a caller's connection for its owner (count_connection()).
+  std::function<std::unique_ptr<OwnerConnections::Entry>(const Caller&, grpc::Status& refused)>
+      entry;
   /// Answers a request; called by the network's thread.
   std::function<void(WebRequest, Answer)> serve;
   farm::ThreadPool& files;  ///< who reads what is sent from the disk

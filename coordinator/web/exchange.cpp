@@ -9,6 +9,9 @@
 namespace hyades::coordinator {
 namespace {
 
+/// For who has as much as an owner may have, where 503 is for a coordinator that is busy.
+constexpr unsigned kTooMuch = 429;
+
 unsigned http_status_of(grpc::StatusCode code) {
   constexpr std::pair<grpc::StatusCode, unsigned> kStatuses[] = {
       {grpc::StatusCode::CANCELLED, 499},           {grpc::StatusCode::INVALID_ARGUMENT, 400},
@@ -61,8 +64,8 @@ WebReply empty_reply(unsigned status) {
 }
 
 WebReply error_reply(const grpc::Status& status) {
-  const unsigned code = http_status_of(status.error_code());
   const v1::ErrorDetail detail = farm::detail_of(status);
+  const unsigned code = detail.quota() ? kTooMuch : http_status_of(status.error_code());
   farm::Json error = {{"code", result_name(status)}, {"message", status.error_message()}};
   if (detail.retry_after_ms() > 0) error["retry_after_ms"] = detail.retry_after_ms();
   if (detail.missing_size() > 0) {

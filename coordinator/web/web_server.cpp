@@ -19,6 +19,7 @@
 #include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/operations/operation.h"
+#include "coordinator/operations/ownership.h"
 #include "coordinator/web/assets_api.h"
 #include "coordinator/web/authenticator.h"
 #include "coordinator/web/connection.h"
@@ -82,6 +83,9 @@ struct WebServer::Parts {
         world{[this](WebRequest& request) { return admit(request); },
               [this](const Caller& caller, std::function<void(const grpc::Status&)> leave) {
                 return authority.visit(caller, std::move(leave));
+              },
+              [&controller](const Caller& caller, grpc::Status& refused) {
+                return count_connection(controller, caller, refused);
               },
               [this](WebRequest request, Answer answer) { serve(std::move(request), answer); },
               executors.files,

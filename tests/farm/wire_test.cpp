@@ -87,6 +87,10 @@ TEST(Wire, ErrorsCarryTheirDetails) {
   EXPECT_EQ(detail_of(grpc::Status::OK).missing_size(), 0);
   EXPECT_TRUE(is_retryable(
       retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED, "later", std::chrono::milliseconds(10))));
+  const grpc::Status quota = over_quota("as many as you may have");
+  EXPECT_EQ(quota.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_TRUE(detail_of(quota).quota());
+  EXPECT_FALSE(is_retryable(quota)) << "who has too much is told at once";
 }
 
 TEST(Channel, PlaintextStaysOnThisMachine) {

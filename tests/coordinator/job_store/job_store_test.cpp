@@ -13,6 +13,7 @@
 #include "coordinator/job_store/contributor_rows.h"
 #include "coordinator/job_store/database.h"
 #include "coordinator/job_store/log_rows.h"
+#include "core/base/wall_clock.h"
 #include "tests/support/temp_folder.h"
 
 namespace hyades::coordinator {
@@ -324,7 +325,7 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
   ASSERT_EQ(sqlite3_exec(db,
                          "DROP INDEX doubtful_frames; ALTER TABLE frames DROP COLUMN doubtful; "
                          "DROP TABLE parts; DROP TABLE trusted; DROP INDEX outputs_of_frame; "
-                         "DROP TABLE tokens; "
+                         "DROP TABLE tokens; DROP TRIGGER count_core_time; DROP TABLE core_time; "
                          "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
                          "preview; ALTER TABLE jobs DROP COLUMN owner_proven; "
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
@@ -360,6 +361,7 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &db), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(db,
+                         "DROP TRIGGER count_core_time; DROP TABLE core_time; "
                          "ALTER TABLE jobs DROP COLUMN owner_proven; "
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
                          "ALTER TABLE tokens DROP COLUMN pool; "
@@ -401,6 +403,35 @@ TEST(JobStore, ListsTheNewestFirst) {
   EXPECT_EQ(ids(store->list(true, "", 4, 2)), (std::vector<uint64_t>{3, 2}));
   ASSERT_TRUE(store->remove_job(5).ok());
   EXPECT_EQ(store->add_job(some_job("", "ada"))->id, 6U) << "ids are never used twice";
+}
+
+TEST(JobStore, CoreTimeIsKeptOfOwnersWhoseJobsAreForgotten) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("state.db");
+  const int64_t since = core::wall_ms() - 3'600'000;
+  {
+    auto store = open(path);
+    ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
+    ASSERT_TRUE(store->add_job(some_job("", "ada")).ok());
+    ASSERT_TRUE(store->add_job(some_job("", "bob")).ok());
+    const auto took = [&](uint64_t id, uint64_t core_ns) {
+      StoredJob job = **store->job(id);
+      job.core_ns = core_ns;
+      EXPECT_TRUE(store->update_job(job).ok());
+    };
+    EXPECT_EQ(*store->core_ns_of("ada", since), 0U);
+    took(1, 1'000'000'000'000);
+    took(1, 1'500'000'000'000);
+    took(1, 1'500'000'000'000);
+    took(2, 7);
+    took(3, 5);
+    EXPECT_EQ(*store->core_ns_of("ada", since), 1'500'000'000'007U);
+    ASSERT_TRUE(store->remove_job(1).ok());
+  }
+  auto store = open(path);
+  EXPECT_EQ(*store->core_ns_of("ada", since), 1'500'000'000'007U);
+  EXPECT_EQ(*store->core_ns_of("bob", since), 5U);
+  EXPECT_EQ(*store->core_ns_of("ada", core::wall_ms() + 2 * 3'600'000), 0U) << "not since then";
 }
 
 TEST(JobStore, ANewerSchemaIsRefused) {

@@ -101,6 +101,9 @@ class TroubledStore final : public JobStore {
                                             uint32_t limit) override {
     return read([&] { return store_->list(ended, owner, before, limit); });
   }
+  core::Result<uint64_t> core_ns_of(const std::string& owner, int64_t since_ms) override {
+    return read([&] { return store_->core_ns_of(owner, since_ms); });
+  }
   core::Status frame_over(uint64_t job, const StoredFrame& frame,
                           const std::vector<StoredOutput>& outputs) override {
     return written([&] { return store_->frame_over(job, frame, outputs); });
