@@ -32,6 +32,14 @@ void replace(std::string& text, std::string_view what, std::string_view by) {
 
 }  // namespace
 
+HostAndPort split_address(const std::string& address) {
+  const size_t colon = address.rfind(':');
+  if (colon == std::string::npos) return {address, ""};
+  std::string host = address.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  return {host, address.substr(colon + 1)};
+}
+
 std::string address_text(const std::string& host, const std::string& port) {
   const auto bytes = ipv6(host);
   if (!bytes) return host + ":" + port;

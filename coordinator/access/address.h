@@ -5,6 +5,13 @@
 
 namespace hyades::coordinator {
 
+/// Of "HOST:PORT"; an IPv6 address is written "[HOST]:PORT".
+struct HostAndPort {
+  std::string host;
+  std::string port;
+};
+HostAndPort split_address(const std::string& address);
+
 /// Where a call comes from, in one form whichever way it came: "192.0.2.7:5000",
 /// "[2001:db8::1]:5000". `host` may be an IPv6 address of an IPv4 one (::ffff:192.0.2.7), which
 /// becomes that.

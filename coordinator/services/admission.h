@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <grpcpp/server_context.h>
@@ -17,9 +18,13 @@ namespace hyades::coordinator {
 /// token's role may do what it asks for.
 class Admission {
  public:
+  /// Hears of an address (address_text()) from which a call has shown a token that is one, or,
+  /// where none is asked for, could do without.
+  using Known = std::function<void(const std::string& address)>;
+
   /// `workers_show`: workers must have shown a certificate. `authority` outlives it.
-  Admission(Authority& authority, bool workers_show)
-      : authority_(authority), workers_show_(workers_show) {}
+  Admission(Authority& authority, bool workers_show, Known known)
+      : authority_(authority), workers_show_(workers_show), known_(std::move(known)) {}
 
   /// OK, with who calls in `caller`; or why the call may not come in: UNAUTHENTICATED,
   /// FAILED_PRECONDITION or PERMISSION_DENIED. Who has no right to call is noted in the audit log.
@@ -48,6 +53,7 @@ class Admission {
 
   Authority& authority_;
   const bool workers_show_;
+  const Known known_;
 };
 
 }  // namespace hyades::coordinator

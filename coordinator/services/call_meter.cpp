@@ -10,6 +10,7 @@
 
 #include "coordinator/access/audit_log.h"
 #include "coordinator/meters/meters.h"
+#include "coordinator/operations/operation.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -33,12 +34,17 @@ std::string short_name(const std::string& method) {
   return dot == std::string::npos ? method : method.substr(dot + 1);
 }
 
+/// Whether one message answers one. gRPC does not know: to it all calls are streams (RequestCall).
+bool is_unary(const std::string& method) {
+  return static_cast<bool>(operation_of_method(method).handle);
+}
+
 class CallMeter final : public Interceptor {
  public:
   CallMeter(Meters& meters, const ServerRpcInfo& info)
       : meters_(meters),
         method_(short_name(info.method())),
-        unary_(info.type() == ServerRpcInfo::Type::UNARY),
+        unary_(is_unary(method_)),
         begun_(std::chrono::steady_clock::now()) {}
 
   /// A call that was broken off has no status.

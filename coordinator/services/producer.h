@@ -2,14 +2,12 @@
 
 #include <chrono>
 #include <memory>
-#include <utility>
 
 #include <grpcpp/alarm.h>
 #include <grpcpp/server_context.h>
-#include <grpcpp/support/server_callback.h>
+#include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/status.h>
 
-#include "coordinator/controller/owner_connections.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/services/admission.h"
 #include "core/base/mutex.h"
@@ -28,26 +26,29 @@ class Waker {
   virtual void wake() = 0;
 };
 
-/// A stream of messages to a client. Deletes itself.
-class OutgoingStream : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+/// The call by which a stream goes out. Neither function calls the stream back on this thread.
+class OutgoingCall {
  public:
-  /// Ends the stream when its caller's token does. Called once.
-  virtual void guard(const Admission& admission, const Caller& caller) = 0;
-  /// Counts as the owner's until its end. Called once.
-  void keep(std::unique_ptr<OwnerConnections::Entry> entry) { entry_ = std::move(entry); }
-  /// Called once, when everything is set up. gRPC reports nothing, so the end neither, before the
-  /// service's method has returned.
-  virtual void begin() = 0;
-
- private:
-  std::unique_ptr<OwnerConnections::Entry> entry_;
+  virtual ~OutgoingCall() = default;
+  /// Sends `message`, which stays as it is until OutgoingStream::written().
+  virtual void write(const grpc::ByteBuffer& message) = 0;
+  virtual void finish(const grpc::Status& status) = 0;
 };
 
-/// A stream that sends nothing and ends with `status`. Deletes itself.
-class Refusal final : public grpc::ServerWriteReactor<grpc::ByteBuffer> {
+/// A stream of messages to a client. Whoever has the call tells it what becomes of that.
+class OutgoingStream {
  public:
-  explicit Refusal(const grpc::Status& status) { Finish(status); }
-  void OnDone() override { delete this; }
+  virtual ~OutgoingStream() = default;
+  /// Ends the stream when its caller's token does. Called once.
+  virtual void guard(const Admission& admission, const Caller& caller) = 0;
+  /// Called once, when everything is set up. `call` lives until end().
+  virtual void begin(OutgoingCall& call) = 0;
+  /// The message is on its way; or, where not `ok`, the client is gone.
+  virtual void written(bool ok) = 0;
+  /// The call has been broken off. By any thread; perhaps before begin().
+  virtual void cancel() = 0;
+  /// The call is over. The stream deletes itself.
+  virtual void end() = 0;
 };
 
 /// A stream whose messages are made as fast as its client reads: next() is called again when the
@@ -65,29 +66,32 @@ class Producer : public OutgoingStream {
     end            ///< put the status with which the stream ends
   };
 
-  void begin() override { advance(false); }
+  void begin(OutgoingCall& call) override {
+    call_ = &call;
+    advance(false);
+  }
 
   void guard(const Admission& admission, const Caller& caller) override {
     visit_ = admission.visit(
         caller, [handle = handle_](const grpc::Status& why) { handle->send_away(why); });
   }
 
-  void OnWriteDone(bool ok) override {
+  void written(bool ok) override {
     too_slow_.reset();
     if (ok) {
       advance(false);
     } else {
-      Finish({grpc::StatusCode::CANCELLED, "the client is gone"});
+      call_->finish({grpc::StatusCode::CANCELLED, "the client is gone"});
     }
   }
-  void OnCancel() override {
+  void cancel() override {
     {
       const core::MutexLock lock(mutex_);
       cancelled_ = true;
     }
     wake();
   }
-  void OnDone() override {
+  void end() override {
     handle_->drop();
     over();
     delete this;
@@ -183,9 +187,9 @@ class Producer : public OutgoingStream {
         case Step::message:
           return write();
         case Step::end:
-          return Finish(status);
+          return call_->finish(status);
         case Step::needs_thread:
-          if (!pool_.submit([this] { advance(true); })) Finish(crowded());
+          if (!pool_.submit([this] { advance(true); })) call_->finish(crowded());
           return;
         case Step::wait:
           break;
@@ -202,13 +206,14 @@ class Producer : public OutgoingStream {
     too_slow_->Set(std::chrono::system_clock::now() + patience_, [handle = handle_](bool rang) {
       if (rang) handle->break_off();
     });
-    StartWrite(&bytes_);
+    call_->write(bytes_);
   }
 
   const std::shared_ptr<Handle> handle_;
   grpc::CallbackServerContext& context_;
   farm::ThreadPool& pool_;
   const std::chrono::milliseconds patience_;
+  OutgoingCall* call_ = nullptr;           ///< since begin()
   std::unique_ptr<grpc::Alarm> too_slow_;  ///< while a message is on its way
   Message message_;
   grpc::ByteBuffer bytes_;  ///< the message on its way

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 
 #include <grpcpp/resource_quota.h>
@@ -12,6 +13,7 @@
 #include "coordinator/controller/controller.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/call_meter.h"
+#include "coordinator/services/listening.h"
 #include "coordinator/services/service.h"
 #include "farm/wire.h"
 
@@ -25,14 +27,18 @@ constexpr std::chrono::milliseconds kLastWords{200};
 /// What has come over all connections and is not dealt with yet: beyond it windows close, and then
 /// calls are broken off.
 constexpr size_t kMostReceivedBytes = size_t{512} << 20U;
-/// Calls at once on one connection; a worker has one and its downloads, a client one or two.
-constexpr int kMostCalls = 100;
+/// Calls at once on one connection; a worker has one and its downloads, a client one or two, and a
+/// client that has more waits for their end. gRPC has one bound for strangers and others.
+constexpr int kMostCalls = 50;
 
 }  // namespace
 
 struct Server::Parts {
-  Parts(Controller& controller, Authority& authority, bool workers_show)
-      : admission(authority, workers_show), service({controller, authority}, admission, executors) {
+  Parts(Controller& controller, Authority& authority, bool workers_show, const Options& options)
+      : gate(options.gate),
+        admission(authority, workers_show,
+                  [this](const std::string& address) { gate.know(address); }),
+        service({controller, authority}, admission, executors, options.request_patience) {
     add_job_streams(service);
     add_film_stream(service);
     add_asset_streams(service);
@@ -40,25 +46,34 @@ struct Server::Parts {
     add_worker_stream(service);
   }
 
+  Gate gate;
   Admission admission;
   Executors executors;
   Service service;
+  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor;
   std::unique_ptr<grpc::Server> server;
 };
 
 Server::Server(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 
 Server::~Server() {
+  parts_->gate.close();
   parts_->server->Shutdown(std::chrono::system_clock::now() + kLastWords);
   parts_->server->Wait();
 }
 
+Gate::Count Server::connections() const { return parts_->gate.count(); }
+
 core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Controller& controller,
                                                     Authority& authority, const Options& options) {
-  auto parts = std::make_unique<Parts>(controller, authority, door.workers_show);
+  auto listening = listen_at(door.address);
+  if (!listening) return listening.error();
+  const uint16_t port = listening->port;
+  auto parts = std::make_unique<Parts>(controller, authority, door.workers_show, options);
   grpc::ServerBuilder builder;
-  int port = 0;
-  builder.AddListeningPort(door.address, door.credentials, &port);
+  using Builder = grpc::ServerBuilder::experimental_type;
+  parts->acceptor = builder.experimental().AddExternalConnectionAcceptor(
+      Builder::ExternalConnectionType::FROM_FD, door.credentials);
   builder.RegisterService(&parts->service);
   builder.experimental().SetInterceptorCreators(count_calls(controller.meters()));
   builder.SetMaxReceiveMessageSize(static_cast<int>(farm::kMaxResultBytes));
@@ -77,16 +92,20 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_DEFLATE, false);
   builder.SetCompressionAlgorithmSupportStatus(GRPC_COMPRESS_GZIP, false);
   builder.SetResourceQuota(grpc::ResourceQuota("hyades").Resize(kMostReceivedBytes));
-  // A second coordinator on the same port is a mistake, not a cluster.
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   parts->server = builder.BuildAndStart();
-  if (!parts->server || port == 0) {
-    return core::Error{door.address + ": cannot listen there (is the address taken?)"};
-  }
+  if (!parts->server) return core::Error{door.address + ": gRPC cannot serve there"};
   std::unique_ptr<Server> server(new Server(std::move(parts)));
   server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
   controller.farm().listens_at(server->address_);
-  authority.listens_at(static_cast<uint16_t>(port));
+  authority.listens_at(port);
+  auto& acceptor = *server->parts_->acceptor;
+  const core::Status open =
+      server->parts_->gate.open(std::move(*listening), [&acceptor](int socket) {
+        grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+        connection.fd = socket;
+        acceptor.HandleNewConnection(&connection);
+      });
+  if (!open) return open.error().in(door.address);
   return server;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "coordinator/services/gate.h"
 #include "core/base/result.h"
 #include "farm/channel.h"
 
@@ -19,6 +20,9 @@ class Server {
     /// A connection on which no call is open for so long is ended. Workers hold a stream as long as
     /// they are there, and clients connect again with their next call: what is ended is nobody's.
     std::chrono::milliseconds idle = std::chrono::minutes(5);
+    /// How long the one message of a call that is admitted may be on its way.
+    std::chrono::milliseconds request_patience = std::chrono::minutes(2);
+    Gate::Limits gate{};
   };
 
   /// Listens; an error where the address is taken or not this machine's. `controller` and
@@ -37,6 +41,8 @@ class Server {
 
   /// HOST:PORT as bound.
   const std::string& address() const { return address_; }
+  /// How many connections there are.
+  Gate::Count connections() const;
 
  private:
   struct Parts;

@@ -2,68 +2,176 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 #include <grpcpp/impl/codegen/server_callback_handlers.h>
 
+#include "coordinator/controller/owner_connections.h"
+#include "coordinator/operations/ownership.h"
 #include "coordinator/services/part_count.h"
+#include "coordinator/services/request_call.h"
+#include "core/base/mutex.h"
 
 namespace hyades::coordinator {
 namespace {
 
 using grpc::internal::CallbackBidiHandler;
 using grpc::internal::CallbackClientStreamingHandler;
-using grpc::internal::CallbackServerStreamingHandler;
-using grpc::internal::CallbackUnaryHandler;
 
 /// Messages in one request; a job with as many files as it may have has about half of that.
 constexpr uint64_t kMostContributors = 200'000;
 
 }  // namespace
 
-/// A call on its way, which is answered once.
-struct Service::UnaryCall {
-  const Operation& operation;
-  const Bytes& asked;
-  Bytes& said;
-  grpc::ServerUnaryReactor* reactor;  ///< every DefaultReactor() makes it anew
-  Caller caller{};
-  std::unique_ptr<Message> request{};  ///< once it has been read
+/// A call that one message answers.
+class Service::UnaryCall final : public RequestCall {
+ public:
+  UnaryCall(Service& service, const Operation& operation, Context& context)
+      : service_(service), operation_(operation), work_(std::make_shared<Work>()) {
+    const grpc::Status admitted = service.admission_.check(context, operation.rule, work_->caller);
+    if (admitted.ok()) {
+      ask(service.patience_);
+    } else {
+      Finish(admitted);
+    }
+  }
 
-  grpc::Status read() {
-    request.reset(operation.handle.request().New());
-    return farm::parse(asked, operation.most_bytes, *request);
+ private:
+  /// What the operation works on, which may go on when the call is over.
+  struct Work {
+    Caller caller{};
+    std::unique_ptr<Message> request{};  ///< once it has been read
+  };
+
+  void take() override {
+    grpc::Status status = grpc::Status::OK;
+    if (operation_.handle.has_memory()) {
+      bool answered = false;
+      status = within_memory([&] {
+        const std::unique_ptr<Message> response(operation_.handle.response().New());
+        grpc::Status read = read_request();
+        answered = read.ok() && operation_.handle.answer(service_.at_, *work_->request, *response);
+        if (answered) read = farm::serialise(*response, said_);
+        return read;
+      });
+      if (answered && status.ok()) return respond();
+    }
+    farm::ThreadPool* executor = service_.executors_.of(operation_.runs);
+    if (!status.ok()) {
+      Finish(status);
+    } else if (executor == nullptr) {
+      proceed();
+    } else if (!executor->submit([this] { proceed(); })) {
+      Finish(crowded());
+    }
+  }
+
+  void proceed() {
+    std::unique_lock<std::mutex> alone;
+    if (!work_->request) {
+      const grpc::Status read = within_memory([&] { return read_alone(alone); });
+      if (!read.ok()) return Finish(read);
+    }
+    const std::shared_ptr<Work> work = work_;
+    carry_out(operation_, operation_.handle, service_.at_, *work->request, work->caller,
+              [this, work](const grpc::Status& status, const Message& response) {
+                const grpc::Status done = status.ok() ? farm::serialise(response, said_) : status;
+                if (!done.ok()) return Finish(done);
+                respond();
+              });
+  }
+
+  grpc::Status read_request() {
+    work_->request.reset(operation_.handle.request().New());
+    return farm::parse(asked_, operation_.most_bytes, *work_->request);
   }
   /// Reads a request that may be large; `alone` holds take_large_request() then.
   grpc::Status read_alone(std::unique_lock<std::mutex>& alone) {
-    if (asked.Length() > farm::kMaxRequestBytes && asked.Length() <= operation.most_bytes) {
+    if (asked_.Length() > farm::kMaxRequestBytes && asked_.Length() <= operation_.most_bytes) {
       alone = take_large_request();
       if (!alone) return another_is_large();
-      const auto& type = *operation.handle.request().GetDescriptor();
-      if (!has_few_parts(asked, type, kMostContributors)) {
+      const auto& type = *operation_.handle.request().GetDescriptor();
+      if (!has_few_parts(asked_, type, kMostContributors)) {
         return {grpc::StatusCode::INVALID_ARGUMENT,
                 fmt::format("more than {} parts in one request, or no {}", kMostContributors,
                             type.name())};
       }
     }
-    return read();
+    return read_request();
   }
-  void finish(const grpc::Status& status, const Message& response) const {
-    reactor->Finish(status.ok() ? farm::serialise(response, said) : status);
-  }
+  void respond() { StartWriteAndFinish(&said_, grpc::WriteOptions(), grpc::Status::OK); }
+
+  Service& service_;
+  const Operation& operation_;
+  const std::shared_ptr<Work> work_;
+  Bytes said_;
 };
 
-Service::Service(Backend at, const Admission& admission, Executors& executors)
-    : at_(at), admission_(admission), executors_(executors) {
+/// A call that a stream answers.
+class Service::StreamCall final : public RequestCall, public OutgoingCall {
+ public:
+  StreamCall(const Service& service, const Rule& rule, const MakeRawStream& make, Context& context)
+      : admission_(service.admission_), make_(make), context_(context) {
+    grpc::Status refused = admission_.check(context, rule, caller_);
+    if (refused.ok()) entry_ = count_connection(service.at_.controller, caller_, refused);
+    if (refused.ok()) {
+      ask(service.patience_);
+    } else {
+      Finish(refused);
+    }
+  }
+
+  void OnWriteDone(bool ok) override { stream_->written(ok); }
+  void OnCancel() override {
+    const core::MutexLock lock(mutex_);
+    cancelled_ = true;
+    if (begun_ != nullptr) begun_->cancel();
+  }
+  void OnDone() override {
+    if (stream_ != nullptr) stream_->end();
+    RequestCall::OnDone();
+  }
+
+  void write(const Bytes& message) override { StartWrite(&message); }
+  void finish(const grpc::Status& status) override { Finish(status); }
+
+ private:
+  void take() override {
+    grpc::Status refused;
+    stream_ = make_(context_, asked_, refused);
+    if (stream_ == nullptr) return Finish(refused);
+    stream_->guard(admission_, caller_);
+    {
+      const core::MutexLock lock(mutex_);
+      begun_ = stream_;
+      if (cancelled_) begun_->cancel();
+    }
+    stream_->begin(*this);
+  }
+
+  const Admission& admission_;
+  const MakeRawStream& make_;
+  Context& context_;
+  Caller caller_;
+  std::unique_ptr<OwnerConnections::Entry> entry_;  ///< among the owner's
+  OutgoingStream* stream_ = nullptr;
+  core::Mutex mutex_;
+  OutgoingStream* begun_ HYADES_GUARDED_BY(mutex_) = nullptr;  ///< stream_, for OnCancel()
+  bool cancelled_ HYADES_GUARDED_BY(mutex_) = false;
+};
+
+Service::Service(Backend at, const Admission& admission, Executors& executors,
+                 std::chrono::milliseconds patience)
+    : at_(at), admission_(admission), executors_(executors), patience_(patience) {
   for (const Operation& operation : all_operations()) {
     if (!operation.handle || *operation.method == '\0') continue;
-    add(operation.method, Method::NORMAL_RPC,
-        new CallbackUnaryHandler<Bytes, Bytes>(
-            [this, &operation](Context* context, const Bytes* asked, Bytes* said) {
-              return begin(operation, *context, *asked, *said);
-            }));
+    add(operation.method, Method::BIDI_STREAMING,
+        new CallbackBidiHandler<Bytes, Bytes>([this, &operation](Context* context) {
+          return new UnaryCall(*this, operation, *context);
+        }));
   }
 }
 
@@ -76,11 +184,12 @@ void Service::add(const char* method, Method::RpcType type,
   MarkMethodRawCallback(index, handler);
 }
 
-void Service::add_raw_reader(
-    const char* method,
-    std::function<grpc::ServerWriteReactor<Bytes>*(Context*, const Bytes*)> begin) {
-  add(method, Method::SERVER_STREAMING,
-      new CallbackServerStreamingHandler<Bytes, Bytes>(std::move(begin)));
+void Service::add_raw_reader(const char* method, const MakeRawStream& make) {
+  const Rule& rule = operation_of_method(method).rule;
+  add(method, Method::BIDI_STREAMING,
+      new CallbackBidiHandler<Bytes, Bytes>([this, &rule, make](Context* context) {
+        return new StreamCall(*this, rule, make, *context);
+      }));
 }
 
 void Service::add_writer(const char* method,
@@ -106,45 +215,6 @@ void Service::add_talker(const char* method,
         const grpc::Status admitted = admission_.check(*context, rule, caller);
         return make(*context, caller, admitted);
       }));
-}
-
-grpc::ServerUnaryReactor* Service::begin(const Operation& operation, Context& context,
-                                         const Bytes& asked, Bytes& said) {
-  auto* reactor = context.DefaultReactor();
-  const auto call = std::make_shared<UnaryCall>(UnaryCall{operation, asked, said, reactor});
-  grpc::Status status = admission_.check(context, operation.rule, call->caller);
-  if (status.ok() && operation.handle.has_memory()) {
-    bool answered = false;
-    status = within_memory([&] {
-      const std::unique_ptr<Message> response(operation.handle.response().New());
-      grpc::Status read = call->read();
-      answered = read.ok() && operation.handle.answer(at_, *call->request, *response);
-      if (answered) call->finish(read, *response);
-      return read;
-    });
-    if (answered && status.ok()) return reactor;
-  }
-  farm::ThreadPool* executor = executors_.of(operation.runs);
-  if (!status.ok()) {
-    reactor->Finish(status);
-  } else if (executor == nullptr) {
-    proceed(call);
-  } else if (!executor->submit([this, call] { proceed(call); })) {
-    reactor->Finish(crowded());
-  }
-  return reactor;
-}
-
-void Service::proceed(const std::shared_ptr<UnaryCall>& call) {
-  std::unique_lock<std::mutex> alone;
-  if (!call->request) {
-    const grpc::Status read = within_memory([&] { return call->read_alone(alone); });
-    if (!read.ok()) return call->reactor->Finish(read);
-  }
-  carry_out(call->operation, call->operation.handle, at_, *call->request, call->caller,
-            [call](const grpc::Status& status, const Message& response) {
-              call->finish(status, response);
-            });
 }
 
 }  // namespace hyades::coordinator

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <string>
 #include <utility>
 
@@ -12,7 +12,6 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "coordinator/operations/operation.h"
-#include "coordinator/operations/ownership.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/producer.h"
 #include "farm/message_bytes.h"
@@ -21,14 +20,17 @@
 namespace hyades::coordinator {
 
 /// All methods of all gRPC services. They take bytes (farm/message_bytes.h). Those that one message
-/// answers come from the table of operations; streams are added by hand.
+/// answers come from the table of operations; streams are added by hand. Nobody's message is taken
+/// in before he is admitted.
 class Service final : public grpc::Service {
  public:
   using Context = grpc::CallbackServerContext;
   using Bytes = grpc::ByteBuffer;
 
   /// Has the methods of the table. What the arguments refer to outlives the service.
-  Service(Backend at, const Admission& admission, Executors& executors);
+  /// `patience`: with the one message of a call that is admitted.
+  Service(Backend at, const Admission& admission, Executors& executors,
+          std::chrono::milliseconds patience);
 
   /// Makes the stream that answers a Request; or null, with the reason in `refused`.
   template <class Request>
@@ -37,24 +39,11 @@ class Service final : public grpc::Service {
   /// The stream ends with the caller's token.
   template <class Request>
   void add_reader(const char* method, MakeStream<Request> make) {
-    const Rule& rule = operation_of_method(method).rule;
-    add_raw_reader(method,
-                   [this, &rule, make](Context* context,
-                                       const Bytes* asked) -> grpc::ServerWriteReactor<Bytes>* {
-                     Caller caller;
-                     Request request;
-                     grpc::Status status = admission_.check(*context, rule, caller);
-                     if (status.ok()) status = farm::parse(*asked, farm::kMaxRequestBytes, request);
-                     std::unique_ptr<OwnerConnections::Entry> entry;
-                     if (status.ok()) entry = count_connection(at_.controller, caller, status);
-                     OutgoingStream* stream =
-                         status.ok() ? make(*context, std::move(request), status) : nullptr;
-                     if (stream == nullptr) return new Refusal(status);
-                     stream->keep(std::move(entry));
-                     stream->guard(admission_, caller);
-                     stream->begin();
-                     return stream;
-                   });
+    add_raw_reader(method, [make](Context& context, const Bytes& asked, grpc::Status& refused) {
+      Request request;
+      refused = farm::parse(asked, farm::kMaxRequestBytes, request);
+      return refused.ok() ? make(context, std::move(request), refused) : nullptr;
+    });
   }
   /// Makes the reactor of a call that sends a stream. Where the caller was not admitted, the
   /// reactor ends the call with `admitted`.
@@ -73,19 +62,19 @@ class Service final : public grpc::Service {
   const Admission& admission() const { return admission_; }
 
  private:
-  struct UnaryCall;
+  class UnaryCall;
+  class StreamCall;
   using Method = grpc::internal::RpcMethod;
+  /// As add_reader(), of the request's bytes.
+  using MakeRawStream =
+      std::function<OutgoingStream*(Context&, const Bytes& asked, grpc::Status& refused)>;
   void add(const char* method, Method::RpcType type, grpc::internal::MethodHandler* handler);
-  void add_raw_reader(
-      const char* method,
-      std::function<grpc::ServerWriteReactor<Bytes>*(Context*, const Bytes*)> begin);
-  grpc::ServerUnaryReactor* begin(const Operation& operation, Context& context, const Bytes& asked,
-                                  Bytes& said);
-  void proceed(const std::shared_ptr<UnaryCall>& call);
+  void add_raw_reader(const char* method, const MakeRawStream& make);
 
   Backend at_;
   const Admission& admission_;
   Executors& executors_;
+  const std::chrono::milliseconds patience_;
   std::deque<std::string> names_;  ///< of the methods; gRPC keeps pointers to them
 };
 

@@ -15,6 +15,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "coordinator/access/address.h"
 #include "coordinator/access/authority.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/meters/meters.h"
@@ -48,18 +49,6 @@ constexpr std::chrono::milliseconds kAcceptAgain{200};
 constexpr std::chrono::seconds kSweep{30};
 /// How soon certificates that have changed are noticed.
 constexpr std::chrono::seconds kLook{2};
-
-struct HostAndPort {
-  std::string host;
-  std::string port;
-};
-
-HostAndPort split(const std::string& address) {
-  const size_t colon = address.rfind(':');
-  std::string host = address.substr(0, colon);
-  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  return {host, address.substr(colon + 1)};
-}
 
 /// Programs that the coordinator starts must not hold its connections open.
 template <class Socket>
@@ -176,7 +165,7 @@ struct WebServer::Parts {
   }
 
   core::Status listen(const std::string& address) {
-    const auto [host, port] = split(address);
+    const auto [host, port] = split_address(address);
     boost::system::error_code error;
     tcp::resolver resolver(network);
     const auto found = resolver.resolve(

@@ -16,12 +16,18 @@ constexpr int kLooks = 1000;
 
 }  // namespace
 
-CoordinatorProcess::CoordinatorProcess() {
+CoordinatorProcess::CoordinatorProcess(const std::vector<std::string>& more) {
   const std::string data = folder_.file("data");
+  std::vector<std::string> words = {
+      "hyades-coordinator", "coordinator", "--http", "off", "--data", data,
+      "--listen",           "127.0.0.1:0"};
+  words.insert(words.end(), more.begin(), more.end());
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
   pid_ = ::fork();
   if (pid_ == 0) {
-    ::execl(HYADES_COORDINATOR, "hyades-coordinator", "coordinator", "--http", "off", "--data",
-            data.c_str(), "--listen", "127.0.0.1:0", nullptr);
+    ::execv(HYADES_COORDINATOR, arguments.data());
     ::_exit(127);
   }
   for (int i = 0; i < kLooks && address_.empty(); ++i) {
@@ -32,11 +38,15 @@ CoordinatorProcess::CoordinatorProcess() {
 
 CoordinatorProcess::~CoordinatorProcess() { end(); }
 
-uint64_t CoordinatorProcess::peak_mib() const {
+uint64_t CoordinatorProcess::peak_mib() const { return status_mib("VmHWM:"); }
+
+uint64_t CoordinatorProcess::memory_mib() const { return status_mib("VmRSS:"); }
+
+uint64_t CoordinatorProcess::status_mib(const std::string& name) const {
   std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
   for (std::string word; status >> word;) {
     uint64_t kib = 0;
-    if (word == "VmHWM:" && status >> kib) return kib / 1024;
+    if (word == name && status >> kib) return kib / 1024;
   }
   return UINT64_MAX;
 }

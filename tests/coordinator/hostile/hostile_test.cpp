@@ -14,7 +14,7 @@ constexpr uint64_t kReceived = 512;
 TEST_F(Hostile, MessagesThatAreAnnouncedAndNeverEndAreBrokenOff) {
   const std::string piece(size_t{4} << 20U, '\0');
   std::vector<std::unique_ptr<test::RawHttp2>> peers;
-  // All may announce 4 GiB, and gRPC takes it all in before anybody is asked.
+  // Whoever is admitted may announce 4 GiB, and gRPC takes it all in before anybody can look at it.
   uint64_t sent = 0;
   for (const char* method : {"/hyades.v1.Jobs/Submit", "/hyades.v1.Work/Attend",
                              "/hyades.v1.Farm/Info", "/hyades.v1.Assets/Upload"}) {

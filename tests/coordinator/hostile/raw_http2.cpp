@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <string>
+
+#include "farm/wire.h"
 
 namespace hyades::test {
 namespace {
@@ -51,8 +54,12 @@ std::string literal(const std::string& name, const std::string& value) {
 
 }  // namespace
 
-RawHttp2::RawHttp2(const std::string& address, bool talk)
+RawHttp2::RawHttp2(const std::string& address, bool talk, const std::string& from)
     : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  sockaddr_in own{};
+  own.sin_family = AF_INET;
+  ::inet_pton(AF_INET, from.c_str(), &own.sin_addr);
+  if (::bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) return;
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -77,7 +84,7 @@ uint32_t RawHttp2::call(const std::string& path,
   std::string block = literal(":method", "POST") + literal(":scheme", "http") +
                       literal(":path", path) + literal(":authority", "farm") +
                       literal("content-type", "application/grpc") + literal("te", "trailers") +
-                      literal("hyades-protocol", "1");
+                      literal("hyades-protocol", std::to_string(farm::kProtocol));
   for (const auto& [name, value] : headers) block += literal(name, value);
   windows_[id] = initial_window_;
   ended_[id] = false;
@@ -112,6 +119,12 @@ bool RawHttp2::ended(uint32_t call, int milliseconds) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
   while (connected_ && !ended_[call] && std::chrono::steady_clock::now() < until) read(10);
   return !connected_ || ended_[call];
+}
+
+bool RawHttp2::closed(int milliseconds) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
+  while (connected_ && std::chrono::steady_clock::now() < until) read(10);
+  return !connected_;
 }
 
 std::string RawHttp2::head(uint32_t length, bool packed) {

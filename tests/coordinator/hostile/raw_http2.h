@@ -13,8 +13,10 @@ namespace hyades::test {
 /// packs what it sends, never reads, or does nothing at all. One thread at a time.
 class RawHttp2 {
  public:
-  /// Connects to "127.0.0.1:PORT"; `talk`: sends the preface, otherwise not one byte.
-  explicit RawHttp2(const std::string& address, bool talk = true);
+  /// Connects to "127.0.0.1:PORT"; `talk`: sends the preface, otherwise not one byte. `from`: as
+  /// which address of this machine, 127.0.0.2, say, which counts as somebody else.
+  explicit RawHttp2(const std::string& address, bool talk = true,
+                    const std::string& from = "127.0.0.1");
   ~RawHttp2();
   RawHttp2(const RawHttp2&) = delete;
   RawHttp2& operator=(const RawHttp2&) = delete;
@@ -36,6 +38,9 @@ class RawHttp2 {
 
   /// Whether the other side has ended the call; waits for it up to `milliseconds`.
   bool ended(uint32_t call, int milliseconds);
+
+  /// Whether the other side has ended the connection; waits for it up to `milliseconds`.
+  bool closed(int milliseconds);
 
   /// A message's five bytes of gRPC.
   static std::string head(uint32_t length, bool packed = false);

@@ -35,13 +35,20 @@ class Counting final : public Woken {
   }
 };
 
+class NoCall final : public OutgoingCall {
+ public:
+  void write(const grpc::ByteBuffer&) override {}
+  void finish(const grpc::Status&) override {}
+};
+
 TEST(Producer, IsNotAskedBeforeItBegins) {
   grpc::CallbackServerContext context;
   farm::ThreadPool pool(1, 1);
   Counting stream(context, pool);  // a stream that is asked here calls a pure virtual function
   stream.waker()->wake();
   EXPECT_EQ(stream.asked, 0);
-  stream.begin();
+  NoCall call;
+  stream.begin(call);
   EXPECT_EQ(stream.asked, 1);
   stream.waker()->wake();
   EXPECT_EQ(stream.asked, 2);
@@ -51,9 +58,7 @@ TEST(Producer, IsNotAskedBeforeItBegins) {
 class Chunks final : public Producer<v1::Chunk> {
  public:
   Chunks(grpc::CallbackServerContext& context, farm::ThreadPool& pool, bool hungry)
-      : Producer(context, pool, std::chrono::milliseconds(200)), hungry_(hungry) {
-    begin();
-  }
+      : Producer(context, pool, std::chrono::milliseconds(200)), hungry_(hungry) {}
 
  private:
   Step next(v1::Chunk& chunk, grpc::Status&, bool) override {
@@ -66,11 +71,27 @@ class Chunks final : public Producer<v1::Chunk> {
   int sent_ = 0;
 };
 
+class ChunkCall final : public grpc::ServerWriteReactor<grpc::ByteBuffer>, public OutgoingCall {
+ public:
+  explicit ChunkCall(OutgoingStream* stream) : stream_(stream) { stream_->begin(*this); }
+  void OnWriteDone(bool ok) override { stream_->written(ok); }
+  void OnCancel() override { stream_->cancel(); }
+  void OnDone() override {
+    stream_->end();
+    delete this;
+  }
+  void write(const grpc::ByteBuffer& message) override { StartWrite(&message); }
+  void finish(const grpc::Status& status) override { Finish(status); }
+
+ private:
+  OutgoingStream* const stream_;
+};
+
 class ChunkService final : public v1::Assets::WithRawCallbackMethod_Download<v1::Assets::Service> {
  public:
   grpc::ServerWriteReactor<grpc::ByteBuffer>* Download(grpc::CallbackServerContext* context,
                                                        const grpc::ByteBuffer*) override {
-    return new Chunks(*context, pool_, hungry);
+    return new ChunkCall(new Chunks(*context, pool_, hungry));
   }
   bool hungry = false;
 

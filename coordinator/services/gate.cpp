@@ -1,0 +1,276 @@
+#include "coordinator/services/gate.h"
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <malloc.h>
+#include <netinet/in.h>
+#include <sys/epoll.h>
+#include <sys/eventfd.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "coordinator/access/address.h"
+
+namespace hyades::coordinator {
+namespace {
+
+/// What the kernel tells of, besides connections: being woken, and listeners from the first on.
+constexpr uint64_t kWoken = 0;
+constexpr uint64_t kFirstListener = 1;
+constexpr uint64_t kFirstConnection = 1000;
+
+constexpr size_t kEventsAtOnce = 256;
+/// Connections that are accepted before it is looked whose time has come.
+constexpr int kAcceptsAtOnce = 64;
+constexpr std::chrono::milliseconds kAcceptAgainAfter{200};
+constexpr int kLongestWaitMs = 60'000;
+
+/// Of the files that this process may have open, those who wait get an eighth; and of what is known
+/// each needs two, where two thirds are left to all of it.
+Gate::Limits within_open_files(Gate::Limits limits) {
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur == RLIM_INFINITY) return limits;
+  limits.strangers.waiting = std::min<size_t>(limits.strangers.waiting, files.rlim_cur / 8);
+  limits.known = std::min<size_t>(limits.known, files.rlim_cur / 3);
+  return limits;
+}
+
+std::string address_of(const sockaddr_storage& from) {
+  std::array<char, INET6_ADDRSTRLEN> host{};
+  if (from.ss_family == AF_INET) {
+    const auto& four = reinterpret_cast<const sockaddr_in&>(from);
+    ::inet_ntop(AF_INET, &four.sin_addr, host.data(), host.size());
+    return address_text(host.data(), std::to_string(ntohs(four.sin_port)));
+  }
+  const auto& six = reinterpret_cast<const sockaddr_in6&>(from);
+  ::inet_ntop(AF_INET6, &six.sin6_addr, host.data(), host.size());
+  return address_text(host.data(), std::to_string(ntohs(six.sin6_port)));
+}
+
+bool watch(const core::Descriptor& poll, int operation, const core::Descriptor& file,
+           uint32_t events, uint64_t id) {
+  epoll_event event{};
+  event.events = events;
+  event.data.u64 = id;
+  return ::epoll_ctl(poll.get(), operation, file.get(), &event) == 0;
+}
+
+bool is_out_of_files(int error) {
+  return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM;
+}
+
+}  // namespace
+
+Gate::Gate(const Limits& limits)
+    : limits_(within_open_files(limits)),
+      strangers_(limits_.strangers),
+      next_id_(kFirstConnection) {}
+
+core::Status Gate::open(Listening listening, Inside inside) {
+  listening_ = std::move(listening);
+  inside_ = std::move(inside);
+  poll_ = core::Descriptor(::epoll_create1(EPOLL_CLOEXEC));
+  wake_ = core::Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  bool watched =
+      poll_.valid() && wake_.valid() && watch(poll_, EPOLL_CTL_ADD, wake_, EPOLLIN, kWoken);
+  for (size_t i = 0; i < listening_.sockets.size(); ++i) {
+    watched =
+        watched && watch(poll_, EPOLL_CTL_ADD, listening_.sockets[i], EPOLLIN, kFirstListener + i);
+  }
+  if (!watched) {
+    return core::Error{"cannot watch connections (" +
+                       std::error_code(errno, std::generic_category()).message() + ")"};
+  }
+  thread_ = std::thread([this] { run(); });
+  return {};
+}
+
+void Gate::close() {
+  {
+    const core::MutexLock lock(mutex_);
+    stop_ = true;
+  }
+  if (thread_.joinable()) {
+    wake();
+    thread_.join();
+  }
+  const core::MutexLock lock(mutex_);
+  for (const auto& [id, connection] : connections_) strangers_.leave(id);
+  connections_.clear();
+  by_address_.clear();
+  known_ = 0;
+  listening_.sockets.clear();
+}
+
+void Gate::know(const std::string& address) {
+  const core::MutexLock lock(mutex_);
+  const auto found = by_address_.find(address);
+  if (found == by_address_.end()) return;
+  const Id id = found->second;
+  Connection& connection = connections_.at(id);
+  if (connection.known) return;
+  strangers_.leave(id);
+  if (known_ < limits_.known) {
+    connection.known = true;
+    ++known_;
+  } else {
+    drop(id);
+  }
+  if (strangers_.waiting() > 0) wake();
+}
+
+Gate::Count Gate::count() const {
+  const core::MutexLock lock(mutex_);
+  return {strangers_.waiting(), strangers_.inside(), known_};
+}
+
+void Gate::run() {
+  std::array<epoll_event, kEventsAtOnce> events{};
+  for (;;) {
+    int patience = 0;
+    {
+      const core::MutexLock lock(mutex_);
+      if (stop_) return;
+      patience = milliseconds_to_wait();
+    }
+    const int count = ::epoll_wait(poll_.get(), events.data(), kEventsAtOnce, patience);
+    std::vector<int> entering;
+    bool calm = false;
+    {
+      const core::MutexLock lock(mutex_);
+      const Time now = std::chrono::steady_clock::now();
+      for (int i = 0; i < count; ++i) hear(events[i].data.u64, events[i].events, now);
+      advance(now, entering);
+      calm = is_calm(now);
+    }
+    // Without the lock: what comes in may call, and so be known, before this returns.
+    for (const int socket : entering) inside_(socket);
+    // Else the allocator keeps what it had for a crowd.
+    if (calm) ::malloc_trim(0);
+  }
+}
+
+int Gate::milliseconds_to_wait() const {
+  std::optional<Time> next = strangers_.next_expiry();
+  for (const std::optional<Time>& other : {accept_again_, calm_at_}) {
+    if (other) next = next ? std::min(*next, *other) : *other;
+  }
+  if (!next) return kLongestWaitMs;
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(*next - std::chrono::steady_clock::now());
+  return static_cast<int>(std::clamp<int64_t>(left.count(), 0, kLongestWaitMs));
+}
+
+void Gate::hear(Id id, uint32_t events, Time now) {
+  if (id == kWoken) {
+    uint64_t times = 0;
+    (void)!::read(wake_.get(), &times, sizeof times);
+  } else if (id < kFirstConnection) {
+    accept_from(listening_.sockets[id - kFirstListener], now);
+  } else if ((events & (EPOLLHUP | EPOLLRDHUP)) != 0) {
+    drop(id);  // both sides have ended it, or one who waited has gone
+  }
+}
+
+void Gate::accept_from(const core::Descriptor& listener, Time now) {
+  for (int i = 0; i < kAcceptsAtOnce; ++i) {
+    sockaddr_storage from{};
+    socklen_t size = sizeof from;
+    core::Descriptor socket(::accept4(listener.get(), reinterpret_cast<sockaddr*>(&from), &size,
+                                      SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (socket.valid()) {
+      take(std::move(socket), address_of(from));
+    } else if (is_out_of_files(errno)) {
+      watch_listeners(false);
+      accept_again_ = now + kAcceptAgainAfter;
+      return;
+    } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      return;
+    }
+    // Else that one has gone already.
+  }
+}
+
+void Gate::watch_listeners(bool watched) const {
+  for (size_t i = 0; i < listening_.sockets.size(); ++i) {
+    (void)watch(poll_, EPOLL_CTL_MOD, listening_.sockets[i], watched ? uint32_t{EPOLLIN} : 0U,
+                kFirstListener + i);
+  }
+}
+
+void Gate::take(core::Descriptor socket, std::string address) {
+  const Id id = next_id_++;
+  if (!watch(poll_, EPOLL_CTL_ADD, socket, EPOLLRDHUP | EPOLLET, id)) return;
+  strangers_.come(id, neighbourhood_of(address));
+  by_address_[address] = id;  // one before it from that port has most likely just ended
+  connections_.emplace(id, Connection{std::move(socket), std::move(address), false});
+}
+
+/// Whose time has come goes, and who may comes in: what they come in by is put into `entering`.
+void Gate::advance(Time now, std::vector<int>& entering) {
+  if (accept_again_ && *accept_again_ <= now) {
+    accept_again_.reset();
+    watch_listeners(true);
+  }
+  for (const Id id : strangers_.expel(now)) drop(id);
+  while (const auto id = strangers_.let_in(now)) {
+    if (const int socket = enter(*id); socket >= 0) entering.push_back(socket);
+  }
+  if (strangers_.waiting() > 0) crowded_ = true;
+  while (const auto id = strangers_.turn_away()) drop(*id);
+}
+
+/// The socket by which this one comes in; -1 where he cannot, and is gone.
+int Gate::enter(Id id) {
+  const core::Descriptor& own = connections_.at(id).socket;
+  const int socket = ::fcntl(own.get(), F_DUPFD_CLOEXEC, 0);
+  // From here on others read, and only the end of both sides is of interest.
+  if (socket < 0 || !watch(poll_, EPOLL_CTL_MOD, own, EPOLLET, id)) {
+    if (socket >= 0) ::close(socket);
+    drop(id);
+    return -1;
+  }
+  return socket;
+}
+
+/// Ends a connection, whoever else holds its socket, and forgets it.
+void Gate::drop(Id id) {
+  const auto found = connections_.find(id);
+  if (found == connections_.end()) return;
+  Connection& connection = found->second;
+  if (connection.known) --known_;
+  strangers_.leave(id);
+  const auto address = by_address_.find(connection.address);
+  if (address != by_address_.end() && address->second == id) by_address_.erase(address);
+  (void)::shutdown(connection.socket.get(), SHUT_RDWR);
+  // The kernel goes on watching what is open inside.
+  (void)::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, connection.socket.get(), nullptr);
+  connections_.erase(found);
+}
+
+/// Whether a crowd has been gone for long enough; true once.
+bool Gate::is_calm(Time now) {
+  if (!crowded_ || strangers_.waiting() > 0) {
+    calm_at_.reset();
+    return false;
+  }
+  if (!calm_at_) calm_at_ = now + limits_.calm;
+  if (*calm_at_ > now) return false;
+  crowded_ = false;
+  calm_at_.reset();
+  return true;
+}
+
+void Gate::wake() const {
+  const uint64_t one = 1;
+  (void)!::write(wake_.get(), &one, sizeof one);
+}
+
+}  // namespace hyades::coordinator

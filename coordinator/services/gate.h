@@ -1,0 +1,98 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include "coordinator/services/listening.h"
+#include "coordinator/services/stranger_queue.h"
+#include "core/base/descriptor.h"
+#include "core/base/mutex.h"
+#include "core/base/result.h"
+
+namespace hyades::coordinator {
+
+/// Stands before gRPC, for which a connection costs much more than for the kernel: takes
+/// connections, and hands few at a time on. Whoever comes is a stranger until know() is told of
+/// him: strangers may be inside for a short time, and in small numbers (StrangerQueue); those
+/// beyond wait outside as bare sockets, of which nothing is read. A thread of its own does it.
+class Gate {
+ public:
+  struct Limits {
+    StrangerQueue::Limits strangers{};
+    /// Connections of those that are known; also bounded by the files that may be open.
+    size_t known = 20'000;
+    /// How long after a crowd its memory is given back to the system.
+    std::chrono::milliseconds calm{15'000};
+  };
+  /// Takes a connected socket over, which does not block.
+  using Inside = std::function<void(int socket)>;
+
+  explicit Gate(const Limits& limits);
+  ~Gate() { close(); }
+  Gate(const Gate&) = delete;
+  Gate& operator=(const Gate&) = delete;
+
+  /// Begins to hand on to `inside` who comes to these sockets. Called once.
+  core::Status open(Listening listening, Inside inside);
+  /// Hands nobody on any more, and lets go of all sockets. What is inside stays open.
+  void close();
+
+  /// Whoever called from there, as address_text() has it, has shown who he is. Thread-safe.
+  void know(const std::string& address);
+
+  /// How many there are.
+  struct Count {
+    size_t waiting = 0;
+    size_t inside = 0;  ///< strangers
+    size_t known = 0;
+  };
+  Count count() const;
+
+ private:
+  using Id = StrangerQueue::Id;
+  using Time = StrangerQueue::Time;
+  struct Connection {
+    core::Descriptor socket;  ///< inside there is another of it, which may be closed before
+    std::string address;
+    bool known = false;
+  };
+
+  void run();
+  int milliseconds_to_wait() const HYADES_REQUIRES(mutex_);
+  void hear(Id id, uint32_t events, Time now) HYADES_REQUIRES(mutex_);
+  void accept_from(const core::Descriptor& listener, Time now) HYADES_REQUIRES(mutex_);
+  void watch_listeners(bool watched) const HYADES_REQUIRES(mutex_);
+  void take(core::Descriptor socket, std::string address) HYADES_REQUIRES(mutex_);
+  void advance(Time now, std::vector<int>& entering) HYADES_REQUIRES(mutex_);
+  int enter(Id id) HYADES_REQUIRES(mutex_);
+  void drop(Id id) HYADES_REQUIRES(mutex_);
+  bool is_calm(Time now) HYADES_REQUIRES(mutex_);
+  void wake() const;
+
+  const Limits limits_;
+  Listening listening_;
+  Inside inside_;
+  core::Descriptor poll_;
+  core::Descriptor wake_;
+  std::thread thread_;
+  mutable core::Mutex mutex_;
+  bool stop_ HYADES_GUARDED_BY(mutex_) = false;
+  StrangerQueue strangers_ HYADES_GUARDED_BY(mutex_);
+  std::unordered_map<Id, Connection> connections_ HYADES_GUARDED_BY(mutex_);
+  std::unordered_map<std::string, Id> by_address_ HYADES_GUARDED_BY(mutex_);
+  size_t known_ HYADES_GUARDED_BY(mutex_) = 0;
+  Id next_id_ HYADES_GUARDED_BY(mutex_);
+  /// No file could be opened: when it is tried again.
+  std::optional<Time> accept_again_ HYADES_GUARDED_BY(mutex_);
+  bool crowded_ HYADES_GUARDED_BY(mutex_) = false;         ///< since memory was given back
+  std::optional<Time> calm_at_ HYADES_GUARDED_BY(mutex_);  ///< when it is
+};
+
+}  // namespace hyades::coordinator

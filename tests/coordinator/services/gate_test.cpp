@@ -1,0 +1,240 @@
+#include "coordinator/services/gate.h"
+
+#include <gtest/gtest.h>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <ctime>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <thread>
+#include <utility>
+
+namespace hyades::coordinator {
+namespace {
+
+using namespace std::chrono_literals;
+
+size_t open_files() {
+  const std::filesystem::directory_iterator all("/proc/self/fd");
+  return static_cast<size_t>(std::distance(begin(all), end(all)));
+}
+
+/// One that connects, and says nothing.
+class PlainCaller {
+ public:
+  explicit PlainCaller(uint16_t port, const char* from = "127.0.0.1")
+      : socket_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in own = at(from, 0);
+    EXPECT_EQ(::bind(socket_.get(), reinterpret_cast<sockaddr*>(&own), sizeof own), 0);
+    const sockaddr_in to = at("127.0.0.1", port);
+    EXPECT_EQ(::connect(socket_.get(), reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+    socklen_t size = sizeof own;
+    ::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&own), &size);
+    address_ = std::string(from) + ":" + std::to_string(ntohs(own.sin_port));
+  }
+
+  const std::string& address() const { return address_; }
+  bool ended(std::chrono::milliseconds within) const {
+    pollfd ready{socket_.get(), POLLIN, 0};
+    char byte = 0;
+    return ::poll(&ready, 1, static_cast<int>(within.count())) == 1 &&
+           ::recv(socket_.get(), &byte, 1, 0) <= 0;
+  }
+  void hang_up() { socket_.close(); }
+
+ private:
+  static sockaddr_in at(const char* host, uint16_t port) {
+    sockaddr_in place{};
+    place.sin_family = AF_INET;
+    place.sin_port = htons(port);
+    ::inet_pton(AF_INET, host, &place.sin_addr);
+    return place;
+  }
+
+  core::Descriptor socket_;
+  std::string address_;
+};
+
+/// A gate with a room behind it in which nobody does anything.
+class GateTest : public testing::Test {
+ protected:
+  GateTest() {
+    limits.strangers = {
+        .inside = 2, .inside_of_one = 1, .waiting = 3, .patience = 1min, .haste = 1min};
+  }
+  ~GateTest() override {
+    if (gate) gate->close();
+  }
+
+  void open(const std::string& address = "127.0.0.1:0") {
+    auto listening = listen_at(address);
+    ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
+    port = listening->port;
+    gate.emplace(limits);
+    const core::Status open = gate->open(std::move(*listening), [this](int socket) {
+      const core::MutexLock lock(mutex);
+      room.emplace_back(socket);
+    });
+    ASSERT_TRUE(open.ok()) << (open ? "" : open.error().message);
+  }
+  static bool soon(const std::function<bool()>& what) {
+    for (int i = 0; i < 4000 && !what(); ++i) std::this_thread::sleep_for(5ms);
+    return what();
+  }
+  bool holds(size_t waiting, size_t inside, size_t known) const {
+    return soon([&] {
+      const Gate::Count now = gate->count();
+      return now.waiting == waiting && now.inside == inside && now.known == known;
+    });
+  }
+  size_t came_in() {
+    const core::MutexLock lock(mutex);
+    return room.size();
+  }
+
+  Gate::Limits limits;
+  uint16_t port = 0;
+  core::Mutex mutex;
+  std::deque<core::Descriptor> room HYADES_GUARDED_BY(mutex);
+  std::optional<Gate> gate;
+};
+
+TEST_F(GateTest, WhoSaysNothingIsShutOutAndWhoIsKnownStays) {
+  limits.strangers.patience = 300ms;
+  open();
+  const PlainCaller silent(port, "127.0.0.2");
+  const PlainCaller known(port);
+  ASSERT_TRUE(holds(0, 2, 0));
+  gate->know(known.address());
+  EXPECT_TRUE(silent.ended(20s));
+  EXPECT_FALSE(known.ended(1s));
+  EXPECT_TRUE(holds(0, 0, 1));
+}
+
+TEST_F(GateTest, TheKnownTakeNoPlaceOfStrangers) {
+  open();
+  std::deque<PlainCaller> workers;
+  for (size_t i = 1; i <= 20; ++i) {
+    workers.emplace_back(port);
+    ASSERT_TRUE(soon([&] { return came_in() == i; })) << i;
+    gate->know(workers.back().address());
+  }
+  EXPECT_TRUE(holds(0, 0, 20));
+}
+
+TEST_F(GateTest, OthersComeInWhileACrowdWaits) {
+  open();
+  std::deque<PlainCaller> crowd;
+  for (int i = 0; i < 30; ++i) crowd.emplace_back(port, "127.0.0.2");
+  ASSERT_TRUE(holds(3, 1, 0)) << "26 were turned away";
+  const PlainCaller honest(port);
+  EXPECT_TRUE(holds(3, 2, 0));
+  gate->know(honest.address());
+  EXPECT_TRUE(holds(3, 1, 1));
+  // Those who give up are not let in later.
+  for (PlainCaller& one : crowd) one.hang_up();
+  EXPECT_TRUE(soon([&] { return gate->count().waiting == 0; }));
+}
+
+TEST_F(GateTest, TheKnownAreBounded) {
+  limits.known = 2;
+  open();
+  std::deque<PlainCaller> workers;
+  for (size_t i = 1; i <= 3; ++i) {
+    workers.emplace_back(port);
+    ASSERT_TRUE(soon([&] { return came_in() == i; })) << i;
+    gate->know(workers.back().address());
+  }
+  EXPECT_TRUE(workers.back().ended(20s));
+  EXPECT_TRUE(holds(0, 0, 2));
+}
+
+TEST_F(GateTest, WhoeverHasTheSocketMayEndIt) {
+  open();
+  const PlainCaller caller(port);
+  ASSERT_TRUE(soon([&] { return came_in() == 1; }));
+  gate->know(caller.address());
+  {
+    const core::MutexLock lock(mutex);
+    ::shutdown(room.front().get(), SHUT_RDWR);
+    room.clear();
+  }
+  EXPECT_TRUE(holds(0, 0, 0));
+  EXPECT_TRUE(caller.ended(20s));
+}
+
+TEST_F(GateTest, NothingIsLeftBehind) {
+  const size_t before = open_files();
+  open();
+  {
+    std::deque<PlainCaller> crowd;
+    for (int i = 0; i < 3; ++i) crowd.emplace_back(port);
+    ASSERT_TRUE(holds(2, 1, 0));
+    gate->close();
+    EXPECT_TRUE(crowd.front().ended(20s)) << "it waited";
+    const core::MutexLock lock(mutex);
+    room.clear();
+  }
+  gate.reset();
+  EXPECT_EQ(open_files(), before);
+}
+
+TEST_F(GateTest, WithoutFilesItWaitsForThem) {
+  open();
+  const PlainCaller before(port);
+  ASSERT_TRUE(soon([&] { return came_in() == 1; }));
+  gate->know(before.address());
+  rlimit usual{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &usual), 0);
+  std::optional<PlainCaller> late;
+  {
+    // All files below the limit are open, but for the one with which somebody connects.
+    std::deque<core::Descriptor> all;
+    const core::Descriptor lowest(::dup(0));
+    rlimit none = usual;
+    none.rlim_cur = static_cast<rlim_t>(lowest.get()) + 64;
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+    for (int file = ::dup(0); file >= 0; file = ::dup(0)) all.emplace_back(file);
+    all.pop_back();
+    late.emplace(port);
+    const std::clock_t begun = std::clock();
+    std::this_thread::sleep_for(1s);
+    EXPECT_LT(std::clock() - begun, CLOCKS_PER_SEC / 2) << "it tries again and again";
+    EXPECT_EQ(came_in(), 1U);
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &usual), 0);
+  }
+  EXPECT_TRUE(soon([&] { return came_in() == 2; }));
+}
+
+TEST_F(GateTest, ListensAtAllThatANameStandsFor) {
+  for (const char* address : {"0.0.0.0:0", "[::]:0", "localhost:0", "127.0.0.1:0"}) {
+    const auto listening = listen_at(address);
+    if (!listening && std::string(address) == "[::]:0") continue;  // no IPv6 here
+    ASSERT_TRUE(listening.ok()) << listening.error().message;
+    ASSERT_NE(listening->port, 0) << address;
+    EXPECT_FALSE(listen_at("127.0.0.1:" + std::to_string(listening->port)).ok()) << address;
+  }
+  const auto nowhere = listen_at("192.0.2.7:0");
+  ASSERT_FALSE(nowhere.ok());
+  EXPECT_NE(nowhere.error().message.find("192.0.2.7:0: cannot listen there"), std::string::npos);
+}
+
+TEST_F(GateTest, AnAddressIsTheSameAtASocketForBothFamilies) {
+  open("[::]:0");
+  const PlainCaller caller(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  gate->know(caller.address());
+  EXPECT_TRUE(holds(0, 0, 1));
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

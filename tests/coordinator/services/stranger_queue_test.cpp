@@ -1,0 +1,134 @@
+#include "coordinator/services/stranger_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace hyades::coordinator {
+namespace {
+
+using namespace std::chrono_literals;
+
+using Ids = std::vector<StrangerQueue::Id>;
+
+/// Any moment will do.
+constexpr StrangerQueue::Time kBegin{};
+
+StrangerQueue::Limits few() {
+  return {.inside = 4, .inside_of_one = 2, .waiting = 10, .patience = 10s, .haste = 2s};
+}
+
+Ids let_in_all(StrangerQueue& queue, StrangerQueue::Time now = kBegin) {
+  Ids all;
+  while (const auto id = queue.let_in(now)) all.push_back(*id);
+  return all;
+}
+
+TEST(StrangerQueue, NeighbourhoodsTakeTurnsAndTheLastOfEachIsFirst) {
+  StrangerQueue queue(few());
+  for (StrangerQueue::Id id = 1; id <= 6; ++id) queue.come(id, "crowd");
+  queue.come(7, "honest");
+  EXPECT_EQ(let_in_all(queue), (Ids{6, 7, 5})) << "two of the crowd are the most";
+  EXPECT_EQ(queue.inside(), 3U);
+  EXPECT_EQ(queue.waiting(), 4U);
+  queue.come(8, "another");
+  EXPECT_EQ(let_in_all(queue), (Ids{8})) << "what one neighbourhood leaves is for others";
+  queue.come(9, "another");
+  EXPECT_EQ(let_in_all(queue), Ids{}) << "four in all are the most";
+  queue.leave(6);
+  EXPECT_EQ(let_in_all(queue), (Ids{4})) << "the crowd has waited for longer";
+  queue.leave(4);
+  EXPECT_EQ(let_in_all(queue), (Ids{9})) << "and then it is not its turn";
+}
+
+TEST(StrangerQueue, WhoIsInTheWayHasLessTime) {
+  StrangerQueue queue(few());
+  queue.come(1, "a");
+  queue.come(2, "a");
+  queue.come(3, "b");
+  let_in_all(queue);
+  EXPECT_EQ(queue.next_expiry(), kBegin + 10s);
+  EXPECT_EQ(queue.expel(kBegin + 9s), Ids{});
+  queue.come(4, "a");
+  EXPECT_EQ(queue.next_expiry(), kBegin + 2s);
+  Ids gone = queue.expel(kBegin + 9s);
+  EXPECT_EQ(std::set(gone.begin(), gone.end()), (std::set<StrangerQueue::Id>{1, 2}));
+  EXPECT_EQ(queue.inside(), 1U) << "the one of b is in nobody's way";
+  EXPECT_EQ(let_in_all(queue, kBegin + 9s), (Ids{4}));
+  EXPECT_EQ(queue.expel(kBegin + 10s), (Ids{3}));
+  EXPECT_EQ(queue.expel(kBegin + 18s), Ids{});
+  EXPECT_EQ(queue.expel(kBegin + 19s), (Ids{4}));
+  EXPECT_FALSE(queue.next_expiry());
+}
+
+TEST(StrangerQueue, WhereAllPlacesAreTakenEverybodyIsInTheWay) {
+  StrangerQueue queue(few());
+  for (StrangerQueue::Id id = 1; id <= 4; ++id) queue.come(id, id < 3 ? "a" : "b");
+  EXPECT_EQ(let_in_all(queue).size(), 4U);
+  queue.come(5, "c");
+  EXPECT_EQ(queue.next_expiry(), kBegin + 2s);
+  EXPECT_EQ(queue.expel(kBegin + 2s).size(), 4U);
+  EXPECT_EQ(let_in_all(queue, kBegin + 2s), (Ids{5}));
+}
+
+TEST(StrangerQueue, WhoeverBecomesKnownLeavesAPlace) {
+  StrangerQueue queue(few());
+  for (StrangerQueue::Id id = 1; id <= 10; ++id) queue.come(id, "one machine");
+  size_t in = 0;
+  for (Ids now = let_in_all(queue); !now.empty(); now = let_in_all(queue)) {
+    in += now.size();
+    for (const auto id : now) queue.leave(id);
+  }
+  EXPECT_EQ(in, 10U) << "all within no time";
+}
+
+TEST(StrangerQueue, ACrowdTurnsAwayItself) {
+  StrangerQueue queue(few());
+  for (StrangerQueue::Id id = 1; id <= 12; ++id) queue.come(id, "crowd");
+  let_in_all(queue);
+  queue.come(13, "honest");
+  EXPECT_EQ(queue.turn_away(), 1U) << "the one that has waited longest";
+  EXPECT_FALSE(queue.turn_away());
+  EXPECT_EQ(let_in_all(queue), (Ids{13}));
+}
+
+TEST(StrangerQueue, BoundsHoldWhateverHappens) {
+  StrangerQueue queue(few());
+  std::map<StrangerQueue::Id, std::string> all;
+  std::set<StrangerQueue::Id> inside;
+  uint64_t state = 1;
+  const auto choose = [&](uint64_t below) {
+    state = state * 6'364'136'223'846'793'005U + 1'442'695'040'888'963'407U;
+    return (state >> 33U) % below;
+  };
+  const auto forget = [&](StrangerQueue::Id id) {
+    all.erase(id);
+    inside.erase(id);
+  };
+  for (StrangerQueue::Id id = 1; id < 20'000; ++id) {
+    const StrangerQueue::Time now = kBegin + id * 100ms;
+    if (choose(3) > 0) {
+      all[id] = std::string(1, static_cast<char>('a' + choose(5)));
+      queue.come(id, all[id]);
+    } else if (!all.empty()) {
+      const auto any = std::next(all.begin(), static_cast<long>(choose(all.size())))->first;
+      queue.leave(any);
+      forget(any);
+    }
+    for (const auto gone : queue.expel(now)) forget(gone);
+    for (const auto in : let_in_all(queue, now)) ASSERT_TRUE(inside.insert(in).second);
+    while (const auto away = queue.turn_away()) forget(*away);
+    ASSERT_EQ(queue.inside(), inside.size());
+    ASSERT_EQ(queue.waiting(), all.size() - inside.size());
+    ASSERT_LE(queue.waiting(), 10U);
+    ASSERT_LE(inside.size(), 4U);
+    std::map<std::string, int> of;
+    for (const auto in : inside) ASSERT_LE(++of[all[in]], 2);
+  }
+}
+
+}  // namespace
+}  // namespace hyades::coordinator

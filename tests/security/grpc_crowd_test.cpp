@@ -1,0 +1,154 @@
+// Strangers who come to gRPC in crowds, and begin what they do not end.
+#include <gtest/gtest.h>
+
+#include <grpcpp/create_channel.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <deque>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/coordinator/hostile/coordinator_process.h"
+#include "tests/coordinator/hostile/raw_http2.h"
+#include "tests/coordinator/services/farm_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr const char* kToken = "0123456789abcdef0123456789abcdef";
+constexpr int kCallsOfEach = 100;
+/// MiB that a crowd may cost.
+constexpr uint64_t kMostOfCrowd = 64;
+
+int crowd_size() {
+  const char* wanted = std::getenv("HYADES_CROWD");
+  return wanted != nullptr ? std::atoi(wanted) : 600;
+}
+
+/// Connections with many calls each that show no token and are not ended, of two neighbourhoods
+/// that are not the farm's.
+class Crowd {
+ public:
+  Crowd(const std::string& address, int size) {
+    rlimit files{};
+    ::getrlimit(RLIMIT_NOFILE, &files);
+    files.rlim_cur = files.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &files);
+    for (int i = 0; i < size; ++i) {
+      test::RawHttp2& one =
+          peers_.emplace_back(address, true, i % 2 == 0 ? "127.0.0.2" : "127.0.0.3");
+      for (int k = 0; k < kCallsOfEach; ++k) one.call("/hyades.v1.Jobs/Submit");
+    }
+  }
+
+ private:
+  std::deque<test::RawHttp2> peers_;
+};
+
+/// How long each of several calls over `channel` takes until it is answered; the median.
+std::chrono::duration<double> usual_time(
+    const FarmWorld& world, int calls, const std::function<std::shared_ptr<grpc::Channel>()>& to) {
+  std::vector<std::chrono::duration<double>> times;
+  for (int i = 0; i < calls; ++i) {
+    const auto begun = std::chrono::steady_clock::now();
+    const auto stub = v1::Farm::NewStub(to());
+    v1::InfoResponse info;
+    const grpc::Status status = stub->Info(world.context().get(), {}, &info);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    times.emplace_back(std::chrono::steady_clock::now() - begun);
+    std::this_thread::sleep_for(100ms);
+  }
+  std::sort(times.begin(), times.end());
+  return times[times.size() / 2];
+}
+
+class GrpcCrowd : public testing::Test {
+ protected:
+  GrpcCrowd() {
+    std::ofstream(token_file) << kToken << "\n";
+    world.token = kToken;
+    world.how.token_file = token_file;
+  }
+
+  FarmWorld world;
+  const std::string token_file = world.folder.file("token");
+};
+
+TEST_F(GrpcCrowd, CostsLittleMemoryAndNobodysTime) {
+  test::CoordinatorProcess process({"--token-file", token_file});
+  ASSERT_FALSE(process.address().empty()) << "the coordinator does not start";
+  world.connect(process.address());
+  const auto known = [&] { return world.channel; };
+  const auto fresh = [&]() -> std::shared_ptr<grpc::Channel> {
+    grpc::ChannelArguments alone;
+    alone.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    return grpc::CreateCustomChannel(world.address, grpc::InsecureChannelCredentials(), alone);
+  };
+  usual_time(world, 5, known);
+  const uint64_t before = process.memory_mib();
+  auto crowd = std::make_unique<Crowd>(process.address(), crowd_size());
+  EXPECT_LT(usual_time(world, 21, known).count(), 1) << "who is known is not kept waiting";
+  // Whose place is taken by a crowd comes in when the patience with that ends.
+  EXPECT_LT(usual_time(world, 5, fresh).count(), 10);
+  const uint64_t peak = process.peak_mib();
+  std::printf("before: %lu MiB, peak: %lu MiB\n", before, peak);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  EXPECT_LE(peak, before + kMostOfCrowd);
+  crowd.reset();
+  EXPECT_TRUE(eventually([&] { return process.memory_mib() <= before + kMostOfCrowd / 2; }))
+      << "it is not given back";
+#endif
+  EXPECT_EQ(process.end(), 0);
+}
+
+TEST_F(GrpcCrowd, WhoIsUnknownForTooLongIsShutOut) {
+  world.serving.gate.strangers.patience = 500ms;
+  world.start();
+  v1::InfoResponse info;
+  ASSERT_TRUE(world.farm_->Info(world.context().get(), {}, &info).ok());
+  test::RawHttp2 silent(world.address, false);
+  test::RawHttp2 idle(world.address);
+  test::RawHttp2 tokenless(world.address);
+  tokenless.call("/hyades.v1.Farm/Info");
+  test::RawHttp2 guessing(world.address);
+  guessing.call("/hyades.v1.Farm/Info", {{"authorization", "Bearer none of this farm's"}});
+  for (test::RawHttp2* peer : {&silent, &idle, &tokenless, &guessing}) {
+    EXPECT_TRUE(peer->closed(20'000));
+  }
+  EXPECT_EQ(world.channel->GetState(false), GRPC_CHANNEL_READY) << "who has shown a token stays";
+  EXPECT_EQ(world.server->connections().known, 1U);
+}
+
+TEST_F(GrpcCrowd, NobodysMessageIsReadBeforeHisToken) {
+  world.start();
+  for (const char* method : {"/hyades.v1.Jobs/Submit", "/hyades.v1.Jobs/Watch"}) {
+    test::RawHttp2 peer(world.address);
+    const uint32_t call = peer.call(method);
+    EXPECT_TRUE(peer.ended(call, 20'000)) << method << ": not a byte of it was sent";
+    const uint32_t large = peer.call(method);
+    const std::string body = test::RawHttp2::head(200U << 20U) + std::string(32U << 20U, 'x');
+    EXPECT_LT(peer.send(large, body), body.size() / 2) << method;
+    EXPECT_TRUE(peer.ended(large, 20'000)) << method;
+  }
+}
+
+TEST_F(GrpcCrowd, AMessageThatDoesNotComeEndsTheCall) {
+  world.serving.request_patience = 300ms;
+  world.start();
+  for (const char* method : {"/hyades.v1.Jobs/Submit", "/hyades.v1.Jobs/Watch"}) {
+    test::RawHttp2 peer(world.address);
+    const uint32_t call = peer.call(method, {{"authorization", std::string("Bearer ") + kToken}});
+    peer.send(call, test::RawHttp2::head(1000) + "half");
+    EXPECT_TRUE(peer.ended(call, 20'000)) << method;
+  }
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
