@@ -192,8 +192,8 @@ class WorkersWithTokens : public ::testing::Test {
     return *first;
   }
   bool quarantined(const std::string& name) const {
-    v1::ListWorkersResponse all;
-    EXPECT_TRUE(world.farm_->ListWorkers(world.context().get(), {}, &all).ok());
+    v1::WorkersResponse all;
+    EXPECT_TRUE(world.farm_->Workers(world.context().get(), {}, &all).ok());
     for (const v1::Worker& worker : all.workers()) {
       if (worker.name() == name) return worker.state() == v1::WORKER_STATE_QUARANTINED;
     }
