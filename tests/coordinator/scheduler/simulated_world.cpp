@@ -84,8 +84,9 @@ void SimulatedWorld::make_job(JobId id) {
     if (chance(0.4)) plan.needs.memory = static_cast<uint64_t>(number(1, 8));
   }
   plan.shuffle = static_cast<uint64_t>(number(0, 1));
-  // Not by chance: worlds of old have to stay what they were.
-  if (static_cast<uint64_t>(id) % 3 == 0) plan.redundancy = 40;
+  // Where there are workers enough of one class to check each other. Not by chance: worlds of old
+  // have to stay what they were.
+  if (corrupt_ && static_cast<uint64_t>(id) % 2 == 0) plan.redundancy = 40;
   for (const int32_t f : plan.frames) {
     SimFrame& frame = job.frames[f];
     frame.poisoned = chance(0.05);

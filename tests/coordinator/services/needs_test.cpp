@@ -76,6 +76,8 @@ TEST(Needs, OfOlderJobStoresAreTakenOver) {
   ASSERT_EQ(sqlite3_open((world.options.folder + "/state.db").c_str(), &db), SQLITE_OK);
   EXPECT_EQ(sqlite3_exec(db,
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret;"
+                         "ALTER TABLE tokens DROP COLUMN pool;"
+                         "DROP TRIGGER count_core_time; DROP TABLE core_time;"
                          "PRAGMA user_version=7;"
                          "UPDATE jobs SET max_workers = 300, tags = 'gpu,quiet', max_attempts = 7,"
                          "memory = 1099511627776, frame_order = 2 WHERE id = 1",
