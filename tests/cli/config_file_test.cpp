@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/number_range.h"
 
 namespace hyades::cli {
 namespace {
@@ -24,7 +25,7 @@ class ConfigFile : public ::testing::Test {
                (std::string("hyades_") +
                 ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".yaml"))
                   .string()) {
-    app_.add_option("--threads", threads_)->check(CLI::Range(1, 64));
+    app_.add_option("--threads", threads_)->check(in_range(1, 64));
     app_.add_option("--memory", memory_)->transform(CLI::AsSizeValue(false));
     app_.add_option("--name", name_)->envname("HYADES_CONFIG_FILE_TEST_NAME");
     app_.add_option("--tags", tags_)->delimiter(',')->allow_extra_args(false);
