@@ -182,10 +182,14 @@ bool is_beyond(const Arguments& arguments) {
 hyades::core::Result<std::unique_ptr<Authority>> open_authority(const Arguments& arguments,
                                                                 const std::string& shared_token,
                                                                 Controller& controller) {
-  auto key = hyades::coordinator::machine_key(arguments.controller.folder);
-  if (!key) return key.error();
   Authority::Options options;
-  options.machine_key = std::move(*key);
+  if (auto key = hyades::coordinator::machine_key(arguments.controller.folder); key) {
+    options.machine_key = std::move(*key);
+  } else {
+    hyades::farm::log(LogLevel::warning, key.error().message +
+                                             ": workers join anew when this coordinator starts "
+                                             "again");
+  }
   options.shared_token = shared_token;
   options.beyond = is_beyond(arguments);
   options.audit_folder = arguments.controller.folder;

@@ -120,7 +120,7 @@ void CoordinatorSession::renew_id() {
     return;
   }
   worker_.machine.rename(id_.text());
-  if (auto joins = token_.forget(id_.text()); !joins) {
+  if (auto joins = token_.read(id_.text()); !joins) {
     worker_.log.note(LogLevel::error, "this worker cannot join anew: " + joins.error().message);
     worker_.loop.end(2);
     return;
@@ -134,7 +134,7 @@ void CoordinatorSession::renew_id() {
 /// The worker's own token from its next stream on. Where it cannot be kept the one that it has
 /// joined with goes on to do.
 void CoordinatorSession::keep_token(const std::string& own) {
-  if (auto kept = token_.keep(own); !kept) {
+  if (auto kept = token_.keep(own, id_.text()); !kept) {
     worker_.log.note(LogLevel::warning,
                      "the token of this worker's own cannot be kept: " + kept.error().message);
     return;
@@ -144,8 +144,9 @@ void CoordinatorSession::keep_token(const std::string& own) {
 
 /// Whether there is another token than was shown: tokens are changed under workers that run.
 bool CoordinatorSession::take_new_token() {
-  if (!token_.replace(id_.text())) return false;
+  const bool another = token_.replace(id_.text());
   show_token();
+  if (!another) return false;
   worker_.log.note(LogLevel::info, "shows the coordinator the token that " +
                                        worker_.options.coordinator.token_file + " holds now");
   return true;

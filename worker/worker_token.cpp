@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <system_error>
@@ -25,6 +26,7 @@ bool belongs(const std::string& own, const std::string& worker_id, const std::st
 core::Status WorkerToken::read(const std::string& worker_id) {
   own_.clear();
   join_.clear();
+  joins_ = false;
   if (join_file_.empty()) return {};
   auto join = farm::read_token(join_file_);
   if (join) join_ = *join;
@@ -36,7 +38,12 @@ core::Status WorkerToken::read(const std::string& worker_id) {
   return join || !own_.empty() ? core::Status() : core::Status(join.error());
 }
 
-core::Status WorkerToken::keep(const std::string& own) {
+core::Status WorkerToken::keep(const std::string& own, const std::string& worker_id) {
+  constexpr size_t kLongest = 200;
+  const bool plain = std::all_of(own.begin(), own.end(), [](char c) { return c > ' ' && c < 127; });
+  if (own.size() > kLongest || !plain || !belongs(own, worker_id, join_)) {
+    return core::Error{"what the coordinator has given is no token of this worker"};
+  }
   // Under another name first: whatever happens there is an old one or a new one, and both are good.
   const std::string fresh = own_file_ + ".new";
   (void)::unlink(fresh.c_str());
@@ -45,18 +52,17 @@ core::Status WorkerToken::keep(const std::string& own) {
   std::filesystem::rename(fresh, own_file_, failed);
   if (failed) return core::Error{own_file_ + ": cannot be written: " + failed.message()};
   own_ = own;
+  joins_ = false;
   return {};
 }
 
 bool WorkerToken::replace(const std::string& worker_id) {
   const std::string shown = text();
-  if (!own_.empty()) (void)::unlink(own_file_.c_str());
-  return read(worker_id) && text() != shown && !text().empty();
-}
-
-core::Status WorkerToken::forget(const std::string& worker_id) {
-  if (!own_.empty()) (void)::unlink(own_file_.c_str());
-  return read(worker_id);
+  const std::string refused = own_;
+  if (!read(worker_id)) return false;
+  if (text() != shown) return text() != refused;
+  joins_ = !join_.empty();
+  return text() != shown;
 }
 
 }  // namespace hyades::worker

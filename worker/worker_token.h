@@ -21,23 +21,23 @@ class WorkerToken {
   core::Status read(const std::string& worker_id);
 
   /// To be shown; empty: no token file is given.
-  const std::string& text() const { return own_.empty() ? join_ : own_; }
+  const std::string& text() const { return own_.empty() || joins_ ? join_ : own_; }
 
-  /// Keeps the worker's own token from now on; an error where it cannot be written.
-  core::Status keep(const std::string& own);
+  /// Keeps the own token of the worker of this id from now on. An error where it is no such token,
+  /// which a coordinator may say all the same, or cannot be written.
+  core::Status keep(const std::string& own, const std::string& worker_id);
 
-  /// The coordinator does not know what was shown: whether there is another one to show, which is
-  /// text() from now on. An own token that it does not know is forgotten.
+  /// The coordinator does not know what was shown: whether there is another one to show at once,
+  /// which is text() from now on. Nothing is lost: the own token is the next to be tried again, as
+  /// a coordinator may have another folder, or clock, for a while.
   bool replace(const std::string& worker_id);
-
-  /// The worker has another id now, which the own token is not good for.
-  core::Status forget(const std::string& worker_id);
 
  private:
   std::string join_file_;
   std::string own_file_;
   std::string join_;
   std::string own_;
+  bool joins_ = false;  ///< the own token is not shown, as it is not known
 };
 
 }  // namespace hyades::worker

@@ -1,5 +1,7 @@
 #include "coordinator/access/machine_key.h"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <system_error>
 
@@ -19,7 +21,12 @@ core::Result<std::string> machine_key(const std::string& folder) {
     if (!more) return more.error();
     key += *more;
   }
-  if (auto written = farm::write_secret(file, key + "\n"); !written) return written.error();
+  // Under another name first: one that a crash has cut would keep the coordinator from starting.
+  const std::string fresh = file + ".new";
+  (void)::unlink(fresh.c_str());
+  if (auto written = farm::write_secret(fresh, key + "\n"); !written) return written.error();
+  std::filesystem::rename(fresh, file, failed);
+  if (failed) return core::Error{file + ": cannot be made: " + failed.message()};
   return key;
 }
 

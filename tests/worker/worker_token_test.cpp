@@ -31,7 +31,7 @@ TEST_F(KeptToken, IsShownInPlaceOfTheOneThatItWasMadeFrom) {
   WorkerToken first = token();
   ASSERT_TRUE(first.read("ada").ok());
   EXPECT_EQ(first.text(), join("00000001"));
-  ASSERT_TRUE(first.keep(own("00000001", "ada")).ok());
+  ASSERT_TRUE(first.keep(own("00000001", "ada"), "ada").ok());
   EXPECT_EQ(first.text(), own("00000001", "ada"));
   struct stat info {};
   ASSERT_EQ(::stat(folder.file("worker-0.token").c_str(), &info), 0);
@@ -39,7 +39,7 @@ TEST_F(KeptToken, IsShownInPlaceOfTheOneThatItWasMadeFrom) {
   WorkerToken again = token();
   ASSERT_TRUE(again.read("ada").ok());
   EXPECT_EQ(again.text(), own("00000001", "ada"));
-  ASSERT_TRUE(again.keep(own("00000001", "ada")).ok()) << "over the one that is there";
+  ASSERT_TRUE(again.keep(own("00000001", "ada"), "ada").ok()) << "over the one that is there";
   std::filesystem::remove(folder.file("token"));
   ASSERT_TRUE(again.read("ada").ok()) << "the other one may go";
   EXPECT_EQ(again.text(), own("00000001", "ada"));
@@ -49,7 +49,7 @@ TEST_F(KeptToken, DoesNotOutlastTheOtherNorTheId) {
   put(join("00000001"));
   WorkerToken first = token();
   ASSERT_TRUE(first.read("ada").ok());
-  ASSERT_TRUE(first.keep(own("00000001", "ada")).ok());
+  ASSERT_TRUE(first.keep(own("00000001", "ada"), "ada").ok());
   EXPECT_TRUE(token().read("bob").ok());
   WorkerToken bobs = token();
   ASSERT_TRUE(bobs.read("bob").ok());
@@ -63,14 +63,43 @@ TEST_F(KeptToken, ThatIsUnknownGivesWayToWhatTheFileHolds) {
   put(join("00000001"));
   WorkerToken first = token();
   ASSERT_TRUE(first.read("ada").ok());
-  ASSERT_TRUE(first.keep(own("00000001", "ada")).ok());
+  ASSERT_TRUE(first.keep(own("00000001", "ada"), "ada").ok());
   EXPECT_TRUE(first.replace("ada"));
   EXPECT_EQ(first.text(), join("00000001"));
-  EXPECT_FALSE(std::filesystem::exists(folder.file("worker-0.token")));
-  EXPECT_FALSE(first.replace("ada")) << "there is no other";
+  EXPECT_FALSE(first.replace("ada")) << "there is no other, and each has been tried";
+  EXPECT_EQ(first.text(), own("00000001", "ada")) << "the coordinator may know it by then";
+  EXPECT_TRUE(first.replace("ada"));
+  EXPECT_EQ(first.text(), join("00000001"));
   put(join("00000002"));
   EXPECT_TRUE(first.replace("ada"));
   EXPECT_EQ(first.text(), join("00000002"));
+}
+
+TEST_F(KeptToken, ThatIsTheOnlyOneIsNeverLost) {
+  put(join("00000001"));
+  WorkerToken first = token();
+  ASSERT_TRUE(first.read("ada").ok());
+  ASSERT_TRUE(first.keep(own("00000001", "ada"), "ada").ok());
+  std::filesystem::remove(folder.file("token"));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(first.replace("ada"));
+    EXPECT_EQ(first.text(), own("00000001", "ada"));
+  }
+  EXPECT_TRUE(token().read("ada").ok());
+}
+
+TEST_F(KeptToken, IsNotWhateverACoordinatorSays) {
+  put(join("00000001"));
+  WorkerToken first = token();
+  ASSERT_TRUE(first.read("ada").ok());
+  for (const std::string& said :
+       {own("00000002", "ada"), own("00000001", "bob"), std::string("-ada"),
+        "hyades-00000001-" + std::string(64, 'c') + "\nx: y-ada",
+        "hyades-00000001-" + std::string(300, 'c') + "-ada"}) {
+    EXPECT_FALSE(first.keep(said, "ada").ok()) << said;
+    EXPECT_EQ(first.text(), join("00000001"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file("worker-0.token")));
 }
 
 TEST_F(KeptToken, WithoutAnyTheWorkerCannotBegin) {
