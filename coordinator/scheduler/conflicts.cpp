@@ -45,7 +45,10 @@ bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, 
     }
     dispute = &ledger.open_dispute(extent, {held.worker, held.digest, held.voice});
   }
-  if (held.digest != e.digest) mark_disputed(job);
+  if (held.digest != e.digest) {
+    dispute->differs = true;
+    mark_disputed(job);
+  }
   std::vector<Opinion>& opinions = dispute->opinions;
   if (std::none_of(opinions.begin(), opinions.end(),
                    [&](const Opinion& o) { return o.worker == e.worker; })) {
@@ -76,6 +79,7 @@ void Conflicts::decide(ScheduledJob& job, FrameSlot& slot, const Dispute& disput
   FrameLedger& ledger = *slot.ledger;
   const Extent extent = dispute.extent;
   leases_.end_assignment(job, slot, extent, e.lease);
+  if (ledger.waits_for_checks()) step_.work_appeared = true;
   ledger.end_dispute(extent);
   const bool right = ledger.find_held(extent)->digest == e.digest;
   if (right) {
@@ -220,9 +224,10 @@ bool Conflicts::any_suspect() const {
 void Conflicts::end_marks() {
   if (divergent_records_ > 0) return;
   std::erase_if(marked_, [this](JobId id) { return jobs_.find(id) == nullptr; });
+  if (marked_.empty() || any_suspect()) return;
   for (const JobId id : marked_) {
     ScheduledJob& job = *jobs_.find(id);
-    if (job.mark != DisputeMark::open || has_dispute(job) || any_suspect()) continue;
+    if (job.mark != DisputeMark::open || has_dispute(job)) continue;
     job.mark = DisputeMark::ending;
     records_.persist(DisputeRecord{id, false});
   }

@@ -10,14 +10,9 @@
 
 namespace hyades::coordinator {
 
-bool Dispute::differs() const {
-  return std::any_of(opinions.begin(), opinions.end(),
-                     [&](const Opinion& o) { return o.digest != opinions.front().digest; });
-}
-
 size_t FrameLedger::disputes() const {
   return static_cast<size_t>(std::count_if(disputes_.begin(), disputes_.end(),
-                                           [](const Dispute& d) { return d.differs(); }));
+                                           [](const Dispute& d) { return d.differs; }));
 }
 
 Dispute* FrameLedger::find_dispute(const Extent& e) {
@@ -27,7 +22,7 @@ Dispute* FrameLedger::find_dispute(const Extent& e) {
 }
 
 Dispute& FrameLedger::open_dispute(const Extent& e, const Opinion& first) {
-  return disputes_.emplace_back(Dispute{e, {first}});
+  return disputes_.emplace_back(Dispute{e, {first}, false});
 }
 
 void FrameLedger::end_dispute(const Extent& e) {

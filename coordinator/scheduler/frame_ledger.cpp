@@ -101,6 +101,7 @@ std::optional<Extent> FrameLedger::cut_open(const Extent& front, uint32_t run) {
 }
 
 bool FrameLedger::has_work(const MayTry& may_try) const {
+  if (waits_for_checks()) return false;
   uint64_t barred = 0;
   for (const Extent& e : retries_) {
     if (all_free(e) && !may_try(find_blame(e)->workers, {})) barred += e.batches.count;

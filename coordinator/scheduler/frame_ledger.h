@@ -63,8 +63,7 @@ struct Opinion {
 struct Dispute {
   Extent extent;
   std::vector<Opinion> opinions;
-  /// Whether two renderings differ.
-  bool differs() const;
+  bool differs = false;  ///< two renderings do, be it of one worker
 };
 
 /// The ledger of one frame. Every batch of every tile is free, leased or held, and so counts once
@@ -105,9 +104,10 @@ class FrameLedger {
   // Leased batches.
 
   /// A unit that nobody has: a failed one that may be tried, else the next `run(tile)` batches or
-  /// fewer.
+  /// fewer. Nothing while many wait to be checked: those who check have to keep up.
   template <class RunLength>
   std::optional<Extent> next(const MayTry& may_try, RunLength run) {
+    if (waits_for_checks()) return std::nullopt;
     if (auto retry = next_retry(may_try)) return retry;
     while (!open_.empty()) {
       const Extent front = open_.front();
@@ -167,6 +167,8 @@ class FrameLedger {
   /// Two voices have to agree on the extent, which is held; `first` is the one that is held.
   Dispute& open_dispute(const Extent& e, const Opinion& first);
   void end_dispute(const Extent& e);
+  /// Whether so many units wait for another voice that no new ones are to be had.
+  bool waits_for_checks() const { return disputes_.size() >= kMostToCheck; }
   /// A disputed unit that nobody renders, for a worker whose voice was not heard about it and that
   /// may try it.
   std::optional<Extent> next_check(Voice voice, const MayTry& may_try) const;
@@ -191,6 +193,9 @@ class FrameLedger {
   std::string audit() const;
 
  private:
+  /// Units that wait for another voice, of one frame; it takes no new ones then.
+  static constexpr size_t kMostToCheck = 64;
+
   struct Blame {
     Extent extent;
     std::vector<WorkerId> workers;

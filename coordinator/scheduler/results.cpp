@@ -44,7 +44,7 @@ void Results::on(const ResultArrived& e) {
   // After a restart what was merged has no digest any more.
   const bool differs = held && held->digest != Digest{} && held->digest != e.digest;
   const Dispute* known = held ? ledger.find_dispute(*extent) : nullptr;
-  if (known && known->differs() && job->mark != DisputeMark::open) {
+  if (known && known->differs && job->mark != DisputeMark::open) {
     // Who has heard an answer may forget its film, and that there is a dispute must be known then.
     reject(e, RejectReason::not_now);
   } else if (differs) {

@@ -301,14 +301,12 @@ TEST_F(Redundancy, IsOfTheShareThatWasAskedForAndOfUnitsThatTheSeedChooses) {
     plan.region = {0, 0, 32 * 1000, 32};
     plan.redundancy = 25;
     plan.redundancy_seed = seed;
-    b.join(kAnna);
-    b.add(plan);
-    b.tell(FrameOpened{kJob, 1});
+    b.begin(plan);
     std::vector<bool> chosen;
     for (int i = 0; i < 1000; ++i) {
-      const uint32_t before = b.scheduler.units_to_confirm(kJob);
       b.deliver_durably(b.ask(kAnna));
-      chosen.push_back(b.scheduler.units_to_confirm(kJob) > before);
+      chosen.push_back(b.scheduler.units_to_confirm(kJob) > 0);
+      if (chosen.back()) b.deliver(b.ask(kBert));
     }
     return chosen;
   };
@@ -319,11 +317,36 @@ TEST_F(Redundancy, IsOfTheShareThatWasAskedForAndOfUnitsThatTheSeedChooses) {
   EXPECT_EQ(twice(7), one);
 }
 
+TEST_F(Redundancy, NobodyGoesFarAheadOfThoseWhoCheck) {
+  begin(100, 32 * 100);
+  const auto none_left = [&] {
+    b.tell(WorkRequested{kAnna, 1});
+    return b.all<Lease>().empty();
+  };
+  for (int i = 0; i < 64; ++i) b.deliver_durably(b.ask(kAnna));
+  EXPECT_TRUE(none_left());
+  b.deliver(b.ask(kBert));
+  EXPECT_EQ(b.all<Lease>().size(), 1U) << "Anna still waits for a unit";
+}
+
 TEST_F(Redundancy, WithoutItNobodyIsAskedAgain) {
   begin(0);
   b.deliver_durably(b.ask(kAnna));
   b.deliver_durably(b.ask(kBert));
   EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+}
+
+/// One that contradicts itself is no check: what it gave is in doubt over a restart.
+TEST_F(Redundancy, AWorkerThatContradictsItselfIsADispute) {
+  begin(0);
+  const Lease first = b.ask(kAnna);
+  b.deliver_durably(first);
+  b.deliver(first, 0, 2);
+  EXPECT_EQ(b.scheduler.disputed_units(kJob), 1U);
+  EXPECT_EQ(b.scheduler.units_to_confirm(kJob), 0U);
+  EXPECT_TRUE(std::holds_alternative<DisputeRecord>(b.only<Persist>().record));
+  b.tell(Persisted{b.only<Persist>().id});
+  EXPECT_TRUE(b.all<Persist>().empty()) << "it is open";
 }
 
 /// Anna has a credential of her own, and rendered one of two tiles. Bert, Cora and more are let in
