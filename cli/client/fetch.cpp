@@ -136,6 +136,9 @@ Outcome FetchTarget::check(const std::string& path) const {
     return Failure{kFailed, "the coordinator names an output that is no file of a job: '" +
                                 path.substr(0, 200) + "'"};
   }
+  if (fs::path(path).begin()->string() == ".hyades") {
+    return Failure{kFailed, path + ": what hyades keeps for itself no job writes"};
+  }
   if (!hidden && is_hidden_output(path)) {
     return Failure{kFailed, path + ": hidden files are not written (--hidden writes them)"};
   }

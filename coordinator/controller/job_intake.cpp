@@ -128,18 +128,17 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   auto active = make_active_job(new_row(request, *options, owner_proven), request.spec(),
                                 *context_.assets, context_.options.film_memory);
   if (!active) return wrong(active.error().message);
-  const grpc::Status taken = take_in(std::move(*active), response);
-  if (!taken.ok()) return taken;
-  for (const core::AssetRecord& file : *files) unclaimed_.remove(file.sha256);
-  return taken;
+  return take_in(std::move(*active), response, *files);
 }
 
 /// Stores a new job, which nobody else knows yet, and begins with it.
-grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response) {
+grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response,
+                                const std::vector<core::AssetRecord>& files) {
   if (!has_room_for(active->stored)) return no_room();
   const auto added = context_.store->add_job(active->stored);
   if (!added) return farm::unavailable(added.error());
   core::failpoint("job-stored");
+  for (const core::AssetRecord& file : files) unclaimed_.remove(file.sha256);
   if (!added->existed) {
     active->id = JobId{added->id};
     active->stored.id = added->id;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <grpcpp/support/status.h>
 
@@ -51,7 +52,8 @@ class JobIntake {
   grpc::Status remove(uint64_t job) HYADES_EXCLUDES(state_lock);
 
  private:
-  grpc::Status take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response)
+  grpc::Status take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response,
+                       const std::vector<core::AssetRecord>& files)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   grpc::Status reopen(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);
   grpc::Status may_reopen(uint64_t id, StoredJob& job) HYADES_EXCLUDES(state_lock);

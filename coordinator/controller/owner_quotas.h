@@ -14,7 +14,7 @@ namespace hyades::coordinator {
 /// Within which OwnerLimits::core_hours are counted.
 inline constexpr std::chrono::hours kCoreHoursWindow{24};
 
-/// Whether an owner may have more of the farm than he has: OK, or RESOURCE_EXHAUSTED
+/// Whether an owner may have more of the farm than now: OK, or RESOURCE_EXHAUSTED
 /// (farm::over_quota) in words that name the option and what helps. Counts nothing itself.
 class OwnerQuotas {
  public:

@@ -43,6 +43,7 @@ core::Status check_file(const core::Job& job, const std::string& file) {
   const std::string extension = core::file_extension(file);
   const std::filesystem::path path = std::filesystem::path(file).lexically_normal();
   if ((extension != ".mp4" && extension != ".mov" && extension != ".webm") || path.stem().empty() ||
+      path.stem().string().starts_with('.') || path.stem().string().starts_with('-') ||
       path.is_absolute() || *path.begin() == ".." || file.find('#') != std::string::npos ||
       std::any_of(file.begin(), file.end(), [](unsigned char c) { return c < ' '; })) {
     return core::Error{"file '" + file +

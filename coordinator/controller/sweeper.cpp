@@ -85,6 +85,7 @@ core::Status Sweeper::sweep_assets(Duration grace) {
   for (std::string& name : context_.assets->names()) names.insert(std::move(name));
   uint64_t seen = 0;
   if (core::Status spared = spare_needed(names, seen); !spared) return spared;
+  unclaimed_.keep_only(names);
   bool all = !context_.stop;
   if (!names.empty()) {
     // No submission comes between the last look and the removal: it finds its files here, or not.

@@ -1,6 +1,7 @@
 #include "coordinator/controller/unclaimed_files.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace hyades::coordinator {
 namespace {
@@ -24,6 +25,17 @@ void UnclaimedFiles::remove(const std::string& name) {
   whose->second -= found->second.bytes;
   if (whose->second == 0) bytes_.erase(whose);
   files_.erase(found);
+}
+
+void UnclaimedFiles::keep_only(const std::unordered_set<std::string>& names) {
+  std::vector<std::string> others;
+  {
+    const core::MutexLock lock(mutex_);
+    for (const auto& [name, claimable] : files_) {
+      if (!names.contains(name)) others.push_back(name);
+    }
+  }
+  for (const std::string& name : others) remove(name);
 }
 
 uint64_t UnclaimedFiles::bytes_of(const std::string& owner) const {

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "core/base/mutex.h"
 
@@ -18,6 +19,8 @@ class UnclaimedFiles {
   void add(const std::string& owner, const std::string& name, uint64_t size);
   /// A job has the file, or it is gone: it counts for nobody.
   void remove(const std::string& name);
+  /// Only these are still there, and no job has them.
+  void keep_only(const std::unordered_set<std::string>& names);
   /// Bytes of the owner's.
   uint64_t bytes_of(const std::string& owner) const;
 

@@ -71,7 +71,9 @@ void WorkerSessions::on_heartbeat(WorkerSession& session, const v1::Heartbeat& b
 void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& failure,
                                 Turn& turn) {
   const auto unit = farm::from_wire(failure.unit().unit());
-  if (unit) {
+  const LeaseId lease = from_wire(failure.unit().lease());
+  // Who has no lease could fill jobs' logs with what he invents.
+  if (unit && !dispatcher_.scheduler().units_of(session.id, lease).empty()) {
     const JobId job{failure.unit().job()};
     ++session.units_failed;
     context_.meters->lost("failed");
@@ -82,8 +84,7 @@ void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& f
                              farm::wire_text(failure.reason())),
                  &*unit);
     }
-    turn.tell(UnitFailed{session.id, from_wire(failure.unit().lease()), job, *unit,
-                         farm::wire_text(failure.reason())});
+    turn.tell(UnitFailed{session.id, lease, job, *unit, farm::wire_text(failure.reason())});
   }
   want(session, failure.want(), turn);
 }
@@ -94,6 +95,8 @@ void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned
     const auto unit = farm::from_wire(returned.unit());
     if (!unit) continue;
     const JobId job{returned.job()};
+    // As of failures.
+    if (dispatcher_.scheduler().units_of(session.id, from_wire(returned.lease())).empty()) continue;
     context_.meters->lost("returned");
     // Why a worker that stays gives units back, in the job's log: once, for it may go on so.
     ActiveJob* active = session.leaving || message.reason().empty() ? nullptr : jobs_.find(job);
@@ -130,6 +133,8 @@ void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link,
   context_.meters->film_bytes(result.film().size());
   std::optional<ExpectedFilm> expected;
   std::string worker_class;
+  bool invented = false;
+  const auto unit = farm::from_wire(result.unit());
   const TimePoint came = std::chrono::steady_clock::now();
   {
     const StateLock lock(context_.mutex);
@@ -140,9 +145,14 @@ void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link,
     worker_class = session->hello.worker_class();
     if (const ActiveJob* active = jobs_.find(result.job())) {
       expected = {active->layout, active->region, active->key};
+      invented = unit && !context_.proofs.holds(result.unit().proof(), session->hello.worker_id(),
+                                                JobId{result.job()}, *unit);
     }
   }
-  auto checked = check_result(result, expected, worker_class);
+  // Before it is decoded: what is said to be of a large tile may take much memory.
+  std::variant<Delivery, ResultRefusal> checked =
+      ResultRefusal{v1::Rejected::REASON_UNKNOWN, "the unit was not leased to this worker"};
+  if (!invented) checked = check_result(result, expected, worker_class);
   Turn turn(dispatcher_);
   WorkerSession* session = workers_.find(worker, link);
   if (session == nullptr) return;
@@ -167,10 +177,6 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
     return ResultRefusal{Rejected::REASON_UNKNOWN, "the worker is quarantined"};
   }
   const core::Unit& unit = delivery.unit.unit;
-  if (!context_.proofs.holds(result.unit().proof(), session.hello.worker_id(), JobId{result.job()},
-                             unit)) {
-    return ResultRefusal{Rejected::REASON_UNKNOWN, "the unit was not leased to this worker"};
-  }
   if (disk_.level() == DiskLevel::full) {
     return ResultRefusal{Rejected::REASON_NOT_NOW, "the coordinator's disk is full", kFullRetryMs};
   }
@@ -210,13 +216,15 @@ void WorkerSessions::refuse(WorkerSession& session, const v1::UnitResult& result
   context_.meters->result(verdict_of(refusal.reason));
   if (refusal.reason == v1::Rejected::REASON_NOT_NOW) return;
   const auto unit = farm::from_wire(result.unit());
+  // As of failures.
+  if (!unit || dispatcher_.scheduler().units_of(session.id, from_wire(result.lease())).empty()) {
+    return;
+  }
   if (ActiveJob* active = jobs_.find(result.job())) {
     jobs_.note(*active, v1::LOG_LEVEL_WARNING, result.unit().frame(), session.hello.name(),
-               "a film was refused: " + refusal.text, unit ? &*unit : nullptr);
+               "a film was refused: " + refusal.text, &*unit);
   }
-  if (unit) {
-    turn.tell(UnitReturned{session.id, from_wire(result.lease()), JobId{result.job()}, *unit});
-  }
+  turn.tell(UnitReturned{session.id, from_wire(result.lease()), JobId{result.job()}, *unit});
 }
 
 void WorkerSessions::send_lease(const Lease& lease) {

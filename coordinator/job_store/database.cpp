@@ -1,6 +1,12 @@
 #include "coordinator/job_store/database.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <cstddef>
+
+#include "core/base/descriptor.h"
+#include "core/base/posix_file.h"
 
 namespace hyades::coordinator {
 
@@ -9,6 +15,17 @@ namespace {
 std::string folder_of(const std::string& path) {
   const size_t slash = path.rfind('/');
   return slash == std::string::npos ? "." : path.substr(0, slash);
+}
+
+/// Its files are nobody's but the owner's and the group's, whoever makes them with whatever umask:
+/// what SQLite puts beside the file has the file's mode. (One that is there is not opened: to close
+/// it would end the locks that this process has of it.)
+void hide_from_others(const std::string& path) {
+  constexpr mode_t kNotForOthers = S_IRUSR | S_IWUSR | S_IRGRP;
+  (void)core::open_file(path, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW, kNotForOthers);
+  struct stat info {};
+  if (::lstat(path.c_str(), &info) != 0 || !S_ISREG(info.st_mode)) return;
+  (void)::chmod(path.c_str(), info.st_mode & kNotForOthers);
 }
 
 }  // namespace
@@ -85,6 +102,7 @@ core::Status Transaction::commit() {
 }
 
 core::Result<Database> open_database(const std::string& path) {
+  hide_from_others(path);
   sqlite3* raw = nullptr;
   const int code =
       sqlite3_open_v2(path.c_str(), &raw,
