@@ -22,7 +22,7 @@ class Controller;
 
 /// Begins with a file, or goes on with what is there of it from this caller, and notes that: once
 /// for a file, however many pieces it comes in. `log` may be null. `writer` stays null where the
-/// whole file is here already. RESOURCE_EXHAUSTED where the caller has uploads as he may
+/// whole file is here already. RESOURCE_EXHAUSTED where the caller has as many uploads as allowed
 /// (OwnerQuotas). May wait for the disk.
 grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& caller,
                           const std::string& name, uint64_t size,

@@ -120,7 +120,7 @@ class UploadStream final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
 
 void add_asset_streams(Service& service) {
   Controller& controller = service.backend().controller;
-  service.add_writer(
+  service.add_client_stream(
       "Assets/Upload",
       [&service, &controller](Service::Context& context, const Caller& caller,
                               const grpc::Status& admitted) {
@@ -128,7 +128,7 @@ void add_asset_streams(Service& service) {
                                 caller, admitted);
       },
       v1::UploadResponse::default_instance());
-  service.add_reader<v1::DownloadRequest>(
+  service.add_server_stream<v1::DownloadRequest>(
       "Assets/Download",
       [&service, &controller](Service::Context& context, v1::DownloadRequest&& request,
                               grpc::Status& refused) -> OutgoingStream* {

@@ -42,7 +42,7 @@ class AuditEntries final : public Producer<v1::AuditEntry> {
 }  // namespace
 
 void add_audit_stream(Service& service) {
-  service.add_reader<v1::AuditRequest>(
+  service.add_server_stream<v1::AuditRequest>(
       "Admin/Audit",
       [&service](Service::Context& context, v1::AuditRequest&& request, grpc::Status&) {
         return new AuditEntries(context, service.executors().files, service.admission().audit(),

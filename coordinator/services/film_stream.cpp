@@ -91,7 +91,7 @@ class FilmStream final : public Producer<v1::FilmPart> {
 }  // namespace
 
 void add_film_stream(Service& service) {
-  service.add_reader<v1::FilmRequest>(
+  service.add_server_stream<v1::FilmRequest>(
       "Jobs/Film",
       [&service, films = std::make_shared<std::atomic<int>>(0)](
           Service::Context& context, v1::FilmRequest&& request,

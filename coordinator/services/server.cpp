@@ -37,7 +37,7 @@ struct Server::Parts {
   Parts(Controller& controller, Authority& authority, bool workers_show, const Options& options)
       : gate(options.gate),
         admission(authority, workers_show,
-                  [this](const std::string& address) { gate.know(address); }),
+                  [this](const std::string& address) { gate.mark_known(address); }),
         service({controller, authority}, admission, executors, options.request_patience) {
     add_job_streams(service);
     add_film_stream(service);
@@ -46,7 +46,7 @@ struct Server::Parts {
     add_worker_stream(service);
   }
 
-  Gate gate;
+  ConnectionGate gate;
   Admission admission;
   Executors executors;
   Service service;
@@ -62,7 +62,7 @@ Server::~Server() {
   parts_->server->Wait();
 }
 
-Gate::Count Server::connections() const { return parts_->gate.count(); }
+ConnectionGate::Count Server::connections() const { return parts_->gate.count(); }
 
 core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Controller& controller,
                                                     Authority& authority, const Options& options) {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "coordinator/services/gate.h"
+#include "coordinator/services/connection_gate.h"
 #include "core/base/result.h"
 #include "farm/channel.h"
 
@@ -22,7 +22,7 @@ class Server {
     std::chrono::milliseconds idle = std::chrono::minutes(5);
     /// How long the one message of a call that is admitted may be on its way.
     std::chrono::milliseconds request_patience = std::chrono::minutes(2);
-    Gate::Limits gate{};
+    ConnectionGate::Limits gate{};
   };
 
   /// Listens; an error where the address is taken or not this machine's. `controller` and
@@ -42,7 +42,7 @@ class Server {
   /// HOST:PORT as bound.
   const std::string& address() const { return address_; }
   /// How many connections there are.
-  Gate::Count connections() const;
+  ConnectionGate::Count connections() const;
 
  private:
   struct Parts;

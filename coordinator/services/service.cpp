@@ -184,7 +184,7 @@ void Service::add(const char* method, Method::RpcType type,
   MarkMethodRawCallback(index, handler);
 }
 
-void Service::add_raw_reader(const char* method, const MakeRawStream& make) {
+void Service::add_raw_server_stream(const char* method, const MakeRawStream& make) {
   const Rule& rule = operation_of_method(method).rule;
   add(method, Method::BIDI_STREAMING,
       new CallbackBidiHandler<Bytes, Bytes>([this, &rule, make](Context* context) {
@@ -192,9 +192,9 @@ void Service::add_raw_reader(const char* method, const MakeRawStream& make) {
       }));
 }
 
-void Service::add_writer(const char* method,
-                         const MakeReactor<grpc::ServerReadReactor<Bytes>>& make,
-                         const Message& response) {
+void Service::add_client_stream(const char* method,
+                                const MakeReactor<grpc::ServerReadReactor<Bytes>>& make,
+                                const Message& response) {
   const Rule& rule = operation_of_method(method).rule;
   add(method, Method::CLIENT_STREAMING,
       new CallbackClientStreamingHandler<Bytes, Bytes>(
@@ -206,8 +206,8 @@ void Service::add_writer(const char* method,
           }));
 }
 
-void Service::add_talker(const char* method,
-                         const MakeReactor<grpc::ServerBidiReactor<Bytes, Bytes>>& make) {
+void Service::add_bidi_stream(const char* method,
+                              const MakeReactor<grpc::ServerBidiReactor<Bytes, Bytes>>& make) {
   const Rule& rule = operation_of_method(method).rule;
   add(method, Method::BIDI_STREAMING,
       new CallbackBidiHandler<Bytes, Bytes>([this, &rule, make](Context* context) {

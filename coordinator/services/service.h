@@ -21,7 +21,7 @@ namespace hyades::coordinator {
 
 /// All methods of all gRPC services. They take bytes (farm/message_bytes.h). Those that one message
 /// answers come from the table of operations; streams are added by hand. Nobody's message is taken
-/// in before he is admitted.
+/// in before the caller is admitted.
 class Service final : public grpc::Service {
  public:
   using Context = grpc::CallbackServerContext;
@@ -38,12 +38,13 @@ class Service final : public grpc::Service {
   /// Adds a method that answers a Request of an admitted caller with the stream that `make` makes.
   /// The stream ends with the caller's token.
   template <class Request>
-  void add_reader(const char* method, MakeStream<Request> make) {
-    add_raw_reader(method, [make](Context& context, const Bytes& asked, grpc::Status& refused) {
-      Request request;
-      refused = farm::parse(asked, farm::kMaxRequestBytes, request);
-      return refused.ok() ? make(context, std::move(request), refused) : nullptr;
-    });
+  void add_server_stream(const char* method, MakeStream<Request> make) {
+    add_raw_server_stream(
+        method, [make](Context& context, const Bytes& asked, grpc::Status& refused) {
+          Request request;
+          refused = farm::parse(asked, farm::kMaxRequestBytes, request);
+          return refused.ok() ? make(context, std::move(request), refused) : nullptr;
+        });
   }
   /// Makes the reactor of a call that sends a stream. Where the caller was not admitted, the
   /// reactor ends the call with `admitted`.
@@ -51,11 +52,12 @@ class Service final : public grpc::Service {
   using MakeReactor =
       std::function<Reactor*(Context&, const Caller&, const grpc::Status& admitted)>;
   /// Adds a method that takes a stream and answers it with `response`, which outlives the service.
-  void add_writer(const char* method, const MakeReactor<grpc::ServerReadReactor<Bytes>>& make,
-                  const Message& response);
+  void add_client_stream(const char* method,
+                         const MakeReactor<grpc::ServerReadReactor<Bytes>>& make,
+                         const Message& response);
   /// Adds a method of which both sides send a stream.
-  void add_talker(const char* method,
-                  const MakeReactor<grpc::ServerBidiReactor<Bytes, Bytes>>& make);
+  void add_bidi_stream(const char* method,
+                       const MakeReactor<grpc::ServerBidiReactor<Bytes, Bytes>>& make);
 
   Backend& backend() { return at_; }
   Executors& executors() { return executors_; }
@@ -65,11 +67,11 @@ class Service final : public grpc::Service {
   class UnaryCall;
   class StreamCall;
   using Method = grpc::internal::RpcMethod;
-  /// As add_reader(), of the request's bytes.
+  /// Adds a method that one request begins and a stream answers; `make` gets the request's bytes.
   using MakeRawStream =
       std::function<OutgoingStream*(Context&, const Bytes& asked, grpc::Status& refused)>;
   void add(const char* method, Method::RpcType type, grpc::internal::MethodHandler* handler);
-  void add_raw_reader(const char* method, const MakeRawStream& make);
+  void add_raw_server_stream(const char* method, const MakeRawStream& make);
 
   Backend at_;
   const Admission& admission_;

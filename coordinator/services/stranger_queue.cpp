@@ -89,7 +89,7 @@ bool StrangerQueue::is_waited_for(const Neighbourhood& one) const {
 
 StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
   const bool pressed = is_waited_for(strangers_.at(id).of->second);
-  return since + (pressed ? limits_.haste : limits_.patience);
+  return since + (pressed ? limits_.patience_when_full : limits_.patience);
 }
 
 void StrangerQueue::stop_waiting(const Stranger& stranger) {

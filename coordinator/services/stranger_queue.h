@@ -26,8 +26,9 @@ class StrangerQueue {
     size_t inside = 48;
     size_t inside_of_one = 24;  ///< of one neighbourhood
     size_t waiting = 4000;
-    std::chrono::milliseconds patience{10'000};  ///< with one who is inside, until he is known
-    std::chrono::milliseconds haste{2000};       ///< the same where somebody waits for his place
+    std::chrono::milliseconds patience{10'000};  ///< with one who is inside, until known
+    std::chrono::milliseconds patience_when_full{
+        2000};  ///< the same where others wait for the place
   };
 
   explicit StrangerQueue(const Limits& limits) : limits_(limits) {}
@@ -42,7 +43,7 @@ class StrangerQueue {
   std::optional<Id> turn_away();
   /// Those that have been inside for too long, who have to go.
   std::vector<Id> expel(Time now);
-  /// One has become known, or has gone by himself; nothing where he was not there.
+  /// One has become known, or has gone; nothing where this one was not there.
   void leave(Id id);
 
   /// When expel() will find the next one, as things stand; nothing where nobody is inside.
@@ -59,7 +60,7 @@ class StrangerQueue {
   using Neighbourhoods = std::map<std::string, Neighbourhood>;
   struct Stranger {
     Neighbourhoods::iterator of;
-    std::list<Id>::iterator place;  ///< in Neighbourhood::waiting, while he waits
+    std::list<Id>::iterator place;  ///< in Neighbourhood::waiting, while it waits
   };
 
   bool is_full(const Neighbourhood& one) const { return one.inside >= limits_.inside_of_one; }

@@ -224,8 +224,8 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
 }  // namespace
 
 void add_worker_stream(Service& service) {
-  service.add_talker("Work/Attend", [&service](Service::Context& context, const Caller& caller,
-                                               const grpc::Status& admitted) {
+  service.add_bidi_stream("Work/Attend", [&service](Service::Context& context, const Caller& caller,
+                                                    const grpc::Status& admitted) {
     return new WorkerStream(service.backend().controller, context, service.admission(), caller,
                             admitted);
   });

@@ -40,7 +40,7 @@ class AssetsApi {
     std::unique_ptr<farm::ContentWriter> writer;
     std::chrono::steady_clock::time_point used;
   };
-  /// An owner's file: each has his own, though they have one name.
+  /// An owner's file: each has one, though they have one name.
   struct FileOf {
     std::string owner;
     std::string name;

@@ -89,6 +89,15 @@ TEST(Operations, OnlyThoseWhoMayWaitLookWhoseJobItIs) {
   }
 }
 
+/// What is answered from memory is not looked at again.
+TEST(Operations, OnlyWhatEverybodyMayKnowIsAnsweredFromMemory) {
+  for (const Operation& row : all_operations()) {
+    if (!row.handle || !row.handle.has_memory()) continue;
+    EXPECT_FALSE(row.rule.steers_job) << row.rule.action;
+    EXPECT_FALSE(row.rule.audited) << row.rule.action;
+  }
+}
+
 TEST(Rules, EveryPathOfOpenApiHasOne) {
   const YAML::Node api = YAML::LoadFile("coordinator/web/api/openapi.yaml");
   int count = 0;

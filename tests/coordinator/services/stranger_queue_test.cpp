@@ -18,7 +18,8 @@ using Ids = std::vector<StrangerQueue::Id>;
 constexpr StrangerQueue::Time kBegin{};
 
 StrangerQueue::Limits few() {
-  return {.inside = 4, .inside_of_one = 2, .waiting = 10, .patience = 10s, .haste = 2s};
+  return {
+      .inside = 4, .inside_of_one = 2, .waiting = 10, .patience = 10s, .patience_when_full = 2s};
 }
 
 Ids let_in_all(StrangerQueue& queue, StrangerQueue::Time now = kBegin) {

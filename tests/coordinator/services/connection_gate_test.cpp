@@ -1,4 +1,4 @@
-#include "coordinator/services/gate.h"
+#include "coordinator/services/connection_gate.h"
 
 #include <gtest/gtest.h>
 
@@ -65,13 +65,16 @@ class PlainCaller {
 };
 
 /// A gate with a room behind it in which nobody does anything.
-class GateTest : public testing::Test {
+class ConnectionGateTest : public testing::Test {
  protected:
-  GateTest() {
-    limits.strangers = {
-        .inside = 2, .inside_of_one = 1, .waiting = 3, .patience = 1min, .haste = 1min};
+  ConnectionGateTest() {
+    limits.strangers = {.inside = 2,
+                        .inside_of_one = 1,
+                        .waiting = 3,
+                        .patience = 1min,
+                        .patience_when_full = 1min};
   }
-  ~GateTest() override {
+  ~ConnectionGateTest() override {
     if (gate) gate->close();
   }
 
@@ -92,7 +95,7 @@ class GateTest : public testing::Test {
   }
   bool holds(size_t waiting, size_t inside, size_t known) const {
     return soon([&] {
-      const Gate::Count now = gate->count();
+      const ConnectionGate::Count now = gate->count();
       return now.waiting == waiting && now.inside == inside && now.known == known;
     });
   }
@@ -101,68 +104,68 @@ class GateTest : public testing::Test {
     return room.size();
   }
 
-  Gate::Limits limits;
+  ConnectionGate::Limits limits;
   uint16_t port = 0;
   core::Mutex mutex;
   std::deque<core::Descriptor> room HYADES_GUARDED_BY(mutex);
-  std::optional<Gate> gate;
+  std::optional<ConnectionGate> gate;
 };
 
-TEST_F(GateTest, WhoSaysNothingIsShutOutAndWhoIsKnownStays) {
+TEST_F(ConnectionGateTest, WhoSaysNothingIsShutOutAndWhoIsKnownStays) {
   limits.strangers.patience = 300ms;
   open();
   const PlainCaller silent(port, "127.0.0.2");
   const PlainCaller known(port);
   ASSERT_TRUE(holds(0, 2, 0));
-  gate->know(known.address());
+  gate->mark_known(known.address());
   EXPECT_TRUE(silent.ended(20s));
   EXPECT_FALSE(known.ended(1s));
   EXPECT_TRUE(holds(0, 0, 1));
 }
 
-TEST_F(GateTest, TheKnownTakeNoPlaceOfStrangers) {
+TEST_F(ConnectionGateTest, TheKnownTakeNoPlaceOfStrangers) {
   open();
   std::deque<PlainCaller> workers;
   for (size_t i = 1; i <= 20; ++i) {
     workers.emplace_back(port);
     ASSERT_TRUE(soon([&] { return came_in() == i; })) << i;
-    gate->know(workers.back().address());
+    gate->mark_known(workers.back().address());
   }
   EXPECT_TRUE(holds(0, 0, 20));
 }
 
-TEST_F(GateTest, OthersComeInWhileACrowdWaits) {
+TEST_F(ConnectionGateTest, OthersComeInWhileACrowdWaits) {
   open();
   std::deque<PlainCaller> crowd;
   for (int i = 0; i < 30; ++i) crowd.emplace_back(port, "127.0.0.2");
   ASSERT_TRUE(holds(3, 1, 0)) << "26 were turned away";
   const PlainCaller honest(port);
   EXPECT_TRUE(holds(3, 2, 0));
-  gate->know(honest.address());
+  gate->mark_known(honest.address());
   EXPECT_TRUE(holds(3, 1, 1));
   // Those who give up are not let in later.
   for (PlainCaller& one : crowd) one.hang_up();
   EXPECT_TRUE(soon([&] { return gate->count().waiting == 0; }));
 }
 
-TEST_F(GateTest, TheKnownAreBounded) {
+TEST_F(ConnectionGateTest, TheKnownAreBounded) {
   limits.known = 2;
   open();
   std::deque<PlainCaller> workers;
   for (size_t i = 1; i <= 3; ++i) {
     workers.emplace_back(port);
     ASSERT_TRUE(soon([&] { return came_in() == i; })) << i;
-    gate->know(workers.back().address());
+    gate->mark_known(workers.back().address());
   }
   EXPECT_TRUE(workers.back().ended(20s));
   EXPECT_TRUE(holds(0, 0, 2));
 }
 
-TEST_F(GateTest, WhoeverHasTheSocketMayEndIt) {
+TEST_F(ConnectionGateTest, WhoeverHasTheSocketMayEndIt) {
   open();
   const PlainCaller caller(port);
   ASSERT_TRUE(soon([&] { return came_in() == 1; }));
-  gate->know(caller.address());
+  gate->mark_known(caller.address());
   {
     const core::MutexLock lock(mutex);
     ::shutdown(room.front().get(), SHUT_RDWR);
@@ -172,7 +175,7 @@ TEST_F(GateTest, WhoeverHasTheSocketMayEndIt) {
   EXPECT_TRUE(caller.ended(20s));
 }
 
-TEST_F(GateTest, NothingIsLeftBehind) {
+TEST_F(ConnectionGateTest, NothingIsLeftBehind) {
   const size_t before = open_files();
   open();
   {
@@ -188,11 +191,11 @@ TEST_F(GateTest, NothingIsLeftBehind) {
   EXPECT_EQ(open_files(), before);
 }
 
-TEST_F(GateTest, WithoutFilesItWaitsForThem) {
+TEST_F(ConnectionGateTest, WithoutFilesItWaitsForThem) {
   open();
   const PlainCaller before(port);
   ASSERT_TRUE(soon([&] { return came_in() == 1; }));
-  gate->know(before.address());
+  gate->mark_known(before.address());
   rlimit usual{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &usual), 0);
   std::optional<PlainCaller> late;
@@ -215,7 +218,7 @@ TEST_F(GateTest, WithoutFilesItWaitsForThem) {
   EXPECT_TRUE(soon([&] { return came_in() == 2; }));
 }
 
-TEST_F(GateTest, ListensAtAllThatANameStandsFor) {
+TEST_F(ConnectionGateTest, ListensAtAllThatANameStandsFor) {
   for (const char* address : {"0.0.0.0:0", "[::]:0", "localhost:0", "127.0.0.1:0"}) {
     const auto listening = listen_at(address);
     if (!listening && std::string(address) == "[::]:0") continue;  // no IPv6 here
@@ -228,11 +231,11 @@ TEST_F(GateTest, ListensAtAllThatANameStandsFor) {
   EXPECT_NE(nowhere.error().message.find("192.0.2.7:0: cannot listen there"), std::string::npos);
 }
 
-TEST_F(GateTest, AnAddressIsTheSameAtASocketForBothFamilies) {
+TEST_F(ConnectionGateTest, AnAddressIsTheSameAtASocketForBothFamilies) {
   open("[::]:0");
   const PlainCaller caller(port);
   ASSERT_TRUE(holds(0, 1, 0));
-  gate->know(caller.address());
+  gate->mark_known(caller.address());
   EXPECT_TRUE(holds(0, 0, 1));
 }
 

@@ -1,4 +1,4 @@
-#include "coordinator/services/gate.h"
+#include "coordinator/services/connection_gate.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -34,7 +34,7 @@ constexpr int kLongestWaitMs = 60'000;
 
 /// Of the files that this process may have open, those who wait get an eighth; and of what is known
 /// each needs two, where two thirds are left to all of it.
-Gate::Limits within_open_files(Gate::Limits limits) {
+ConnectionGate::Limits within_open_files(ConnectionGate::Limits limits) {
   rlimit files{};
   if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur == RLIM_INFINITY) return limits;
   limits.strangers.waiting = std::min<size_t>(limits.strangers.waiting, files.rlim_cur / 8);
@@ -68,12 +68,12 @@ bool is_out_of_files(int error) {
 
 }  // namespace
 
-Gate::Gate(const Limits& limits)
+ConnectionGate::ConnectionGate(const Limits& limits)
     : limits_(within_open_files(limits)),
       strangers_(limits_.strangers),
       next_id_(kFirstConnection) {}
 
-core::Status Gate::open(Listening listening, Inside inside) {
+core::Status ConnectionGate::open(Listening listening, Inside inside) {
   listening_ = std::move(listening);
   inside_ = std::move(inside);
   poll_ = core::Descriptor(::epoll_create1(EPOLL_CLOEXEC));
@@ -92,7 +92,7 @@ core::Status Gate::open(Listening listening, Inside inside) {
   return {};
 }
 
-void Gate::close() {
+void ConnectionGate::close() {
   {
     const core::MutexLock lock(mutex_);
     stop_ = true;
@@ -109,7 +109,7 @@ void Gate::close() {
   listening_.sockets.clear();
 }
 
-void Gate::know(const std::string& address) {
+void ConnectionGate::mark_known(const std::string& address) {
   const core::MutexLock lock(mutex_);
   const auto found = by_address_.find(address);
   if (found == by_address_.end()) return;
@@ -126,12 +126,12 @@ void Gate::know(const std::string& address) {
   if (strangers_.waiting() > 0) wake();
 }
 
-Gate::Count Gate::count() const {
+ConnectionGate::Count ConnectionGate::count() const {
   const core::MutexLock lock(mutex_);
   return {strangers_.waiting(), strangers_.inside(), known_};
 }
 
-void Gate::run() {
+void ConnectionGate::run() {
   std::array<epoll_event, kEventsAtOnce> events{};
   for (;;) {
     int patience = 0;
@@ -157,7 +157,7 @@ void Gate::run() {
   }
 }
 
-int Gate::milliseconds_to_wait() const {
+int ConnectionGate::milliseconds_to_wait() const {
   std::optional<Time> next = strangers_.next_expiry();
   for (const std::optional<Time>& other : {accept_again_, calm_at_}) {
     if (other) next = next ? std::min(*next, *other) : *other;
@@ -168,7 +168,7 @@ int Gate::milliseconds_to_wait() const {
   return static_cast<int>(std::clamp<int64_t>(left.count(), 0, kLongestWaitMs));
 }
 
-void Gate::hear(Id id, uint32_t events, Time now) {
+void ConnectionGate::hear(Id id, uint32_t events, Time now) {
   if (id == kWoken) {
     uint64_t times = 0;
     (void)!::read(wake_.get(), &times, sizeof times);
@@ -179,7 +179,7 @@ void Gate::hear(Id id, uint32_t events, Time now) {
   }
 }
 
-void Gate::accept_from(const core::Descriptor& listener, Time now) {
+void ConnectionGate::accept_from(const core::Descriptor& listener, Time now) {
   for (int i = 0; i < kAcceptsAtOnce; ++i) {
     sockaddr_storage from{};
     socklen_t size = sizeof from;
@@ -198,14 +198,14 @@ void Gate::accept_from(const core::Descriptor& listener, Time now) {
   }
 }
 
-void Gate::watch_listeners(bool watched) const {
+void ConnectionGate::watch_listeners(bool watched) const {
   for (size_t i = 0; i < listening_.sockets.size(); ++i) {
     (void)watch(poll_, EPOLL_CTL_MOD, listening_.sockets[i], watched ? uint32_t{EPOLLIN} : 0U,
                 kFirstListener + i);
   }
 }
 
-void Gate::take(core::Descriptor socket, std::string address) {
+void ConnectionGate::take(core::Descriptor socket, std::string address) {
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, socket, EPOLLRDHUP | EPOLLET, id)) return;
   strangers_.come(id, neighbourhood_of(address));
@@ -214,7 +214,7 @@ void Gate::take(core::Descriptor socket, std::string address) {
 }
 
 /// Whose time has come goes, and who may comes in: what they come in by is put into `entering`.
-void Gate::advance(Time now, std::vector<int>& entering) {
+void ConnectionGate::advance(Time now, std::vector<int>& entering) {
   if (accept_again_ && *accept_again_ <= now) {
     accept_again_.reset();
     watch_listeners(true);
@@ -228,7 +228,7 @@ void Gate::advance(Time now, std::vector<int>& entering) {
 }
 
 /// The socket by which this one comes in; -1 where he cannot, and is gone.
-int Gate::enter(Id id) {
+int ConnectionGate::enter(Id id) {
   const core::Descriptor& own = connections_.at(id).socket;
   const int socket = ::fcntl(own.get(), F_DUPFD_CLOEXEC, 0);
   // From here on others read, and only the end of both sides is of interest.
@@ -241,7 +241,7 @@ int Gate::enter(Id id) {
 }
 
 /// Ends a connection, whoever else holds its socket, and forgets it.
-void Gate::drop(Id id) {
+void ConnectionGate::drop(Id id) {
   const auto found = connections_.find(id);
   if (found == connections_.end()) return;
   Connection& connection = found->second;
@@ -256,7 +256,7 @@ void Gate::drop(Id id) {
 }
 
 /// Whether a crowd has been gone for long enough; true once.
-bool Gate::is_calm(Time now) {
+bool ConnectionGate::is_calm(Time now) {
   if (!crowded_ || strangers_.waiting() > 0) {
     calm_at_.reset();
     return false;
@@ -268,7 +268,7 @@ bool Gate::is_calm(Time now) {
   return true;
 }
 
-void Gate::wake() const {
+void ConnectionGate::wake() const {
   const uint64_t one = 1;
   (void)!::write(wake_.get(), &one, sizeof one);
 }

@@ -19,10 +19,10 @@
 namespace hyades::coordinator {
 
 /// Stands before gRPC, for which a connection costs much more than for the kernel: takes
-/// connections, and hands few at a time on. Whoever comes is a stranger until know() is told of
-/// him: strangers may be inside for a short time, and in small numbers (StrangerQueue); those
+/// connections, and hands few at a time on. Whoever comes is a stranger until mark_known() is told
+/// of them: strangers may be inside for a short time, and in small numbers (StrangerQueue); those
 /// beyond wait outside as bare sockets, of which nothing is read. A thread of its own does it.
-class Gate {
+class ConnectionGate {
  public:
   struct Limits {
     StrangerQueue::Limits strangers{};
@@ -34,18 +34,19 @@ class Gate {
   /// Takes a connected socket over, which does not block.
   using Inside = std::function<void(int socket)>;
 
-  explicit Gate(const Limits& limits);
-  ~Gate() { close(); }
-  Gate(const Gate&) = delete;
-  Gate& operator=(const Gate&) = delete;
+  explicit ConnectionGate(const Limits& limits);
+  ~ConnectionGate() { close(); }
+  ConnectionGate(const ConnectionGate&) = delete;
+  ConnectionGate& operator=(const ConnectionGate&) = delete;
 
   /// Begins to hand on to `inside` who comes to these sockets. Called once.
   core::Status open(Listening listening, Inside inside);
   /// Hands nobody on any more, and lets go of all sockets. What is inside stays open.
   void close();
 
-  /// Whoever called from there, as address_text() has it, has shown who he is. Thread-safe.
-  void know(const std::string& address);
+  /// Whoever called from there, as address_text() has it, has shown a token, or needs none.
+  /// Thread-safe.
+  void mark_known(const std::string& address);
 
   /// How many there are.
   struct Count {
