@@ -31,6 +31,8 @@ namespace {
 constexpr size_t kMostMissingListed = 100;  // an error travels in headers, which are short
 /// For what is left of a job that has ended: less than ControllerContext::wait_for_submissions().
 constexpr std::chrono::milliseconds kLeavePatience{1500};
+/// For the documents of others to be read.
+constexpr std::chrono::seconds kReadPatience{2};
 /// What all open jobs together may have in memory.
 constexpr uint64_t kMostOpenFrames = 2'000'000;
 constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
@@ -120,15 +122,22 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   if (const grpc::Status may = may_have_one_more(request.owner()); !may.ok()) return may;
   if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
+  auto active = [&]() -> std::optional<core::Result<std::unique_ptr<ActiveJob>>> {
+    // A long document takes seconds and much memory: one at a time, and others' jobs are removed
+    // and tried again meanwhile.
+    const std::unique_lock alone(documents_, kReadPatience);
+    if (!alone) return std::nullopt;
+    return make_active_job(new_row(request, *options, owner_proven), request.spec(),
+                           *context_.assets, context_.options.film_memory);
+  }();
+  if (!active) return others_submit();
   const auto one = context_.wait_for_submissions();
   if (!one) return others_submit();
   if (const grpc::Status may = may_have_one_more(request.owner()); !may.ok()) return may;
   // What was not needed may have been removed meanwhile; from here on nothing is.
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
-  auto active = make_active_job(new_row(request, *options, owner_proven), request.spec(),
-                                *context_.assets, context_.options.film_memory);
-  if (!active) return wrong(active.error().message);
-  return take_in(std::move(*active), response, *files);
+  if (!*active) return wrong(active->error().message);
+  return take_in(std::move(**active), response, *files);
 }
 
 /// Stores a new job, which nobody else knows yet, and begins with it.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -77,6 +78,7 @@ class JobIntake {
   Timelines& timelines_;
   const OwnerQuotas& quotas_;
   UnclaimedFiles& unclaimed_;
+  std::timed_mutex documents_;  ///< one is read at a time; before ControllerContext::submissions
 };
 
 }  // namespace hyades::coordinator

@@ -127,8 +127,13 @@ class FarmWorld {
     v1::UploadPart part;
     part.set_sha256(farm::to_wire(core::sha256(text)));
     part.set_size(text.size());
-    part.mutable_chunk()->set_data(std::string(text));
-    writer->Write(part);
+    constexpr size_t kPart = size_t{1} << 20U;
+    for (size_t at = 0; at == 0 || at < text.size(); at += kPart) {
+      part.mutable_chunk()->set_offset(at);
+      part.mutable_chunk()->set_data(std::string(text.substr(at, kPart)));
+      writer->Write(part);
+      part.Clear();
+    }
     writer->WritesDone();
     return writer->Finish();
   }

@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -166,6 +168,33 @@ TEST_F(NeverFreezes, NothingIsPromisedThatACrashWouldUndo) {
   EXPECT_TRUE(world.controller->store().quarantines()->empty());
   EXPECT_TRUE(retry(job).ok());
   EXPECT_TRUE(eventually([&] { return world.get(job).frames(0).restarts() > 0; }));
+}
+
+/// Nobody else's job waits for it: it takes some seconds, and whoever removes jobs waits for two.
+TEST_F(NeverFreezes, WhileALongDocumentIsRead) {
+  std::string text = FarmWorld::document(1);
+  std::string balls;
+  for (int i = 0; i < 70'000; ++i) {
+    balls += "  o" + std::to_string(i) + ": {shape: sphere, radius: 1, material: clay}\n";
+  }
+  const std::string one = "objects: {ball: {shape: sphere, radius: 1, material: clay}}\n";
+  text.replace(text.find(one), one.size(), "objects:\n" + balls);
+  std::vector<uint64_t> ended;
+  for (int i = 0; i < 40; ++i) ended.push_back(ended_job());
+  std::atomic<bool> taken{false};
+  clients.emplace_back([&] {
+    EXPECT_TRUE(world.upload(text).ok());
+    v1::SubmitResponse response;
+    const auto context = world.context(120s);
+    EXPECT_TRUE(world.jobs->Submit(context.get(), FarmWorld::request(text), &response).ok());
+    taken = true;
+  });
+  size_t removed = 0;
+  while (!taken && removed < ended.size()) {
+    EXPECT_TRUE(remove(ended[removed++], 1500ms).ok());
+    std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_GT(removed, 3U) << "it was read too fast for anybody to wait";
 }
 
 TEST_F(NeverFreezes, WhileTheJobStoreDoesNotAnswer) {
