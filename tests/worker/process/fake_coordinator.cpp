@@ -25,6 +25,11 @@ Key key_of(const core::Unit& u) { return {u.frame, u.tile.x0, u.tile.y0, u.batch
 }  // namespace
 
 struct FakeCoordinator::Books {
+  struct Leased {
+    core::Unit unit;
+    const void* holder = nullptr;  // the stream of the worker
+  };
+
   FakeCoordinator* owner = nullptr;
   Job job;
   int port = 0;
@@ -36,7 +41,7 @@ struct FakeCoordinator::Books {
   std::condition_variable changed;
   // Guarded by mutex.
   Seen seen;
-  std::map<Key, core::Unit> leased;
+  std::map<Key, Leased> leased;
   std::set<Key> held;
   uint64_t next_lease = 1;
 };
@@ -82,6 +87,7 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
     }
     v1::WorkerMessage message;
     uint32_t want = 0;
+    bool leaving = false;
     while (stream->Read(&message)) {
       const std::lock_guard lock(books_.mutex);
       if (message.has_hello()) {
@@ -111,7 +117,9 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
         stream->Write(echo);
       } else if (message.has_leaving()) {
         books_.seen.leavings.push_back(message.leaving());
+        leaving = true;
       }
+      if (leaving) want = 0;
       while (want > 0 && !books_.job.units.empty()) {
         lease(stream, books_.job.units.front());
         books_.job.units.pop_front();
@@ -119,6 +127,7 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
       }
       books_.changed.notify_all();
     }
+    if (leaving) take_back(stream);
     return grpc::Status::OK;
   }
 
@@ -154,7 +163,18 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
     *message.mutable_lease()->add_units() = farm::to_wire(unit);
     message.mutable_lease()->set_adopted(adopted);
     stream->Write(message);
-    books_.leased[key_of(unit)] = unit;
+    books_.leased[key_of(unit)] = {unit, stream};
+  }
+
+  /// A lease may have crossed the last words of who leaves.
+  void take_back(const Stream* stream) {
+    const std::lock_guard lock(books_.mutex);
+    for (auto leased = books_.leased.begin(); leased != books_.leased.end();) {
+      const bool theirs = leased->second.holder == stream;
+      if (theirs) books_.job.units.push_back(leased->second.unit);
+      leased = theirs ? books_.leased.erase(leased) : std::next(leased);
+    }
+    books_.changed.notify_all();
   }
 
   void give_back(const v1::LeasedUnit& unit) {
@@ -182,7 +202,7 @@ class FakeCoordinator::WorkService : public v1::Work::Service {
       ++books_.seen.accepted;
       core::Unit leased = unit;
       if (const auto found = books_.leased.find(key_of(unit)); found != books_.leased.end()) {
-        leased = found->second;
+        leased = found->second.unit;
         books_.leased.erase(found);
       }
       if (unit.batches.count < leased.batches.count) {
@@ -231,7 +251,7 @@ std::string FakeCoordinator::address() const { return "127.0.0.1:" + std::to_str
 
 void FakeCoordinator::expire_leases() {
   const std::lock_guard lock(books_->mutex);
-  for (const auto& [key, unit] : books_->leased) books_->job.units.push_back(unit);
+  for (const auto& [key, leased] : books_->leased) books_->job.units.push_back(leased.unit);
   books_->leased.clear();
 }
 
