@@ -21,6 +21,15 @@ Dispute* FrameLedger::find_dispute(const Extent& e) {
   return it == disputes_.end() ? nullptr : &*it;
 }
 
+std::vector<Voice> FrameLedger::heard(const Extent& e) const {
+  std::vector<Voice> voices;
+  for (const Dispute& d : disputes_) {
+    if (d.extent != e) continue;
+    for (const Opinion& o : d.opinions) voices.push_back(o.voice);
+  }
+  return voices;
+}
+
 Dispute& FrameLedger::open_dispute(const Extent& e, const Opinion& first) {
   return disputes_.emplace_back(Dispute{e, {first}, false});
 }
@@ -37,9 +46,7 @@ std::optional<Extent> FrameLedger::next_check(Voice voice, const MayTry& may_try
     const Blame* blame = find_blame(d.extent);
     if (blame == nullptr) return d.extent;
     // Those who have said what they think are no help: who failed it may be the only one left.
-    std::vector<Voice> heard;
-    for (const Opinion& o : d.opinions) heard.push_back(o.voice);
-    if (may_try(blame->workers, heard)) return d.extent;
+    if (may_try(blame->workers, heard(d.extent))) return d.extent;
   }
   return std::nullopt;
 }

@@ -60,6 +60,12 @@ bool FrameLedger::all_free(const Extent& e) const {
   return BatchMap::count_free(held_, leased_, e.tile, e.batches) == e.batches.count;
 }
 
+bool FrameLedger::may_assign(const Extent& e, Voice voice) const {
+  const std::vector<Voice> others = heard(e);
+  if (others.empty()) return all_free(e);
+  return !being_checked(e) && std::find(others.begin(), others.end(), voice) == others.end();
+}
+
 void FrameLedger::lease_bits(const Extent& e) {
   free_ -= BatchMap::count_free(held_, leased_, e.tile, e.batches);
   leased_.set(e.tile, e.batches);

@@ -123,8 +123,9 @@ class FrameLedger {
   /// Whether a unit has failed and waits for somebody who may try it.
   bool any_retry() const { return !retries_.empty(); }
 
-  /// Whether all batches are free, so that the extent can be assigned to a worker that has it.
-  bool all_free(const Extent& e) const;
+  /// Whether the extent can be assigned to a worker with this voice that has it already: all of it
+  /// is free, or another voice has to render it too and nobody does.
+  bool may_assign(const Extent& e, Voice voice) const;
   /// The holder renders the extent from now on, whose batches are free or disputed. `serial` is one
   /// that no assignment had before.
   Assignment& assign(const Extent& e, const Holder& holder, uint64_t serial);
@@ -164,6 +165,8 @@ class FrameLedger {
   bool any_suspect() const { return !voiding_.empty(); }
   /// The dispute about exactly this extent; null where there is none.
   Dispute* find_dispute(const Extent& e);
+  /// The voices that rendered exactly this extent, where others have to agree on it.
+  std::vector<Voice> heard(const Extent& e) const;
   /// Two voices have to agree on the extent, which is held; `first` is the one that is held.
   Dispute& open_dispute(const Extent& e, const Opinion& first);
   void end_dispute(const Extent& e);
@@ -203,6 +206,7 @@ class FrameLedger {
     std::string reason;
   };
 
+  bool all_free(const Extent& e) const;
   static uint64_t key(const Extent& e) { return (uint64_t{e.tile} << 32) | e.batches.first; }
   std::optional<Extent> next_retry(const MayTry& may_try);
   std::optional<Extent> cut_open(const Extent& front, uint32_t run);

@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/frame_lifecycle.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -8,6 +9,14 @@
 #include <vector>
 
 namespace hyades::coordinator {
+namespace {
+
+/// A class that may be one worker's invention takes no longer for a frame.
+constexpr Duration kLongestFrame = std::chrono::hours(24);
+/// How many times its patience lets the farm do without a slow voice's beginnings.
+constexpr int kSlowFor = 12;
+
+}  // namespace
 
 void FrameLifecycle::on(const FrameOpened& e) {
   const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
@@ -51,16 +60,23 @@ void FrameLifecycle::open(ScheduledJob& job) {
   if (job.paused) return;
   const uint64_t frame_total = uint64_t{job.grid.size()} * job.plan.batches;
   const uint64_t enough = std::max(frame_total / 2, 2 * workers_.threads());
-  while (job.in_flight.size() < std::max(job.plan.frames_in_flight, 1U)) {
+  const size_t most = std::max(job.plan.frames_in_flight, 1U);
+  while (job.in_flight.size() < 2 * most) {
     uint64_t free = 0;
+    size_t lone = 0;  // frames that others do not wait for
     bool room = false;
     for (const uint32_t i : job.in_flight) {
       const FrameSlot& slot = job.slots[i];
+      if (workers_.is_lone(slot.worker_class)) {
+        ++lone;
+        continue;
+      }
       if (slot.phase == FramePhase::opening || slot.phase == FramePhase::rendering) {
         free += slot.ledger->free();
         room = room || affinity_.has_room({&job, i});
       }
     }
+    if (job.in_flight.size() - lone >= most) return;
     if (room && free > enough && job.plan.order == FrameOrder::sequential) return;
     while (job.next_slot < job.slots.size() &&
            job.slots[job.next_slot].phase != FramePhase::waiting) {
@@ -137,8 +153,9 @@ void FrameLifecycle::restarted(ScheduledJob& job, FrameSlot& slot) {
   slot.phase = FramePhase::waiting;
   films_.drop(job, slot);
   ++job.waiting;
-  slot.worker_class = 0;
+  slot.worker_class = ClassId{};
   slot.orphaned.reset();
+  slot.watch.reset();
   slot.finish_attempts = 0;
   slot.reason.clear();
   std::erase(job.in_flight, index);
@@ -147,33 +164,67 @@ void FrameLifecycle::restarted(ScheduledJob& job, FrameSlot& slot) {
   open(job);
 }
 
-void FrameLifecycle::restart_orphans() {
-  if (options_.class_patience <= Duration{0} || step_.now < next_orphan_check_) return;
-  next_orphan_check_ = step_.now + options_.class_patience / 4;
+void FrameLifecycle::restart_stranded(bool leasing) {
+  if (options_.class_patience <= Duration{0} || step_.now < next_look_) return;
+  next_look_ = step_.now + options_.class_patience / 4;
+  if (workers_.forgive_slow()) step_.work_appeared = true;
   if (workers_.threads() == 0) return;
   for (const auto& [id, job] : jobs_.all()) {
-    if (job->paused) continue;
     const std::vector<uint32_t> in_flight = job->in_flight;
     for (const uint32_t i : in_flight) {
       FrameSlot& slot = job->slots[i];
-      const uint32_t c = slot.worker_class;
-      if (slot.phase != FramePhase::rendering || c == 0) continue;
-      if (workers_.workers_of(c) > 0 && workers_.anybody_for(*job, c)) {
-        slot.orphaned.reset();
-        continue;
+      if (slot.phase != FramePhase::rendering || slot.worker_class == ClassId{}) continue;
+      if (stands_still(*job, slot, leasing)) {
+        ++slot.stood_still;
+        // Who had no unit of it does something else.
+        if (slot.ledger->any_assigned() || !slot.ledger->settled()) {
+          workers_.note_slow(slot.worker_class, step_.now + kSlowFor * options_.class_patience);
+        }
+        restart(*job, slot);
+      } else if (is_orphaned(*job, slot)) {
+        restart(*job, slot);
       }
-      if (!slot.orphaned)
-        slot.orphaned = workers_.workers_of(c) > 0 ? step_.now : workers_.gone_since(c);
-      if (step_.now < *slot.orphaned + options_.class_patience || slot.ledger->all_held()) continue;
-      restart(*job, slot);
     }
   }
+}
+
+/// Whether nobody of the frame's class has been there for too long.
+bool FrameLifecycle::is_orphaned(const ScheduledJob& job, FrameSlot& slot) const {
+  if (job.paused) return false;
+  if (workers_.anybody_for(job, slot.worker_class)) {
+    slot.orphaned.reset();
+    return false;
+  }
+  if (!slot.orphaned) slot.orphaned = step_.now;
+  return step_.now >= *slot.orphaned + options_.class_patience && !slot.ledger->all_held();
+}
+
+/// Whether the frame's class, which may be one worker's invention, gets on with it too slowly while
+/// others wait for it.
+bool FrameLifecycle::stands_still(const ScheduledJob& job, FrameSlot& slot, bool leasing) const {
+  const FrameLedger& ledger = *slot.ledger;
+  const bool watched = leasing && !job.paused && workers_.is_lone(slot.worker_class) &&
+                       workers_.anybody_for(job, slot.worker_class) && !ledger.all_held() &&
+                       workers_.anybody_of_another(job, slot.worker_class);
+  if (!watched) {
+    slot.watch.reset();
+    return false;
+  }
+  if (!slot.watch) slot.watch = FrameSlot::Watch{step_.now, ledger.durable()};
+  const Duration patience = options_.class_patience * (1U << std::min(slot.stood_still, 10U));
+  if (step_.now < slot.watch->since + patience) return false;
+  const double part = seconds(step_.now - slot.watch->since) / seconds(kLongestFrame);
+  const bool enough = ledger.durable() > slot.watch->durable &&
+                      static_cast<double>(ledger.durable() - slot.watch->durable) >=
+                          part * static_cast<double>(ledger.total());
+  slot.watch.reset();
+  return !enough;
 }
 
 std::optional<TimePoint> FrameLifecycle::next_wake() const {
   if (options_.class_patience <= Duration{0}) return std::nullopt;
   if (jobs_.all().empty() || workers_.threads() == 0) return std::nullopt;
-  return next_orphan_check_;
+  return next_look_;
 }
 
 void FrameLifecycle::over(ScheduledJob& job, FrameSlot& slot, FramePhase phase) {

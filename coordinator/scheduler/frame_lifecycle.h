@@ -54,14 +54,17 @@ class FrameLifecycle {
   /// It is durable that the frame begins again: it waits to be opened.
   void restarted(ScheduledJob& job, FrameSlot& slot);
 
-  /// Frames whose class has been gone for too long begin again, if there is somebody to render
-  /// them.
-  void restart_orphans();
-  /// When restart_orphans() may have something to do next.
+  /// Frames whose class has been gone for too long, or may be one worker's invention and gets on
+  /// with them no more, begin again, if there is somebody else to render them. `leasing`: units are
+  /// leased, so that whoever delivers nothing is to blame.
+  void restart_stranded(bool leasing);
+  /// When restart_stranded() may have something to do next.
   std::optional<TimePoint> next_wake() const;
 
  private:
   void reopen(ScheduledJob& job, FrameSlot& slot);
+  bool is_orphaned(const ScheduledJob& job, FrameSlot& slot) const;
+  bool stands_still(const ScheduledJob& job, FrameSlot& slot, bool leasing) const;
 
   const SchedulerOptions& options_;
   Step& step_;
@@ -71,7 +74,7 @@ class FrameLifecycle {
   Leases& leases_;
   PendingRecords& records_;
   const Affinity& affinity_;
-  TimePoint next_orphan_check_;
+  TimePoint next_look_;  ///< of restart_stranded()
 };
 
 }  // namespace hyades::coordinator

@@ -181,7 +181,7 @@ Granting::Welcome Granting::welcome_at(const FramePlace& place, WorkerId id, con
 bool Granting::has_work_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
                             const Worker& worker) const {
   if (slot.phase != FramePhase::rendering || !film_fits(job, slot)) return false;
-  if (slot.worker_class != 0 && slot.worker_class != worker.worker_class) return false;
+  if (!workers_.may_render(job, slot, worker)) return false;
   const auto judge = judge_of(workers_, job, id, worker);
   const MayTry allowed = std::ref(judge);
   return slot.ledger->has_work(allowed) ||
@@ -312,7 +312,7 @@ bool Granting::grant_check(const FramePlace& place, WorkerId id, Worker& worker,
                            const MayTry& may_try) {
   const auto extent = place.frame().ledger->next_check(worker.voice, may_try);
   if (!extent) return false;
-  leases_.assign(place.frame(), *extent, id);
+  copies_.note(place, leases_.assign(place.frame(), *extent, id));
   --worker.wanted;
   leases_.grant(id, worker, place, {*extent});
   jobs_.update_offer(*place.job);

@@ -29,6 +29,8 @@ class Granting {
   void on(const LeasingHeld& e);
   void on(const Tick& e);
 
+  /// Whether units are leased now: what is delivered can be made durable.
+  bool may_lease() const { return !held_ && step_.now >= records_.blocked_until(); }
   /// Serves those who wait, where something has turned up for them.
   void dispatch();
   /// When somebody who waits may be served without any other event.
@@ -44,7 +46,6 @@ class Granting {
     yes,
   };
 
-  bool may_lease() const { return !held_ && step_.now >= records_.blocked_until(); }
   void serve(WorkerId id, Worker& worker, bool copies);
   bool grant(WorkerId id, Worker& worker);
   bool grant_from(const FramePlace& place, WorkerId id, Worker& worker, bool ahead);

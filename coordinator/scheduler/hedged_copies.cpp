@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <vector>
 
 namespace hyades::coordinator {
 namespace {
@@ -32,7 +33,10 @@ bool HedgedCopies::grant(WorkerId id, Worker& worker) {
     if (job.paused || place.frame().worker_class != worker.worker_class) continue;
     if (!ScheduledWorkers::may_join(job, id, worker)) continue;
     const FrameLedger& ledger = *place.frame().ledger;
-    if (!workers_.may_try(job, id, worker, ledger.blamed(candidate.extent))) continue;
+    // What is checked is for those who were not heard.
+    const std::vector<Voice> heard = ledger.heard(candidate.extent);
+    if (std::find(heard.begin(), heard.end(), worker.voice) != heard.end()) continue;
+    if (!workers_.may_try(job, id, worker, ledger.blamed(candidate.extent), heard)) continue;
     const double late = seconds(step_.now - candidate.since) - late_after(job, candidate.extent);
     if (late < 0) continue;
     // Those who have the scene come first; whoever has to load it takes one copy.

@@ -20,6 +20,10 @@ enum class WorkerId : uint64_t {};
 /// Whose word a worker's is: its own, or that of the credential it shares with others, who are one
 /// witness together. 0: nobody's.
 enum class Voice : uint64_t {};
+/// A class of workers, whose bits agree, by the name that they give. 0: none yet.
+enum class ClassId : uint64_t {};
+/// What workers may have and jobs may want, by its name.
+enum class TagId : uint64_t {};
 /// A thing to be made durable; unique within one incarnation.
 enum class RecordId : uint64_t {};
 

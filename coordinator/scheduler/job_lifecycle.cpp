@@ -9,7 +9,7 @@ namespace hyades::coordinator {
 void JobLifecycle::on(const JobAdded& e) {
   if (jobs_.find(e.job) != nullptr) return;
   ScheduledJob& job = jobs_.add(e.job, e.plan);
-  job.tags = workers_.intern_tags(e.plan.needs.tags);
+  job.tags = tag_ids(e.plan.needs.tags);
   restore(job, e.restored);
   job.waiting = static_cast<uint64_t>(
       std::count_if(job.slots.begin(), job.slots.end(),
@@ -48,7 +48,7 @@ void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
     if (slot == nullptr || slot->phase != FramePhase::waiting || !extent) continue;
     if (!slot->ledger) {
       slot->ledger = std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches);
-      slot->worker_class = workers_.intern_class(accepted.worker_class);
+      slot->worker_class = class_id(accepted.worker_class);
       films_.take(job, *slot);
     }
     if (slot->ledger->any_held(*extent)) continue;

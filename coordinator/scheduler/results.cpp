@@ -54,7 +54,7 @@ void Results::on(const ResultArrived& e) {
     answer_again(*job, *slot, *extent, *held, worker->voice, e);
   } else if (ledger.any_held(*extent)) {
     reject(e, RejectReason::overlap);
-  } else if (slot->worker_class != 0 && slot->worker_class != worker->worker_class) {
+  } else if (slot->worker_class != ClassId{} && slot->worker_class != worker->worker_class) {
     reject(e, RejectReason::unknown);
   } else {
     accept(*job, *slot, *extent, *worker, e);
@@ -100,8 +100,8 @@ void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, W
     slot.ledger->open_dispute(extent, {e.worker, e.digest, worker.voice});
   }
   leases_.end_assignment(job, slot, extent, e.lease);
-  records_.persist(UnitRecord{job.id, {e.unit, e.digest, workers_.class_name(slot.worker_class)}},
-                   extent, {{e.worker, e.lease}});
+  records_.persist(UnitRecord{job.id, {e.unit, e.digest, workers_.class_of(worker)}}, extent,
+                   {{e.worker, e.lease}});
   lifecycle_.forgive_and_blame(job, slot, extent, e.worker);
   learn_cost(job, extent, e.render_time);
   affinity_.learn_load(job, worker, e);

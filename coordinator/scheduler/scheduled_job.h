@@ -40,14 +40,23 @@ struct FrameSlot {
   FramePhase phase = FramePhase::waiting;
   bool film = false;  ///< its film is in memory, or will be with its first unit
   uint32_t finish_attempts = 0;
-  bool suspect = false;  ///< while it is opened or finished, a worker that had a part was found
-                         ///< divergent
-  uint32_t worker_class = 0;         ///< interned; 0 until the first unit is leased
+  bool suspect = false;    ///< while it is opened or finished, a worker that had a part was found
+                           ///< divergent
+  ClassId worker_class{};  ///< of those who render it; 0 until the first unit is leased
   uint64_t assigned_threads = 0;     ///< of the workers that render it
   uint64_t prefetching_threads = 0;  ///< of those that load its scene while they render another
   TimePoint last_leased;
   /// Since when no worker is there that may render it; nothing where one is.
   std::optional<TimePoint> orphaned;
+  /// Since when its class is watched, as it may be one worker's invention, and how many of its
+  /// batches were durable then; nothing where it is not.
+  struct Watch {
+    TimePoint since;
+    uint64_t durable = 0;
+  };
+  std::optional<Watch> watch;
+  /// How often it began again for that. Each time it gets twice as long, as its units may be long.
+  uint32_t stood_still = 0;
   std::unique_ptr<FrameLedger> ledger;
   std::string reason;  ///< why it failed
 
@@ -80,7 +89,7 @@ struct ScheduledJob {
   uint64_t serial = 0;         ///< order of arrival
   FairShare* share = nullptr;  ///< of its owner at its priority
   JobPlan plan;
-  std::vector<uint32_t> tags;  ///< that a worker needs; interned, sorted
+  std::vector<TagId> tags;  ///< that a worker needs; sorted
   TileGrid grid;
   std::vector<FrameSlot> slots;                     ///< in the order of plan.frames
   std::unordered_map<int32_t, uint32_t> by_number;  ///< frame number -> slot; never walked

@@ -10,24 +10,33 @@
 namespace hyades::coordinator {
 namespace {
 
-/// No table of credentials is kept, as whoever invents many would fill it: they are hashed.
-Voice voice_of(const WorkerJoined& joined) {
-  constexpr uint64_t kOfCredential = uint64_t{1} << 63U;  // no worker has such a number
-  if (joined.credential.empty()) return Voice{static_cast<uint64_t>(joined.worker)};
-  const core::Sha256 digest = core::sha256(joined.credential);
+constexpr uint64_t kNamed = uint64_t{1} << 63U;  ///< no worker has such a number, and it is not 0
+
+/// Of a name that somebody gives. Nobody finds another name with the number of a given one.
+uint64_t number_of(const std::string& name) {
+  const core::Sha256 digest = core::sha256(name);
   uint64_t number = 0;
   for (size_t i = 0; i < sizeof number; ++i) {
     number = (number << 8U) | static_cast<uint64_t>(digest[i]);
   }
-  return Voice{number | kOfCredential};
+  return number | kNamed;
+}
+
+Voice voice_of(const WorkerJoined& joined) {
+  if (joined.credential.empty()) return Voice{static_cast<uint64_t>(joined.worker)};
+  return Voice{number_of(joined.credential)};
 }
 
 }  // namespace
 
-ScheduledWorkers::ScheduledWorkers(Step& step) : step_(step) {
-  class_names_.emplace_back();
-  class_workers_.push_back(0);
-  class_gone_.emplace_back();
+ClassId class_id(const std::string& name) { return ClassId{number_of(name)}; }
+
+std::vector<TagId> tag_ids(const std::vector<std::string>& tags) {
+  std::vector<TagId> ids;
+  for (const std::string& tag : tags) ids.push_back(TagId{number_of(tag)});
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
 }
 
 Worker* ScheduledWorkers::find(WorkerId id) {
@@ -44,13 +53,16 @@ Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   Worker& worker = workers_[joined.worker];
   worker.voice = voice_of(joined);
   worker.threads = joined.threads;
-  worker.worker_class = intern_class(joined.worker_class);
-  worker.tags = intern_tags(joined.tags);
+  worker.worker_class = class_id(joined.worker_class);
+  worker.tags = tag_ids(joined.tags);
   worker.memory = joined.memory;
   worker.in_line = step_.now;
   threads_ += worker.threads;
   worker.barred = quarantined(joined.worker);
-  if (!worker.barred) count_class(worker.worker_class, 1);
+  Class& of_it = classes_[worker.worker_class];
+  of_it.name = joined.worker_class;
+  ++of_it.connected;
+  if (!worker.barred) count_voice(worker, true);
   return worker;
 }
 
@@ -59,13 +71,15 @@ void ScheduledWorkers::remove(WorkerId id) {
   const Worker& worker = it->second;
   if (worker.waiting != 0) waiting_.erase(worker.waiting);
   threads_ -= worker.threads;
-  if (!worker.barred) count_class(worker.worker_class, -1);
+  if (!worker.barred) count_voice(worker, false);
+  const auto of_it = classes_.find(worker.worker_class);
+  if (--of_it->second.connected == 0) classes_.erase(of_it);
   workers_.erase(it);
 }
 
 void ScheduledWorkers::bar(Worker& worker, bool barred) {
   if (std::exchange(worker.barred, barred) == barred) return;
-  count_class(worker.worker_class, barred ? -1 : 1);
+  count_voice(worker, !barred);
 }
 
 void ScheduledWorkers::pardon(WorkerId id) {
@@ -73,40 +87,62 @@ void ScheduledWorkers::pardon(WorkerId id) {
   failures_.erase(id);
 }
 
-uint32_t ScheduledWorkers::intern_class(const std::string& name) {
-  const auto [it, fresh] =
-      class_index_.try_emplace(name, static_cast<uint32_t>(class_names_.size()));
-  if (fresh) {
-    class_names_.push_back(name);
-    class_workers_.push_back(0);
-    class_gone_.push_back(step_.now);
-  }
-  return it->second;
+bool ScheduledWorkers::is_lone(ClassId worker_class) const {
+  if (worker_class == ClassId{}) return false;
+  const auto it = classes_.find(worker_class);
+  const size_t voices = it == classes_.end() ? 0 : it->second.voices.size();
+  return voices <= 1 && classes_with_voices_ > voices;
 }
 
-std::vector<uint32_t> ScheduledWorkers::intern_tags(const std::vector<std::string>& tags) {
-  std::vector<uint32_t> numbers;
-  for (const std::string& tag : tags) {
-    const auto next = static_cast<uint32_t>(tag_index_.size());
-    numbers.push_back(tag_index_.try_emplace(tag, next).first->second);
-  }
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  return numbers;
+bool ScheduledWorkers::anybody_of_another(const ScheduledJob& job, ClassId worker_class) const {
+  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
+    const Worker& other = entry.second;
+    return !other.barred && other.worker_class != worker_class && suits(job, other) &&
+           !is_slow(other.voice);
+  });
 }
 
-bool ScheduledWorkers::anybody_for(const ScheduledJob& job, uint32_t worker_class) const {
-  if (!job.plan.needs.any()) return class_workers_[worker_class] > 0;
+void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint until) {
+  const auto it = classes_.find(worker_class);
+  if (it == classes_.end()) return;
+  for (const auto& [voice, workers] : it->second.voices) slow_[voice] = until;
+}
+
+bool ScheduledWorkers::is_slow(Voice voice) const {
+  const auto it = slow_.find(voice);
+  return it != slow_.end() && it->second > step_.now;
+}
+
+bool ScheduledWorkers::forgive_slow() {
+  return std::erase_if(slow_, [&](const auto& entry) { return entry.second <= step_.now; }) > 0;
+}
+
+bool ScheduledWorkers::may_render(const ScheduledJob& job, const FrameSlot& slot,
+                                  const Worker& worker) const {
+  if (slot.worker_class != ClassId{}) return slot.worker_class == worker.worker_class;
+  return !is_slow(worker.voice) || !anybody_of_another(job, worker.worker_class);
+}
+
+bool ScheduledWorkers::anybody_for(const ScheduledJob& job, ClassId worker_class) const {
+  const auto it = classes_.find(worker_class);
+  if (it == classes_.end() || it->second.voices.empty()) return false;
+  if (!job.plan.needs.any()) return true;
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     return !entry.second.barred && entry.second.worker_class == worker_class &&
            suits(job, entry.second);
   });
 }
 
-/// One worker of the class more or less that may get units.
-void ScheduledWorkers::count_class(uint32_t worker_class, int change) {
-  class_workers_[worker_class] += static_cast<uint32_t>(change);
-  if (change < 0 && class_workers_[worker_class] == 0) class_gone_[worker_class] = step_.now;
+/// One worker more or less that may get units.
+void ScheduledWorkers::count_voice(const Worker& worker, bool one_more) {
+  std::map<Voice, uint32_t>& voices = classes_[worker.worker_class].voices;
+  if (one_more) {
+    if (voices.empty()) ++classes_with_voices_;
+    ++voices[worker.voice];
+    return;
+  }
+  if (const auto it = voices.find(worker.voice); --it->second == 0) voices.erase(it);
+  if (voices.empty()) --classes_with_voices_;
 }
 
 void ScheduledWorkers::update_waiting(WorkerId id, Worker& worker) {
@@ -135,7 +171,7 @@ bool ScheduledWorkers::may_try(const ScheduledJob& job, WorkerId id, const Worke
 
 bool ScheduledWorkers::anybody_besides(const std::vector<WorkerId>& tried,
                                        const std::vector<Voice>& heard, const ScheduledJob& job,
-                                       uint32_t worker_class) const {
+                                       ClassId worker_class) const {
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     return !entry.second.barred && entry.second.worker_class == worker_class &&
            suits(job, entry.second) &&

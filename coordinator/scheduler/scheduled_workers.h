@@ -1,7 +1,7 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -26,8 +26,8 @@ struct Worker {
 
   Voice voice{};
   uint32_t threads = 1;
-  uint32_t worker_class = 0;
-  std::vector<uint32_t> tags;       ///< interned, sorted
+  ClassId worker_class{};
+  std::vector<TagId> tags;          ///< sorted
   uint64_t memory = 0;              ///< 0: no limit
   std::vector<FrameId> scenes;      ///< that it should have in memory, the latest last
   std::optional<FrameId> affinity;  ///< the frame that it renders and stays with
@@ -50,7 +50,7 @@ class ScheduledWorkers {
     std::string reason;  ///< of the last
   };
 
-  explicit ScheduledWorkers(Step& step);
+  explicit ScheduledWorkers(const Step& step) : step_(step) {}
 
   Worker* find(WorkerId id);
   const Worker* find(WorkerId id) const;
@@ -72,26 +72,35 @@ class ScheduledWorkers {
   Failures& failures(WorkerId id) { return failures_[id]; }
   void forget_failures(WorkerId id) { failures_.erase(id); }
 
-  // Classes by number; 0 stands for 'none yet'.
+  // Classes.
 
-  /// The number of the class; a new one where the name was not known.
-  uint32_t intern_class(const std::string& name);
-  const std::string& class_name(uint32_t number) const { return class_names_[number]; }
-  /// How many of the class may get units.
-  uint32_t workers_of(uint32_t worker_class) const { return class_workers_[worker_class]; }
-  /// Since when no worker of the class may get units, where that is so.
-  TimePoint gone_since(uint32_t worker_class) const { return class_gone_[worker_class]; }
-  /// Numbers of tags, sorted.
-  std::vector<uint32_t> intern_tags(const std::vector<std::string>& tags);
+  /// The class of a worker that is there.
+  const std::string& class_of(const Worker& worker) const {
+    return classes_.at(worker.worker_class).name;
+  }
+  /// Whether the class may be one worker's invention, so that others must not wait for it: all of
+  /// it that may get units has one voice, or none, and others may get units too.
+  bool is_lone(ClassId worker_class) const;
+  /// Whether a worker of another class is there that may begin with frames of the job, and whose
+  /// voice is not slow.
+  bool anybody_of_another(const ScheduledJob& job, ClassId worker_class) const;
+  /// The voices of the class are slow until then: a frame of theirs stood still, while others could
+  /// have rendered it.
+  void note_slow(ClassId worker_class, TimePoint until);
+  /// Forgets the voices that are slow no more. Whether there was one.
+  bool forgive_slow();
+  /// Whether units of the frame are for the worker's class: it has begun it, or nobody has. A slow
+  /// voice begins only what nobody else can.
+  bool may_render(const ScheduledJob& job, const FrameSlot& slot, const Worker& worker) const;
 
   /// Whether the worker has what the job asks for, and the job's limit leaves room for it.
   static bool may_join(const ScheduledJob& job, WorkerId id, const Worker& worker);
   /// Whether a worker of the class may get units of the job.
-  bool anybody_for(const ScheduledJob& job, uint32_t worker_class) const;
+  bool anybody_for(const ScheduledJob& job, ClassId worker_class) const;
   /// Whether a worker of the class is there that may get units of the job, is none of `tried` and
   /// has none of the voices that were `heard`.
   bool anybody_besides(const std::vector<WorkerId>& tried, const std::vector<Voice>& heard,
-                       const ScheduledJob& job, uint32_t worker_class) const;
+                       const ScheduledJob& job, ClassId worker_class) const;
   /// Whether the worker may get a unit that has failed with `blamed`: not as one of them, as long
   /// as somebody is there who has not failed it, and whose voice was not `heard`.
   bool may_try(const ScheduledJob& job, WorkerId id, const Worker& worker,
@@ -103,21 +112,32 @@ class ScheduledWorkers {
   const std::map<uint64_t, WorkerId>& waiting() const { return waiting_; }
 
  private:
-  static bool suits(const ScheduledJob& job, const Worker& worker);
-  void count_class(uint32_t worker_class, int change);
+  /// A class of which some worker is connected.
+  struct Class {
+    std::string name;
+    uint32_t connected = 0;
+    std::map<Voice, uint32_t> voices;  ///< of those that may get units: how many of each
+  };
 
-  Step& step_;
+  static bool suits(const ScheduledJob& job, const Worker& worker);
+  void count_voice(const Worker& worker, bool one_more);
+  bool is_slow(Voice voice) const;
+
+  const Step& step_;
   std::unordered_map<WorkerId, Worker> workers_;  ///< looked up; walked only where order is nothing
   uint64_t threads_ = 0;
   std::set<WorkerId> quarantined_;
   std::map<WorkerId, Failures> failures_;
   std::map<uint64_t, WorkerId> waiting_;
   uint64_t next_waiting_ = 1;
-  std::map<std::string, uint32_t, std::less<>> class_index_;
-  std::vector<std::string> class_names_;
-  std::vector<uint32_t> class_workers_;
-  std::vector<TimePoint> class_gone_;
-  std::map<std::string, uint32_t, std::less<>> tag_index_;
+  std::map<ClassId, Class> classes_;
+  size_t classes_with_voices_ = 0;
+  std::map<Voice, TimePoint> slow_;  ///< until when
 };
+
+/// No table of names is kept, as whoever invents many would fill it: they are hashed.
+ClassId class_id(const std::string& name);
+/// The same of tags; sorted, each once.
+std::vector<TagId> tag_ids(const std::vector<std::string>& tags);
 
 }  // namespace hyades::coordinator

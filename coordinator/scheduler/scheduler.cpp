@@ -84,7 +84,7 @@ std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
           [&](const Tick& e) {
             p.leases.expire();
             p.records.retry([&](const Record& record) { return p.conflicts.still_wanted(record); });
-            p.frames.restart_orphans();
+            p.frames.restart_stranded(p.granting.may_lease());
             p.granting.on(e);
           },
       },

@@ -18,9 +18,8 @@ void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held)
   const auto [job, slot] = jobs_.find_frame({held.job, held.unit.frame});
   const auto extent = job ? job->extent_of(held.unit) : std::nullopt;
   if (slot == nullptr || !extent || workers_.quarantined(id) ||
-      slot->phase != FramePhase::rendering ||
-      (slot->worker_class != 0 && slot->worker_class != worker.worker_class) ||
-      !slot->ledger->all_free(*extent)) {
+      slot->phase != FramePhase::rendering || !workers_.may_render(*job, *slot, worker) ||
+      !slot->ledger->may_assign(*extent, worker.voice)) {
     step_.say(Revoke{id, held.lease, held.job, held.unit});
     return;
   }

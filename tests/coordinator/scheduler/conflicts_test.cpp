@@ -1,5 +1,6 @@
 // Two renderings of one unit that differ.
 #include <algorithm>
+#include <chrono>
 #include <variant>
 #include <vector>
 
@@ -272,6 +273,39 @@ TEST_F(Redundancy, TheFrameWaitsForIt) {
   EXPECT_TRUE(b.all<FinishFrame>().empty());
   b.deliver(b.ask(kBert));
   EXPECT_TRUE(b.only<FinishFrame>().unconfirmed.empty()) << "all of it is confirmed";
+}
+
+TEST_F(Redundancy, WhoIsLateWithItHoldsUpNobody) {
+  begin(100, 32);
+  b.deliver_durably(b.ask(kAnna));
+  const Lease late = b.ask(kBert);
+  const WorkerId cora{3};
+  b.join(cora);
+  b.tell(WorkRequested{kAnna, 1});
+  b.tell(WorkRequested{cora, 1});
+  EXPECT_TRUE(b.all<Lease>().empty());
+  b.now += std::chrono::seconds(6);
+  b.tell(Tick{});
+  const Lease copy = b.only<Lease>();
+  EXPECT_EQ(copy.worker, cora) << "not Anna, who was heard";
+  EXPECT_EQ(copy.units, late.units);
+  b.deliver(copy);
+  EXPECT_EQ(b.only<Revoke>().lease, late.lease);
+  EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
+}
+
+TEST_F(Redundancy, WhoComesAgainGoesOnWithIt) {
+  begin(100, 32);
+  const Lease first = b.ask(kAnna);
+  b.deliver_durably(first);
+  const Lease check = b.ask(kBert);
+  b.join(kAnna, {{first.lease, kJob, first.units[0]}});
+  EXPECT_EQ(b.all<Revoke>().size(), 1U) << "she was heard";
+  b.join(kBert, {{check.lease, kJob, check.units[0]}});
+  const Lease adopted = b.only<Lease>();
+  EXPECT_TRUE(adopted.adopted);
+  b.deliver(adopted);
+  EXPECT_EQ(b.all<FinishFrame>().size(), 1U);
 }
 
 TEST_F(Redundancy, WhoDiffersIsFoundOutByAThird) {

@@ -31,8 +31,9 @@ void SimulatedWorld::act(const FinishFrame& a) {
     if (batch.corrupted_by == 0) continue;
     wrong = true;
     row.corrupted_by.insert(batch.corrupted_by);
-    // It may never have been compared.
-    if (workers_[batch.corrupted_by - 1U].quarantined_by != 0) {
+    // It may never have been compared. What a job that is not there yet tells of it opens the frame
+    // again.
+    if (!restoring_ && workers_[batch.corrupted_by - 1U].quarantined_by != 0) {
       fail("a film is finished with what a worker did that had been found out");
     }
     for (const core::Unit& unit : job.disagreed) {

@@ -101,6 +101,7 @@ void SimulatedWorld::start_coordinator() {
   scheduler_ = std::make_unique<Scheduler>(options_);
   woken_ = false;
   records_.clear();
+  restoring_ = true;
   for (auto& [id, job] : jobs_) {
     if (job.ended) continue;
     if (real_store_) take_up(job);
@@ -119,6 +120,7 @@ void SimulatedWorld::start_coordinator() {
     tell(JobAdded{id, job.plan, job.stored});
     if (job.paused) tell(JobPaused{id});
   }
+  restoring_ = false;
 }
 
 /// With `power` its machine goes, too.

@@ -176,6 +176,7 @@ class SimulatedWorld {
   bool choosy_ = false;      ///< jobs do not go to every worker
   bool real_store_ = false;  ///< the film log and films are the real ones
   bool woken_ = false;       ///< a Tick is on its way
+  bool restoring_ = false;   ///< not all jobs are known yet, nor what is said of them
   std::priority_queue<Happening> events_;
   std::unique_ptr<Scheduler> scheduler_;
   std::vector<SimWorker> workers_;

@@ -1,0 +1,172 @@
+// Classes that may be one worker's invention.
+#include <chrono>
+#include <string>
+
+#include "tests/coordinator/scheduler/scheduler_testing.h"
+
+namespace hyades::coordinator {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::minutes;
+using std::chrono::seconds;
+
+constexpr WorkerId kOdd{7};
+
+/// Anna and Bert are of one class, and Odd is of another that nobody else has.
+class Classes : public testing::Test {
+ protected:
+  Classes() : bench(options()) {}
+
+  static SchedulerOptions options() {
+    SchedulerOptions options;
+    options.class_patience = minutes(5);
+    options.copy_after = Duration{0};
+    options.lease_time = hours(100);                   // it says that it is at work
+    options.unit_time = std::chrono::milliseconds(1);  // one batch
+    return options;
+  }
+  void join(WorkerId worker, const std::string& worker_class) {
+    bench.tell(WorkerJoined{
+        worker, 1, worker_class, {}, {}, 0, std::to_string(static_cast<uint64_t>(worker))});
+  }
+  /// Odd begins with frame 1 of the job before the others come.
+  Lease odd_begins(JobPlan plan) {
+    join(kOdd, "odd");
+    bench.add(std::move(plan));
+    bench.tell(FrameOpened{kJob, 1});
+    Lease lease = bench.ask(kOdd);
+    join(kAnna, "class");
+    join(kBert, "class");
+    return lease;
+  }
+  /// Whether frame 1 begins again within that time.
+  bool begins_again(Duration time) {
+    for (const TimePoint end = bench.now + time; bench.now < end;) {
+      bench.now += seconds(15);
+      bench.tell(Tick{});
+      for (const Persist& persist : bench.all<Persist>()) {
+        if (!std::holds_alternative<FrameRestartedRecord>(persist.record)) continue;
+        bench.tell(Persisted{persist.id});
+        return true;
+      }
+    }
+    return false;
+  }
+  /// Odd asks once more and delivers that.
+  void odd_delivers() { bench.deliver_durably(bench.ask(kOdd)); }
+  bool gets_a_unit(WorkerId worker) {
+    bench.tell(WorkRequested{worker, 1});
+    for (const Lease& lease : bench.all<Lease>()) {
+      if (lease.worker == worker) return true;
+    }
+    return false;
+  }
+
+  SchedulerBench bench;
+};
+
+TEST_F(Classes, NobodyWaitsForAFrameOfOneWorkersClass) {
+  JobPlan plan = small_plan({1, 2}, 64);
+  plan.frames_in_flight = 1;
+  join(kAnna, "class");
+  join(kOdd, "odd");
+  bench.add(plan);
+  bench.tell(FrameOpened{kJob, 1});
+  const Lease odd = bench.ask(kOdd);
+  ASSERT_EQ(odd.units[0].frame, 1);
+  ASSERT_EQ(bench.only<OpenFrame>().frame, 2);
+  bench.tell(FrameOpened{kJob, 2});
+  EXPECT_EQ(bench.ask(kAnna).units[0].frame, 2);
+}
+
+TEST_F(Classes, AFrameThatStandsStillGoesToTheOthers) {
+  odd_begins(small_plan({1}, 64));
+  EXPECT_FALSE(gets_a_unit(kAnna));
+  EXPECT_FALSE(begins_again(minutes(4)));
+  EXPECT_TRUE(begins_again(minutes(3)));
+  EXPECT_EQ(bench.only<OpenFrame>().frame, 1);
+}
+
+TEST_F(Classes, WhoLetsAFrameStandBeginsNoneWhileOthersMay) {
+  odd_begins(small_plan({1}, 64));
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_FALSE(gets_a_unit(kOdd));
+  // Whatever it calls its class, and as whom it comes.
+  bench.tell(WorkerJoined{WorkerId{8}, 1, "odder", {}, {}, 0, "7"});
+  EXPECT_FALSE(gets_a_unit(WorkerId{8}));
+  EXPECT_TRUE(gets_a_unit(kAnna));
+}
+
+TEST_F(Classes, WhoIsLeftAloneBeginsAgain) {
+  odd_begins(small_plan({1}, 64));
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  ASSERT_FALSE(gets_a_unit(kOdd));
+  bench.tell(WorkerLost{kAnna});
+  bench.tell(WorkerLost{kBert});
+  EXPECT_EQ(bench.only<Lease>().worker, kOdd);
+}
+
+TEST_F(Classes, AnHourLaterItBeginsFramesAgain) {
+  odd_begins(small_plan({1}, 64));
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  ASSERT_FALSE(gets_a_unit(kOdd));
+  const TimePoint begun = bench.now;
+  while (bench.all<Lease>().empty() && bench.now < begun + hours(2)) {
+    bench.now += seconds(15);
+    bench.tell(Tick{});
+  }
+  EXPECT_GE(bench.now - begun, minutes(59));
+  EXPECT_LE(bench.now - begun, minutes(62));
+}
+
+TEST_F(Classes, AFrameThatGetsOnStays) {
+  odd_begins(small_plan({1}, 2048));
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_FALSE(begins_again(minutes(2))) << i;
+    for (int unit = 0; unit < 10; ++unit) odd_delivers();
+  }
+}
+
+TEST_F(Classes, AFrameThatWouldTakeMoreThanADayGoesToTheOthers) {
+  odd_begins(small_plan({1}, 2048));  // of two tiles: 14.2 batches in five minutes
+  bool again = false;
+  for (int i = 0; i < 10 && !again; ++i) {
+    odd_delivers();
+    again = begins_again(minutes(2));
+  }
+  EXPECT_TRUE(again);
+}
+
+TEST_F(Classes, OfTwoVoicesIsNoInvention) {
+  odd_begins(small_plan({1}, 64));
+  join(WorkerId{8}, "odd");
+  EXPECT_FALSE(begins_again(hours(2)));
+}
+
+TEST_F(Classes, WhereNobodyElseIsThereAFrameMayTakeItsTime) {
+  odd_begins(small_plan({1}, 64));
+  bench.tell(WorkerLost{kAnna});
+  bench.tell(WorkerLost{kBert});
+  EXPECT_FALSE(begins_again(hours(2)));
+}
+
+TEST_F(Classes, NobodyIsToBlameWhileNothingIsLeased) {
+  odd_begins(small_plan({1}, 64));
+  bench.tell(LeasingHeld{true});
+  EXPECT_FALSE(begins_again(hours(2)));
+}
+
+TEST_F(Classes, WhoDoesSomethingElseIsNotToBlame) {
+  const Lease lease = odd_begins(small_plan({1}, 64));
+  bench.tell(UnitReturned{kOdd, lease.lease, kJob, lease.units[0]});
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_TRUE(gets_a_unit(kOdd));
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
