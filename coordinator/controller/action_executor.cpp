@@ -146,12 +146,12 @@ void ActionExecutor::end(const JobEnded& ended) {
   sessions_.send_over(ended.job);
   active->stored.frames_done = ended.done;
   active->stored.frames_failed = ended.failed;
-  if (!active->read->job.videos.empty() && active->videos().empty()) {
+  if (active->leaves_out_videos) {
     jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
                "no video is made of some of the job's frames: 'fetch' brings their pictures, "
                "'hyades video' makes one of them");
   }
-  if (!ended.cancelled && ended.failed == 0 && !active->videos().empty()) {
+  if (!ended.cancelled && ended.failed == 0 && !active->videos.empty()) {
     videos_.begin(*active);
   } else {
     records_.end(*active, ended.cancelled, {});

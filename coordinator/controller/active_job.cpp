@@ -29,7 +29,9 @@ constexpr int kMostFiles = 100'000;
 constexpr int kMostRanges = 10'000;
 constexpr size_t kMostLinesWaiting = 2000;
 constexpr size_t kLongestPath = 4096;
-constexpr uint32_t kMostSamples = 1U << 24U;
+/// An open job of one frame with what the scheduler knows of it, without its spec: 5.8 kB by what
+/// malloc had given for a thousand of them.
+constexpr uint64_t kJobBytes = 6144;
 constexpr int64_t kMostFrames = 1'000'000;
 constexpr int32_t kSmallTile = 32;
 constexpr int32_t kLargeTile = 64;
@@ -95,6 +97,46 @@ core::Status check_color_files(const core::Job& job, core::AssetResolver& files)
   return {};
 }
 
+core::Status check_outputs(const core::Job& job) {
+  for (const core::OutputDesc& output : job.outputs) {
+    if (farm::wire_text(output.file) != output.file) {
+      return core::Error{"output '" + farm::wire_text(output.file) + "': expected UTF-8"};
+    }
+    if (output.file.size() > kLongestPath) {
+      return core::Error{fmt::format("an output's file has a name of {} bytes: at most {}",
+                                     output.file.size(), kLongestPath)};
+    }
+    const std::filesystem::path path = std::filesystem::path(output.file).lexically_normal();
+    if (path.is_absolute() || path.empty() || *path.begin() == "..") {
+      return core::Error{"output '" + output.file + "': a farm writes below the job's folder only"};
+    }
+  }
+  return {};
+}
+
+/// What is asked for of the job's outputs all the time.
+void note_outputs(const core::Job& job, ActiveJob& active) {
+  for (const core::OutputDesc& output : job.outputs) {
+    if (output.file.ends_with(".exr")) continue;
+    active.tone_map = output.tone_map;
+    active.exposure = output.exposure;
+    break;
+  }
+  if (job.videos.empty()) return;
+  active.leaves_out_videos = !core::are_all_frames(job, active.numbers);
+  if (active.leaves_out_videos) return;
+  active.videos = job.videos;
+  active.video_frames = core::video_frames(job, {}, active.numbers);
+}
+
+uint64_t memory_of(const std::vector<core::VideoDesc>& videos) {
+  uint64_t bytes = 0;
+  for (const core::VideoDesc& video : videos) {
+    bytes += sizeof video + video.where.file.size() + video.file.size() + video.pictures.size();
+  }
+  return bytes;
+}
+
 }  // namespace
 
 int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats) {
@@ -107,7 +149,7 @@ int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splat
 }
 
 int32_t tile_size_of(const ActiveJob& job) {
-  return tile_size_of(job.region, job.read->job.sampling.samples, job.layout.layers.splats);
+  return tile_size_of(job.region, job.samples, job.layout.layers.splats);
 }
 
 void Speed::note(uint64_t done, TimePoint now) {
@@ -192,11 +234,6 @@ v1::Job describe(const StoredJob& job) {
   return wire;
 }
 
-const std::vector<core::VideoDesc>& ActiveJob::videos() const {
-  static const std::vector<core::VideoDesc> none;
-  return core::are_all_frames(read->job, numbers) ? read->job.videos : none;
-}
-
 std::optional<int32_t> ActiveJob::preview_frame() const {
   for (const int32_t frame : in_work) {
     const auto noted = frames.find(frame);
@@ -249,6 +286,8 @@ core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame) {
   return info;
 }
 
+uint64_t memory_of(const StoredJob& job) { return kJobBytes + job.spec.size(); }
+
 core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec) {
   if (spec.files_size() > kMostFiles) {
     return core::Error{fmt::format("{} files: at most {}", spec.files_size(), kMostFiles)};
@@ -279,34 +318,19 @@ core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec) {
 
 core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored,
                                                          const v1::JobSpec& spec,
+                                                         const farm::ReadJob& read,
                                                          farm::ContentStore& assets,
                                                          uint64_t film_memory) {
-  auto records = files_of(spec);
-  if (!records) return records.error();
-  farm::ManifestResolver files(*records, assets);
-  auto read = farm::read_job(spec.document(), spec.document(), files);
-  if (!read) return read.error();
-  auto active = std::make_unique<ActiveJob>(stored, spec);
-  core::Job& job = read->job;
-  if (spec.samples() > kMostSamples) {
-    return core::Error{fmt::format("{} samples: at most {}", spec.samples(), kMostSamples)};
-  }
-  if (spec.samples() > 0) job.sampling.samples = spec.samples();
+  const core::Job& job = read.job;
   if (farm::wire_text(job.name) != job.name || job.name.size() > kLongestName) {
     return core::Error{fmt::format("name: expected at most {} bytes of UTF-8", kLongestName)};
   }
-  for (const core::OutputDesc& output : job.outputs) {
-    if (farm::wire_text(output.file) != output.file) {
-      return core::Error{"output '" + farm::wire_text(output.file) + "': expected UTF-8"};
-    }
-    const std::filesystem::path path = std::filesystem::path(output.file).lexically_normal();
-    if (path.is_absolute() || path.empty() || *path.begin() == "..") {
-      return core::Error{"output '" + output.file + "': a farm writes below the job's folder only"};
-    }
-  }
+  if (const core::Status allowed = check_outputs(job); !allowed) return allowed.error();
+  farm::ManifestResolver files(read.assets, assets);
   if (const core::Status portable = check_color_files(job, files); !portable) {
     return portable.error();
   }
+  auto active = std::make_unique<ActiveJob>(stored, spec);
   auto numbers = frames_of(spec, job);
   if (!numbers) return numbers.error();
   active->numbers = std::move(*numbers);
@@ -321,14 +345,16 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
         active->region.width(), active->region.height(), active->layout.channels.size(),
         core::format_bytes(active->film_bytes), core::format_bytes(film_memory))};
   }
+  active->samples = job.sampling.samples;
   active->samples_per_frame =
-      static_cast<uint64_t>(active->region.area()) * uint64_t{job.sampling.samples};
+      static_cast<uint64_t>(active->region.area()) * uint64_t{active->samples};
   active->key = key_of(spec, layers);
   for (const int32_t frame : active->numbers) active->frames[frame];
   active->stored.name = spec.name().empty() ? job.name : spec.name();
   active->stored.frames = static_cast<uint32_t>(active->numbers.size());
   active->stored.samples = active->samples_per_frame * active->numbers.size();
-  active->read = std::make_shared<const farm::ReadJob>(std::move(*read));
+  note_outputs(job, *active);
+  active->bytes = memory_of(stored) + memory_of(active->videos);
   return active;
 }
 

@@ -18,6 +18,7 @@
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/scheduler/job_plan.h"
 #include "core/film/film_info.h"
+#include "core/job/video.h"
 #include "farm/content_store.h"
 #include "farm/job_package.h"
 #include "hyades/v1/common.pb.h"
@@ -73,10 +74,19 @@ struct ActiveJob {
   JobId id{};
   v1::JobSpec spec;        ///< empty once it is in `brief`
   grpc::ByteBuffer brief;  ///< a CoordinatorMessage, which tells workers of the job
-  /// The job as its document says, with the spec's samples; for what takes its time and so is done
-  /// without the lock.
-  std::shared_ptr<const farm::ReadJob> read;
-  std::vector<int32_t> numbers;  ///< of its frames, in order
+  uint64_t bytes = 0;  ///< that it takes in memory while it is open, but for its frames and films
+
+  // What is asked for all the time of its document; all else of that is in JobDocuments.
+  std::vector<int32_t> numbers;   ///< of its frames, in order
+  uint32_t samples = 0;           ///< per pixel
+  std::string tone_map = "srgb";  ///< of its first output for displays
+  float exposure = 0;             ///< of that output, in stops
+  /// The videos that are made when all frames are done: none where the spec asks for some frames
+  /// only.
+  std::vector<core::VideoDesc> videos;
+  core::VideoFrames video_frames;  ///< what they are made of, but for the folder
+  bool leaves_out_videos = false;  ///< the document has some, and the spec not all frames
+
   core::PixelRect region;
   core::FilmLayout layout;
   uint64_t film_bytes = 0;  ///< that the film of one frame takes in memory
@@ -133,9 +143,6 @@ struct ActiveJob {
   /// Puts lines that could not be stored before all others; the oldest of them go where too many
   /// wait.
   void put_back(std::vector<StoredLine> taken) HYADES_REQUIRES(state_lock);
-  /// The videos that are made when all frames are done: none where the spec asks for some frames
-  /// only.
-  const std::vector<core::VideoDesc>& videos() const;
   /// The frame that stands for the job in a list: the first in work of which something is there,
   /// else the last that was finished.
   std::optional<int32_t> preview_frame() const HYADES_REQUIRES(state_lock);
@@ -165,11 +172,15 @@ JobNeeds needs_of(const v1::Job& options);
 /// A stored job as the wire shows it.
 v1::Job describe(const StoredJob& job);
 
-/// Reads the job's document and what it names out of `assets`. An error holds every complaint about
-/// the document, or says that the film of a frame takes more than `film_memory` bytes.
+/// The job, whose document is `read`; the files that that names are among `assets`. An error says
+/// what a farm does not do of it, or that the film of a frame takes more than `film_memory` bytes.
 core::Result<std::unique_ptr<ActiveJob>> make_active_job(
-    const StoredJob& stored, const v1::JobSpec& spec, farm::ContentStore& assets,
-    uint64_t film_memory) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+    const StoredJob& stored, const v1::JobSpec& spec, const farm::ReadJob& read,
+    farm::ContentStore& assets, uint64_t film_memory) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+
+/// Bytes that a job of this spec takes in memory while it is open, but for its frames, films and
+/// videos.
+uint64_t memory_of(const StoredJob& job);
 
 /// The records of a spec's files; an error where the spec is not as the wire allows.
 core::Result<std::vector<core::AssetRecord>> files_of(const v1::JobSpec& spec);

@@ -27,6 +27,12 @@ struct OwnerLimits {
   uint64_t connections = 0;  ///< open streams with tokens of one name
 };
 
+/// What open jobs have of the coordinator's memory, but for their films.
+struct JobRoom {
+  uint64_t frames = 0;
+  uint64_t bytes = 0;  ///< ActiveJob::bytes: mostly what their submissions name
+};
+
 /// How a controller works, and where.
 struct ControllerOptions {
   std::string folder;                            ///< where all state lies; made if it is missing
@@ -54,8 +60,13 @@ struct ControllerOptions {
   /// Bytes that films of frames in work, of all jobs, may take in memory. Jobs of which one frame
   /// takes more are refused.
   uint64_t film_memory = core::half_of_memory();
+  /// Bytes that documents of jobs may take in memory beside those that are in use (JobDocuments).
+  /// One of 10,000 characters takes some 440 kB, so that those of 1,000 such jobs stay.
+  uint64_t document_memory = uint64_t{512} << 20U;
   /// A job's film log is rewritten when it has grown by this much.
   uint64_t compact_bytes = FilmStoreOptions{}.compact_bytes;
+  /// What all open jobs together may have; one owner's half of it, so that others get in.
+  JobRoom job_room{2'000'000, uint64_t{128} << 20U};
   Price price;
   OwnerLimits per_owner;
 };

@@ -39,7 +39,7 @@ core::Status find_color_files(FinishTask& task, const std::vector<core::AssetRec
 
 /// Whether every sample of its frame is in the film: where one could not be merged some are not.
 bool is_whole(const core::Film* film, const ActiveJob& active) {
-  const uint32_t batches = core::batch_count(active.read->job.sampling.samples);
+  const uint32_t batches = core::batch_count(active.samples);
   return film != nullptr &&
          film->coverage().volume() == static_cast<uint64_t>(active.region.area()) * batches;
 }
@@ -70,12 +70,18 @@ bool FrameFinisher::finish(Completed& completed) {
     turn.tell(FinishFailed{completed.job, completed.frame, *completed.failure});
     return true;
   }
+  std::string spec;
   StoredFrame over;
-  const std::shared_ptr<const farm::ReadJob> read = begin(completed, over);
-  if (!read) return !completed.failure;
+  if (!begin(completed, spec, over)) return !completed.failure;
+  auto document = context_.documents.read_stored(spec, kReadingPatience);
+  if (!document) return false;  // other frames are finished meanwhile
   const int64_t begun_us = core::wall_us();
+  auto task = *document ? task_of(***document, static_cast<uint64_t>(completed.job), over)
+                        : core::Result<FinishTask>(document->error());
+  document.reset();  // making the outputs takes its time
   bool written = false;
-  const core::Status done = make_outputs(completed, *read, over, written);
+  const core::Status done =
+      task ? make_outputs(completed, *task, over, written) : core::Status(task.error());
   // What is written and cannot be stored is no fault of the frame's, nor is a full disk.
   const bool waits = !done && (written || disk_.is_short_for(*completed.film));
   Turn turn(dispatcher_);
@@ -103,38 +109,46 @@ bool FrameFinisher::finish(Completed& completed) {
   return true;
 }
 
-/// The job of the frame, which will be `over`; null where the job is gone, or the frame has failed.
-std::shared_ptr<const farm::ReadJob> FrameFinisher::begin(Completed& completed, StoredFrame& over) {
+/// What the frame is of, and what it will be when it is `over`; false where the job is gone, or the
+/// frame has failed.
+bool FrameFinisher::begin(Completed& completed, std::string& spec, StoredFrame& over) {
   const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(completed.job);
-  if (active == nullptr) return nullptr;
+  if (active == nullptr) return false;
   if (!is_whole(completed.film.get(), *active)) {
     completed.failure = "its film is not whole: 'retry' renders it again";
-    return nullptr;
+    return false;
   }
+  spec = active->stored.spec;
   const FrameNote& note = active->frames[completed.frame];
   over = {completed.frame,    true, {}, note.worker_class, note.restarts, completed.parts,
           jobs_.next_moment()};
-  return active->read;
+  return true;
 }
 
-/// Has the outputs made and stores that the frame is over; `written`: the first of it is done.
-core::Status FrameFinisher::make_outputs(const Completed& completed, const farm::ReadJob& read,
-                                         const StoredFrame& over, bool& written) const {
-  const auto id = static_cast<uint64_t>(completed.job);
+/// What the finisher is told of the frame that will be `over`.
+core::Result<FinishTask> FrameFinisher::task_of(const farm::ReadJob& read, uint64_t job,
+                                                const StoredFrame& over) const {
   FinishTask task;
-  task.info = film_info(read, completed.frame);
+  task.info = film_info(read, over.frame);
   task.info.worker_class = over.worker_class;
   task.outputs = read.job.outputs;
   if (read.job.keep_films) task.film = core::film_file(read.job);
-  task.folder = context_.output_folder(id);
+  task.folder = context_.output_folder(job);
   task.color = read.job.color;
+  if (core::Status found = find_color_files(task, read.assets, *context_.assets); !found) {
+    return found.error();
+  }
+  return task;
+}
+
+/// Has the outputs made and stores that the frame is over; `written`: the first of it is done.
+core::Status FrameFinisher::make_outputs(const Completed& completed, const FinishTask& task,
+                                         const StoredFrame& over, bool& written) const {
+  const auto id = static_cast<uint64_t>(completed.job);
   const core::FpMode mode;
   const std::string scratch =
       fmt::format("{}/tmp/{}-{}", context_.options.folder, id, completed.frame);
-  if (core::Status found = find_color_files(task, read.assets, *context_.assets); !found) {
-    return found;
-  }
   const auto files =
       run_finisher(context_.options.finisher, scratch, task, *completed.film, context_.stop);
   if (!files) return files.error();

@@ -13,6 +13,7 @@
 namespace hyades::coordinator {
 
 class DiskWatch;
+struct FinishTask;
 
 /// Has the outputs of complete frames made, one frame after the other.
 class FrameFinisher {
@@ -35,9 +36,11 @@ class FrameFinisher {
  private:
   struct Completed;
   bool finish(Completed& completed) HYADES_EXCLUDES(state_lock);
-  std::shared_ptr<const farm::ReadJob> begin(Completed& completed, StoredFrame& over)
+  bool begin(Completed& completed, std::string& spec, StoredFrame& over)
       HYADES_EXCLUDES(state_lock);
-  core::Status make_outputs(const Completed& completed, const farm::ReadJob& read,
+  core::Result<FinishTask> task_of(const farm::ReadJob& read, uint64_t job,
+                                   const StoredFrame& over) const;
+  core::Status make_outputs(const Completed& completed, const FinishTask& task,
                             const StoredFrame& over, bool& written) const;
 
   ControllerContext& context_;

@@ -16,7 +16,7 @@ namespace {
 
 uint64_t samples_of(const ActiveJob& active, const core::PixelRect& tile,
                     const core::BatchRange& batches) {
-  return core::samples_in(tile, batches, active.read->job.sampling.samples);
+  return core::samples_in(tile, batches, active.samples);
 }
 
 }  // namespace

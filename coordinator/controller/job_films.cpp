@@ -95,7 +95,7 @@ void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecor
 }
 
 std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
-  const uint32_t samples = active.read->job.sampling.samples;
+  const uint32_t samples = active.samples;
   FilmSet films{active.numbers, active.region, samples, core::batch_count(samples)};
   FilmStoreOptions place;
   place.max_waiting_bytes = kWaitingBytes;

@@ -31,11 +31,6 @@ namespace {
 constexpr size_t kMostMissingListed = 100;  // an error travels in headers, which are short
 /// For what is left of a job that has ended: less than ControllerContext::wait_for_submissions().
 constexpr std::chrono::milliseconds kLeavePatience{1500};
-/// For the documents of others to be read.
-constexpr std::chrono::seconds kReadPatience{2};
-/// What all open jobs together may have in memory.
-constexpr uint64_t kMostOpenFrames = 2'000'000;
-constexpr uint64_t kMostOpenSpecBytes = uint64_t{128} << 20U;
 constexpr uint32_t kMostAttempts = 100;
 constexpr uint32_t kUsualAttempts = 3;
 
@@ -50,6 +45,11 @@ grpc::Status others_submit() {
 grpc::Status no_room() {
   return overloaded("the open jobs have as many frames or files as there may be",
                     std::chrono::seconds(60));
+}
+
+void add(const JobRoom& one, JobRoom& all) {
+  all.frames += one.frames;
+  all.bytes += one.bytes;
 }
 
 grpc::Status wrong(const std::string& message) {
@@ -123,11 +123,11 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
   auto active = [&]() -> std::optional<core::Result<std::unique_ptr<ActiveJob>>> {
-    // A long document takes seconds and much memory: one at a time, and others' jobs are removed
-    // and tried again meanwhile.
-    const std::unique_lock alone(documents_, kReadPatience);
-    if (!alone) return std::nullopt;
-    return make_active_job(new_row(request, *options, owner_proven), request.spec(),
+    // A long document takes seconds: others' jobs are removed and tried again meanwhile.
+    const auto document = context_.documents.read(request.spec(), kReadingPatience);
+    if (!document) return std::nullopt;
+    if (!*document) return document->error();
+    return make_active_job(new_row(request, *options, owner_proven), request.spec(), ***document,
                            *context_.assets, context_.options.film_memory);
   }();
   if (!active) return others_submit();
@@ -143,7 +143,8 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
 /// Stores a new job, which nobody else knows yet, and begins with it.
 grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response,
                                 const std::vector<core::AssetRecord>& files) {
-  if (!has_room_for(active->stored)) return no_room();
+  const JobRoom more{active->numbers.size(), active->bytes};
+  if (const grpc::Status room = has_room_for(active->stored.owner, more); !room.ok()) return room;
   const auto added = context_.store->add_job(active->stored);
   if (!added) return farm::unavailable(added.error());
   core::failpoint("job-stored");
@@ -195,16 +196,21 @@ grpc::Status JobIntake::may_have_one_more(const std::string& owner) {
   return quotas_.may_render(owner, *stored_ns + not_stored_ns);
 }
 
-/// Whether the memory that open jobs may take holds another one.
-bool JobIntake::has_room_for(const StoredJob& job) const {
-  const StateLock lock(context_.mutex);
-  uint64_t frames = job.frames;
-  uint64_t bytes = job.spec.size();
-  for (const auto& [id, active] : jobs_.all()) {
-    frames += active->numbers.size();
-    bytes += active->stored.spec.size();
+/// Whether the memory that open jobs may take holds more of the owner.
+grpc::Status JobIntake::has_room_for(const std::string& owner, const JobRoom& more) const {
+  JobRoom his = more;
+  JobRoom all = more;
+  {
+    const StateLock lock(context_.mutex);
+    for (const auto& [id, active] : jobs_.all()) {
+      const JobRoom one{active->numbers.size(), active->bytes};
+      add(one, all);
+      if (active->stored.owner == owner) add(one, his);
+    }
   }
-  return frames <= kMostOpenFrames && bytes <= kMostOpenSpecBytes;
+  const JobRoom& most = context_.options.job_room;
+  if (const grpc::Status may = quotas_.may_hold(owner, his, most); !may.ok()) return may;
+  return all.frames <= most.frames && all.bytes <= most.bytes ? grpc::Status::OK : no_room();
 }
 
 /// FAILED_PRECONDITION, naming those files of a job (which files_of has accepted) that are not.
@@ -296,7 +302,7 @@ grpc::Status JobIntake::may_reopen(uint64_t id, StoredJob& job) {
     return {grpc::StatusCode::FAILED_PRECONDITION,
             fmt::format("job {} is done: there is nothing to take up again", id)};
   }
-  return has_room_for(job) ? grpc::Status::OK : no_room();
+  return has_room_for(job.owner, {job.frames, memory_of(job)});
 }
 
 core::Status JobIntake::forget_failed_frames(uint64_t id) {

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -63,7 +62,8 @@ class JobIntake {
   grpc::Status answer_with(uint64_t job, bool existed, v1::SubmitResponse& response)
       HYADES_EXCLUDES(state_lock);
   grpc::Status may_have_one_more(const std::string& owner) HYADES_EXCLUDES(state_lock);
-  bool has_room_for(const StoredJob& job) const HYADES_EXCLUDES(state_lock);
+  grpc::Status has_room_for(const std::string& owner, const JobRoom& more) const
+      HYADES_EXCLUDES(state_lock);
   grpc::Status files_are_here(const v1::JobSpec& spec);
   grpc::Status wait_until_left(uint64_t job) HYADES_EXCLUDES(state_lock);
 
@@ -78,7 +78,6 @@ class JobIntake {
   Timelines& timelines_;
   const OwnerQuotas& quotas_;
   UnclaimedFiles& unclaimed_;
-  std::timed_mutex documents_;  ///< one is read at a time; before ControllerContext::submissions
 };
 
 }  // namespace hyades::coordinator

@@ -39,6 +39,18 @@ v1::TimelineStep to_wire(const TimedStep& step) {
   return wire;
 }
 
+grpc::Status nothing_yet() {
+  return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "nothing of the frame is there yet",
+                           std::chrono::seconds(1));
+}
+
+/// Whether the frame has a film, or will have one, which nobody has finished.
+bool grows(const ActiveJob& active, int32_t frame) HYADES_REQUIRES(state_lock) {
+  const auto noted = active.frames.find(frame);
+  return !active.ending && noted != active.frames.end() &&
+         noted->second.state != v1::FRAME_STATE_DONE;
+}
+
 v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
   v1::Frame wire;
   wire.set_frame(frame.frame);
@@ -235,12 +247,8 @@ grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
       now.frame = active->describe_frame(frame, noted->second);
       now.tag = fmt::format("\"{}.{}.{}\"", context_.started_ms, context_.incarnation,
                             noted->second.version);
-      for (const core::OutputDesc& output : active->read->job.outputs) {
-        if (output.file.ends_with(".exr")) continue;
-        now.tone_map = output.tone_map;
-        now.exposure = output.exposure;
-        break;
-      }
+      now.tone_map = active->tone_map;
+      now.exposure = active->exposure;
       return grpc::Status::OK;
     }
   }
@@ -274,6 +282,28 @@ grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& 
 }
 
 grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
+  std::string spec;
+  {
+    const StateLock lock(context_.mutex);
+    const ActiveJob* active = jobs_.find(id);
+    if (active != nullptr && grows(*active, frame)) spec = active->stored.spec;
+  }
+  if (spec.empty()) return copy_film(id, frame, std::nullopt, std::move(then));
+  auto document = context_.documents.read_stored(spec, kReadingPatience);
+  if (!document) return others_are_read();
+  if (!*document) return {grpc::StatusCode::DATA_LOSS, document->error().message};
+  core::FilmInfo info = film_info(***document, frame);
+  document.reset();  // others may be read
+  return copy_film(id, frame, std::move(info), std::move(then));
+}
+
+grpc::Status JobQueries::film_alone(uint64_t id, int32_t frame, FilmTaker then) {
+  return copy_film(id, frame, core::FilmInfo(), std::move(then));
+}
+
+/// `info`: of a film that grows, but for its class.
+grpc::Status JobQueries::copy_film(uint64_t id, int32_t frame, std::optional<core::FilmInfo> info,
+                                   FilmTaker then) {
   StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(id);
   if (active == nullptr || active->ending) {
@@ -288,21 +318,15 @@ grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
     lock.unlock();
     return kept_film(id, frame, then);
   }
-  if (!active->film_store) {
-    return farm::retry_later(grpc::StatusCode::UNAVAILABLE, "nothing of the frame is there yet",
-                             std::chrono::seconds(1));
-  }
+  // Without `info` it has begun to grow just now.
+  if (!active->film_store || !info) return nothing_yet();
+  info->worker_class = noted->second.worker_class;
   // The film store's thread copies, as only it may look at films while they grow.
-  active->film_store->call([film_store = active->film_store.get(), read = active->read, frame,
-                            worker_class = noted->second.worker_class, then = std::move(then)] {
-    core::FilmInfo info = film_info(*read, frame);
-    info.worker_class = worker_class;
+  active->film_store->call([film_store = active->film_store.get(), frame, info = std::move(*info),
+                            then = std::move(then)] {
     const auto film = film_store->film(frame);
     const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
-    then(copy ? grpc::Status::OK
-              : farm::retry_later(grpc::StatusCode::UNAVAILABLE,
-                                  "nothing of the frame is there yet", std::chrono::seconds(1)),
-         info, copy);
+    then(copy ? grpc::Status::OK : nothing_yet(), info, copy);
   });
   return grpc::Status::OK;
 }
@@ -323,7 +347,7 @@ bool JobQueries::is_for_video(uint64_t job, const std::string& path) const {
   const StateLock lock(context_.mutex);
   const ActiveJob* active = jobs_.find(job);
   if (active == nullptr) return false;
-  const std::vector<core::VideoDesc>& videos = active->videos();
+  const std::vector<core::VideoDesc>& videos = active->videos;
   return std::any_of(videos.begin(), videos.end(), [&](const core::VideoDesc& video) {
     return path.starts_with(core::video_folder(video) + "/");
   });

@@ -75,6 +75,8 @@ class JobQueries {
   /// A copy of the frame's film as it is now, or, where films are kept, was in the end; given to
   /// `then` (which is quick), perhaps by another thread. May wait for the disk.
   grpc::Status film(uint64_t job, int32_t frame, FilmTaker then) HYADES_EXCLUDES(state_lock);
+  /// film() without what it is of, for which the job's document may have to be read.
+  grpc::Status film_alone(uint64_t job, int32_t frame, FilmTaker then) HYADES_EXCLUDES(state_lock);
   /// What was done for the job where and when, as far as it is kept in memory. May wait for the
   /// store.
   grpc::Status timeline(const v1::ListTimelineRequest& request, v1::ListTimelineResponse& response);
@@ -87,6 +89,8 @@ class JobQueries {
 
  private:
   void count_cost(v1::Job& job) const;
+  grpc::Status copy_film(uint64_t job, int32_t frame, std::optional<core::FilmInfo> info,
+                         FilmTaker then) HYADES_EXCLUDES(state_lock);
   grpc::Status kept_film(uint64_t job, int32_t frame, const FilmTaker& then);
 
   ControllerContext& context_;

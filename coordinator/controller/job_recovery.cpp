@@ -1,6 +1,7 @@
 #include "coordinator/controller/job_recovery.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <mutex>
@@ -22,6 +23,8 @@ namespace {
 /// Films of a progressive job that may be in memory together, and frames that may be.
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
 constexpr uint64_t kMostAtOnce = 256;
+/// For the documents of others to be read: a few of the longest. Who reopens a job asks once.
+constexpr std::chrono::seconds kReadPatience{30};
 
 /// How many frames of a job may be in work together: no more than half of `film_memory` holds, or
 /// one.
@@ -31,26 +34,6 @@ uint32_t frames_at_once(const ActiveJob& active, uint64_t film_memory) HYADES_RE
                               ? std::clamp<uint64_t>(kProgressiveBytes / film, 3, kMostAtOnce)
                               : JobPlan{}.frames_in_flight;
   return static_cast<uint32_t>(std::clamp<uint64_t>(film_memory / 2 / film, 1, wanted));
-}
-
-/// Whether a job can never be recovered as it is: its record is damaged, its files are gone, or
-/// what they say is not allowed here. All else (a full disk, one that does not answer) may pass.
-bool lasting_obstacle(JobStore& store, farm::ContentStore& assets, uint64_t id,
-                      uint64_t film_memory) {
-  const auto stored = store.job(id);
-  if (!stored) return false;
-  if (!*stored) return true;
-  v1::JobSpec spec;
-  if (!spec.ParseFromString((*stored)->spec)) return true;
-  for (const v1::JobFile& file : spec.files()) {
-    const auto digest = farm::digest_from_wire(file.sha256());
-    if (!digest) return true;
-    const std::string name = core::to_hex(*digest);
-    if (assets.missing(name)) return true;
-    // One that is damaged is gone once it was read.
-    if (!assets.read(name)) return assets.missing(name);
-  }
-  return !make_active_job(**stored, spec, assets, film_memory);
 }
 
 /// What workers are told of the job; takes its spec.
@@ -71,7 +54,7 @@ JobPlan plan_of(const ActiveJob& active, int32_t tile_size, uint64_t film_memory
   plan.frames = active.numbers;
   plan.region = active.region;
   plan.tile_size = tile_size;
-  plan.batches = core::batch_count(active.read->job.sampling.samples);
+  plan.batches = core::batch_count(active.samples);
   plan.priority = active.stored.priority;
   plan.owner = active.stored.owner;
   plan.max_workers = options.max_workers();
@@ -92,15 +75,45 @@ bool is_stored(const v1::JobFile& file, farm::ContentStore& assets) {
   return digest && assets.contains(core::to_hex(*digest), file.size());
 }
 
+/// The job as it is stored, with nothing of its frames.
+core::Result<std::unique_ptr<ActiveJob>> JobRecovery::read(const StoredJob& stored,
+                                                           const v1::JobSpec& spec) {
+  const auto document = context_.documents.read(spec, kReadPatience);
+  if (!document) return core::Error{"the documents of other jobs are being read"};
+  if (!*document) return document->error();
+  return make_active_job(stored, spec, ***document, *context_.assets, context_.options.film_memory);
+}
+
+/// Whether a job can never be recovered as it is: its record is damaged, its files are gone, or
+/// what they say is not allowed here. All else (a full disk, one that does not answer) may pass.
+bool JobRecovery::lasting_obstacle(uint64_t id) {
+  const auto stored = context_.store->job(id);
+  if (!stored) return false;
+  if (!*stored) return true;
+  v1::JobSpec spec;
+  if (!spec.ParseFromString((*stored)->spec)) return true;
+  farm::ContentStore& assets = *context_.assets;
+  for (const v1::JobFile& file : spec.files()) {
+    const auto digest = farm::digest_from_wire(file.sha256());
+    if (!digest) return true;
+    const std::string name = core::to_hex(*digest);
+    if (assets.missing(name)) return true;
+    // One that is damaged is gone once it was read.
+    if (!assets.read(name)) return assets.missing(name);
+  }
+  const auto document = context_.documents.read(spec, kReadPatience);
+  if (!document) return false;
+  return !*document ||
+         !make_active_job(**stored, spec, ***document, assets, context_.options.film_memory);
+}
+
 core::Status JobRecovery::recover_all() {
   const auto ids = context_.store->open_jobs();
   if (!ids) return ids.error();
   for (const uint64_t id : *ids) {
     const core::Status recovered = recover(id);
     if (recovered) continue;
-    const bool lasts =
-        lasting_obstacle(*context_.store, *context_.assets, id, context_.options.film_memory);
-    if (!lasts || !give_up(id, recovered.error())) wait(id, recovered.error());
+    if (!lasting_obstacle(id) || !give_up(id, recovered.error())) wait(id, recovered.error());
   }
   return {};
 }
@@ -135,8 +148,7 @@ bool JobRecovery::try_to_recover(uint64_t id) {
   if (!*stored || has_ended((*stored)->state)) return true;  // somebody has deleted it
   const core::Status recovered = recover(id);
   if (recovered) return true;
-  return lasting_obstacle(*context_.store, *context_.assets, id, context_.options.film_memory) &&
-         give_up(id, recovered.error()).ok();
+  return lasting_obstacle(id) && give_up(id, recovered.error()).ok();
 }
 
 /// The job fails alone, with the reason kept; `retry` reopens it.
@@ -162,7 +174,7 @@ core::Status JobRecovery::recover(uint64_t id) {
                        " is gone or damaged on the coordinator's disk: submit the job (or the "
                        "file with another) again, then 'retry' takes this one up"};
   }
-  auto active = make_active_job(**stored, spec, *context_.assets, context_.options.film_memory);
+  auto active = read(**stored, spec);
   if (!active) return active.error();
   (*active)->id = JobId{id};
   (*active)->core_ns_stored = (*active)->stored.core_ns;
@@ -244,7 +256,7 @@ core::Status JobRecovery::repeat_for_videos(const ActiveJob& active,
   // What one video repeats costs the others too.
   for (size_t before = repeated.size() + 1; before != repeated.size();) {
     before = repeated.size();
-    for (const core::VideoDesc& video : active.videos()) {
+    for (const core::VideoDesc& video : active.videos) {
       if (repeated.empty() && paths.contains(video.file)) continue;
       if (core::Status gone = context_.store->change_outputs(id, {video.file}, {}); !gone)
         return gone;
@@ -266,7 +278,7 @@ core::Result<std::set<int32_t>> JobRecovery::frames_to_repeat(
   if (!lost) return lost.error();
   std::set<int32_t> repeated;
   for (const StoredOutput& output : *lost) {
-    const bool video = std::any_of(active.videos().begin(), active.videos().end(),
+    const bool video = std::any_of(active.videos.begin(), active.videos.end(),
                                    [&](const core::VideoDesc& v) { return v.file == output.path; });
     if (!video) {
       repeated.insert(output.frame);
@@ -314,8 +326,7 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
     active.in_work.insert(number);
     frame.worker_class = units.front().worker_class;
     for (const AcceptedUnit& unit : units) {
-      frame.samples_done +=
-          core::samples_in(unit.unit.tile, unit.unit.batches, active.read->job.sampling.samples);
+      frame.samples_done += core::samples_in(unit.unit.tile, unit.unit.batches, active.samples);
       restored.accepted.push_back(unit);
     }
     active.samples_done += frame.samples_done;

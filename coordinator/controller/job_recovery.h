@@ -38,6 +38,9 @@ class JobRecovery {
   bool try_to_recover(uint64_t id) HYADES_EXCLUDES(state_lock);
   void wait(uint64_t id, const core::Error& why) HYADES_EXCLUDES(state_lock);
   core::Status give_up(uint64_t id, const core::Error& why);
+  core::Result<std::unique_ptr<ActiveJob>> read(const StoredJob& stored, const v1::JobSpec& spec)
+      HYADES_EXCLUDES(state_lock);
+  bool lasting_obstacle(uint64_t id) HYADES_EXCLUDES(state_lock);
   // Of a job that nobody else knows yet.
   core::Result<RestoredJob> restore_frames(ActiveJob& active) HYADES_NO_THREAD_SAFETY_ANALYSIS;
   core::Result<std::vector<StoredOutput>> lost_outputs(uint64_t id) const;

@@ -49,6 +49,16 @@ grpc::Status OwnerQuotas::may_add_job(const std::string& owner, uint64_t open) c
                   has(owner), core::counted(open, "open job"), limits_.jobs));
 }
 
+grpc::Status OwnerQuotas::may_hold(const std::string& owner, const JobRoom& his,
+                                   const JobRoom& most) const {
+  if (his.frames <= most.frames / 2 && his.bytes <= most.bytes / 2) return grpc::Status::OK;
+  return farm::over_quota(fmt::format(
+      "with this job {} {} and {} of what submissions name in open jobs, where an owner may have "
+      "half of what there is for all, {} and {}: wait for one to end, or cancel one",
+      has(owner), core::counted(his.frames, "frame"), core::format_bytes(his.bytes),
+      core::counted(most.frames / 2, "frame"), core::format_bytes(most.bytes / 2)));
+}
+
 grpc::Status OwnerQuotas::may_render(const std::string& owner, uint64_t core_ns) const {
   const double hours = static_cast<double>(core_ns) / kNsPerHour;
   if (limits_.core_hours == 0 || hours < limits_.core_hours) return grpc::Status::OK;

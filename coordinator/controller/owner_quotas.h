@@ -26,6 +26,9 @@ class OwnerQuotas {
                           const farm::UnfinishedFiles& others, uint64_t unclaimed) const;
   /// Whether a job may come to `open` ones that are not over.
   grpc::Status may_add_job(const std::string& owner, uint64_t open) const;
+  /// Whether a job may come with which all of the owner's are `his`, where all owners together have
+  /// at `most` so much.
+  grpc::Status may_hold(const std::string& owner, const JobRoom& his, const JobRoom& most) const;
   /// Whether a job may come where the owner's jobs took `core_ns` within the window.
   grpc::Status may_render(const std::string& owner, uint64_t core_ns) const;
   /// Whether a stream may be opened beside `open` ones.

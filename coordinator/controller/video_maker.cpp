@@ -57,7 +57,7 @@ std::string in_words(const std::vector<core::VideoDesc>& videos) {
 void VideoMaker::begin(ActiveJob& active) {
   active.making_videos = true;
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
-             fmt::format("all frames are done; to be made of them: {}", in_words(active.videos())));
+             fmt::format("all frames are done; to be made of them: {}", in_words(active.videos)));
   due_.push_back(active.id);
   queue_.add(0, [this] { return make_next(); });
 }
@@ -102,8 +102,9 @@ bool VideoMaker::make_of_job(JobId job) {
     if (active == nullptr || !active->making_videos) return true;
     in_work_ = job;
     stop_ = context_.stop.load();
-    videos = active->videos();
-    frames = core::video_frames(active->read->job, context_.output_folder(id), active->numbers);
+    videos = active->videos;
+    frames = active->video_frames;
+    frames.folder = context_.output_folder(id);
   }
   const core::Status made = make_all(id, videos, frames);
   disk_.measure();
@@ -176,12 +177,6 @@ grpc::Status VideoMaker::ask(uint64_t id, const VideoRequest& request, Requested
   if (const grpc::Status room = disk_.admit(0); !room.ok()) return room;
   const auto stored = context_.store->job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
-  v1::JobSpec spec;
-  if (!spec.ParseFromString((*stored)->spec)) {
-    return {grpc::StatusCode::DATA_LOSS, "the job's record is damaged"};
-  }
-  const auto read = make_active_job(**stored, spec, *context_.assets, UINT64_MAX);
-  if (!read) return {grpc::StatusCode::FAILED_PRECONDITION, read.error().message};
   const auto frames = context_.store->frames(id);
   if (!frames) return farm::unavailable(frames.error());
   const auto paths = output_paths(*context_.store, id);
@@ -190,7 +185,11 @@ grpc::Status VideoMaker::ask(uint64_t id, const VideoRequest& request, Requested
   for (const StoredFrame& frame : *frames) {
     if (frame.done) done.push_back(frame.frame);
   }
-  auto plan = plan_video((*read)->read->job, request, std::move(done), *paths);
+  auto document = context_.documents.read_stored((*stored)->spec, kReadingPatience);
+  if (!document) return others_are_read();
+  if (!*document) return {grpc::StatusCode::FAILED_PRECONDITION, document->error().message};
+  auto plan = plan_video((**document)->job, request, std::move(done), *paths);
+  document.reset();
   if (!plan) return {grpc::StatusCode::FAILED_PRECONDITION, plan.error().message};
   plan->job = id;
   plan->frames.folder = context_.output_folder(id);

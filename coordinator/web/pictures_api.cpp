@@ -178,7 +178,7 @@ void PicturesApi::take_film(FrameId id) {
   FrameNow now;
   grpc::Status status = controller_.queries().frame_now(id.first, id.second, now);
   if (status.ok()) {
-    status = controller_.queries().film(
+    status = controller_.queries().film_alone(
         id.first, id.second,
         [this, gate = gate_, id, now](const grpc::Status& found, const core::FilmInfo&,
                                       std::shared_ptr<const core::Film> film) {

@@ -16,6 +16,9 @@ namespace hyades::core {
 
 namespace {
 
+/// Each takes some 7 kB of memory, and more where it is long.
+constexpr size_t kMostExpressions = 20'000;
+
 bool is_expression(const YamlNode& node) {
   return node.kind == YamlNode::Kind::scalar && node.scalar.starts_with('=');
 }
@@ -132,6 +135,14 @@ bool is_valid_name(std::string_view name) {
 bool read_component(const ValueSite& site, const YamlNode& node, float& constant,
                     std::shared_ptr<const Expression>& expression) {
   if (is_expression(node)) {
+    // Each is among the checks.
+    if (site.context.job.checks.numbers.size() >= kMostExpressions) {
+      site.context.complain(node.where,
+                            fmt::format("{}: the job has more than {} expressions; expected keys, "
+                                        "or fewer that move",
+                                        site.label, kMostExpressions));
+      return false;
+    }
     auto compiled = compile_expression(node.scalar.substr(1));
     if (!compiled) {
       site.context.complain(node.where, site.label + ": " + compiled.error().message);

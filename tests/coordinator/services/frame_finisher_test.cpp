@@ -73,9 +73,7 @@ struct FinisherWorld {
     active = owned.get();
     active->id = kJob;
     active->region = kRegion;
-    farm::ReadJob read;
-    read.job.sampling.samples = kSamples;
-    active->read = std::make_shared<const farm::ReadJob>(read);
+    active->samples = kSamples;
     JobAdded added;
     added.job = kJob;
     added.plan.frames = {1};
@@ -157,7 +155,7 @@ TEST(FrameFinisher, WaitsForAFilmThatIsStillBeingMerged) {
   std::this_thread::sleep_for(200ms);
   EXPECT_EQ(world.failures.reason(), "") << "it was finished without the film";
   merger.goes_on = true;
-  // There is no program that could make its outputs: it has come that far.
+  // There is no document of it that could say what to make: it has come that far.
   EXPECT_TRUE(eventually([&] { return !world.failures.reason().empty(); }));
   EXPECT_EQ(world.failures.reason().find("not whole"), std::string::npos)
       << world.failures.reason();

@@ -182,10 +182,12 @@ TEST_F(Limits, OfAnAnswerThatTellsOfAllWorkers) {
 
 TEST_F(Limits, OfAllOpenJobsTogether) {
   const uint64_t one = world.submit(1'000'000);
-  world.submit(999'999);
-  world.submit(1);
+  const auto of_bob = [](v1::SubmitRequest& asked) { asked.set_owner("bob"); };
+  world.submit(999'999, of_bob);
+  world.submit(1, of_bob);
   v1::SubmitResponse response;
-  const v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1));
+  v1::SubmitRequest request = FarmWorld::request(FarmWorld::document(1));
+  request.set_owner("eve");
   const grpc::Status status = world.jobs->Submit(world.context().get(), request, &response);
   expect_refused(status, StatusCode::RESOURCE_EXHAUSTED, "open jobs");
   EXPECT_EQ(farm::detail_of(status).retry_after_ms(), 60'000U);

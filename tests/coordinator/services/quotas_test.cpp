@@ -63,6 +63,17 @@ TEST(OwnerQuotas, LimitNothingButUnfinishedFilesUnlessTheyAreToldTo) {
   expect_over_quota(quotas.may_upload("ada", 1, {1000, 1000}, 0), "--owner-files 1000");
 }
 
+TEST(OwnerQuotas, LetNobodyHoldMoreThanHalfOfTheMemoryOfOpenJobs) {
+  const OwnerQuotas quotas(OwnerLimits{});
+  const JobRoom most{1000, uint64_t{64} << 20U};
+  EXPECT_TRUE(quotas.may_hold("ada", {500, uint64_t{32} << 20U}, most).ok());
+  EXPECT_EQ(quotas.may_hold("ada", {501, 2048}, most).error_message(),
+            "with this job ada has 501 frames and 2.0 KiB of what submissions name in open jobs, "
+            "where an owner may have half of what there is for all, 500 frames and 32.0 MiB: wait "
+            "for one to end, or cancel one");
+  expect_over_quota(quotas.may_hold("ada", {1, (uint64_t{32} << 20U) + 1}, most), "half");
+}
+
 TEST(OwnerConnections, CountWhatIsOpen) {
   OwnerLimits limits;
   limits.connections = 2;
@@ -103,8 +114,9 @@ TEST(UnclaimedFiles, CountForTheFirstUntilAJobHasThem) {
 /// A farm on which owners may have so much; the client is an admin who submits for others.
 class Quotas : public ::testing::Test {
  protected:
-  grpc::Status try_to_submit(const std::string& owner, const std::string& key = {}) {
-    const std::string text = FarmWorld::document(1);
+  grpc::Status try_to_submit(const std::string& owner, const std::string& key = {},
+                             int frames = 1) {
+    const std::string text = FarmWorld::document(frames);
     EXPECT_TRUE(world.upload(text).ok());
     v1::SubmitRequest request = FarmWorld::request(text);
     request.set_owner(owner);
@@ -144,6 +156,41 @@ TEST_F(Quotas, OfJobsThatAreNotOver) {
   world.stop();
   world.start();
   expect_over_quota(try_to_submit("ada"), "ada has 2 open jobs");
+}
+
+TEST_F(Quotas, OfFramesOfOpenJobsAreHalfOfAll) {
+  world.options.job_room.frames = 10;
+  world.start();
+  ASSERT_TRUE(try_to_submit("ada", {}, 3).ok());
+  const uint64_t first = response.job().id();
+  ASSERT_TRUE(try_to_submit("ada", {}, 2).ok());
+  const uint64_t second = response.job().id();
+  expect_over_quota(try_to_submit("ada"), "ada has 6 frames");
+  ASSERT_TRUE(try_to_submit("bob", {}, 4).ok()) << "others get in";
+  const grpc::Status full = try_to_submit("eve", {}, 2);
+  EXPECT_EQ(full.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << full.error_message();
+  EXPECT_FALSE(farm::detail_of(full).quota()) << "it is not her fault, and passes";
+
+  v1::JobResponse now;
+  ASSERT_TRUE(world.jobs->Cancel(world.context().get(), about(first), &now).ok());
+  ASSERT_TRUE(world.wait_for(first, v1::JOB_STATE_CANCELLED));
+  ASSERT_TRUE(try_to_submit("ada").ok());
+  expect_over_quota(world.jobs->Retry(world.context().get(), about(first), &now), "ada has 6");
+  world.stop();
+  world.options.job_room.frames = 2;
+  world.start();
+  EXPECT_EQ(world.get(second).job().state(), v1::JOB_STATE_RUNNING) << "what was there stays";
+  expect_over_quota(try_to_submit("ada"), "half");
+}
+
+TEST_F(Quotas, OfWhatOpenJobsNameAreHalfOfAll) {
+  world.options.job_room.bytes = 40'000;
+  world.start();
+  int jobs = 0;
+  while (jobs < 100 && try_to_submit("ada").ok()) ++jobs;
+  EXPECT_EQ(jobs, 3) << "each takes 6 KiB at least";
+  expect_over_quota(try_to_submit("ada"), "half");
+  EXPECT_TRUE(try_to_submit("bob").ok()) << "others get in";
 }
 
 TEST_F(Quotas, OfJobsAreToldBeforeFilesAreUploaded) {

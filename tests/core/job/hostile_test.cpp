@@ -62,6 +62,18 @@ TEST(HostileJob, AliasBomb) {
   EXPECT_LT(reading.seconds, kPatience);
 }
 
+/// Each takes kilobytes, so that a million of them would take all memory of a coordinator.
+TEST(HostileJob, ExpressionBomb) {
+  std::string text = "hyades: 1\nobjects:\n  o: {shape: box, at: &moves [= t, = t, = t]}\n";
+  for (int i = 0; i < 7000; ++i) {
+    text += "  o" + std::to_string(i) + ": {shape: box, at: *moves}\n";
+  }
+  const Reading reading = read(text);
+  EXPECT_NE(reading.first().find("the job has more than 20000 expressions"), std::string::npos)
+      << reading.first();
+  EXPECT_LT(reading.seconds, kPatience);
+}
+
 TEST(HostileJob, LikeBomb) {
   // Each entry copies the one before it and adds a key: quadratically many keys.
   std::string text = "hyades: 1\nmaterials:\n  m0: {type: lambert}\n";
