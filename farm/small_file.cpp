@@ -5,6 +5,8 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
+#include <filesystem>
 #include <span>
 
 #include "core/base/descriptor.h"
@@ -55,6 +57,20 @@ core::Status write_secret(const std::string& path, const std::string& text) {
   }
   const int why = errno;
   (void)::unlink(path.c_str());
+  return core::Error{path + ": cannot be written: " + core::io_reason(why)};
+}
+
+core::Status replace_secret(const std::string& path, const std::string& text) {
+  const std::string fresh = path + ".new";
+  (void)::unlink(fresh.c_str());
+  if (core::Status written = write_secret(fresh, text); !written) return written;
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  if (::rename(fresh.c_str(), path.c_str()) == 0 &&
+      core::sync_folder(folder.empty() ? "." : folder)) {
+    return {};
+  }
+  const int why = errno;
+  (void)::unlink(fresh.c_str());
   return core::Error{path + ": cannot be written: " + core::io_reason(why)};
 }
 

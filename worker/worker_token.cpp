@@ -1,7 +1,5 @@
 #include "worker/worker_token.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
@@ -44,13 +42,7 @@ core::Status WorkerToken::keep(const std::string& own, const std::string& worker
   if (own.size() > kLongest || !plain || !belongs(own, worker_id, join_)) {
     return core::Error{"what the coordinator has given is no token of this worker"};
   }
-  // Under another name first: whatever happens there is an old one or a new one, and both are good.
-  const std::string fresh = own_file_ + ".new";
-  (void)::unlink(fresh.c_str());
-  if (auto written = farm::write_secret(fresh, own + "\n"); !written) return written;
-  std::error_code failed;
-  std::filesystem::rename(fresh, own_file_, failed);
-  if (failed) return core::Error{own_file_ + ": cannot be written: " + failed.message()};
+  if (auto written = farm::replace_secret(own_file_, own + "\n"); !written) return written;
   own_ = own;
   joins_ = false;
   return {};

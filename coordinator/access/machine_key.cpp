@@ -1,7 +1,5 @@
 #include "coordinator/access/machine_key.h"
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <system_error>
 
@@ -21,12 +19,8 @@ core::Result<std::string> machine_key(const std::string& folder) {
     if (!more) return more.error();
     key += *more;
   }
-  // Under another name first: one that a crash has cut would keep the coordinator from starting.
-  const std::string fresh = file + ".new";
-  (void)::unlink(fresh.c_str());
-  if (auto written = farm::write_secret(fresh, key + "\n"); !written) return written.error();
-  std::filesystem::rename(fresh, file, failed);
-  if (failed) return core::Error{file + ": cannot be made: " + failed.message()};
+  // At once or not at all: one that a crash has cut would keep the coordinator from starting.
+  if (auto written = farm::replace_secret(file, key + "\n"); !written) return written.error();
   return key;
 }
 
