@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstddef>
 #include <cstdio>
@@ -23,6 +22,7 @@
 #include "core/base/io_reason.h"
 #include "core/base/posix_file.h"
 #include "core/base/printable.h"
+#include "core/job/output_path.h"
 #include "farm/wire.h"
 
 namespace hyades::cli {
@@ -119,16 +119,11 @@ class Part {
 }  // namespace
 
 bool is_safe_output(const std::string& path) {
-  if (path.empty() || path.front() == '/' || core::printable(path) != path) return false;
+  if (core::output_name(path) == core::OutputName::outside || core::printable(path) != path) {
+    return false;
+  }
   const fs::path normal = fs::path(path).lexically_normal();
-  return normal.string() == path && normal.has_filename() && *normal.begin() != ".." &&
-         *normal.begin() != ".";
-}
-
-bool is_hidden_output(const std::string& path) {
-  const fs::path parts(path);
-  return std::ranges::any_of(parts,
-                             [](const fs::path& part) { return part.string().starts_with('.'); });
+  return normal.string() == path && normal.has_filename() && normal != ".";
 }
 
 Outcome FetchTarget::check(const std::string& path) const {
@@ -136,11 +131,14 @@ Outcome FetchTarget::check(const std::string& path) const {
     return Failure{kFailed, "the coordinator names an output that is no file of a job: '" +
                                 path.substr(0, 200) + "'"};
   }
-  if (fs::path(path).begin()->string() == ".hyades") {
+  const core::OutputName name = core::output_name(path);
+  if (name == core::OutputName::reserved) {
     return Failure{kFailed, path + ": what hyades keeps for itself no job writes"};
   }
-  if (!hidden && is_hidden_output(path)) {
-    return Failure{kFailed, path + ": hidden files are not written (--hidden writes them)"};
+  if (!hidden && name == core::OutputName::special) {
+    return Failure{kFailed, path +
+                                ": hidden files, and names that begin with '-', are not written "
+                                "(--hidden writes them)"};
   }
   std::error_code none;
   if (!overwrite && !record.has(path) &&

@@ -14,14 +14,11 @@ namespace hyades::cli {
 /// "..", no empty or special parts, no control characters.
 bool is_safe_output(const std::string& path);
 
-/// Whether a part of the path begins with a dot: .bashrc, .ssh/authorized_keys, .git/hooks/...
-bool is_hidden_output(const std::string& path);
-
 /// Where files go, and what a coordinator, which names them, may do there.
 struct FetchTarget {
   explicit FetchTarget(std::string into) : folder(std::move(into)), record(folder) {}
   std::string folder;
-  bool hidden = false;     ///< write hidden files too
+  bool hidden = false;  ///< write hidden files too: .bashrc, .git/hooks/... (OutputName::special)
   bool overwrite = false;  ///< replace files that no fetch has written
   FetchRecord record;
 

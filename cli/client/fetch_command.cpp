@@ -59,7 +59,7 @@ void declare(CLI::App& app, FetchOptions& options) {
                  "or any EXR viewer)");
   app.add_flag("--overwrite", options.overwrite,
                "replace files that are there and that no fetch has written");
-  app.add_flag("--hidden", options.hidden, "write files whose names begin with a dot, too");
+  app.add_flag("--hidden", options.hidden, "write files whose names begin with '.' or '-', too");
   app.add_flag("--list", options.list, "only tell which files there are");
   app.add_flag("--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json, "print the files as JSON (field id: the path)");

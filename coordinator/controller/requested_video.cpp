@@ -41,10 +41,8 @@ std::string without_numbers(const std::string& file) {
 /// Whether the video may be called so, beside all else that the job writes.
 core::Status check_file(const core::Job& job, const std::string& file) {
   const std::string extension = core::file_extension(file);
-  const std::filesystem::path path = std::filesystem::path(file).lexically_normal();
-  if ((extension != ".mp4" && extension != ".mov" && extension != ".webm") || path.stem().empty() ||
-      path.stem().string().starts_with('.') || path.stem().string().starts_with('-') ||
-      path.is_absolute() || *path.begin() == ".." || file.find('#') != std::string::npos ||
+  if ((extension != ".mp4" && extension != ".mov" && extension != ".webm") ||
+      core::output_name(file) != core::OutputName::plain || file.find('#') != std::string::npos ||
       std::any_of(file.begin(), file.end(), [](unsigned char c) { return c < ' '; })) {
     return core::Error{"file '" + file +
                        "': expected the name of a .mp4, .mov or .webm below the job's outputs"};

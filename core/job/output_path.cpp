@@ -31,6 +31,20 @@ std::string output_path(const std::string& file, int32_t frame) {
   return path;
 }
 
+OutputName output_name(const std::string& file) {
+  const std::filesystem::path path(file);
+  if (path.is_absolute()) return OutputName::outside;
+  bool special = false;
+  for (const std::filesystem::path& each : path) {
+    const std::string part = each.string();
+    if (part == "..") return OutputName::outside;
+    special = special || part.starts_with('-') || (part.starts_with('.') && part != ".");
+  }
+  const std::filesystem::path normal = path.lexically_normal();
+  if (!normal.empty() && *normal.begin() == ".hyades") return OutputName::reserved;
+  return special ? OutputName::special : OutputName::plain;
+}
+
 std::string file_extension(const std::string& file) {
   return lower_case(std::filesystem::path(file).extension().string());
 }

@@ -9,6 +9,17 @@ namespace hyades::core {
 /// ("a.####.exr", 7 -> "a.0007.exr"). Unchanged where there is no #.
 std::string output_path(const std::string& file, int32_t frame);
 
+/// What the name of a file below the folder of a job's outputs is like.
+enum class OutputName : uint8_t {
+  plain,
+  outside,   ///< not below the folder: absolute, or with a part ".."
+  reserved,  ///< in .hyades, which is removed with a run's log
+  special,   ///< a part begins with '.', and is hidden, or '-', which programs take for an option
+};
+
+/// What `file`, which may have # for the frame's number, is like.
+OutputName output_name(const std::string& file);
+
 /// ".exr" of "a/b.EXR"; "" where there is none.
 std::string file_extension(const std::string& file);
 

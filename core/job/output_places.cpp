@@ -1,7 +1,5 @@
 #include "core/job/output_places.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "core/job/film_file.h"
@@ -24,15 +22,12 @@ void check_frame_marks(MapReader& reader, const SourceLocation& where, const std
 }
 
 void check_inside_folder(MapReader& reader, const SourceLocation& where, const std::string& file) {
-  const std::string padded = "/" + file + "/";
-  if (file.starts_with('/') || padded.find("/../") != std::string::npos) {
+  const OutputName name = output_name(file);
+  if (name == OutputName::outside) {
     reader.complain(where, fmt::format("file is '{}', expected a path below the output folder "
                                        "(no '..', not absolute); --output chooses the folder",
                                        file));
-    return;
-  }
-  const std::filesystem::path path = std::filesystem::path(file).lexically_normal();
-  if (path.begin() != path.end() && *path.begin() == ".hyades") {
+  } else if (name == OutputName::reserved) {
     reader.complain(where, fmt::format("file is '{}', expected another folder: what is in .hyades "
                                        "is removed with the run's log",
                                        file));

@@ -45,6 +45,9 @@ TEST(RequestedVideo, WhatCannotBeIsTold) {
   EXPECT_NE(error({"a/../../film.mp4", "", 0}, files).find("below"), std::string::npos);
   EXPECT_NE(error({"film\n.mp4", "", 0}, files).find("below"), std::string::npos);
   EXPECT_NE(error({"/film.mp4", "", 0}, files).find("below"), std::string::npos);
+  for (const char* file : {".hyades/film.mp4", "a/.b/film.mp4", "-a/film.mp4", "-film.mp4"}) {
+    EXPECT_NE(error({file, "", 0}, files).find("below"), std::string::npos) << file;
+  }
   EXPECT_NE(error({"own.mp4", "", 0}, files).find("makes that video itself"), std::string::npos);
   EXPECT_NE(error({"b/a.0001.png/x.mp4", "", 0}, files).find("writes"), std::string::npos);
   EXPECT_NE(error({"f.####.mp4", "", 0}, files).find("expected"), std::string::npos);

@@ -225,5 +225,20 @@ TEST(OutputPath, FillsInTheFrame) {
   EXPECT_EQ(output_path("a.exr", 7), "a.exr");
 }
 
+TEST(OutputPath, TellsWhatANameIsLikeByAllOfItsParts) {
+  for (const char* plain : {"a.exr", "a/b.####.exr", "./a-b/c.d", "hyades/a"}) {
+    EXPECT_EQ(output_name(plain), OutputName::plain) << plain;
+  }
+  for (const char* outside : {"/a", "..", "../a", "a/../b", "a/.."}) {
+    EXPECT_EQ(output_name(outside), OutputName::outside) << outside;
+  }
+  for (const char* reserved : {".hyades", ".hyades/log", "./.hyades/a"}) {
+    EXPECT_EQ(output_name(reserved), OutputName::reserved) << reserved;
+  }
+  for (const char* special : {".a", "a/.b/c", "-a", "a/-b/c", "a/.hyades/b"}) {
+    EXPECT_EQ(output_name(special), OutputName::special) << special;
+  }
+}
+
 }  // namespace
 }  // namespace hyades::core
