@@ -43,12 +43,15 @@ bool is_of(const core::Film& film, const ExpectedFilm& expected, const core::Uni
 
 std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
                                                    const std::optional<ExpectedFilm>& expected,
-                                                   const std::string& worker_class) {
+                                                   const LeaseProofs& proofs) {
   const auto unit = farm::from_wire(result.unit());
   if (!unit) return ResultRefusal{Rejected::REASON_MALFORMED, unit.error().message};
   const auto digest = farm::digest_from_wire(result.digest());
   if (!digest) return ResultRefusal{Rejected::REASON_MALFORMED, digest.error().message};
   if (!expected) return ResultRefusal{Rejected::REASON_UNKNOWN, "there is no such job"};
+  if (!proofs.holds(result.unit().proof(), expected->worker, JobId{result.job()}, *unit)) {
+    return ResultRefusal{Rejected::REASON_UNKNOWN, "the unit was not leased to this worker"};
+  }
   const std::span<const std::byte> bytes = std::as_bytes(std::span(result.film()));
   auto film = core::decode_film(bytes, {most_memory(*expected, *unit)});
   if (!film) return ResultRefusal{Rejected::REASON_DAMAGED, film.error().message};
@@ -60,7 +63,7 @@ std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
     return ResultRefusal{Rejected::REASON_DAMAGED, "the film is not what its digest says"};
   }
   Delivery delivery;
-  delivery.unit.worker_class = worker_class;
+  delivery.unit.worker_class = expected->worker_class;
   delivery.unit.unit = *unit;
   delivery.unit.digest = *digest;
   delivery.record = encode_delivered(delivery.unit, expected->key, bytes);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "coordinator/controller/active_job.h"
+#include "coordinator/controller/lease_proof.h"
 #include "core/film/film.h"
 #include "hyades/v1/work.pb.h"
 
@@ -22,11 +23,13 @@ struct Delivery {
   bool settled = false;  ///< it is on its way to the disk, or was answered
 };
 
-/// What the films of a job are like.
+/// What the film of a result has to be like, and whose.
 struct ExpectedFilm {
   core::FilmLayout layout;
   core::PixelRect region;
   FrameKey key{};
+  std::string worker;  ///< Hello::worker_id of who sends it
+  std::string worker_class;
 };
 
 /// Why a result is not taken.
@@ -36,10 +39,11 @@ struct ResultRefusal {
   uint32_t retry_after_ms = 0;  ///< with REASON_NOT_NOW: when the worker is to send it again
 };
 
-/// Decodes a result and checks all that depends on its bytes alone; slow.
-/// `expected` is nothing where there is no such job; `worker_class` is that of who sends it.
+/// Decodes a result and checks all that depends on its bytes alone; slow. What shows no proof that
+/// it was leased to its worker is refused before: what is said to be of a large tile may take much
+/// memory. `expected` is nothing where there is no such job.
 std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
                                                    const std::optional<ExpectedFilm>& expected,
-                                                   const std::string& worker_class);
+                                                   const LeaseProofs& proofs);
 
 }  // namespace hyades::coordinator

@@ -68,12 +68,17 @@ void WorkerSessions::on_heartbeat(WorkerSession& session, const v1::Heartbeat& b
   session.link->send(bytes_of(echo));
 }
 
+/// Whether the worker has anything under the lease. Who has not could fill jobs' logs with what he
+/// invents.
+bool WorkerSessions::has_lease(const WorkerSession& session, const LeaseId& lease) const {
+  return !dispatcher_.scheduler().units_of(session.id, lease).empty();
+}
+
 void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& failure,
                                 Turn& turn) {
   const auto unit = farm::from_wire(failure.unit().unit());
   const LeaseId lease = from_wire(failure.unit().lease());
-  // Who has no lease could fill jobs' logs with what he invents.
-  if (unit && !dispatcher_.scheduler().units_of(session.id, lease).empty()) {
+  if (unit && has_lease(session, lease)) {
     const JobId job{failure.unit().job()};
     ++session.units_failed;
     context_.meters->lost("failed");
@@ -95,8 +100,7 @@ void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned
     const auto unit = farm::from_wire(returned.unit());
     if (!unit) continue;
     const JobId job{returned.job()};
-    // As of failures.
-    if (dispatcher_.scheduler().units_of(session.id, from_wire(returned.lease())).empty()) continue;
+    if (!has_lease(session, from_wire(returned.lease()))) continue;
     context_.meters->lost("returned");
     // Why a worker that stays gives units back, in the job's log: once, for it may go on so.
     ActiveJob* active = session.leaving || message.reason().empty() ? nullptr : jobs_.find(job);
@@ -132,9 +136,6 @@ void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link,
                                const v1::UnitResult& result) {
   context_.meters->film_bytes(result.film().size());
   std::optional<ExpectedFilm> expected;
-  std::string worker_class;
-  bool invented = false;
-  const auto unit = farm::from_wire(result.unit());
   const TimePoint came = std::chrono::steady_clock::now();
   {
     const StateLock lock(context_.mutex);
@@ -142,17 +143,12 @@ void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link,
     if (session == nullptr) return;
     session->heard = came;
     session->heard_ms = core::wall_ms();
-    worker_class = session->hello.worker_class();
     if (const ActiveJob* active = jobs_.find(result.job())) {
-      expected = {active->layout, active->region, active->key};
-      invented = unit && !context_.proofs.holds(result.unit().proof(), session->hello.worker_id(),
-                                                JobId{result.job()}, *unit);
+      expected = {active->layout, active->region, active->key, session->hello.worker_id(),
+                  session->hello.worker_class()};
     }
   }
-  // Before it is decoded: what is said to be of a large tile may take much memory.
-  std::variant<Delivery, ResultRefusal> checked =
-      ResultRefusal{v1::Rejected::REASON_UNKNOWN, "the unit was not leased to this worker"};
-  if (!invented) checked = check_result(result, expected, worker_class);
+  std::variant<Delivery, ResultRefusal> checked = check_result(result, expected, context_.proofs);
   Turn turn(dispatcher_);
   WorkerSession* session = workers_.find(worker, link);
   if (session == nullptr) return;
@@ -216,10 +212,7 @@ void WorkerSessions::refuse(WorkerSession& session, const v1::UnitResult& result
   context_.meters->result(verdict_of(refusal.reason));
   if (refusal.reason == v1::Rejected::REASON_NOT_NOW) return;
   const auto unit = farm::from_wire(result.unit());
-  // As of failures.
-  if (!unit || dispatcher_.scheduler().units_of(session.id, from_wire(result.lease())).empty()) {
-    return;
-  }
+  if (!unit || !has_lease(session, from_wire(result.lease()))) return;
   if (ActiveJob* active = jobs_.find(result.job())) {
     jobs_.note(*active, v1::LOG_LEVEL_WARNING, result.unit().frame(), session.hello.name(),
                "a film was refused: " + refusal.text, &*unit);

@@ -65,6 +65,8 @@ class WorkerSessions {
   void want(WorkerSession& session, uint32_t units, Turn& turn) HYADES_REQUIRES(state_lock);
 
   // What workers say (worker_messages.cpp, lease_renewal.cpp).
+  bool has_lease(const WorkerSession& session, const LeaseId& lease) const
+      HYADES_REQUIRES(state_lock);
   void on_heartbeat(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn)
       HYADES_REQUIRES(state_lock);
   void renew_leases(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn)
