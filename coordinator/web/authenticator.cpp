@@ -127,13 +127,14 @@ std::optional<std::string> Authenticator::open_session(const WebRequest& request
             ? authority_.admit("Bearer " + token, caller)
             : grpc::Status(grpc::StatusCode::UNAUTHENTICATED, "this coordinator asks for no token");
   if (!why.ok()) return std::nullopt;
-  const auto secret = sessions_.open(caller.token_id, now_seconds() + kSessionSeconds);
-  if (!secret) {
+  const auto opened = sessions_.open(caller.token_id, now_seconds() + kSessionSeconds);
+  if (!opened) {
     why = {grpc::StatusCode::INTERNAL, "the system gives no random numbers"};
     return std::nullopt;
   }
+  authority_.end_session(opened->ended);
   return fmt::format("{}{}; Path=/; HttpOnly; SameSite=Strict; Max-Age={}{}", cookie_of(request),
-                     *secret, kSessionSeconds, came_by_tls(request) ? "; Secure" : "");
+                     opened->secret, kSessionSeconds, came_by_tls(request) ? "; Secure" : "");
 }
 
 std::string Authenticator::end_session(const WebRequest& request) {

@@ -229,6 +229,24 @@ TEST_F(WithRoles, SigningOutEndsTheSessionAndWhatIsOpenInIt) {
   EXPECT_EQ(world.client->send("DELETE", "/api/v1/session").status, 204) << "nothing to end";
 }
 
+TEST_F(WithRoles, SigningInWithoutEndEndsOnesOldestSessionAndWhatIsOpenInIt) {
+  const auto sign_in = [&](const std::string& text) {
+    const auto reply = world.client->post("/api/v1/session", Json({{"token", text}}).dump());
+    const std::string set = reply.headers.at("set-cookie");
+    return set.substr(0, set.find(';'));
+  };
+  const std::string others = sign_in(make(v1::ROLE_VIEWER, "olga"));
+  const std::string text = make(v1::ROLE_VIEWER, "vera");
+  const std::string first = sign_in(text);
+  HttpClient::Events events(*world.client, "/api/v1/events", {{"Cookie", first}});
+  ASSERT_EQ(events.next().name, "snapshot");
+  for (int i = 0; i < 100; ++i) sign_in(text);
+  for (auto event = events.next(); !event.name.empty(); event = events.next()) {
+  }
+  EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", first}}).status, 401);
+  EXPECT_EQ(world.client->get("/api/v1/info", {{"Cookie", others}}).status, 200);
+}
+
 TEST_F(WithRoles, ASessionDoesNotOutliveTheCoordinatorAndSaysSo) {
   const auto signed_in =
       world.client->post("/api/v1/session", Json({{"token", world.farm.token}}).dump());
