@@ -42,6 +42,7 @@ struct TokenOptions {
   std::string expires;  ///< a time or never; empty: the command's default
   std::string output;
   std::string pool;
+  uint32_t machines = 0;  ///< 0: the coordinator's default
   std::string id;
   bool of_existing = false;  ///< what is asked needs a store that is there
   bool json = false;
@@ -254,6 +255,7 @@ int create(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
     request.set_lifetime_ms(static_cast<int64_t>(1e3 * *core::parse_duration(options.expires)));
   }
   request.set_pool(options.pool);
+  request.set_machines(options.machines);
   v1::Token token;
   std::string secret;
   if (auto failure = tokens.create(request, token, secret)) return app.report(*failure);
@@ -317,6 +319,7 @@ int rotate(const ClientApp& app, TokenOptions options, Tokens& tokens) {
     options.name = old.name();
     options.role = farm::role_name(old.role());
     options.pool = old.pool();
+    options.machines = old.machines();
     if (options.expires.empty()) options.expires = as_long_as(old);
     if (const int status = create(app, options, tokens); status != kDone) return status;
     v1::Token gone;
@@ -375,6 +378,9 @@ int token_command(int argc, char** argv) {
   made->add_option("--pool", options.pool,
                    "of workers that are in one hand: all of a pool count as one witness of what a "
                    "unit's pixels are (default: each machine is one)");
+  made->add_option("--machines", options.machines,
+                   "how many workers may be here by this token of a worker's (default: 1000)")
+      ->check(CLI::Range(1, 20'000));
   fresh(*made, kLifetime);
   const CLI::App* listed = app.add_subcommand("list", "all tokens, and when they were last used");
   CLI::App* revoked =

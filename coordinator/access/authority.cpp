@@ -155,13 +155,15 @@ grpc::Status Authority::admit(std::string_view authorization, Caller& caller) {
 
 grpc::Status Authority::admit_without_token(Caller& caller) {
   if (options_.owner_only) {
-    std::set<uint16_t> ports;
+    std::set<std::string> ours;
     {
       const core::MutexLock lock(mutex_);
-      ports = ports_;
+      ours = own_addresses_;
     }
-    const auto user = user_of_peer(caller.address, ports);
-    if (!user || (*user != ::geteuid() && *user != 0)) {
+    const std::set<uid_t> users = users_of_peer(caller.address, ours);
+    const bool known = std::all_of(users.begin(), users.end(),
+                                   [](uid_t user) { return user == ::geteuid() || user == 0; });
+    if (users.empty() || !known) {
       return stranger(
           "this coordinator has no tokens and serves the user who started it alone: ask him for a "
           "token ('hyades token create'), or to start it with --insecure");
@@ -170,9 +172,9 @@ grpc::Status Authority::admit_without_token(Caller& caller) {
   return admit_known({}, caller);
 }
 
-void Authority::listens_at(uint16_t port) {
+void Authority::listens_at(const std::string& address) {
   const core::MutexLock lock(mutex_);
-  ports_.insert(port);
+  own_addresses_.insert(address);
 }
 
 grpc::Status Authority::refuse_unknown(const std::string& address) {
@@ -208,6 +210,7 @@ grpc::Status Authority::admit_known(const std::string& id, Caller& caller) {
   caller.name = found->second.row.name;
   caller.role = static_cast<v1::Role>(found->second.row.role);
   caller.pool = found->second.row.pool;
+  caller.machines = found->second.row.machines;
   caller.term = farm::term_of(found->second.row.created_ms, found->second.row.expires_ms);
   return grpc::Status::OK;
 }
@@ -218,11 +221,14 @@ grpc::Status Authority::admit_worker(const Caller& caller, const std::string& wo
   if (!caller.worker.empty() && caller.worker != worker) {
     return {grpc::StatusCode::PERMISSION_DENIED, "this token is another worker's"};
   }
+  credential.owner = caller.name.empty() ? caller.token_id : caller.name;
   // Whoever else may work here may do everything.
   if (caller.role != v1::ROLE_WORKER) return grpc::Status::OK;
   if (caller.worker.empty() && keeps) {
     credential.machine_token = machine_token(options_.machine_key, {caller.token_id, worker});
   }
+  credential.joined_with = caller.token_id;
+  credential.machines = caller.machines;
   const bool own = !caller.worker.empty() || !credential.machine_token.empty();
   credential.name = !caller.pool.empty() ? "pool " + caller.pool
                     : own                ? "machine " + caller.token_id + " " + worker
@@ -276,7 +282,7 @@ void Authority::end_session(const std::string& session) {
       ++stream;
       continue;
     }
-    stream->second.leave(stranger("the session was signed out"));
+    stream->second.leave(stranger("the session is over: it was signed out, or gave way to others"));
     stream = streams_.erase(stream);
   }
 }
@@ -301,18 +307,22 @@ void Authority::end_expired() {
 }
 
 grpc::Status Authority::create(const std::string& name, v1::Role role, int64_t lifetime_ms,
-                               std::string& text, StoredToken& row, const std::string& pool) {
-  const core::MutexLock one(change_mutex_);
-  const int64_t now = core::wall_ms();
+                               std::string& text, StoredToken& row) {
   v1::CreateTokenRequest asked;
   asked.set_name(name);
   asked.set_role(role);
   asked.set_lifetime_ms(lifetime_ms);
-  asked.set_pool(pool);
+  return create(asked, text, row);
+}
+
+grpc::Status Authority::create(const v1::CreateTokenRequest& asked, std::string& text,
+                               StoredToken& row) {
+  const core::MutexLock one(change_mutex_);
+  const int64_t now = core::wall_ms();
   auto fresh = make_token(asked, now);
   if (!fresh) return {grpc::StatusCode::INVALID_ARGUMENT, fresh.error().message};
   const bool first = !guarded();
-  if (first && role != v1::ROLE_ADMIN) {
+  if (first && asked.role() != v1::ROLE_ADMIN) {
     return {grpc::StatusCode::FAILED_PRECONDITION,
             "this farm has no tokens, and its first one shuts out all who have none: make one of "
             "an admin first (hyades token create --role admin --name NAME)"};

@@ -74,8 +74,8 @@ class Authority {
   /// How strangers may listen or act; empty: they may not.
   std::string unguarded() const;
 
-  /// Callers come to this port.
-  void listens_at(uint16_t port);
+  /// Callers come to this address of ours, as address_text() has it.
+  void listens_at(const std::string& address);
 
   /// Where it is kept who did what; null where it is not.
   AuditLog* audit() { return audit_.get(); }
@@ -101,7 +101,7 @@ class Authority {
   std::unique_ptr<Visit> visit(const Caller& caller,
                                std::function<void(const grpc::Status&)> leave);
 
-  /// Has all streams of this session (Caller::session) end: it was signed out.
+  /// Has all streams of this session (Caller::session) end; of none where it is empty.
   void end_session(const std::string& session);
 
   // These may wait for the store.
@@ -109,8 +109,9 @@ class Authority {
   /// Makes a token: `text` is what its owner shows, `row` what is stored of it. INVALID_ARGUMENT as
   /// make_token() has it, FAILED_PRECONDITION where it would be the farm's first and not an
   /// admin's.
+  grpc::Status create(const v1::CreateTokenRequest& asked, std::string& text, StoredToken& row);
   grpc::Status create(const std::string& name, v1::Role role, int64_t lifetime_ms,
-                      std::string& text, StoredToken& row, const std::string& pool = {});
+                      std::string& text, StoredToken& row);
   /// Makes the token useless from here on, even where the store refuses (UNAVAILABLE: it may come
   /// back after a restart). NOT_FOUND where there is none of this id.
   grpc::Status revoke(const std::string& id, StoredToken& row);
@@ -146,7 +147,7 @@ class Authority {
   std::unique_ptr<AuditLog> audit_;
   mutable core::Mutex mutex_;
   std::map<std::string, Known> tokens_ HYADES_GUARDED_BY(mutex_);
-  std::set<uint16_t> ports_ HYADES_GUARDED_BY(mutex_);
+  std::set<std::string> own_addresses_ HYADES_GUARDED_BY(mutex_);
   bool stop_ HYADES_GUARDED_BY(mutex_) = false;
   core::CondVar wake_;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "farm/token_term.h"
@@ -25,6 +26,7 @@ struct Caller {
   farm::TokenTerm term{};
   std::string worker{};   ///< the only worker that may come with the token, a machine's; empty: any
   std::string pool{};     ///< StoredToken::pool
+  uint32_t machines = 0;  ///< StoredToken::machines
   std::string session{};  ///< of a browser that has signed in: names it (Authority::end_session)
 };
 

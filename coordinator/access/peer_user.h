@@ -2,17 +2,20 @@
 
 #include <sys/types.h>
 
-#include <cstdint>
-#include <optional>
 #include <set>
 #include <string>
 
 namespace hyades::coordinator {
 
-/// The user whose process holds the other end of a TCP connection from this machine to one of our
-/// `ports`, as the kernel tells of its open connections (/proc/net/tcp, proc_pid_net(5)). `peer`:
-/// its address as address_text() has it. Nothing where there is no such connection, or it is
-/// closing: what nobody holds any more counts as root's there.
-std::optional<uid_t> user_of_peer(const std::string& peer, const std::set<uint16_t>& ports);
+/// The users whose processes hold the other end of TCP connections from `peer`, an address of this
+/// machine, to `ours`, at which we listen; all as address_text() has them. They are several where
+/// one user has taken the port of another for a connection to another of our addresses. None where
+/// there is no such connection, or it is closing: what nobody holds any more counts as root's.
+///
+/// The kernel is asked anew each time, for a port may be another user's at once. It finds one
+/// connection in microseconds (sock_diag(7)); where it cannot, because it was built without that or
+/// we listen at all addresses, we read the table of all (/proc/net/tcp, proc_pid_net(5)), which
+/// takes milliseconds.
+std::set<uid_t> users_of_peer(const std::string& peer, const std::set<std::string>& ours);
 
 }  // namespace hyades::coordinator

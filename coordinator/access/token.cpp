@@ -16,6 +16,7 @@ constexpr std::string_view kPrefix = "hyades-";
 constexpr size_t kIdDigits = 8;
 constexpr size_t kSecretDigits = 64;
 constexpr size_t kLongestName = 64;
+constexpr uint32_t kMachines = 1000;  ///< that may join with a token where nobody says how many
 constexpr int64_t kLongestLifetimeMs = int64_t{100} * 366 * 24 * 3600 * 1000;
 
 bool is_name(const std::string& text) {
@@ -36,6 +37,9 @@ core::Status check(const v1::CreateTokenRequest& asked) {
   }
   if (asked.lifetime_ms() < 0 || asked.lifetime_ms() > kLongestLifetimeMs) {
     return core::Error{"expires: expected a time of at most a hundred years, or never"};
+  }
+  if (asked.machines() != 0 && asked.role() != v1::ROLE_WORKER) {
+    return core::Error{"machines: only workers' tokens have them"};
   }
   if (asked.pool().empty()) return {};
   if (asked.role() != v1::ROLE_WORKER) return core::Error{"pool: only a worker's token has one"};
@@ -69,6 +73,9 @@ core::Result<FreshToken> make_token(const v1::CreateTokenRequest& asked, int64_t
   token.row.created_ms = now_ms;
   token.row.expires_ms = asked.lifetime_ms() == 0 ? 0 : now_ms + asked.lifetime_ms();
   token.row.pool = asked.pool();
+  if (asked.role() == v1::ROLE_WORKER) {
+    token.row.machines = asked.machines() == 0 ? kMachines : asked.machines();
+  }
   return token;
 }
 
@@ -116,6 +123,7 @@ v1::Token to_wire(const StoredToken& token) {
   wire.set_used_ms(token.used_ms);
   wire.set_revoked_ms(token.revoked_ms);
   wire.set_pool(token.pool);
+  if (token.role == v1::ROLE_WORKER) wire.set_machines(token.machines);
   return wire;
 }
 

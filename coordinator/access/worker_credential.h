@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace hyades::coordinator {
@@ -11,6 +12,13 @@ struct WorkerCredential {
   /// whoever may work may do everything.
   std::string name{};
   std::string machine_token{};  ///< to be kept by the worker and shown from now on; empty: none
+  /// Whose the worker is: nobody else may come under its id. Empty: anybody's, as the farm asks for
+  /// no token.
+  std::string owner{};
+  /// The id of the token that it has joined with, by which at most `machines` workers may be here;
+  /// empty: it has not joined.
+  std::string joined_with{};
+  uint32_t machines = 0;
 };
 
 }  // namespace hyades::coordinator

@@ -113,6 +113,29 @@ bool WorkerSessions::has_room(Turn& turn) {
   return false;
 }
 
+/// Whether who shows this may be the worker that it says it is. Whoever knows the id of another's
+/// could else take what the farm knows of it; a process that has been here may come with a token of
+/// another name, as that is how tokens are changed.
+grpc::Status WorkerSessions::may_join(const v1::Hello& hello, const WorkerPass& pass) const {
+  const WorkerSession* session = workers_.session_of(hello.worker_id());
+  if (session != nullptr && !session->owner.empty() && session->owner != pass.owner &&
+      session->hello.instance() != hello.instance()) {
+    return {grpc::StatusCode::ALREADY_EXISTS,
+            "a worker that has joined with the token of somebody else has this id: take a new one"};
+  }
+  const bool counted = session != nullptr && session->joined_with == pass.joined_with;
+  if (pass.joined_with.empty() || counted ||
+      workers_.joined_by(pass.joined_with) < size_t{pass.machines}) {
+    return grpc::Status::OK;
+  }
+  return farm::retry_later(
+      grpc::StatusCode::RESOURCE_EXHAUSTED,
+      fmt::format("{} workers have joined with the token {}, as many as may: ask an admin for "
+                  "another ('hyades token create --role worker --machines N')",
+                  pass.machines, pass.joined_with),
+      std::chrono::seconds(10));
+}
+
 /// Two processes under one id would close each other's stream for ever. The one that was here first
 /// keeps the id if it still speaks after another has asked; a silent one is gone (its machine lost
 /// its power, say), though nobody has noticed yet.
@@ -144,7 +167,8 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
   auto joined = joining(hello, context_.proofs, unproven);
   if (!joined) return {grpc::StatusCode::INVALID_ARGUMENT, joined.error().message};
   Turn turn(dispatcher_);
-  if (!workers_.knows(hello.worker_id()) && !has_room(turn)) {
+  if (grpc::Status may = may_join(hello, pass); !may.ok()) return may;
+  if (workers_.session_of(hello.worker_id()) == nullptr && !has_room(turn)) {
     return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                              fmt::format("there are {} workers already", kMostWorkers),
                              std::chrono::seconds(10));
@@ -160,6 +184,8 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
   const bool new_process = session.joined && !same_process;
   if (!same_process) session.drained.reset();
   begin_stream(session, hello, link);
+  session.owner = pass.owner;
+  workers_.set_joined_with(session, pass.joined_with);
   if (const std::string* why = workers_.quarantine_of(hello.worker_id())) {
     session.state = v1::WORKER_STATE_QUARANTINED;
     session.reason = *why;

@@ -19,6 +19,9 @@ struct WorkerPass {
   farm::TokenTerm term{};       ///< how long its token holds
   std::string credential{};     ///< WorkerJoined::credential
   std::string machine_token{};  ///< Welcome::machine_token
+  std::string owner{};          ///< who alone may come under the worker's id; empty: anybody
+  std::string joined_with{};    ///< a token by which at most `machines` may be here; empty: none
+  uint32_t machines = 0;
 };
 
 /// Workers that come, speak and go: their streams, heartbeats and leases on the wire. Thread-safe.
@@ -29,8 +32,9 @@ class WorkerSessions {
       : context_(context), dispatcher_(dispatcher), jobs_(jobs), workers_(workers), disk_(disk) {}
 
   /// A worker's stream begins; `link` gets the Welcome. An older stream of the same worker is
-  /// closed, unless it is another process' that still speaks: ALREADY_EXISTS then. INVALID_ARGUMENT
-  /// for a Hello that makes no sense.
+  /// closed, unless it is another process' that still speaks, or another owner's: ALREADY_EXISTS
+  /// then. RESOURCE_EXHAUSTED where there are too many workers, in all or by one token;
+  /// INVALID_ARGUMENT for a Hello that makes no sense.
   grpc::Status attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
                       WorkerId& worker, const WorkerPass& pass = {}) HYADES_EXCLUDES(state_lock);
   /// What came on the stream; what comes on one that is not the worker's newest is ignored.
@@ -59,6 +63,8 @@ class WorkerSessions {
  private:
   v1::CoordinatorMessage welcome(const v1::Hello& hello, const WorkerPass& pass) const;
   bool has_room(Turn& turn) HYADES_REQUIRES(state_lock);
+  grpc::Status may_join(const v1::Hello& hello, const WorkerPass& pass) const
+      HYADES_REQUIRES(state_lock);
   grpc::Status resolve_duplicate_id(WorkerSession& session, const v1::Hello& hello)
       HYADES_REQUIRES(state_lock);
   void wait_for_more_holders() HYADES_REQUIRES(state_lock);

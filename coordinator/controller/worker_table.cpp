@@ -79,8 +79,26 @@ WorkerSession& WorkerTable::open(const std::string& worker_id) {
   return session;
 }
 
+const WorkerSession* WorkerTable::session_of(const std::string& worker_id) const {
+  const auto known = ids_.find(worker_id);
+  return known == ids_.end() ? nullptr : find(known->second);
+}
+
+void WorkerTable::set_joined_with(WorkerSession& session, const std::string& token) {
+  const auto before = joined_by_.find(session.joined_with);
+  if (before != joined_by_.end() && --before->second == 0) joined_by_.erase(before);
+  session.joined_with = token;
+  if (!token.empty()) ++joined_by_[token];
+}
+
+size_t WorkerTable::joined_by(const std::string& token) const {
+  const auto known = joined_by_.find(token);
+  return known == joined_by_.end() ? 0 : known->second;
+}
+
 void WorkerTable::forget(WorkerId worker, Turn& turn) {
   const auto session = sessions_.find(worker);
+  set_joined_with(session->second, {});
   ids_.erase(session->second.hello.worker_id());
   sessions_.erase(session);
   turn.tell(WorkerForgotten{worker});

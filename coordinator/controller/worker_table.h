@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -27,7 +28,9 @@ struct LeaseProgress {
 /// What is known of a worker, from its first stream until it is forgotten.
 struct WorkerSession {
   WorkerId id HYADES_GUARDED_BY(state_lock){};
-  v1::Hello hello HYADES_GUARDED_BY(state_lock);  ///< without what is in hand
+  v1::Hello hello HYADES_GUARDED_BY(state_lock);          ///< without what is in hand
+  std::string owner HYADES_GUARDED_BY(state_lock);        ///< WorkerPass::owner
+  std::string joined_with HYADES_GUARDED_BY(state_lock);  ///< WorkerPass::joined_with
   /// Null while there is no stream.
   std::shared_ptr<WorkerLink> link HYADES_GUARDED_BY(state_lock);
   std::set<JobId> spec_sent HYADES_GUARDED_BY(state_lock);  ///< jobs that this stream knows
@@ -78,11 +81,15 @@ class WorkerTable {
   /// The session of a worker by its number or its name. Null where there is none or several have
   /// the name, which `status` says.
   WorkerSession* find(const std::string& text, grpc::Status& status) HYADES_REQUIRES(state_lock);
-  bool knows(const std::string& worker_id) const HYADES_REQUIRES(state_lock) {
-    return ids_.contains(worker_id);
-  }
+  /// The session of the worker that calls itself so; null where there is none.
+  const WorkerSession* session_of(const std::string& worker_id) const HYADES_REQUIRES(state_lock);
   /// The session of the worker that calls itself so; a new one where there is none.
   WorkerSession& open(const std::string& worker_id) HYADES_REQUIRES(state_lock);
+  /// Notes by which token the worker is here; empty: by none.
+  void set_joined_with(WorkerSession& session, const std::string& token)
+      HYADES_REQUIRES(state_lock);
+  /// How many workers that are known are here by the token.
+  size_t joined_by(const std::string& token) const HYADES_REQUIRES(state_lock);
   /// Drops the worker's session: nobody will come under this number any more.
   void forget(WorkerId worker, Turn& turn) HYADES_REQUIRES(state_lock);
   /// What workers call themselves; nothing for those who are not known any more.
@@ -119,6 +126,7 @@ class WorkerTable {
   std::map<std::string, WorkerId> ids_
       HYADES_GUARDED_BY(state_lock);  ///< by what they call themselves
   uint64_t next_worker_ HYADES_GUARDED_BY(state_lock) = 1;
+  std::map<std::string, size_t> joined_by_ HYADES_GUARDED_BY(state_lock);  ///< no zeros
   /// The reasons, as stored, by what workers call themselves.
   std::map<std::string, std::string> quarantines_ HYADES_GUARDED_BY(state_lock);
 };

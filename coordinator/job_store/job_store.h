@@ -112,6 +112,7 @@ struct StoredToken {
   int64_t used_ms = 0;     ///< 0: never; may lag behind
   int64_t revoked_ms = 0;  ///< 0: it has not been
   std::string pool = {};   ///< of a worker's: all of one pool count as one witness; empty: none
+  uint32_t machines = 0;   ///< of a worker's: how many workers may be here by it
 };
 
 /// A token's last use.

@@ -131,6 +131,10 @@ BEGIN
     ON CONFLICT (owner, hour) DO UPDATE SET core_ns = core_ns + excluded.core_ns;
 END;
 )",
+    R"(
+-- Tokens that are there already go on to be good for as many workers as a farm may have.
+ALTER TABLE tokens ADD COLUMN machines INTEGER NOT NULL DEFAULT 20000;
+)",
 };
 
 /// A number as protobuf writes it.

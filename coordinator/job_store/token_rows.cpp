@@ -7,13 +7,13 @@ namespace hyades::coordinator {
 core::Result<std::vector<StoredToken>> read_tokens(sqlite3* db) {
   std::vector<StoredToken> tokens;
   Query rows(db,
-             "SELECT id, name, role, hash, created_ms, expires_ms, used_ms, revoked_ms, pool "
-             "FROM tokens "
+             "SELECT id, name, role, hash, created_ms, expires_ms, used_ms, revoked_ms, pool, "
+             "machines FROM tokens "
              "ORDER BY created_ms, id");
   while (rows.next()) {
     tokens.push_back({rows.bytes(0), rows.bytes(1), static_cast<int>(rows.integer(2)),
                       rows.bytes(3), rows.integer(4), rows.integer(5), rows.integer(6),
-                      rows.integer(7), rows.bytes(8)});
+                      rows.integer(7), rows.bytes(8), static_cast<uint32_t>(rows.integer(9))});
   }
   if (core::Status status = rows.status(); !status) return status.error();
   return tokens;
@@ -22,7 +22,7 @@ core::Result<std::vector<StoredToken>> read_tokens(sqlite3* db) {
 core::Status insert_token(sqlite3* db, const StoredToken& token) {
   return Query(db,
                "INSERT INTO tokens (id, name, role, hash, created_ms, expires_ms, used_ms, "
-               "revoked_ms, pool) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
+               "revoked_ms, pool, machines) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")
       .bind(token.id)
       .bind(token.name)
       .bind(int64_t{token.role})
@@ -32,6 +32,7 @@ core::Status insert_token(sqlite3* db, const StoredToken& token) {
       .bind(token.used_ms)
       .bind(token.revoked_ms)
       .bind(token.pool)
+      .bind(int64_t{token.machines})
       .run();
 }
 

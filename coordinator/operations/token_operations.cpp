@@ -35,9 +35,7 @@ HttpForm session_form(const v1::WhoAmIRequest&, const v1::WhoAmIResponse& respon
 grpc::Status create_token(Backend& at, const v1::CreateTokenRequest& request,
                           v1::CreateTokenResponse& response) {
   StoredToken row;
-  const grpc::Status made =
-      at.authority.create(request.name(), request.role(), request.lifetime_ms(),
-                          *response.mutable_secret(), row, request.pool());
+  const grpc::Status made = at.authority.create(request, *response.mutable_secret(), row);
   if (made.ok()) *response.mutable_token() = to_wire(row);
   return made;
 }

@@ -34,7 +34,7 @@ grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const 
                               : std::string_view(shown->second.data(), shown->second.size()),
       caller);
   if (!known.ok()) return known;
-  known_(caller.address);
+  known_(caller.address, caller.token_id);
   uint32_t protocol = 0;
   const auto spoken = metadata.find(farm::kProtocolKey);
   if (spoken != metadata.end()) {

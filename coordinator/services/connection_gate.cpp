@@ -106,10 +106,11 @@ void ConnectionGate::close() {
   connections_.clear();
   by_address_.clear();
   known_ = 0;
+  known_by_.clear();
   listening_.sockets.clear();
 }
 
-void ConnectionGate::mark_known(const std::string& address) {
+void ConnectionGate::mark_known(const std::string& address, const std::string& token_id) {
   const core::MutexLock lock(mutex_);
   const auto found = by_address_.find(address);
   if (found == by_address_.end()) return;
@@ -117,13 +118,21 @@ void ConnectionGate::mark_known(const std::string& address) {
   Connection& connection = connections_.at(id);
   if (connection.known) return;
   strangers_.leave(id);
-  if (known_ < limits_.known) {
+  if (has_place_for(token_id)) {
     connection.known = true;
+    connection.token_id = token_id;
     ++known_;
+    ++known_by_[token_id];
   } else {
     drop(id);
   }
   if (strangers_.waiting() > 0) wake();
+}
+
+bool ConnectionGate::has_place_for(const std::string& token_id) const {
+  const size_t free = limits_.known - known_;
+  const auto own = known_by_.find(token_id);
+  return free > 0 && (token_id.empty() || own == known_by_.end() || own->second < free);
 }
 
 ConnectionGate::Count ConnectionGate::count() const {
@@ -210,7 +219,7 @@ void ConnectionGate::take(core::Descriptor socket, std::string address) {
   if (!watch(poll_, EPOLL_CTL_ADD, socket, EPOLLRDHUP | EPOLLET, id)) return;
   strangers_.come(id, neighbourhood_of(address));
   by_address_[address] = id;  // one before it from that port has most likely just ended
-  connections_.emplace(id, Connection{std::move(socket), std::move(address), false});
+  connections_.emplace(id, Connection{std::move(socket), std::move(address)});
 }
 
 /// Whose time has come goes, and who may comes in: what they come in by is put into `entering`.
@@ -245,7 +254,11 @@ void ConnectionGate::drop(Id id) {
   const auto found = connections_.find(id);
   if (found == connections_.end()) return;
   Connection& connection = found->second;
-  if (connection.known) --known_;
+  if (connection.known) {
+    --known_;
+    const auto same = known_by_.find(connection.token_id);
+    if (--same->second == 0) known_by_.erase(same);
+  }
   strangers_.leave(id);
   const auto address = by_address_.find(connection.address);
   if (address != by_address_.end() && address->second == id) by_address_.erase(address);

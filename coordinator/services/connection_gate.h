@@ -26,7 +26,8 @@ class ConnectionGate {
  public:
   struct Limits {
     StrangerQueue::Limits strangers{};
-    /// Connections of those that are known; also bounded by the files that may be open.
+    /// Connections of those that are known; also bounded by the files that may be open. With one
+    /// token as many as are free at most, so half of them, and then who has another comes in.
     size_t known = 20'000;
     /// How long after a crowd its memory is given back to the system.
     std::chrono::milliseconds calm{15'000};
@@ -44,9 +45,9 @@ class ConnectionGate {
   /// Hands nobody on any more, and lets go of all sockets. What is inside stays open.
   void close();
 
-  /// Whoever called from there, as address_text() has it, has shown a token, or needs none.
-  /// Thread-safe.
-  void mark_known(const std::string& address);
+  /// Whoever called from there, as address_text() has it, has shown the token of this id, or needs
+  /// none (empty). Thread-safe.
+  void mark_known(const std::string& address, const std::string& token_id = {});
 
   /// How many there are.
   struct Count {
@@ -63,6 +64,7 @@ class ConnectionGate {
     core::Descriptor socket;  ///< inside there is another of it, which may be closed before
     std::string address;
     bool known = false;
+    std::string token_id{};  ///< by which it became known; empty: none
   };
 
   void run();
@@ -74,6 +76,7 @@ class ConnectionGate {
   void advance(Time now, std::vector<int>& entering) HYADES_REQUIRES(mutex_);
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
+  bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
   bool is_calm(Time now) HYADES_REQUIRES(mutex_);
   void wake() const;
 
@@ -89,6 +92,7 @@ class ConnectionGate {
   std::unordered_map<Id, Connection> connections_ HYADES_GUARDED_BY(mutex_);
   std::unordered_map<std::string, Id> by_address_ HYADES_GUARDED_BY(mutex_);
   size_t known_ HYADES_GUARDED_BY(mutex_) = 0;
+  std::unordered_map<std::string, size_t> known_by_ HYADES_GUARDED_BY(mutex_);  ///< by token
   Id next_id_ HYADES_GUARDED_BY(mutex_);
   /// No file could be opened: when it is tried again.
   std::optional<Time> accept_again_ HYADES_GUARDED_BY(mutex_);

@@ -7,11 +7,14 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <memory>
 #include <system_error>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "coordinator/access/address.h"
 
@@ -38,6 +41,18 @@ struct Endpoint {
     }
     return IN6_IS_ADDR_UNSPECIFIED(&reinterpret_cast<const sockaddr_in6&>(address).sin6_addr);
   }
+  bool is_loopback_of_ipv6() const {
+    return family() == AF_INET6 &&
+           IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6&>(address).sin6_addr);
+  }
+  std::string text() const {
+    std::array<char, INET6_ADDRSTRLEN> host{};
+    const void* bytes =
+        family() == AF_INET
+            ? static_cast<const void*>(&reinterpret_cast<const sockaddr_in&>(address).sin_addr)
+            : &reinterpret_cast<const sockaddr_in6&>(address).sin6_addr;
+    return ::inet_ntop(family(), bytes, host.data(), host.size()) == nullptr ? "?" : host.data();
+  }
   bool operator==(const Endpoint& other) const {
     return size == other.size && std::memcmp(&address, &other.address, size) == 0;
   }
@@ -54,7 +69,7 @@ Endpoint wildcard(int family, in_port_t port) {
 
 std::string reason(int error) { return std::error_code(error, std::generic_category()).message(); }
 
-core::Result<std::vector<Endpoint>> resolve(const HostAndPort& where) {
+core::Status resolve(const HostAndPort& where, std::vector<Endpoint>& all) {
   addrinfo hints{};
   hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
   hints.ai_socktype = SOCK_STREAM;
@@ -63,7 +78,6 @@ core::Result<std::vector<Endpoint>> resolve(const HostAndPort& where) {
                                    where.port.c_str(), &hints, &found);
   if (failed != 0) return core::Error{::gai_strerror(failed)};
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owned(found, ::freeaddrinfo);
-  std::vector<Endpoint> all;
   for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
     if (one->ai_family != AF_INET && one->ai_family != AF_INET6) continue;
     Endpoint endpoint;
@@ -71,7 +85,7 @@ core::Result<std::vector<Endpoint>> resolve(const HostAndPort& where) {
     endpoint.size = one->ai_addrlen;
     if (std::find(all.begin(), all.end(), endpoint) == all.end()) all.push_back(endpoint);
   }
-  return all;
+  return {};
 }
 
 bool set(const core::Descriptor& socket, int level, int option, int value) {
@@ -99,32 +113,37 @@ int listen_there(Endpoint& endpoint, core::Descriptor& socket) {
 
 }  // namespace
 
-core::Result<Listening> listen_at(const std::string& address) {
+core::Result<Listening> listen_at(const std::vector<std::string>& addresses) {
   const auto fail = [&](const std::string& why) {
-    return core::Error{address + ": cannot listen there (" + why + ")"};
+    return core::Error{
+        fmt::format("{}: cannot listen there ({})", fmt::join(addresses, ", "), why)};
   };
-  auto endpoints = resolve(split_address(address));
-  if (!endpoints) return fail(endpoints.error().message);
-  const auto any = std::find_if(endpoints->begin(), endpoints->end(),
+  std::vector<Endpoint> endpoints;
+  for (const std::string& address : addresses) {
+    const core::Status found = resolve(split_address(address), endpoints);
+    if (!found) return fail(found.error().message);
+  }
+  const auto any = std::find_if(endpoints.begin(), endpoints.end(),
                                 [](const Endpoint& one) { return one.is_wildcard(); });
-  const bool all = any != endpoints->end();
+  const bool all = any != endpoints.end();
   if (all) {
     // One socket for both, or, where this machine has no IPv6, for the other alone.
     const in_port_t port = any->port();
-    *endpoints = {wildcard(AF_INET6, port), wildcard(AF_INET, port)};
+    endpoints = {wildcard(AF_INET6, port), wildcard(AF_INET, port)};
   }
   Listening listening;
   int error = EADDRNOTAVAIL;
-  for (Endpoint& endpoint : *endpoints) {
+  for (Endpoint& endpoint : endpoints) {
     if (listening.port != 0) endpoint.port() = htons(listening.port);
     core::Descriptor socket;
     error = listen_there(endpoint, socket);
     if (error == 0) {
       listening.port = ntohs(endpoint.port());
+      listening.addresses.push_back(address_text(endpoint.text(), std::to_string(listening.port)));
       listening.sockets.push_back(std::move(socket));
       if (all) break;
-    } else if (error == EADDRINUSE) {
-      return fail(reason(error));
+    } else if (error == EADDRINUSE || !(all || endpoint.is_loopback_of_ipv6())) {
+      return fail(endpoints.size() > 1 ? endpoint.text() + ": " + reason(error) : reason(error));
     }
   }
   if (listening.sockets.empty()) return fail(reason(error));

@@ -9,15 +9,18 @@
 
 namespace hyades::coordinator {
 
-/// Sockets at which others may connect, and their port.
+/// Sockets at which others may connect, where they are (address_text()), and their port.
 struct Listening {
   std::vector<core::Descriptor> sockets;
+  std::vector<std::string> addresses;
   uint16_t port = 0;
 };
 
-/// Listens at HOST:PORT, at all of this machine's addresses that HOST stands for; 0.0.0.0 and [::]
-/// are all of IPv4 and IPv6 there are. Port 0: one that is free. The sockets do not block, and are
-/// not shared with other processes: a second coordinator on the same port is a mistake.
-core::Result<Listening> listen_at(const std::string& address);
+/// Listens at each HOST:PORT, at all addresses that HOST stands for; 0.0.0.0 and [::] are all of
+/// IPv4 and IPv6 there are. Port 0: one that is free. An error that names the first address that
+/// will not do; only [::1] may be missing where others are there, as it is on machines without
+/// IPv6. The sockets do not block, and are not shared with other processes: a second coordinator on
+/// the same port is a mistake.
+core::Result<Listening> listen_at(const std::vector<std::string>& addresses);
 
 }  // namespace hyades::coordinator

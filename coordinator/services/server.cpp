@@ -37,7 +37,9 @@ struct Server::Parts {
   Parts(Controller& controller, Authority& authority, bool workers_show, const Options& options)
       : gate(options.gate),
         admission(authority, workers_show,
-                  [this](const std::string& address) { gate.mark_known(address); }),
+                  [this](const std::string& address, const std::string& token_id) {
+                    gate.mark_known(address, token_id);
+                  }),
         service({controller, authority}, admission, executors, options.request_patience) {
     add_job_streams(service);
     add_film_stream(service);
@@ -66,7 +68,7 @@ ConnectionGate::Count Server::connections() const { return parts_->gate.count();
 
 core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Controller& controller,
                                                     Authority& authority, const Options& options) {
-  auto listening = listen_at(door.address);
+  auto listening = listen_at({door.address});
   if (!listening) return listening.error();
   const uint16_t port = listening->port;
   auto parts = std::make_unique<Parts>(controller, authority, door.workers_show, options);
@@ -97,7 +99,7 @@ core::Result<std::unique_ptr<Server>> Server::start(const farm::Door& door, Cont
   std::unique_ptr<Server> server(new Server(std::move(parts)));
   server->address_ = door.address.substr(0, door.address.rfind(':') + 1) + std::to_string(port);
   controller.farm().listens_at(server->address_);
-  authority.listens_at(port);
+  for (const std::string& own : listening->addresses) authority.listens_at(own);
   auto& acceptor = *server->parts_->acceptor;
   const core::Status open =
       server->parts_->gate.open(std::move(*listening), [&acceptor](int socket) {

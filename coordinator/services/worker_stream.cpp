@@ -184,8 +184,12 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
     if (grpc::Status known = admission_.admit_worker(caller_, hello, credential); !known.ok()) {
       return known;
     }
-    const WorkerPass pass{caller_.term, std::move(credential.name),
-                          std::move(credential.machine_token)};
+    const WorkerPass pass{caller_.term,
+                          std::move(credential.name),
+                          std::move(credential.machine_token),
+                          std::move(credential.owner),
+                          std::move(credential.joined_with),
+                          credential.machines};
     return controller_.workers().attach(hello, link_, worker_, pass);
   }
 

@@ -321,9 +321,10 @@ core::Result<std::unique_ptr<WebServer>> WebServer::start(const farm::Listen& li
   std::unique_ptr<WebServer> server(new WebServer(std::move(parts)));
   Parts& running = *server->parts_;
   boost::system::error_code error;
-  const uint16_t port = running.acceptor.local_endpoint(error).port();
+  const tcp::endpoint own = running.acceptor.local_endpoint(error);
+  const uint16_t port = own.port();
   running.authenticator.set_port(port);
-  authority.listens_at(port);
+  authority.listens_at(address_text(own.address().to_string(), std::to_string(port)));
   server->url_ = (secure ? "https://" : "http://") +
                  listen.address.substr(0, listen.address.rfind(':') + 1) + std::to_string(port);
   running.accept();

@@ -159,7 +159,11 @@ class WorkersWithTokens : public ::testing::Test {
   std::string make(const std::string& name, v1::Role role, const std::string& pool = {}) {
     std::string text;
     StoredToken row;
-    const grpc::Status made = world.authority->create(name, role, 0, text, row, pool);
+    v1::CreateTokenRequest asked;
+    asked.set_name(name);
+    asked.set_role(role);
+    asked.set_pool(pool);
+    const grpc::Status made = world.authority->create(asked, text, row);
     EXPECT_TRUE(made.ok()) << made.error_message();
     return text;
   }

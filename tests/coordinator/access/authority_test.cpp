@@ -260,13 +260,63 @@ TEST_F(Tokens, WorkersCountByWhatTheyShow) {
   std::string cloud;
   std::string more;
   StoredToken row;
-  ASSERT_TRUE(authority->create("cloud", v1::ROLE_WORKER, 0, cloud, row, "aws").ok());
-  ASSERT_TRUE(authority->create("more", v1::ROLE_WORKER, 0, more, row, "aws").ok());
+  const auto of_pool = [](const std::string& name, v1::Role role, const std::string& pool) {
+    v1::CreateTokenRequest asked;
+    asked.set_name(name);
+    asked.set_role(role);
+    asked.set_pool(pool);
+    return asked;
+  };
+  ASSERT_TRUE(authority->create(of_pool("cloud", v1::ROLE_WORKER, "aws"), cloud, row).ok());
+  ASSERT_TRUE(authority->create(of_pool("more", v1::ROLE_WORKER, "aws"), more, row).ok());
+  EXPECT_FALSE(authority->create(of_pool("a", v1::ROLE_ADMIN, "pool"), more, row).ok());
+  EXPECT_FALSE(authority->create(of_pool("a", v1::ROLE_WORKER, "a pool"), more, row).ok());
   EXPECT_EQ(name_of(cloud, "worker-a", true), name_of(more, "worker-b", true));
   EXPECT_NE(name_of(cloud, "worker-a", true), name_of(joins, "worker-a", true));
   open();
   EXPECT_EQ(name_of(cloud, "worker-a", true), name_of(more, "worker-b", true)) << "it is kept";
   EXPECT_EQ(name_of(make(v1::ROLE_ADMIN, "eve"), "worker-a", true), "") << "may do everything";
+}
+
+TEST_F(Tokens, TellHowManyMachinesMayJoinAndWhoseTheyAre) {
+  make(v1::ROLE_ADMIN, "ada");
+  const auto joined = [&](const std::string& token) {
+    EXPECT_TRUE(show(token).ok());
+    WorkerCredential known;
+    EXPECT_TRUE(authority->admit_worker(caller, "worker-a", true, known).ok());
+    return known;
+  };
+  v1::CreateTokenRequest asked;
+  asked.set_name("nodes");
+  asked.set_role(v1::ROLE_WORKER);
+  asked.set_machines(3);
+  std::string text;
+  StoredToken row;
+  ASSERT_TRUE(authority->create(asked, text, row).ok());
+  open();
+  const WorkerCredential first = joined(text);
+  EXPECT_EQ(first.machines, 3U) << "it is kept";
+  EXPECT_EQ(first.joined_with, row.id);
+  EXPECT_EQ(first.owner, "nodes");
+  const WorkerCredential again = joined(first.machine_token);
+  EXPECT_EQ(again.joined_with, row.id) << "by its own token too";
+  EXPECT_EQ(again.machines, 3U);
+  EXPECT_EQ(joined(make(v1::ROLE_WORKER, "nodes")).machines, 1000U);
+  const WorkerCredential admins = joined(make(v1::ROLE_ADMIN, "eve"));
+  EXPECT_EQ(admins.joined_with, "") << "an admin may do everything";
+  EXPECT_EQ(admins.owner, "eve");
+}
+
+TEST_F(Tokens, ThatAreNoneAreBoundedOnThisMachineTooWhereAProxyMayBe) {
+  const std::string right = make(v1::ROLE_ADMIN, "ada");
+  const auto from_proxy = [&](const std::string& text) {
+    caller = {};
+    caller.address = "127.0.0.1:5000";
+    return authority->admit("Bearer " + text, caller).error_code();
+  };
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(from_proxy("x"), grpc::StatusCode::UNAUTHENTICATED) << i;
+  EXPECT_EQ(from_proxy("x"), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(from_proxy(right), grpc::StatusCode::OK) << "whoever else comes by the proxy";
 }
 
 TEST_F(Tokens, NonsenseIsNoToken) {
@@ -281,8 +331,11 @@ TEST_F(Tokens, NonsenseIsNoToken) {
   EXPECT_FALSE(authority->create("a", static_cast<v1::Role>(9), 0, text, row).ok());
   EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, -1, text, row).ok());
   EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, INT64_MAX, text, row).ok());
-  EXPECT_FALSE(authority->create("a", v1::ROLE_ADMIN, 0, text, row, "pool").ok());
-  EXPECT_FALSE(authority->create("a", v1::ROLE_WORKER, 0, text, row, "a pool").ok());
+  v1::CreateTokenRequest asked;
+  asked.set_name("a");
+  asked.set_role(v1::ROLE_ADMIN);
+  asked.set_machines(5);
+  EXPECT_FALSE(authority->create(asked, text, row).ok()) << "no worker's";
 }
 
 TEST_F(Tokens, WhenTheyWereUsedIsKept) {

@@ -365,11 +365,13 @@ TEST(JobStore, OwnersOfTheSixthSchemaAreProvenByTokensThatWereThereBefore) {
                          "ALTER TABLE jobs DROP COLUMN owner_proven; "
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
                          "ALTER TABLE tokens DROP COLUMN pool; "
+                         "ALTER TABLE tokens DROP COLUMN machines; "
                          "PRAGMA user_version=6",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);
   sqlite3_close(db);
   auto store = open(path);
+  EXPECT_EQ(store->tokens()->front().machines, 20'000U) << "as many as a farm may have";
   EXPECT_FALSE((*store->job(1))->owner_proven);
   EXPECT_TRUE((*store->job(2))->owner_proven);
   EXPECT_FALSE((*store->job(3))->owner_proven);

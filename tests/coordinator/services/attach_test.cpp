@@ -29,6 +29,19 @@ grpc::Status attach(const FarmWorld& world, const std::string& called, uint32_t 
   return stream->Finish();
 }
 
+/// A token with which workers join; the farm's first one, an admin's, is made besides.
+std::string joining_token(const FarmWorld& world, const std::string& name, uint32_t machines) {
+  std::string text;
+  StoredToken row;
+  v1::CreateTokenRequest asked;
+  asked.set_name(name);
+  asked.set_role(v1::ROLE_WORKER);
+  asked.set_machines(machines);
+  EXPECT_TRUE(world.authority->create("ada", v1::ROLE_ADMIN, 0, text, row).ok());
+  EXPECT_TRUE(world.authority->create(asked, text, row).ok());
+  return text;
+}
+
 TEST(Attach, OlderProtocolsAreRefusedNamingBothVersions) {
   FarmWorld world;
   world.start();
@@ -82,6 +95,57 @@ TEST(Attach, AWorkerThatHasGoneWithoutASignIsReplacedByItsSuccessor) {
   ASSERT_TRUE(eventually([&] { return successor.streams() == 1; }));
   EXPECT_TRUE(
       eventually([&] { return first.last_status().error_code() == grpc::StatusCode::ABORTED; }));
+}
+
+TEST(Attach, NobodyTakesTheIdOfASilentWorkerOfSomebodyElse) {
+  FarmWorld world;
+  world.start();
+  const std::string nodes = joining_token(world, "nodes", 0);
+  const std::string renewed = joining_token(world, "nodes", 0);
+  const std::string cloud = joining_token(world, "cloud", 0);
+  ScriptedWorker::Script script = world.script();
+  script.keeps_token = true;
+  const auto attends = [&](const std::string& token, const std::string& instance) {
+    script.token = token;
+    script.instance = instance;
+    const ScriptedWorker worker(world.address, script);
+    grpc::Status status;
+    EXPECT_TRUE(eventually([&] {
+      status = worker.last_status();
+      return worker.streams() == 1 || status.error_code() == grpc::StatusCode::ALREADY_EXISTS;
+    })) << status.error_message();
+    return worker.streams() == 1;
+  };
+  EXPECT_TRUE(attends(nodes, "the-first-process"));
+  EXPECT_FALSE(attends(cloud, "a-thief-who-knows-the-id"));
+  EXPECT_TRUE(attends(renewed, "the-second-process")) << "another token of the same name";
+  EXPECT_TRUE(attends(cloud, "the-second-process")) << "a process whose token was changed";
+  EXPECT_FALSE(attends(nodes, "the-third-process"));
+}
+
+TEST(Attach, ATokenJoinsAsManyMachinesAsItMay) {
+  FarmWorld world;
+  world.options.forget_time = 1s;
+  world.start();
+  ScriptedWorker::Script script = world.script();
+  script.keeps_token = true;
+  script.token = joining_token(world, "nodes", 1);
+  ScriptedWorker::Script more = script;
+  more.id = "one-more-worker-of-it";
+  auto first = std::make_unique<ScriptedWorker>(world.address, script);
+  ASSERT_TRUE(eventually([&] { return first->streams() == 1; }));
+  const ScriptedWorker second(world.address, more);
+  ASSERT_TRUE(eventually([&] {
+    return second.last_status().error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
+  })) << second.last_status().error_message();
+  EXPECT_NE(second.last_status().error_message().find("--machines"), std::string::npos);
+  script.token = first->welcome().machine_token();
+  ASSERT_FALSE(script.token.empty());
+  first = std::make_unique<ScriptedWorker>(world.address, script);
+  EXPECT_TRUE(eventually([&] { return first->streams() == 1; })) << "it is the one";
+  EXPECT_EQ(second.streams(), 0U);
+  first.reset();
+  EXPECT_TRUE(eventually([&] { return second.streams() == 1; })) << "once it is forgotten";
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ class ConnectionGateTest : public testing::Test {
   }
 
   void open(const std::string& address = "127.0.0.1:0") {
-    auto listening = listen_at(address);
+    auto listening = listen_at({address});
     ASSERT_TRUE(listening.ok()) << (listening ? "" : listening.error().message);
     port = listening->port;
     gate.emplace(limits);
@@ -161,6 +161,31 @@ TEST_F(ConnectionGateTest, TheKnownAreBounded) {
   EXPECT_TRUE(holds(0, 0, 2));
 }
 
+TEST_F(ConnectionGateTest, OneTokenDoesNotShutAllOthersOut) {
+  limits.known = 8;
+  open();
+  std::deque<PlainCaller> callers;
+  const auto connect = [&](const std::string& token_id) {
+    callers.emplace_back(port);
+    EXPECT_TRUE(soon([&] { return came_in() == callers.size(); }));
+    gate->mark_known(callers.back().address(), token_id);
+  };
+  for (int i = 0; i < 6; ++i) connect("greedy");
+  ASSERT_TRUE(holds(0, 0, 4)) << "as many as were free then";
+  EXPECT_TRUE(callers.back().ended(20s));
+  for (int i = 0; i < 3; ++i) connect("second");
+  EXPECT_TRUE(holds(0, 0, 6));
+  connect("third");
+  EXPECT_TRUE(holds(0, 0, 7));
+  {
+    const core::MutexLock lock(mutex);
+    ::shutdown(room.front().get(), SHUT_RDWR);
+  }
+  ASSERT_TRUE(holds(0, 0, 6));
+  connect("");
+  EXPECT_TRUE(holds(0, 0, 7)) << "where no token is asked for all are one";
+}
+
 TEST_F(ConnectionGateTest, WhoeverHasTheSocketMayEndIt) {
   open();
   const PlainCaller caller(port);
@@ -220,15 +245,21 @@ TEST_F(ConnectionGateTest, WithoutFilesItWaitsForThem) {
 
 TEST_F(ConnectionGateTest, ListensAtAllThatANameStandsFor) {
   for (const char* address : {"0.0.0.0:0", "[::]:0", "localhost:0", "127.0.0.1:0"}) {
-    const auto listening = listen_at(address);
+    const auto listening = listen_at({address});
     if (!listening && std::string(address) == "[::]:0") continue;  // no IPv6 here
     ASSERT_TRUE(listening.ok()) << listening.error().message;
     ASSERT_NE(listening->port, 0) << address;
-    EXPECT_FALSE(listen_at("127.0.0.1:" + std::to_string(listening->port)).ok()) << address;
+    EXPECT_FALSE(listen_at({"127.0.0.1:" + std::to_string(listening->port)}).ok()) << address;
   }
-  const auto nowhere = listen_at("192.0.2.7:0");
+  const auto nowhere = listen_at({"192.0.2.7:0"});
   ASSERT_FALSE(nowhere.ok());
   EXPECT_NE(nowhere.error().message.find("192.0.2.7:0: cannot listen there"), std::string::npos);
+  const auto both = listen_at({"127.0.0.1:0", "127.0.0.2:0"});
+  ASSERT_TRUE(both.ok()) << both.error().message;
+  EXPECT_EQ(both->sockets.size(), 2U);
+  const auto half = listen_at({"127.0.0.1:0", "192.0.2.7:0"});
+  ASSERT_FALSE(half.ok()) << "callers of the other would find nobody";
+  EXPECT_NE(half.error().message.find("(192.0.2.7: "), std::string::npos) << half.error().message;
 }
 
 TEST_F(ConnectionGateTest, AnAddressIsTheSameAtASocketForBothFamilies) {

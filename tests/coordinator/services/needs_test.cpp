@@ -77,6 +77,7 @@ TEST(Needs, OfOlderJobStoresAreTakenOver) {
   EXPECT_EQ(sqlite3_exec(db,
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret;"
                          "ALTER TABLE tokens DROP COLUMN pool;"
+                         "ALTER TABLE tokens DROP COLUMN machines;"
                          "DROP TRIGGER count_core_time; DROP TABLE core_time;"
                          "PRAGMA user_version=7;"
                          "UPDATE jobs SET max_workers = 300, tags = 'gpu,quiet', max_attempts = 7,"
