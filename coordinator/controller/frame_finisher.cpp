@@ -74,7 +74,7 @@ bool FrameFinisher::finish(Completed& completed) {
   StoredFrame over;
   if (!begin(completed, spec, over)) return !completed.failure;
   auto document = context_.documents.read_stored(spec, kReadingPatience);
-  if (!document) return false;  // other frames are finished meanwhile
+  if (!document) return false;  // it is tried again
   const int64_t begun_us = core::wall_us();
   auto task = *document ? task_of(***document, static_cast<uint64_t>(completed.job), over)
                         : core::Result<FinishTask>(document->error());

@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -51,7 +52,8 @@ uint64_t memory_of(const farm::ReadJob& read) {
 
 grpc::Status others_are_read() {
   return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                           "the documents of other jobs are being read", std::chrono::seconds(1));
+                           "the documents of other jobs are being read, or another of yours",
+                           std::chrono::seconds(1));
 }
 
 void JobDocument::EndTurn::operator()(JobDocuments* documents) const {
@@ -59,11 +61,11 @@ void JobDocument::EndTurn::operator()(JobDocuments* documents) const {
   documents->end_turn();
 }
 
-JobDocuments::Found JobDocuments::read(const v1::JobSpec& spec,
-                                       std::chrono::milliseconds patience) {
+JobDocuments::Found JobDocuments::read(const v1::JobSpec& spec, std::chrono::milliseconds patience,
+                                       const std::string& owner) {
   const Digest name = name_of(spec);
   if (Document kept = find(name)) return JobDocument(std::move(kept), nullptr);
-  if (!begin_turn(std::chrono::steady_clock::now() + patience)) return std::nullopt;
+  if (!begin_turn(std::chrono::steady_clock::now() + patience, owner)) return std::nullopt;
   JobDocument::Turn turn(this, {std::chrono::steady_clock::now()});
   // Somebody may have read it meanwhile.
   if (Document kept = find(name)) return JobDocument(std::move(kept), nullptr);
@@ -80,10 +82,11 @@ JobDocuments::Found JobDocuments::read(const v1::JobSpec& spec,
 }
 
 JobDocuments::Found JobDocuments::read_stored(const std::string& spec,
-                                              std::chrono::milliseconds patience) {
+                                              std::chrono::milliseconds patience,
+                                              const std::string& owner) {
   v1::JobSpec parsed;
   if (!parsed.ParseFromString(spec)) return core::Error{"the job's record is damaged"};
-  return read(parsed, patience);
+  return read(parsed, patience, owner);
 }
 
 JobDocuments::Document JobDocuments::find(const Digest& name) {
@@ -110,13 +113,15 @@ bool JobDocuments::keep(Kept fresh) {
   return true;
 }
 
-bool JobDocuments::begin_turn(Time give_up) {
+bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
   const core::MutexLock lock(mutex_);
+  const auto is_his = [&](const Waiting& other) { return other.owner == owner; };
+  if (!owner.empty() && std::any_of(waiting_.begin(), waiting_.end(), is_his)) return false;
   const uint64_t number = next_waiting_++;
-  waiting_.push_back(number);
-  while (reading_ || waiting_.front() != number) {
+  waiting_.push_back({number, owner});
+  while (reading_ || waiting_.front().number != number) {
     if (std::chrono::steady_clock::now() >= give_up) {
-      std::erase(waiting_, number);
+      std::erase_if(waiting_, [&](const Waiting& other) { return other.number == number; });
       turn_ended_.notify_all();
       return false;
     }

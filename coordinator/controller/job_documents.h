@@ -25,8 +25,8 @@ namespace hyades::coordinator {
 
 class JobDocuments;
 
-/// For the documents of others to be read, where one may come again.
-inline constexpr std::chrono::seconds kReadingPatience{2};
+/// For the documents of others to be read, where one may come again: longer than any takes.
+inline constexpr std::chrono::seconds kReadingPatience{15};
 /// What a client is told whose document could not be read within that: to come again.
 grpc::Status others_are_read();
 
@@ -64,15 +64,17 @@ class JobDocuments {
   JobDocuments(farm::ContentStore& assets, uint64_t most_bytes)
       : assets_(assets), most_bytes_(most_bytes) {}
 
-  /// Nothing where others were still being read after `patience`. Errors hold every complaint about
-  /// the document, or say which of its files is gone.
+  /// Nothing where others were still being read after `patience`, or at once where another of the
+  /// owner's waits already: so nobody has to wait for more than one of each. Errors hold every
+  /// complaint about the document, or say which of its files is gone.
   using Found = std::optional<core::Result<JobDocument>>;
-  /// The job as the spec's document and samples say it. May wait for the disk.
-  Found read(const v1::JobSpec& spec, std::chrono::milliseconds patience)
-      HYADES_EXCLUDES(state_lock, mutex_);
+  /// The job as the spec's document and samples say it. May wait for the disk. `owner`: for whom;
+  /// empty: for the coordinator itself.
+  Found read(const v1::JobSpec& spec, std::chrono::milliseconds patience,
+             const std::string& owner = {}) HYADES_EXCLUDES(state_lock, mutex_);
   /// The same of StoredJob::spec.
-  Found read_stored(const std::string& spec, std::chrono::milliseconds patience)
-      HYADES_EXCLUDES(state_lock, mutex_);
+  Found read_stored(const std::string& spec, std::chrono::milliseconds patience,
+                    const std::string& owner = {}) HYADES_EXCLUDES(state_lock, mutex_);
 
   /// Bytes of those that stay in memory.
   uint64_t kept_bytes() const HYADES_EXCLUDES(mutex_);
@@ -91,7 +93,7 @@ class JobDocuments {
 
   Document find(const Digest& name) HYADES_EXCLUDES(mutex_);
   bool keep(Kept fresh) HYADES_EXCLUDES(mutex_);
-  bool begin_turn(Time give_up) HYADES_EXCLUDES(mutex_);
+  bool begin_turn(Time give_up, const std::string& owner) HYADES_EXCLUDES(mutex_);
   void end_turn() HYADES_EXCLUDES(mutex_);
 
   farm::ContentStore& assets_;
@@ -103,8 +105,12 @@ class JobDocuments {
   uint64_t kept_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   uint64_t times_read_ HYADES_GUARDED_BY(mutex_) = 0;
   bool reading_ HYADES_GUARDED_BY(mutex_) = false;
+  struct Waiting {
+    uint64_t number = 0;
+    std::string owner;
+  };
   /// Those who wait to read one, in the order in which they came.
-  std::deque<uint64_t> waiting_ HYADES_GUARDED_BY(mutex_);
+  std::deque<Waiting> waiting_ HYADES_GUARDED_BY(mutex_);
   uint64_t next_waiting_ HYADES_GUARDED_BY(mutex_) = 0;
 };
 

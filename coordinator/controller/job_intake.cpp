@@ -124,13 +124,14 @@ grpc::Status JobIntake::submit(const v1::SubmitRequest& request, bool owner_prov
   if (const grpc::Status here = files_are_here(request.spec()); !here.ok()) return here;
   auto active = [&]() -> std::optional<core::Result<std::unique_ptr<ActiveJob>>> {
     // A long document takes seconds: others' jobs are removed and tried again meanwhile.
-    const auto document = context_.documents.read(request.spec(), kReadingPatience);
+    const auto document =
+        context_.documents.read(request.spec(), kReadingPatience, request.owner());
     if (!document) return std::nullopt;
     if (!*document) return document->error();
     return make_active_job(new_row(request, *options, owner_proven), request.spec(), ***document,
                            *context_.assets, context_.options.film_memory);
   }();
-  if (!active) return others_submit();
+  if (!active) return others_are_read();
   const auto one = context_.wait_for_submissions();
   if (!one) return others_submit();
   if (const grpc::Status may = may_have_one_more(request.owner()); !may.ok()) return may;

@@ -185,7 +185,8 @@ grpc::Status VideoMaker::ask(uint64_t id, const VideoRequest& request, Requested
   for (const StoredFrame& frame : *frames) {
     if (frame.done) done.push_back(frame.frame);
   }
-  auto document = context_.documents.read_stored((*stored)->spec, kReadingPatience);
+  auto document =
+      context_.documents.read_stored((*stored)->spec, kReadingPatience, (*stored)->owner);
   if (!document) return others_are_read();
   if (!*document) return {grpc::StatusCode::FAILED_PRECONDITION, document->error().message};
   auto plan = plan_video((**document)->job, request, std::move(done), *paths);

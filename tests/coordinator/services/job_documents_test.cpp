@@ -143,6 +143,30 @@ TEST_F(JobDocumentsTest, WhoCameFirstReadsFirst) {
   EXPECT_EQ(order, (std::vector<int>{0, 2, 3})) << "one had no more patience";
 }
 
+TEST_F(JobDocumentsTest, OfEachOwnerOneWaits) {
+  const v1::JobSpec large = spec_of(document_of("a", 200));
+  JobDocuments documents(*store, 1);
+  std::thread eve;
+  std::thread ann;
+  bool eve_read = false;
+  bool ann_read = false;
+  {
+    const auto held = documents.read(large, 20s, "eve");
+    ASSERT_TRUE(held && *held);
+    eve = std::thread([&] { eve_read = documents.read(large, 20s, "eve").has_value(); });
+    std::this_thread::sleep_for(100ms);
+    const auto before = std::chrono::steady_clock::now();
+    EXPECT_FALSE(documents.read(large, 20s, "eve")) << "another of hers waits";
+    EXPECT_LT(std::chrono::steady_clock::now() - before, 10s) << "told at once";
+    ann = std::thread([&] { ann_read = documents.read(large, 20s, "ann").has_value(); });
+    std::this_thread::sleep_for(100ms);
+  }
+  eve.join();
+  ann.join();
+  EXPECT_TRUE(eve_read);
+  EXPECT_TRUE(ann_read);
+}
+
 TEST_F(JobDocumentsTest, WhatCannotBeReadIsAnErrorAndCanBeReadLater) {
   const std::string text = document_of("a", 1);
   const v1::JobSpec spec = spec_of(text);
