@@ -233,6 +233,7 @@ grpc::Status Authority::admit_worker(const Caller& caller, const std::string& wo
   credential.name = !caller.pool.empty() ? "pool " + caller.pool
                     : own                ? "machine " + caller.token_id + " " + worker
                                          : "token " + caller.token_id;
+  if (caller.pool.empty() && own) credential.origin = "token " + caller.token_id;
   return grpc::Status::OK;
 }
 

@@ -201,6 +201,7 @@ grpc::Status WorkerSessions::attach(const v1::Hello& hello, const std::shared_pt
 
   joined->worker = worker;
   joined->credential = pass.credential;
+  joined->origin = pass.origin;
   if (new_process) {
     workers_.note_losses(session, dispatcher_.scheduler().units_of(worker),
                          "has been started again");

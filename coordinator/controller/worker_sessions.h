@@ -18,6 +18,7 @@ struct ResultRefusal;
 struct WorkerPass {
   farm::TokenTerm term{};       ///< how long its token holds
   std::string credential{};     ///< WorkerJoined::credential
+  std::string origin{};         ///< WorkerJoined::origin
   std::string machine_token{};  ///< Welcome::machine_token
   std::string owner{};          ///< who alone may come under the worker's id; empty: anybody
   std::string joined_with{};    ///< a token by which at most `machines` may be here; empty: none

@@ -96,6 +96,9 @@ struct WorkerJoined {
   /// By what it was let in: workers of one credential count as one witness. Empty: nobody else has
   /// its own.
   std::string credential = {};
+  /// The same for workers of one token or pool, which may bring as many as it likes. Empty: as
+  /// `credential` says.
+  std::string origin = {};
 };
 
 /// The worker can take `units` more. The wish stands until it is fulfilled.

@@ -120,7 +120,6 @@ Assignment& FrameLedger::assign(const Extent& e, const Holder& holder, uint64_t 
   Assignment& assignment = assignments_[key(e)];
   assignment.extent = e;
   assignment.serial = serial;
-  assignment.copied = false;
   assignment.holders.assign(1, holder);
   return assignment;
 }

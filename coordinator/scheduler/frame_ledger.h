@@ -29,11 +29,10 @@ struct Holder {
   LeaseId lease;
 };
 
-/// A unit that is being rendered by one worker, or by two when it has been copied.
+/// A unit that is being rendered by one worker, or by several when it has been copied.
 struct Assignment {
   Extent extent;
   uint64_t serial = 0;  ///< tells this assignment from later ones of the same unit
-  bool copied = false;
   std::vector<Holder> holders;
 };
 
@@ -80,7 +79,7 @@ class FrameLedger {
   /// Whether all films have come, durable or not, and nobody has to render anything.
   bool all_held() const { return free_ == 0 && assignments_.empty() && disputes_.empty(); }
   bool any_assigned() const { return !assignments_.empty(); }
-  /// Workers of all assignments together: a copied unit has two.
+  /// Workers of all assignments together: a copied unit has several.
   size_t holders() const;
 
   // Held batches.

@@ -11,9 +11,9 @@
 namespace hyades::coordinator {
 namespace {
 
-/// A class that may be one worker's invention takes no longer for a frame.
+/// A class that may be somebody's invention takes no longer for a frame.
 constexpr Duration kLongestFrame = std::chrono::hours(24);
-/// How many times its patience lets the farm do without a slow voice's beginnings.
+/// How many times its patience lets the farm do without slow workers' beginnings.
 constexpr int kSlowFor = 12;
 
 }  // namespace
@@ -199,7 +199,7 @@ bool FrameLifecycle::is_orphaned(const ScheduledJob& job, FrameSlot& slot) const
   return step_.now >= *slot.orphaned + options_.class_patience && !slot.ledger->all_held();
 }
 
-/// Whether the frame's class, which may be one worker's invention, gets on with it too slowly while
+/// Whether the frame's class, which may be somebody's invention, gets on with it too slowly while
 /// others wait for it.
 bool FrameLifecycle::stands_still(const ScheduledJob& job, FrameSlot& slot, bool leasing) const {
   const FrameLedger& ledger = *slot.ledger;

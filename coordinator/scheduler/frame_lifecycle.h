@@ -54,7 +54,7 @@ class FrameLifecycle {
   /// It is durable that the frame begins again: it waits to be opened.
   void restarted(ScheduledJob& job, FrameSlot& slot);
 
-  /// Frames whose class has been gone for too long, or may be one worker's invention and gets on
+  /// Frames whose class has been gone for too long, or may be somebody's invention and gets on
   /// with them no more, begin again, if there is somebody else to render them. `leasing`: units are
   /// leased, so that whoever delivers nothing is to blame.
   void restart_stranded(bool leasing);

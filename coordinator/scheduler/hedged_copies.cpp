@@ -20,14 +20,35 @@ constexpr Duration kCopyRound = std::chrono::milliseconds(250);
 
 bool HedgedCopies::grant(WorkerId id, Worker& worker) {
   if (!enabled()) return false;
-  while (!candidates_.empty() && !live(candidates_.front())) {
-    candidates_.pop_front();
+  const auto is_over = [&](const Candidate& c) { return find(c) == nullptr; };
+  while (!alone_.empty() && (is_over(alone_.front()) || find(alone_.front())->holders.size() > 1)) {
+    alone_.pop_front();
   }
-  for (size_t i = 0; i < std::min(kCopySearch, candidates_.size()); ++i) {
-    const Candidate candidate = candidates_[i];
+  while (!copied_.empty() && is_over(copied_.front())) copied_.pop_front();
+  return grant_of(alone_, 1, id, worker) || grant_of(copied_, 2, id, worker);
+}
+
+/// Whether one more worker may render the unit, that is not one of those who have it. Where two of
+/// one origin do, both may hold it for ever: another may too, then.
+bool HedgedCopies::may_copy(const Assignment& assignment, WorkerId id, const Worker& worker) const {
+  const std::vector<Holder>& holders = assignment.holders;
+  if (holders.size() == 1) return holders.front().worker != id;
+  if (holders.size() != 2) return false;
+  const Worker* first = workers_.find(holders[0].worker);
+  const Worker* second = workers_.find(holders[1].worker);
+  return first != nullptr && second != nullptr && first->origin == second->origin &&
+         first->origin != worker.origin;
+}
+
+/// Of those that at most so many workers have.
+bool HedgedCopies::grant_of(const Candidates& candidates, size_t holders, WorkerId id,
+                            Worker& worker) {
+  for (size_t i = 0; i < std::min(kCopySearch, candidates.size()); ++i) {
+    const Candidate candidate = candidates[i];
     if (step_.now < first_copy(candidate)) return false;
-    Assignment* assignment = live(candidate);
-    if (assignment == nullptr || assignment->holders.front().worker == id) continue;
+    Assignment* assignment = find(candidate);
+    if (assignment == nullptr || assignment->holders.size() > holders) continue;
+    if (!may_copy(*assignment, id, worker)) continue;
     const FramePlace place{jobs_.find(candidate.job), candidate.slot};
     const ScheduledJob& job = *place.job;
     if (job.paused || place.frame().worker_class != worker.worker_class) continue;
@@ -50,6 +71,10 @@ bool HedgedCopies::grant(WorkerId id, Worker& worker) {
     --worker.wanted;
     Affinity::remember_scene(worker, frame, false);
     leases_.grant(id, worker, place, {candidate.extent});
+    if (holders == 1 && workers_.has_several_origins(worker.worker_class)) {
+      copied_.push_back(
+          {step_.now, candidate.serial, candidate.job, candidate.slot, candidate.extent});
+    }
     return true;
   }
   return false;
@@ -70,16 +95,20 @@ double HedgedCopies::late_after(const ScheduledJob& job, const Extent& extent) c
 
 void HedgedCopies::note(const FramePlace& place, const Assignment& assignment) {
   if (!enabled()) return;
-  if (candidates_.size() >= swept_at_) {
-    std::erase_if(candidates_, [&](const Candidate& c) { return !live(c); });
-    swept_at_ = std::max<size_t>(64, 2 * candidates_.size());
+  if (alone_.size() >= swept_at_) {
+    const auto is_over = [&](const Candidate& c) { return find(c) == nullptr; };
+    std::erase_if(alone_, is_over);
+    std::erase_if(copied_, is_over);
+    swept_at_ = std::max<size_t>(64, 2 * alone_.size());
   }
-  candidates_.push_back(
-      {step_.now, assignment.serial, place.job->id, place.slot, assignment.extent});
+  alone_.push_back({step_.now, assignment.serial, place.job->id, place.slot, assignment.extent});
 }
 
 bool HedgedCopies::due() const {
-  return !candidates_.empty() && first_copy(candidates_.front()) <= step_.now;
+  const auto is_due = [this](const Candidates& candidates) {
+    return !candidates.empty() && first_copy(candidates.front()) <= step_.now;
+  };
+  return is_due(alone_) || is_due(copied_);
 }
 
 bool HedgedCopies::begin_round() {
@@ -89,17 +118,21 @@ bool HedgedCopies::begin_round() {
 }
 
 std::optional<TimePoint> HedgedCopies::next_wake() const {
-  if (!enabled() || candidates_.empty()) return std::nullopt;
-  return std::max(first_copy(candidates_.front()), next_round_);
+  std::optional<TimePoint> wake;
+  for (const Candidates* candidates : {&alone_, &copied_}) {
+    if (!enabled() || candidates->empty()) continue;
+    const TimePoint first = std::max(first_copy(candidates->front()), next_round_);
+    wake = wake ? std::min(*wake, first) : first;
+  }
+  return wake;
 }
 
-/// The assignment that may still be copied, or null.
-Assignment* HedgedCopies::live(const Candidate& c) const {
+/// Who has the unit, or null where that is over.
+Assignment* HedgedCopies::find(const Candidate& c) const {
   ScheduledJob* job = jobs_.find(c.job);
   if (job == nullptr || !job->slots[c.slot].ledger) return nullptr;
   Assignment* assignment = job->slots[c.slot].ledger->find_assignment(c.extent);
-  if (assignment == nullptr || assignment->serial != c.serial || assignment->copied) return nullptr;
-  return assignment;
+  return assignment == nullptr || assignment->serial != c.serial ? nullptr : assignment;
 }
 
 }  // namespace hyades::coordinator

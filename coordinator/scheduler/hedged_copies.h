@@ -11,7 +11,8 @@
 namespace hyades::coordinator {
 
 /// Second copies of units that are late, for workers that have nothing else to do: purity makes it
-/// safe, and whichever comes first counts.
+/// safe, and whichever comes first counts. A third where both of a pair are late and came by one
+/// leave, for who came by another.
 class HedgedCopies {
  public:
   HedgedCopies(const SchedulerOptions& options, const Step& step, ScheduledJobs& jobs,
@@ -26,7 +27,7 @@ class HedgedCopies {
   bool enabled() const { return options_.copy_after > Duration{0}; }
   /// The unit has been leased: it may be late one day.
   void note(const FramePlace& place, const Assignment& assignment);
-  /// Hands out a second copy of one of the oldest units that are late. No unit is copied twice.
+  /// Hands out a copy of one of the oldest units that are late.
   bool grant(WorkerId id, Worker& worker);
   /// Whether the oldest unit may be due for a copy.
   bool due() const;
@@ -36,6 +37,7 @@ class HedgedCopies {
   std::optional<TimePoint> next_wake() const;
 
  private:
+  /// A unit that may be late.
   struct Candidate {
     TimePoint since;
     uint64_t serial = 0;
@@ -44,9 +46,13 @@ class HedgedCopies {
     Extent extent;
   };
 
+  using Candidates = std::deque<Candidate>;
+
+  bool grant_of(const Candidates& candidates, size_t holders, WorkerId id, Worker& worker);
+  bool may_copy(const Assignment& assignment, WorkerId id, const Worker& worker) const;
   TimePoint first_copy(const Candidate& candidate) const;
   double late_after(const ScheduledJob& job, const Extent& extent) const;
-  Assignment* live(const Candidate& candidate) const;
+  Assignment* find(const Candidate& candidate) const;
 
   const SchedulerOptions& options_;
   const Step& step_;
@@ -54,8 +60,9 @@ class HedgedCopies {
   ScheduledWorkers& workers_;
   Leases& leases_;
   Affinity& affinity_;
-  std::deque<Candidate> candidates_;  ///< oldest first
-  size_t swept_at_ = 64;              ///< length at which stale ones are swept out
+  Candidates alone_;      ///< that one worker has; oldest first
+  Candidates copied_;     ///< that were copied where workers came by several leaves; oldest first
+  size_t swept_at_ = 64;  ///< length of `alone_` at which stale ones are swept out
   TimePoint next_round_;
 };
 

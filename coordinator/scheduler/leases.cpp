@@ -13,7 +13,6 @@ Assignment& Leases::assign(FrameSlot& slot, const Extent& extent, WorkerId worke
 }
 
 void Leases::copy(Assignment& assignment, WorkerId worker) const {
-  assignment.copied = true;
   assignment.holders.push_back({worker, id_of(next_)});
 }
 

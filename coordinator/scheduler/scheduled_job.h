@@ -48,7 +48,7 @@ struct FrameSlot {
   TimePoint last_leased;
   /// Since when no worker is there that may render it; nothing where one is.
   std::optional<TimePoint> orphaned;
-  /// Since when its class is watched, as it may be one worker's invention, and how many of its
+  /// Since when its class is watched, as it may be somebody's invention, and how many of its
   /// batches were durable then; nothing where it is not.
   struct Watch {
     TimePoint since;

@@ -27,6 +27,11 @@ Voice voice_of(const WorkerJoined& joined) {
   return Voice{number_of(joined.credential)};
 }
 
+Origin origin_of(const WorkerJoined& joined) {
+  if (joined.origin.empty()) return Origin{static_cast<uint64_t>(voice_of(joined))};
+  return Origin{number_of(joined.origin)};
+}
+
 }  // namespace
 
 ClassId class_id(const std::string& name) { return ClassId{number_of(name)}; }
@@ -52,6 +57,7 @@ const Worker* ScheduledWorkers::find(WorkerId id) const {
 Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   Worker& worker = workers_[joined.worker];
   worker.voice = voice_of(joined);
+  worker.origin = origin_of(joined);
   worker.threads = joined.threads;
   worker.worker_class = class_id(joined.worker_class);
   worker.tags = tag_ids(joined.tags);
@@ -62,7 +68,7 @@ Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   Class& of_it = classes_[worker.worker_class];
   of_it.name = joined.worker_class;
   ++of_it.connected;
-  if (!worker.barred) count_voice(worker, true);
+  if (!worker.barred) count_origin(worker, true);
   return worker;
 }
 
@@ -71,7 +77,7 @@ void ScheduledWorkers::remove(WorkerId id) {
   const Worker& worker = it->second;
   if (worker.waiting != 0) waiting_.erase(worker.waiting);
   threads_ -= worker.threads;
-  if (!worker.barred) count_voice(worker, false);
+  if (!worker.barred) count_origin(worker, false);
   const auto of_it = classes_.find(worker.worker_class);
   if (--of_it->second.connected == 0) classes_.erase(of_it);
   workers_.erase(it);
@@ -79,7 +85,7 @@ void ScheduledWorkers::remove(WorkerId id) {
 
 void ScheduledWorkers::bar(Worker& worker, bool barred) {
   if (std::exchange(worker.barred, barred) == barred) return;
-  count_voice(worker, !barred);
+  count_origin(worker, !barred);
 }
 
 void ScheduledWorkers::pardon(WorkerId id) {
@@ -90,42 +96,59 @@ void ScheduledWorkers::pardon(WorkerId id) {
 bool ScheduledWorkers::is_lone(ClassId worker_class) const {
   if (worker_class == ClassId{}) return false;
   const auto it = classes_.find(worker_class);
-  const size_t voices = it == classes_.end() ? 0 : it->second.voices.size();
-  return voices <= 1 && classes_with_voices_ > voices;
+  const size_t origins = it == classes_.end() ? 0 : it->second.origins.size();
+  return origins <= 1 && classes_at_work_ > origins;
+}
+
+bool ScheduledWorkers::has_several_origins(ClassId worker_class) const {
+  const auto it = classes_.find(worker_class);
+  return it != classes_.end() && it->second.origins.size() > 1;
 }
 
 bool ScheduledWorkers::anybody_of_another(const ScheduledJob& job, ClassId worker_class) const {
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     const Worker& other = entry.second;
     return !other.barred && other.worker_class != worker_class && suits(job, other) &&
-           !is_slow(other.voice);
+           !is_slow(other);
   });
 }
 
 void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint until) {
   const auto it = classes_.find(worker_class);
   if (it == classes_.end()) return;
-  for (const auto& [voice, workers] : it->second.voices) slow_[voice] = until;
+  const std::map<Origin, uint32_t>& origins = it->second.origins;
+  const bool others = std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
+    return !entry.second.barred && !origins.contains(entry.second.origin);
+  });
+  for (const auto& [id, worker] : workers_) {
+    if (worker.barred || worker.worker_class != worker_class) continue;
+    slow_voices_[worker.voice] = until;
+    // Else everybody came by this leave.
+    if (others) slow_origins_[worker.origin] = until;
+  }
 }
 
-bool ScheduledWorkers::is_slow(Voice voice) const {
-  const auto it = slow_.find(voice);
-  return it != slow_.end() && it->second > step_.now;
+bool ScheduledWorkers::is_slow(const Worker& worker) const {
+  const auto voice = slow_voices_.find(worker.voice);
+  const auto origin = slow_origins_.find(worker.origin);
+  return (voice != slow_voices_.end() && voice->second > step_.now) ||
+         (origin != slow_origins_.end() && origin->second > step_.now);
 }
 
 bool ScheduledWorkers::forgive_slow() {
-  return std::erase_if(slow_, [&](const auto& entry) { return entry.second <= step_.now; }) > 0;
+  const auto is_over = [&](const auto& entry) { return entry.second <= step_.now; };
+  return std::erase_if(slow_voices_, is_over) + std::erase_if(slow_origins_, is_over) > 0;
 }
 
 bool ScheduledWorkers::may_render(const ScheduledJob& job, const FrameSlot& slot,
                                   const Worker& worker) const {
   if (slot.worker_class != ClassId{}) return slot.worker_class == worker.worker_class;
-  return !is_slow(worker.voice) || !anybody_of_another(job, worker.worker_class);
+  return !is_slow(worker) || !anybody_of_another(job, worker.worker_class);
 }
 
 bool ScheduledWorkers::anybody_for(const ScheduledJob& job, ClassId worker_class) const {
   const auto it = classes_.find(worker_class);
-  if (it == classes_.end() || it->second.voices.empty()) return false;
+  if (it == classes_.end() || it->second.origins.empty()) return false;
   if (!job.plan.needs.any()) return true;
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     return !entry.second.barred && entry.second.worker_class == worker_class &&
@@ -134,15 +157,15 @@ bool ScheduledWorkers::anybody_for(const ScheduledJob& job, ClassId worker_class
 }
 
 /// One worker more or less that may get units.
-void ScheduledWorkers::count_voice(const Worker& worker, bool one_more) {
-  std::map<Voice, uint32_t>& voices = classes_[worker.worker_class].voices;
+void ScheduledWorkers::count_origin(const Worker& worker, bool one_more) {
+  std::map<Origin, uint32_t>& origins = classes_[worker.worker_class].origins;
   if (one_more) {
-    if (voices.empty()) ++classes_with_voices_;
-    ++voices[worker.voice];
+    if (origins.empty()) ++classes_at_work_;
+    ++origins[worker.origin];
     return;
   }
-  if (const auto it = voices.find(worker.voice); --it->second == 0) voices.erase(it);
-  if (voices.empty()) --classes_with_voices_;
+  if (const auto it = origins.find(worker.origin); --it->second == 0) origins.erase(it);
+  if (origins.empty()) --classes_at_work_;
 }
 
 void ScheduledWorkers::update_waiting(WorkerId id, Worker& worker) {

@@ -25,6 +25,7 @@ struct Worker {
   };
 
   Voice voice{};
+  Origin origin{};
   uint32_t threads = 1;
   ClassId worker_class{};
   std::vector<TagId> tags;          ///< sorted
@@ -78,19 +79,21 @@ class ScheduledWorkers {
   const std::string& class_of(const Worker& worker) const {
     return classes_.at(worker.worker_class).name;
   }
-  /// Whether the class may be one worker's invention, so that others must not wait for it: all of
-  /// it that may get units has one voice, or none, and others may get units too.
+  /// Whether the class may be somebody's invention, so that others must not wait for it: all of it
+  /// that may get units has one origin, or none, and others may get units too.
   bool is_lone(ClassId worker_class) const;
-  /// Whether a worker of another class is there that may begin with frames of the job, and whose
-  /// voice is not slow.
+  /// Whether workers of several origins may get units of the class.
+  bool has_several_origins(ClassId worker_class) const;
+  /// Whether a worker of another class is there that may begin with frames of the job, and that is
+  /// not slow.
   bool anybody_of_another(const ScheduledJob& job, ClassId worker_class) const;
-  /// The voices of the class are slow until then: a frame of theirs stood still, while others could
-  /// have rendered it.
+  /// The workers of the class are slow until then, and whoever comes by the same leave where others
+  /// are left: a frame of theirs stood still, while others could have rendered it.
   void note_slow(ClassId worker_class, TimePoint until);
-  /// Forgets the voices that are slow no more. Whether there was one.
+  /// Forgets who is slow no more. Whether there was somebody.
   bool forgive_slow();
-  /// Whether units of the frame are for the worker's class: it has begun it, or nobody has. A slow
-  /// voice begins only what nobody else can.
+  /// Whether units of the frame are for the worker's class: it has begun it, or nobody has. Who is
+  /// slow begins only what nobody else can.
   bool may_render(const ScheduledJob& job, const FrameSlot& slot, const Worker& worker) const;
 
   /// Whether the worker has what the job asks for, and the job's limit leaves room for it.
@@ -116,12 +119,12 @@ class ScheduledWorkers {
   struct Class {
     std::string name;
     uint32_t connected = 0;
-    std::map<Voice, uint32_t> voices;  ///< of those that may get units: how many of each
+    std::map<Origin, uint32_t> origins;  ///< of those that may get units: how many of each
   };
 
   static bool suits(const ScheduledJob& job, const Worker& worker);
-  void count_voice(const Worker& worker, bool one_more);
-  bool is_slow(Voice voice) const;
+  void count_origin(const Worker& worker, bool one_more);
+  bool is_slow(const Worker& worker) const;
 
   const Step& step_;
   std::unordered_map<WorkerId, Worker> workers_;  ///< looked up; walked only where order is nothing
@@ -131,8 +134,9 @@ class ScheduledWorkers {
   std::map<uint64_t, WorkerId> waiting_;
   uint64_t next_waiting_ = 1;
   std::map<ClassId, Class> classes_;
-  size_t classes_with_voices_ = 0;
-  std::map<Voice, TimePoint> slow_;  ///< until when
+  size_t classes_at_work_ = 0;              ///< that have origins
+  std::map<Voice, TimePoint> slow_voices_;  ///< until when
+  std::map<Origin, TimePoint> slow_origins_;
 };
 
 /// No table of names is kept, as whoever invents many would fill it: they are hashed.

@@ -186,6 +186,7 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
     }
     const WorkerPass pass{caller_.term,
                           std::move(credential.name),
+                          std::move(credential.origin),
                           std::move(credential.machine_token),
                           std::move(credential.owner),
                           std::move(credential.joined_with),

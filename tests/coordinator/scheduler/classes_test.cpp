@@ -26,9 +26,9 @@ class Classes : public testing::Test {
     options.unit_time = std::chrono::milliseconds(1);  // one batch
     return options;
   }
-  void join(WorkerId worker, const std::string& worker_class) {
+  void join(WorkerId worker, const std::string& worker_class, const std::string& token = {}) {
     bench.tell(WorkerJoined{
-        worker, 1, worker_class, {}, {}, 0, std::to_string(static_cast<uint64_t>(worker))});
+        worker, 1, worker_class, {}, {}, 0, std::to_string(static_cast<uint64_t>(worker)), token});
   }
   /// Odd begins with frame 1 of the job before the others come.
   Lease odd_begins(JobPlan plan) {
@@ -141,10 +141,36 @@ TEST_F(Classes, AFrameThatWouldTakeMoreThanADayGoesToTheOthers) {
   EXPECT_TRUE(again);
 }
 
-TEST_F(Classes, OfTwoVoicesIsNoInvention) {
+TEST_F(Classes, OfTwoTokensIsNoInvention) {
   odd_begins(small_plan({1}, 64));
   join(WorkerId{8}, "odd");
   EXPECT_FALSE(begins_again(hours(2)));
+}
+
+TEST_F(Classes, OneTokenMayBringManyToItsInvention) {
+  join(kOdd, "odd", "theirs");
+  join(WorkerId{8}, "odd", "theirs");
+  bench.add(small_plan({1}, 64));
+  bench.tell(FrameOpened{kJob, 1});
+  bench.ask(kOdd);
+  join(kAnna, "class", "ours");
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  join(WorkerId{9}, "odder", "theirs");
+  EXPECT_FALSE(gets_a_unit(WorkerId{9})) << "one more of the same";
+  EXPECT_TRUE(gets_a_unit(kAnna));
+}
+
+TEST_F(Classes, WhereAllCameByOneTokenTheMachineAloneIsSlow) {
+  join(kOdd, "odd", "ours");
+  bench.add(small_plan({1}, 64));
+  bench.tell(FrameOpened{kJob, 1});
+  bench.ask(kOdd);
+  join(kAnna, "class", "ours");
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_FALSE(gets_a_unit(kOdd));
+  EXPECT_TRUE(gets_a_unit(kAnna));
 }
 
 TEST_F(Classes, WhereNobodyElseIsThereAFrameMayTakeItsTime) {

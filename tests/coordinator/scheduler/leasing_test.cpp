@@ -141,6 +141,51 @@ TEST(Copies, AUnitThatShouldTakeLittleIsCopiedSooner) {
   EXPECT_EQ(b.only<Lease>().units, late.units);
 }
 
+/// A unit that two workers of one token have, one of them as a copy, and Bert has none of.
+Lease held_by_two_of_one_token(Bench& b) {
+  constexpr WorkerId kCarl{3};
+  const auto join = [&b](WorkerId worker, const std::string& machine, const std::string& token) {
+    b.tell(WorkerJoined{worker, 1, "class", {}, {}, 0, machine, token});
+  };
+  join(kAnna, "machine 1", "token 1");
+  join(kCarl, "machine 3", "token 1");
+  JobPlan plan = small_plan({1}, 1);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  const Lease lease = b.ask(kAnna);
+  b.tell(WorkRequested{kCarl, 1});
+  join(kBert, "machine 2", "token 2");
+  b.now += seconds(6);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Lease>().worker, kCarl);
+  return lease;
+}
+
+TEST(Copies, WhatTwoOfOneTokenKeepIsCopiedForAnother) {
+  Bench b;
+  const Lease lease = held_by_two_of_one_token(b);
+  b.tell(WorkRequested{kBert, 2});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "they have just begun";
+  b.now += seconds(6);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Lease>().worker, kBert);
+  EXPECT_EQ(b.only<Lease>().units, lease.units);
+  b.now += seconds(6);
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty()) << "he has it";
+}
+
+TEST(Copies, WhatTwoKeepIsCopiedForNoneOfTheirOwn) {
+  Bench b;
+  held_by_two_of_one_token(b);
+  b.tell(WorkerJoined{WorkerId{4}, 1, "class", {}, {}, 0, "machine 4", "token 1"});
+  b.tell(WorkRequested{WorkerId{4}, 1});
+  b.now += seconds(6);
+  b.tell(Tick{});
+  EXPECT_TRUE(b.all<Lease>().empty());
+}
+
 TEST(Copies, AUnitThatShouldTakeLongIsNotLateBeforeThat) {
   SchedulerOptions options;
   options.copy_after = seconds(10);
