@@ -62,16 +62,21 @@ void DiskWatch::start() {
   });
 }
 
+/// Adds up what the folder takes.
+void DiskWatch::walk() {
+  const auto free = measure_disk(context_.options.folder);
+  const uint64_t used = measure_folder(context_.options.folder);
+  const StateLock lock(context_.mutex);
+  walked_used_ = used;
+  walked_free_ = free ? free->free : 0;
+}
+
 void DiskWatch::look() {
   const TimePoint begin = std::chrono::steady_clock::now();
   if (context_.options.disk.budget > 0 && begin >= walk_again_) {
-    const auto free = measure_disk(context_.options.folder);
-    const uint64_t used = measure_folder(context_.options.folder);
+    walk();
     const TimePoint end = std::chrono::steady_clock::now();
     walk_again_ = end + kWalkShare * (end - begin);
-    const StateLock lock(context_.mutex);
-    walked_used_ = used;
-    walked_free_ = free ? free->free : 0;
   }
   measure();
   if (begin < sweep_again_) return;
@@ -97,6 +102,8 @@ grpc::Status DiskWatch::admit(uint64_t bytes) {
 }
 
 bool DiskWatch::is_short_for(const core::Film& film) {
+  // Something has failed, which is rare: what others free on the disk meanwhile must not hide why.
+  if (context_.options.disk.budget > 0) walk();
   measure();
   const uint64_t memory = film.memory();
   const StateLock lock(context_.mutex);

@@ -39,6 +39,7 @@ class DiskWatch {
   std::string reason() const HYADES_REQUIRES(state_lock) { return room_.reason(); }
 
  private:
+  void walk() HYADES_EXCLUDES(state_lock);
   void look() HYADES_EXCLUDES(state_lock);
   void sweep_partials() HYADES_EXCLUDES(state_lock);
 
