@@ -276,11 +276,14 @@ int list(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
     return kDone;
   }
   std::vector<std::vector<std::string>> rows = {
-      {"id", "role", "name", "state", "made", "expires", "last used"}};
+      {"id", "role", "name", "pool", "machines", "state", "made", "expires", "last used"}};
   for (const v1::Token& token : response.tokens()) {
+    const bool joins = token.role() == v1::ROLE_WORKER;
     rows.push_back({token.id(), farm::role_name(token.role()), core::printable(token.name()),
-                    shown_state(token), format_time(token.created_ms()),
-                    moment(token.expires_ms(), "never"), moment(token.used_ms(), "never")});
+                    core::printable(token.pool()),
+                    joins ? std::to_string(token.machines()) : std::string(), shown_state(token),
+                    format_time(token.created_ms()), moment(token.expires_ms(), "never"),
+                    moment(token.used_ms(), "never")});
   }
   print_table(rows);
   return kDone;
