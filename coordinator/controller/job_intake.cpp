@@ -238,6 +238,7 @@ grpc::Status JobIntake::wait_until_left(uint64_t id) {
 
 void JobIntake::retry(uint64_t id, const JobReply& then) {
   v1::Job now;
+  if (const grpc::Status read = read_ahead(id); !read.ok()) return then(read, now);
   const auto one = context_.wait_for_submissions();
   if (!one) return then(others_submit(), now);
   bool open = false;
@@ -257,6 +258,16 @@ void JobIntake::retry(uint64_t id, const JobReply& then) {
   if (open) return;
   const grpc::Status reopened = reopen(id, now);
   then(reopened, now);
+}
+
+/// Has the document of a job that has ended in memory, as a long one takes seconds and others
+/// submit meanwhile. What is wrong with it is told later.
+grpc::Status JobIntake::read_ahead(uint64_t id) {
+  const auto stored = context_.store->job(id);
+  if (!stored || !*stored || !has_ended((*stored)->state)) return grpc::Status::OK;
+  const auto document =
+      context_.documents.read_stored((*stored)->spec, kReadingPatience, (*stored)->owner);
+  return document ? grpc::Status::OK : others_are_read();
 }
 
 /// A job that has ended is open again.

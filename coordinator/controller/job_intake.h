@@ -55,6 +55,7 @@ class JobIntake {
   grpc::Status take_in(std::unique_ptr<ActiveJob> active, v1::SubmitResponse& response,
                        const std::vector<core::AssetRecord>& files)
       HYADES_EXCLUDES(state_lock) HYADES_NO_THREAD_SAFETY_ANALYSIS;
+  grpc::Status read_ahead(uint64_t id) HYADES_EXCLUDES(state_lock);
   grpc::Status reopen(uint64_t job, v1::Job& now) HYADES_EXCLUDES(state_lock);
   grpc::Status may_reopen(uint64_t id, StoredJob& job) HYADES_EXCLUDES(state_lock);
   core::Status forget_failed_frames(uint64_t job);
