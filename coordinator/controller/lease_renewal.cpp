@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,8 +49,12 @@ void WorkerSessions::renew_leases(WorkerSession& session, const v1::Heartbeat& b
   std::vector<std::pair<LeaseId, LeaseProgress>> stalled;
   WorkerAlive alive{session.id, {}};
   std::map<LeaseId, LeaseProgress> renewed;  // of those that are named
+  std::set<LeaseId> named;
   for (const Progress& told : beat.leases()) {
     const LeaseId lease = from_wire(told.lease());
+    // Of what somebody names twice, or invents, nothing is kept or done.
+    if (!dispatcher_.scheduler().has_lease(session.id, lease)) continue;
+    if (!named.insert(lease).second) continue;
     const auto old = session.progress.find(lease);
     LeaseProgress progress{told.stage(), told.samples_done(), Duration(0)};
     if (old != session.progress.end() && old->second.stage == progress.stage &&

@@ -68,17 +68,19 @@ void WorkerSessions::on_heartbeat(WorkerSession& session, const v1::Heartbeat& b
   session.link->send(bytes_of(echo));
 }
 
-/// Whether the worker has anything under the lease. Who has not could fill jobs' logs with what he
-/// invents.
-bool WorkerSessions::has_lease(const WorkerSession& session, const LeaseId& lease) const {
-  return !dispatcher_.scheduler().units_of(session.id, lease).empty();
+/// Whether the worker has the unit that it speaks of. Who has not could fill the logs of whatever
+/// job with what he invents.
+bool WorkerSessions::has(const WorkerSession& session, const v1::LeasedUnit& named,
+                         const core::Unit& unit) const {
+  return dispatcher_.scheduler().holds(session.id, from_wire(named.lease()), JobId{named.job()},
+                                       unit);
 }
 
 void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& failure,
                                 Turn& turn) {
   const auto unit = farm::from_wire(failure.unit().unit());
   const LeaseId lease = from_wire(failure.unit().lease());
-  if (unit && has_lease(session, lease)) {
+  if (unit && has(session, failure.unit(), *unit)) {
     const JobId job{failure.unit().job()};
     ++session.units_failed;
     context_.meters->lost("failed");
@@ -98,9 +100,8 @@ void WorkerSessions::on_returned(WorkerSession& session, const v1::UnitsReturned
                                  Turn& turn) {
   for (const v1::LeasedUnit& returned : message.units()) {
     const auto unit = farm::from_wire(returned.unit());
-    if (!unit) continue;
+    if (!unit || !has(session, returned, *unit)) continue;
     const JobId job{returned.job()};
-    if (!has_lease(session, from_wire(returned.lease()))) continue;
     context_.meters->lost("returned");
     // Why a worker that stays gives units back, in the job's log: once, for it may go on so.
     ActiveJob* active = session.leaving || message.reason().empty() ? nullptr : jobs_.find(job);
@@ -212,7 +213,7 @@ void WorkerSessions::refuse(WorkerSession& session, const v1::UnitResult& result
   context_.meters->result(verdict_of(refusal.reason));
   if (refusal.reason == v1::Rejected::REASON_NOT_NOW) return;
   const auto unit = farm::from_wire(result.unit());
-  if (!unit || !has_lease(session, from_wire(result.lease()))) return;
+  if (!unit || !has(session, message.rejected().unit(), *unit)) return;
   if (ActiveJob* active = jobs_.find(result.job())) {
     jobs_.note(*active, v1::LOG_LEVEL_WARNING, result.unit().frame(), session.hello.name(),
                "a film was refused: " + refusal.text, &*unit);

@@ -59,6 +59,7 @@ std::string complaint(const v1::Hello& hello) {
   if (hello.worker_class().empty() || hello.worker_class().size() > 64) {
     return "a worker needs a class of at most 64 characters";
   }
+  if (!core::is_printable(hello.worker_class())) return "class: expected printable characters";
   if (hello.threads() < 1 || hello.threads() > kMostThreads) return "threads: expected 1 to 4096";
   return {};
 }

@@ -72,7 +72,7 @@ class WorkerSessions {
   void want(WorkerSession& session, uint32_t units, Turn& turn) HYADES_REQUIRES(state_lock);
 
   // What workers say (worker_messages.cpp, lease_renewal.cpp).
-  bool has_lease(const WorkerSession& session, const LeaseId& lease) const
+  bool has(const WorkerSession& session, const v1::LeasedUnit& named, const core::Unit& unit) const
       HYADES_REQUIRES(state_lock);
   void on_heartbeat(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn)
       HYADES_REQUIRES(state_lock);

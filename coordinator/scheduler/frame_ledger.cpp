@@ -131,16 +131,15 @@ Assignment* FrameLedger::find_assignment(const Extent& e) {
 
 Assignment* FrameLedger::find_covering(const Extent& part, const LeaseId& lease) {
   // Assignments never overlap, so that the one that begins nearest before `part` is the only one.
-  for (uint32_t first = part.batches.first + 1; first-- > 0;) {
-    const auto it = assignments_.find(key({part.tile, {first, 1}}));
-    if (it == assignments_.end()) continue;
-    if (it->second.extent.batches.end() < part.batches.end()) return nullptr;
-    for (const Holder& holder : it->second.holders) {
-      if (holder.lease == lease) return &it->second;
-    }
+  auto it = assignments_.upper_bound(key(part));
+  if (it == assignments_.begin()) return nullptr;
+  Assignment& nearest = (--it)->second;
+  if (nearest.extent.tile != part.tile || nearest.extent.batches.end() < part.batches.end()) {
     return nullptr;
   }
-  return nullptr;
+  const auto holds = [&](const Holder& holder) { return holder.lease == lease; };
+  const std::vector<Holder>& holders = nearest.holders;
+  return std::any_of(holders.begin(), holders.end(), holds) ? &nearest : nullptr;
 }
 
 void FrameLedger::release(const Extent& e, const LeaseId& lease) {

@@ -228,7 +228,7 @@ class FrameLedger {
   std::vector<Blame> blamed_;
   std::vector<Dispute> disputes_;     ///< oldest first
   std::map<uint32_t, bool> voiding_;  ///< suspect tiles, and whether newly_suspect() named them
-  std::unordered_map<uint64_t, Assignment> assignments_;           ///< looked up, never walked
+  std::map<uint64_t, Assignment> assignments_;                     ///< by key()
   std::unordered_map<uint32_t, std::vector<HeldRecord>> records_;  ///< by tile; no order
 };
 

@@ -55,7 +55,11 @@ void Granting::on(const Tick&) {
 }
 
 void Granting::serve(WorkerId id, Worker& worker, bool copies) {
-  if (worker.barred) return;
+  if (worker.barred || worker.wanted == 0) return;
+  if (step_.now < worker.rests_until) {
+    turned_away_ = true;
+    return;
+  }
   while (worker.wanted > 0 && grant(id, worker)) {
   }
   while (copies && worker.wanted > 0 && copies_.grant(id, worker)) {

@@ -74,8 +74,9 @@ class Granting {
   Affinity& affinity_;
   HedgedCopies& copies_;
   FrameLifecycle& frames_;
-  bool held_ = false;         ///< LeasingHeld
-  bool turned_away_ = false;  ///< somebody came too late for a frame: to be looked at again
+  bool held_ = false;  ///< LeasingHeld
+  bool turned_away_ =
+      false;  ///< somebody came too late for a frame, or rests: to be looked at again
 };
 
 }  // namespace hyades::coordinator

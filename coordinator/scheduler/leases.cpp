@@ -28,6 +28,14 @@ bool Leases::is_of(const LeaseId& id, WorkerId worker) const {
          found->second.worker == worker;
 }
 
+bool Leases::holds(WorkerId worker, const LeaseId& lease, JobId id, const core::Unit& unit) const {
+  if (!is_of(lease, worker) || leases_.find(lease.number)->second.job != id) return false;
+  const auto [job, slot] = jobs_.find_frame({id, unit.frame});
+  if (slot == nullptr || !slot->ledger) return false;
+  const auto extent = job->extent_of(unit);
+  return extent && slot->ledger->find_covering(*extent, lease) != nullptr;
+}
+
 std::vector<UnitInHand> Leases::units_of(WorkerId worker, const LeaseId& lease) const {
   std::vector<UnitInHand> units;
   const auto found = leases_.find(lease.number);

@@ -38,6 +38,8 @@ struct Worker {
   uint32_t wanted = 0;              ///< units it asked for and did not get yet
   uint64_t waiting = 0;             ///< its place among those who wait, or 0
   bool barred = false;              ///< gets nothing
+  uint32_t gave_back = 0;           ///< units, since its last film
+  TimePoint rests_until;            ///< gets nothing before
   std::vector<uint64_t> leases;
 };
 

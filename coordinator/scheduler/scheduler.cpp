@@ -122,6 +122,15 @@ std::vector<UnitInHand> Scheduler::units_of(WorkerId worker, const LeaseId& leas
   return parts_->leases.units_of(worker, lease);
 }
 
+bool Scheduler::has_lease(WorkerId worker, const LeaseId& lease) const {
+  return parts_->leases.is_of(lease, worker);
+}
+
+bool Scheduler::holds(WorkerId worker, const LeaseId& lease, JobId job,
+                      const core::Unit& unit) const {
+  return parts_->leases.holds(worker, lease, job, unit);
+}
+
 std::vector<UnitInHand> Scheduler::units_of(WorkerId worker) const {
   return parts_->leases.units_of(worker);
 }

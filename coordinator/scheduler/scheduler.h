@@ -37,6 +37,10 @@ class Scheduler {
 
   /// The units that the worker has under the lease; none where it has no such lease.
   std::vector<UnitInHand> units_of(WorkerId worker, const LeaseId& lease) const;
+  /// Whether the lease is the worker's, and units of it are still out.
+  bool has_lease(WorkerId worker, const LeaseId& lease) const;
+  /// Whether the worker has this unit of the job, or what it is a part of, under this lease.
+  bool holds(WorkerId worker, const LeaseId& lease, JobId job, const core::Unit& unit) const;
 
   /// All units that the worker has, under whatever lease.
   std::vector<UnitInHand> units_of(WorkerId worker) const;

@@ -117,6 +117,90 @@ TEST(LyingWorker, GivesNoUnitsOfOthersBackAndBlamesNoneOfThem) {
   EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_RUNNING);
 }
 
+TEST(LyingWorker, WritesIntoTheLogOfNoJobThatItHasNoUnitOf) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  const uint64_t other = world.submit(1);
+  std::mutex mutex;
+  std::vector<v1::LeasedUnit> held;
+  ScriptedWorker::Script script = world.script(1);
+  script.meddle = [&](ScriptedWorker&, const v1::LeasedUnit& unit) {
+    const std::lock_guard lock(mutex);
+    if (unit.job() == job) held.push_back(unit);
+    return false;
+  };
+  ScriptedWorker liar(world.address, script);
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return !held.empty();
+  }));
+  v1::LeasedUnit unit = held.front();
+  unit.set_job(other);
+  for (int i = 0; i < 20; ++i) liar.fail(unit, "invented");
+  v1::WorkerMessage message;
+  message.mutable_returned()->set_reason("invented");
+  *message.mutable_returned()->add_units() = unit;
+  liar.write(message);
+  unit.set_job(job);
+  liar.fail(unit, "told");
+  const auto says = [&](uint64_t of, const std::string& text) {
+    v1::LogsRequest request;
+    request.set_job(of);
+    const auto context = world.context();
+    const auto reader = world.jobs->Logs(context.get(), request);
+    bool found = false;
+    v1::LogLine line;
+    while (reader->Read(&line)) found |= line.text().find(text) != std::string::npos;
+    (void)reader->Finish();
+    return found;
+  };
+  EXPECT_TRUE(eventually([&] { return says(job, "told"); }));
+  EXPECT_FALSE(says(other, "invented"));
+}
+
+TEST(LyingWorker, ALeaseThatItNamesManyTimesIsTakenBackOnce) {
+  FarmWorld world;
+  world.options.lease_time = 10s;
+  world.options.stall_time = 1s;
+  world.options.copy_after = 1h;
+  world.start();
+  world.submit(1);
+  std::mutex mutex;
+  std::vector<v1::LeasedUnit> held;
+  ScriptedWorker::Script script = world.script(1);
+  script.meddle = [&](ScriptedWorker&, const v1::LeasedUnit& unit) {
+    const std::lock_guard lock(mutex);
+    held.push_back(unit);
+    return false;
+  };
+  ScriptedWorker liar(world.address, script);
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return !held.empty();
+  }));
+  std::this_thread::sleep_for(200ms);
+  v1::WorkerMessage beat;
+  {
+    const std::lock_guard lock(mutex);
+    for (int i = 0; i < 200; ++i) {
+      for (const v1::LeasedUnit& unit : held) {
+        v1::LeaseProgress& told = *beat.mutable_heartbeat()->add_leases();
+        *told.mutable_lease() = unit.lease();
+        told.set_stage(v1::LeaseProgress::STAGE_RENDERING);
+      }
+    }
+  }
+  const size_t units = held.size();
+  ASSERT_TRUE(eventually([&] {
+    liar.write(beat);
+    std::this_thread::sleep_for(100ms);
+    return liar.stopped() > 0;
+  }));
+  std::this_thread::sleep_for(500ms);
+  EXPECT_LE(liar.stopped(), units);
+}
+
 TEST(LyingWorker, WhatItSaysToHaveFromBeforeARestartItHasToProve) {
   FarmWorld world;
   world.start();

@@ -260,6 +260,46 @@ TEST(Scheduler, AReturnedUnitIsNobodysFault) {
   }
 }
 
+TEST(Scheduler, WhoTakesUnitsAndGivesThemBackLeavesSomeToOthers) {
+  Bench b;
+  b.begin(small_plan({1}, 512));
+  size_t taken = 0;
+  for (; taken < 10'000; ++taken) {
+    b.tell(WorkRequested{kAnna, 1});
+    if (b.all<Lease>().empty()) break;
+    const Lease lease = b.only<Lease>();
+    b.tell(UnitReturned{kAnna, lease.lease, kJob, lease.units[0]});
+  }
+  EXPECT_LT(taken, 100U);
+  EXPECT_GT(taken, 32U) << "a few have reasons";
+  EXPECT_EQ(b.ask(kBert).worker, kBert);
+  b.now += seconds(2);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Lease>().worker, kAnna) << "later she may try again";
+  b.deliver(b.only<Lease>());
+  EXPECT_EQ(b.ask(kAnna).worker, kAnna);
+}
+
+TEST(Scheduler, KnowsWhatWhoHasUnderWhichLease) {
+  Bench b;
+  b.begin(small_plan({1}, 64));
+  const Lease anna = b.ask(kAnna, 3);
+  const Lease bert = b.ask(kBert);
+  EXPECT_TRUE(b.scheduler.holds(kAnna, anna.lease, kJob, anna.units[2]));
+  EXPECT_FALSE(b.scheduler.holds(kBert, anna.lease, kJob, anna.units[2]));
+  EXPECT_FALSE(b.scheduler.holds(kAnna, bert.lease, kJob, anna.units[2]));
+  EXPECT_FALSE(b.scheduler.holds(kAnna, anna.lease, JobId{2}, anna.units[2]));
+  EXPECT_FALSE(b.scheduler.holds(kAnna, anna.lease, kJob, bert.units[0]));
+  core::Unit other = anna.units[2];
+  other.frame = 2;
+  EXPECT_FALSE(b.scheduler.holds(kAnna, anna.lease, kJob, other));
+  other = anna.units[2];
+  other.batches.count += 50;
+  EXPECT_FALSE(b.scheduler.holds(kAnna, anna.lease, kJob, other));
+  EXPECT_TRUE(b.scheduler.has_lease(kAnna, anna.lease));
+  EXPECT_FALSE(b.scheduler.has_lease(kBert, anna.lease));
+}
+
 TEST(Scheduler, PriorityGoesFirstThenTheOwnerWhoHasLess) {
   SchedulerOptions options;
   options.affinity_time = Duration{0};
