@@ -11,8 +11,8 @@
 namespace hyades::coordinator {
 
 /// Second copies of units that are late, for workers that have nothing else to do: purity makes it
-/// safe, and whichever comes first counts. A third where both of a pair are late and came by one
-/// leave, for who came by another.
+/// safe, and whichever comes first counts. Where the two that have a unit are of one origin and are
+/// late both, one of another origin gets a third.
 class HedgedCopies {
  public:
   HedgedCopies(const SchedulerOptions& options, const Step& step, ScheduledJobs& jobs,

@@ -20,7 +20,7 @@ enum class WorkerId : uint64_t {};
 /// Whose word a worker's is: its own, or that of the credential it shares with others, who are one
 /// witness together. 0: nobody's.
 enum class Voice : uint64_t {};
-/// By whose leave a worker is here, who may bring more: its token's or pool's.
+/// The token or pool that a worker came by, which can bring any number of workers.
 enum class Origin : uint64_t {};
 /// A class of workers, whose bits agree, by the name that they give. 0: none yet.
 enum class ClassId : uint64_t {};

@@ -123,7 +123,7 @@ void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint until) {
   for (const auto& [id, worker] : workers_) {
     if (worker.barred || worker.worker_class != worker_class) continue;
     slow_voices_[worker.voice] = until;
-    // Else everybody came by this leave.
+    // Else everybody is of this origin.
     if (others) slow_origins_[worker.origin] = until;
   }
 }

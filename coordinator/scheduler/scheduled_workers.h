@@ -89,7 +89,7 @@ class ScheduledWorkers {
   /// Whether a worker of another class is there that may begin with frames of the job, and that is
   /// not slow.
   bool anybody_of_another(const ScheduledJob& job, ClassId worker_class) const;
-  /// The workers of the class are slow until then, and whoever comes by the same leave where others
+  /// The workers of the class are slow until then, and whoever is of the same origin, where others
   /// are left: a frame of theirs stood still, while others could have rendered it.
   void note_slow(ClassId worker_class, TimePoint until);
   /// Forgets who is slow no more. Whether there was somebody.
