@@ -116,7 +116,10 @@ bool JobDocuments::keep(Kept fresh) {
 bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
   const core::MutexLock lock(mutex_);
   const auto is_his = [&](const Waiting& other) { return other.owner == owner; };
-  if (!owner.empty() && std::any_of(waiting_.begin(), waiting_.end(), is_his)) return false;
+  const bool his_turn = reading_ && reads_for_ == owner;
+  if (!owner.empty() && (his_turn || std::any_of(waiting_.begin(), waiting_.end(), is_his))) {
+    return false;
+  }
   const uint64_t number = next_waiting_++;
   waiting_.push_back({number, owner});
   while (reading_ || waiting_.front().number != number) {
@@ -129,6 +132,7 @@ bool JobDocuments::begin_turn(Time give_up, const std::string& owner) {
   }
   waiting_.pop_front();
   reading_ = true;
+  reads_for_ = owner;
   return true;
 }
 

@@ -65,8 +65,8 @@ class JobDocuments {
       : assets_(assets), most_bytes_(most_bytes) {}
 
   /// Nothing where others were still being read after `patience`, or at once where another of the
-  /// owner's waits already: so nobody has to wait for more than one of each. Errors hold every
-  /// complaint about the document, or say which of its files is gone.
+  /// owner's is read or waits already: so nobody has to wait for more than one of each. Errors hold
+  /// every complaint about the document, or say which of its files is gone.
   using Found = std::optional<core::Result<JobDocument>>;
   /// The job as the spec's document and samples say it. May wait for the disk. `owner`: for whom;
   /// empty: for the coordinator itself.
@@ -105,6 +105,7 @@ class JobDocuments {
   uint64_t kept_bytes_ HYADES_GUARDED_BY(mutex_) = 0;
   uint64_t times_read_ HYADES_GUARDED_BY(mutex_) = 0;
   bool reading_ HYADES_GUARDED_BY(mutex_) = false;
+  std::string reads_for_ HYADES_GUARDED_BY(mutex_);  ///< the owner whose turn it is
   struct Waiting {
     uint64_t number = 0;
     std::string owner;

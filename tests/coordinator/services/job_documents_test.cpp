@@ -151,8 +151,9 @@ TEST_F(JobDocumentsTest, OfEachOwnerOneWaits) {
   bool eve_read = false;
   bool ann_read = false;
   {
-    const auto held = documents.read(large, 20s, "eve");
+    const auto held = documents.read(large, 20s, "dan");
     ASSERT_TRUE(held && *held);
+    EXPECT_FALSE(documents.read(large, 20s, "dan")) << "his is read";
     eve = std::thread([&] { eve_read = documents.read(large, 20s, "eve").has_value(); });
     std::this_thread::sleep_for(100ms);
     const auto before = std::chrono::steady_clock::now();
