@@ -33,6 +33,7 @@ struct Holder {
 struct Assignment {
   Extent extent;
   uint64_t serial = 0;  ///< tells this assignment from later ones of the same unit
+  TimePoint since;      ///< who has it first has had it since then
   std::vector<Holder> holders;
 };
 

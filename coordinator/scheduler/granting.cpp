@@ -56,7 +56,7 @@ void Granting::on(const Tick&) {
 
 void Granting::serve(WorkerId id, Worker& worker, bool copies) {
   if (worker.barred || worker.wanted == 0) return;
-  if (step_.now < worker.rests_until) {
+  if (workers_.rests(id)) {
     turned_away_ = true;
     return;
   }

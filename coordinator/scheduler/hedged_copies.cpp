@@ -71,7 +71,8 @@ bool HedgedCopies::grant_of(const Candidates& candidates, size_t holders, Worker
     --worker.wanted;
     Affinity::remember_scene(worker, frame, false);
     leases_.grant(id, worker, place, {candidate.extent});
-    if (holders == 1 && workers_.has_several_origins(worker.worker_class)) {
+    // Who comes by another token may come later.
+    if (holders == 1) {
       copied_.push_back(
           {step_.now, candidate.serial, candidate.job, candidate.slot, candidate.extent});
     }
@@ -101,7 +102,8 @@ void HedgedCopies::note(const FramePlace& place, const Assignment& assignment) {
     std::erase_if(copied_, is_over);
     swept_at_ = std::max<size_t>(64, 2 * alone_.size());
   }
-  alone_.push_back({step_.now, assignment.serial, place.job->id, place.slot, assignment.extent});
+  alone_.push_back(
+      {assignment.since, assignment.serial, place.job->id, place.slot, assignment.extent});
 }
 
 bool HedgedCopies::due() const {

@@ -61,7 +61,7 @@ class HedgedCopies {
   Leases& leases_;
   Affinity& affinity_;
   Candidates alone_;      ///< that one worker has; oldest first
-  Candidates copied_;     ///< that were copied where workers came by several leaves; oldest first
+  Candidates copied_;     ///< that were copied; oldest first
   size_t swept_at_ = 64;  ///< length of `alone_` at which stale ones are swept out
   TimePoint next_round_;
 };

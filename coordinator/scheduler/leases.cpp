@@ -9,7 +9,9 @@
 namespace hyades::coordinator {
 
 Assignment& Leases::assign(FrameSlot& slot, const Extent& extent, WorkerId worker) {
-  return slot.ledger->assign(extent, {worker, id_of(next_)}, next_assignment_++);
+  Assignment& assignment = slot.ledger->assign(extent, {worker, id_of(next_)}, next_assignment_++);
+  assignment.since = step_.now;
+  return assignment;
 }
 
 void Leases::copy(Assignment& assignment, WorkerId worker) const {
@@ -34,6 +36,11 @@ bool Leases::holds(WorkerId worker, const LeaseId& lease, JobId id, const core::
   if (slot == nullptr || !slot->ledger) return false;
   const auto extent = job->extent_of(unit);
   return extent && slot->ledger->find_covering(*extent, lease) != nullptr;
+}
+
+TimePoint Leases::since(const UnitInHand& held) const {
+  const auto [job, slot] = jobs_.find_frame({held.job, held.unit.frame});
+  return slot->ledger->find_covering(*job->extent_of(held.unit), held.lease)->since;
 }
 
 std::vector<UnitInHand> Leases::units_of(WorkerId worker, const LeaseId& lease) const {

@@ -54,6 +54,8 @@ class Leases {
   bool is_of(const LeaseId& lease, WorkerId worker) const;
   /// Whether the worker has this unit of the job, or what it is a part of, under this lease.
   bool holds(WorkerId worker, const LeaseId& lease, JobId job, const core::Unit& unit) const;
+  /// Since when it has a unit that is out.
+  TimePoint since(const UnitInHand& held) const;
   /// Whether no unit is out.
   bool empty() const { return leases_.empty(); }
   /// When expire() may have something to do next.

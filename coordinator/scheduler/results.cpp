@@ -1,7 +1,6 @@
 #include "coordinator/scheduler/results.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,12 +12,6 @@
 
 namespace hyades::coordinator {
 namespace {
-
-/// Who takes units and gives them back, and that more often than anybody has reason to, takes no
-/// more for so long, or nobody else would get any.
-constexpr uint32_t kMayGiveBack = 64;
-constexpr Duration kRestPerUnit = std::chrono::milliseconds(10);
-constexpr Duration kLongestRest = std::chrono::minutes(1);
 
 /// Whether the unit is one of those that two voices have to render: the same share of all units,
 /// and always the same ones, which nobody without the seed can tell.
@@ -101,7 +94,7 @@ void Results::answer_again(ScheduledJob& job, FrameSlot& slot, const Extent& ext
 void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, Worker& worker,
                      const ResultArrived& e) {
   slot.worker_class = worker.worker_class;
-  worker.gave_back = 0;
+  workers_.forget_given_back(e.worker);
   films_.take(job, slot);
   slot.ledger->hold(extent, {extent.batches, e.digest, e.worker, records_.next_id(), worker.voice});
   if (needs_two(job.plan, slot.frame, extent)) {
@@ -130,10 +123,7 @@ void Results::on(const UnitReturned& e) {
   const auto extent = job ? job->extent_of(e.unit) : std::nullopt;
   if (!extent || !leases_.holds(e.worker, e.lease, e.job, e.unit)) return;
   leases_.end_unit(*job, *slot, *extent, e.lease);
-  Worker& worker = *workers_.find(e.worker);  // whose lease it is
-  if (++worker.gave_back <= kMayGiveBack) return;
-  const uint32_t more = worker.gave_back - kMayGiveBack;
-  worker.rests_until = step_.now + std::min(kLongestRest, more * kRestPerUnit);
+  workers_.note_given_back(e.worker, 1);
 }
 
 void Results::on(const UnitFailed& e) {

@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/scheduled_workers.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -63,6 +64,7 @@ Worker& ScheduledWorkers::add(const WorkerJoined& joined) {
   worker.tags = tag_ids(joined.tags);
   worker.memory = joined.memory;
   worker.in_line = step_.now;
+  worker.joined = step_.now;
   threads_ += worker.threads;
   worker.barred = quarantined(joined.worker);
   Class& of_it = classes_[worker.worker_class];
@@ -83,6 +85,23 @@ void ScheduledWorkers::remove(WorkerId id) {
   workers_.erase(it);
 }
 
+void ScheduledWorkers::note_given_back(WorkerId id, uint32_t units) {
+  if (units == 0) return;
+  constexpr uint32_t kMayGiveBack = 64;
+  constexpr Duration kRestPerUnit = std::chrono::milliseconds(10);
+  constexpr Duration kLongestRest = std::chrono::minutes(1);
+  GivenBack& given = given_back_[id];
+  given.units = std::min(given.units + units, 1'000'000U);
+  if (given.units <= kMayGiveBack) return;
+  given.rests_until =
+      step_.now + std::min(kLongestRest, (given.units - kMayGiveBack) * kRestPerUnit);
+}
+
+bool ScheduledWorkers::rests(WorkerId id) const {
+  const auto given = given_back_.find(id);
+  return given != given_back_.end() && step_.now < given->second.rests_until;
+}
+
 void ScheduledWorkers::bar(Worker& worker, bool barred) {
   if (std::exchange(worker.barred, barred) == barred) return;
   count_origin(worker, !barred);
@@ -100,15 +119,11 @@ bool ScheduledWorkers::is_lone(ClassId worker_class) const {
   return origins <= 1 && classes_at_work_ > origins;
 }
 
-bool ScheduledWorkers::has_several_origins(ClassId worker_class) const {
-  const auto it = classes_.find(worker_class);
-  return it != classes_.end() && it->second.origins.size() > 1;
-}
-
 bool ScheduledWorkers::anybody_of_another(const ScheduledJob& job, ClassId worker_class) const {
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     const Worker& other = entry.second;
-    return !other.barred && other.worker_class != worker_class && suits(job, other) &&
+    const bool at_work = other.wanted > 0 || !other.leases.empty();
+    return !other.barred && at_work && other.worker_class != worker_class && suits(job, other) &&
            !is_slow(other);
   });
 }
@@ -124,7 +139,7 @@ void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint until) {
     if (worker.barred || worker.worker_class != worker_class) continue;
     slow_voices_[worker.voice] = until;
     // Else everybody is of this origin.
-    if (others) slow_origins_[worker.origin] = until;
+    if (others) slow_origins_[worker.origin] = {step_.now, until};
   }
 }
 
@@ -132,12 +147,14 @@ bool ScheduledWorkers::is_slow(const Worker& worker) const {
   const auto voice = slow_voices_.find(worker.voice);
   const auto origin = slow_origins_.find(worker.origin);
   return (voice != slow_voices_.end() && voice->second > step_.now) ||
-         (origin != slow_origins_.end() && origin->second > step_.now);
+         (origin != slow_origins_.end() && origin->second.until > step_.now &&
+          worker.joined >= origin->second.since);
 }
 
 bool ScheduledWorkers::forgive_slow() {
   const auto is_over = [&](const auto& entry) { return entry.second <= step_.now; };
-  return std::erase_if(slow_voices_, is_over) + std::erase_if(slow_origins_, is_over) > 0;
+  const auto has_ended = [&](const auto& entry) { return entry.second.until <= step_.now; };
+  return std::erase_if(slow_voices_, is_over) + std::erase_if(slow_origins_, has_ended) > 0;
 }
 
 bool ScheduledWorkers::may_render(const ScheduledJob& job, const FrameSlot& slot,

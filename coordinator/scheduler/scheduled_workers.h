@@ -34,12 +34,11 @@ struct Worker {
   std::optional<FrameId> affinity;  ///< the frame that it renders and stays with
   std::optional<FrameId> prefetch;  ///< ... that it will render then; it has a unit of it already
   std::optional<Loading> loading;   ///< what it last began with, until the first film
-  TimePoint in_line;                ///< when it last got what was next in line
-  uint32_t wanted = 0;              ///< units it asked for and did not get yet
-  uint64_t waiting = 0;             ///< its place among those who wait, or 0
-  bool barred = false;              ///< gets nothing
-  uint32_t gave_back = 0;           ///< units, since its last film
-  TimePoint rests_until;            ///< gets nothing before
+  TimePoint joined;
+  TimePoint in_line;     ///< when it last got what was next in line
+  uint32_t wanted = 0;   ///< units it asked for and did not get yet
+  uint64_t waiting = 0;  ///< its place among those who wait, or 0
+  bool barred = false;   ///< gets nothing
   std::vector<uint64_t> leases;
 };
 
@@ -51,6 +50,12 @@ class ScheduledWorkers {
   struct Failures {
     uint32_t count = 0;
     std::string reason;  ///< of the last
+  };
+
+  /// What a worker gave back since its last film, whether it said so or came anew without it.
+  struct GivenBack {
+    uint32_t units = 0;
+    TimePoint rests_until;  ///< it gets nothing before
   };
 
   explicit ScheduledWorkers(const Step& step) : step_(step) {}
@@ -74,6 +79,12 @@ class ScheduledWorkers {
   /// What the worker could not render, to be counted on.
   Failures& failures(WorkerId id) { return failures_[id]; }
   void forget_failures(WorkerId id) { failures_.erase(id); }
+  /// Notes that the worker gave units back: who does so more often than anybody has reason to
+  /// rests, or nobody else would get any.
+  void note_given_back(WorkerId id, uint32_t units);
+  void forget_given_back(WorkerId id) { given_back_.erase(id); }
+  /// Whether the worker rests, so that it gets nothing now.
+  bool rests(WorkerId id) const;
 
   // Classes.
 
@@ -84,13 +95,11 @@ class ScheduledWorkers {
   /// Whether the class may be somebody's invention, so that others must not wait for it: all of it
   /// that may get units has one origin, or none, and others may get units too.
   bool is_lone(ClassId worker_class) const;
-  /// Whether workers of several origins may get units of the class.
-  bool has_several_origins(ClassId worker_class) const;
-  /// Whether a worker of another class is there that may begin with frames of the job, and that is
-  /// not slow.
+  /// Whether a worker of another class is at work, or asks for some, that may begin with frames of
+  /// the job, and that is not slow.
   bool anybody_of_another(const ScheduledJob& job, ClassId worker_class) const;
-  /// The workers of the class are slow until then, and whoever is of the same origin, where others
-  /// are left: a frame of theirs stood still, while others could have rendered it.
+  /// The workers of the class are slow until then, and whoever of the same origin comes later,
+  /// where others are left: a frame of theirs stood still, while others could have rendered it.
   void note_slow(ClassId worker_class, TimePoint until);
   /// Forgets who is slow no more. Whether there was somebody.
   bool forgive_slow();
@@ -133,12 +142,17 @@ class ScheduledWorkers {
   uint64_t threads_ = 0;
   std::set<WorkerId> quarantined_;
   std::map<WorkerId, Failures> failures_;
+  std::map<WorkerId, GivenBack> given_back_;
   std::map<uint64_t, WorkerId> waiting_;
   uint64_t next_waiting_ = 1;
   std::map<ClassId, Class> classes_;
   size_t classes_at_work_ = 0;              ///< that have origins
   std::map<Voice, TimePoint> slow_voices_;  ///< until when
-  std::map<Origin, TimePoint> slow_origins_;
+  struct SlowOrigin {
+    TimePoint since;  ///< those who came before are not meant
+    TimePoint until;
+  };
+  std::map<Origin, SlowOrigin> slow_origins_;
 };
 
 /// No table of names is kept, as whoever invents many would fill it: they are hashed.

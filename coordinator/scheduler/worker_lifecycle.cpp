@@ -1,20 +1,43 @@
 #include "coordinator/scheduler/worker_lifecycle.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
 namespace hyades::coordinator {
+namespace {
+
+/// Job, frame, tile and first batch.
+using PlaceOfUnit = std::tuple<JobId, int32_t, int32_t, int32_t, uint32_t>;
+
+PlaceOfUnit place_of(const UnitInHand& held) {
+  const core::Unit& unit = held.unit;
+  return {held.job, unit.frame, unit.tile.x0, unit.tile.y0, unit.batches.first};
+}
+
+}  // namespace
 
 void WorkerLifecycle::on(const WorkerJoined& e) {
+  // Who comes anew with what it had has had it since then; what it had and does not bring it has
+  // given back.
+  std::map<PlaceOfUnit, TimePoint> had;
+  for (const UnitInHand& unit : leases_.units_of(e.worker)) {
+    had[place_of(unit)] = leases_.since(unit);
+  }
   on(WorkerLost{e.worker});
   Worker& worker = workers_.add(e);
-  for (const UnitInHand& held : e.in_hand) adopt(e.worker, worker, held);
+  for (const UnitInHand& held : e.in_hand) {
+    const auto before = had.extract(place_of(held));
+    adopt(e.worker, worker, held, before ? before.mapped() : step_.now);
+  }
+  workers_.note_given_back(e.worker, static_cast<uint32_t>(had.size()));
   for (const auto& [id, job] : jobs_.all()) frames_.open(*job);
 }
 
-void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held) {
+void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held, TimePoint since) {
   const auto [job, slot] = jobs_.find_frame({held.job, held.unit.frame});
   const auto extent = job ? job->extent_of(held.unit) : std::nullopt;
   if (slot == nullptr || !extent || workers_.quarantined(id) ||
@@ -25,7 +48,9 @@ void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held)
   }
   slot->worker_class = worker.worker_class;
   const FramePlace place{job, job->index_of(*slot)};
-  copies_.note(place, leases_.assign(*slot, *extent, id));
+  Assignment& assignment = leases_.assign(*slot, *extent, id);
+  assignment.since = since;
+  copies_.note(place, assignment);
   leases_.grant(id, worker, place, {*extent}, true);
   Affinity::remember_scene(worker, place.id(), false);
   affinity_.settle(worker, place.id());
@@ -58,6 +83,7 @@ void WorkerLifecycle::on(const WorkerLost& e) {
 
 void WorkerLifecycle::on(const WorkerForgotten& e) {
   on(WorkerLost{e.worker});
+  workers_.forget_given_back(e.worker);
   workers_.pardon(e.worker);
 }
 

@@ -36,7 +36,7 @@ class WorkerLifecycle {
                          WorkerId worker);
 
  private:
-  void adopt(WorkerId id, Worker& worker, const UnitInHand& held);
+  void adopt(WorkerId id, Worker& worker, const UnitInHand& held, TimePoint since);
 
   const SchedulerOptions& options_;
   Step& step_;

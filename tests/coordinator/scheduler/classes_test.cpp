@@ -30,15 +30,22 @@ class Classes : public testing::Test {
     bench.tell(WorkerJoined{
         worker, 1, worker_class, {}, {}, 0, std::to_string(static_cast<uint64_t>(worker)), token});
   }
-  /// Odd begins with frame 1 of the job before the others come.
+  /// The worker has all of another job, so that it is at work and asks for nothing.
+  void keep_busy(WorkerId worker) {
+    const JobId job{100 + static_cast<uint64_t>(worker)};
+    bench.add(small_plan({1}, 1), {}, job);
+    bench.tell(FrameOpened{job, 1});
+    EXPECT_EQ(bench.ask(worker, 2).job, job);
+  }
+  /// Odd begins with frame 1 of the job, while the others do something else.
   Lease odd_begins(JobPlan plan) {
+    join(kAnna, "class");
+    join(kBert, "class");
+    keep_busy(kBert);
     join(kOdd, "odd");
     bench.add(std::move(plan));
     bench.tell(FrameOpened{kJob, 1});
-    Lease lease = bench.ask(kOdd);
-    join(kAnna, "class");
-    join(kBert, "class");
-    return lease;
+    return bench.ask(kOdd);
   }
   /// Whether frame 1 begins again within that time.
   bool begins_again(Duration time) {
@@ -46,7 +53,8 @@ class Classes : public testing::Test {
       bench.now += seconds(15);
       bench.tell(Tick{});
       for (const Persist& persist : bench.all<Persist>()) {
-        if (!std::holds_alternative<FrameRestartedRecord>(persist.record)) continue;
+        const auto* again = std::get_if<FrameRestartedRecord>(&persist.record);
+        if (again == nullptr || again->job != kJob) continue;
         bench.tell(Persisted{persist.id});
         return true;
       }
@@ -154,11 +162,34 @@ TEST_F(Classes, OneTokenMayBringManyToItsInvention) {
   bench.tell(FrameOpened{kJob, 1});
   bench.ask(kOdd);
   join(kAnna, "class", "ours");
+  keep_busy(kAnna);
   ASSERT_TRUE(begins_again(minutes(7)));
   bench.tell(FrameOpened{kJob, 1});
   join(WorkerId{9}, "odder", "theirs");
   EXPECT_FALSE(gets_a_unit(WorkerId{9})) << "one more of the same";
   EXPECT_TRUE(gets_a_unit(kAnna));
+}
+
+TEST_F(Classes, WhoWasThereBeforeIsNotSlowForAnotherOfTheToken) {
+  join(kOdd, "odd", "theirs");
+  join(WorkerId{8}, "class", "theirs");
+  bench.add(small_plan({1}, 64));
+  bench.tell(FrameOpened{kJob, 1});
+  bench.ask(kOdd);
+  join(kAnna, "third", "ours");
+  keep_busy(kAnna);
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_TRUE(gets_a_unit(WorkerId{8}));
+}
+
+TEST_F(Classes, NobodyGivesWayToWhoWantsNothing) {
+  join(kOdd, "odd");
+  bench.add(small_plan({1}, 64));
+  bench.tell(FrameOpened{kJob, 1});
+  bench.ask(kOdd);
+  join(kAnna, "class");
+  EXPECT_FALSE(begins_again(hours(1)));
 }
 
 TEST_F(Classes, WhereAllCameByOneTokenTheMachineAloneIsSlow) {
@@ -167,6 +198,7 @@ TEST_F(Classes, WhereAllCameByOneTokenTheMachineAloneIsSlow) {
   bench.tell(FrameOpened{kJob, 1});
   bench.ask(kOdd);
   join(kAnna, "class", "ours");
+  keep_busy(kAnna);
   ASSERT_TRUE(begins_again(minutes(7)));
   bench.tell(FrameOpened{kJob, 1});
   EXPECT_FALSE(gets_a_unit(kOdd));

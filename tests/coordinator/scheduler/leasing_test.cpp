@@ -142,7 +142,7 @@ TEST(Copies, AUnitThatShouldTakeLittleIsCopiedSooner) {
 }
 
 /// A unit that two workers of one token have, one of them as a copy, and Bert has none of.
-Lease held_by_two_of_one_token(Bench& b) {
+Lease held_by_two_of_one_token(Bench& b, bool bert = true) {
   constexpr WorkerId kCarl{3};
   const auto join = [&b](WorkerId worker, const std::string& machine, const std::string& token) {
     b.tell(WorkerJoined{worker, 1, "class", {}, {}, 0, machine, token});
@@ -155,7 +155,7 @@ Lease held_by_two_of_one_token(Bench& b) {
   b.tell(FrameOpened{kJob, 1});
   const Lease lease = b.ask(kAnna);
   b.tell(WorkRequested{kCarl, 1});
-  join(kBert, "machine 2", "token 2");
+  if (bert) join(kBert, "machine 2", "token 2");
   b.now += seconds(6);
   b.tell(Tick{});
   EXPECT_EQ(b.only<Lease>().worker, kCarl);
@@ -174,6 +174,40 @@ TEST(Copies, WhatTwoOfOneTokenKeepIsCopiedForAnother) {
   b.now += seconds(6);
   b.tell(Tick{});
   EXPECT_TRUE(b.all<Lease>().empty()) << "he has it";
+}
+
+TEST(Copies, WhoComesLaterByAnotherTokenHelpsToo) {
+  Bench b;
+  const Lease lease = held_by_two_of_one_token(b, false);
+  b.now += seconds(60);
+  b.tell(Tick{});
+  b.tell(WorkerJoined{kBert, 1, "class", {}, {}, 0, "machine 2", "token 2"});
+  EXPECT_EQ(b.ask(kBert).units, lease.units);
+}
+
+TEST(Copies, WhoComesAnewAgainAndAgainIsLateAllTheSame) {
+  Bench b;
+  b.begin(small_plan({1}, 1));
+  Lease lease = b.ask(kAnna, 2);
+  b.tell(WorkRequested{kBert, 1});
+  bool copied = false;
+  for (int i = 0; i < 6 && !copied; ++i) {
+    std::vector<UnitInHand> all;
+    for (const core::Unit& unit : lease.units) all.push_back({lease.lease, kJob, unit});
+    b.now += seconds(2);
+    b.tell(Tick{});
+    for (const Lease& given : b.all<Lease>()) copied = copied || given.worker == kBert;
+    b.join(kAnna, all);
+    for (const Lease& given : b.all<Lease>()) copied = copied || given.worker == kBert;
+    lease.units.clear();
+    for (const Lease& given : b.all<Lease>()) {
+      if (given.worker != kAnna) continue;
+      lease.lease = given.lease;
+      lease.units.push_back(given.units[0]);
+      break;
+    }
+  }
+  EXPECT_TRUE(copied);
 }
 
 TEST(Copies, WhatTwoKeepIsCopiedForNoneOfTheirOwn) {
