@@ -9,6 +9,15 @@
 #include "coordinator/scheduler/frame_ledger.h"
 
 namespace hyades::coordinator {
+namespace {
+
+std::vector<Voice> voices_of(const Dispute& dispute) {
+  std::vector<Voice> voices;
+  for (const Opinion& o : dispute.opinions) voices.push_back(o.voice);
+  return voices;
+}
+
+}  // namespace
 
 size_t FrameLedger::disputes() const {
   return static_cast<size_t>(std::count_if(disputes_.begin(), disputes_.end(),
@@ -22,12 +31,9 @@ Dispute* FrameLedger::find_dispute(const Extent& e) {
 }
 
 std::vector<Voice> FrameLedger::heard(const Extent& e) const {
-  std::vector<Voice> voices;
-  for (const Dispute& d : disputes_) {
-    if (d.extent != e) continue;
-    for (const Opinion& o : d.opinions) voices.push_back(o.voice);
-  }
-  return voices;
+  const auto it = std::find_if(disputes_.begin(), disputes_.end(),
+                               [&](const Dispute& d) { return d.extent == e; });
+  return it == disputes_.end() ? std::vector<Voice>() : voices_of(*it);
 }
 
 Dispute& FrameLedger::open_dispute(const Extent& e, const Opinion& first) {
@@ -46,7 +52,7 @@ std::optional<Extent> FrameLedger::next_check(Voice voice, const MayTry& may_try
     const Blame* blame = find_blame(d.extent);
     if (blame == nullptr) return d.extent;
     // Those who have said what they think are no help: who failed it may be the only one left.
-    if (may_try(blame->workers, heard(d.extent))) return d.extent;
+    if (may_try(blame->workers, voices_of(d))) return d.extent;
   }
   return std::nullopt;
 }
