@@ -14,8 +14,9 @@ core::Result<std::string> read_small_file(const std::string& path);
 /// it is there already or cannot be written; then nothing of it stays.
 core::Status write_secret(const std::string& path, const std::string& text);
 
-/// The same where there may be one already: whatever happens, the old one or the new one is there,
-/// and the new one for good once this returns. On its way it is in PATH.new.
+/// Writes a secret to a file that only its owner may read, in place of one that may be there:
+/// whatever happens the old one or the new one is there, and the new one outlives a crash once this
+/// returns without an error. On its way it is in PATH.new.
 core::Status replace_secret(const std::string& path, const std::string& text);
 
 }  // namespace hyades::farm

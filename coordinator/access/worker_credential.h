@@ -11,8 +11,8 @@ struct WorkerCredential {
   /// The same for workers whose words count as one. Empty: nobody else has it, as on farms where
   /// whoever may work may do everything.
   std::string name{};
-  /// The same for workers that one token or pool may bring as many of as it likes, whose words may
-  /// count each. Empty: as `name` says.
+  /// Names the token or pool that the worker came by, which can bring any number of workers, also
+  /// such as have names of their own. Empty: as `name` says.
   std::string origin{};
   std::string machine_token{};  ///< to be kept by the worker and shown from now on; empty: none
   /// Whose the worker is: nobody else may come under its id. Empty: anybody's, as the farm asks for

@@ -72,7 +72,8 @@ class JobDocuments {
   /// empty: for the coordinator itself.
   Found read(const v1::JobSpec& spec, std::chrono::milliseconds patience,
              const std::string& owner = {}) HYADES_EXCLUDES(state_lock, mutex_);
-  /// The same of StoredJob::spec.
+  /// What read() finds for a spec as it is stored (StoredJob::spec); an error where that is
+  /// damaged.
   Found read_stored(const std::string& spec, std::chrono::milliseconds patience,
                     const std::string& owner = {}) HYADES_EXCLUDES(state_lock, mutex_);
 

@@ -96,8 +96,8 @@ struct WorkerJoined {
   /// By what it was let in: workers of one credential count as one witness. Empty: nobody else has
   /// its own.
   std::string credential = {};
-  /// The same for workers of one token or pool, which may bring as many as it likes. Empty: as
-  /// `credential` says.
+  /// Names the token or pool that the worker came by, which can bring any number of workers. Empty:
+  /// as `credential` says.
   std::string origin = {};
 };
 

@@ -155,9 +155,9 @@ class ScheduledWorkers {
   std::map<Origin, SlowOrigin> slow_origins_;
 };
 
-/// No table of names is kept, as whoever invents many would fill it: they are hashed.
+/// The class of this name, by a hash: a table of names could be filled by whoever invents many.
 ClassId class_id(const std::string& name);
-/// The same of tags; sorted, each once.
+/// The tags of these names, by their hashes; sorted, each once.
 std::vector<TagId> tag_ids(const std::vector<std::string>& tags);
 
 }  // namespace hyades::coordinator
