@@ -231,7 +231,7 @@ bool Granting::grant_from(const FramePlace& place, WorkerId id, Worker& worker, 
     const auto extent = slot.ledger->next(
         allowed, [&](uint32_t tile) { return run_length_of(job, *slot.ledger, tile); });
     if (!extent) break;
-    copies_.note(place, leases_.assign(slot, *extent, id));
+    copies_.note(place, leases_.assign(slot, *extent, id), worker.worker_class);
     extents.push_back(*extent);
   }
   if (extents.empty()) return false;
@@ -316,7 +316,7 @@ bool Granting::grant_check(const FramePlace& place, WorkerId id, Worker& worker,
                            const MayTry& may_try) {
   const auto extent = place.frame().ledger->next_check(worker.voice, may_try);
   if (!extent) return false;
-  copies_.note(place, leases_.assign(place.frame(), *extent, id));
+  copies_.note(place, leases_.assign(place.frame(), *extent, id), worker.worker_class);
   --worker.wanted;
   leases_.grant(id, worker, place, {*extent});
   jobs_.update_offer(*place.job);

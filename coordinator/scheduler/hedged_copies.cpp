@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <vector>
 
 namespace hyades::coordinator {
 namespace {
 
-/// How many of the oldest units are considered before a worker goes without a copy.
-constexpr size_t kCopySearch = 16;
+/// How many of the oldest units of a job are considered before a worker goes without a copy of one.
+constexpr size_t kCopySearch = 64;
 /// A unit is late when it has been out for that many times what it should take (it may have waited
 /// for another, on a slow machine), and a little for the way there and back.
 constexpr double kLate = 3;
@@ -20,12 +21,45 @@ constexpr Duration kCopyRound = std::chrono::milliseconds(250);
 
 bool HedgedCopies::grant(WorkerId id, Worker& worker) {
   if (!enabled()) return false;
-  const auto is_over = [&](const Candidate& c) { return find(c) == nullptr; };
-  while (!alone_.empty() && (is_over(alone_.front()) || find(alone_.front())->holders.size() > 1)) {
-    alone_.pop_front();
+  const std::vector<Units*> late = for_worker(id, worker);
+  const auto grant_with = [&](size_t holders) {
+    return std::any_of(late.begin(), late.end(),
+                       [&](Units* units) { return grant_of(*units, holders, id, worker); });
+  };
+  return grant_with(1) || grant_with(2);
+}
+
+/// Those that the worker may have copies of, whoever has waited longest first.
+std::vector<HedgedCopies::Units*> HedgedCopies::for_worker(WorkerId id, const Worker& worker) {
+  std::vector<Units*> found;
+  for (auto it = out_.lower_bound({worker.worker_class, JobId{}});
+       it != out_.end() && it->first.worker_class == worker.worker_class;) {
+    Units& units = it->second;
+    forget_over(units);
+    if (units.empty()) {
+      it = out_.erase(it);
+      continue;
+    }
+    const ScheduledJob& job = *jobs_.find(it->first.job);
+    if (!job.paused && ScheduledWorkers::may_join(job, id, worker)) found.push_back(&units);
+    ++it;
   }
-  while (!copied_.empty() && is_over(copied_.front())) copied_.pop_front();
-  return grant_of(alone_, 1, id, worker) || grant_of(copied_, 2, id, worker);
+  const auto oldest = [](const Units* units) {
+    return units->alone.empty() ? TimePoint::max() : units->alone.front().since;
+  };
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const Units* a, const Units* b) { return oldest(a) < oldest(b); });
+  return found;
+}
+
+/// Drops the first ones that nobody needs a copy of any more.
+void HedgedCopies::forget_over(Units& units) const {
+  const auto is_over = [&](const Candidate& c, size_t holders) {
+    const Assignment* assignment = find(c);
+    return assignment == nullptr || assignment->holders.size() > holders;
+  };
+  while (!units.alone.empty() && is_over(units.alone.front(), 1)) units.alone.pop_front();
+  while (!units.copied.empty() && is_over(units.copied.front(), 2)) units.copied.pop_front();
 }
 
 /// Whether one more worker may render the unit, that is not one of those who have it. Where two of
@@ -41,8 +75,8 @@ bool HedgedCopies::may_copy(const Assignment& assignment, WorkerId id, const Wor
 }
 
 /// Of those that at most so many workers have.
-bool HedgedCopies::grant_of(const Candidates& candidates, size_t holders, WorkerId id,
-                            Worker& worker) {
+bool HedgedCopies::grant_of(Units& units, size_t holders, WorkerId id, Worker& worker) {
+  const Candidates& candidates = holders == 1 ? units.alone : units.copied;
   for (size_t i = 0; i < std::min(kCopySearch, candidates.size()); ++i) {
     const Candidate candidate = candidates[i];
     if (step_.now < first_copy(candidate)) return false;
@@ -51,8 +85,6 @@ bool HedgedCopies::grant_of(const Candidates& candidates, size_t holders, Worker
     if (!may_copy(*assignment, id, worker)) continue;
     const FramePlace place{jobs_.find(candidate.job), candidate.slot};
     const ScheduledJob& job = *place.job;
-    if (job.paused || place.frame().worker_class != worker.worker_class) continue;
-    if (!ScheduledWorkers::may_join(job, id, worker)) continue;
     const FrameLedger& ledger = *place.frame().ledger;
     // What is checked is for those who were not heard.
     const std::vector<Voice> heard = ledger.heard(candidate.extent);
@@ -73,7 +105,7 @@ bool HedgedCopies::grant_of(const Candidates& candidates, size_t holders, Worker
     leases_.grant(id, worker, place, {candidate.extent});
     // Who comes by another token may come later.
     if (holders == 1) {
-      copied_.push_back(
+      units.copied.push_back(
           {step_.now, candidate.serial, candidate.job, candidate.slot, candidate.extent});
     }
     return true;
@@ -94,39 +126,51 @@ double HedgedCopies::late_after(const ScheduledJob& job, const Extent& extent) c
   return std::min(most, seconds(kWay) + kLate * batch * extent.batches.count);
 }
 
-void HedgedCopies::note(const FramePlace& place, const Assignment& assignment) {
+void HedgedCopies::note(const FramePlace& place, const Assignment& assignment,
+                        ClassId worker_class) {
   if (!enabled()) return;
-  if (alone_.size() >= swept_at_) {
+  Units& units = out_[{worker_class, place.job->id}];
+  if (units.alone.size() >= units.swept_at) {
     const auto is_over = [&](const Candidate& c) { return find(c) == nullptr; };
-    std::erase_if(alone_, is_over);
-    std::erase_if(copied_, is_over);
-    swept_at_ = std::max<size_t>(64, 2 * alone_.size());
+    std::erase_if(units.alone, is_over);
+    std::erase_if(units.copied, is_over);
+    units.swept_at = std::max<size_t>(64, 2 * units.alone.size());
   }
-  alone_.push_back(
+  units.alone.push_back(
       {assignment.since, assignment.serial, place.job->id, place.slot, assignment.extent});
 }
 
 bool HedgedCopies::due() const {
-  const auto is_due = [this](const Candidates& candidates) {
-    return !candidates.empty() && first_copy(candidates.front()) <= step_.now;
-  };
-  return is_due(alone_) || is_due(copied_);
+  const std::optional<TimePoint> first = first_of_all();
+  return first && *first <= step_.now;
 }
 
 bool HedgedCopies::begin_round() {
   if (!enabled() || step_.now < next_round_) return false;
   next_round_ = step_.now + kCopyRound;
+  for (auto it = out_.begin(); it != out_.end();) {
+    forget_over(it->second);
+    it = it->second.empty() ? out_.erase(it) : std::next(it);
+  }
   return true;
 }
 
-std::optional<TimePoint> HedgedCopies::next_wake() const {
-  std::optional<TimePoint> wake;
-  for (const Candidates* candidates : {&alone_, &copied_}) {
-    if (!enabled() || candidates->empty()) continue;
-    const TimePoint first = std::max(first_copy(candidates->front()), next_round_);
-    wake = wake ? std::min(*wake, first) : first;
+/// When the oldest unit may be late.
+std::optional<TimePoint> HedgedCopies::first_of_all() const {
+  std::optional<TimePoint> first;
+  for (const auto& [group, units] : out_) {
+    for (const Candidates* candidates : {&units.alone, &units.copied}) {
+      if (candidates->empty()) continue;
+      const TimePoint copy = first_copy(candidates->front());
+      first = first ? std::min(*first, copy) : copy;
+    }
   }
-  return wake;
+  return first;
+}
+
+std::optional<TimePoint> HedgedCopies::next_wake() const {
+  const std::optional<TimePoint> first = first_of_all();
+  return first ? std::optional(std::max(*first, next_round_)) : std::nullopt;
 }
 
 /// Who has the unit, or null where that is over.

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
+#include <vector>
 
 #include "coordinator/scheduler/affinity.h"
 #include "coordinator/scheduler/leases.h"
@@ -25,11 +28,11 @@ class HedgedCopies {
         affinity_(affinity) {}
 
   bool enabled() const { return options_.copy_after > Duration{0}; }
-  /// The unit has been leased: it may be late one day.
-  void note(const FramePlace& place, const Assignment& assignment);
+  /// The unit has been leased to a worker of this class: it may be late one day.
+  void note(const FramePlace& place, const Assignment& assignment, ClassId worker_class);
   /// Hands out a copy of one of the oldest units that are late.
   bool grant(WorkerId id, Worker& worker);
-  /// Whether the oldest unit may be due for a copy.
+  /// Whether some unit may be due for a copy.
   bool due() const;
   /// Whether it is time to offer copies to those who wait; begins the next round.
   bool begin_round();
@@ -48,8 +51,25 @@ class HedgedCopies {
 
   using Candidates = std::deque<Candidate>;
 
-  bool grant_of(const Candidates& candidates, size_t holders, WorkerId id, Worker& worker);
+  /// Units that are for the same workers: else late ones that are for others could stand before
+  /// those that a worker may copy.
+  struct Group {
+    ClassId worker_class{};
+    JobId job{};
+    auto operator<=>(const Group&) const = default;
+  };
+  struct Units {
+    Candidates alone;      ///< that one worker has; oldest first
+    Candidates copied;     ///< that were copied; oldest first
+    size_t swept_at = 64;  ///< length of `alone` at which stale ones are swept out
+    bool empty() const { return alone.empty() && copied.empty(); }
+  };
+
+  void forget_over(Units& units) const;
+  std::vector<Units*> for_worker(WorkerId id, const Worker& worker);
+  bool grant_of(Units& units, size_t holders, WorkerId id, Worker& worker);
   bool may_copy(const Assignment& assignment, WorkerId id, const Worker& worker) const;
+  std::optional<TimePoint> first_of_all() const;
   TimePoint first_copy(const Candidate& candidate) const;
   double late_after(const ScheduledJob& job, const Extent& extent) const;
   Assignment* find(const Candidate& candidate) const;
@@ -60,9 +80,7 @@ class HedgedCopies {
   ScheduledWorkers& workers_;
   Leases& leases_;
   Affinity& affinity_;
-  Candidates alone_;      ///< that one worker has; oldest first
-  Candidates copied_;     ///< that were copied; oldest first
-  size_t swept_at_ = 64;  ///< length of `alone_` at which stale ones are swept out
+  std::map<Group, Units> out_;
   TimePoint next_round_;
 };
 

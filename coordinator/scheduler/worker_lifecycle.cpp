@@ -50,7 +50,7 @@ void WorkerLifecycle::adopt(WorkerId id, Worker& worker, const UnitInHand& held,
   const FramePlace place{job, job->index_of(*slot)};
   Assignment& assignment = leases_.assign(*slot, *extent, id);
   assignment.since = since;
-  copies_.note(place, assignment);
+  copies_.note(place, assignment, worker.worker_class);
   leases_.grant(id, worker, place, {*extent}, true);
   Affinity::remember_scene(worker, place.id(), false);
   affinity_.settle(worker, place.id());

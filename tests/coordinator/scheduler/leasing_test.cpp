@@ -220,6 +220,53 @@ TEST(Copies, WhatTwoKeepIsCopiedForNoneOfTheirOwn) {
   EXPECT_TRUE(b.all<Lease>().empty());
 }
 
+/// Another worker has hundreds of units that are late before Anna's is.
+Bench many_are_late() {
+  SchedulerOptions options;
+  options.unit_time = milliseconds(1);  // one batch
+  return Bench(options);
+}
+
+void anna_is_late_and_bert_helps(Bench& b, JobId job) {
+  JobPlan plan = small_plan({1}, 1);
+  plan.region = {0, 0, 32, 32};
+  b.add(plan, {}, job);
+  b.tell(FrameOpened{job, 1});
+  const Lease late = b.ask(kAnna);
+  ASSERT_EQ(late.job, job);
+  b.tell(WorkRequested{kBert, 1});
+  b.now += seconds(6);
+  b.tell(Tick{});
+  EXPECT_EQ(b.only<Lease>().worker, kBert);
+  EXPECT_EQ(b.only<Lease>().units, late.units);
+}
+
+TEST(Copies, UnitsOfAnotherClassStandInNobodysWay) {
+  Bench b = many_are_late();
+  const WorkerId odd{7};
+  b.tell(WorkerJoined{odd, 1, "odd", {}});
+  b.add(small_plan({1}, 200));
+  b.tell(FrameOpened{kJob, 1});
+  ASSERT_EQ(b.ask(odd, 400).units.size(), 400U);
+  b.join(kAnna);
+  b.join(kBert);
+  anna_is_late_and_bert_helps(b, JobId{2});
+}
+
+TEST(Copies, UnitsThatOneMayNotRenderStandInNobodysWay) {
+  Bench b = many_are_late();
+  const WorkerId carl{3};
+  b.tell(WorkerJoined{carl, 1, "class", {}, {"large"}});
+  JobPlan plan = small_plan({1}, 200);
+  plan.needs.tags = {"large"};
+  b.add(plan);
+  b.tell(FrameOpened{kJob, 1});
+  ASSERT_EQ(b.ask(carl, 400).units.size(), 400U);
+  b.join(kAnna);
+  b.join(kBert);
+  anna_is_late_and_bert_helps(b, JobId{2});
+}
+
 TEST(Copies, AUnitThatShouldTakeLongIsNotLateBeforeThat) {
   SchedulerOptions options;
   options.copy_after = seconds(10);
