@@ -56,6 +56,15 @@ size_t FrameLedger::holders() const {
   return n;
 }
 
+std::vector<WorkerId> FrameLedger::holders_since(TimePoint time) const {
+  std::vector<WorkerId> workers;
+  for (const auto& [k, assignment] : assignments_) {
+    // Who has a copy of it came later.
+    if (assignment.since <= time) workers.push_back(assignment.holders.front().worker);
+  }
+  return workers;
+}
+
 bool FrameLedger::all_free(const Extent& e) const {
   return BatchMap::count_free(held_, leased_, e.tile, e.batches) == e.batches.count;
 }

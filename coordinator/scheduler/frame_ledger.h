@@ -82,6 +82,8 @@ class FrameLedger {
   bool any_assigned() const { return !assignments_.empty(); }
   /// Workers of all assignments together: a copied unit has several.
   size_t holders() const;
+  /// Who has had a unit of it since then or longer, once for each such unit.
+  std::vector<WorkerId> holders_since(TimePoint time) const;
 
   // Held batches.
 

@@ -174,11 +174,12 @@ void FrameLifecycle::restart_stranded(bool leasing) {
     for (const uint32_t i : in_flight) {
       FrameSlot& slot = job->slots[i];
       if (slot.phase != FramePhase::rendering || slot.worker_class == ClassId{}) continue;
-      if (stands_still(*job, slot, leasing)) {
+      if (const auto since = stands_still_since(*job, slot, leasing)) {
         ++slot.stood_still;
         // Who had no unit of it does something else.
         if (slot.ledger->any_assigned() || !slot.ledger->settled()) {
-          workers_.note_slow(slot.worker_class, step_.now + kSlowFor * options_.class_patience);
+          workers_.note_slow(slot.worker_class, *since, slot.ledger->holders_since(*since),
+                             step_.now + kSlowFor * options_.class_patience);
         }
         restart(*job, slot);
       } else if (is_orphaned(*job, slot)) {
@@ -188,8 +189,8 @@ void FrameLifecycle::restart_stranded(bool leasing) {
   }
 }
 
-/// Whether nobody of the frame's class has been there for too long.
-bool FrameLifecycle::is_orphaned(const ScheduledJob& job, FrameSlot& slot) const {
+/// Whether nobody of the frame's class has been there for too long; keeps since when that is so.
+bool FrameLifecycle::is_orphaned(const ScheduledJob& job, FrameSlot& slot) {
   if (job.paused) return false;
   if (workers_.anybody_for(job, slot.worker_class)) {
     slot.orphaned.reset();
@@ -199,26 +200,28 @@ bool FrameLifecycle::is_orphaned(const ScheduledJob& job, FrameSlot& slot) const
   return step_.now >= *slot.orphaned + options_.class_patience && !slot.ledger->all_held();
 }
 
-/// Whether the frame's class, which may be somebody's invention, gets on with it too slowly while
-/// others wait for it.
-bool FrameLifecycle::stands_still(const ScheduledJob& job, FrameSlot& slot, bool leasing) const {
+/// Since when the frame's class, which may be somebody's invention, gets on with it too slowly
+/// while others wait for it; nothing where it does not. Begins and ends the watch over that.
+std::optional<TimePoint> FrameLifecycle::stands_still_since(const ScheduledJob& job,
+                                                            FrameSlot& slot, bool leasing) {
   const FrameLedger& ledger = *slot.ledger;
   const bool watched = leasing && !job.paused && workers_.is_lone(slot.worker_class) &&
                        workers_.anybody_for(job, slot.worker_class) && !ledger.all_held() &&
                        workers_.anybody_of_another(job, slot.worker_class);
   if (!watched) {
     slot.watch.reset();
-    return false;
+    return std::nullopt;
   }
   if (!slot.watch) slot.watch = FrameSlot::Watch{step_.now, ledger.durable()};
   const Duration patience = options_.class_patience * (1U << std::min(slot.stood_still, 10U));
-  if (step_.now < slot.watch->since + patience) return false;
-  const double part = seconds(step_.now - slot.watch->since) / seconds(kLongestFrame);
-  const bool enough = ledger.durable() > slot.watch->durable &&
-                      static_cast<double>(ledger.durable() - slot.watch->durable) >=
-                          part * static_cast<double>(ledger.total());
+  const auto [since, durable] = *slot.watch;
+  if (step_.now < since + patience) return std::nullopt;
   slot.watch.reset();
-  return !enough;
+  const double part = seconds(step_.now - since) / seconds(kLongestFrame);
+  const bool enough =
+      ledger.durable() > durable &&
+      static_cast<double>(ledger.durable() - durable) >= part * static_cast<double>(ledger.total());
+  return enough ? std::nullopt : std::optional(since);
 }
 
 std::optional<TimePoint> FrameLifecycle::next_wake() const {

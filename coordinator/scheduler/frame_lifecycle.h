@@ -63,8 +63,9 @@ class FrameLifecycle {
 
  private:
   void reopen(ScheduledJob& job, FrameSlot& slot);
-  bool is_orphaned(const ScheduledJob& job, FrameSlot& slot) const;
-  bool stands_still(const ScheduledJob& job, FrameSlot& slot, bool leasing) const;
+  bool is_orphaned(const ScheduledJob& job, FrameSlot& slot);
+  std::optional<TimePoint> stands_still_since(const ScheduledJob& job, FrameSlot& slot,
+                                              bool leasing);
 
   const SchedulerOptions& options_;
   Step& step_;

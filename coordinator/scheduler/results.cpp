@@ -95,6 +95,7 @@ void Results::accept(ScheduledJob& job, FrameSlot& slot, const Extent& extent, W
                      const ResultArrived& e) {
   slot.worker_class = worker.worker_class;
   workers_.forget_given_back(e.worker);
+  worker.delivered = step_.now;
   films_.take(job, slot);
   slot.ledger->hold(extent, {extent.batches, e.digest, e.worker, records_.next_id(), worker.voice});
   if (needs_two(job.plan, slot.frame, extent)) {

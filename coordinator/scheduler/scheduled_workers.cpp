@@ -128,7 +128,8 @@ bool ScheduledWorkers::anybody_of_another(const ScheduledJob& job, ClassId worke
   });
 }
 
-void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint until) {
+void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint since,
+                                 const std::vector<WorkerId>& holders, TimePoint until) {
   const auto it = classes_.find(worker_class);
   if (it == classes_.end()) return;
   const std::map<Origin, uint32_t>& origins = it->second.origins;
@@ -137,6 +138,8 @@ void ScheduledWorkers::note_slow(ClassId worker_class, TimePoint until) {
   });
   for (const auto& [id, worker] : workers_) {
     if (worker.barred || worker.worker_class != worker_class) continue;
+    const bool held = std::find(holders.begin(), holders.end(), id) != holders.end();
+    if (!held && worker.delivered && *worker.delivered >= since) continue;
     slow_voices_[worker.voice] = until;
     // Else everybody is of this origin.
     if (others) slow_origins_[worker.origin] = {step_.now, until};

@@ -35,10 +35,11 @@ struct Worker {
   std::optional<FrameId> prefetch;  ///< ... that it will render then; it has a unit of it already
   std::optional<Loading> loading;   ///< what it last began with, until the first film
   TimePoint joined;
-  TimePoint in_line;     ///< when it last got what was next in line
-  uint32_t wanted = 0;   ///< units it asked for and did not get yet
-  uint64_t waiting = 0;  ///< its place among those who wait, or 0
-  bool barred = false;   ///< gets nothing
+  TimePoint in_line;                   ///< when it last got what was next in line
+  std::optional<TimePoint> delivered;  ///< when a film of it last counted
+  uint32_t wanted = 0;                 ///< units it asked for and did not get yet
+  uint64_t waiting = 0;                ///< its place among those who wait, or 0
+  bool barred = false;                 ///< gets nothing
   std::vector<uint64_t> leases;
 };
 
@@ -98,9 +99,12 @@ class ScheduledWorkers {
   /// Whether a worker of another class is at work, or asks for some, that may begin with frames of
   /// the job, and that is not slow.
   bool anybody_of_another(const ScheduledJob& job, ClassId worker_class) const;
-  /// The workers of the class are slow until then, and whoever of the same origin comes later,
-  /// where others are left: a frame of theirs stood still, while others could have rendered it.
-  void note_slow(ClassId worker_class, TimePoint until);
+  /// A frame of the class stood still since `since`, while others could have rendered it. Its
+  /// workers are slow until then, without those that delivered something meanwhile and are none of
+  /// `holders`, who have had units of the frame all the time. So is whoever of the same origin
+  /// comes later, where others are left.
+  void note_slow(ClassId worker_class, TimePoint since, const std::vector<WorkerId>& holders,
+                 TimePoint until);
   /// Forgets who is slow no more. Whether there was somebody.
   bool forgive_slow();
   /// Whether units of the frame are for the worker's class: it has begun it, or nobody has. Who is

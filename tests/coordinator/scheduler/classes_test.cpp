@@ -183,6 +183,32 @@ TEST_F(Classes, WhoWasThereBeforeIsNotSlowForAnotherOfTheToken) {
   EXPECT_TRUE(gets_a_unit(WorkerId{8}));
 }
 
+TEST_F(Classes, WhoDeliversIsNotSlowForAnotherOfItsClass) {
+  const WorkerId other{8};
+  join(kOdd, "odd", "theirs");
+  join(other, "odd", "theirs");
+  bench.add(small_plan({1}, 2048));
+  bench.tell(FrameOpened{kJob, 1});
+  bench.ask(kOdd);
+  join(kAnna, "class", "theirs");
+  keep_busy(kAnna);
+  ASSERT_FALSE(begins_again(minutes(2)));
+  bench.deliver_durably(bench.ask(other));
+  ASSERT_TRUE(begins_again(minutes(7))) << "a film in five minutes is not enough";
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_FALSE(gets_a_unit(kOdd));
+  EXPECT_TRUE(gets_a_unit(other));
+}
+
+TEST_F(Classes, WhoHoldsAUnitAllTheTimeIsSlowThoughItDeliversOthers) {
+  odd_begins(small_plan({1}, 2048));
+  ASSERT_FALSE(begins_again(minutes(2)));
+  odd_delivers();
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_FALSE(gets_a_unit(kOdd));
+}
+
 TEST_F(Classes, NobodyGivesWayToWhoWantsNothing) {
   join(kOdd, "odd");
   bench.add(small_plan({1}, 64));
