@@ -24,7 +24,7 @@ namespace {
 constexpr uint64_t kProgressiveBytes = uint64_t{2} << 30U;
 constexpr uint64_t kMostAtOnce = 256;
 /// For the documents of others to be read: a few of the longest. Who reopens a job asks once.
-constexpr std::chrono::seconds kReadPatience{30};
+constexpr std::chrono::seconds kRecoveryPatience{30};
 
 /// How many frames of a job may be in work together: no more than half of `film_memory` holds, or
 /// one.
@@ -78,7 +78,7 @@ bool is_stored(const v1::JobFile& file, farm::ContentStore& assets) {
 /// The job as it is stored, with nothing of its frames.
 core::Result<std::unique_ptr<ActiveJob>> JobRecovery::read(const StoredJob& stored,
                                                            const v1::JobSpec& spec) {
-  const auto document = context_.documents.read(spec, kReadPatience);
+  const auto document = context_.documents.read(spec, kRecoveryPatience);
   if (!document) return core::Error{"the documents of other jobs are being read"};
   if (!*document) return document->error();
   return make_active_job(stored, spec, ***document, *context_.assets, context_.options.film_memory);
@@ -101,7 +101,7 @@ bool JobRecovery::lasting_obstacle(uint64_t id) {
     // One that is damaged is gone once it was read.
     if (!assets.read(name)) return assets.missing(name);
   }
-  const auto document = context_.documents.read(spec, kReadPatience);
+  const auto document = context_.documents.read(spec, kRecoveryPatience);
   if (!document) return false;
   return !*document ||
          !make_active_job(**stored, spec, ***document, assets, context_.options.film_memory);

@@ -53,12 +53,6 @@ class ScheduledWorkers {
     std::string reason;  ///< of the last
   };
 
-  /// What a worker gave back since its last film, whether it said so or came anew without it.
-  struct GivenBack {
-    uint32_t units = 0;
-    TimePoint rests_until;  ///< it gets nothing before
-  };
-
   explicit ScheduledWorkers(const Step& step) : step_(step) {}
 
   Worker* find(WorkerId id);
@@ -130,6 +124,11 @@ class ScheduledWorkers {
   const std::map<uint64_t, WorkerId>& waiting() const { return waiting_; }
 
  private:
+  /// What a worker gave back since its last film, whether it said so or came anew without it.
+  struct GivenBack {
+    uint32_t units = 0;
+    TimePoint rests_until;  ///< it gets nothing before
+  };
   /// A class of which some worker is connected.
   struct Class {
     std::string name;

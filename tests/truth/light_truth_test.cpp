@@ -22,11 +22,11 @@ using core::Vec3d;
 
 /// What a test of one picture's mean promises: an error of 1 % found with probability 99 %, and at
 /// most one of a hundred runs of all the tests of this file failing by chance.
-constexpr Promise kPromise{
+constexpr Promise kLightPromise{
     .significance = 0.01, .tests = 60, .relative_error = 0.01, .power = 0.99};
 
 void expect_picture_mean(const YamlScene& scene, const Vec3d& expected) {
-  expect_mean_by_path_and_bdpt(scene, expected, kPromise);
+  expect_mean_by_path_and_bdpt(scene, expected, kLightPromise);
 }
 
 /// A white-ish Lambert plane y = 0, one point of it looked at from above, and `lights`.
@@ -291,7 +291,7 @@ lights:
   noon: {type: sun, direction: [1, -1, 1], irradiance: 0.3, angle: 0}
 )";
 
-double many_lights() {
+double mean_of_many_lights() {
   const double d2 = 1.0 + 4.0 + 0.25;
   const double ball = M_PI * 4.0 * 0.49 / d2 * 2.0 / std::sqrt(d2);
   const double small = 20.0 / (4.0 * M_PI * d2) * 2.0 / std::sqrt(d2);
@@ -302,7 +302,7 @@ double many_lights() {
 TEST(LightTruth, ManyLightsAddUp) {
   for (const char* sampler : {"independent", "sobol"}) {
     expect_picture_mean(plane_under(with_plane(kManyLights), 4096, sampler),
-                        lit(Vec3d(many_lights())));
+                        lit(Vec3d(mean_of_many_lights())));
   }
 }
 
@@ -313,7 +313,7 @@ TEST(LightTruth, BoundariesThatAreNotThereLetLightThrough) {
       "  shell: {shape: sphere, radius: 0.1, material: air}\n"
       "  pane: {shape: rectangle, size: [9, 9], at: [0, 0.2, 0], material: air}\n";
   expect_picture_mean(plane_under(with_plane(shell + std::string(kManyLights).substr(1)), 4096),
-                      lit(Vec3d(many_lights())));
+                      lit(Vec3d(mean_of_many_lights())));
 }
 
 TEST(LightTruth, ClosedGlowingSphere) {
@@ -335,7 +335,7 @@ objects:
   room: {shape: sphere, radius: 1, material: wall, emit: {radiance: 2, color: [1, 2, 3], two_sided: true}}
 )");
       // By all integrators in closed_rooms_test.cpp, with fewer events.
-      test::expect_picture_mean(scene, Vec3d(2.0 / 0.2, 4.0 / 0.5, 6.0 / 0.8), kPromise);
+      test::expect_picture_mean(scene, Vec3d(2.0 / 0.2, 4.0 / 0.5, 6.0 / 0.8), kLightPromise);
     }
   }
 }

@@ -14,10 +14,11 @@ namespace {
 
 using core::Vec3d;
 
-constexpr Promise kPromise{.significance = 0.01, .tests = 8, .relative_error = 0.01, .power = 0.99};
+constexpr Promise kDefectsPromise{
+    .significance = 0.01, .tests = 8, .relative_error = 0.01, .power = 0.99};
 
 /// Every pixel looks from (0, 0, 4) along -z.
-std::string ray_job(int samples, int max_depth, const std::string& rest) {
+std::string defect_job(int samples, int max_depth, const std::string& rest) {
   return R"(
 hyades: 1
 film: {size: [12, 12], filter: box}
@@ -50,7 +51,7 @@ double scattered_once(double scattering, double extinction, double g, double lam
 
 // Lamp and scattering are deep in a body: what the lamp does where the ray comes in counts nothing.
 TEST(MediaDefects, DirectLightIsThatOfThePlaceOfScattering) {
-  const YamlScene scene(ray_job(6000, 1, R"(
+  const YamlScene scene(defect_job(6000, 1, R"(
 media: {fog: {scattering: [0.5, 0.2, 1], absorption: [0, 0.1, 0.2]}}
 objects: {body: {shape: box, size: [20, 20, 6], at: [0, 0, -3], material: air, interior: fog}}
 lights: {lamp: {type: point, at: [0, 1.2, -2.5], power: 100}}
@@ -59,18 +60,18 @@ lights: {lamp: {type: point, at: [0, 1.2, -2.5], power: 100}}
     return scattered_once(scattering, extinction, 0.0, -2.5, 0.0, -6.0);
   };
   expect_picture_mean(scene, {expected(0.5, 0.5), expected(0.2, 0.3), expected(1.0, 1.2)},
-                      kPromise);
+                      kDefectsPromise);
 }
 
 // What is behind a refracting surface is not lit by a straight line to the lamp, with whatever
 // factor: light of a point, which nothing can meet by chance, does not come in at all.
 TEST(MediaDefects, ShadowRaysDoNotCrossRefractingSurfaces) {
   const auto lit = [](const std::string& surface) {
-    const YamlScene scene(ray_job(64, 64,
-                                  R"(
+    const YamlScene scene(defect_job(64, 64,
+                                     R"(
 media: {milk: {scattering: 3, absorption: 0.1}}
 objects: {ball: {shape: sphere, material: )" +
-                                      surface + R"(, interior: milk}}
+                                         surface + R"(, interior: milk}}
 lights: {lamp: {type: point, at: [0, 3, 3], power: 100}}
 )"));
     return picture_mean(scene.render().film).mean;
@@ -81,19 +82,19 @@ lights: {lamp: {type: point, at: [0, 3, 3], power: 100}}
 
 // No mean over the channels, and nothing undefined where g is 0.
 TEST(MediaDefects, EveryChannelHasItsOwnMeanCosine) {
-  const YamlScene scene(ray_job(20000, 1, R"(
+  const YamlScene scene(defect_job(20000, 1, R"(
 media: {fog: {scattering: 0.4, absorption: 0.1, g: [0.6, 0, -0.4]}}
 atmosphere: fog
 objects: {wall: {shape: rectangle, size: [9, 9], material: black, at: [0, 0, -4], transform: [{rotate_x: 90}]}}
 lights: {lamp: {type: point, at: [0, 1.2, 0.5], power: 100}}
 )"));
   const auto expected = [](double g) { return scattered_once(0.4, 0.5, g, 0.5, 4.0, -4.0); };
-  expect_picture_mean(scene, {expected(0.6), expected(0.0), expected(-0.4)}, kPromise);
+  expect_picture_mean(scene, {expected(0.6), expected(0.0), expected(-0.4)}, kDefectsPromise);
 }
 
 // Bodies within bodies, each of its own medium, one of them empty.
 TEST(MediaDefects, MediaStandWithinMedia) {
-  const YamlScene scene(ray_job(16, 16, R"(
+  const YamlScene scene(defect_job(16, 16, R"(
 media: {fog: {absorption: 0.05}, tea: {absorption: [0.1, 0.3, 0.2]}, ink: {absorption: [0.7, 0.2, 0.4]}}
 atmosphere: fog
 objects:
@@ -107,7 +108,7 @@ objects:
     return std::exp(-4.0 * 0.05 - 2.0 * tea - 1.5 * ink);
   };
   expect_picture_mean(scene, {expected(0.1, 0.7), expected(0.3, 0.2), expected(0.2, 0.4)},
-                      kPromise);
+                      kDefectsPromise);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ using core::Vec3d;
 
 /// An error of 1 % is found with probability 99 %, and at most one of a hundred runs of all the
 /// tests of this file fails by chance.
-constexpr Promise kPromise{
+constexpr Promise kMediaPromise{
     .significance = 0.01, .tests = 60, .relative_error = 0.01, .power = 0.99};
 
 /// A camera with next to no field of view that looks from (0, 0, 4) along -z, so that every pixel
@@ -50,14 +50,14 @@ objects: {slab: {shape: box, size: [3, 3, 1.5], material: air, interior: dye}}
 environment: {color: [1, 2, 3]}
 )"));
   expect_picture_mean(absorbing, {std::exp(-0.15), 2.0 * std::exp(-1.05), 3.0 * std::exp(-3.0)},
-                      kPromise);
+                      kMediaPromise);
   const YamlScene glowing(ray_job(16, 8, R"(
 units: cm
 media: {neon: {absorption: [0.1, 0.7, 2], emission: [2, 1, 3]}}
 objects: {slab: {shape: box, size: [3, 3, 1.5], material: air, interior: neon}}
 )"));
   const auto glow = [](double sigma) { return -std::expm1(-1.5 * sigma) / sigma; };
-  expect_picture_mean(glowing, {2.0 * glow(0.1), glow(0.7), 3.0 * glow(2.0)}, kPromise);
+  expect_picture_mean(glowing, {2.0 * glow(0.1), glow(0.7), 3.0 * glow(2.0)}, kMediaPromise);
 }
 
 // A lamp's light on paper, through two metres of coloured fog that only absorbs: the same with the
@@ -75,13 +75,16 @@ lights: {lamp: {type: point, at: [0, 3, 0], power: 50}}
     return radiance * Vec3d(std::exp(-0.1 * length), std::exp(-0.4 * length), 1.0);
   };
   expect_picture_mean(paper("media: {fog: {absorption: [0.1, 0.4, 0]}}\natmosphere: fog\nobjects:"),
-                      through(3.001), kPromise);
+                      through(3.001), kMediaPromise);
   const std::string fog = "media: {fog: {absorption: [0.1, 0.4, 0]}}\nobjects:\n";
   const std::string slab = "  slab: {shape: box, material: air, interior: fog, size: ";
-  expect_picture_mean(paper(fog + slab + "[4, 2, 4], at: [0, 1.5, 0]}"), through(2.0), kPromise);
-  expect_picture_mean(paper(fog + slab + "[4, 2, 4], at: [0, 3, 0]}"), through(1.0), kPromise);
-  expect_picture_mean(paper(fog + slab + "[4, 2, 4], at: [0, 0, 0]}"), through(1.001), kPromise);
-  expect_picture_mean(paper(fog + slab + "[4, 20, 4], at: [0, 0, 0]}"), through(3.001), kPromise);
+  expect_picture_mean(paper(fog + slab + "[4, 2, 4], at: [0, 1.5, 0]}"), through(2.0),
+                      kMediaPromise);
+  expect_picture_mean(paper(fog + slab + "[4, 2, 4], at: [0, 3, 0]}"), through(1.0), kMediaPromise);
+  expect_picture_mean(paper(fog + slab + "[4, 2, 4], at: [0, 0, 0]}"), through(1.001),
+                      kMediaPromise);
+  expect_picture_mean(paper(fog + slab + "[4, 20, 4], at: [0, 0, 0]}"), through(3.001),
+                      kMediaPromise);
 }
 
 // T8: light of a point lamp scattered once on its way into the eye, against quadrature along the
@@ -133,7 +136,7 @@ lights: {lamp: {type: point, at: [0, 1.2, 0.5], power: 100}}
           0.0, 8.0, 1e-9, 64);
     }
     SCOPED_TRACE(c.phase);
-    expect_picture_mean(scene, expected, kPromise);
+    expect_picture_mean(scene, expected, kMediaPromise);
   }
 }
 
@@ -157,7 +160,7 @@ objects:
 environment: {color: [1, 2, 0.5]}
 )");
     SCOPED_TRACE(surface);
-    expect_picture_mean(scene, {1.0, 2.0, 0.5}, kPromise);
+    expect_picture_mean(scene, {1.0, 2.0, 0.5}, kMediaPromise);
   }
 }
 
@@ -179,7 +182,7 @@ environment: {color: 1}
 )");
   const Replicates found = render_replicates(scene, 48, 8);
   EXPECT_EQ(found.bad_samples, 0U);
-  Promise promise = kPromise;
+  Promise promise = kMediaPromise;
   promise.relative_error = 0.045;
   for (const Moments& channel : found.picture) EXPECT_TRUE(mean_is(channel, 1.0, promise));
 }
@@ -234,7 +237,7 @@ lights: {sun: {type: sun, direction: [0.6, -0.8, 0], angle: 0, irradiance: 2}}
     ASSERT_NEAR(h.integral(), 2.0 / albedo[c] * (1.0 - std::sqrt(1.0 - albedo[c])), 1e-3);
     expected[c] = 2.0 * albedo[c] / (4.0 * M_PI) * mu0 / (mu + mu0) * h.at(mu) * h.at(mu0);
   }
-  expect_picture_mean(scene, expected, kPromise);
+  expect_picture_mean(scene, expected, kMediaPromise);
 }
 
 // Light is found by choosing a lamp and by chance; together they must count once, through media and
@@ -271,7 +274,7 @@ objects:
   hole: {shape: sphere, radius: 1, material: air}
 environment: {color: 1}
 )"));
-  expect_picture_mean(inside, {std::exp(-1.4), std::exp(-9.8), std::exp(-28.0)}, kPromise);
+  expect_picture_mean(inside, {std::exp(-1.4), std::exp(-9.8), std::exp(-28.0)}, kMediaPromise);
   const YamlScene glass(ray_job(16, 8, R"(
 media: {dye: {absorption: [0.1, 0.7, 2]}}
 atmosphere: dye
@@ -279,7 +282,7 @@ objects:
   ball: {shape: sphere, radius: 1, material: clear}
   lamp: {shape: rectangle, size: [9, 9], material: lamp, at: [0, 0, -4], transform: [{rotate_x: 90}], emit: {radiance: 1}}
 )"));
-  expect_picture_mean(glass, {std::exp(-0.6), std::exp(-4.2), std::exp(-12.0)}, kPromise);
+  expect_picture_mean(glass, {std::exp(-0.6), std::exp(-4.2), std::exp(-12.0)}, kMediaPromise);
 }
 
 }  // namespace

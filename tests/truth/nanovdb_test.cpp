@@ -15,7 +15,8 @@
 namespace hyades::test {
 namespace {
 
-constexpr Promise kPromise{.significance = 0.01, .tests = 2, .relative_error = 0.01, .power = 0.99};
+constexpr Promise kNanoVdbPromise{
+    .significance = 0.01, .tests = 2, .relative_error = 0.01, .power = 0.99};
 
 std::string job(const std::string& file, int samples, const std::string& camera,
                 const std::string& medium) {
@@ -59,7 +60,7 @@ TEST(NanoVdb, AbsorbsWhatItsNumbersSay) {
                     "absorption: [0.2, 0.5, 1]"),
                 1, {}, folder.path().string()),
       {std::exp(-0.2 * passed), 2.0 * std::exp(-0.5 * passed), 3.0 * std::exp(-1.0 * passed)},
-      kPromise);
+      kNanoVdbPromise);
 }
 
 // The same field in both kinds of files is the same picture, bit by bit.

@@ -84,7 +84,7 @@ const char* const kWater =
     "  water: {shape: box, size: [2, 2, 1.75], at: [0, 0, -1.125], material: water, interior: "
     "in-water";
 
-constexpr Promise kPromise{
+constexpr Promise kNestedPromise{
     .significance = 0.01, .tests = 24, .relative_error = 0.01, .power = 0.99};
 
 Vec3d through(const std::vector<Slab>& slabs) {
@@ -101,13 +101,13 @@ TEST(NestedBodies, PriorityDecidesWhereTheyOverlap) {
   const std::string glass = kGlass;
   const std::string water = kWater;
   expect_picture_mean(along_the_axis(glass + ", priority: 1}\n" + water + "}\n"), glass_first,
-                      kPromise);
+                      kNestedPromise);
   expect_picture_mean(along_the_axis(glass + "}\n" + water + ", priority: -2}\n"), glass_first,
-                      kPromise);
+                      kNestedPromise);
   expect_picture_mean(along_the_axis(glass + "}\n" + water + ", priority: 1}\n"), water_first,
-                      kPromise);
+                      kNestedPromise);
   // Of equal ones the smaller: the water is 2 x 2 x 1.75, the glass 3 x 3 x 1.
-  expect_picture_mean(along_the_axis(glass + "}\n" + water + "}\n"), water_first, kPromise);
+  expect_picture_mean(along_the_axis(glass + "}\n" + water + "}\n"), water_first, kNestedPromise);
 }
 
 TEST(NestedBodies, RefractAgainstWhatIsAroundThem) {
@@ -115,11 +115,12 @@ TEST(NestedBodies, RefractAgainstWhatIsAroundThem) {
       "  pond: {shape: box, size: [4, 4, 4], material: water, interior: in-water}\n";
   expect_picture_mean(along_the_axis(pond + kGlass + "}\n"),
                       through({{1.3, 1.5, kInWater}, {1.7, 1.0, kInGlass}, {1.3, 1.5, kInWater}}),
-                      kPromise);
+                      kNestedPromise);
   // A bubble of air.
   expect_picture_mean(
       along_the_axis(pond + "  bubble: {shape: box, size: [3, 3, 1], material: bubble}\n"),
-      through({{1.3, 1.5, kInWater}, {1.0, 1.0, Vec3d(0.0)}, {1.3, 1.5, kInWater}}), kPromise);
+      through({{1.3, 1.5, kInWater}, {1.0, 1.0, Vec3d(0.0)}, {1.3, 1.5, kInWater}}),
+      kNestedPromise);
 }
 
 // Radiance in water is that in air times the square of the index.
@@ -136,7 +137,7 @@ TEST(NestedBodies, AreSeenFromWithin) {
           "  pond: {shape: box, size: [4, 4, 4], material: water, interior: in-water}\n" +
               std::string(kGlass) + "}\n",
           "1.5"),
-      seen, kPromise);
+      seen, kNestedPromise);
 }
 
 // A body wholly within one of higher priority is as if it were not there: to paths, to light paths,

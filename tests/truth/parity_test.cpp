@@ -14,7 +14,7 @@
 namespace hyades::test {
 namespace {
 
-constexpr int kRuns = 24;
+constexpr int kParityRuns = 24;
 
 /// What is noticed in single pixels, relative to the picture's mean. In half of a scene's pixels it
 /// is at most 0.5, but for milk in a glass ball (1.0).
@@ -79,11 +79,12 @@ TEST_P(Parity, PathBdptAndMltAgree) {
                   .tests = 3 * 2 * static_cast<int>(all_scenes().size()),
                   .relative_error = scene.relative_error,
                   .power = 0.99};
-  const Replicates path = render_replicates(scene_with(scene, "path", scene.samples), kRuns, 6);
+  const Replicates path =
+      render_replicates(scene_with(scene, "path", scene.samples), kParityRuns, 6);
   {
     SCOPED_TRACE("bdpt");
     const Replicates bdpt =
-        render_replicates(scene_with(scene, "bdpt", scene.samples / 2), kRuns, 6);
+        render_replicates(scene_with(scene, "bdpt", scene.samples / 2), kParityRuns, 6);
     expect_same_picture(path, bdpt, promise);
     expect_same_pixels(path, bdpt, kPixelError);
   }
@@ -91,7 +92,8 @@ TEST_P(Parity, PathBdptAndMltAgree) {
     SCOPED_TRACE("mlt over " + std::string(scene.mlt_over));
     promise.relative_error *= 3.0;
     const Replicates mlt = render_replicates(
-        scene_with(scene, "mlt, over: " + std::string(scene.mlt_over), scene.samples), kRuns, 6);
+        scene_with(scene, "mlt, over: " + std::string(scene.mlt_over), scene.samples), kParityRuns,
+        6);
     expect_same_picture(path, mlt, promise);
     expect_same_pixels(path, mlt, kPixelError);
   }

@@ -37,7 +37,7 @@ objects:
   right: {shape: rectangle, size: [2, 2], material: white, transform: [{rotate_z: 90}], at: [1, 1, 0]}
 )";
 
-const std::string kLamp =
+const std::string kSquareLamp =
     "  lamp: {shape: sphere, radius: 0.2, at: [0.1, 1.4, 0], material: black, emit: {radiance: "
     "10}}\n";
 
@@ -67,8 +67,8 @@ environment: {color: 1}
 
 TEST(Path, RouletteDoesNotBias) {
   const auto with = [](const char* roulette) {
-    return kRoom + kLamp + "integrator: {type: path, max_depth: 64, roulette_depth: " + roulette +
-           "}\n";
+    return kRoom + kSquareLamp +
+           "integrator: {type: path, max_depth: 64, roulette_depth: " + roulette + "}\n";
   };
   EXPECT_TRUE(means_agree(over_seeds(with("1"), 75), over_seeds(with("64"), 75)));
 }
@@ -80,8 +80,8 @@ TEST(Path, NullSurfacesAreNotThere) {
       "  sheet: {shape: rectangle, size: [1.9, 1.9], at: [0, 0.7, 0], material: nothing}\n";
   std::string with_null = kRoom;
   with_null.insert(with_null.find("  black:"), "  nothing: {type: 'null'}\n");
-  EXPECT_TRUE(
-      means_agree(over_seeds(with_null + kLamp + shell, 75), over_seeds(kRoom + kLamp, 75)));
+  EXPECT_TRUE(means_agree(over_seeds(with_null + kSquareLamp + shell, 75),
+                          over_seeds(kRoom + kSquareLamp, 75)));
 }
 
 // T14: how a light's power is spread over lights changes the noise, not the picture.
@@ -101,7 +101,7 @@ TEST(Path, SplitLightsGiveTheSamePicture) {
 }
 
 TEST(Path, DepthZeroShowsLightsOnly) {
-  const YamlScene scene(kRoom + kLamp +
+  const YamlScene scene(kRoom + kSquareLamp +
                         "integrator: {type: path, max_depth: 0}\nsampling: {samples: 16}\n");
   const core::Image picture = scene.render().film.normalised();
   float brightest = 0.0F;
@@ -120,7 +120,7 @@ TEST(Path, ADeeperLimitAddsLight) {
   double before = 0.0;
   for (const char* depth : {"0", "1", "2", "4"}) {
     const double mean =
-        over_seeds(kRoom + kLamp + "integrator: {type: path, max_depth: " + depth + "}\n", 4)
+        over_seeds(kRoom + kSquareLamp + "integrator: {type: path, max_depth: " + depth + "}\n", 4)
             .mean();
     EXPECT_GT(mean, before * 1.02) << depth;
     before = mean;
@@ -128,8 +128,9 @@ TEST(Path, ADeeperLimitAddsLight) {
 }
 
 TEST(Path, ClampingTakesLightAwayAndOnlyOnRequest) {
-  const Moments exact = over_seeds(kRoom + kLamp, 8);
-  const Moments clamped = over_seeds(kRoom + kLamp + "integrator: {type: path, clamp: 0.05}\n", 8);
+  const Moments exact = over_seeds(kRoom + kSquareLamp, 8);
+  const Moments clamped =
+      over_seeds(kRoom + kSquareLamp + "integrator: {type: path, clamp: 0.05}\n", 8);
   EXPECT_LT(clamped.mean(), 0.95 * exact.mean());
 }
 

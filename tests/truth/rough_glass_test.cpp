@@ -31,13 +31,17 @@ environment: {color: 1}
 }
 
 /// An error of one percent of any ball is noticed with 99 %.
-const Promise kPromise{.tests = 15};
+const Promise kRoughGlassPromise{.tests = 15};
 
 TEST(RoughGlass, VanishesUnderAUniformSky) {
-  expect_picture_mean(ball("ior: 1.5, roughness: 0.3", "", 64), core::Vec3d(1.0), kPromise);
-  expect_picture_mean(ball("ior: 1.5, roughness: 0.6", "", 256), core::Vec3d(1.0), kPromise);
-  expect_picture_mean(ball("ior: 1.5, roughness: 1", "", 512), core::Vec3d(1.0), kPromise);
-  expect_picture_mean(ball("ior: 0.8, roughness: 0.7", "", 256), core::Vec3d(1.0), kPromise);
+  expect_picture_mean(ball("ior: 1.5, roughness: 0.3", "", 64), core::Vec3d(1.0),
+                      kRoughGlassPromise);
+  expect_picture_mean(ball("ior: 1.5, roughness: 0.6", "", 256), core::Vec3d(1.0),
+                      kRoughGlassPromise);
+  expect_picture_mean(ball("ior: 1.5, roughness: 1", "", 512), core::Vec3d(1.0),
+                      kRoughGlassPromise);
+  expect_picture_mean(ball("ior: 0.8, roughness: 0.7", "", 256), core::Vec3d(1.0),
+                      kRoughGlassPromise);
   const PictureMean smooth = picture_mean(ball("ior: 1.5", "", 16).render().film);
   EXPECT_NEAR(smooth.mean[0], 1.0, 1e-5);
 }
@@ -45,7 +49,7 @@ TEST(RoughGlass, VanishesUnderAUniformSky) {
 // Light in a white medium meets the surface from within many times before it is let out.
 TEST(RoughGlass, VanishesAroundAWhiteMedium) {
   expect_picture_mean(ball("ior: 1.5, roughness: 0.6", ", interior: white", 256), core::Vec3d(1.0),
-                      kPromise);
+                      kRoughGlassPromise);
 }
 
 // Where indices are equal there is nothing to be seen, however rough: every path brings 1.

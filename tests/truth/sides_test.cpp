@@ -12,29 +12,29 @@ namespace {
 
 using core::Vec3d;
 
-constexpr const char* kIntegrators[] = {"path", "bdpt", "mlt", "{type: mlt, over: path}"};
+constexpr const char* kSidesIntegrators[] = {"path", "bdpt", "mlt", "{type: mlt, over: path}"};
 
-constexpr Promise kPromise{
+constexpr Promise kSidesPromise{
     .significance = 0.01, .tests = 3 * 4 * 6, .relative_error = 0.02, .power = 0.99};
 
 /// Chains have most of their error in common to all of a picture: a larger one is noticed, by as
 /// many samples in several pictures.
-constexpr int kRunsOfChains = 16;
-constexpr Promise kPromiseOfChains{
+constexpr int kSidesChains = 16;
+constexpr Promise kSidesPromiseOfChains{
     .significance = 0.01, .tests = 3 * 4 * 6, .relative_error = 0.04, .power = 0.99};
 
-void expect_mean(const std::string& text, const Vec3d& expected, int samples = 700) {
-  for (const char* integrator : kIntegrators) {
+void expect_sides_mean(const std::string& text, const Vec3d& expected, int samples = 700) {
+  for (const char* integrator : kSidesIntegrators) {
     SCOPED_TRACE(integrator);
     const bool chains = std::string(integrator).find("mlt") != std::string::npos;
     const YamlScene scene("hyades: 1\nname: sides\nfilm: {size: [16, 16]}\nsampling: {samples: " +
-                          std::to_string(chains ? samples / kRunsOfChains : samples) +
+                          std::to_string(chains ? samples / kSidesChains : samples) +
                           ", seed: 3, sampler: independent}\nintegrator: " + integrator + "\n" +
                           text);
     if (chains) {
-      expect_mean_of_runs(scene, kRunsOfChains, expected, kPromiseOfChains);
+      expect_mean_of_runs(scene, kSidesChains, expected, kSidesPromiseOfChains);
     } else {
-      expect_picture_mean(scene, expected, kPromise);
+      expect_picture_mean(scene, expected, kSidesPromise);
     }
   }
 }
@@ -51,10 +51,10 @@ std::string sheet(const std::string& keys, bool front) {
 
 TEST(Sides, OfASheetBeforeAnEvenSkyTheCameraSeesTheFrontOnly) {
   const Vec3d matt = 2.0 * Vec3d(0.8, 0.5, 0.2);
-  expect_mean(sheet("sides: front", true), matt);
-  expect_mean(sheet("sides: front", false), Vec3d(2.0));
-  expect_mean(sheet("sides: both", false), matt);
-  expect_mean(sheet("sides: front, opacity: 0.3", true), 0.3 * matt + 0.7 * Vec3d(2.0), 1600);
+  expect_sides_mean(sheet("sides: front", true), matt);
+  expect_sides_mean(sheet("sides: front", false), Vec3d(2.0));
+  expect_sides_mean(sheet("sides: both", false), matt);
+  expect_sides_mean(sheet("sides: front, opacity: 0.3", true), 0.3 * matt + 0.7 * Vec3d(2.0), 1600);
 }
 
 /// A closed room of walls that shine and face inwards, below a bright sky that does not get in: of
@@ -71,7 +71,7 @@ TEST(Sides, ARoomIsSeenThroughItsWallsAndKeepsTheSkyOut) {
     walls += "  w" + std::to_string(walls.size()) + ": {shape: rectangle, size: [2, 2], " + turn +
              ", material: wall, emit: {radiance: 1}}\n";
   }
-  expect_mean(
+  expect_sides_mean(
       "camera: {look_from: [0, 0, 5], look_at: [0, 0, 0], fov: 20}\n"
       "materials: {wall: {type: lambert, color: 0.5, sides: front}}\nobjects:\n" +
           walls + "environment: {color: 50}\n",
@@ -82,15 +82,16 @@ TEST(Sides, ARoomIsSeenThroughItsWallsAndKeepsTheSkyOut) {
 /// of 10 W/(m^2 sr), which is not seen from above, lights the floor that the camera sees through
 /// it.
 TEST(Sides, ALampIsNotSeenFromBehindButLights) {
-  expect_mean(R"(
+  expect_sides_mean(R"(
 camera: {look_from: [0, 8, 0], look_at: [0, 0, 0], up: [0, 0, -1], fov: 0.1}
 materials: {floor: {type: lambert, color: 0.5}, lamp: {type: black, sides: front}}
 objects:
   floor: {shape: rectangle, size: [0.1, 0.1], material: floor}
   lamp: {shape: rectangle, size: [0.1, 0.1], transform: [{rotate_x: 180}], at: [0, 4, 0], material: lamp, emit: {radiance: 10, two_sided: true}}
 )",
-              // h^2 / (h^2 + r^2)^2 over the lamp, to the first order of its r^2: 0.01 / 6.
-              Vec3d(0.5 / M_PI * 10.0 * 0.01 / 16.0 * (1.0 - 2.0 * (0.01 / 6.0) / 16.0)), 1024);
+                    // h^2 / (h^2 + r^2)^2 over the lamp, to the first order of its r^2: 0.01 / 6.
+                    Vec3d(0.5 / M_PI * 10.0 * 0.01 / 16.0 * (1.0 - 2.0 * (0.01 / 6.0) / 16.0)),
+                    1024);
 }
 
 }  // namespace

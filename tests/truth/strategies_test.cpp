@@ -13,7 +13,7 @@
 namespace hyades::test {
 namespace {
 
-constexpr int kRuns = 16;
+constexpr int kStrategyRuns = 16;
 
 /// A large lamp, which camera paths meet by chance, and things that do not touch: where they do,
 /// the light between places that are next to each other has no variance that a test could go by.
@@ -47,15 +47,15 @@ void expect_strategies_agree(const YamlScene& scene, int events, int first, int 
                              const Promise& promise) {
   core::IntegratorDesc desc = only(scene.job().integrator, events);
   desc.type = "path";
-  const Replicates path = render_replicates(scene, desc, kRuns, 4);
+  const Replicates path = render_replicates(scene, desc, kStrategyRuns, 4);
   desc.type = "bdpt";
-  expect_same_picture(path, render_replicates(scene, desc, kRuns, 4), promise);
+  expect_same_picture(path, render_replicates(scene, desc, kStrategyRuns, 4), promise);
   desc.mis = false;
   for (int s = first; s <= last; ++s) {
     desc.light_vertices = s;
     desc.camera_vertices = events + 2 - s;
     SCOPED_TRACE("s = " + std::to_string(s) + ", t = " + std::to_string(events + 2 - s));
-    expect_same_picture(path, render_replicates(scene, desc, kRuns, 4), promise);
+    expect_same_picture(path, render_replicates(scene, desc, kStrategyRuns, 4), promise);
   }
 }
 

@@ -18,7 +18,7 @@ using core::Vec3d;
 
 /// An error of 1 % is found with probability 99 %, and at most one of a hundred runs of all the
 /// tests of this file fails by chance.
-constexpr Promise kPromise{
+constexpr Promise kVaryingPromise{
     .significance = 0.01, .tests = 30, .relative_error = 0.01, .power = 0.99};
 
 std::string job(int samples, int max_depth, const std::string& camera, const std::string& rest) {
@@ -52,7 +52,7 @@ environment: {color: [1, 2, 3]}
     return sky * std::exp(-1.5 * sigma) - glow * std::expm1(-1.5 * sigma) / sigma;
   };
   expect_picture_mean(scene, {expected(0.1, 1, 2), expected(0.7, 2, 1), expected(2.0, 3, 3)},
-                      kPromise);
+                      kVaryingPromise);
 }
 
 // T9: the same picture of a lamp in a homogeneous body and in one of even density, with channels
@@ -71,7 +71,7 @@ environment: {color: [1, 0, 0]}
   };
   const PictureMean even = lit(kEven);
   const PictureMean homogeneous = lit("emission: 0");
-  const double alpha = sidak(kPromise.significance, kPromise.tests);
+  const double alpha = sidak(kVaryingPromise.significance, kVaryingPromise.tests);
   for (int c = 0; c < 3; ++c) {
     const double variance =
         even.sigma[c] * even.sigma[c] + homogeneous.sigma[c] * homogeneous.sigma[c];
@@ -92,7 +92,7 @@ objects:
   can: {shape: cylinder, radius: 0.3, height: 0.8, at: [0.8, -0.4, 0.5], material: air, interior: cloud}
 environment: {color: [1, 2, 0.5]}
 )"));
-  expect_picture_mean(scene, {1.0, 2.0, 0.5}, kPromise);
+  expect_picture_mean(scene, {1.0, 2.0, 0.5}, kVaryingPromise);
 }
 
 // A .vdb where the file says it is: along an axis the integral of interpolated values is their sum.
@@ -116,7 +116,7 @@ environment: {color: [1, 2, 3]}
   expect_mean_by_path_and_bdpt(
       YamlScene(job_of("absorption: [0.2, 0.5, 1], " + density), 1, {}, folder.path().string()),
       {std::exp(-0.2 * passed), 2.0 * std::exp(-0.5 * passed), 3.0 * std::exp(-1.0 * passed)},
-      kPromise);
+      kVaryingPromise);
   // 19 cells of 3000 K, and one at each end over which the temperature falls to 0.
   Vec3d glow = 1.9 * 16.0 * Vec3d(core::blackbody_color(3000.0F));
   for (int i = 0; i < 1000; ++i) {
@@ -128,7 +128,7 @@ environment: {color: [1, 2, 3]}
   expect_mean_by_path_and_bdpt(
       YamlScene(job_of("emission: {temperature: heat, kelvin: 3000, strength: 0.05}, " + density),
                 1, {}, folder.path().string()),
-      Vec3d(1.0, 2.0, 3.0) + 0.05 * glow, kPromise);
+      Vec3d(1.0, 2.0, 3.0) + 0.05 * glow, kVaryingPromise);
 }
 
 // A sky wrapped around nothing: glowing and scattering white, it does not darken a uniform sky.
@@ -140,7 +140,7 @@ objects:
   ball: {shape: sphere, radius: 1, material: air, interior: sky}
 environment: {color: [1, 2, 0.5]}
 )"));
-  expect_picture_mean(scene, {1.0, 2.0, 0.5}, kPromise);
+  expect_picture_mean(scene, {1.0, 2.0, 0.5}, kVaryingPromise);
 }
 
 }  // namespace

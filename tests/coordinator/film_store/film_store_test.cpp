@@ -12,7 +12,7 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint32_t kSamples = 16;
+constexpr uint32_t kFilmSamples = 16;
 
 /// A film store on files in memory, and somebody who merges what is durable.
 class Kept final : public FilmStore::Owner {
@@ -27,7 +27,7 @@ class Kept final : public FilmStore::Owner {
   bool keep(int32_t frame, const core::PixelRect& tile) {
     const RecordId record{++records_};
     const core::Unit unit{frame, tile, {0, 1}};
-    film_store_.append_rendered(record, {{}, {unit, {}, {}}}, fake_film(unit, kSamples));
+    film_store_.append_rendered(record, {{}, {unit, {}, {}}}, fake_film(unit, kFilmSamples));
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::seconds(20),
                              [&] { return durable_.contains(record); });
@@ -37,7 +37,7 @@ class Kept final : public FilmStore::Owner {
   bool is_told_of_trouble(int32_t frame, const core::PixelRect& tile) {
     const core::Unit unit{frame, tile, {0, 1}};
     film_store_.append_rendered(RecordId{++records_}, {{}, {unit, {}, {}}},
-                                fake_film(unit, kSamples));
+                                fake_film(unit, kFilmSamples));
     std::unique_lock lock(mutex_);
     const bool told = changed_.wait_for(lock, std::chrono::seconds(20), [&] { return told_ > 0; });
     told_ = 0;
@@ -68,7 +68,7 @@ class Kept final : public FilmStore::Owner {
   void drained() override {}
 
  private:
-  static FilmSet films() { return {{1, 2}, {0, 0, 64, 16}, kSamples, 1}; }
+  static FilmSet films() { return {{1, 2}, {0, 0, 64, 16}, kFilmSamples, 1}; }
   static FilmStoreOptions log(FaultyFiles& files, Duration patience) {
     FilmStoreOptions log;
     log.patience = patience;

@@ -21,9 +21,9 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr Duration kLong = seconds(60);
+constexpr Duration kLongWait = seconds(60);
 
-LocalPlan small_plan() {
+LocalPlan plan_to_resume() {
   LocalPlan plan;
   plan.frames = {1, 2, 3, 4};
   plan.region = {0, 0, 40, 40};
@@ -61,7 +61,7 @@ bool run_for(const LocalPlan& plan, const FilmStoreOptions& log, FakeRender& ren
   if (!started) return false;
   EXPECT_THAT(run.log_problems(), testing::IsEmpty());
   if (!run.wait_for(stop_after)) run.stop();
-  EXPECT_TRUE(run.wait_for(kLong));
+  EXPECT_TRUE(run.wait_for(kLongWait));
   EXPECT_EQ(run.outcome().error, "");
   return run.outcome().complete;
 }
@@ -77,7 +77,7 @@ std::string refusal(const LocalPlan& plan, const FilmStoreOptions& log, FakeRend
 TEST(Resume, TenInterruptionsChangeNoBit) {
   for (const uint64_t compact_bytes : {uint64_t{1} << 30U, uint64_t{10'000}}) {
     test::TempFolder folder;
-    LocalPlan plan = small_plan();
+    LocalPlan plan = plan_to_resume();
     FakeRender render(plan.samples);
     render.unit_delay = milliseconds(4);
     int runs = 0;
@@ -89,7 +89,7 @@ TEST(Resume, TenInterruptionsChangeNoBit) {
       plan.tile_size = 16 + runs % 5;
       FilmStoreOptions log = log_in(folder.file("log"), runs > 0);
       log.compact_bytes = compact_bytes;
-      complete = run_for(plan, log, render, runs < 10 ? milliseconds(20) : kLong);
+      complete = run_for(plan, log, render, runs < 10 ? milliseconds(20) : kLongWait);
     }
     EXPECT_GE(runs, 11) << "it was too quick to be interrupted ten times";
     expect_the_truth(plan, render);
@@ -101,7 +101,7 @@ TEST(Resume, TenInterruptionsChangeNoBit) {
 TEST(Resume, InterruptionsChangeNoBitOfFilmsWithSplats) {
   for (const uint64_t compact_bytes : {uint64_t{1} << 30U, uint64_t{10'000}}) {
     test::TempFolder folder;
-    LocalPlan plan = small_plan();
+    LocalPlan plan = plan_to_resume();
     FakeRender render(plan.samples);
     // What is rendered is a part of what the job renders, as with --crop.
     render.splat_region = {0, 0, 50, 44};
@@ -112,7 +112,7 @@ TEST(Resume, InterruptionsChangeNoBitOfFilmsWithSplats) {
       plan.threads = 1 + runs % 3;
       FilmStoreOptions log = log_in(folder.file("log"), runs > 0);
       log.compact_bytes = compact_bytes;
-      complete = run_for(plan, log, render, runs < 10 ? milliseconds(20) : kLong);
+      complete = run_for(plan, log, render, runs < 10 ? milliseconds(20) : kLongWait);
     }
     EXPECT_GE(runs, 11) << "it was too quick to be interrupted ten times";
     expect_the_truth(plan, render);
@@ -122,68 +122,68 @@ TEST(Resume, InterruptionsChangeNoBitOfFilmsWithSplats) {
 
 TEST(Resume, FinishedFramesAreNotRenderedAgain) {
   test::TempFolder folder;
-  const LocalPlan plan = small_plan();
+  const LocalPlan plan = plan_to_resume();
   FakeRender render(plan.samples);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
   const uint64_t units = render.units();
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLongWait));
   EXPECT_EQ(render.units(), units);
   render.lose_output(2);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLongWait));
   EXPECT_EQ(render.units(), units + units / 4);
   expect_the_truth(plan, render);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLongWait));
   EXPECT_EQ(render.units(), units + units / 4);
 }
 
 TEST(Resume, AFrameBegunAgainBecauseItsOutputIsGoneIsResumedToo) {
   test::TempFolder folder;
-  LocalPlan plan = small_plan();
+  LocalPlan plan = plan_to_resume();
   plan.frames = {1};
   FakeRender render(plan.samples);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
   render.lose_output(1);
   render.unit_delay = milliseconds(10);
   ASSERT_FALSE(run_for(plan, log_in(folder.file("log"), true), render, milliseconds(70)));
   const uint64_t units = render.units();
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLongWait));
   EXPECT_LT(render.units(), units + 27) << "nothing was kept";
   expect_the_truth(plan, render);
 }
 
 TEST(Resume, AFrameWhoseOutputCouldNotBeWrittenIsOnlyFinishedAgain) {
   test::TempFolder folder;
-  LocalPlan plan = small_plan();
+  LocalPlan plan = plan_to_resume();
   plan.frames = {1, 2};
   FakeRender render(plan.samples);
   render.finish_fault = [](int32_t) -> core::Status { return core::Error{"no such folder"}; };
   FilmStoreOptions log = log_in(folder.file("log"), false);
   log.compact_bytes = 1000;
-  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  ASSERT_TRUE(run_for(plan, log, render, kLongWait));
   EXPECT_TRUE(render.digests().empty());
   const uint64_t units = render.units();
   render.finish_fault = nullptr;
   log.resume = true;
-  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  ASSERT_TRUE(run_for(plan, log, render, kLongWait));
   EXPECT_EQ(render.units(), units);
   expect_the_truth(plan, render);
 }
 
 TEST(Resume, WithoutResumeItBeginsAfresh) {
   test::TempFolder folder;
-  const LocalPlan plan = small_plan();
+  const LocalPlan plan = plan_to_resume();
   FakeRender render(plan.samples);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
   const uint64_t units = render.units();
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
   EXPECT_EQ(render.units(), 2 * units);
 }
 
 TEST(Resume, AnotherJobsFilmsAreRefused) {
   test::TempFolder folder;
-  LocalPlan plan = small_plan();
+  LocalPlan plan = plan_to_resume();
   FakeRender render(plan.samples);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
   FilmStoreOptions other = log_in(folder.file("log"), true);
   other.frame_key = [](int32_t frame) { return core::sha256("others " + std::to_string(frame)); };
   EXPECT_THAT(refusal(plan, other, render), testing::HasSubstr("frame 1 are of another picture"));
@@ -196,18 +196,18 @@ TEST(Resume, AnotherJobsFilmsAreRefused) {
 void render_without_outputs(const LocalPlan& plan, const FilmStoreOptions& log,
                             FakeRender& render) {
   render.finish_fault = [](int32_t) -> core::Status { return core::Error{"no such folder"}; };
-  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  ASSERT_TRUE(run_for(plan, log, render, kLongWait));
   render.finish_fault = nullptr;
 }
 
 TEST(Resume, OnlyTheFramesAskedForMustBeOfTheSamePixels) {
   for (const bool finished : {false, true}) {
     test::TempFolder folder;
-    LocalPlan plan = small_plan();
+    LocalPlan plan = plan_to_resume();
     plan.frames = {1, 2};
     FakeRender render(plan.samples);
     if (finished) {
-      ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+      ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
     } else {
       render_without_outputs(plan, log_in(folder.file("log"), false), render);
     }
@@ -219,7 +219,7 @@ TEST(Resume, OnlyTheFramesAskedForMustBeOfTheSamePixels) {
     EXPECT_THAT(refusal(plan, changed, render),
                 testing::HasSubstr("frame 2 are of another picture"));
     plan.frames = {1, 3};
-    ASSERT_TRUE(run_for(plan, changed, render, kLong));
+    ASSERT_TRUE(run_for(plan, changed, render, kLongWait));
     EXPECT_EQ(render.units(), units + units / 2) << "frame 1 was there";
     expect_the_truth(plan, render);
   }
@@ -228,7 +228,7 @@ TEST(Resume, OnlyTheFramesAskedForMustBeOfTheSamePixels) {
 TEST(Resume, AnotherCropKeepsTheTilesThatItShares) {
   for (const uint64_t compact_bytes : {uint64_t{1} << 30U, uint64_t{10'000}}) {
     test::TempFolder folder;
-    LocalPlan plan = small_plan();
+    LocalPlan plan = plan_to_resume();
     plan.frames = {1, 2};
     FakeRender render(plan.samples);
     FilmStoreOptions log = log_in(folder.file("log"), false);
@@ -240,7 +240,7 @@ TEST(Resume, AnotherCropKeepsTheTilesThatItShares) {
       plan.region = region;
       render_without_outputs(plan, log, render);
       const uint64_t units = render.units() - before;
-      EXPECT_TRUE(run_for(plan, log, render, kLong));
+      EXPECT_TRUE(run_for(plan, log, render, kLongWait));
       EXPECT_EQ(render.units(), before + units) << "only outputs were missing";
       expect_the_truth(plan, render);
       return units;
@@ -259,7 +259,7 @@ TEST(Resume, AnotherCropKeepsTheTilesThatItShares) {
 
 TEST(Resume, FilmsWithSplatsAreOfNoUseToAnotherCrop) {
   test::TempFolder folder;
-  LocalPlan plan = small_plan();
+  LocalPlan plan = plan_to_resume();
   plan.frames = {1};
   FakeRender render(plan.samples);
   render.splat_region = {0, 0, 48, 48};
@@ -271,39 +271,39 @@ TEST(Resume, FilmsWithSplatsAreOfNoUseToAnotherCrop) {
   render_without_outputs(plan, log, render);
   EXPECT_EQ(render.units(), before + uint64_t{2 * 3});
   before = render.units();
-  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  ASSERT_TRUE(run_for(plan, log, render, kLongWait));
   EXPECT_EQ(render.units(), before) << "only outputs were missing";
   expect_the_truth(plan, render);
   // The films of the first run are still there.
-  plan.region = small_plan().region;
-  ASSERT_TRUE(run_for(plan, log, render, kLong));
+  plan.region = plan_to_resume().region;
+  ASSERT_TRUE(run_for(plan, log, render, kLongWait));
   EXPECT_EQ(render.units(), before);
   expect_the_truth(plan, render);
 }
 
 TEST(Resume, AFrameFinishedForAnotherCropIsNotTakenForThisOne) {
   test::TempFolder folder;
-  LocalPlan plan = small_plan();
+  LocalPlan plan = plan_to_resume();
   plan.frames = {1};
   FakeRender render(plan.samples);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
   for (const core::PixelRect region :
        {core::PixelRect{0, 0, 20, 20}, core::PixelRect{0, 0, 40, 40}}) {
     plan.region = region;
-    ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLong));
+    ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLongWait));
     expect_the_truth(plan, render);
   }
 }
 
 TEST(Resume, MoreFramesCanBeAskedForLater) {
   test::TempFolder folder;
-  LocalPlan plan = small_plan();
+  LocalPlan plan = plan_to_resume();
   plan.frames = {1, 2};
   FakeRender render(plan.samples);
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), false), render, kLongWait));
   const uint64_t units = render.units();
   plan.frames = {1, 2, 3};
-  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLong));
+  ASSERT_TRUE(run_for(plan, log_in(folder.file("log"), true), render, kLongWait));
   EXPECT_EQ(render.units(), units + units / 2);
   expect_the_truth(plan, render);
 }
@@ -329,7 +329,7 @@ class FileSink final : public FrameSink {
 
 TEST(Resume, KilledAtRandomAgainAndAgain) {
   test::TempFolder folder;
-  LocalPlan plan = small_plan();
+  LocalPlan plan = plan_to_resume();
   plan.frames = {1, 2, 3};
   FileSink sink(folder.path().string());
   std::mt19937 random(20);
@@ -346,7 +346,7 @@ TEST(Resume, KilledAtRandomAgainAndAgain) {
       bool ended = false;
       {
         LocalRun run(plan, log, render, sink);
-        ended = run.start().ok() && run.wait_for(kLong) && run.outcome().complete;
+        ended = run.start().ok() && run.wait_for(kLongWait) && run.outcome().complete;
       }
       ::_exit(ended ? 0 : 1);
     }
@@ -381,7 +381,7 @@ FilmStoreOptions log_on(FaultyFiles& files) {
 }
 
 TEST(Resume, LostPowerCostsRenderingNeverBits) {
-  const LocalPlan plan = small_plan();
+  const LocalPlan plan = plan_to_resume();
   for (uint32_t seed = 1; seed <= 12; ++seed) {
     std::mt19937 random(seed);
     FaultyFiles files;
@@ -395,7 +395,7 @@ TEST(Resume, LostPowerCostsRenderingNeverBits) {
         log.patience = milliseconds(20);
         LocalRun run(plan, log, render, render);
         if (run.start()) {
-          ASSERT_TRUE(run.wait_for(kLong)) << "seed " << seed;
+          ASSERT_TRUE(run.wait_for(kLongWait)) << "seed " << seed;
           complete = run.outcome().complete;
         }
       }
@@ -404,14 +404,14 @@ TEST(Resume, LostPowerCostsRenderingNeverBits) {
     LocalRun run(plan, log_on(files), render, render);
     const core::Status started = run.start();
     ASSERT_TRUE(started) << "seed " << seed << ": " << started.error().message;
-    ASSERT_TRUE(run.wait_for(kLong));
+    ASSERT_TRUE(run.wait_for(kLongWait));
     EXPECT_TRUE(run.outcome().complete) << "seed " << seed << ": " << run.outcome().error;
     expect_the_truth(plan, render);
   }
 }
 
 TEST(Resume, AFullDiskHoldsTheRunUntilThereIsRoom) {
-  const LocalPlan plan = small_plan();
+  const LocalPlan plan = plan_to_resume();
   FaultyFiles files;
   FakeRender render(plan.samples);
   FilmStoreOptions log = log_on(files);
@@ -423,14 +423,14 @@ TEST(Resume, AFullDiskHoldsTheRunUntilThereIsRoom) {
   EXPECT_THAT(run.progress().trouble, testing::HasSubstr("no space left"));
   EXPECT_FALSE(run.wait_for(milliseconds(20)));
   files.set_capacity(UINT64_MAX);
-  ASSERT_TRUE(run.wait_for(kLong));
+  ASSERT_TRUE(run.wait_for(kLongWait));
   EXPECT_TRUE(run.outcome().complete);
   EXPECT_EQ(run.progress().trouble, "");
   expect_the_truth(plan, render);
 }
 
 TEST(Resume, ADiskThatStaysFullEndsTheRunWithTheReason) {
-  const LocalPlan plan = small_plan();
+  const LocalPlan plan = plan_to_resume();
   FaultyFiles files;
   FakeRender render(plan.samples);
   FilmStoreOptions log = log_on(files);
@@ -439,14 +439,14 @@ TEST(Resume, ADiskThatStaysFullEndsTheRunWithTheReason) {
   {
     LocalRun run(plan, log, render, render);
     ASSERT_TRUE(run.start());
-    ASSERT_TRUE(run.wait_for(kLong));
+    ASSERT_TRUE(run.wait_for(kLongWait));
     EXPECT_FALSE(run.outcome().complete);
     EXPECT_THAT(run.outcome().error, testing::HasSubstr("no space left"));
   }
   files.set_capacity(UINT64_MAX);
   LocalRun run(plan, log, render, render);
   ASSERT_TRUE(run.start());
-  ASSERT_TRUE(run.wait_for(kLong));
+  ASSERT_TRUE(run.wait_for(kLongWait));
   EXPECT_TRUE(run.outcome().complete);
   expect_the_truth(plan, render);
 }

@@ -11,7 +11,7 @@ using Bench = SchedulerBench;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr WorkerId kCarl{3};
+constexpr WorkerId kCleo{3};
 
 /// Frames of 20 batches of a second each, one unit each.
 JobPlan frames(std::vector<int32_t> numbers) {
@@ -50,8 +50,8 @@ TEST(Scenes, AWorkerBeginsWithAFrameThatHasRoomForIt) {
   EXPECT_EQ(b.ask(kAnna).units[0].frame, 1) << "she has it";
   b.join(kBert);
   EXPECT_EQ(b.ask(kBert).units[0].frame, 2) << "19 seconds are no work for two who load for five";
-  b.join(kCarl);
-  EXPECT_EQ(b.ask(kCarl).units[0].frame, 3);
+  b.join(kCleo);
+  EXPECT_EQ(b.ask(kCleo).units[0].frame, 3);
 }
 
 TEST(Scenes, WhereScenesTakeNoTimeAllGoToTheFirstFrame) {

@@ -19,7 +19,7 @@
 namespace hyades::core {
 namespace {
 
-std::span<const std::byte> bytes_of(std::string_view text) {
+std::span<const std::byte> text_bytes(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
@@ -30,8 +30,8 @@ TEST(PosixFile, WhatIsWrittenIsReadAgain) {
     const Descriptor file = open_file(path, O_WRONLY | O_CREAT | O_EXCL, 0600);
     ASSERT_TRUE(file.valid());
     EXPECT_NE(::fcntl(file.get(), F_GETFD) & FD_CLOEXEC, 0);
-    EXPECT_TRUE(write_all(file.get(), bytes_of("a file of words")));
-    EXPECT_TRUE(write_all_at(file.get(), bytes_of("page"), 2));
+    EXPECT_TRUE(write_all(file.get(), text_bytes("a file of words")));
+    EXPECT_TRUE(write_all_at(file.get(), text_bytes("page"), 2));
   }
   const Descriptor file = open_file(path, O_RDONLY);
   std::vector<std::byte> read(100);
@@ -51,7 +51,7 @@ TEST(PosixFile, FailuresSayWhyInErrno) {
   EXPECT_FALSE(read_all(file.get(), read));
   EXPECT_EQ(errno, EBADF);
   const Descriptor again = open_file(folder.file("file"), O_RDONLY);
-  EXPECT_FALSE(write_all(again.get(), bytes_of("words")));
+  EXPECT_FALSE(write_all(again.get(), text_bytes("words")));
   EXPECT_EQ(errno, EBADF);
 }
 

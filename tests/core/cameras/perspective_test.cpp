@@ -24,7 +24,7 @@ std::unique_ptr<Camera> still(const CameraPose& pose, Vec2i resolution, int blad
   return make_perspective_camera({pose}, resolution, {blades, 0.0F});
 }
 
-void expect_near(const Vec3& a, const Vec3& b, float tolerance) {
+void expect_close_vectors(const Vec3& a, const Vec3& b, float tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
   EXPECT_NEAR(a.z, b.z, tolerance);
@@ -35,8 +35,8 @@ bool is_unit(const Vec3& v) { return std::abs(glm::dot(v, v) - 1.0F) < 1e-5F; }
 TEST(PerspectiveCamera, LooksFromItsPlaceAtItsTarget) {
   const auto camera = still(pose_at({1, 2, 3}, {4, 2, -1}), {640, 480});
   const Ray ray = camera->generate({320, 240}, {0.3F, 0.9F}, 0.25F);
-  expect_near(ray.origin, {1, 2, 3}, 0.0F);
-  expect_near(ray.direction, {0.6F, 0, -0.8F}, 1e-6F);
+  expect_close_vectors(ray.origin, {1, 2, 3}, 0.0F);
+  expect_close_vectors(ray.direction, {0.6F, 0, -0.8F}, 1e-6F);
   EXPECT_EQ(ray.time, 0.25F);
   EXPECT_EQ(ray.t_max, kInfinity);
 }
@@ -92,7 +92,7 @@ TEST(PerspectiveCamera, LensRaysMeetInThePlaneOfFocus) {
       EXPECT_NEAR(glm::dot(ray.origin - pose.from, pose.at - pose.from), 0.0F, 1e-5F);
       widest = std::max(widest, offset);
       const Vec3 to_focus = focus - ray.origin;
-      expect_near(glm::normalize(to_focus), ray.direction, 2e-6F);
+      expect_close_vectors(glm::normalize(to_focus), ray.direction, 2e-6F);
     }
     EXPECT_GT(widest, 0.2F);
   }
@@ -151,7 +151,7 @@ TEST(PerspectiveCamera, FocusAtInfinityGivesParallelRays) {
   const Ray a = camera->generate({20, 30}, {0.1F, 0.2F}, 0.0F);
   const Ray b = camera->generate({20, 30}, {0.8F, 0.7F}, 0.0F);
   EXPECT_GT(glm::length(a.origin - b.origin), 0.1F);
-  expect_near(a.direction, b.direction, 0.0F);
+  expect_close_vectors(a.direction, b.direction, 0.0F);
 }
 
 TEST(PerspectiveCamera, MovesThroughItsPosesWithinTheShutter) {
@@ -161,11 +161,11 @@ TEST(PerspectiveCamera, MovesThroughItsPosesWithinTheShutter) {
   c.fov = 80.0F * kDegree;
   const auto camera = make_perspective_camera({a, b, c}, {100, 100}, {});
   const auto origin = [&](float time) { return camera->generate({50, 50}, {0, 0}, time).origin; };
-  expect_near(origin(0.0F), {0, 0, 0}, 0.0F);
-  expect_near(origin(0.25F), {1, 0, 0}, 1e-6F);
-  expect_near(origin(0.5F), {2, 0, 0}, 1e-6F);
-  expect_near(origin(0.75F), {2, 2, 0}, 1e-6F);
-  expect_near(origin(1.0F), {2, 4, 0}, 1e-6F);
+  expect_close_vectors(origin(0.0F), {0, 0, 0}, 0.0F);
+  expect_close_vectors(origin(0.25F), {1, 0, 0}, 1e-6F);
+  expect_close_vectors(origin(0.5F), {2, 0, 0}, 1e-6F);
+  expect_close_vectors(origin(0.75F), {2, 2, 0}, 1e-6F);
+  expect_close_vectors(origin(1.0F), {2, 4, 0}, 1e-6F);
   const Ray top = camera->generate({50, 0}, {0, 0}, 0.75F);
   EXPECT_NEAR(top.direction.y / -top.direction.z, std::tan(30.0F * kDegree), 1e-5F);
   EXPECT_NEAR(camera->depth_of({1, 7, -3}, 0.3F), 3.0F, 1e-6F);
@@ -173,12 +173,13 @@ TEST(PerspectiveCamera, MovesThroughItsPosesWithinTheShutter) {
 
 TEST(PerspectiveCamera, FallsBackWhereAPoseSaysTooLittle) {
   CameraPose nowhere = pose_at({1, 1, 1}, {1, 1, 1});
-  expect_near(still(nowhere, {10, 10})->generate({5, 5}, {0, 0}, 0).direction, {0, 0, -1}, 0.0F);
+  expect_close_vectors(still(nowhere, {10, 10})->generate({5, 5}, {0, 0}, 0).direction, {0, 0, -1},
+                       0.0F);
 
   // Straight down and up: +x stays on the right.
   for (const float y : {-1.0F, 1.0F}) {
     const auto camera = still(pose_at({0, 0, 0}, {0, y, 0}), {10, 10});
-    expect_near(camera->generate({5, 5}, {0, 0}, 0).direction, {0, y, 0}, 1e-6F);
+    expect_close_vectors(camera->generate({5, 5}, {0, 0}, 0).direction, {0, y, 0}, 1e-6F);
     EXPECT_GT(camera->generate({9, 5}, {0, 0}, 0).direction.x, 0.1F);
     EXPECT_GT(camera->generate({5, 1}, {0, 0}, 0).direction.z * y, 0.1F);
   }
@@ -192,8 +193,8 @@ TEST(PerspectiveCamera, FallsBackWhereAPoseSaysTooLittle) {
   CameraPose no_focus = pose_at({0, 0, 0}, {0, 0, -1});
   no_focus.lens_radius = 1.0F;
   no_focus.focus_distance = 0.0F;
-  expect_near(still(no_focus, {10, 10})->generate({5, 5}, {0.9F, 0.9F}, 0).direction, {0, 0, -1},
-              0.0F);
+  expect_close_vectors(still(no_focus, {10, 10})->generate({5, 5}, {0.9F, 0.9F}, 0).direction,
+                       {0, 0, -1}, 0.0F);
 
   const auto no_pose = make_perspective_camera({}, {0, 0}, {});
   EXPECT_TRUE(is_unit(no_pose->generate({0.5F, 0.5F}, {0.5F, 0.5F}, 0.5F).direction));
@@ -202,7 +203,7 @@ TEST(PerspectiveCamera, FallsBackWhereAPoseSaysTooLittle) {
 TEST(PerspectiveCamera, WorksAtVeryLargeAndSmallScales) {
   for (const float scale : {1e-20F, 1e-3F, 1e6F, 1e18F}) {
     const auto camera = still(pose_at(Vec3(0, 0, 2) * scale, Vec3(0, 0, 0)), {10, 10});
-    expect_near(camera->generate({5, 5}, {0, 0}, 0).direction, {0, 0, -1}, 1e-6F);
+    expect_close_vectors(camera->generate({5, 5}, {0, 0}, 0).direction, {0, 0, -1}, 1e-6F);
     EXPECT_TRUE(is_unit(camera->generate({1, 2}, {0, 0}, 0).direction));
   }
 }
@@ -219,7 +220,7 @@ TEST(PerspectiveCamera, PixelsAreAsWideAsTheirRaysAreApart) {
     };
     const Vec3 point = Vec3(1, 2, 3) + 5.0F * at(0, 0);
     const PixelCone cone = camera->pixel_at(point, 0.0F);
-    expect_near(cone.direction, at(0, 0), 1e-5F);
+    expect_close_vectors(cone.direction, at(0, 0), 1e-5F);
     const Vec3 area = 25.0F * glm::cross(at(0.5F, 0) - at(-0.5F, 0), at(0, 0.5F) - at(0, -0.5F));
     EXPECT_NEAR(cone.width, std::sqrt(glm::length(area)), 1e-3F * cone.width);
   }

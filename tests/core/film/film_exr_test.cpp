@@ -65,7 +65,7 @@ FilmInfo info() {
           "hyades 0.1"};
 }
 
-FilmFile patchwork(const LayerSet& layers = kAllLayers) {
+FilmFile patchwork_file(const LayerSet& layers = kAllLayers) {
   const FilmLayout layout = make_film_layout(layers);
   FilmFile file{info(), Film(layout, {10, 5, 42, 30})};
   EXPECT_TRUE(file.film.merge(render(layout, {10, 5, 26, 20}, {0, 5}, 200)).ok());
@@ -108,7 +108,7 @@ TEST_F(FilmExr, SplatsComeBackFromAllOfTheRegion) {
 
 TEST_F(FilmExr, GivesBackTheSameBits) {
   for (const LayerSet& layers : {LayerSet{}, LayerSet{true, false, false}, kAllLayers}) {
-    const FilmFile file = patchwork(layers);
+    const FilmFile file = patchwork_file(layers);
     ASSERT_TRUE(write_film_exr(path("a.exr"), file, {{"comments", "hello"}}).ok());
     const Result<FilmFile> back = read_film_exr(path("a.exr"));
     ASSERT_TRUE(back.ok()) << back.error().message;
@@ -127,7 +127,7 @@ TEST_F(FilmExr, GivesBackTheSameBits) {
 }
 
 TEST_F(FilmExr, ExtremeSumsSurvive) {
-  FilmFile file = patchwork({});
+  FilmFile file = patchwork_file({});
   file.film.mutable_plane(0)[0] = {0, INT64_MIN};
   file.film.mutable_plane(0)[1] = {~uint64_t{0}, INT64_MAX};
   file.film.mutable_plane(1)[2] = {1, 0};
@@ -137,7 +137,7 @@ TEST_F(FilmExr, ExtremeSumsSurvive) {
 }
 
 TEST_F(FilmExr, AnyViewerSeesThePicture) {
-  const FilmFile file = patchwork();
+  const FilmFile file = patchwork_file();
   ASSERT_TRUE(write_film_exr(path("a.exr"), file).ok());
   const Result<Image> seen = read_image_file(path("a.exr"));
   ASSERT_TRUE(seen.ok()) << seen.error().message;
@@ -157,7 +157,7 @@ TEST_F(FilmExr, AnyViewerSeesThePicture) {
 }
 
 TEST_F(FilmExr, TheSameFilmGivesTheSameFile) {
-  ASSERT_TRUE(write_film_exr(path("a.exr"), patchwork()).ok());
+  ASSERT_TRUE(write_film_exr(path("a.exr"), patchwork_file()).ok());
   const FilmLayout layout = make_film_layout(kAllLayers);
   FilmFile other{info(), Film(layout, {10, 5, 42, 30})};
   ASSERT_TRUE(other.film.merge(render(layout, {26, 9, 40, 30}, {12, 1}, 200)).ok());
@@ -169,24 +169,24 @@ TEST_F(FilmExr, TheSameFilmGivesTheSameFile) {
 }
 
 TEST_F(FilmExr, RefusesToWriteWhatDoesNotFit) {
-  FilmFile file = patchwork();
+  FilmFile file = patchwork_file();
   file.info.crop = {12, 5, 60, 40};
   EXPECT_FALSE(write_film_exr(path("a.exr"), file).ok());
-  file = patchwork();
+  file = patchwork_file();
   file.info.width = 30;
   EXPECT_FALSE(write_film_exr(path("a.exr"), file).ok());
   EXPECT_FALSE(write_film_exr(path("a.exr"), {info(), Film()}).ok());
   for (const char* name : {"channels", "name", "hyades.film", "", "dataWindow"}) {
-    EXPECT_FALSE(write_film_exr(path("a.exr"), patchwork(), {{name, "x"}}).ok()) << name;
+    EXPECT_FALSE(write_film_exr(path("a.exr"), patchwork_file(), {{name, "x"}}).ok()) << name;
   }
   EXPECT_FALSE(fs::exists(path("a.exr")));
-  const Status nowhere = write_film_exr(path("none/a.exr"), patchwork());
+  const Status nowhere = write_film_exr(path("none/a.exr"), patchwork_file());
   ASSERT_FALSE(nowhere.ok());
   EXPECT_NE(nowhere.error().message.find("none/a.exr"), std::string::npos);
 }
 
 TEST_F(FilmExr, TruncatedFilesAreRefused) {
-  ASSERT_TRUE(write_film_exr(path("a.exr"), patchwork()).ok());
+  ASSERT_TRUE(write_film_exr(path("a.exr"), patchwork_file()).ok());
   const std::string whole = read_bytes(path("a.exr"));
   for (size_t size = 0; size < whole.size();
        size += size < 1500 || size + 100 > whole.size() ? 1 : 41) {
@@ -198,7 +198,7 @@ TEST_F(FilmExr, TruncatedFilesAreRefused) {
 
 /// A damaged byte is noticed, or it lies where it cannot change the film (the picture part).
 TEST_F(FilmExr, DamagedFilesAreRefusedOrGiveTheSameFilm) {
-  const FilmFile plain = patchwork({true, false, false});
+  const FilmFile plain = patchwork_file({true, false, false});
   const FilmFile splats = splatted(info().crop, {0, 1});
   ASSERT_TRUE(write_film_exr(path("a.exr"), plain).ok());
   ASSERT_TRUE(write_film_exr(path("b.exr"), splats).ok());
@@ -237,7 +237,7 @@ TEST_F(FilmExr, ForeignFilesAreRefusedWithTheReason) {
 }
 
 TEST_F(FilmExr, HeadersThatDoNotAgreeAreRefused) {
-  const FilmFile file = patchwork();
+  const FilmFile file = patchwork_file();
   const std::string good = write_film_header(file);
   ASSERT_TRUE(parse_film_header(good).ok());
   const auto changed = [&](const std::string& from, const std::string& to) {
@@ -283,7 +283,7 @@ TEST_F(FilmExr, MergedFilesEqualTheWhole) {
 
 TEST_F(FilmExr, RefusalsNameTheReason) {
   const FilmLayout layout = make_film_layout(kAllLayers);
-  const FilmFile file = patchwork();
+  const FilmFile file = patchwork_file();
   const auto refusal = [&](auto change) {
     FilmFile into = file;
     FilmFile from{info(), render(layout, {50, 30, 60, 40}, {0, 2}, 200)};

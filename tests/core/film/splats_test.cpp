@@ -11,10 +11,10 @@
 namespace hyades::core {
 namespace {
 
-constexpr PixelRect kRegion{3, 2, 43, 32};
+constexpr PixelRect kSplatted{3, 2, 43, 32};
 
 std::vector<PixelSplat> random_splats(std::mt19937& random, size_t count,
-                                      const PixelRect& region = kRegion) {
+                                      const PixelRect& region = kSplatted) {
   std::vector<PixelSplat> splats(count);
   for (PixelSplat& splat : splats) {
     splat.pixel = static_cast<uint32_t>(random() % static_cast<uint64_t>(region.area()));
@@ -28,7 +28,7 @@ std::vector<PixelSplat> random_splats(std::mt19937& random, size_t count,
 }
 
 TEST(SplatLayer, HoldsTheSumsOfItsSplats) {
-  SplatLayer layer(kRegion);
+  SplatLayer layer(kSplatted);
   EXPECT_TRUE(layer.empty());
   layer.deposit({{41, {1, 2, 3}}, {0, {0.5F, 0, 0}}, {41, {10, -20, 30}}});
   EXPECT_EQ(layer.count(), 2U);
@@ -44,25 +44,25 @@ TEST(SplatLayer, TheSameBitsInAnyOrderAndGrouping) {
   std::mt19937 random(5);
   for (const size_t count : {30U, 300U, 3000U}) {  // sparse, in between, all pixels
     std::vector<PixelSplat> splats = random_splats(random, count);
-    SplatLayer once(kRegion);
+    SplatLayer once(kSplatted);
     once.deposit(splats);
     std::map<uint32_t, SplatLayer::Sums> expected;
     for (const PixelSplat& splat : splats) expected[splat.pixel] += SplatSums::of(splat.value);
     EXPECT_EQ(once.count(), expected.size());
     for (const auto& [pixel, sums] : expected) {
-      const auto width = static_cast<uint32_t>(kRegion.width());
-      ASSERT_EQ(once.at(kRegion.x0 + static_cast<int>(pixel % width),
-                        kRegion.y0 + static_cast<int>(pixel / width)),
+      const auto width = static_cast<uint32_t>(kSplatted.width());
+      ASSERT_EQ(once.at(kSplatted.x0 + static_cast<int>(pixel % width),
+                        kSplatted.y0 + static_cast<int>(pixel / width)),
                 sums);
     }
     for (int round = 0; round < 8; ++round) {
       std::shuffle(splats.begin(), splats.end(), random);
-      std::vector<SplatLayer> parts(3, SplatLayer(kRegion));
+      std::vector<SplatLayer> parts(3, SplatLayer(kSplatted));
       for (size_t first = 0; first < splats.size();) {
         const size_t last = std::min(first + 1 + random() % count, splats.size());
         const std::vector<PixelSplat> piece(splats.begin() + static_cast<ptrdiff_t>(first),
                                             splats.begin() + static_cast<ptrdiff_t>(last));
-        SplatLayer part(kRegion);
+        SplatLayer part(kSplatted);
         part.deposit(piece);
         SplatLayer& into = parts[random() % 3];
         if (random() % 2 == 0) {
@@ -82,7 +82,7 @@ TEST(SplatLayer, TheSameBitsInAnyOrderAndGrouping) {
 
 TEST(SplatLayer, ADigestSeesPixelsAndValues) {
   const auto digest = [](std::vector<PixelSplat> splats) {
-    SplatLayer layer(kRegion);
+    SplatLayer layer(kSplatted);
     layer.deposit(std::move(splats));
     return layer.digest();
   };
@@ -94,7 +94,7 @@ TEST(SplatLayer, ADigestSeesPixelsAndValues) {
 }
 
 TEST(SplatLayer, HoldsTheBrightestSplatsThatCount) {
-  SplatLayer layer(kRegion);
+  SplatLayer layer(kSplatted);
   const float brightest = kMaxDeposit / 32;
   for (int i = 0; i < 1000; ++i) layer.deposit({{1, {brightest, -brightest, 3e38F}}});
   const SplatLayer::Sums sums = layer.at(4, 2);
@@ -114,17 +114,17 @@ TEST(FilmWithSplats, TheSameBitsInAnyOrderAndGrouping) {
   for (int round = 0; round < 6; ++round) {
     const int side = round == 0 ? 64 : 5 + static_cast<int>(random() % 20);
     std::vector<Film> parts;
-    for (int y = kRegion.y0; y < kRegion.y1; y += side) {
-      for (int x = kRegion.x0; x < kRegion.x1; x += side) {
-        const PixelRect tile = intersection({x, y, x + side, y + side}, kRegion);
+    for (int y = kSplatted.y0; y < kSplatted.y1; y += side) {
+      for (int x = kSplatted.x0; x < kSplatted.x1; x += side) {
+        const PixelRect tile = intersection({x, y, x + side, y + side}, kSplatted);
         for (uint32_t b = 0; b < 4; ++b) {
-          parts.push_back(render_with_splats(kLayout, tile, {b, 1}, kRegion));
+          parts.push_back(render_with_splats(kLayout, tile, {b, 1}, kSplatted));
         }
       }
     }
     std::shuffle(parts.begin(), parts.end(), random);
-    Film whole(kLayout, kRegion);
-    Film other(kLayout, kRegion);
+    Film whole(kLayout, kSplatted);
+    Film other(kLayout, kSplatted);
     for (const Film& part : parts) ASSERT_TRUE((random() % 2 == 0 ? whole : other).merge(part));
     ASSERT_TRUE(whole.merge(other));
     ASSERT_TRUE(whole.check());
@@ -134,7 +134,7 @@ TEST(FilmWithSplats, TheSameBitsInAnyOrderAndGrouping) {
 }
 
 TEST(FilmWithSplats, TheirSumIsDividedByAllSamples) {
-  Film film(kLayout, {3, 2, 5, 3}, kRegion);
+  Film film(kLayout, {3, 2, 5, 3}, kSplatted);
   const std::vector<float> values = {8, 16, 24, 8, 5, 8, 16, 24, 8, 5};
   film.deposit(film.window(), 0, 8, values);
   film.deposit(film.window(), 1, 2, values);
@@ -160,8 +160,8 @@ TEST(FilmWithSplats, TheirSumIsDividedByAllSamples) {
 }
 
 TEST(FilmWithSplats, RefusesOthersThatDoNotFit) {
-  Film film(kLayout, kRegion);
-  const Film part = render_with_splats(kLayout, {3, 2, 9, 9}, {0, 1}, kRegion);
+  Film film(kLayout, kSplatted);
+  const Film part = render_with_splats(kLayout, {3, 2, 9, 9}, {0, 1}, kSplatted);
   EXPECT_TRUE(film.merge(part));
   EXPECT_FALSE(film.merge(part)) << "a batch counts once";
   const PixelRect other = {3, 2, 44, 32};
@@ -172,25 +172,25 @@ TEST(FilmWithSplats, RefusesOthersThatDoNotFit) {
 }
 
 TEST(FilmWithSplats, CheckFindsWhatDoesNotAgree) {
-  Film film(kLayout, {3, 2, 9, 9}, kRegion);
+  Film film(kLayout, {3, 2, 9, 9}, kSplatted);
   EXPECT_TRUE(film.check());
   film.deposit_splats({{1, {1, 1, 1}}});
   EXPECT_FALSE(film.check()) << "splats of no batch";
-  Film good = render_with_splats(kLayout, {3, 2, 9, 9}, {0, 1}, kRegion);
+  Film good = render_with_splats(kLayout, {3, 2, 9, 9}, {0, 1}, kSplatted);
   EXPECT_TRUE(good.check());
   SplatLayer::Entry negative{5, {}};
   negative.sums.square[1].high = -1000000;
   good.mutable_splats().add({negative});
   EXPECT_FALSE(good.check());
-  EXPECT_FALSE(Film(kLayout, {0, 0, 9, 9}, kRegion).check()) << "a window beyond the region";
+  EXPECT_FALSE(Film(kLayout, {0, 0, 9, 9}, kSplatted).check()) << "a window beyond the region";
 }
 
 TEST(FilmWithSplats, CanBeErasedAsAWhole) {
-  Film film = render_with_splats(kLayout, kRegion, {0, 3}, kRegion);
-  film.erase(kRegion);
-  EXPECT_EQ(film.digest(), Film(kLayout, kRegion).digest());
-  ASSERT_TRUE(film.merge(render_with_splats(kLayout, kRegion, {0, 3}, kRegion)));
-  EXPECT_EQ(film.digest(), render_with_splats(kLayout, kRegion, {0, 3}, kRegion).digest());
+  Film film = render_with_splats(kLayout, kSplatted, {0, 3}, kSplatted);
+  film.erase(kSplatted);
+  EXPECT_EQ(film.digest(), Film(kLayout, kSplatted).digest());
+  ASSERT_TRUE(film.merge(render_with_splats(kLayout, kSplatted, {0, 3}, kSplatted)));
+  EXPECT_EQ(film.digest(), render_with_splats(kLayout, kSplatted, {0, 3}, kSplatted).digest());
 }
 
 }  // namespace

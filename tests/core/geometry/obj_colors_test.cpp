@@ -7,7 +7,7 @@
 namespace hyades::core {
 namespace {
 
-MeshParts parts_of(const std::string& text) {
+MeshParts coloured_parts(const std::string& text) {
   MemoryAssets assets;
   assets.add("it.obj", text);
   auto parts = read_mesh_parts(assets, "it.obj");
@@ -16,7 +16,7 @@ MeshParts parts_of(const std::string& text) {
 }
 
 std::vector<Vec4> colors_of(const std::string& vertices) {
-  return parts_of(vertices + "f 1 2 3\n").parts.at(0).mesh->colors;
+  return coloured_parts(vertices + "f 1 2 3\n").parts.at(0).mesh->colors;
 }
 
 TEST(ObjColors, AreCodesOfSrgbBehindPositions) {
@@ -48,7 +48,7 @@ TEST(ObjColors, AreWhiteWhereOthersHaveOne) {
 }
 
 TEST(ObjColors, AreThereForThePartsThatHaveSome) {
-  const MeshParts found = parts_of(
+  const MeshParts found = coloured_parts(
       "v 0 0 0 0 0 0\nv 1 0 0 0 0 0\nv 0 1 0 0 0 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
       "usemtl painted\nf 1 2 3\nusemtl plain\nf 4 5 6\n");
   EXPECT_EQ(found.parts.at(0).mesh->colors.size(), 3U);
@@ -68,7 +68,7 @@ TEST(ObjColors, StayWithTheirVerticesOverChunks) {
     const std::string a = std::to_string(i), b = std::to_string(i + 1), c = std::to_string(i + 2);
     text += "f " + a + " " + b + " " + c + "\n";
   }
-  const auto mesh = parts_of(text).parts.at(0).mesh;
+  const auto mesh = coloured_parts(text).parts.at(0).mesh;
   ASSERT_EQ(mesh->colors.size(), size_t{kVertices});
   for (size_t i = 0; i < kVertices; ++i) {
     ASSERT_EQ(mesh->positions[i].x, static_cast<float>(i));

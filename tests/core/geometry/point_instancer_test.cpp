@@ -66,7 +66,7 @@ std::vector<Placement> in_instancer(std::vector<Placement> all,
   return all;
 }
 
-Ray some_ray(Random& random, float reach) {
+Ray ray_at_copies(Random& random, float reach) {
   Ray ray;
   ray.origin = test::in_box(random, Vec3(-2.0F * reach), Vec3(2.0F * reach));
   ray.direction = random.direction();
@@ -100,7 +100,7 @@ TEST(PointInstancer, RaysFindWhatTheyFindOfPlacementsOneByOne) {
     size_t met = 0;
     size_t differ = 0;
     for (int i = 0; i < 20'000; ++i) {
-      const Ray ray = some_ray(random, 5.0F);
+      const Ray ray = ray_at_copies(random, 5.0F);
       SurfacePoint p;
       SurfacePoint q;
       const bool found = a->nearest(ray, RayKind::camera, p);
@@ -280,14 +280,14 @@ class OneFile : public AssetResolver {
   std::shared_ptr<std::string> text_;
 };
 
-Result<std::shared_ptr<const std::vector<PlaceMatrix>>> read(const std::string& text,
-                                                             size_t room = 0) {
+Result<std::shared_ptr<const std::vector<PlaceMatrix>>> read_copies(const std::string& text,
+                                                                    size_t room = 0) {
   OneFile file(text);
   return read_places(file, "p.ply", room);
 }
 
 std::string complaint(const std::string& text, size_t room = 0) {
-  const auto places = read(text, room);
+  const auto places = read_copies(text, room);
   return places ? "none" : places.error().message;
 }
 
@@ -306,8 +306,8 @@ std::string ascii(const std::string& properties, const std::string& rows, int co
 }
 
 TEST(Places, AreScaledThenTurnedThenMoved) {
-  const auto places = read(ascii("x y z scale_x scale_y scale_z qx qy qz qw scale",
-                                 "1 2 3 2 3 4 0 0 1.4142136 1.4142136 10"));
+  const auto places = read_copies(ascii("x y z scale_x scale_y scale_z qx qy qz qw scale",
+                                        "1 2 3 2 3 4 0 0 1.4142136 1.4142136 10"));
   ASSERT_TRUE(places) << places.error().message;
   const PlaceMatrix& m = (*places)->front();  // a quarter turn around z
   EXPECT_LT(glm::length(m[0] - Vec3(0, 20, 0)), 1e-5F);
@@ -320,7 +320,7 @@ TEST(Places, GoThroughFilesToTheLastBit) {
   std::vector<PlaceMatrix> places;
   for (const Mat4& m : some_places(70'000, 50.0F)) places.push_back(place_of(m));
   const Bytes bytes = places_bytes(places);
-  const auto back = read(std::string(bytes.chars(), bytes.size()));
+  const auto back = read_copies(std::string(bytes.chars(), bytes.size()));
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_TRUE(**back == places);
   std::string damaged(bytes.chars(), bytes.size());

@@ -16,10 +16,12 @@ using test::exact_bytes;
 
 const std::string kHeader = "#?RADIANCE\n# made by a test\nFORMAT=32-bit_rle_rgbe\n";
 
-Result<Image> read(const std::string& file) { return read_image(exact_bytes(file), "test.hdr"); }
+Result<Image> read_hdr(const std::string& file) {
+  return read_image(exact_bytes(file), "test.hdr");
+}
 
-std::string error_of(const std::string& file) {
-  const Result<Image> image = read(file);
+std::string hdr_error(const std::string& file) {
+  const Result<Image> image = read_hdr(file);
   return image ? "no error" : image.error().message;
 }
 
@@ -31,7 +33,7 @@ TEST(Hdr, FlatPixels) {
                                "\xFF\x00\x00\x00"
                                "\x80\x00\x00\xFF",
                                16);
-  const Result<Image> image = read(file);
+  const Result<Image> image = read_hdr(file);
   ASSERT_TRUE(image) << image.error().message;
   EXPECT_EQ(image->channels, (std::vector<std::string>{"R", "G", "B"}));
   EXPECT_EQ(image->at(0, 0, 0), 0.5F);  // 128 * 2^(128 - 136)
@@ -52,15 +54,15 @@ TEST(Hdr, OldRuns) {
                                "\x01\x01\x01\x01"
                                "\x01\x01\x01\x01",
                                20);
-  const Result<Image> image = read(file);
+  const Result<Image> image = read_hdr(file);
   ASSERT_TRUE(image) << image.error().message;
   EXPECT_EQ(image->at(2, 0, 0), 1.0F);
   EXPECT_EQ(image->at(3, 0, 0), 0.0F);
   EXPECT_EQ(image->at(260, 0, 1), 1.0F);
-  EXPECT_NE(error_of(kHeader + "\n-Y 1 +X 2\n" +
-                     std::string("\x01\x01\x01\x02"
-                                 "\0\0\0\0",
-                                 8))
+  EXPECT_NE(hdr_error(kHeader + "\n-Y 1 +X 2\n" +
+                      std::string("\x01\x01\x01\x02"
+                                  "\0\0\0\0",
+                                  8))
                 .find("damaged"),
             std::string::npos);  // nothing there to repeat
 }
@@ -72,7 +74,7 @@ TEST(Hdr, NewRuns) {
   row += std::string("\x0A\x00\x01\x02\x03\x04\x05\x06\x07\x08\x09", 11);
   row += std::string("\x84\x10\x06\x01\x02\x03\x04\x05\x06", 9);
   row += std::string("\x8A\x88", 2);
-  const Result<Image> image = read(kHeader + "\n-Y 2 +X 10\n" + row + row);
+  const Result<Image> image = read_hdr(kHeader + "\n-Y 2 +X 10\n" + row + row);
   ASSERT_TRUE(image) << image.error().message;
   for (int y = 0; y < 2; ++y) {
     for (int x = 0; x < 10; ++x) {
@@ -83,7 +85,7 @@ TEST(Hdr, NewRuns) {
   }
   std::string too_long = row;
   too_long[4] = '\x8B';
-  EXPECT_EQ(error_of(kHeader + "\n-Y 2 +X 10\n" + row + too_long),
+  EXPECT_EQ(hdr_error(kHeader + "\n-Y 2 +X 10\n" + row + too_long),
             "test.hdr: Radiance HDR: row 2 of 2 is damaged or missing");
 }
 
@@ -94,25 +96,26 @@ TEST(Hdr, DirectionsAndExposure) {
       "\x20\x00\x00\x81"
       "\x10\x00\x00\x81",
       16);
-  const Result<Image> flipped = read(kHeader + "EXPOSURE=4\nEXPOSURE= 0.5\n\n+Y 2 -X 2\n" + pixels);
+  const Result<Image> flipped =
+      read_hdr(kHeader + "EXPOSURE=4\nEXPOSURE= 0.5\n\n+Y 2 -X 2\n" + pixels);
   ASSERT_TRUE(flipped) << flipped.error().message;
   EXPECT_EQ(flipped->at(1, 1, 0), 0.5F);  // the file's first pixel; 1 / (4 * 0.5)
   EXPECT_EQ(flipped->at(0, 1, 0), 0.25F);
   EXPECT_EQ(flipped->at(1, 0, 0), 0.125F);
-  EXPECT_NE(error_of(kHeader + "\n+X 2 +Y 2\n" + pixels).find("columns"), std::string::npos);
-  EXPECT_NE(error_of(kHeader + "EXPOSURE=0\n\n-Y 2 +X 2\n" + pixels).find("EXPOSURE"),
+  EXPECT_NE(hdr_error(kHeader + "\n+X 2 +Y 2\n" + pixels).find("columns"), std::string::npos);
+  EXPECT_NE(hdr_error(kHeader + "EXPOSURE=0\n\n-Y 2 +X 2\n" + pixels).find("EXPOSURE"),
             std::string::npos);
 }
 
 TEST(Hdr, DamagedHeaders) {
-  EXPECT_NE(error_of("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n0000").find("xyze"),
+  EXPECT_NE(hdr_error("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n0000").find("xyze"),
             std::string::npos);
-  EXPECT_NE(error_of(kHeader + "\nsize 3\n").find("picture size"), std::string::npos);
-  EXPECT_NE(error_of(kHeader + "\n-Y 0 +X 5\n").find("empty"), std::string::npos);
-  EXPECT_NE(error_of(kHeader + "\n-Y 99999999999999999999 +X 5\n").find("picture size"),
+  EXPECT_NE(hdr_error(kHeader + "\nsize 3\n").find("picture size"), std::string::npos);
+  EXPECT_NE(hdr_error(kHeader + "\n-Y 0 +X 5\n").find("empty"), std::string::npos);
+  EXPECT_NE(hdr_error(kHeader + "\n-Y 99999999999999999999 +X 5\n").find("picture size"),
             std::string::npos);
-  EXPECT_NE(error_of(kHeader + "\n-Y 60000 +X 6000\n0000").find("truncated"), std::string::npos);
-  EXPECT_NE(error_of(kHeader + std::string(5000, 'x')).find("truncated"), std::string::npos);
+  EXPECT_NE(hdr_error(kHeader + "\n-Y 60000 +X 6000\n0000").find("truncated"), std::string::npos);
+  EXPECT_NE(hdr_error(kHeader + std::string(5000, 'x')).find("truncated"), std::string::npos);
 }
 
 TEST(Hdr, ReadsTheRealWorld) {

@@ -24,7 +24,7 @@ objects:
   pair: {group: {objects: {left: {shape: box, at: [1, "= frame / 2", 0]}}}}
 )yaml";
 
-Job read(const std::string& text) {
+Job read_curves(const std::string& text) {
   MemoryAssets assets;
   Diagnostics diagnostics;
   Job job = parse_job(text, "job.yaml", assets, diagnostics);
@@ -33,7 +33,7 @@ Job read(const std::string& text) {
 }
 
 TEST(Curve, IsFoundByItsPathInTheJob) {
-  const Job job = read(kJob);
+  const Job job = read_curves(kJob);
   const auto value = [&](const std::string& path, int32_t frame) {
     const auto curve = find_curve(job, path);
     EXPECT_TRUE(curve) << path;
@@ -47,18 +47,18 @@ TEST(Curve, IsFoundByItsPathInTheJob) {
 }
 
 TEST(Curve, OfAnUnknownPathListsWhatThereIs) {
-  const Job job = read(kJob);
+  const Job job = read_curves(kJob);
   const auto wrong = find_curve(job, "camera.fow");
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message, HasSubstr("'camera.fow'"));
   EXPECT_THAT(wrong.error().message, HasSubstr("camera.fov, camera.look_from"));
-  const auto nothing = find_curve(read("hyades: 1\n"), "camera.fov");
+  const auto nothing = find_curve(read_curves("hyades: 1\n"), "camera.fov");
   ASSERT_FALSE(nothing);
   EXPECT_THAT(nothing.error().message, HasSubstr("no values"));
 }
 
 TEST(Curve, IsPrintedFrameByFrame) {
-  const Job job = read(kJob);
+  const Job job = read_curves(kJob);
   EXPECT_EQ(curve_table(job, **find_curve(job, "camera.fov")),
             "camera.fov\n"
             "  ▁▃▅▆█  20 to 60\n"
@@ -73,22 +73,23 @@ TEST(Curve, IsPrintedFrameByFrame) {
 }
 
 float keyed(const std::string& options, double frame) {
-  const Job job = read("hyades: 1\ncamera: {fov: {keys: {1: 20, 5: 40, 9: 50}" + options + "}}\n");
+  const Job job =
+      read_curves("hyades: 1\ncamera: {fov: {keys: {1: 20, 5: 40, 9: 50}" + options + "}}\n");
   return job.camera.fov.at({0.0, frame});
 }
 
 TEST(Exposure, IsAddedToEachOutputAndLeavesFilmsAlone) {
   const std::string outputs = "outputs: [{file: a.png, exposure: 1}, {file: a.exr}]\n";
-  const Job plain = read("hyades: 1\n" + outputs);
+  const Job plain = read_curves("hyades: 1\n" + outputs);
   // Sunny 16: at f/16 and a time of one over the speed, 1.2 * 16^2 * 100 cd/m^2 are white.
   const std::string set = "camera: {exposure: {iso: 200, shutter: 0.005, efficacy: 120}}\n";
-  const Job job = read("hyades: 1\n" + set + outputs);
+  const Job job = read_curves("hyades: 1\n" + set + outputs);
   ASSERT_EQ(job.outputs.size(), 2U);
   EXPECT_NEAR(job.outputs[0].exposure, 1.0F - std::log2(30720.0F / 120.0F), 1e-4F);
   // Previews of the EXR are shown with it.
   EXPECT_NEAR(job.outputs[1].exposure, -8.0F, 1e-4F);
   EXPECT_EQ(render_key(job, 1, {}), render_key(plain, 1, {}));
-  const Job defaults = read("hyades: 1\n" + set);
+  const Job defaults = read_curves("hyades: 1\n" + set);
   EXPECT_NEAR(defaults.outputs[1].exposure, -8.0F, 1e-4F);
 }
 

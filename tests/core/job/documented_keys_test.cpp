@@ -292,7 +292,7 @@ void add_scenes(MemoryAssets& assets) {
 }
 
 /// Everything that decides pixels, and everything else that a job says about what is written.
-Outcome read(const std::string& text) {
+Outcome outcome_of(const std::string& text) {
   MemoryAssets inner;
   inner.add("base.yaml", kBase);
   inner.add("sky.yaml", "environment: {color: 0.3}\n");
@@ -390,14 +390,14 @@ TEST(DocumentedKeys, EveryExampleIsAcceptedAndChangesSomething) {
                  key.id.key);
     ASSERT_FALSE(key.example.empty());
     const std::string with = text_with(key.id, key.example);
-    const Outcome changed = read(with);
+    const Outcome changed = outcome_of(with);
     EXPECT_EQ(changed.complaints, "") << with;
     if (has_one_value(key.id)) {
-      EXPECT_NE(read(text_with(key.id, "other")).complaints, "");
+      EXPECT_NE(outcome_of(text_with(key.id, "other")).complaints, "");
       continue;
     }
     const std::string without = sample_text(key.id);
-    const Outcome plain = read(without);
+    const Outcome plain = outcome_of(without);
     EXPECT_EQ(plain.complaints, "") << without;
     EXPECT_NE(plain.fingerprint, changed.fingerprint) << without << "\n" << with;
   }
@@ -410,10 +410,10 @@ TEST(DocumentedKeys, DefaultsAreWhatHappensWithoutTheKey) {
     SCOPED_TRACE("docs/job.md:" + std::to_string(key.line) + " " + key.id.section + " / " +
                  key.id.key);
     const std::string with = text_with(key.id, key.default_value);
-    const Outcome spelled_out = read(with);
+    const Outcome spelled_out = outcome_of(with);
     EXPECT_EQ(spelled_out.complaints, "") << with;
     const std::string absent = text_with(key.id, std::nullopt);
-    const Outcome silent = read(absent);
+    const Outcome silent = outcome_of(absent);
     EXPECT_EQ(silent.complaints, "") << absent;
     EXPECT_EQ(spelled_out.fingerprint, silent.fingerprint) << absent << "\n" << with;
     ++checked;
@@ -428,7 +428,7 @@ TEST(DocumentedKeys, WithoutAValueAreOneComplaintWithItsPlace) {
     Pairs pairs = base_pairs(key.id);
     pairs.emplace_back("like", "");
     const std::string text = key.id.key == "like" ? job_text(key.id, pairs) : text_with(key.id, "");
-    const std::string complaints = read(text).complaints;
+    const std::string complaints = outcome_of(text).complaints;
     EXPECT_TRUE(complaints.starts_with("sample.yaml:")) << complaints << "\n" << text;
     EXPECT_THAT(complaints, testing::HasSubstr(key.id.key));
     EXPECT_LE(std::count(complaints.begin(), complaints.end(), '\n'), 1) << complaints << "\n"
@@ -446,14 +446,15 @@ TEST(DocumentedKeys, WithoutAValueAreComplaintsBesideAnyOther) {
       for (const auto& pair : base_pairs(key.id)) {
         if (pair.first != key.id.key && pair.first != other.id.key) pairs.push_back(pair);
       }
-      EXPECT_THAT(read(job_text(key.id, pairs)).complaints, testing::HasSubstr("sample.yaml:"))
+      EXPECT_THAT(outcome_of(job_text(key.id, pairs)).complaints,
+                  testing::HasSubstr("sample.yaml:"))
           << job_text(key.id, pairs);
     }
   }
   for (const char* text :
        {"hyades: 1\ncolor: {config: view.ocio}\noutputs: [{file: a.png, tone_map: }]\n",
         "hyades: 1\ntextures: {x: {type: image, file: a.<UDIM>.png, wrap: }}\n"}) {
-    EXPECT_THAT(read(text).complaints, testing::HasSubstr("is empty, expected a value"));
+    EXPECT_THAT(outcome_of(text).complaints, testing::HasSubstr("is empty, expected a value"));
   }
 }
 
@@ -478,8 +479,8 @@ TEST(DocumentedKeys, WhatIsSaidToBeAnimatedFollowsKeys) {
     if (!animated || value.empty()) continue;
     const std::string keyed =
         text_with(key.id, "{keys: {1: " + value + ", 10: " + value + "}, ease: smooth}");
-    const Outcome still = read(text_with(key.id, value));
-    const Outcome moving = read(keyed);
+    const Outcome still = outcome_of(text_with(key.id, value));
+    const Outcome moving = outcome_of(keyed);
     EXPECT_EQ(moving.complaints, "") << "docs/job.md:" << key.line << "\n" << keyed;
     EXPECT_EQ(moving.moving, still.moving + 1) << "docs/job.md:" << key.line << "\n" << keyed;
     ++checked;
@@ -495,7 +496,7 @@ TEST(DocumentedKeys, RequiredKeysAreRequired) {
     Pairs pairs = key.id.section == "job" ? Pairs{{"include", "base.yaml"}}
                                           : places().at(key.id.section).pairs;
     std::erase_if(pairs, [&](const auto& pair) { return pair.first == key.id.key; });
-    EXPECT_NE(read(job_text(key.id, pairs)).complaints, "");
+    EXPECT_NE(outcome_of(job_text(key.id, pairs)).complaints, "");
   }
 }
 

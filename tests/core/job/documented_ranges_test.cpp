@@ -122,7 +122,7 @@ RangesIn all_ranges() {
   return all;
 }
 
-std::string trimmed(const std::string& text) {
+std::string without_spaces(const std::string& text) {
   const size_t begin = text.find_first_not_of(' ');
   return begin == std::string::npos ? ""
                                     : text.substr(begin, text.find_last_not_of(' ') + 1 - begin);
@@ -163,7 +163,7 @@ TEST(DocumentedRanges, AreThoseOfTheListsOfKeys) {
     }
     std::stringstream row(line);
     std::vector<std::string> cells;
-    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(trimmed(cell));
+    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(without_spaces(cell));
     if (!line.starts_with("|") || cells.size() != 8) continue;
     for (const std::string& section : sections) {
       const auto found = all.ranges.find({section, cells[1]});

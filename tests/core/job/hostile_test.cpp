@@ -16,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Reading {
+struct HostileReading {
   Diagnostics diagnostics;
   double seconds = 0.0;
   std::string first() const {
@@ -24,8 +24,8 @@ struct Reading {
   }
 };
 
-Reading read(const std::string& text, MemoryAssets assets = {}) {
-  Reading reading;
+HostileReading read_hostile(const std::string& text, MemoryAssets assets = {}) {
+  HostileReading reading;
   const auto begin = Clock::now();
   parse_job(text, "job.yaml", assets, reading.diagnostics);
   reading.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
@@ -36,7 +36,7 @@ Reading read(const std::string& text, MemoryAssets assets = {}) {
 constexpr double kPatience = 20.0;
 
 void expect_refused(const std::string& text, const std::string& complaint) {
-  const Reading reading = read(text);
+  const HostileReading reading = read_hostile(text);
   EXPECT_EQ(reading.first(), complaint);
   EXPECT_LT(reading.seconds, kPatience);
 }
@@ -55,7 +55,7 @@ TEST(HostileJob, AliasBomb) {
     text += "  a" + std::to_string(i) + ": &a" + std::to_string(i) +
             " {type: checker, a: " + below + ", b: " + below + "}\n";
   }
-  const Reading reading = read(text);
+  const HostileReading reading = read_hostile(text);
   EXPECT_NE(reading.first().find("more than 1048576 values (aliases counted in full)"),
             std::string::npos)
       << reading.first();
@@ -68,7 +68,7 @@ TEST(HostileJob, ExpressionBomb) {
   for (int i = 0; i < 7000; ++i) {
     text += "  o" + std::to_string(i) + ": {shape: box, at: *moves}\n";
   }
-  const Reading reading = read(text);
+  const HostileReading reading = read_hostile(text);
   EXPECT_NE(reading.first().find("the job has more than 20000 expressions"), std::string::npos)
       << reading.first();
   EXPECT_LT(reading.seconds, kPatience);
@@ -81,7 +81,7 @@ TEST(HostileJob, LikeBomb) {
     text += "  m" + std::to_string(i) + ": {like: m" + std::to_string(i - 1) + ", k" +
             std::to_string(i) + ": 1}\n";
   }
-  const Reading reading = read(text);
+  const HostileReading reading = read_hostile(text);
   EXPECT_FALSE(reading.diagnostics.empty());
   EXPECT_LT(reading.seconds, kPatience);
 }
@@ -147,7 +147,7 @@ TEST(HostileJob, DeepNesting) {
                  "job.yaml:2:262: nested deeper than 64 levels");
   expect_refused("hyades: 1\nobjects: " + repeated("[", 3000) + repeated("]", 3000),
                  "job.yaml:2:73: nested deeper than 64 levels");
-  EXPECT_FALSE(read("hyades: 1\nobjects: " + repeated("[", 3000)).diagnostics.empty());
+  EXPECT_FALSE(read_hostile("hyades: 1\nobjects: " + repeated("[", 3000)).diagnostics.empty());
   expect_refused(repeated("- ", 100000), "job.yaml:1:129: nested deeper than 64 levels");
   expect_refused(repeated("? ", 100000), "job.yaml:1:129: nested deeper than 64 levels");
 }
@@ -175,7 +175,7 @@ TEST(HostileJob, MillionsOfSmallValues) {
 TEST(HostileJob, ManyObjectsWithOneName) {
   std::string text = "hyades: 1\nobjects:\n";
   for (int i = 0; i < 50000; ++i) text += "  a: {shape: sphere}\n";
-  const Reading reading = read(text);
+  const HostileReading reading = read_hostile(text);
   EXPECT_EQ(reading.first(), "job.yaml:4:3: duplicate key 'a' (first at line 3)");
   EXPECT_EQ(reading.diagnostics.list().size(), 101U);
   EXPECT_LT(reading.seconds, kPatience);
@@ -194,7 +194,7 @@ TEST(HostileJob, ManyMistakesDoNotTakeLong) {
     objects += "  o" + n + ": {shape: box, material: a_rather_lung_name_x" + n + "}\n";
   }
   for (const std::string& part : {materials, lights, materials + objects, objects}) {
-    const Reading reading = read(text + part);
+    const HostileReading reading = read_hostile(text + part);
     EXPECT_EQ(reading.diagnostics.list().size(), 101U);
     EXPECT_LT(reading.seconds, kPatience);
   }
@@ -206,7 +206,7 @@ TEST(HostileJob, ManyHonestObjectsAreFine) {
     text +=
         "  a" + std::to_string(i) + ": {shape: sphere, at: [" + std::to_string(i) + ", 0, 0]}\n";
   }
-  const Reading reading = read(text);
+  const HostileReading reading = read_hostile(text);
   EXPECT_EQ(reading.diagnostics.to_string(), "");
   EXPECT_LT(reading.seconds, kPatience);
 }
@@ -250,7 +250,7 @@ TEST(HostileJob, YamlThatIsNoJob) {
   expect_refused("hyades: 1\n[a, b]: c\n",
                  "job.yaml:2:1: a list or map as a key; keys are plain text");
   // yaml-cpp 0.8 adds the anchor's name.
-  EXPECT_THAT(read("hyades: 1\nname: *nobody\n").first(),
+  EXPECT_THAT(read_hostile("hyades: 1\nname: *nobody\n").first(),
               testing::StartsWith("job.yaml:2:7: not valid YAML: the referenced anchor "
                                   "is not defined"));
 }
@@ -268,7 +268,8 @@ TEST(HostileJob, ExpressionsThatAskTooMuch) {
                           "= 1..2",     "= .",        "= ^",           "= --",   "= e e",
                           "= )(",       "= (((",      "= frame frame", "= 1?2:", "= t?(1:2)",
                           "= noise(,)", "= +",        "= * 3"}) {
-    const Reading reading = read("hyades: 1\ncamera: {fov: \"" + std::string(bad) + "\"}\n");
+    const HostileReading reading =
+        read_hostile("hyades: 1\ncamera: {fov: \"" + std::string(bad) + "\"}\n");
     EXPECT_FALSE(reading.diagnostics.empty()) << bad;
   }
 }
@@ -279,7 +280,7 @@ TEST(HostileJob, ManyExpressionsOverManyFrames) {
     text += "  a" + std::to_string(i) + ": {shape: sphere, at: [\"= sin(t) + " + std::to_string(i) +
             "\", 0, 0]}\n";
   }
-  const Reading reading = read(text);
+  const HostileReading reading = read_hostile(text);
   EXPECT_LT(reading.seconds, kPatience);
 }
 

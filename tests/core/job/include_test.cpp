@@ -8,13 +8,14 @@
 namespace hyades::core {
 namespace {
 
-struct Reading {
+struct ReadWithIncludes {
   Job job;
   std::string complaints;
 };
 
-Reading read(const std::string& text, MemoryAssets assets, const std::string& name = "job.yaml") {
-  Reading reading;
+ReadWithIncludes read_including(const std::string& text, MemoryAssets assets,
+                                const std::string& name = "job.yaml") {
+  ReadWithIncludes reading;
   Diagnostics diagnostics;
   reading.job = parse_job(text, name, assets, diagnostics);
   reading.complaints = diagnostics.to_string();
@@ -29,7 +30,7 @@ TEST(Include, OwnKeysWinAndNamesAreJoined) {
              "materials: {red: {type: lambert, color: [1, 0, 0]}}\n"
              "objects: {ball: {shape: sphere, material: red}}\n"
              "outputs: [{file: base.exr}]\n");
-  const Reading r = read(
+  const ReadWithIncludes r = read_including(
       "hyades: 1\ninclude: base.yaml\nname: mine\ncamera: {fov: 50}\n"
       "objects: {cube: {shape: box, material: red}}\noutputs: [{file: mine.png}]\n",
       assets);
@@ -55,7 +56,8 @@ TEST(Include, FilesAreRelativeToWhereTheyAreWritten) {
   assets.add("parts/chairs/chair.obj", "o");
   assets.add("images/wall.png", "p");
   assets.add("parts/sky.hdr", "h");
-  const Reading r = read("hyades: 1\ninclude: parts/room.yaml\n", assets, "jobs/shot/job.yaml");
+  const ReadWithIncludes r =
+      read_including("hyades: 1\ninclude: parts/room.yaml\n", assets, "jobs/shot/job.yaml");
   ASSERT_EQ(r.complaints, "");
   EXPECT_EQ(r.job.objects[0].mesh, "parts/chairs/chair.obj");
   EXPECT_EQ(std::get<textures::Image>(r.job.textures[0].kind).file, "images/wall.png");
@@ -68,9 +70,10 @@ TEST(Include, FilesAreRelativeToWhereTheyAreWritten) {
 TEST(Include, ComplaintsNameTheFileTheyAreIn) {
   MemoryAssets assets;
   assets.add("parts/a.yaml", "camera: {fov: 999}\nobjects: {x: {mesh: no.obj}}\n");
-  EXPECT_EQ(read("hyades: 1\ninclude: parts/a.yaml\n", assets, "jobs/job.yaml").complaints,
-            "jobs/parts/a.yaml:1:15: fov is '999', expected a number above 0 and below 180\n"
-            "jobs/parts/a.yaml:2:21: mesh of object 'x': parts/no.obj: no such file\n");
+  EXPECT_EQ(
+      read_including("hyades: 1\ninclude: parts/a.yaml\n", assets, "jobs/job.yaml").complaints,
+      "jobs/parts/a.yaml:1:15: fov is '999', expected a number above 0 and below 180\n"
+      "jobs/parts/a.yaml:2:21: mesh of object 'x': parts/no.obj: no such file\n");
 }
 
 TEST(Include, TheSameNameTwiceNamesBothPlaces) {
@@ -78,9 +81,10 @@ TEST(Include, TheSameNameTwiceNamesBothPlaces) {
   assets.add("a.yaml", "objects: {ball: {shape: sphere}}\ncamera: {fov: 20}\n");
   assets.add("b.yaml", "camera: {fov: 30}\nunits: cm\n");
   assets.add("c.yaml", "units: mm\n");
-  EXPECT_EQ(read("hyades: 1\ninclude: a.yaml\nobjects:\n  ball: {shape: box}\n", assets).complaints,
+  EXPECT_EQ(read_including("hyades: 1\ninclude: a.yaml\nobjects:\n  ball: {shape: box}\n", assets)
+                .complaints,
             "a.yaml:1:11: 'ball' is also at job.yaml:4; expected it in one file only\n");
-  EXPECT_EQ(read("hyades: 1\ninclude: [a.yaml, b.yaml, c.yaml]\n", assets).complaints,
+  EXPECT_EQ(read_including("hyades: 1\ninclude: [a.yaml, b.yaml, c.yaml]\n", assets).complaints,
             "b.yaml:1:10: 'fov' is also at a.yaml:2; expected it in one file only\n"
             "c.yaml:1:1: 'units' is also at b.yaml:2; expected it in one file only\n");
 }
@@ -89,15 +93,16 @@ TEST(Include, CyclesAreRefusedAndDiamondsCountOnce) {
   MemoryAssets assets;
   assets.add("a.yaml", "include: b.yaml\n");
   assets.add("b.yaml", "include: ./x/../a.yaml\n");
-  EXPECT_EQ(read("hyades: 1\ninclude: a.yaml\n", assets).complaints,
+  EXPECT_EQ(read_including("hyades: 1\ninclude: a.yaml\n", assets).complaints,
             "b.yaml:1:10: './x/../a.yaml' includes itself in the end\n");
-  EXPECT_EQ(read("hyades: 1\ninclude: job.yaml\n", assets).complaints,
+  EXPECT_EQ(read_including("hyades: 1\ninclude: job.yaml\n", assets).complaints,
             "job.yaml:2:10: 'job.yaml' includes itself in the end\n");
   MemoryAssets diamond;
   diamond.add("left.yaml", "include: base.yaml\n");
   diamond.add("right.yaml", "include: base.yaml\n");
   diamond.add("base.yaml", "objects: {ball: {shape: sphere}}\n");
-  const Reading r = read("hyades: 1\ninclude: [left.yaml, right.yaml]\n", diamond);
+  const ReadWithIncludes r =
+      read_including("hyades: 1\ninclude: [left.yaml, right.yaml]\n", diamond);
   EXPECT_EQ(r.complaints, "");
   EXPECT_EQ(r.job.objects.size(), 1U);
 }
@@ -107,7 +112,7 @@ TEST(Include, DepthAndNumberAreLimited) {
   for (int i = 0; i < 100; ++i) {
     deep.add("d" + std::to_string(i) + ".yaml", "include: d" + std::to_string(i + 1) + ".yaml\n");
   }
-  EXPECT_EQ(read("hyades: 1\ninclude: d0.yaml\n", deep).complaints,
+  EXPECT_EQ(read_including("hyades: 1\ninclude: d0.yaml\n", deep).complaints,
             "d15.yaml:1:10: too many includes: at most 16 deep and 256 in all\n");
   MemoryAssets wide;
   std::string list;
@@ -116,8 +121,9 @@ TEST(Include, DepthAndNumberAreLimited) {
     wide.add(name, "hyades: 1\n");
     list += name + ", ";
   }
-  EXPECT_NE(read("hyades: 1\ninclude: [" + list + "]\n", wide).complaints.find("256 in all"),
-            std::string::npos);
+  EXPECT_NE(
+      read_including("hyades: 1\ninclude: [" + list + "]\n", wide).complaints.find("256 in all"),
+      std::string::npos);
 }
 
 TEST(Include, WhatIsNoMapIsRefused) {
@@ -125,21 +131,21 @@ TEST(Include, WhatIsNoMapIsRefused) {
   assets.add("list.yaml", "- a\n");
   assets.add("empty.yaml", "# nothing\n");
   assets.add("bad.yaml", "a: [\n");
-  EXPECT_EQ(read("hyades: 1\ninclude: list.yaml\n", assets).complaints,
+  EXPECT_EQ(read_including("hyades: 1\ninclude: list.yaml\n", assets).complaints,
             "list.yaml:1:1: the included file holds a list of 1, expected a map of a job's "
             "sections\n");
-  EXPECT_EQ(read("hyades: 1\ninclude: empty.yaml\n", assets).complaints,
+  EXPECT_EQ(read_including("hyades: 1\ninclude: empty.yaml\n", assets).complaints,
             "empty.yaml:1:1: the included file holds nothing, expected a map of a job's "
             "sections\n");
-  EXPECT_NE(
-      read("hyades: 1\ninclude: bad.yaml\n", assets).complaints.find("bad.yaml:2:1: not valid"),
-      std::string::npos);
-  EXPECT_EQ(read("hyades: 1\ninclude: {a: b}\n", assets).complaints,
+  EXPECT_NE(read_including("hyades: 1\ninclude: bad.yaml\n", assets)
+                .complaints.find("bad.yaml:2:1: not valid"),
+            std::string::npos);
+  EXPECT_EQ(read_including("hyades: 1\ninclude: {a: b}\n", assets).complaints,
             "job.yaml:2:10: include is a map, expected a file name or a list of them\n");
 }
 
 TEST(Like, CopiesKeysThatAreNotOverridden) {
-  const Reading r = read(
+  const ReadWithIncludes r = read_including(
       "hyades: 1\n"
       "materials:\n"
       "  fine: {like: coarse, roughness: 0.1}\n"
@@ -164,11 +170,11 @@ TEST(Like, CopiesKeysThatAreNotOverridden) {
 }
 
 TEST(Like, UnknownNamesAndCycles) {
-  EXPECT_EQ(
-      read("hyades: 1\nlights: {sun: {type: sun}, b: {like: son, type: sun}}\n", {}).complaints,
-      "job.yaml:2:38: like is 'son', expected another name of this list, did you mean "
-      "'sun'?\n");
-  EXPECT_EQ(read("hyades: 1\nlights: {a: {like: a, type: sun}}\n", {}).complaints,
+  EXPECT_EQ(read_including("hyades: 1\nlights: {sun: {type: sun}, b: {like: son, type: sun}}\n", {})
+                .complaints,
+            "job.yaml:2:38: like is 'son', expected another name of this list, did you mean "
+            "'sun'?\n");
+  EXPECT_EQ(read_including("hyades: 1\nlights: {a: {like: a, type: sun}}\n", {}).complaints,
             "job.yaml:2:20: 'a' is like 'a', which in the end is like itself\n");
 }
 
@@ -179,13 +185,13 @@ TEST(Like, LongChainsDoNotOverflow) {
     text += "  l" + std::to_string(i) + ": {like: l" + std::to_string(i + 1) + "}\n";
   }
   text += "  l" + std::to_string(count) + ": {type: sun, irradiance: 2}\n";
-  const Reading r = read(text, {});
+  const ReadWithIncludes r = read_including(text, {});
   ASSERT_EQ(r.complaints, "");
   EXPECT_FLOAT_EQ(std::get<SunLightDesc>(r.job.lights[0].kind).irradiance.constant, 2.0F);
 }
 
 TEST(Alias, SharesValues) {
-  const Reading r = read(
+  const ReadWithIncludes r = read_including(
       "hyades: 1\nmaterials:\n  a: {type: lambert, color: &red [0.8, 0, 0]}\n"
       "  b: {type: glossy, color: *red}\n",
       {});

@@ -154,15 +154,15 @@ TEST(MeasuredMedia, AreAllInTheReference) {
   }
 }
 
-struct Read {
+struct ReadMedia {
   Job job;
   std::string complaints;
 };
 
-Read read(const std::string& text) {
+ReadMedia read_media(const std::string& text) {
   MemoryAssets assets;
   Diagnostics diagnostics;
-  Read result;
+  ReadMedia result;
   result.job = parse_job("hyades: 1\n" + text, "job.yaml", assets, diagnostics);
   result.complaints = diagnostics.to_string();
   return result;
@@ -170,8 +170,8 @@ Read read(const std::string& text) {
 
 TEST(Presets, MeanTheSameInEveryUnit) {
   for (const auto& [unit, metres] : {std::pair("m", 1.0F), std::pair("mm", 0.001F)}) {
-    const Read found =
-        read(std::string("media: {milk: {preset: whole-milk, scale: 2}}\nunits: ") + unit + "\n");
+    const ReadMedia found = read_media(
+        std::string("media: {milk: {preset: whole-milk, scale: 2}}\nunits: ") + unit + "\n");
     ASSERT_EQ(found.complaints, "");
     const MediumDesc& milk = found.job.media.at(0);
     EXPECT_NEAR(milk.scattering.constant.x / metres, 2550.0F, 0.01F);
@@ -179,20 +179,20 @@ TEST(Presets, MeanTheSameInEveryUnit) {
     EXPECT_EQ(milk.scale.constant, 2.0F);
     EXPECT_EQ(milk.index->constant, 1.3F);
   }
-  const Read beer = read("media: {beer: {preset: budweiser beer, index: 1.35}}");
+  const ReadMedia beer = read_media("media: {beer: {preset: budweiser beer, index: 1.35}}");
   ASSERT_EQ(beer.complaints, "");
   EXPECT_EQ(beer.job.media[0].g.constant, Rgb(0.917F, 0.956F, 0.982F));
   EXPECT_EQ(beer.job.media[0].index->constant, 1.35F);
 }
 
 TEST(Presets, ComplainOnceWithASuggestion) {
-  EXPECT_EQ(read("media: {milk: {preset: skimm-milk}}").complaints,
+  EXPECT_EQ(read_media("media: {milk: {preset: skimm-milk}}").complaints,
             "job.yaml:2:24: preset is 'skimm-milk', expected the name of a measured "
             "material ('hyades media' lists them), did you mean 'skim-milk'?\n");
-  EXPECT_EQ(read("media: {milk: {preset: cream, g: 0.5}}").complaints,
+  EXPECT_EQ(read_media("media: {milk: {preset: cream, g: 0.5}}").complaints,
             "job.yaml:2:34: medium 'milk' has both preset and g, expected a preset with scale, "
             "emission or index alone\n");
-  EXPECT_THAT(read("media: {milk: {preset: [cream]}}").complaints,
+  EXPECT_THAT(read_media("media: {milk: {preset: [cream]}}").complaints,
               HasSubstr("preset is a list of 1, expected the name of a measured material"));
 }
 

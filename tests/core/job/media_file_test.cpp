@@ -10,26 +10,26 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Read {
+struct ReadMediaFile {
   Job job;
   std::string complaints;
   std::vector<AssetRecord> assets;
 };
 
-Read read(const std::string& text, MemoryAssets files) {
+ReadMediaFile read_with_media(const std::string& text, MemoryAssets files) {
   RecordingResolver assets(files);
   Diagnostics diagnostics;
-  Read result;
+  ReadMediaFile result;
   result.job = parse_job("hyades: 1\n" + text, "jobs/job.yaml", assets, diagnostics);
   result.complaints = diagnostics.to_string();
   result.assets = assets.records();
   return result;
 }
 
-Read read_file(const std::string& content) {
+ReadMediaFile read_file(const std::string& content) {
   MemoryAssets assets;
   assets.add("media.json", content);
-  return read("media: {file: media.json}\n", assets);
+  return read_with_media("media: {file: media.json}\n", assets);
 }
 
 constexpr const char* kMilk =
@@ -55,7 +55,7 @@ TEST(MediaFile, HoldsOneMediumOrSeveralInAnyOfTheFormsOfTheSimpleKind) {
       "media:\n  milk: {absorption: [0.1, 0.2, 0.3], scattering: [7, 8, 9], g: 0.9, index: 1.33}\n";
   for (const std::string& text :
        {one, "[" + one + "]", tabs, section, yaml, R"({"media": [)" + one + "]}"}) {
-    const Read found = read_file(text);
+    const ReadMediaFile found = read_file(text);
     ASSERT_EQ(found.complaints, "") << text;
     ASSERT_EQ(found.job.media.size(), 1U) << text;
     expect_milk(found.job.media[0]);
@@ -67,7 +67,7 @@ TEST(MediaFile, StandsBesideOtherMediaAndFilesAndCanBeLike) {
   assets.add("parts/glass.yaml", "media: {file: [../media.json, wax.json]}\n");
   assets.add("media.json", std::string("[") + kMilk + R"(, {"name": "ink", "absorption": 50}])");
   assets.add("parts/wax.json", R"({"name": "wax", "scattering": 4})");
-  const Read found = read(
+  const ReadMediaFile found = read_with_media(
       "include: parts/glass.yaml\n"
       "media: {file: media.json, thin: {like: milk, scale: 0.1}}\n"
       "objects: {drop: {shape: sphere, interior: ink}}\natmosphere: thin\n",
@@ -85,7 +85,7 @@ TEST(MediaFile, StandsBesideOtherMediaAndFilesAndCanBeLike) {
 
 TEST(MediaFile, DecidesThePictureByItsValuesAlone) {
   const auto key = [](const std::string& content) {
-    const Read found = read_file(content);
+    const ReadMediaFile found = read_file(content);
     EXPECT_EQ(found.complaints, "");
     return render_key(found.job, 1, found.assets);
   };
@@ -94,7 +94,8 @@ TEST(MediaFile, DecidesThePictureByItsValuesAlone) {
 }
 
 TEST(MediaFile, MayBeTheNameOfAMedium) {
-  const Read found = read("media: {file: {scattering: 2}}\natmosphere: file\n", {});
+  const ReadMediaFile found =
+      read_with_media("media: {file: {scattering: 2}}\natmosphere: file\n", {});
   ASSERT_EQ(found.complaints, "");
   EXPECT_EQ(found.job.media.at(0).name, "file");
 }
@@ -102,8 +103,8 @@ TEST(MediaFile, MayBeTheNameOfAMedium) {
 TEST(MediaFile, ThatCannotBeReadIsTheOnlyComplaint) {
   MemoryAssets assets;
   assets.add("media.json", "[{\"name\": \"jade\"");
-  const Read found =
-      read("media: {file: media.json}\nobjects: {a: {shape: sphere, interior: jade}}\n", assets);
+  const ReadMediaFile found = read_with_media(
+      "media: {file: media.json}\nobjects: {a: {shape: sphere, interior: jade}}\n", assets);
   EXPECT_EQ(std::count(found.complaints.begin(), found.complaints.end(), '\n'), 1)
       << found.complaints;
 }
@@ -122,13 +123,13 @@ TEST(MediaFile, ComplaintsTellFileAndLine) {
               HasSubstr("jobs/media.json:1:20: g is '1', expected"));
   EXPECT_THAT(read_file("12").complaints, HasSubstr("expected a medium or a list of them"));
   EXPECT_THAT(read_file("{\"name\": \"a\"").complaints, HasSubstr("jobs/media.json:"));
-  EXPECT_THAT(read("media: {file: gone.json}", {}).complaints,
+  EXPECT_THAT(read_with_media("media: {file: gone.json}", {}).complaints,
               HasSubstr("job.yaml:2:15: file of media: gone.json: no such file"));
-  EXPECT_THAT(read("media: {file: [[a]]}", {}).complaints,
+  EXPECT_THAT(read_with_media("media: {file: [[a]]}", {}).complaints,
               HasSubstr("file of media is a list of 1, expected a file name"));
   MemoryAssets assets;
   assets.add("media.json", kMilk);
-  EXPECT_THAT(read("media: {file: media.json, milk: {}}", assets).complaints,
+  EXPECT_THAT(read_with_media("media: {file: media.json, milk: {}}", assets).complaints,
               HasSubstr("'milk' is also at jobs/job.yaml:2; expected it in one file only"));
 }
 

@@ -10,12 +10,12 @@
 namespace hyades::core {
 namespace {
 
-struct Read {
+struct ReadLayers {
   Job job;
   std::string complaints;
 };
 
-Read read(const std::string& body) {
+ReadLayers read_layers(const std::string& body) {
   MemoryAssets assets;
   Diagnostics diagnostics;
   Job job = parse_job("hyades: 1\nname: a\n" + body, "shot.yaml", assets, diagnostics);
@@ -34,9 +34,10 @@ objects:
 )";
 
 TEST(OutputLayers, SayWhatAFilmHolds) {
-  const Read all = read(kLights +
-                        "outputs: [{file: a.exr, layers: [position, motion, components, "
-                        "light_groups, crypto_object]}]\n");
+  const ReadLayers all =
+      read_layers(kLights +
+                  "outputs: [{file: a.exr, layers: [position, motion, components, "
+                  "light_groups, crypto_object]}]\n");
   ASSERT_EQ(all.complaints, "");
   const LayerSet layers = needed_layers(all.job);
   EXPECT_TRUE(layers.position && layers.motion && layers.ids[0]);
@@ -44,19 +45,21 @@ TEST(OutputLayers, SayWhatAFilmHolds) {
   for (const bool component : layers.components) EXPECT_TRUE(component);
   EXPECT_EQ(layers.light_groups, (std::vector<std::string>{"fill", "key", "lamps", "rest", "sky"}));
 
-  const Read some = read(kLights +
-                         "outputs: [{file: a.exr, layers: [glossy_indirect, 'light_group:key']}, "
-                         "{file: a.png, layer: material_id}]\n");
+  const ReadLayers some =
+      read_layers(kLights +
+                  "outputs: [{file: a.exr, layers: [glossy_indirect, 'light_group:key']}, "
+                  "{file: a.png, layer: material_id}]\n");
   ASSERT_EQ(some.complaints, "");
   const LayerSet few = needed_layers(some.job);
   EXPECT_EQ(layers_text(few), "glossy_indirect, materials, light_group:key");
 }
 
 TEST(OutputLayers, OneFileEach) {
-  const Read split = read(kLights +
-                          "frames: 1-3\n"
-                          "outputs: [{file: 'a.####.{layer}.exr', layers: [beauty, depth, "
-                          "light_groups], half: true}]\n");
+  const ReadLayers split =
+      read_layers(kLights +
+                  "frames: 1-3\n"
+                  "outputs: [{file: 'a.####.{layer}.exr', layers: [beauty, depth, "
+                  "light_groups], half: true}]\n");
   ASSERT_EQ(split.complaints, "");
   std::vector<std::string> files;
   for (const OutputDesc& output : split.job.outputs) {
@@ -72,7 +75,7 @@ TEST(OutputLayers, OneFileEach) {
 
 TEST(OutputLayers, MistakesAreNamed) {
   const auto complains = [](const std::string& outputs, const std::string& words) {
-    const std::string found = read(kLights + "outputs: [" + outputs + "]\n").complaints;
+    const std::string found = read_layers(kLights + "outputs: [" + outputs + "]\n").complaints;
     EXPECT_NE(found.find(words), std::string::npos) << found;
   };
   complains("{file: a.exr, layers: ['light_group:kay']}", "did you mean 'light_group:key'?");
@@ -81,16 +84,17 @@ TEST(OutputLayers, MistakesAreNamed) {
   complains("{file: a.png, layer: colour}", "layer is 'colour'");
   complains("{file: 'a.{layer}.png'}", "is for .exr files");
   complains("{file: 'a.{layer}.exr'}, {file: a.alpha.exr}", "writes already");
-  EXPECT_NE(read("environment: {light_group: rest}\n").complaints.find("of no group"),
+  EXPECT_NE(read_layers("environment: {light_group: rest}\n").complaints.find("of no group"),
             std::string::npos);
-  EXPECT_NE(read("environment: {light_group: a.b}\n").complaints.find("letters, digits, _ and -"),
-            std::string::npos);
+  EXPECT_NE(
+      read_layers("environment: {light_group: a.b}\n").complaints.find("letters, digits, _ and -"),
+      std::string::npos);
 }
 
 // Films that tell light apart in different ways must not be joined.
 TEST(OutputLayers, GroupsBelongToTheRenderKey) {
   const auto key = [](const std::string& group) {
-    return render_key(read("environment: {color: 1" + group + "}\n").job, 1, {});
+    return render_key(read_layers("environment: {color: 1" + group + "}\n").job, 1, {});
   };
   EXPECT_NE(key(", light_group: a"), key(""));
   EXPECT_NE(key(", light_group: a"), key(", light_group: b"));
@@ -100,8 +104,9 @@ TEST(OutputLayers, GroupsBelongToTheRenderKey) {
 TEST(OutputLayers, MotionLooksIntoTheNextFrame) {
   const auto key = [](const std::string& layers, const std::string& later) {
     return render_key(
-        read("frames: 1-9\nobjects: {ball: {shape: sphere, at: [\"= frame < 2 ? 0 : " + later +
-             "\", 0, 0]}}\noutputs: [{file: a.####.exr, layers: [" + layers + "]}]\n")
+        read_layers(
+            "frames: 1-9\nobjects: {ball: {shape: sphere, at: [\"= frame < 2 ? 0 : " + later +
+            "\", 0, 0]}}\noutputs: [{file: a.####.exr, layers: [" + layers + "]}]\n")
             .job,
         1, {});
   };

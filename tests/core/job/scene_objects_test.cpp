@@ -10,14 +10,14 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Reading {
+struct ReadObjects {
   Job job;
   std::string complaints;
 };
 
-Reading read(const std::string& text, AssetResolver& assets) {
+ReadObjects read_objects(const std::string& text, AssetResolver& assets) {
   Diagnostics diagnostics;
-  Reading reading;
+  ReadObjects reading;
   reading.job = parse_job("hyades: 1\n" + text, "job.yaml", assets, diagnostics);
   reading.complaints = diagnostics.to_string();
   return reading;
@@ -64,7 +64,7 @@ TEST(SceneDocument, ItsReferenceSaysWhatIsWanted) {
 
 TEST(SceneObjects, AreGroupsOfWhatTheSceneHas) {
   MemoryAssets assets = with_robot();
-  const Reading r = read(
+  const ReadObjects r = read_objects(
       "frames: {range: 1-2, fps: 30}\n"
       "objects: {a: {gltf: in/robot.glb, at: [1, 0, 0], override: {Skin: {roughness: 0.7}}}}\n",
       assets);
@@ -87,7 +87,7 @@ TEST(SceneObjects, AreGroupsOfWhatTheSceneHas) {
 
 TEST(SceneObjects, TheirLightsMoveWithTheObjectsAroundThem) {
   MemoryAssets assets = with_robot();
-  const Reading r = read(
+  const ReadObjects r = read_objects(
       "frames: {fps: 30}\n"
       "objects: {g: {at: [0, 0, 5], transform: [{scale: 2}], group: {objects: {\n"
       "  b: {gltf: in/robot.glb, animation: Slow walk, transform: [{rotate_x: 90}]}}}}}\n",
@@ -103,7 +103,7 @@ TEST(SceneObjects, TheirLightsMoveWithTheObjectsAroundThem) {
 
 TEST(SceneObjects, AWholeSceneIsIncluded) {
   MemoryAssets assets = with_robot();
-  const Reading r = read("include: in/robot.glb\nframes: {fps: 30}\n", assets);
+  const ReadObjects r = read_objects("include: in/robot.glb\nframes: {fps: 30}\n", assets);
   ASSERT_EQ(r.complaints, "");
   EXPECT_EQ(r.job.camera.fov.at({}), 12.0F);
   EXPECT_EQ(r.job.frames.last, 48);
@@ -113,7 +113,7 @@ TEST(SceneObjects, AWholeSceneIsIncluded) {
 TEST(SceneObjects, InGroupsThatAreInstanced) {
   MemoryAssets assets = with_robot();
   assets.add("in/robot.glb.files/scene,prefix=crowd.a,fps=24.yaml", robot("crowd.a."));
-  const Reading r = read(
+  const ReadObjects r = read_objects(
       "groups: {crowd: {objects: {a: {gltf: in/robot.glb}}}}\n"
       "objects: {x: {instance: crowd}, y: {instance: crowd, at: [1, 0, 0]}}\n",
       assets);
@@ -124,7 +124,9 @@ TEST(SceneObjects, InGroupsThatAreInstanced) {
 
 TEST(SceneObjects, ComplaintsNameTheKeyAndTheScene) {
   MemoryAssets assets = with_robot();
-  const auto complaints = [&](const std::string& text) { return read(text, assets).complaints; };
+  const auto complaints = [&](const std::string& text) {
+    return read_objects(text, assets).complaints;
+  };
   EXPECT_EQ(complaints("objects: {a: {gltf: in/gone.glb}}\n"),
             "job.yaml:2:21: gltf: in/gone.glb.files/scene,prefix=a,fps=24.yaml: no such file\n");
   EXPECT_EQ(complaints("objects: {a: {gltf: in/robot.obj}}\n"),

@@ -15,7 +15,7 @@
 namespace hyades::core {
 namespace {
 
-Job read(const std::string& body) {
+Job read_values(const std::string& body) {
   MemoryAssets assets;
   Diagnostics diagnostics;
   Job job = parse_job("hyades: 1\n" + body, "shot.yaml", assets, diagnostics);
@@ -114,8 +114,8 @@ TEST(Expression, ThreadsMayShareOne) {
 
 TEST(Animated, EasesBetweenKeysAndHoldsOutside) {
   const auto at = [](const char* ease, float frame) {
-    const Job job = read(std::string("frames: 1-20\ncamera: {fov: {keys: {12: 40, 2: 20}, ease: ") +
-                         ease + "}}\n");
+    const Job job = read_values(
+        std::string("frames: 1-20\ncamera: {fov: {keys: {12: 40, 2: 20}, ease: ") + ease + "}}\n");
     return job.camera.fov.at({0.0, frame});
   };
   EXPECT_FLOAT_EQ(at("linear", 0.0F), 20.0F);
@@ -129,7 +129,7 @@ TEST(Animated, EasesBetweenKeysAndHoldsOutside) {
 }
 
 TEST(Animated, ComponentsMixNumbersAndExpressions) {
-  const Job job = read(
+  const Job job = read_values(
       "frames: {range: 1-48, fps: 24}\nobjects: {a: {shape: box, at: [7, \"= t\", "
       "\"= frame\"]}}\n");
   const Vec3 at = job.objects[0].at.at(job.time_of(25));
@@ -138,7 +138,7 @@ TEST(Animated, ComponentsMixNumbersAndExpressions) {
 }
 
 TEST(Animated, OneNumberScalesAllAxes) {
-  const Job job = read(
+  const Job job = read_values(
       "objects:\n"
       "  a: {shape: box, transform: [{scale: 2}, {scale: [1, 2, 3]}, {scale: \"= frame\"},"
       " {scale: {keys: {1: 5}}}]}\n");
@@ -151,7 +151,7 @@ TEST(Animated, OneNumberScalesAllAxes) {
 }
 
 TEST(Transform, MatrixIsWrittenRowByRow) {
-  const Job job = read(
+  const Job job = read_values(
       "objects: {a: {shape: box, transform: [{matrix: [1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, "
       "0, 1]}]}}\n");
   EXPECT_EQ(transform_point(job.objects[0].transform[0].matrix, Vec3(1.0F)),
@@ -160,7 +160,7 @@ TEST(Transform, MatrixIsWrittenRowByRow) {
 
 TEST(Color, EveryForm) {
   const auto color = [](const std::string& text) {
-    const Job job = read("frames: 1-3\nenvironment: {color: " + text + "}\n");
+    const Job job = read_values("frames: 1-3\nenvironment: {color: " + text + "}\n");
     return job.environment->color.at(job.time_of(2));
   };
   EXPECT_EQ(color("0.25"), Rgb(0.25F));
@@ -175,7 +175,7 @@ TEST(Color, EveryForm) {
 }
 
 TEST(Texture, WrittenInPlaceGetsANameOfItsOwn) {
-  const Job job = read(
+  const Job job = read_values(
       "materials:\n"
       "  a: {type: lambert, color: {type: checker, a: {type: fbm3d}, b: 0.5}}\n"
       "  b: {type: conductor, roughness: {type: perlin3d}}\n");
@@ -189,28 +189,28 @@ TEST(Texture, WrittenInPlaceGetsANameOfItsOwn) {
 }
 
 TEST(Job, ShortForms) {
-  const Job job = read("frames: 5\nfilm: {filter: box}\nintegrator: path\nunits: 2.5\n");
+  const Job job = read_values("frames: 5\nfilm: {filter: box}\nintegrator: path\nunits: 2.5\n");
   EXPECT_EQ(job.frames.first, 5);
   EXPECT_EQ(job.frames.last, 5);
   EXPECT_EQ(job.film.filter.type, FilterKind::box);
   EXPECT_FLOAT_EQ(job.film.filter.radius, 0.5F);
   EXPECT_FLOAT_EQ(job.units, 2.5F);
-  EXPECT_FLOAT_EQ(read("units: in\n").units, 0.0254F);
+  EXPECT_FLOAT_EQ(read_values("units: in\n").units, 0.0254F);
 }
 
 TEST(Job, DefaultOutputsCarryTheName) {
-  const Job still = read("");
+  const Job still = read_values("");
   ASSERT_EQ(still.outputs.size(), 2U);
   EXPECT_EQ(still.outputs[0].file, "shot.exr");
   EXPECT_EQ(still.outputs[1].file, "shot.png");
-  const Job film = read("name: take-2\nframes: 1-9x4\n");
+  const Job film = read_values("name: take-2\nframes: 1-9x4\n");
   EXPECT_EQ(film.outputs[0].file, "take-2.####.exr");
   EXPECT_EQ(film.frames.step, 4);
-  EXPECT_EQ(read("outputs: []\n").outputs.size(), 0U);
+  EXPECT_EQ(read_values("outputs: []\n").outputs.size(), 0U);
 }
 
 TEST(Job, OutputsSayWhichLayersAFilmNeeds) {
-  const Job job = read(
+  const Job job = read_values(
       "outputs: [{file: a.exr, layers: [beauty, depth]}, {file: b.exr, layers: "
       "[normal]}]\n");
   const LayerSet layers = needed_layers(job);

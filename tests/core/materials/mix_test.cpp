@@ -20,7 +20,7 @@ test::Moments mean_weight(const Bsdf& bsdf, const Vec3& wo, uint64_t seed) {
   return moments;
 }
 
-const Vec3 kWo = glm::normalize(Vec3(0.5F, 0.3F, 0.6F));
+const Vec3 kMixedWo = glm::normalize(Vec3(0.5F, 0.3F, 0.6F));
 
 // Finds an error of 1 % of the reflectance with probability 0.99.
 TEST(Mix, DeltaAndSmoothLobesAddUp) {
@@ -47,9 +47,9 @@ TEST(Mix, DeltaAndSmoothLobesAddUp) {
   uint64_t seed = 1;
   for (const auto& c : cases) {
     const BsdfUnderTest bsdf(c.material);
-    EXPECT_TRUE(test::mean_is(mean_weight(*bsdf.get(), kWo, ++seed), c.reflectance, promise))
+    EXPECT_TRUE(test::mean_is(mean_weight(*bsdf.get(), kMixedWo, ++seed), c.reflectance, promise))
         << c.name;
-    EXPECT_NEAR(bsdf->albedo(kWo).x, c.reflectance, 1e-6) << c.name;
+    EXPECT_NEAR(bsdf->albedo(kMixedWo).x, c.reflectance, 1e-6) << c.name;
   }
 }
 
@@ -95,7 +95,7 @@ TEST(Mix, AmountComesFromItsTexture) {
     point.uv = {u, 0.0F};
     Frame frame;
     BsdfArena arena;
-    EXPECT_NEAR(material->bsdf_at(point, frame, arena)->albedo(kWo).x, u, 1e-6F);
+    EXPECT_NEAR(material->bsdf_at(point, frame, arena)->albedo(kMixedWo).x, u, 1e-6F);
   }
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Bytes bytes_of(const std::string& text) {
+Bytes bytes_of_vdb(const std::string& text) {
   const auto owner = std::make_shared<std::string>(text);
   return {owner, std::as_bytes(std::span(owner->data(), owner->size()))};
 }
@@ -35,7 +35,7 @@ openvdb::Vec3SGrid::Ptr colours() {
 }
 
 TEST(ReadVdb, FindsValuesWhereTheFileSaysTheyAre) {
-  const Bytes file = bytes_of(test::vdb_file({colours(), ramp()}));
+  const Bytes file = bytes_of_vdb(test::vdb_file({colours(), ramp()}));
   const auto read = read_vdb_numbers(file, "density");
   ASSERT_TRUE(read) << read.error().message;
   const VdbGrid<float>& grid = **read;
@@ -55,7 +55,7 @@ TEST(ReadVdb, ReadsActiveTilesAndLeavesOutWhatIsNotActive) {
   grid->setName("density");
   grid->fill(openvdb::CoordBBox({-16, -16, -16}, {31, 15, 15}), 2.0F);
   grid->tree().setValueOff({5, 5, 5}, 7.0F);
-  const auto read = read_vdb_numbers(bytes_of(test::vdb_file({grid})), "density");
+  const auto read = read_vdb_numbers(bytes_of_vdb(test::vdb_file({grid})), "density");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ((*read)->voxels.at(Vec3(-15.5F, 0.0F, 14.25F)), 2.0F);
   EXPECT_EQ((*read)->voxels.at(Vec3(5.0F)), 0.0F);
@@ -91,7 +91,7 @@ TEST(ReadVdb, AgreesWithOpenVdbInEveryEncoding) {
       openvdb::io::Stream writer(stream);
       writer.setCompression(compression);
       writer.write(openvdb::GridCPtrVec{colours(), grid});
-      const auto found = read_vdb_numbers(bytes_of(stream.str()), "density");
+      const auto found = read_vdb_numbers(bytes_of_vdb(stream.str()), "density");
       ASSERT_TRUE(found) << found.error().message;
       for (int n = 0; n < 20'000; ++n) {
         const auto coordinate = [&] { return static_cast<int>(random.bits() % 64) - 27; };
@@ -111,7 +111,7 @@ TEST(ReadVdb, AgreesWithOpenVdbInEveryEncoding) {
 TEST(ReadVdb, SaysWhatIsWrong) {
   const std::string good = test::vdb_file({ramp(), colours()});
   const auto complaint = [](const std::string& text, const std::string& name) {
-    const auto read = read_vdb_numbers(bytes_of(text), name);
+    const auto read = read_vdb_numbers(bytes_of_vdb(text), name);
     return read ? std::string("none") : read.error().message;
   };
   EXPECT_EQ(complaint(good, "smoke"), "has no grid 'smoke', expected density or Cd");
@@ -148,7 +148,7 @@ TEST(ReadVdb, SurvivesGarbage) {
       const uint64_t reach = n % 2 == 0 ? text.size() : std::min<uint64_t>(text.size(), 700);
       text[random.bits() % reach] = static_cast<char>(random.bits());
     }
-    const auto read = read_vdb_numbers(bytes_of(text), "density");
+    const auto read = read_vdb_numbers(bytes_of_vdb(text), "density");
     refused += read ? 0 : 1;
   }
   EXPECT_GT(refused, 5000);

@@ -13,7 +13,7 @@
 namespace hyades::core {
 namespace {
 
-const Coefficients kSmoke{{0.05F, 0.1F, 0.0F}, {0.2F, 0.3F, 0.1F}, {1.0F, 0.5F, 2.0F}};
+const Coefficients kThinSmoke{{0.05F, 0.1F, 0.0F}, {0.2F, 0.3F, 0.1F}, {1.0F, 0.5F, 2.0F}};
 
 /// Absorbs nothing in one channel, scatters nothing in another.
 const Coefficients kGaps{{0.3F, 0.0F, 0.0F}, {0.0F, 0.4F, 0.1F}, Rgb(0.0F)};
@@ -33,7 +33,7 @@ const std::array<Bound, kBoundCount> kBounds = {
     {{Vec3i(1), 1.0F}, {Vec3i(3, 7, 4), 1.0F}, {Vec3i(30), 2.0F}, {Vec3i(5), 10.0F}}};
 
 /// A way through the middle of a random grid of 20 voxels a side, in the grid's own space.
-Ray oblique() { return {Vec3(-2.0F, 3.0F, 5.0F), glm::normalize(Vec3(1.0F, 0.45F, 0.3F))}; }
+Ray slanting() { return {Vec3(-2.0F, 3.0F, 5.0F), glm::normalize(Vec3(1.0F, 0.45F, 0.3F))}; }
 
 using Three = std::array<test::Moments, 3>;
 
@@ -44,16 +44,16 @@ void add(Three& to, const Rgb& value) {
 TEST(Varying, TransmittanceIsUnbiasedWhateverTheBoundsAre) {
   const auto field = make_grid_density(random_grid(20, 3));
   test::Promise promise{.tests = 6 * kBoundCount, .relative_error = 0.02};
-  const double passed = density_along(*field, oblique(), 10.0);
+  const double passed = density_along(*field, slanting(), 10.0);
   ASSERT_GT(passed, 2.0);
-  for (const Coefficients& coefficients : {kSmoke, kGaps}) {
+  for (const Coefficients& coefficients : {kThinSmoke, kGaps}) {
     for (const Bound& bound : kBounds) {
       const MediumPtr medium = make_varying(volume_of(field, bound.cells, bound.slack),
                                             FieldPlace({Mat4(1.0F)}), coefficients, even());
       Three shares;
       test::Random random(7);
       for (int n = 0; n < 120'000; ++n)
-        add(shares, medium->transmittance(oblique(), 10.0F, random4(random)));
+        add(shares, medium->transmittance(slanting(), 10.0F, random4(random)));
       for (int c = 0; c < 3; ++c) {
         EXPECT_TRUE(test::mean_is(shares[static_cast<size_t>(c)],
                                   std::exp(-extinction(coefficients, c) * passed), promise))
@@ -68,24 +68,24 @@ TEST(Varying, FreeFlightIsUnbiasedInEveryChannelWhateverTheBoundsAre) {
   const auto field = make_grid_density(random_grid(20, 3));
   const float t_max = 10.0F;
   test::Promise promise{.tests = 6 * 3 * kBoundCount, .relative_error = 0.05};
-  const double half = density_along(*field, oblique(), 5.0);
-  const double whole = density_along(*field, oblique(), 10.0);
+  const double half = density_along(*field, slanting(), 5.0);
+  const double whole = density_along(*field, slanting(), 10.0);
   for (const Bound& bound : kBounds) {
     const MediumPtr medium = make_varying(volume_of(field, bound.cells, bound.slack),
-                                          FieldPlace({Mat4(1.0F)}), kSmoke, even());
+                                          FieldPlace({Mat4(1.0F)}), kThinSmoke, even());
     for (const Rgb& shares : {Rgb(1.0F / 3.0F), Rgb(0.45F, 0.3F, 0.25F), Rgb(0.2F, 0.25F, 0.55F)}) {
       Three passed;
       Three near;
       test::Random random(31);
       for (int n = 0; n < 750'000; ++n) {
-        const MediumSample sample = medium->sample(oblique(), t_max, shares, random4(random));
+        const MediumSample sample = medium->sample(slanting(), t_max, shares, random4(random));
         add(passed, sample.scattered ? Rgb(0.0F) : sample.weight);
         add(near, sample.scattered && sample.t < 0.5F * t_max ? sample.weight : Rgb(0.0F));
       }
       for (int c = 0; c < 3; ++c) {
         const auto i = static_cast<size_t>(c);
-        const double sigma = extinction(kSmoke, c);
-        const double albedo = double{kSmoke.scattering[c]} / sigma;
+        const double sigma = extinction(kThinSmoke, c);
+        const double albedo = double{kThinSmoke.scattering[c]} / sigma;
         EXPECT_TRUE(test::mean_is(passed[i], std::exp(-sigma * whole), promise)) << c;
         EXPECT_TRUE(test::mean_is(near[i], albedo * -std::expm1(-sigma * half), promise)) << c;
       }
@@ -98,7 +98,7 @@ TEST(Varying, FreeFlightIsUnbiasedInEveryChannelWhateverTheBoundsAre) {
 TEST(Varying, AnEvenDensityIsAHomogeneousMedium) {
   const auto field = std::make_shared<EvenDensity>(Bounds{Vec3(-50.0F), Vec3(50.0F)}, 2.0F);
   test::Promise promise{.tests = 36, .relative_error = 0.03};
-  for (const Coefficients& once : {kSmoke, kGaps}) {
+  for (const Coefficients& once : {kThinSmoke, kGaps}) {
     const MediumPtr even_medium =
         make_homogeneous(2.0F * once.absorption, 2.0F * once.scattering, Rgb(0.0F), even());
     const MediumPtr medium =
@@ -139,15 +139,15 @@ TEST(Varying, GlowsByWhatIsSeenWhateverTheBoundsAre) {
   const auto field = make_grid_density(random_grid(20, 3));
   test::Promise promise{.tests = 6 * kBoundCount};
   const Coefficients flame{Rgb(0.0F), Rgb(0.0F), {1.0F, 0.5F, 2.0F}};
-  const double passed = density_along(*field, oblique(), 10.0);
-  for (const Coefficients& coefficients : {kSmoke, flame}) {
+  const double passed = density_along(*field, slanting(), 10.0);
+  for (const Coefficients& coefficients : {kThinSmoke, flame}) {
     for (const Bound& bound : kBounds) {
       const MediumPtr medium = make_varying(volume_of(field, bound.cells, bound.slack),
                                             FieldPlace({Mat4(1.0F)}), coefficients, even());
       Three seen;
       test::Random random(17);
       for (int n = 0; n < 130'000; ++n)
-        add(seen, medium->emitted(oblique(), 10.0F, random4(random)));
+        add(seen, medium->emitted(slanting(), 10.0F, random4(random)));
       for (int c = 0; c < 3; ++c) {
         const double sigma = extinction(coefficients, c);
         const double length = sigma > 0.0 ? -std::expm1(-sigma * passed) / sigma : passed;
@@ -186,7 +186,8 @@ TEST(Varying, WeightsAreBoundedByTheSharesAndNeverUndefined) {
 TEST(Varying, AWalkIsAFunctionOfItsNumbers) {
   const auto field = make_grid_density(random_grid(20, 3));
   const auto make = [&] {
-    return make_varying(volume_of(field, Vec3i(2), 5.0F), FieldPlace({Mat4(1.0F)}), kSmoke, even());
+    return make_varying(volume_of(field, Vec3i(2), 5.0F), FieldPlace({Mat4(1.0F)}), kThinSmoke,
+                        even());
   };
   const MediumPtr one = make();
   const MediumPtr other = make();
@@ -194,12 +195,12 @@ TEST(Varying, AWalkIsAFunctionOfItsNumbers) {
   int differing = 0;
   for (int n = 0; n < 1000; ++n) {
     Vec4 u = random4(random);
-    const Rgb a = one->transmittance(oblique(), 10.0F, u);
-    EXPECT_EQ(a, other->transmittance(oblique(), 10.0F, u));
-    EXPECT_EQ(one->sample(oblique(), 10.0F, Rgb(1.0F / 3.0F), u).weight,
-              other->sample(oblique(), 10.0F, Rgb(1.0F / 3.0F), u).weight);
+    const Rgb a = one->transmittance(slanting(), 10.0F, u);
+    EXPECT_EQ(a, other->transmittance(slanting(), 10.0F, u));
+    EXPECT_EQ(one->sample(slanting(), 10.0F, Rgb(1.0F / 3.0F), u).weight,
+              other->sample(slanting(), 10.0F, Rgb(1.0F / 3.0F), u).weight);
     u.w = std::nextafter(u.w, 1.0F);
-    differing += a != one->transmittance(oblique(), 10.0F, u) ? 1 : 0;
+    differing += a != one->transmittance(slanting(), 10.0F, u) ? 1 : 0;
   }
   EXPECT_GT(differing, 900);
 }

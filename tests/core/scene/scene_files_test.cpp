@@ -23,7 +23,7 @@ using testing::ElementsAre;
 using testing::Pair;
 
 constexpr std::chrono::seconds kLong{20};
-constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr const char* kObjTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 MATCHER_P2(Asked, file, how, "") { return arg.file == file && arg.how == how; }
 
@@ -77,7 +77,7 @@ Job job_of_meshes(int count) {
 
 TEST(SceneFiles, AreWhatTheSceneShows) {
   MemoryAssets assets;
-  for (const char* file : {"a.obj", "b.obj", "unused.obj"}) assets.add(file, kTriangle);
+  for (const char* file : {"a.obj", "b.obj", "unused.obj"}) assets.add(file, kObjTriangle);
   for (const char* file :
        {"bark.png", "leaf.png", "bump.png", "unused.png", "lamp.exr", "film.png", "sky.hdr"}) {
     assets.add(file, "never decoded here");
@@ -122,7 +122,7 @@ environment: {image: sky.hdr}
 
 TEST(SceneFiles, AreWhatDisplacesMeshes) {
   MemoryAssets assets;
-  for (const char* file : {"rock.obj", "flat.obj"}) assets.add(file, kTriangle);
+  for (const char* file : {"rock.obj", "flat.obj"}) assets.add(file, kObjTriangle);
   for (const char* file : {"cracks.png", "none.png"}) assets.add(file, "never decoded here");
   const Job job = parsed(R"yaml(
 textures:
@@ -143,7 +143,7 @@ objects:
 TEST(SceneFiles, LoadSeveralAtOnce) {
   if (hardware_threads() < 2) GTEST_SKIP() << "needs two processors";
   WatchedAssets assets(2);
-  for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
+  for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kObjTriangle);
   const Job job = job_of_meshes(8);
   SceneCache cache(assets);
   ASSERT_TRUE(load_files(job, std::nullopt, cache));
@@ -161,7 +161,7 @@ TEST(SceneFiles, ErrorsComeInTheOrderOfTheDocument) {
   // The first bad one takes the longest to be found out.
   std::string late;
   for (int i = 0; i < 20'000; ++i) late += "v 0 0 0\n";
-  for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
+  for (int i = 0; i < 8; ++i) assets.add("m" + std::to_string(i) + ".obj", kObjTriangle);
   assets.add("m3.obj", late + "f 1 2 x\n");
   assets.add("m5.obj", "f 1 2 3\n");
   for (int again = 0; again < 2; ++again) {
@@ -175,7 +175,7 @@ TEST(SceneFiles, ErrorsComeInTheOrderOfTheDocument) {
 
 TEST(SceneFiles, EveryBrokenOneIsNamedWithItsPlaceInTheDocument) {
   MemoryAssets assets;
-  assets.add("good.obj", kTriangle);
+  assets.add("good.obj", kObjTriangle);
   assets.add("idx.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
   assets.add("nan.obj", "v 0 nan 0\n");
   assets.add("bark.png", "no picture");
@@ -263,7 +263,7 @@ outputs: [{file: a.#.png}]
 TEST(SceneFiles, OneThatIsBeingLoadedHoldsUpNoOther) {
   // The second and third file are opened while the first one is still being read.
   WatchedAssets assets(3);
-  for (int i = 0; i < 3; ++i) assets.add("m" + std::to_string(i) + ".obj", kTriangle);
+  for (int i = 0; i < 3; ++i) assets.add("m" + std::to_string(i) + ".obj", kObjTriangle);
   SceneCache cache(assets);
   std::vector<std::thread> threads;
   for (int i = 0; i < 3; ++i) {
@@ -277,7 +277,7 @@ TEST(SceneFiles, OneThatIsBeingLoadedHoldsUpNoOther) {
 
 TEST(SceneFiles, WhoAsksForTheSameFileGetsTheSameMesh) {
   WatchedAssets assets;
-  assets.add("m0.obj", kTriangle);
+  assets.add("m0.obj", kObjTriangle);
   SceneCache cache(assets);
   std::vector<std::shared_ptr<const TriangleMesh>> meshes(8);
   std::vector<std::thread> threads;
@@ -293,13 +293,13 @@ TEST(SceneFiles, WhatCouldNotBeLoadedIsTriedAgain) {
   MemoryAssets assets;
   SceneCache cache(assets);
   EXPECT_FALSE(cache.mesh("m0.obj", MeshNormals::file));
-  assets.add("m0.obj", kTriangle);
+  assets.add("m0.obj", kObjTriangle);
   EXPECT_TRUE(cache.mesh("m0.obj", MeshNormals::file));
 }
 
 TEST(SceneFiles, PartsOfAMeshAreReadFromOneFileOnce) {
   WatchedAssets assets;
-  assets.add("two.obj", std::string(kTriangle) + "usemtl glass\nf 1 2 3\nf 3 2 1\n");
+  assets.add("two.obj", std::string(kObjTriangle) + "usemtl glass\nf 1 2 3\nf 3 2 1\n");
   const Job job = parsed(R"yaml(
 objects:
   all: {mesh: two.obj}

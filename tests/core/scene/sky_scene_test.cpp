@@ -10,7 +10,7 @@
 namespace hyades::core {
 namespace {
 
-std::shared_ptr<const Scene> scene_of(const std::string& sky, int32_t frame = 1) {
+std::shared_ptr<const Scene> sky_scene(const std::string& sky, int32_t frame = 1) {
   MemoryAssets assets;
   Diagnostics diagnostics;
   const Job job = parse_job("hyades: 1\nframes: 1-10\nenvironment: {" + sky + "}\n", "sky.yaml",
@@ -34,17 +34,17 @@ void expect_near(const Vec3& a, const Vec3& b) {
 
 TEST(SkyScene, HasItsSunWhereTheJobSays) {
   const float s = std::sqrt(0.5F);
-  expect_near(towards_sun(*scene_of("sky: {elevation: 45}")), {0, s, -s});
-  expect_near(towards_sun(*scene_of("sky: {elevation: 45, azimuth: 90}")), {-s, s, 0});
-  expect_near(towards_sun(*scene_of("sky: {elevation: 45, azimuth: 60}, rotate_y: 30")),
+  expect_near(towards_sun(*sky_scene("sky: {elevation: 45}")), {0, s, -s});
+  expect_near(towards_sun(*sky_scene("sky: {elevation: 45, azimuth: 90}")), {-s, s, 0});
+  expect_near(towards_sun(*sky_scene("sky: {elevation: 45, azimuth: 60}, rotate_y: 30")),
               {-s, s, 0});
-  expect_near(towards_sun(*scene_of("sky: {sun_direction: [3, 4, 0]}")), {0.6F, 0.8F, 0.0F});
-  expect_near(towards_sun(*scene_of("sky: {elevation: {keys: {1: 0, 10: 90}}}", 10)), {0, 1, 0});
+  expect_near(towards_sun(*sky_scene("sky: {sun_direction: [3, 4, 0]}")), {0.6F, 0.8F, 0.0F});
+  expect_near(towards_sun(*sky_scene("sky: {elevation: {keys: {1: 0, 10: 90}}}", 10)), {0, 1, 0});
 }
 
 TEST(SkyScene, IsBrightestAroundTheSun) {
   for (const char* azimuth : {"0", "70", "200"}) {
-    const auto scene = scene_of(std::string("sky: {elevation: 20, azimuth: ") + azimuth + "}");
+    const auto scene = sky_scene(std::string("sky: {elevation: 20, azimuth: ") + azimuth + "}");
     const Vec3 sun = towards_sun(*scene);
     const auto sky = [&](const Vec3& d) {
       return luminance(scene->lights[0]->radiance({}, -glm::normalize(d)));
@@ -57,13 +57,14 @@ TEST(SkyScene, IsBrightestAroundTheSun) {
 }
 
 TEST(SkyScene, CanBeWithoutItsSun) {
-  EXPECT_EQ(scene_of("sky: {sun: false}")->lights.size(), 1U);
-  EXPECT_EQ(scene_of("sky: {elevation: -5}")->lights.size(), 1U);
+  EXPECT_EQ(sky_scene("sky: {sun: false}")->lights.size(), 1U);
+  EXPECT_EQ(sky_scene("sky: {elevation: -5}")->lights.size(), 1U);
 }
 
 TEST(SkyScene, ScalesSkyAndSun) {
-  const auto one = scene_of("sky: {elevation: 30}");
-  const auto two = scene_of("sky: {elevation: 30, irradiance: 2}, strength: 4, color: [1, 0.5, 1]");
+  const auto one = sky_scene("sky: {elevation: 30}");
+  const auto two =
+      sky_scene("sky: {elevation: 30, irradiance: 2}, strength: 4, color: [1, 0.5, 1]");
   for (size_t i = 0; i < 2; ++i) {
     const auto a = one->lights[i]->sample_direct({}, 0.0F, 0.0F, Vec2(0.3F));
     const auto b = two->lights[i]->sample_direct({}, 0.0F, 0.0F, Vec2(0.3F));

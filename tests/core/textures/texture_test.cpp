@@ -14,14 +14,14 @@
 namespace hyades::core {
 namespace {
 
-TexturePoint at_uv(float u, float v) { return {.uv = {u, v}}; }
+TexturePoint point_at(float u, float v) { return {.uv = {u, v}}; }
 
 TEST(ConstantTexture, IsItsColour) {
   const auto texture = make_constant_texture({0.2F, 0.4F, 0.6F});
-  EXPECT_EQ(texture->color(at_uv(3, 4)), Rgb(0.2F, 0.4F, 0.6F));
+  EXPECT_EQ(texture->color(point_at(3, 4)), Rgb(0.2F, 0.4F, 0.6F));
   EXPECT_EQ(texture->scalar({}), luminance({0.2F, 0.4F, 0.6F}));
   EXPECT_EQ(make_constant_texture(Rgb(0.3F))->scalar({}), 0.3F);
-  expect_gradient(*texture, at_uv(0.3F, 0.2F), 0.0F);
+  expect_gradient(*texture, point_at(0.3F, 0.2F), 0.0F);
 }
 
 TEST(CheckerTexture, AlternatesInEveryDirection) {
@@ -42,8 +42,8 @@ TEST(CheckerTexture, AlternatesInEveryDirection) {
   EXPECT_EQ(value(1e6F + 0.5F, 0.1F, 0.1F), 2.0F);
   const auto flat =
       make_checker_texture(a, b, {.space = MappingSpace::uv, .offset = Vec3(0.0F, 0.0F, 1.0F)});
-  EXPECT_EQ(flat->scalar(at_uv(0.5F, 0.5F)), 1.0F);
-  EXPECT_EQ(flat->scalar(at_uv(1.5F, 0.5F)), 2.0F);
+  EXPECT_EQ(flat->scalar(point_at(0.5F, 0.5F)), 1.0F);
+  EXPECT_EQ(flat->scalar(point_at(1.5F, 0.5F)), 2.0F);
 }
 
 TEST(PatternTexture, BlendsByTheNoise) {
