@@ -62,10 +62,11 @@ bool Conflicts::weigh(ScheduledJob& job, FrameSlot& slot, const Extent& extent, 
     }
     if (voices(opinions, [](const Opinion&) { return true; }) >= kMostAnswers) {
       const core::PixelRect tile = job.grid.tile(extent.tile);
-      frames_.fail(job, slot,
-                   fmt::format("{} workers rendered tile {},{} batches {}-{} to {} different films",
-                               kMostAnswers, tile.x0, tile.y0, extent.batches.first,
-                               extent.batches.end() - 1, kMostAnswers));
+      frames_.fail_or_leave(
+          job, slot, e.worker,
+          fmt::format("{} workers rendered tile {},{} batches {}-{} to {} different films",
+                      kMostAnswers, tile.x0, tile.y0, extent.batches.first,
+                      extent.batches.end() - 1, kMostAnswers));
       return false;
     }
   }

@@ -115,6 +115,25 @@ void FrameLifecycle::fail(ScheduledJob& job, FrameSlot& slot, std::string reason
   records_.persist(FrameFailedRecord{job.id, {slot.frame, slot.reason}});
 }
 
+void FrameLifecycle::fail_or_leave(ScheduledJob& job, FrameSlot& slot, WorkerId worker,
+                                   std::string reason) {
+  const Worker* who = workers_.find(worker);
+  const bool others = who != nullptr && workers_.is_lone(slot.worker_class) &&
+                      note_left(slot, who->origin) &&
+                      workers_.anybody_with_better_claim(job, slot, who->origin, who->worker_class);
+  if (!others) return fail(job, slot, std::move(reason));
+  restart(job, slot);
+}
+
+/// Notes that workers of this origin have left the frame under its class. Whether there was room.
+bool FrameLifecycle::note_left(FrameSlot& slot, Origin origin) const {
+  constexpr size_t kMost = 16;  // else whoever invents classes would fill memory
+  std::erase_if(slot.left, [this](const FrameSlot::Left& left) { return left.until <= step_.now; });
+  if (slot.left.size() >= kMost) return false;
+  slot.left.push_back({origin, slot.worker_class, step_.now + kSlowFor * options_.class_patience});
+  return true;
+}
+
 void FrameLifecycle::restart(ScheduledJob& job, FrameSlot& slot) {
   slot.phase = FramePhase::restarting;
   slot.suspect = false;
@@ -178,6 +197,9 @@ void FrameLifecycle::restart_stranded(bool leasing) {
         ++slot.stood_still;
         // Who had no unit of it does something else.
         if (slot.ledger->any_assigned() || !slot.ledger->settled()) {
+          for (const Origin origin : workers_.origins_of(slot.worker_class)) {
+            note_left(slot, origin);
+          }
           workers_.note_slow(slot.worker_class, *since, slot.ledger->holders_since(*since),
                              step_.now + kSlowFor * options_.class_patience);
         }

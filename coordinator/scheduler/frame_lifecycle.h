@@ -39,6 +39,9 @@ class FrameLifecycle {
   void finish_if_complete(ScheduledJob& job, FrameSlot& slot);
   /// Gives the frame up, which is in flight, for this reason.
   void fail(ScheduledJob& job, FrameSlot& slot, std::string reason);
+  /// A unit of the frame is hopeless for workers of its class, to which this one belongs: where
+  /// the class may be an invention and others are there it begins again with them, else it fails.
+  void fail_or_leave(ScheduledJob& job, FrameSlot& slot, WorkerId worker, std::string reason);
   /// Begins the frame again, which is in flight. Films of it that are on their way to the disk get
   /// there before the record that says so, and are void with it.
   void restart(ScheduledJob& job, FrameSlot& slot);
@@ -63,6 +66,7 @@ class FrameLifecycle {
 
  private:
   void reopen(ScheduledJob& job, FrameSlot& slot);
+  bool note_left(FrameSlot& slot, Origin origin) const;
   bool is_orphaned(const ScheduledJob& job, FrameSlot& slot);
   std::optional<TimePoint> stands_still_since(const ScheduledJob& job, FrameSlot& slot,
                                               bool leasing);

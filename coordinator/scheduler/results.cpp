@@ -138,7 +138,7 @@ void Results::on(const UnitFailed& e) {
   const Worker* worker = workers_.find(e.worker);  // whose lease it is, so that it is there
   slot->ledger->blame(whole, e.worker, worker->voice, e.reason);
   leases_.end_unit(*job, *slot, *extent, e.lease);
-  if (hopeless(*job, *slot, whole)) frames_.fail(*job, *slot, e.reason);
+  if (hopeless(*job, *slot, whole)) frames_.fail_or_leave(*job, *slot, e.worker, e.reason);
 }
 
 /// Whether a unit has failed with so many different voices that it is the unit's fault; or that

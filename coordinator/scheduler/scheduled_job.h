@@ -57,6 +57,13 @@ struct FrameSlot {
   std::optional<Watch> watch;
   /// How often it began again for that. Each time it gets twice as long, as its units may be long.
   uint32_t stood_still = 0;
+  /// Under which classes, that may be inventions, it stood still or failed: others come first.
+  struct Left {
+    Origin origin{};
+    ClassId worker_class{};
+    TimePoint until;  ///< others come first
+  };
+  std::vector<Left> left;
   std::unique_ptr<FrameLedger> ledger;
   std::string reason;  ///< why it failed
 

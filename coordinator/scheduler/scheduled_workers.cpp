@@ -33,6 +33,22 @@ Origin origin_of(const WorkerJoined& joined) {
   return Origin{number_of(joined.origin)};
 }
 
+/// Whether it renders, or would.
+bool is_at_work(const Worker& worker) {
+  return !worker.barred && (worker.wanted > 0 || !worker.leases.empty());
+}
+
+/// How often workers of this origin and class have left the frame: the less, the better.
+int claim_of(const FrameSlot& slot, Origin origin, ClassId worker_class, TimePoint now) {
+  int claim = 0;
+  for (const FrameSlot::Left& left : slot.left) {
+    if (left.origin != origin || left.until <= now) continue;
+    if (left.worker_class == worker_class) return 2;
+    claim = 1;
+  }
+  return claim;
+}
+
 }  // namespace
 
 ClassId class_id(const std::string& name) { return ClassId{number_of(name)}; }
@@ -119,11 +135,18 @@ bool ScheduledWorkers::is_lone(ClassId worker_class) const {
   return origins <= 1 && classes_at_work_ > origins;
 }
 
+std::vector<Origin> ScheduledWorkers::origins_of(ClassId worker_class) const {
+  std::vector<Origin> found;
+  const auto it = classes_.find(worker_class);
+  if (it == classes_.end()) return found;
+  for (const auto& [origin, workers] : it->second.origins) found.push_back(origin);
+  return found;
+}
+
 bool ScheduledWorkers::anybody_of_another(const ScheduledJob& job, ClassId worker_class) const {
   return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
     const Worker& other = entry.second;
-    const bool at_work = other.wanted > 0 || !other.leases.empty();
-    return !other.barred && at_work && other.worker_class != worker_class && suits(job, other) &&
+    return is_at_work(other) && other.worker_class != worker_class && suits(job, other) &&
            !is_slow(other);
   });
 }
@@ -160,9 +183,23 @@ bool ScheduledWorkers::forgive_slow() {
   return std::erase_if(slow_voices_, is_over) + std::erase_if(slow_origins_, has_ended) > 0;
 }
 
+bool ScheduledWorkers::anybody_with_better_claim(const ScheduledJob& job, const FrameSlot& slot,
+                                                 Origin origin, ClassId worker_class) const {
+  const int claim = claim_of(slot, origin, worker_class, step_.now);
+  return std::any_of(workers_.begin(), workers_.end(), [&](const auto& entry) {
+    const Worker& other = entry.second;
+    return claim_of(slot, other.origin, other.worker_class, step_.now) < claim &&
+           is_at_work(other) && suits(job, other) && !is_slow(other);
+  });
+}
+
 bool ScheduledWorkers::may_render(const ScheduledJob& job, const FrameSlot& slot,
                                   const Worker& worker) const {
   if (slot.worker_class != ClassId{}) return slot.worker_class == worker.worker_class;
+  if (!slot.left.empty() &&
+      anybody_with_better_claim(job, slot, worker.origin, worker.worker_class)) {
+    return false;
+  }
   return !is_slow(worker) || !anybody_of_another(job, worker.worker_class);
 }
 

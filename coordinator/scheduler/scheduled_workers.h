@@ -90,6 +90,8 @@ class ScheduledWorkers {
   /// Whether the class may be somebody's invention, so that others must not wait for it: all of it
   /// that may get units has one origin, or none, and others may get units too.
   bool is_lone(ClassId worker_class) const;
+  /// Where those of the class come from that may get units.
+  std::vector<Origin> origins_of(ClassId worker_class) const;
   /// Whether a worker of another class is at work, or asks for some, that may begin with frames of
   /// the job, and that is not slow.
   bool anybody_of_another(const ScheduledJob& job, ClassId worker_class) const;
@@ -101,8 +103,13 @@ class ScheduledWorkers {
                  TimePoint until);
   /// Forgets who is slow no more. Whether there was somebody.
   bool forgive_slow();
+  /// Whether somebody who is not slow and at work could render the frame, which was left by
+  /// `slot.left`, with a better claim than a worker of this origin and class: one of an origin that
+  /// did not leave it, else of a class that did not.
+  bool anybody_with_better_claim(const ScheduledJob& job, const FrameSlot& slot, Origin origin,
+                                 ClassId worker_class) const;
   /// Whether units of the frame are for the worker's class: it has begun it, or nobody has. Who is
-  /// slow begins only what nobody else can.
+  /// slow begins only what nobody else can, and so does whoever has left the frame before.
   bool may_render(const ScheduledJob& job, const FrameSlot& slot, const Worker& worker) const;
 
   /// Whether the worker has what the job asks for, and the job's limit leaves room for it.

@@ -63,6 +63,11 @@ class Classes : public testing::Test {
   }
   /// Odd asks once more and delivers that.
   void odd_delivers() { bench.deliver_durably(bench.ask(kOdd)); }
+  /// One that nobody has left.
+  void another_job() {
+    bench.add(small_plan({1}, 64), {}, JobId{2});
+    bench.tell(FrameOpened{JobId{2}, 1});
+  }
   bool gets_a_unit(WorkerId worker) {
     bench.tell(WorkRequested{worker, 1});
     for (const Lease& lease : bench.all<Lease>()) {
@@ -179,7 +184,7 @@ TEST_F(Classes, WhoWasThereBeforeIsNotSlowForAnotherOfTheToken) {
   join(kAnna, "third", "ours");
   keep_busy(kAnna);
   ASSERT_TRUE(begins_again(minutes(7)));
-  bench.tell(FrameOpened{kJob, 1});
+  another_job();
   EXPECT_TRUE(gets_a_unit(WorkerId{8}));
 }
 
@@ -195,7 +200,7 @@ TEST_F(Classes, WhoDeliversIsNotSlowForAnotherOfItsClass) {
   ASSERT_FALSE(begins_again(minutes(2)));
   bench.deliver_durably(bench.ask(other));
   ASSERT_TRUE(begins_again(minutes(7))) << "a film in five minutes is not enough";
-  bench.tell(FrameOpened{kJob, 1});
+  another_job();
   EXPECT_FALSE(gets_a_unit(kOdd));
   EXPECT_TRUE(gets_a_unit(other));
 }
@@ -207,6 +212,59 @@ TEST_F(Classes, WhoHoldsAUnitAllTheTimeIsSlowThoughItDeliversOthers) {
   ASSERT_TRUE(begins_again(minutes(7)));
   bench.tell(FrameOpened{kJob, 1});
   EXPECT_FALSE(gets_a_unit(kOdd));
+}
+
+TEST_F(Classes, AFrameThatFailsUnderAnInventionBeginsAgainWithOthers) {
+  join(kAnna, "class", "ours");
+  keep_busy(kAnna);
+  join(kOdd, "odd", "theirs");
+  bench.add(small_plan({1}, 64));
+  bench.tell(FrameOpened{kJob, 1});
+  for (int i = 0; i < 3; ++i) {
+    const Lease lease = bench.ask(kOdd);
+    bench.tell(UnitFailed{kOdd, lease.lease, kJob, lease.units[0], "invented"});
+  }
+  const Persist persist = bench.only<Persist>();
+  ASSERT_TRUE(std::holds_alternative<FrameRestartedRecord>(persist.record));
+  bench.tell(Persisted{persist.id});
+  bench.tell(FrameOpened{kJob, 1});
+  // Whatever it calls its class now, and as whom it comes.
+  EXPECT_FALSE(gets_a_unit(kOdd));
+  join(WorkerId{8}, "odder", "theirs");
+  EXPECT_FALSE(gets_a_unit(WorkerId{8}));
+  EXPECT_TRUE(gets_a_unit(kAnna));
+}
+
+TEST_F(Classes, AFrameThatFailsForAllOfThemFails) {
+  join(kAnna, "class", "ours");
+  keep_busy(kAnna);
+  join(kOdd, "odd", "theirs");
+  bench.add(small_plan({1}, 64));
+  bench.tell(FrameOpened{kJob, 1});
+  const auto fails_with = [this](WorkerId worker) {
+    for (int i = 0; i < 3; ++i) {
+      const Lease lease = bench.ask(worker);
+      bench.tell(UnitFailed{worker, lease.lease, kJob, lease.units[0], "no such file"});
+    }
+    const Persist persist = bench.only<Persist>();
+    bench.tell(Persisted{persist.id});
+    return std::holds_alternative<FrameFailedRecord>(persist.record);
+  };
+  EXPECT_FALSE(fails_with(kOdd));
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_TRUE(fails_with(kAnna));
+}
+
+TEST_F(Classes, OneTokenHoldsAFrameOnceWhateverClassesItInvents) {
+  for (uint64_t i = 0; i < 12; ++i) join(WorkerId{20 + i}, "c" + std::to_string(i), "theirs");
+  bench.add(small_plan({1}, 64));
+  bench.tell(FrameOpened{kJob, 1});
+  for (uint64_t i = 0; i < 12; ++i) bench.tell(WorkRequested{WorkerId{20 + i}, 1000});
+  join(kAnna, "class", "ours");
+  bench.tell(WorkRequested{kAnna, 1});
+  ASSERT_TRUE(begins_again(minutes(7)));
+  bench.tell(FrameOpened{kJob, 1});
+  EXPECT_EQ(bench.only<Lease>().worker, kAnna) << "the next of theirs would hold it again";
 }
 
 TEST_F(Classes, NobodyGivesWayToWhoWantsNothing) {
