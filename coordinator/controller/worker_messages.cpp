@@ -206,6 +206,7 @@ void WorkerSessions::refuse(WorkerSession& session, const v1::UnitResult& result
   *rejected.mutable_unit()->mutable_lease() = result.lease();
   rejected.mutable_unit()->set_job(result.job());
   *rejected.mutable_unit()->mutable_unit() = result.unit();
+  rejected.mutable_unit()->mutable_unit()->clear_proof();  // it may be as long as a film
   rejected.set_reason(refusal.reason);
   rejected.set_text(refusal.text);
   rejected.set_retry_after_ms(refusal.retry_after_ms);

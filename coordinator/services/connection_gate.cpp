@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <linux/tcp.h>
 #include <malloc.h>
 #include <netinet/in.h>
 #include <sys/epoll.h>
@@ -31,6 +32,8 @@ constexpr size_t kEventsAtOnce = 256;
 constexpr int kAcceptsAtOnce = 64;
 constexpr std::chrono::milliseconds kAcceptAgainAfter{200};
 constexpr int kLongestWaitMs = 60'000;
+/// How often it is looked what strangers inside have sent.
+constexpr int kLookMs = 20;
 
 /// Of the files that this process may have open, those who wait get an eighth; and of what is known
 /// each needs two, where two thirds are left to all of it.
@@ -60,6 +63,13 @@ bool watch(const core::Descriptor& poll, int operation, const core::Descriptor& 
   event.events = events;
   event.data.u64 = id;
   return ::epoll_ctl(poll.get(), operation, file.get(), &event) == 0;
+}
+
+uint64_t bytes_received(const core::Descriptor& socket) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(socket.get(), IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return 0;
+  return info.tcpi_bytes_received;
 }
 
 bool is_out_of_files(int error) {
@@ -171,10 +181,11 @@ int ConnectionGate::milliseconds_to_wait() const {
   for (const std::optional<Time>& other : {accept_again_, calm_at_}) {
     if (other) next = next ? std::min(*next, *other) : *other;
   }
-  if (!next) return kLongestWaitMs;
+  const int longest = strangers_.inside() > 0 ? kLookMs : kLongestWaitMs;
+  if (!next) return longest;
   const auto left =
       std::chrono::ceil<std::chrono::milliseconds>(*next - std::chrono::steady_clock::now());
-  return static_cast<int>(std::clamp<int64_t>(left.count(), 0, kLongestWaitMs));
+  return static_cast<int>(std::clamp<int64_t>(left.count(), 0, longest));
 }
 
 void ConnectionGate::hear(Id id, uint32_t events, Time now) {
@@ -215,9 +226,11 @@ void ConnectionGate::watch_listeners(bool watched) const {
 }
 
 void ConnectionGate::take(core::Descriptor socket, std::string address) {
+  const std::string neighbourhood = neighbourhood_of(address);
+  if (refused_.contains(neighbourhood)) return;
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, socket, EPOLLRDHUP | EPOLLET, id)) return;
-  strangers_.come(id, neighbourhood_of(address));
+  strangers_.come(id, neighbourhood);
   by_address_[address] = id;  // one before it from that port has most likely just ended
   connections_.emplace(id, Connection{std::move(socket), std::move(address)});
 }
@@ -229,6 +242,7 @@ void ConnectionGate::advance(Time now, std::vector<int>& entering) {
     watch_listeners(true);
   }
   for (const Id id : strangers_.expel(now)) drop(id);
+  drop_talkers(now);
   while (const auto id = strangers_.let_in(now)) {
     if (const int socket = enter(*id); socket >= 0) entering.push_back(socket);
   }
@@ -266,6 +280,18 @@ void ConnectionGate::drop(Id id) {
   // The kernel goes on watching what is open inside.
   (void)::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, connection.socket.get(), nullptr);
   connections_.erase(found);
+}
+
+/// Strangers inside that have sent more than they need to say who they are.
+void ConnectionGate::drop_talkers(Time now) {
+  std::erase_if(refused_, [now](const auto& entry) { return entry.second <= now; });
+  for (const Id id : strangers_.all_inside()) {
+    const Connection& connection = connections_.at(id);
+    if (bytes_received(connection.socket) <= limits_.stranger_bytes) continue;
+    refused_[neighbourhood_of(connection.address)] = now + limits_.refused;
+    drop(id);
+    crowded_ = true;  // what they cost is given back, too
+  }
 }
 
 /// Whether a crowd has been gone for long enough; true once.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <thread>
@@ -26,6 +27,11 @@ class ConnectionGate {
  public:
   struct Limits {
     StrangerQueue::Limits strangers{};
+    /// What a stranger inside may send: a handshake, headers, and the first message of a call. gRPC
+    /// keeps headers that do not end, and calls that are reset at once, whatever they take. Who
+    /// sends more goes, and nobody of his neighbourhood comes for `refused` after that.
+    uint64_t stranger_bytes = uint64_t{256} << 10U;
+    std::chrono::milliseconds refused{10'000};
     /// Connections of those that are known; also bounded by the files that may be open. With one
     /// token as many as are free at most, so half of them, and then who has another comes in.
     size_t known = 20'000;
@@ -77,6 +83,7 @@ class ConnectionGate {
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
   bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
+  void drop_talkers(Time now) HYADES_REQUIRES(mutex_);
   bool is_calm(Time now) HYADES_REQUIRES(mutex_);
   void wake() const;
 
@@ -91,6 +98,8 @@ class ConnectionGate {
   StrangerQueue strangers_ HYADES_GUARDED_BY(mutex_);
   std::unordered_map<Id, Connection> connections_ HYADES_GUARDED_BY(mutex_);
   std::unordered_map<std::string, Id> by_address_ HYADES_GUARDED_BY(mutex_);
+  /// Neighbourhoods of those who sent too much, and until when nobody of them comes.
+  std::map<std::string, Time> refused_ HYADES_GUARDED_BY(mutex_);
   size_t known_ HYADES_GUARDED_BY(mutex_) = 0;
   std::unordered_map<std::string, size_t> known_by_ HYADES_GUARDED_BY(mutex_);  ///< by token
   Id next_id_ HYADES_GUARDED_BY(mutex_);

@@ -16,10 +16,10 @@ namespace hyades::coordinator {
 class RequestCall : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
   void OnReadDone(bool ok) final;
-  void OnDone() override { delete this; }
+  void OnDone() override;
 
  protected:
-  RequestCall();
+  explicit RequestCall(grpc::CallbackServerContext& context);
   ~RequestCall() override;
 
   /// Asks for the message. Where it has not come after `patience`, the call ends with
@@ -27,12 +27,18 @@ class RequestCall : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteB
   void ask(std::chrono::milliseconds patience);
   /// The message has come.
   virtual void take() = 0;
+  /// Ends the call with this message, which stays as it is until then. Where nobody has read it
+  /// after `patience`, the call is broken off. Called once at most, and not before take().
+  void answer(const grpc::ByteBuffer& message, std::chrono::milliseconds patience);
 
   grpc::ByteBuffer asked_;  ///< once it has come
 
  private:
   class Patience;
-  const std::shared_ptr<Patience> patience_;
+  void wait(std::chrono::milliseconds time, std::shared_ptr<Patience> patience);
+
+  grpc::CallbackServerContext& context_;
+  std::shared_ptr<Patience> patience_;  ///< while something is waited for
   std::optional<grpc::Alarm> alarm_;
 };
 

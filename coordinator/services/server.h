@@ -20,7 +20,7 @@ class Server {
     /// A connection on which no call is open for so long is ended. Workers hold a stream as long as
     /// they are there, and clients connect again with their next call: what is ended is nobody's.
     std::chrono::milliseconds idle = std::chrono::minutes(5);
-    /// How long the one message of a call that is admitted may be on its way.
+    /// How long the one message of a call that is admitted may be on its way, and its answer.
     std::chrono::milliseconds request_patience = std::chrono::minutes(2);
     ConnectionGate::Limits gate{};
   };

@@ -23,6 +23,10 @@ using grpc::internal::CallbackClientStreamingHandler;
 
 /// Messages in one request; a job with as many files as it may have has about half of that.
 constexpr uint64_t kMostContributors = 200'000;
+/// Answers of so many bytes are let go without being counted.
+constexpr size_t kShortAnswer = size_t{64} << 10U;
+/// Longer ones that wait for their readers, of all calls together [bytes].
+constexpr uint64_t kMostLongAnswers = uint64_t{256} << 20U;
 
 }  // namespace
 
@@ -30,7 +34,10 @@ constexpr uint64_t kMostContributors = 200'000;
 class Service::UnaryCall final : public RequestCall {
  public:
   UnaryCall(Service& service, const Operation& operation, Context& context)
-      : service_(service), operation_(operation), work_(std::make_shared<Work>()) {
+      : RequestCall(context),
+        service_(service),
+        operation_(operation),
+        work_(std::make_shared<Work>()) {
     const grpc::Status admitted = service.admission_.check(context, operation.rule, work_->caller);
     if (admitted.ok()) {
       ask(service.patience_);
@@ -38,6 +45,8 @@ class Service::UnaryCall final : public RequestCall {
       Finish(admitted);
     }
   }
+
+  ~UnaryCall() override { service_.long_answers_.fetch_sub(long_); }
 
  private:
   /// What the operation works on, which may go on when the call is over.
@@ -102,19 +111,31 @@ class Service::UnaryCall final : public RequestCall {
     }
     return read_request();
   }
-  void respond() { StartWriteAndFinish(&said_, grpc::WriteOptions(), grpc::Status::OK); }
+  /// What is long takes memory until it is read, and there is room for so many of them.
+  void respond() {
+    const size_t bytes = said_.Length();
+    if (bytes > kShortAnswer) {
+      if (service_.long_answers_.fetch_add(bytes) + bytes > kMostLongAnswers) {
+        service_.long_answers_.fetch_sub(bytes);
+        return Finish(crowded());
+      }
+      long_ = bytes;
+    }
+    answer(said_, service_.patience_);
+  }
 
   Service& service_;
   const Operation& operation_;
   const std::shared_ptr<Work> work_;
   Bytes said_;
+  size_t long_ = 0;  ///< its bytes among the long answers
 };
 
 /// A call that a stream answers.
 class Service::StreamCall final : public RequestCall, public OutgoingCall {
  public:
   StreamCall(const Service& service, const Rule& rule, const MakeRawStream& make, Context& context)
-      : admission_(service.admission_), make_(make), context_(context) {
+      : RequestCall(context), admission_(service.admission_), make_(make), context_(context) {
     grpc::Status refused = admission_.check(context, rule, caller_);
     if (refused.ok()) entry_ = count_connection(service.at_.controller, caller_, refused);
     if (refused.ok()) {

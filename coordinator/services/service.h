@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <string>
@@ -28,7 +30,7 @@ class Service final : public grpc::Service {
   using Bytes = grpc::ByteBuffer;
 
   /// Has the methods of the table. What the arguments refer to outlives the service.
-  /// `patience`: with the one message of a call that is admitted.
+  /// `patience`: with the one message of a call that is admitted, and with who reads its answer.
   Service(Backend at, const Admission& admission, Executors& executors,
           std::chrono::milliseconds patience);
 
@@ -77,7 +79,8 @@ class Service final : public grpc::Service {
   const Admission& admission_;
   Executors& executors_;
   const std::chrono::milliseconds patience_;
-  std::deque<std::string> names_;  ///< of the methods; gRPC keeps pointers to them
+  std::atomic<uint64_t> long_answers_ = 0;  ///< bytes of those that wait for their readers
+  std::deque<std::string> names_;           ///< of the methods; gRPC keeps pointers to them
 };
 
 // Each adds the streams of one subject.

@@ -63,6 +63,12 @@ void StrangerQueue::leave(Id id) {
   forget_if_empty(stranger.of);
 }
 
+std::vector<StrangerQueue::Id> StrangerQueue::all_inside() const {
+  std::vector<Id> ids;
+  for (const auto& [id, since] : inside_) ids.push_back(id);
+  return ids;
+}
+
 std::optional<StrangerQueue::Time> StrangerQueue::next_expiry() const {
   std::optional<Time> first;
   for (const auto& [id, since] : inside_) {

@@ -49,6 +49,7 @@ class StrangerQueue {
   /// When expel() will find the next one, as things stand; nothing where nobody is inside.
   std::optional<Time> next_expiry() const;
   size_t inside() const { return inside_.size(); }
+  std::vector<Id> all_inside() const;
   size_t waiting() const { return strangers_.size() - inside_.size(); }
 
  private:

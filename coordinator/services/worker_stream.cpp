@@ -19,8 +19,8 @@ namespace hyades::coordinator {
 namespace {
 
 /// A worker that does not read for so long that this much waits for it is cut off.
-constexpr size_t kMostWaiting = 100'000;
-constexpr uint64_t kMostWaitingBytes = uint64_t{64} << 20U;
+constexpr size_t kMostWaiting = 20'000;
+constexpr uint64_t kMostWaitingBytes = uint64_t{32} << 20U;
 
 /// The stream's writing side, which outlives the stream as long as the controller holds it.
 class Link final : public WorkerLink {

@@ -1,6 +1,7 @@
 // Strangers who come to gRPC in crowds, and begin what they do not end.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <grpcpp/create_channel.h>
 #include <sys/resource.h>
 
@@ -148,6 +149,42 @@ TEST_F(GrpcCrowd, AMessageThatDoesNotComeEndsTheCall) {
     peer.send(call, test::RawHttp2::head(1000) + "half");
     EXPECT_TRUE(peer.ended(call, 20'000)) << method;
   }
+}
+
+TEST_F(GrpcCrowd, HeadersThatDoNotEndAndCallsThatAreBrokenOffCostLittle) {
+  test::CoordinatorProcess process({"--token-file", token_file});
+  ASSERT_FALSE(process.address().empty()) << "the coordinator does not start";
+  const uint64_t before = process.memory_mib();
+  constexpr uint64_t kMuch = 256U << 20U;
+  for (int i = 0; i < 3; ++i) {
+    test::RawHttp2 endless(process.address(), true, "127.0.0.2");
+    EXPECT_LT(endless.endless_headers(kMuch), kMuch / 2);
+    test::RawHttp2 broken(process.address(), true, "127.0.0.3");
+    EXPECT_LT(broken.broken_calls("/hyades.v1.Farm/Info", kMuch), kMuch / 2);
+  }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  // What comes until it is noticed is taken in, and costs ten times as much: gigabytes else.
+  EXPECT_LE(process.peak_mib(), before + 4 * kMostOfCrowd);
+#endif
+  EXPECT_EQ(process.end(), 0);
+}
+
+TEST_F(GrpcCrowd, AnAnswerThatIsNotReadEndsTheCall) {
+  world.serving.request_patience = 300ms;
+  world.start();
+  test::RawHttp2 peer(world.address);
+  const uint32_t call = peer.call("/hyades.v1.Assets/FindMissing",
+                                  {{"authorization", std::string("Bearer ") + kToken}});
+  v1::FindMissingRequest request;
+  for (uint32_t i = 0; i < 10'000; ++i) {
+    v1::JobFile& file = *request.add_files();
+    file.set_sha256(fmt::format("{:032}", i));
+    file.set_size(5);
+  }
+  const std::string message = request.SerializeAsString();
+  peer.send(call, test::RawHttp2::head(static_cast<uint32_t>(message.size())) + message);
+  peer.finish(call);
+  EXPECT_TRUE(peer.ended(call, 20'000)) << "it may read 64 KiB of 400";
 }
 
 }  // namespace

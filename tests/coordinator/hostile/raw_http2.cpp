@@ -92,6 +92,32 @@ uint32_t RawHttp2::call(const std::string& path,
   return id;
 }
 
+uint64_t RawHttp2::endless_headers(uint64_t most) {
+  constexpr uint8_t kContinuation = 9;
+  const uint32_t id = next_;
+  next_ += 2;
+  std::string block;
+  while (block.size() < 8'000) block += literal(std::string(100, 'x'), std::string(100, 'y'));
+  uint64_t sent = 0;
+  for (uint8_t type = kHeaders; sent < most && connected_; type = kContinuation) {
+    frame(type, 0, id, block);
+    sent += block.size();
+    read(0);
+  }
+  return sent;
+}
+
+uint64_t RawHttp2::broken_calls(const std::string& path, uint64_t most) {
+  uint64_t sent = 0;
+  while (sent < most && connected_) {
+    const uint32_t id = call(path);
+    frame(kReset, 0, id, big_endian(8, 4));
+    sent += 200;
+    read(0);
+  }
+  return sent;
+}
+
 uint64_t RawHttp2::send(uint32_t call, std::string_view bytes) {
   uint64_t sent = 0;
   int waits = 0;

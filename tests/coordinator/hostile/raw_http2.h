@@ -30,6 +30,12 @@ class RawHttp2 {
   uint32_t call(const std::string& path,
                 const std::vector<std::pair<std::string, std::string>>& headers = {});
 
+  /// Begins a call whose headers do not end, up to so many bytes; how many have gone when the
+  /// other side has ended the connection.
+  uint64_t endless_headers(uint64_t most);
+  /// Begins calls and breaks them off at once, up to so many bytes; the same.
+  uint64_t broken_calls(const std::string& path, uint64_t most);
+
   /// Sends bytes of the call's messages as fast as the other side wants them; how many have gone
   /// when it has had no wish for more for half a second, or the call was over.
   uint64_t send(uint32_t call, std::string_view bytes);
