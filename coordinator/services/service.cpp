@@ -1,6 +1,7 @@
 #include "coordinator/services/service.h"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>

@@ -24,6 +24,7 @@
 #include "coordinator/meters/meters.h"
 #include "coordinator/web/message_heads.h"
 #include "coordinator/web/request_target.h"
+#include "farm/wire.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -48,8 +49,11 @@ constexpr uint64_t kSlowLine = 64U << 10U;
 /// What a reader may take for a piece of at most a megabyte.
 constexpr std::chrono::seconds kSend{60};
 constexpr uint32_t kMostHeaderBytes = 16U << 10U;
-/// Of the bodies of all requests together.
-constexpr uint64_t kMostBodyBytes = uint64_t{256} << 20U;
+/// Bodies that always have room: each connection has one, and of those there are not many.
+constexpr uint64_t kSmallBody = farm::kMaxRequestBytes;
+/// Of what has come and is not parsed yet. Beast waits for the whole of a chunk's head, and of the
+/// fields behind the last chunk, however long they are.
+constexpr size_t kMostUnparsed = size_t{64} << 10U;
 constexpr size_t kPiece = size_t{1} << 20U;
 /// What may wait for a reader of what happens before it is broken off.
 constexpr size_t kMostWaitingBytes = size_t{8} << 20U;
@@ -161,14 +165,18 @@ class ConnectionOver final : public Connection,
   void take_body(uint64_t most_bytes) {
     const auto length = parser_->content_length();
     if (length && *length > most_bytes) return refuse(http::error::body_limit);
-    granted_ = length ? *length : parser_->chunked() ? most_bytes : 0;
-    if (world_.body_bytes + granted_ > kMostBodyBytes) {
-      granted_ = 0;
+    // Even without a body there would be chunks' heads and fields to wait for.
+    if (parser_->chunked() && most_bytes == 0) return refuse(http::error::body_limit);
+    const uint64_t asked = length ? *length : parser_->chunked() ? most_bytes : 0;
+    const uint64_t counted = asked > kSmallBody ? asked : 0;
+    owner_ = ByteBudget::owner_of(caller_);
+    if (counted > 0 && !world_.bodies.has_room(owner_, counted)) {
       return send_away(error_reply(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                                      "the coordinator takes in as much as it may",
                                                      std::chrono::seconds(1))));
     }
-    world_.body_bytes += granted_;
+    if (counted > 0) world_.bodies.take(owner_, counted);
+    granted_ = counted;
     parser_->body_limit(most_bytes);
     tcp(stream_).expires_after(kReceive + std::chrono::seconds(static_cast<int64_t>(
                                               length.value_or(most_bytes) / kSlowLine)));
@@ -194,10 +202,12 @@ class ConnectionOver final : public Connection,
       return close();
     }
     head_only_ = false;
-    const bool large = error == http::error::body_limit || error == http::error::header_limit;
+    const bool long_head = error == http::error::header_limit;
+    const bool large =
+        long_head || error == http::error::body_limit || error == http::error::buffer_overflow;
     WebReply reply = error_reply(
         {grpc::StatusCode::INVALID_ARGUMENT, large ? "the request is too large" : error.message()});
-    if (large) reply.status = error == http::error::body_limit ? 413 : 431;
+    if (large) reply.status = long_head ? 431 : 413;
     send_away(std::move(reply));
   }
 
@@ -402,7 +412,7 @@ class ConnectionOver final : public Connection,
   }
 
   void give_back() {
-    world_.body_bytes -= granted_;
+    if (granted_ > 0) world_.bodies.give_back(owner_, granted_);
     granted_ = 0;
   }
 
@@ -422,7 +432,7 @@ class ConnectionOver final : public Connection,
   ConnectionWorld& world_;
   const std::shared_ptr<asio::ssl::context> tls_;  ///< outlives the stream
   Stream stream_;
-  beast::flat_buffer buffer_;
+  beast::flat_buffer buffer_{kMostUnparsed};
   std::optional<http::request_parser<http::string_body>> parser_;
   WebRequest request_;
   std::string address_;     ///< of the other side, as address_text() has it
@@ -430,6 +440,7 @@ class ConnectionOver final : public Connection,
   Caller caller_;           ///< of the request in work
   std::unique_ptr<Visit> visit_;
   std::unique_ptr<OwnerConnections::Entry> entry_;  ///< while its answer takes its time
+  std::string owner_;                               ///< whom its body is counted for
   uint64_t granted_ = 0;  ///< bytes that its body may have, out of those of all
   unsigned version_ = 11;
   bool keep_alive_ = false;

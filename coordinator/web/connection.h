@@ -10,6 +10,7 @@
 
 #include "coordinator/access/authority.h"
 #include "coordinator/controller/owner_connections.h"
+#include "coordinator/web/byte_budget.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/io_handle.h"
@@ -33,6 +34,10 @@ class Connection : public LiveReader {
 
 /// What all connections of a server share.
 struct ConnectionWorld {
+  /// Of the bodies of all requests in work together, and of those of one caller.
+  static constexpr uint64_t kMostBodyBytes = uint64_t{256} << 20U;
+  static constexpr uint64_t kMostBodyBytesOfOne = kMostBodyBytes / 4;
+
   /// What becomes of a request whose body has not been read yet.
   struct Admitted {
     uint64_t most_bytes = 0;            ///< that its body may have
@@ -55,7 +60,8 @@ struct ConnectionWorld {
   // Of the network's thread.
   ConnectionCount count;
   std::set<std::shared_ptr<Connection>> open{};
-  uint64_t body_bytes = 0;  ///< that the bodies of requests in work may have together
+  /// What the bodies of requests in work may have together. Small ones are not counted.
+  ByteBudget bodies{kMostBodyBytes, kMostBodyBytesOfOne};
 };
 
 /// A connection over an accepted socket. `tls`: null for plain text. The world outlives it.

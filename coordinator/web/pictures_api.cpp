@@ -44,6 +44,12 @@ std::string stamp_of(const v1::Frame& frame) {
   return fmt::format("{}:{}:{}", frame.samples_done(), is_over(frame), frame.restarts());
 }
 
+WebReply too_many() {
+  return error_reply(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                                       "as many pictures are on their way as may be",
+                                       std::chrono::seconds(1)));
+}
+
 /// What a picture is made of.
 struct Shot {
   core::Image image;
@@ -85,7 +91,7 @@ void PicturesApi::close() {
 void PicturesApi::add_routes(Router& router) {
   add_by_hand<v1::PictureRequest>(
       router, "GET", "/api/v1/jobs/{job}/frames/{frame}/picture",
-      [this](const v1::PictureRequest& request, const WebRequest&, const Answer& answer) {
+      [this](const v1::PictureRequest& request, const WebRequest& from, const Answer& answer) {
         const Asked asked{request.job(),
                           request.frame(),
                           request.format() == v1::PICTURE_FORMAT_HALF,
@@ -97,26 +103,29 @@ void PicturesApi::add_routes(Router& router) {
                               "layer: png shows beauty; expected format=half for other layers"}));
           return;
         }
-        const bool taken = pool_.submit([this, asked, answer] { answer_picture(asked, answer); });
+        const Asker asker{ByteBudget::owner_of(from.caller), answer};
+        const bool taken = pool_.submit([this, asked, asker] { answer_picture(asked, asker); });
         if (!taken) answer(error_reply(crowded()));
       });
 }
 
-void PicturesApi::answer_picture(const Asked& asked, const Answer& answer) {
+void PicturesApi::answer_picture(const Asked& asked, const Asker& asker) {
   FrameNow now;
   if (const grpc::Status known = controller_.queries().frame_now(asked.job, asked.frame, now);
       !known.ok()) {
-    answer(error_reply(known));
+    asker.answer(error_reply(known));
   } else if (is_over(now.frame)) {
-    answer(reply_in_memory([&] { return of_file(asked, now); }));
+    asker.answer(reply_in_memory([&] { return of_file(asked, asker.owner, now); }));
   } else if (const auto made = find(asked, now.tag, false)) {
-    answer(*made);
+    asker.answer(*made);
+  } else if (!has_room(asker.owner)) {
+    asker.answer(too_many());
   } else {
-    want(asked, answer);
+    want(asked, asker);
   }
 }
 
-WebReply PicturesApi::of_file(const Asked& asked, const FrameNow& now) {
+WebReply PicturesApi::of_file(const Asked& asked, const std::string& owner, const FrameNow& now) {
   const auto outputs = controller_.store().outputs_of(asked.job, asked.frame);
   if (!outputs) return error_reply(farm::unavailable(outputs.error()));
   const StoredOutput* best = nullptr;
@@ -130,6 +139,7 @@ WebReply PicturesApi::of_file(const Asked& asked, const FrameNow& now) {
   }
   const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
   if (const auto made = find(asked, tag, true)) return *made;
+  if (!has_room(owner)) return too_many();
   auto image = core::read_image_file(controller_.output_folder(asked.job) + "/" + best->path);
   if (!image) return error_reply(damaged_output(best->path));
   FrameNow plain = now;
@@ -137,26 +147,40 @@ WebReply PicturesApi::of_file(const Asked& asked, const FrameNow& now) {
   plain.exposure = 0;
   const bool exact = core::file_extension(best->path) == ".exr";
   WebReply reply = show(asked, plain, {std::move(*image), {}, exact}, tag);
+  count(reply, owner);
   keep(asked, tag, true, reply);
   return reply;
 }
 
 /// Answers with a picture of the frame's film, when its turn comes.
-void PicturesApi::want(const Asked& asked, const Answer& answer) {
-  if (!enqueue(asked, answer)) return answer(error_reply(crowded()));
+void PicturesApi::want(const Asked& asked, const Asker& asker) {
+  if (!enqueue(asked, asker)) return asker.answer(error_reply(crowded()));
   begin_some();
 }
 
-/// False where too many frames wait.
-bool PicturesApi::enqueue(const Asked& asked, const Answer& answer) {
+/// False where too many frames wait, or too many pictures of this one.
+bool PicturesApi::enqueue(const Asked& asked, const Asker& asker) {
   const FrameId id{asked.job, asked.frame};
   const core::MutexLock lock(mutex_);
-  if (!wanted_.contains(id)) {
+  const auto known = wanted_.find(id);
+  if (known == wanted_.end()) {
     if (wanted_.size() >= kMostFrames) return false;
     queue_.push_back(id);
+  } else if (!may_want(known->second, asked, asker.owner)) {
+    return false;
   }
-  wanted_[id][asked].push_back(answer);
+  wanted_[id][asked].push_back(asker);
   return true;
+}
+
+/// Whether the owner may wait for one more of the frame: what somebody waits for already is free.
+bool PicturesApi::may_want(const Wanted& wanted, const Asked& asked, const std::string& owner) {
+  if (wanted.contains(asked)) return true;
+  const auto own = std::count_if(wanted.begin(), wanted.end(), [&](const auto& one) {
+    return std::any_of(one.second.begin(), one.second.end(),
+                       [&](const Asker& asker) { return asker.owner == owner; });
+  });
+  return wanted.size() < kMostOfFrame && static_cast<size_t>(own) < kMostOfFrameOfOne;
 }
 
 void PicturesApi::begin_some() {
@@ -187,7 +211,9 @@ void PicturesApi::take_film(FrameId id) {
           const bool taken = pool_.submit([this, id, now, found, film = std::move(film)] {
             make_all(id, now, found, film.get());
           });
-          if (!taken) end(id, [](const Asked&) { return error_reply(crowded()); });
+          if (!taken) {
+            end(id, [](const Asked&, const Askers&) { return error_reply(crowded()); });
+          }
         });
   }
   if (status.ok()) return;
@@ -196,7 +222,7 @@ void PicturesApi::take_film(FrameId id) {
     status = farm::retry_later(grpc::StatusCode::UNAVAILABLE, "the frame is being finished",
                                std::chrono::milliseconds(500));
   }
-  end(id, [&](const Asked&) { return error_reply(status); });
+  end(id, [&](const Asked&, const Askers&) { return error_reply(status); });
 }
 
 void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& found,
@@ -207,25 +233,60 @@ void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& 
     shot.sampled = sampled_pixels(*film);
     return grpc::Status::OK;
   });
-  end(id, [&](const Asked& asked) {
+  end(id, [&](const Asked& asked, const Askers& askers) {
     if (!made.ok()) return error_reply(made);
-    WebReply reply = reply_in_memory([&] { return show(asked, now, shot, now.tag); });
-    keep(asked, now.tag, false, reply);
-    return reply;
+    const auto has_some = [&](const Asker& asker) { return has_room(asker.owner); };
+    const auto who = std::find_if(askers.begin(), askers.end(), has_some);
+    if (who == askers.end()) return too_many();
+    return reply_in_memory([&] {
+      WebReply reply = show(asked, now, shot, now.tag);
+      count(reply, who->owner);
+      keep(asked, now.tag, false, reply);
+      return reply;
+    });
   });
 }
 
+/// Whether a picture may be made for the owner: how large it becomes is not known before.
+bool PicturesApi::has_room(const std::string& owner) {
+  if (held_->has_room(owner, 1)) return true;
+  // What is kept in case somebody asks for it gives way to what somebody asks for.
+  Kept gone;
+  {
+    const core::MutexLock lock(mutex_);
+    gone.swap(kept_);
+    index_.clear();
+    kept_bytes_ = 0;
+  }
+  gone.clear();
+  return held_->has_room(owner, 1);
+}
+
+/// Counts the picture for as long as anybody holds it: a connection that does not read, say.
+void PicturesApi::count(WebReply& reply, const std::string& owner) const {
+  if (reply.status != 200) return;
+  const uint64_t bytes = reply.text->size();
+  held_->take(owner, bytes);
+  const std::string* const all = reply.text.get();
+  reply.text = std::shared_ptr<const std::string>(
+      all, [held = held_, owner, bytes, text = std::move(reply.text)](const std::string*) mutable {
+        text.reset();
+        held->give_back(owner, bytes);
+      });
+}
+
 /// Everybody who waits for pictures of the frame gets them.
-void PicturesApi::end(FrameId id, const std::function<WebReply(const Asked&)>& reply) {
+void PicturesApi::end(FrameId id,
+                      const std::function<WebReply(const Asked&, const Askers&)>& reply) {
   Wanted wanted;
   {
     const core::MutexLock lock(mutex_);
     wanted = std::move(wanted_[id]);
     wanted_.erase(id);
   }
-  for (const auto& [asked, answers] : wanted) {
-    const WebReply made = reply(asked);
-    for (const Answer& answer : answers) answer(made);
+  for (const auto& [asked, askers] : wanted) {
+    const WebReply made = reply(asked, askers);
+    for (const Asker& asker : askers) asker.answer(made);
   }
   {
     const core::MutexLock lock(mutex_);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "coordinator/controller/controller.h"
+#include "coordinator/web/byte_budget.h"
 #include "coordinator/web/router.h"
 #include "core/base/mutex.h"
 #include "farm/thread_pool.h"
@@ -22,11 +23,23 @@ namespace hyades::coordinator {
 
 /// Frames as they are now: of the film in mid-render, of a finished file afterwards. What was made
 /// once is kept for all who ask. A film is copied for all that is asked of its frame together, at
-/// most once a second, and two films at a time, whoever asks for how many.
+/// most once a second, and two films at a time, whoever asks for how many. Pictures that somebody
+/// takes his time to read count until he has them, and where they are too many no more are made.
 class PicturesApi {
  public:
-  explicit PicturesApi(Controller& controller)
-      : controller_(controller), gate_(std::make_shared<Gate>()) {}
+  /// Of all pictures together, kept or on their way, and of those that were made for one caller.
+  static constexpr uint64_t kMostBytes = uint64_t{512} << 20U;
+  static constexpr uint64_t kMostBytesOfOne = kMostBytes / 2;
+  /// Different ones of one frame that wait for its film, and of those that one caller waits for.
+  static constexpr size_t kMostOfFrame = 32;
+  static constexpr size_t kMostOfFrameOfOne = 8;
+
+  /// `held` counts the bytes of the pictures. What is begun with goes a picture beyond it for each
+  /// thread.
+  explicit PicturesApi(
+      Controller& controller,
+      std::shared_ptr<ByteBudget> held = std::make_shared<ByteBudget>(kMostBytes, kMostBytesOfOne))
+      : controller_(controller), gate_(std::make_shared<Gate>()), held_(std::move(held)) {}
   PicturesApi(const PicturesApi&) = delete;
   PicturesApi& operator=(const PicturesApi&) = delete;
 
@@ -57,8 +70,14 @@ class PicturesApi {
     WebReply reply;
   };
   using Kept = std::list<std::pair<Asked, Made>>;
+  /// Who waits for a picture.
+  struct Asker {
+    std::string owner;  ///< whom its bytes are counted for (ByteBudget::owner_of)
+    Answer answer;
+  };
+  using Askers = std::vector<Asker>;
   /// The pictures that are wanted of a frame in work, and who waits for them.
-  using Wanted = std::map<Asked, std::vector<Answer>>;
+  using Wanted = std::map<Asked, Askers>;
   using FrameId = std::pair<uint64_t, int32_t>;
   /// Films come by threads that may outlive this.
   struct Gate {
@@ -66,19 +85,23 @@ class PicturesApi {
     bool open HYADES_GUARDED_BY(mutex) = true;
   };
 
-  void answer_picture(const Asked& asked, const Answer& answer);
-  WebReply of_file(const Asked& asked, const FrameNow& now);
-  void want(const Asked& asked, const Answer& answer);
-  bool enqueue(const Asked& asked, const Answer& answer);
+  void answer_picture(const Asked& asked, const Asker& asker);
+  WebReply of_file(const Asked& asked, const std::string& owner, const FrameNow& now);
+  void want(const Asked& asked, const Asker& asker);
+  bool enqueue(const Asked& asked, const Asker& asker);
+  static bool may_want(const Wanted& wanted, const Asked& asked, const std::string& owner);
   void begin_some();
   void take_film(FrameId id);
   void make_all(FrameId id, const FrameNow& now, const grpc::Status& found, const core::Film* film);
-  void end(FrameId id, const std::function<WebReply(const Asked&)>& reply);
+  void end(FrameId id, const std::function<WebReply(const Asked&, const Askers&)>& reply);
+  bool has_room(const std::string& owner);
+  void count(WebReply& reply, const std::string& owner) const;
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
   void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply);
 
   Controller& controller_;
   const std::shared_ptr<Gate> gate_;
+  const std::shared_ptr<ByteBudget> held_;  ///< connections may hold pictures for longer than this
   core::Mutex mutex_;
   Kept kept_ HYADES_GUARDED_BY(mutex_);  ///< what was asked for last is in front
   std::map<Asked, Kept::iterator> index_ HYADES_GUARDED_BY(mutex_);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,54 @@ TEST(Crowds, RequestsThatAreNotEndedAreEnded) {
   const SlowRequests silent(world.web->url(), 50, "");
   EXPECT_TRUE(headers.ended(20s));
   EXPECT_TRUE(silent.ended(20s));
+}
+
+// A body takes its room from when it is announced.
+TEST(Crowds, BodiesThatNeverComeLeaveRoomForOthers) {
+  WebWorld world;
+  world.start();
+  const auto token_of = [&](const std::string& name, v1::Role role) {
+    std::string text;
+    StoredToken row;
+    EXPECT_TRUE(world.farm.authority->create(name, role, 0, text, row).ok());
+    return text;
+  };
+  const auto announce = [](const std::string& token) {
+    return "POST /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer " + token +
+           "\r\nContent-Type: application/json\r\nContent-Length: 16777216\r\n\r\n";
+  };
+  const std::string root = token_of("root", v1::ROLE_ADMIN);
+  const std::string ada = token_of("ada", v1::ROLE_SUBMITTER);
+  const std::string bob = token_of("bob", v1::ROLE_SUBMITTER);
+  const auto large = [&](const std::string& token) {
+    const std::string text(size_t{1} << 20U, 'a');
+    return world.client
+        ->send("PUT",
+               "/api/v1/assets/" + core::to_hex(core::sha256(text)) +
+                   "?size=" + std::to_string(text.size()),
+               text, {{"Authorization", "Bearer " + token}})
+        .status;
+  };
+  const auto expect_small_ones_come_in = [&] {
+    EXPECT_EQ(world.client->post("/api/v1/session", farm::Json({{"token", bob}}).dump()).status,
+              204);
+    EXPECT_EQ(
+        world.client->post("/api/v1/jobs/4711/cancel", "{}", {{"Authorization", "Bearer " + root}})
+            .status,
+        404);
+  };
+
+  const SlowRequests of_ada(world.web->url(), 16, announce(ada));
+  EXPECT_TRUE(eventually([&] { return large(ada) == 503; })) << "she has a quarter";
+  EXPECT_EQ(large(bob), 200);
+  expect_small_ones_come_in();
+  std::vector<std::unique_ptr<SlowRequests>> of_more;
+  for (const char* name : {"carl", "dora", "eve"}) {
+    of_more.push_back(std::make_unique<SlowRequests>(world.web->url(), 16,
+                                                     announce(token_of(name, v1::ROLE_SUBMITTER))));
+  }
+  EXPECT_TRUE(eventually([&] { return large(bob) == 503; })) << "four of them have all";
+  expect_small_ones_come_in();
 }
 
 TEST(Crowds, HealthHasAPlaceThatTheyDoNotReach) {

@@ -2,6 +2,10 @@
 // hosts that are not ours, cookies that another host could plant.
 #include <gtest/gtest.h>
 
+#include <string>
+
+#include <fmt/format.h>
+
 #include "tests/coordinator/web/web_world.h"
 
 namespace hyades::coordinator {
@@ -55,6 +59,65 @@ TEST_F(HttpAttacks, ARequestNamesOneHost) {
             "400 Bad Request");
   EXPECT_EQ(answer_to("GET /healthz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"),
             "200 OK");
+}
+
+const std::string kChunked = "Host: localhost\r\nTransfer-Encoding: chunked\r\n\r\n";
+
+// Once all of it was kept in memory, however much came.
+TEST_F(HttpAttacks, WhatIsBesideAChunksBytesIsNotLong) {
+  constexpr size_t kLong = size_t{8} << 20U;
+  std::string fields;
+  while (fields.size() < kLong) fields += "x: y\r\n";
+  const std::string first = "1\r\n{\r\n";
+  const std::string attacks[] = {std::string(kLong, '0'), "1;a=" + std::string(kLong, 'a'),
+                                 first + "0;a=" + std::string(kLong, 'a'), first + "0\r\n" + fields,
+                                 first + "0\r\nx: " + std::string(kLong, 'y')};
+  for (const std::string& attack : attacks) {
+    EXPECT_EQ(answer_to("POST /api/v1/session HTTP/1.1\r\n" + kChunked + attack),
+              "413 Payload Too Large")
+        << attack.substr(0, 20);
+  }
+}
+
+TEST_F(HttpAttacks, WhereNoBodyBelongsNoneIsAwaited) {
+  farm::Listen listen = world_.farm.how;
+  listen.address = "127.0.0.1:0";
+  auto health =
+      WebServer::start(listen, *world_.farm.controller, *world_.farm.authority, {}, Serves::health);
+  ASSERT_TRUE(health);
+  for (const std::string& url : {world_.web->url(), (*health)->url()}) {
+    const std::string said = HttpClient(url).exchange("GET /healthz HTTP/1.1\r\n" + kChunked);
+    EXPECT_EQ(said.substr(0, 12), "HTTP/1.1 413") << said;
+  }
+}
+
+// What is bounded is what has not been looked at yet, not what may come.
+TEST_F(HttpAttacks, MuchThatIsInOrderComesIn) {
+  const std::string text(size_t{8} << 20U, 'a');
+  const std::string file =
+      "/api/v1/assets/" + core::to_hex(core::sha256(text)) + "?size=" + std::to_string(text.size());
+  EXPECT_EQ(world_.client->send("PUT", file, text).status, 200);
+  for (const size_t size : {text.size(), size_t{1000}}) {
+    std::string body;
+    for (size_t at = 0; at < text.size(); at += size) {
+      const std::string chunk = text.substr(at, size);
+      body += fmt::format("{:x};part=yes\r\n{}\r\n", chunk.size(), chunk);
+    }
+    EXPECT_EQ(answer_to("PUT " + file + " HTTP/1.1\r\nConnection: close\r\n" + kChunked + body +
+                        "0\r\nsum: 7\r\n\r\n"),
+              "200 OK")
+        << "in chunks of " << size;
+  }
+  // One behind the other, without waiting for the answers.
+  std::string requests;
+  constexpr int kRequests = 5000;
+  for (int i = 1; i < kRequests; ++i) {
+    requests += "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  }
+  const std::string all = world_.client->exchange(requests + kHidden);
+  int answers = 0;
+  for (size_t at = 0; (at = all.find("HTTP/1.1 200", at)) != std::string::npos; ++at) ++answers;
+  EXPECT_EQ(answers, kRequests);
 }
 
 TEST(Cookies, BehindAProxyThatSpeaksTlsTheyAreItsAlone) {

@@ -1,0 +1,158 @@
+// Viewers who ask for more pictures than they read.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/web/byte_budget.h"
+#include "coordinator/web/pictures_api.h"
+#include "tests/coordinator/web/web_world.h"
+
+namespace hyades::coordinator {
+namespace {
+
+constexpr uint64_t kMost = 200'000;
+constexpr uint64_t kMostOfOne = 100'000;
+/// The largest picture that the tests ask for, with what its header takes.
+constexpr uint64_t kPicture = FarmWorld::kWidth * FarmWorld::kHeight * 3 * 2 + 1000;
+
+/// The pictures of a job with one frame, and people who look at them over connections that hold on
+/// to what they get.
+class UnreadPictures : public ::testing::Test {
+ protected:
+  ~UnreadPictures() override {
+    if (api_) api_->close();
+    api_.reset();
+    worker_.reset();
+    world_.stop();
+  }
+
+  /// `finished`: the frame, else it stays in mid-render.
+  void start(bool finished) {
+    world_.farm.options.unit_time = 1ms;
+    world_.start();
+    job_ = std::to_string(world_.farm.submit(1));
+    ScriptedWorker::Script script = world_.farm.script();
+    if (!finished) {
+      script.meddle = [this](ScriptedWorker&, const v1::LeasedUnit&) { return units_++ == 0; };
+    }
+    worker_.emplace(world_.farm.address, script);
+    const std::string path = "/api/v1/jobs/" + job_;
+    ASSERT_TRUE(eventually([&] {
+      if (finished && world_.json(path)["job"]["state"] != "done") return false;
+      return world_.client->get(path + "/frames/1/picture").status == 200;
+    }));
+    api_.emplace(*world_.farm.controller, held_);
+    api_->add_routes(router_);
+  }
+
+  void ask(const std::string& who, int width, Answer answer) const {
+    WebRequest request;
+    request.method = "GET";
+    request.path = {"api", "v1", "jobs", job_, "frames", "1", "picture"};
+    request.query = {{"format", "half"}, {"width", std::to_string(width)}};
+    request.caller.name = who;
+    router_.answer(request, answer);
+  }
+
+  /// Asks and waits for the answer.
+  WebReply answer_to(const std::string& who, int width) const {
+    const auto reply = std::make_shared<std::promise<WebReply>>();
+    auto coming = reply->get_future();
+    ask(who, width, [reply](WebReply made) { reply->set_value(std::move(made)); });
+    return coming.get();
+  }
+
+  /// Nobody reads what is asked for with more and more widths.
+  void expect_bounded() {
+    std::vector<WebReply> unread;
+    uint64_t bytes = 0;
+    int refused = 0;
+    for (int width = 16; width < FarmWorld::kWidth; ++width) {
+      WebReply reply = answer_to("ada", width);
+      if (reply.status == 200) bytes += reply.text->size();
+      if (reply.status == 503) ++refused;
+      unread.push_back(std::move(reply));
+    }
+    EXPECT_GT(bytes, kMostOfOne / 2);
+    EXPECT_LE(bytes, kMostOfOne + kPicture);
+    EXPECT_GT(refused, 20);
+    EXPECT_TRUE(farm::Json::parse(*unread.back().text)["error"].contains("retry_after_ms"));
+    EXPECT_EQ(answer_to("bob", 79).status, 200) << "others have room";
+    EXPECT_EQ(answer_to("ada", 79).status, 200) << "and what they have is no more";
+    unread.clear();
+    EXPECT_EQ(answer_to("ada", 78).status, 200);
+  }
+
+  WebWorld world_;
+  std::string job_;
+  std::atomic<int> units_ = 0;
+  std::optional<ScriptedWorker> worker_;
+  const std::shared_ptr<ByteBudget> held_ = std::make_shared<ByteBudget>(kMost, kMostOfOne);
+  Router router_;
+  std::optional<PicturesApi> api_;
+};
+
+TEST_F(UnreadPictures, OfAFrameInMidRenderAreNotMany) {
+  start(false);
+  expect_bounded();
+}
+
+TEST_F(UnreadPictures, OfAFinishedFrameAreNotMany) {
+  start(true);
+  expect_bounded();
+}
+
+TEST_F(UnreadPictures, WhatIsOnlyKeptGivesWay) {
+  start(false);
+  // Each is read at once, and what all of them have together is more than one may have.
+  for (int round = 0; round < 2; ++round) {
+    for (int width = 16; width <= FarmWorld::kWidth; ++width) {
+      EXPECT_EQ(answer_to("ada", width).status, 200) << width;
+    }
+  }
+}
+
+TEST_F(UnreadPictures, OfOneFrameAFewAreWantedAtATime) {
+  start(false);
+  // Both threads are kept from what is asked for until all have asked.
+  std::promise<void> go;
+  const std::shared_future<void> gone(go.get_future());
+  const std::string known = job_;
+  job_ = "4711";
+  for (int i = 0; i < 2; ++i) ask("ada", 16, [gone](const WebReply&) { gone.wait(); });
+  job_ = known;
+  std::mutex mutex;
+  std::vector<unsigned> adas;
+  std::vector<unsigned> bobs;
+  const auto note = [&](std::vector<unsigned>& whose) {
+    return [&](const WebReply& reply) {
+      const std::lock_guard lock(mutex);
+      whose.push_back(reply.status);
+    };
+  };
+  constexpr int kAsked = 50;
+  for (int i = 0; i < kAsked; ++i) ask("ada", 16 + i, note(adas));
+  ask("bob", 16, note(bobs));
+  ask("bob", 80, note(bobs));
+  go.set_value();
+  ASSERT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return adas.size() == kAsked && bobs.size() == 2;
+  }));
+  EXPECT_EQ(bobs, (std::vector<unsigned>{200, 200}));
+  const auto made = std::count(adas.begin(), adas.end(), 200U);
+  EXPECT_GE(made, 4);
+  // Those who ask while the first are being made begin anew.
+  EXPECT_LE(made, 2 * static_cast<int>(PicturesApi::kMostOfFrameOfOne));
+  EXPECT_EQ(std::count(adas.begin(), adas.end(), 503U), kAsked - made);
+}
+
+}  // namespace
+}  // namespace hyades::coordinator
