@@ -126,7 +126,7 @@ bool is_safe_output(const std::string& path) {
   return normal.string() == path && normal.has_filename() && normal != ".";
 }
 
-Outcome FetchTarget::check(const std::string& path) const {
+Outcome FetchTarget::check_name(const std::string& path) const {
   if (!is_safe_output(path)) {
     return Failure{kFailed, "the coordinator names an output that is no file of a job: '" +
                                 path.substr(0, 200) + "'"};
@@ -140,6 +140,11 @@ Outcome FetchTarget::check(const std::string& path) const {
                                 ": hidden files, and names that begin with '-', are not written "
                                 "(--hidden writes them)"};
   }
+  return std::nullopt;
+}
+
+Outcome FetchTarget::check(const std::string& path) const {
+  if (auto refused = check_name(path)) return refused;
   std::error_code none;
   if (!overwrite && !record.has(path) &&
       fs::exists(fs::symlink_status(fs::path(folder) / path, none))) {
@@ -154,7 +159,8 @@ Outcome fetch_file(FarmClient& client, uint64_t id, const v1::OutputFile& file, 
                    const std::function<void(uint64_t)>& on_progress, Fetched& totals) {
   const auto digest = farm::digest_from_wire(file.sha256());
   if (!digest) return Failure{kFailed, file.path() + ": the coordinator names no SHA-256"};
-  if (!is_safe_output(file.path())) return into.check(file.path());
+  // First: that a file is there already would tell the coordinator what is in it.
+  if (auto refused = into.check_name(file.path())) return refused;
   const std::string sha256 = core::to_hex(*digest);
   const fs::path target = fs::path(into.folder) / file.path();
   if (is_complete(target.string(), file.size(), sha256)) {

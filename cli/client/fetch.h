@@ -22,7 +22,9 @@ struct FetchTarget {
   bool overwrite = false;  ///< replace files that no fetch has written
   FetchRecord record;
 
-  /// Refuses `path`, relative to the folder, where it must not be written.
+  /// Refuses a name, relative to the folder, that no file may have.
+  Outcome check_name(const std::string& path) const;
+  /// Refuses `path` also where a file is there that must not be replaced.
   Outcome check(const std::string& path) const;
 };
 

@@ -21,6 +21,19 @@ TEST_F(HostileCoordinator, WritesNoHiddenFiles) {
   EXPECT_TRUE(fs::exists(out + "/a/.b/c"));
 }
 
+TEST_F(HostileCoordinator, IsNotToldWhatIsInHiddenFiles) {
+  add_job("a", v1::JOB_STATE_DONE);
+  const std::string out = folder_.file("out");
+  fs::create_directories(out);
+  std::ofstream(out + "/.netrc") << "guessed";
+  for (const char* guess : {"guessed", "wrong"}) {
+    farm_.outputs = {{".netrc", guess}};
+    const Ran ran = run(fetch_command, at({"a", "--output", out}));
+    EXPECT_EQ(ran.status, kFailed) << guess;
+    EXPECT_TRUE(has(ran.err, "(--hidden writes them)")) << ran.err;
+  }
+}
+
 TEST_F(HostileCoordinator, ReplacesNoFileThatFetchHasNotWritten) {
   add_job("a", v1::JOB_STATE_DONE);
   const std::string out = folder_.file("out");
