@@ -63,6 +63,25 @@ class Classes : public testing::Test {
   }
   /// Odd asks once more and delivers that.
   void odd_delivers() { bench.deliver_durably(bench.ask(kOdd)); }
+  /// Anna is at work and Odd, who came by another token, has three tries at a unit of frame 1.
+  Persist odd_fails() {
+    join(kAnna, "class", "ours");
+    keep_busy(kAnna);
+    join(kOdd, "odd", "theirs");
+    bench.add(small_plan({1}, 64));
+    bench.tell(FrameOpened{kJob, 1});
+    return fails_three_times(kOdd);
+  }
+  /// What is persisted of that, and then is durable.
+  Persist fails_three_times(WorkerId worker) {
+    for (int i = 0; i < 3; ++i) {
+      const Lease lease = bench.ask(worker);
+      bench.tell(UnitFailed{worker, lease.lease, kJob, lease.units[0], "no such file"});
+    }
+    Persist persist = bench.only<Persist>();
+    bench.tell(Persisted{persist.id});
+    return persist;
+  }
   /// One that nobody has left.
   void another_job() {
     bench.add(small_plan({1}, 64), {}, JobId{2});
@@ -215,18 +234,7 @@ TEST_F(Classes, WhoHoldsAUnitAllTheTimeIsSlowThoughItDeliversOthers) {
 }
 
 TEST_F(Classes, AFrameThatFailsUnderAnInventionBeginsAgainWithOthers) {
-  join(kAnna, "class", "ours");
-  keep_busy(kAnna);
-  join(kOdd, "odd", "theirs");
-  bench.add(small_plan({1}, 64));
-  bench.tell(FrameOpened{kJob, 1});
-  for (int i = 0; i < 3; ++i) {
-    const Lease lease = bench.ask(kOdd);
-    bench.tell(UnitFailed{kOdd, lease.lease, kJob, lease.units[0], "invented"});
-  }
-  const Persist persist = bench.only<Persist>();
-  ASSERT_TRUE(std::holds_alternative<FrameRestartedRecord>(persist.record));
-  bench.tell(Persisted{persist.id});
+  ASSERT_TRUE(std::holds_alternative<FrameRestartedRecord>(odd_fails().record));
   bench.tell(FrameOpened{kJob, 1});
   // Whatever it calls its class now, and as whom it comes.
   EXPECT_FALSE(gets_a_unit(kOdd));
@@ -236,23 +244,9 @@ TEST_F(Classes, AFrameThatFailsUnderAnInventionBeginsAgainWithOthers) {
 }
 
 TEST_F(Classes, AFrameThatFailsForAllOfThemFails) {
-  join(kAnna, "class", "ours");
-  keep_busy(kAnna);
-  join(kOdd, "odd", "theirs");
-  bench.add(small_plan({1}, 64));
+  EXPECT_FALSE(std::holds_alternative<FrameFailedRecord>(odd_fails().record));
   bench.tell(FrameOpened{kJob, 1});
-  const auto fails_with = [this](WorkerId worker) {
-    for (int i = 0; i < 3; ++i) {
-      const Lease lease = bench.ask(worker);
-      bench.tell(UnitFailed{worker, lease.lease, kJob, lease.units[0], "no such file"});
-    }
-    const Persist persist = bench.only<Persist>();
-    bench.tell(Persisted{persist.id});
-    return std::holds_alternative<FrameFailedRecord>(persist.record);
-  };
-  EXPECT_FALSE(fails_with(kOdd));
-  bench.tell(FrameOpened{kJob, 1});
-  EXPECT_TRUE(fails_with(kAnna));
+  EXPECT_TRUE(std::holds_alternative<FrameFailedRecord>(fails_three_times(kAnna).record));
 }
 
 TEST_F(Classes, OneTokenHoldsAFrameOnceWhateverClassesItInvents) {

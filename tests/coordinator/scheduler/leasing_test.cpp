@@ -220,14 +220,20 @@ TEST(Copies, WhatTwoKeepIsCopiedForNoneOfTheirOwn) {
   EXPECT_TRUE(b.all<Lease>().empty());
 }
 
-/// Another worker has hundreds of units that are late before Anna's is.
-Bench many_are_late() {
+/// Anna has one unit that is late, after hundreds of `other`, of a job that needs `tags`.
+void expect_bert_helps_anna_beside(const WorkerJoined& other, std::vector<std::string> tags) {
   SchedulerOptions options;
   options.unit_time = milliseconds(1);  // one batch
-  return Bench(options);
-}
-
-void anna_is_late_and_bert_helps(Bench& b, JobId job) {
+  Bench b(options);
+  b.tell(other);
+  JobPlan many = small_plan({1}, 200);
+  many.needs.tags = std::move(tags);
+  b.add(many);
+  b.tell(FrameOpened{kJob, 1});
+  ASSERT_EQ(b.ask(other.worker, 400).units.size(), 400U);
+  b.join(kAnna);
+  b.join(kBert);
+  const JobId job{2};
   JobPlan plan = small_plan({1}, 1);
   plan.region = {0, 0, 32, 32};
   b.add(plan, {}, job);
@@ -242,29 +248,11 @@ void anna_is_late_and_bert_helps(Bench& b, JobId job) {
 }
 
 TEST(Copies, UnitsOfAnotherClassStandInNobodysWay) {
-  Bench b = many_are_late();
-  const WorkerId odd{7};
-  b.tell(WorkerJoined{odd, 1, "odd", {}});
-  b.add(small_plan({1}, 200));
-  b.tell(FrameOpened{kJob, 1});
-  ASSERT_EQ(b.ask(odd, 400).units.size(), 400U);
-  b.join(kAnna);
-  b.join(kBert);
-  anna_is_late_and_bert_helps(b, JobId{2});
+  expect_bert_helps_anna_beside({WorkerId{7}, 1, "odd", {}}, {});
 }
 
 TEST(Copies, UnitsThatOneMayNotRenderStandInNobodysWay) {
-  Bench b = many_are_late();
-  const WorkerId carl{3};
-  b.tell(WorkerJoined{carl, 1, "class", {}, {"large"}});
-  JobPlan plan = small_plan({1}, 200);
-  plan.needs.tags = {"large"};
-  b.add(plan);
-  b.tell(FrameOpened{kJob, 1});
-  ASSERT_EQ(b.ask(carl, 400).units.size(), 400U);
-  b.join(kAnna);
-  b.join(kBert);
-  anna_is_late_and_bert_helps(b, JobId{2});
+  expect_bert_helps_anna_beside({WorkerId{3}, 1, "class", {}, {"large"}}, {"large"});
 }
 
 TEST(Copies, AUnitThatShouldTakeLongIsNotLateBeforeThat) {
