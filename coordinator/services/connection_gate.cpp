@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
-#include <linux/tcp.h>
 #include <malloc.h>
 #include <netinet/in.h>
 #include <sys/epoll.h>
@@ -18,6 +17,7 @@
 #include <utility>
 
 #include "coordinator/access/address.h"
+#include "coordinator/services/receive_bound.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -32,8 +32,6 @@ constexpr size_t kEventsAtOnce = 256;
 constexpr int kAcceptsAtOnce = 64;
 constexpr std::chrono::milliseconds kAcceptAgainAfter{200};
 constexpr int kLongestWaitMs = 60'000;
-/// How often it is looked what strangers inside have sent.
-constexpr int kLookMs = 20;
 
 /// Of the files that this process may have open, those who wait get an eighth; and of what is known
 /// each needs two, where two thirds are left to all of it.
@@ -63,13 +61,6 @@ bool watch(const core::Descriptor& poll, int operation, const core::Descriptor& 
   event.events = events;
   event.data.u64 = id;
   return ::epoll_ctl(poll.get(), operation, file.get(), &event) == 0;
-}
-
-uint64_t bytes_received(const core::Descriptor& socket) {
-  tcp_info info{};
-  socklen_t size = sizeof info;
-  if (::getsockopt(socket.get(), IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return 0;
-  return info.tcpi_bytes_received;
 }
 
 bool is_out_of_files(int error) {
@@ -131,6 +122,7 @@ void ConnectionGate::mark_known(const std::string& address, const std::string& t
   if (has_place_for(token_id)) {
     connection.known = true;
     connection.token_id = token_id;
+    lift_bound(connection.socket);
     ++known_;
     ++known_by_[token_id];
   } else {
@@ -181,11 +173,11 @@ int ConnectionGate::milliseconds_to_wait() const {
   for (const std::optional<Time>& other : {accept_again_, calm_at_}) {
     if (other) next = next ? std::min(*next, *other) : *other;
   }
-  const int longest = strangers_.inside() > 0 ? kLookMs : kLongestWaitMs;
-  if (!next) return longest;
+  if (strangers_.inside() > 0) next = next ? std::min(*next, look_again_) : look_again_;
+  if (!next) return kLongestWaitMs;
   const auto left =
       std::chrono::ceil<std::chrono::milliseconds>(*next - std::chrono::steady_clock::now());
-  return static_cast<int>(std::clamp<int64_t>(left.count(), 0, longest));
+  return static_cast<int>(std::clamp<int64_t>(left.count(), 0, kLongestWaitMs));
 }
 
 void ConnectionGate::hear(Id id, uint32_t events, Time now) {
@@ -230,9 +222,16 @@ void ConnectionGate::take(core::Descriptor socket, std::string address) {
   if (refused_.contains(neighbourhood)) return;
   const Id id = next_id_++;
   if (!watch(poll_, EPOLL_CTL_ADD, socket, EPOLLRDHUP | EPOLLET, id)) return;
+  Connection connection{.socket = std::move(socket), .address = std::move(address)};
+  connection.beginning = take_beginning(connection.socket);
+  connection.bound = limits_.stranger_bytes_at_once;
+  // Else look_at_strangers() is the only bound, as quick as a busy machine lets it be.
+  if (connection.beginning) {
+    bound_received(connection.socket, *connection.beginning, connection.bound);
+  }
   strangers_.come(id, neighbourhood);
-  by_address_[address] = id;  // one before it from that port has most likely just ended
-  connections_.emplace(id, Connection{std::move(socket), std::move(address)});
+  by_address_[connection.address] = id;  // one before it from that port has most likely just ended
+  connections_.emplace(id, std::move(connection));
 }
 
 /// Whose time has come goes, and who may comes in: what they come in by is put into `entering`.
@@ -242,7 +241,7 @@ void ConnectionGate::advance(Time now, std::vector<int>& entering) {
     watch_listeners(true);
   }
   for (const Id id : strangers_.expel(now)) drop(id);
-  drop_talkers(now);
+  look_at_strangers(now);
   while (const auto id = strangers_.let_in(now)) {
     if (const int socket = enter(*id); socket >= 0) entering.push_back(socket);
   }
@@ -253,6 +252,11 @@ void ConnectionGate::advance(Time now, std::vector<int>& entering) {
 /// The socket by which this one comes in; -1 where he cannot, and is gone.
 int ConnectionGate::enter(Id id) {
   const core::Descriptor& own = connections_.at(id).socket;
+  // It came before there was a bound, and has cost nothing yet.
+  if (bytes_received(own) >= limits_.stranger_bytes) {
+    drop(id);
+    return -1;
+  }
   const int socket = ::fcntl(own.get(), F_DUPFD_CLOEXEC, 0);
   // From here on others read, and only the end of both sides is of interest.
   if (socket < 0 || !watch(poll_, EPOLL_CTL_MOD, own, EPOLLET, id)) {
@@ -277,20 +281,32 @@ void ConnectionGate::drop(Id id) {
   const auto address = by_address_.find(connection.address);
   if (address != by_address_.end() && address->second == id) by_address_.erase(address);
   (void)::shutdown(connection.socket.get(), SHUT_RDWR);
+  // Or the kernel would not even tell the other side that nobody takes what it sends.
+  lift_bound(connection.socket);
   // The kernel goes on watching what is open inside.
   (void)::epoll_ctl(poll_.get(), EPOLL_CTL_DEL, connection.socket.get(), nullptr);
   connections_.erase(found);
 }
 
-/// Strangers inside that have sent more than they need to say who they are.
-void ConnectionGate::drop_talkers(Time now) {
+/// Lets more of strangers inside in, and ends those that have sent more than they need to say who
+/// they are.
+void ConnectionGate::look_at_strangers(Time now) {
+  if (now < look_again_) return;
+  look_again_ = now + limits_.stranger_pace;
   std::erase_if(refused_, [now](const auto& entry) { return entry.second <= now; });
   for (const Id id : strangers_.all_inside()) {
-    const Connection& connection = connections_.at(id);
-    if (bytes_received(connection.socket) <= limits_.stranger_bytes) continue;
-    refused_[neighbourhood_of(connection.address)] = now + limits_.refused;
-    drop(id);
-    crowded_ = true;  // what they cost is given back, too
+    Connection& connection = connections_.at(id);
+    const uint64_t received = bytes_received(connection.socket);
+    if (received < connection.bound) continue;
+    if (received < limits_.stranger_bytes && connection.beginning) {
+      connection.bound =
+          std::min(connection.bound + limits_.stranger_bytes_at_once, limits_.stranger_bytes);
+      bound_received(connection.socket, *connection.beginning, connection.bound);
+    } else if (received >= limits_.stranger_bytes) {
+      refused_[neighbourhood_of(connection.address)] = now + limits_.refused;
+      drop(id);
+      crowded_ = true;  // what they cost is given back, too
+    }
   }
 }
 

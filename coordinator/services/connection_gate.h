@@ -27,10 +27,13 @@ class ConnectionGate {
  public:
   struct Limits {
     StrangerQueue::Limits strangers{};
-    /// What a stranger inside may send: a handshake, headers, and the first message of a call. gRPC
-    /// keeps headers that do not end, and calls that are reset at once, whatever they take. Who
-    /// sends more goes, and nobody of his neighbourhood comes for `refused` after that.
-    uint64_t stranger_bytes = uint64_t{256} << 10U;
+    /// What of a stranger is let in at once, and how often as much again of who has sent that: a
+    /// handshake, and the first call's headers. gRPC keeps what calls cost that are reset at once,
+    /// twenty kilobytes each, until it comes to them, and headers that do not end. Who has sent
+    /// `stranger_bytes` goes, and nobody of his neighbourhood comes for `refused` after that.
+    uint32_t stranger_bytes = uint32_t{16} << 10U;
+    uint32_t stranger_bytes_at_once = uint32_t{4} << 10U;
+    std::chrono::milliseconds stranger_pace{50};
     std::chrono::milliseconds refused{10'000};
     /// Connections of those that are known; also bounded by the files that may be open. With one
     /// token as many as are free at most, so half of them, and then who has another comes in.
@@ -70,7 +73,9 @@ class ConnectionGate {
     core::Descriptor socket;  ///< inside there is another of it, which may be closed before
     std::string address;
     bool known = false;
-    std::string token_id{};  ///< by which it became known; empty: none
+    std::string token_id{};               ///< by which it became known; empty: none
+    std::optional<uint32_t> beginning{};  ///< of what it sends (take_beginning())
+    uint32_t bound = 0;                   ///< of what is let in of a stranger
   };
 
   void run();
@@ -83,7 +88,7 @@ class ConnectionGate {
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
   bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
-  void drop_talkers(Time now) HYADES_REQUIRES(mutex_);
+  void look_at_strangers(Time now) HYADES_REQUIRES(mutex_);
   bool is_calm(Time now) HYADES_REQUIRES(mutex_);
   void wake() const;
 
@@ -98,6 +103,7 @@ class ConnectionGate {
   StrangerQueue strangers_ HYADES_GUARDED_BY(mutex_);
   std::unordered_map<Id, Connection> connections_ HYADES_GUARDED_BY(mutex_);
   std::unordered_map<std::string, Id> by_address_ HYADES_GUARDED_BY(mutex_);
+  Time look_again_ HYADES_GUARDED_BY(mutex_);  ///< at strangers
   /// Neighbourhoods of those who sent too much, and until when nobody of them comes.
   std::map<std::string, Time> refused_ HYADES_GUARDED_BY(mutex_);
   size_t known_ HYADES_GUARDED_BY(mutex_) = 0;

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "coordinator/access/address.h"
+#include "coordinator/services/receive_bound.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -105,6 +106,7 @@ int listen_there(Endpoint& endpoint, core::Descriptor& socket) {
   }
   (void)set(socket, IPPROTO_TCP, TCP_NODELAY, 1);
   (void)set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kAnswersWithinMs);
+  keep_beginnings(socket);
   auto* address = reinterpret_cast<sockaddr*>(&endpoint.address);
   if (::bind(socket.get(), address, endpoint.size) != 0) return errno;
   if (::listen(socket.get(), kBacklog) != 0) return errno;

@@ -147,6 +147,12 @@ bool RawHttp2::ended(uint32_t call, int milliseconds) {
   return !connected_ || ended_[call];
 }
 
+bool RawHttp2::greeted(int milliseconds) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
+  while (connected_ && !greeted_ && std::chrono::steady_clock::now() < until) read(10);
+  return greeted_;
+}
+
 bool RawHttp2::closed(int milliseconds) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
   while (connected_ && std::chrono::steady_clock::now() < until) read(10);
@@ -204,6 +210,7 @@ void RawHttp2::take(uint8_t type, uint8_t flags, uint32_t stream, std::string_vi
       initial_window_ = size;
     }
     frame(kSettings, kAck, 0, {});
+    greeted_ = true;
   } else if (type == kPing && (flags & kAck) == 0) {
     frame(kPing, kAck, 0, payload);
   } else if (type == kWindowUpdate) {

@@ -23,6 +23,10 @@ class RawHttp2 {
 
   bool connected() const { return connected_; }
 
+  /// Whether the other side says its first word within `milliseconds`. Before it, who has shown no
+  /// token yet sends little.
+  bool greeted(int milliseconds);
+
   /// Lets the other side send 2 GiB without being asked for more.
   void open_windows();
 
@@ -60,6 +64,7 @@ class RawHttp2 {
 
   int socket_ = -1;
   bool connected_ = false;
+  bool greeted_ = false;
   uint32_t next_ = 1;
   std::string incoming_;
   int64_t window_ = 65'535;

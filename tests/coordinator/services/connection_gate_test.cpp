@@ -19,6 +19,8 @@
 #include <thread>
 #include <utility>
 
+#include "coordinator/services/receive_bound.h"
+
 namespace hyades::coordinator {
 namespace {
 
@@ -51,6 +53,11 @@ class PlainCaller {
            ::recv(socket_.get(), &byte, 1, 0) <= 0;
   }
   void hang_up() { socket_.close(); }
+  /// Leaves so many bytes to the kernel.
+  void talk(size_t bytes) const {
+    const std::string text(bytes, 'x');
+    EXPECT_EQ(::send(socket_.get(), text.data(), bytes, MSG_NOSIGNAL), static_cast<ssize_t>(bytes));
+  }
 
  private:
   static sockaddr_in at(const char* host, uint16_t port) {
@@ -185,6 +192,40 @@ TEST_F(ConnectionGateTest, OneTokenDoesNotShutAllOthersOut) {
   ASSERT_TRUE(holds(0, 0, 6));
   connect("");
   EXPECT_TRUE(holds(0, 0, 7)) << "where no token is asked for all are one";
+}
+
+TEST_F(ConnectionGateTest, WhoTalksBeforeHeIsKnownIsCutOffAndHisAddressWithHim) {
+  limits.refused = 500ms;
+  open();
+  const PlainCaller brief(port);
+  const PlainCaller talker(port, "127.0.0.2");
+  ASSERT_TRUE(holds(0, 2, 0));
+  brief.talk(15'000);
+  talker.talk(100'000);
+  EXPECT_TRUE(talker.ended(20s));
+  EXPECT_TRUE(PlainCaller(port, "127.0.0.2").ended(20s));
+  EXPECT_TRUE(soon([&] { return !PlainCaller(port, "127.0.0.2").ended(50ms); })) << "not for ever";
+  EXPECT_FALSE(brief.ended(0ms));
+}
+
+TEST_F(ConnectionGateTest, WhatWasHeldBackComesInWhenItsSenderIsKnown) {
+  limits.stranger_pace = 1h;
+  open();
+  const PlainCaller caller(port);
+  ASSERT_TRUE(soon([&] { return came_in() == 1; }));
+  constexpr size_t kMuch = 100'000;
+  caller.talk(kMuch);
+  const core::MutexLock lock(mutex);
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(bytes_received(room.front()), limits.stranger_bytes_at_once);
+  std::string text(kMuch, '\0');
+  size_t received = 0;
+  gate->mark_known(caller.address());
+  EXPECT_TRUE(soon([&] {
+    const ssize_t count = ::recv(room.front().get(), text.data(), text.size(), 0);
+    received += count > 0 ? static_cast<size_t>(count) : 0;
+    return received == kMuch;
+  })) << received;
 }
 
 TEST_F(ConnectionGateTest, WhoeverHasTheSocketMayEndIt) {
