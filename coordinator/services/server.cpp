@@ -40,7 +40,9 @@ struct Server::Parts {
                   [this](const std::string& address, const std::string& token_id) {
                     gate.mark_known(address, token_id);
                   }),
-        service({controller, authority}, admission, executors, options.request_patience) {
+        long_answers(options.long_answers, options.long_answers_of_one),
+        service({controller, authority}, admission, executors, options.request_patience,
+                long_answers) {
     add_job_streams(service);
     add_film_stream(service);
     add_asset_streams(service);
@@ -51,6 +53,7 @@ struct Server::Parts {
   ConnectionGate gate;
   Admission admission;
   Executors executors;
+  ByteBudget long_answers;
   Service service;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor;
   std::unique_ptr<grpc::Server> server;

@@ -26,8 +26,6 @@ using grpc::internal::CallbackClientStreamingHandler;
 constexpr uint64_t kMostContributors = 200'000;
 /// Answers of so many bytes are let go without being counted.
 constexpr size_t kShortAnswer = size_t{64} << 10U;
-/// Longer ones that wait for their readers, of all calls together [bytes].
-constexpr uint64_t kMostLongAnswers = uint64_t{256} << 20U;
 
 }  // namespace
 
@@ -47,7 +45,9 @@ class Service::UnaryCall final : public RequestCall {
     }
   }
 
-  ~UnaryCall() override { service_.long_answers_.fetch_sub(long_); }
+  ~UnaryCall() override {
+    if (long_ > 0) service_.long_answers_.give_back(ByteBudget::owner_of(work_->caller), long_);
+  }
 
  private:
   /// What the operation works on, which may go on when the call is over.
@@ -116,9 +116,11 @@ class Service::UnaryCall final : public RequestCall {
   void respond() {
     const size_t bytes = said_.Length();
     if (bytes > kShortAnswer) {
-      if (service_.long_answers_.fetch_add(bytes) + bytes > kMostLongAnswers) {
-        service_.long_answers_.fetch_sub(bytes);
-        return Finish(crowded());
+      if (!service_.long_answers_.try_take(ByteBudget::owner_of(work_->caller), bytes)) {
+        return Finish(
+            farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                              "long answers that are not read yet take as much as they may",
+                              std::chrono::seconds(2)));
       }
       long_ = bytes;
     }
@@ -186,8 +188,12 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
 };
 
 Service::Service(Backend at, const Admission& admission, Executors& executors,
-                 std::chrono::milliseconds patience)
-    : at_(at), admission_(admission), executors_(executors), patience_(patience) {
+                 std::chrono::milliseconds patience, ByteBudget& long_answers)
+    : at_(at),
+      admission_(admission),
+      executors_(executors),
+      patience_(patience),
+      long_answers_(long_answers) {
   for (const Operation& operation : all_operations()) {
     if (!operation.handle || *operation.method == '\0') continue;
     add(operation.method, Method::BIDI_STREAMING,

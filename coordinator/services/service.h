@@ -1,8 +1,6 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
-#include <cstdint>
 #include <deque>
 #include <functional>
 #include <string>
@@ -13,6 +11,7 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/operations/operation.h"
 #include "coordinator/services/admission.h"
 #include "coordinator/services/producer.h"
@@ -31,8 +30,9 @@ class Service final : public grpc::Service {
 
   /// Has the methods of the table. What the arguments refer to outlives the service.
   /// `patience`: with the one message of a call that is admitted, and with who reads its answer.
+  /// `long_answers`: what those hold that wait for their readers.
   Service(Backend at, const Admission& admission, Executors& executors,
-          std::chrono::milliseconds patience);
+          std::chrono::milliseconds patience, ByteBudget& long_answers);
 
   /// Makes the stream that answers a Request; or null, with the reason in `refused`.
   template <class Request>
@@ -79,8 +79,8 @@ class Service final : public grpc::Service {
   const Admission& admission_;
   Executors& executors_;
   const std::chrono::milliseconds patience_;
-  std::atomic<uint64_t> long_answers_ = 0;  ///< bytes of those that wait for their readers
-  std::deque<std::string> names_;           ///< of the methods; gRPC keeps pointers to them
+  ByteBudget& long_answers_;
+  std::deque<std::string> names_;  ///< of the methods; gRPC keeps pointers to them
 };
 
 // Each adds the streams of one subject.

@@ -170,12 +170,11 @@ class ConnectionOver final : public Connection,
     const uint64_t asked = length ? *length : parser_->chunked() ? most_bytes : 0;
     const uint64_t counted = asked > kSmallBody ? asked : 0;
     owner_ = ByteBudget::owner_of(caller_);
-    if (counted > 0 && !world_.bodies.has_room(owner_, counted)) {
+    if (counted > 0 && !world_.bodies.try_take(owner_, counted)) {
       return send_away(error_reply(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                                      "the coordinator takes in as much as it may",
                                                      std::chrono::seconds(1))));
     }
-    if (counted > 0) world_.bodies.take(owner_, counted);
     granted_ = counted;
     parser_->body_limit(most_bytes);
     tcp(stream_).expires_after(kReceive + std::chrono::seconds(static_cast<int64_t>(

@@ -9,8 +9,8 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "coordinator/access/authority.h"
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/controller/owner_connections.h"
-#include "coordinator/web/byte_budget.h"
 #include "coordinator/web/connection_count.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/io_handle.h"

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/controller/controller.h"
-#include "coordinator/web/byte_budget.h"
 #include "coordinator/web/router.h"
 #include "core/base/mutex.h"
 #include "farm/thread_pool.h"

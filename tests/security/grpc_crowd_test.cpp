@@ -16,6 +16,7 @@
 #include <thread>
 #include <vector>
 
+#include "hyades/v1/admin.grpc.pb.h"
 #include "tests/coordinator/hostile/coordinator_process.h"
 #include "tests/coordinator/hostile/raw_http2.h"
 #include "tests/coordinator/services/farm_world.h"
@@ -202,6 +203,33 @@ TEST_F(GrpcCrowd, AnAnswerThatIsNotReadEndsTheCall) {
   test::RawHttp2 peer(world.address);
   const uint32_t call = ask_without_reading(peer, find_missing(10'000));
   EXPECT_TRUE(peer.ended(call, 20'000)) << "it may read 64 KiB of 400";
+}
+
+TEST_F(GrpcCrowd, AnswersThatAreNotReadTakeNobodyElsesRoom) {
+  world.serving.long_answers_of_one = uint64_t{1} << 20U;
+  world.start();
+  v1::CreateTokenRequest wanted;
+  wanted.set_name("bob");
+  wanted.set_role(v1::ROLE_SUBMITTER);
+  v1::CreateTokenResponse bob;
+  const auto admin = v1::Admin::NewStub(world.channel);
+  ASSERT_TRUE(admin->CreateToken(world.context().get(), wanted, &bob).ok());
+  const v1::FindMissingRequest request = find_missing(10'000);
+  const auto asks_as = [&](const std::string& token) {
+    world.token = token;
+    v1::FindMissingResponse missing;
+    return world.assets->FindMissing(world.context().get(), request, &missing);
+  };
+  ASSERT_TRUE(asks_as(kToken).ok());
+  std::deque<test::RawHttp2> peers;
+  // One large request is looked at at a time: not all of these get as far as an answer.
+  EXPECT_TRUE(eventually([&] {
+    ask_without_reading(peers.emplace_back(world.address), request);
+    const grpc::Status refused = asks_as(kToken);
+    return refused.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED &&
+           refused.error_message().find("not read") != std::string::npos;
+  }));
+  EXPECT_TRUE(eventually([&] { return asks_as(bob.secret()).ok(); }));
 }
 
 }  // namespace

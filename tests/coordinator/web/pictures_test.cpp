@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/web/byte_budget.h"
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/web/pictures_api.h"
 #include "tests/coordinator/web/web_world.h"
 

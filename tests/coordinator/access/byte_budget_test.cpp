@@ -1,5 +1,5 @@
 // Whose bytes there may be how many of.
-#include "coordinator/web/byte_budget.h"
+#include "coordinator/access/byte_budget.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +17,15 @@ TEST(ByteBudget, NobodyTakesAll) {
   budget.give_back("ada", 20);
   EXPECT_TRUE(budget.has_room("carl", 40));
   EXPECT_TRUE(budget.has_room("ada", 30));
+}
+
+TEST(ByteBudget, WhatIsTakenIsWhatThereIsRoomFor) {
+  ByteBudget budget(100, 40);
+  EXPECT_TRUE(budget.try_take("ada", 40));
+  EXPECT_FALSE(budget.try_take("ada", 1));
+  EXPECT_TRUE(budget.try_take("bob", 40));
+  EXPECT_FALSE(budget.try_take("carl", 21));
+  EXPECT_TRUE(budget.try_take("carl", 20)) << "nothing was taken of what did not fit";
 }
 
 TEST(ByteBudget, WhatIsLargerThanWasThoughtCountsWhole) {

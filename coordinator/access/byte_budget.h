@@ -18,6 +18,8 @@ class ByteBudget {
 
   /// Whether so many more may be held for the owner.
   bool has_room(const std::string& owner, uint64_t bytes) const;
+  /// The same, and counts them as held from now on where they may be.
+  bool try_take(const std::string& owner, uint64_t bytes);
   /// Counts bytes that are held from now on, whether there is room or not.
   void take(const std::string& owner, uint64_t bytes);
   /// Counts bytes that are not held any more; as many for each owner as were taken.
@@ -28,6 +30,9 @@ class ByteBudget {
   static std::string owner_of(const Caller& caller);
 
  private:
+  bool fits(const std::string& owner, uint64_t bytes) const HYADES_REQUIRES(mutex_);
+  void add(const std::string& owner, uint64_t bytes) HYADES_REQUIRES(mutex_);
+
   const uint64_t most_;
   const uint64_t most_of_one_;
   mutable core::Mutex mutex_;

@@ -1,4 +1,4 @@
-#include "coordinator/web/byte_budget.h"
+#include "coordinator/access/byte_budget.h"
 
 #include "coordinator/access/address.h"
 
@@ -6,13 +6,28 @@ namespace hyades::coordinator {
 
 bool ByteBudget::has_room(const std::string& owner, uint64_t bytes) const {
   const core::MutexLock lock(mutex_);
+  return fits(owner, bytes);
+}
+
+bool ByteBudget::try_take(const std::string& owner, uint64_t bytes) {
+  const core::MutexLock lock(mutex_);
+  if (!fits(owner, bytes)) return false;
+  add(owner, bytes);
+  return true;
+}
+
+void ByteBudget::take(const std::string& owner, uint64_t bytes) {
+  const core::MutexLock lock(mutex_);
+  add(owner, bytes);
+}
+
+bool ByteBudget::fits(const std::string& owner, uint64_t bytes) const {
   if (held_ + bytes > most_) return false;
   const auto known = held_for_.find(owner);
   return (known == held_for_.end() ? 0 : known->second) + bytes <= most_of_one_;
 }
 
-void ByteBudget::take(const std::string& owner, uint64_t bytes) {
-  const core::MutexLock lock(mutex_);
+void ByteBudget::add(const std::string& owner, uint64_t bytes) {
   held_for_[owner] += bytes;
   held_ += bytes;
 }
