@@ -40,9 +40,8 @@ struct Server::Parts {
                   [this](const std::string& address, const std::string& token_id) {
                     gate.mark_known(address, token_id);
                   }),
-        long_answers(options.long_answers, options.long_answers_of_one),
-        service({controller, authority}, admission, executors, options.request_patience,
-                long_answers) {
+        waiting(options.waiting, options.waiting_of_one),
+        service({controller, authority}, admission, executors, options.request_patience, waiting) {
     add_job_streams(service);
     add_film_stream(service);
     add_asset_streams(service);
@@ -53,7 +52,7 @@ struct Server::Parts {
   ConnectionGate gate;
   Admission admission;
   Executors executors;
-  ByteBudget long_answers;
+  ByteBudget waiting;
   Service service;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor;
   std::unique_ptr<grpc::Server> server;

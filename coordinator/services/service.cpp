@@ -46,7 +46,7 @@ class Service::UnaryCall final : public RequestCall {
   }
 
   ~UnaryCall() override {
-    if (long_ > 0) service_.long_answers_.give_back(ByteBudget::owner_of(work_->caller), long_);
+    if (long_ > 0) service_.waiting_.give_back(ByteBudget::owner_of(work_->caller), long_);
   }
 
  private:
@@ -116,11 +116,10 @@ class Service::UnaryCall final : public RequestCall {
   void respond() {
     const size_t bytes = said_.Length();
     if (bytes > kShortAnswer) {
-      if (!service_.long_answers_.try_take(ByteBudget::owner_of(work_->caller), bytes)) {
-        return Finish(
-            farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                              "long answers that are not read yet take as much as they may",
-                              std::chrono::seconds(2)));
+      if (!service_.waiting_.try_take(ByteBudget::owner_of(work_->caller), bytes)) {
+        return Finish(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                                        "answers that are not read yet take as much as they may",
+                                        std::chrono::seconds(2)));
       }
       long_ = bytes;
     }
@@ -188,12 +187,12 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
 };
 
 Service::Service(Backend at, const Admission& admission, Executors& executors,
-                 std::chrono::milliseconds patience, ByteBudget& long_answers)
+                 std::chrono::milliseconds patience, ByteBudget& waiting)
     : at_(at),
       admission_(admission),
       executors_(executors),
       patience_(patience),
-      long_answers_(long_answers) {
+      waiting_(waiting) {
   for (const Operation& operation : all_operations()) {
     if (!operation.handle || *operation.method == '\0') continue;
     add(operation.method, Method::BIDI_STREAMING,

@@ -30,9 +30,9 @@ class Service final : public grpc::Service {
 
   /// Has the methods of the table. What the arguments refer to outlives the service.
   /// `patience`: with the one message of a call that is admitted, and with who reads its answer.
-  /// `long_answers`: what those hold that wait for their readers.
+  /// `waiting`: what much of what waits for its readers is counted in; outlives the service.
   Service(Backend at, const Admission& admission, Executors& executors,
-          std::chrono::milliseconds patience, ByteBudget& long_answers);
+          std::chrono::milliseconds patience, ByteBudget& waiting);
 
   /// Makes the stream that answers a Request; or null, with the reason in `refused`.
   template <class Request>
@@ -64,6 +64,7 @@ class Service final : public grpc::Service {
   Backend& backend() { return at_; }
   Executors& executors() { return executors_; }
   const Admission& admission() const { return admission_; }
+  ByteBudget& waiting() { return waiting_; }
 
  private:
   class UnaryCall;
@@ -79,7 +80,7 @@ class Service final : public grpc::Service {
   const Admission& admission_;
   Executors& executors_;
   const std::chrono::milliseconds patience_;
-  ByteBudget& long_answers_;
+  ByteBudget& waiting_;
   std::deque<std::string> names_;  ///< of the methods; gRPC keeps pointers to them
 };
 

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/services/service.h"
 #include "coordinator/services/worker_bytes.h"
@@ -21,6 +23,8 @@ namespace {
 /// A worker that does not read for so long that this much waits for it is cut off.
 constexpr size_t kMostWaiting = 20'000;
 constexpr uint64_t kMostWaitingBytes = uint64_t{32} << 20U;
+/// So much may wait for every worker, whatever waits for others.
+constexpr uint64_t kFewWaitingBytes = uint64_t{64} << 10U;
 
 /// The stream's writing side, which outlives the stream as long as the controller holds it.
 class Link final : public WorkerLink {
@@ -34,7 +38,9 @@ class Link final : public WorkerLink {
     virtual void cancel() = 0;
   };
 
-  explicit Link(Wire& wire) : wire_(&wire) {}
+  /// `waiting`: what much of what waits is counted in, for `owner`; outlives the stream.
+  Link(Wire& wire, ByteBudget& waiting, std::string owner)
+      : wire_(&wire), budget_(waiting), owner_(std::move(owner)) {}
 
   void send(grpc::ByteBuffer message) override {
     const core::MutexLock lock(mutex_);
@@ -42,10 +48,10 @@ class Link final : public WorkerLink {
     waiting_ += message.Length();
     queue_.push_back(std::move(message));
     // One message may be as large as it is: a large job's files.
-    const bool much = waiting_ > kMostWaitingBytes && queue_.size() > 2;
+    const bool several = queue_.size() > 2;
+    const bool much = (waiting_ > kMostWaitingBytes || !count()) && several;
     if (queue_.size() > kMostWaiting || much) {
-      queue_.clear();
-      waiting_ = 0;
+      forget_waiting();
       close_locked({grpc::StatusCode::RESOURCE_EXHAUSTED, "the worker does not read"});
       wire_->cancel();  // or the message on its way would keep the stream open
     } else {
@@ -61,10 +67,7 @@ class Link final : public WorkerLink {
   void written(bool ok) {
     const core::MutexLock lock(mutex_);
     writing_ = false;
-    if (!ok) {
-      queue_.clear();
-      waiting_ = 0;
-    }
+    if (!ok) forget_waiting();
     if (wire_ != nullptr) proceed();
   }
 
@@ -72,8 +75,7 @@ class Link final : public WorkerLink {
   void cut(const grpc::Status& status) {
     const core::MutexLock lock(mutex_);
     if (wire_ == nullptr || finished_) return;
-    queue_.clear();
-    waiting_ = 0;
+    forget_waiting();
     if (writing_) wire_->cancel();  // a worker that does not read
     closed_ = true;
     status_ = status;
@@ -84,7 +86,7 @@ class Link final : public WorkerLink {
   void detach() {
     const core::MutexLock lock(mutex_);
     wire_ = nullptr;
-    queue_.clear();
+    forget_waiting();
   }
 
  private:
@@ -92,6 +94,23 @@ class Link final : public WorkerLink {
     closed_ = true;
     status_ = status;
     proceed();
+  }
+
+  /// Whether there is room for what waits now; what there is no room for is not counted.
+  bool count() HYADES_REQUIRES(mutex_) {
+    const uint64_t wanted = waiting_ > kFewWaitingBytes ? waiting_ : 0;
+    if (wanted > counted_) {
+      if (!budget_.try_take(owner_, wanted - counted_)) return false;
+    } else if (wanted < counted_) {
+      budget_.give_back(owner_, counted_ - wanted);
+    }
+    counted_ = wanted;
+    return true;
+  }
+  void forget_waiting() HYADES_REQUIRES(mutex_) {
+    queue_.clear();
+    waiting_ = 0;
+    count();
   }
 
   /// Starting an operation never calls back on this thread, so the lock may be held.
@@ -102,6 +121,7 @@ class Link final : public WorkerLink {
       bytes_ = queue_.front();
       waiting_ -= bytes_.Length();
       queue_.pop_front();
+      count();
       wire_->write(bytes_);
     } else if (closed_ && !finished_) {
       finished_ = true;
@@ -111,6 +131,9 @@ class Link final : public WorkerLink {
 
   core::Mutex mutex_;
   Wire* wire_ HYADES_GUARDED_BY(mutex_);
+  ByteBudget& budget_;
+  const std::string owner_;
+  uint64_t counted_ HYADES_GUARDED_BY(mutex_) = 0;  ///< bytes in budget_
   std::deque<grpc::ByteBuffer> queue_ HYADES_GUARDED_BY(mutex_);
   uint64_t waiting_ HYADES_GUARDED_BY(mutex_) = 0;    ///< bytes in queue_
   grpc::ByteBuffer bytes_ HYADES_GUARDED_BY(mutex_);  ///< the message that is being written
@@ -126,12 +149,13 @@ class WorkerStream final : public grpc::ServerBidiReactor<grpc::ByteBuffer, grpc
  public:
   /// `caller` has been admitted, or not.
   WorkerStream(Controller& controller, grpc::CallbackServerContext& context,
-               const Admission& admission, const Caller& caller, const grpc::Status& admitted)
+               const Admission& admission, const Caller& caller, const grpc::Status& admitted,
+               ByteBudget& waiting)
       : controller_(controller),
         context_(context),
         admission_(admission),
         caller_(caller),
-        link_(std::make_shared<Link>(*this)) {
+        link_(std::make_shared<Link>(*this, waiting, ByteBudget::owner_of(caller))) {
     if (admitted.ok()) {
       visit_ = admission.visit(caller, [this](const grpc::Status& why) {
         sent_away_ = true;
@@ -232,7 +256,7 @@ void add_worker_stream(Service& service) {
   service.add_bidi_stream("Work/Attend", [&service](Service::Context& context, const Caller& caller,
                                                     const grpc::Status& admitted) {
     return new WorkerStream(service.backend().controller, context, service.admission(), caller,
-                            admitted);
+                            admitted, service.waiting());
   });
 }
 

@@ -185,13 +185,18 @@ v1::FindMissingRequest find_missing(uint32_t files) {
   return request;
 }
 
+/// As it goes over the wire.
+std::string framed(const google::protobuf::MessageLite& message) {
+  const std::string bytes = message.SerializeAsString();
+  return test::RawHttp2::head(static_cast<uint32_t>(bytes.size())) + bytes;
+}
+
 /// Sends that over a connection that reads no more of the answer than its window.
 uint32_t ask_without_reading(test::RawHttp2& peer, const v1::FindMissingRequest& request) {
   EXPECT_TRUE(peer.greeted(20'000));
   const uint32_t call = peer.call("/hyades.v1.Assets/FindMissing",
                                   {{"authorization", std::string("Bearer ") + kToken}});
-  std::string message = request.SerializeAsString();
-  message.insert(0, test::RawHttp2::head(static_cast<uint32_t>(message.size())));
+  const std::string message = framed(request);
   EXPECT_EQ(peer.send(call, message), message.size());
   peer.finish(call);
   return call;
@@ -206,7 +211,7 @@ TEST_F(GrpcCrowd, AnAnswerThatIsNotReadEndsTheCall) {
 }
 
 TEST_F(GrpcCrowd, AnswersThatAreNotReadTakeNobodyElsesRoom) {
-  world.serving.long_answers_of_one = uint64_t{1} << 20U;
+  world.serving.waiting_of_one = uint64_t{1} << 20U;
   world.start();
   v1::CreateTokenRequest wanted;
   wanted.set_name("bob");
@@ -230,6 +235,45 @@ TEST_F(GrpcCrowd, AnswersThatAreNotReadTakeNobodyElsesRoom) {
            refused.error_message().find("not read") != std::string::npos;
   }));
   EXPECT_TRUE(eventually([&] { return asks_as(bob.secret()).ok(); }));
+}
+
+TEST_F(GrpcCrowd, WhatWorkersDoNotReadCountsToo) {
+  world.serving.waiting_of_one = 800'000;
+  world.start();
+  const v1::FindMissingRequest request = find_missing(10'000);  // an answer of 340 kB
+  const auto refused = [&] {
+    v1::FindMissingResponse response;
+    const grpc::Status status =
+        world.assets->FindMissing(world.context().get(), request, &response);
+    return status.error_message().find("not read") != std::string::npos;
+  };
+  test::RawHttp2 worker(world.address);
+  EXPECT_TRUE(worker.greeted(20'000));
+  const uint32_t call =
+      worker.call("/hyades.v1.Work/Attend",
+                  {{"authorization", std::string("Bearer ") + kToken}, {"hyades-protocol", "2"}});
+  v1::WorkerMessage hello;
+  hello.mutable_hello()->set_protocol(farm::kProtocol);
+  hello.mutable_hello()->set_worker_id("a-worker-that-does-not-read");
+  hello.mutable_hello()->set_instance("only-one-process");
+  hello.mutable_hello()->set_name("deaf");
+  hello.mutable_hello()->set_worker_class("class-a");
+  hello.mutable_hello()->set_threads(1);
+  worker.send(call, framed(hello));
+  v1::WorkerMessage word;
+  word.mutable_result()->set_job(7);  // of no job: it is answered
+  std::string words;
+  for (int i = 0; i < 1000; ++i) words += framed(word);
+  bool told = false;
+  for (int i = 0; i < 100 && !told; ++i) {
+    worker.send(call, words);
+    told = refused();
+  }
+  EXPECT_TRUE(told);
+  while (worker.send(call, words) == words.size()) {
+  }
+  EXPECT_TRUE(worker.ended(call, 20'000)) << "it is cut off";
+  EXPECT_TRUE(eventually([&] { return !refused(); })) << "what waited is not counted any more";
 }
 
 }  // namespace
