@@ -33,7 +33,10 @@ grpc::Status Admission::admit(const grpc::CallbackServerContext& context, const 
       shown == metadata.end() ? std::string_view()
                               : std::string_view(shown->second.data(), shown->second.size()),
       caller);
-  if (!known.ok()) return known;
+  if (!known.ok()) {
+    unknown_(caller.address);
+    return known;
+  }
   known_(caller.address, caller.token_id);
   uint32_t protocol = 0;
   const auto spoken = metadata.find(farm::kProtocolKey);

@@ -22,9 +22,15 @@ class Admission {
   /// or, where none is asked for, could do without (empty).
   using Known = std::function<void(const std::string& address, const std::string& token_id)>;
 
+  /// Hears of an address from which a call has shown no token that is one.
+  using Unknown = std::function<void(const std::string& address)>;
+
   /// `workers_show`: workers must have shown a certificate. `authority` outlives it.
-  Admission(Authority& authority, bool workers_show, Known known)
-      : authority_(authority), workers_show_(workers_show), known_(std::move(known)) {}
+  Admission(Authority& authority, bool workers_show, Known known, Unknown unknown)
+      : authority_(authority),
+        workers_show_(workers_show),
+        known_(std::move(known)),
+        unknown_(std::move(unknown)) {}
 
   /// OK, with who calls in `caller`; or why the call may not come in: UNAUTHENTICATED,
   /// FAILED_PRECONDITION or PERMISSION_DENIED. Who has no right to call is noted in the audit log.
@@ -54,6 +60,7 @@ class Admission {
   Authority& authority_;
   const bool workers_show_;
   const Known known_;
+  const Unknown unknown_;
 };
 
 }  // namespace hyades::coordinator

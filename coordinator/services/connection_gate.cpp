@@ -131,6 +131,17 @@ void ConnectionGate::mark_known(const std::string& address, const std::string& t
   if (strangers_.waiting() > 0) wake();
 }
 
+void ConnectionGate::mark_unknown(const std::string& address) {
+  const core::MutexLock lock(mutex_);
+  const auto found = by_address_.find(address);
+  if (found == by_address_.end()) return;
+  Connection& connection = connections_.at(found->second);
+  if (connection.known || ++connection.calls < limits_.stranger_calls) return;
+  drop(found->second);
+  crowded_ = true;  // what it has cost is given back, too
+  wake();
+}
+
 bool ConnectionGate::has_place_for(const std::string& token_id) const {
   const size_t free = limits_.known - known_;
   const auto own = known_by_.find(token_id);
@@ -218,18 +229,18 @@ void ConnectionGate::watch_listeners(bool watched) const {
 }
 
 void ConnectionGate::take(core::Descriptor socket, std::string address) {
-  const std::string neighbourhood = neighbourhood_of(address);
-  if (refused_.contains(neighbourhood)) return;
-  const Id id = next_id_++;
-  if (!watch(poll_, EPOLL_CTL_ADD, socket, EPOLLRDHUP | EPOLLET, id)) return;
   Connection connection{.socket = std::move(socket), .address = std::move(address)};
-  connection.beginning = take_beginning(connection.socket);
-  connection.bound = limits_.stranger_bytes_at_once;
-  // Else look_at_strangers() is the only bound, as quick as a busy machine lets it be.
-  if (connection.beginning) {
-    bound_received(connection.socket, *connection.beginning, connection.bound);
+  if (listening_.beginnings_are_kept) {
+    // Else nobody could bound what this one sends; a client comes again.
+    const std::optional<uint32_t> beginning = take_beginning(connection.socket);
+    if (!beginning) return;
+    connection.beginning = beginning;
+    connection.bound = limits_.stranger_bytes_at_once;
+    bound_received(connection.socket, *beginning, connection.bound);
   }
-  strangers_.come(id, neighbourhood);
+  const Id id = next_id_++;
+  if (!watch(poll_, EPOLL_CTL_ADD, connection.socket, EPOLLRDHUP | EPOLLET, id)) return;
+  strangers_.come(id, neighbourhood_of(connection.address));
   by_address_[connection.address] = id;  // one before it from that port has most likely just ended
   connections_.emplace(id, std::move(connection));
 }
@@ -277,7 +288,7 @@ void ConnectionGate::drop(Id id) {
     const auto same = known_by_.find(connection.token_id);
     if (--same->second == 0) known_by_.erase(same);
   }
-  strangers_.leave(id);
+  strangers_.go(id, std::chrono::steady_clock::now());
   const auto address = by_address_.find(connection.address);
   if (address != by_address_.end() && address->second == id) by_address_.erase(address);
   (void)::shutdown(connection.socket.get(), SHUT_RDWR);
@@ -289,23 +300,21 @@ void ConnectionGate::drop(Id id) {
 }
 
 /// Lets more of strangers inside in, and ends those that have sent more than they need to say who
-/// they are.
+/// they are. Where the kernel bounds nothing this is the only bound, as quick as a busy machine
+/// lets it be.
 void ConnectionGate::look_at_strangers(Time now) {
   if (now < look_again_) return;
   look_again_ = now + limits_.stranger_pace;
-  std::erase_if(refused_, [now](const auto& entry) { return entry.second <= now; });
   for (const Id id : strangers_.all_inside()) {
     Connection& connection = connections_.at(id);
     const uint64_t received = bytes_received(connection.socket);
-    if (received < connection.bound) continue;
-    if (received < limits_.stranger_bytes && connection.beginning) {
+    if (received >= limits_.stranger_bytes) {
+      drop(id);
+      crowded_ = true;  // what it has cost is given back, too
+    } else if (connection.beginning && received >= connection.bound) {
       connection.bound =
           std::min(connection.bound + limits_.stranger_bytes_at_once, limits_.stranger_bytes);
       bound_received(connection.socket, *connection.beginning, connection.bound);
-    } else if (received >= limits_.stranger_bytes) {
-      refused_[neighbourhood_of(connection.address)] = now + limits_.refused;
-      drop(id);
-      crowded_ = true;  // what they cost is given back, too
     }
   }
 }

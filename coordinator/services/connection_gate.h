@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <thread>
@@ -30,11 +29,12 @@ class ConnectionGate {
     /// What of a stranger is let in at once, and how often as much again of who has sent that: a
     /// handshake, and the first call's headers. gRPC keeps what calls cost that are reset at once,
     /// twenty kilobytes each, until it comes to them, and headers that do not end. Who has sent
-    /// `stranger_bytes` goes, and nobody of his neighbourhood comes for `refused` after that.
+    /// `stranger_bytes` goes.
     uint32_t stranger_bytes = uint32_t{16} << 10U;
     uint32_t stranger_bytes_at_once = uint32_t{4} << 10U;
-    std::chrono::milliseconds stranger_pace{50};
-    std::chrono::milliseconds refused{10'000};
+    std::chrono::milliseconds stranger_pace{250};
+    /// Calls without a token that is one, after which a stranger goes.
+    int stranger_calls = 8;
     /// Connections of those that are known; also bounded by the files that may be open. With one
     /// token as many as are free at most, so half of them, and then who has another comes in.
     size_t known = 20'000;
@@ -58,6 +58,9 @@ class ConnectionGate {
   /// none (empty). Thread-safe.
   void mark_known(const std::string& address, const std::string& token_id = {});
 
+  /// Whoever called from there has shown no token that is one. Thread-safe.
+  void mark_unknown(const std::string& address);
+
   /// How many there are.
   struct Count {
     size_t waiting = 0;
@@ -76,6 +79,7 @@ class ConnectionGate {
     std::string token_id{};               ///< by which it became known; empty: none
     std::optional<uint32_t> beginning{};  ///< of what it sends (take_beginning())
     uint32_t bound = 0;                   ///< of what is let in of a stranger
+    int calls = 0;                        ///< of a stranger
   };
 
   void run();
@@ -104,8 +108,6 @@ class ConnectionGate {
   std::unordered_map<Id, Connection> connections_ HYADES_GUARDED_BY(mutex_);
   std::unordered_map<std::string, Id> by_address_ HYADES_GUARDED_BY(mutex_);
   Time look_again_ HYADES_GUARDED_BY(mutex_);  ///< at strangers
-  /// Neighbourhoods of those who sent too much, and until when nobody of them comes.
-  std::map<std::string, Time> refused_ HYADES_GUARDED_BY(mutex_);
   size_t known_ HYADES_GUARDED_BY(mutex_) = 0;
   std::unordered_map<std::string, size_t> known_by_ HYADES_GUARDED_BY(mutex_);  ///< by token
   Id next_id_ HYADES_GUARDED_BY(mutex_);

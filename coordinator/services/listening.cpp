@@ -95,7 +95,7 @@ bool set(const core::Descriptor& socket, int level, int option, int value) {
 
 /// Listens there, and puts the port in that it got; what errno tells where it does not. Those who
 /// connect get their options from here.
-int listen_there(Endpoint& endpoint, core::Descriptor& socket) {
+int listen_there(Endpoint& endpoint, core::Descriptor& socket, bool& beginnings_are_kept) {
   socket =
       core::Descriptor(::socket(endpoint.family(), SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket.valid()) return errno;
@@ -106,7 +106,7 @@ int listen_there(Endpoint& endpoint, core::Descriptor& socket) {
   }
   (void)set(socket, IPPROTO_TCP, TCP_NODELAY, 1);
   (void)set(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, kAnswersWithinMs);
-  keep_beginnings(socket);
+  beginnings_are_kept = keep_beginnings(socket);
   auto* address = reinterpret_cast<sockaddr*>(&endpoint.address);
   if (::bind(socket.get(), address, endpoint.size) != 0) return errno;
   if (::listen(socket.get(), kBacklog) != 0) return errno;
@@ -138,10 +138,13 @@ core::Result<Listening> listen_at(const std::vector<std::string>& addresses) {
   for (Endpoint& endpoint : endpoints) {
     if (listening.port != 0) endpoint.port() = htons(listening.port);
     core::Descriptor socket;
-    error = listen_there(endpoint, socket);
+    bool kept = false;
+    error = listen_there(endpoint, socket, kept);
     if (error == 0) {
       listening.port = ntohs(endpoint.port());
       listening.addresses.push_back(address_text(endpoint.text(), std::to_string(listening.port)));
+      listening.beginnings_are_kept =
+          kept && (listening.sockets.empty() || listening.beginnings_are_kept);
       listening.sockets.push_back(std::move(socket));
       if (all) break;
     } else if (error == EADDRINUSE || !(all || endpoint.is_loopback_of_ipv6())) {

@@ -14,6 +14,7 @@ struct Listening {
   std::vector<core::Descriptor> sockets;
   std::vector<std::string> addresses;
   uint16_t port = 0;
+  bool beginnings_are_kept = false;  ///< keep_beginnings(), at all sockets
 };
 
 /// Listens at each HOST:PORT, at all addresses that HOST stands for; 0.0.0.0 and [::] are all of

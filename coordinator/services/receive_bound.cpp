@@ -9,6 +9,8 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
+#include <span>
+#include <vector>
 
 namespace hyades::coordinator {
 namespace {
@@ -18,29 +20,43 @@ constexpr size_t kSequence = 4;
 constexpr size_t kHeaderLength = 12;
 constexpr size_t kHeaderOfIpv6 = 40;
 
+/// Where the TCP header begins in a packet from its IP header on (RFC 791; RFC 8200 section 4).
+std::optional<size_t> tcp_header(std::span<const uint8_t> packet) {
+  if (packet.empty()) return std::nullopt;
+  if (packet[0] >> 4U == 4) return size_t{4} * (packet[0] & 15U);
+  if (packet.size() < kHeaderOfIpv6) return std::nullopt;
+  uint8_t next = packet[6];
+  size_t at = kHeaderOfIpv6;
+  while (next != IPPROTO_TCP) {
+    if (at + 2 > packet.size()) return std::nullopt;
+    // All that may stand before it tell their length in the same way, but for these two.
+    const size_t length = next == IPPROTO_FRAGMENT ? 8
+                          : next == IPPROTO_AH     ? 4 * (size_t{packet[at + 1]} + 2)
+                                                   : 8 * (size_t{packet[at + 1]} + 1);
+    next = packet[at];
+    at += length;
+  }
+  return at;
+}
+
 }  // namespace
 
-void keep_beginnings(const core::Descriptor& listening) {
+bool keep_beginnings(const core::Descriptor& listening) {
   const int yes = 1;
-  (void)::setsockopt(listening.get(), IPPROTO_TCP, TCP_SAVE_SYN, &yes, sizeof yes);
+  return ::setsockopt(listening.get(), IPPROTO_TCP, TCP_SAVE_SYN, &yes, sizeof yes) == 0;
 }
 
 std::optional<uint32_t> take_beginning(const core::Descriptor& socket) {
-  std::array<uint8_t, 512> headers{};
-  socklen_t size = headers.size();
-  if (::getsockopt(socket.get(), IPPROTO_TCP, TCP_SAVED_SYN, headers.data(), &size) != 0 ||
-      size == 0) {
+  // Headers of IPv6 may fill a packet, which without being put together has 64 KiB at most.
+  std::vector<uint8_t> headers(size_t{64} << 10U);
+  auto size = static_cast<socklen_t>(headers.size());
+  if (::getsockopt(socket.get(), IPPROTO_TCP, TCP_SAVED_SYN, headers.data(), &size) != 0) {
     return std::nullopt;
   }
-  size_t tcp = 0;
-  if (headers[0] >> 4U == 4) {
-    tcp = size_t{4} * (headers[0] & 15U);
-  } else if (headers[6] == IPPROTO_TCP) {
-    tcp = kHeaderOfIpv6;
-  }
-  if (tcp == 0 || tcp + kSequence + sizeof(uint32_t) > size) return std::nullopt;
+  const std::optional<size_t> tcp = tcp_header({headers.data(), size});
+  if (!tcp || *tcp + kSequence + sizeof(uint32_t) > size) return std::nullopt;
   uint32_t sequence = 0;
-  std::memcpy(&sequence, headers.data() + tcp + kSequence, sizeof sequence);
+  std::memcpy(&sequence, headers.data() + *tcp + kSequence, sizeof sequence);
   return ntohl(sequence);
 }
 

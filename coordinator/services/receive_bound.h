@@ -8,11 +8,12 @@
 namespace hyades::coordinator {
 
 /// Lets the kernel keep of whoever connects to this listening socket where their bytes begin
-/// (TCP_SAVE_SYN).
-void keep_beginnings(const core::Descriptor& listening);
+/// (TCP_SAVE_SYN); false where it cannot.
+bool keep_beginnings(const core::Descriptor& listening);
 
 /// The sequence number before that of an accepted connection's first byte, which the kernel tells
-/// once. Nothing where it has not kept it, as when it answers a flood of connections with cookies.
+/// once. Nothing where it has not kept it, as when it answers a flood of them with cookies
+/// (`net.ipv4.tcp_syncookies`).
 std::optional<uint32_t> take_beginning(const core::Descriptor& socket);
 
 /// Lets no more than the first `most` bytes (below 2^31) of a connection in: the kernel drops what

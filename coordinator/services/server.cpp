@@ -36,10 +36,12 @@ constexpr int kMostCalls = 50;
 struct Server::Parts {
   Parts(Controller& controller, Authority& authority, bool workers_show, const Options& options)
       : gate(options.gate),
-        admission(authority, workers_show,
-                  [this](const std::string& address, const std::string& token_id) {
-                    gate.mark_known(address, token_id);
-                  }),
+        admission(
+            authority, workers_show,
+            [this](const std::string& address, const std::string& token_id) {
+              gate.mark_known(address, token_id);
+            },
+            [this](const std::string& address) { gate.mark_unknown(address); }),
         waiting(options.waiting, options.waiting_of_one),
         service({controller, authority}, admission, executors, options.request_patience, waiting) {
     add_job_streams(service);

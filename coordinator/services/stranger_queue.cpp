@@ -54,6 +54,7 @@ void StrangerQueue::leave(Id id) {
   const auto found = strangers_.find(id);
   if (found == strangers_.end()) return;
   const Stranger stranger = found->second;
+  gone_.erase(id);
   if (inside_.erase(id) > 0) {
     --stranger.of->second.inside;
   } else {
@@ -63,9 +64,20 @@ void StrangerQueue::leave(Id id) {
   forget_if_empty(stranger.of);
 }
 
+void StrangerQueue::go(Id id, Time now) {
+  const auto found = inside_.find(id);
+  if (found == inside_.end() || found->second + limits_.patience_when_full <= now) {
+    leave(id);
+  } else {
+    gone_.insert(id);
+  }
+}
+
 std::vector<StrangerQueue::Id> StrangerQueue::all_inside() const {
   std::vector<Id> ids;
-  for (const auto& [id, since] : inside_) ids.push_back(id);
+  for (const auto& [id, since] : inside_) {
+    if (!gone_.contains(id)) ids.push_back(id);
+  }
   return ids;
 }
 
@@ -94,7 +106,7 @@ bool StrangerQueue::is_waited_for(const Neighbourhood& one) const {
 }
 
 StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
-  const bool pressed = is_waited_for(strangers_.at(id).of->second);
+  const bool pressed = gone_.contains(id) || is_waited_for(strangers_.at(id).of->second);
   return since + (pressed ? limits_.patience_when_full : limits_.patience);
 }
 

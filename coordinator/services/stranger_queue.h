@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -23,8 +24,8 @@ class StrangerQueue {
 
   /// How many there may be, and for how long.
   struct Limits {
-    size_t inside = 48;
-    size_t inside_of_one = 24;  ///< of one neighbourhood
+    size_t inside = 24;
+    size_t inside_of_one = 12;  ///< of one neighbourhood
     size_t waiting = 4000;
     std::chrono::milliseconds patience{10'000};  ///< with one who is inside, until known
     std::chrono::milliseconds patience_when_full{
@@ -43,13 +44,16 @@ class StrangerQueue {
   std::optional<Id> turn_away();
   /// Those that have been inside for too long, who have to go.
   std::vector<Id> expel(Time now);
-  /// One has become known, or has gone; nothing where this one was not there.
+  /// One has become known; nothing where this one was not there.
   void leave(Id id);
+  /// One has gone. Who was inside leaves its place empty for as long as it might have been there
+  /// while others wait: gRPC may still have work of it, and more may not come than it can do.
+  void go(Id id, Time now);
 
   /// When expel() will find the next one, as things stand; nothing where nobody is inside.
   std::optional<Time> next_expiry() const;
-  size_t inside() const { return inside_.size(); }
-  std::vector<Id> all_inside() const;
+  size_t inside() const { return inside_.size(); }  ///< places that are taken
+  std::vector<Id> all_inside() const;               ///< but for those that have gone
   size_t waiting() const { return strangers_.size() - inside_.size(); }
 
  private:
@@ -76,6 +80,7 @@ class StrangerQueue {
   Neighbourhoods neighbourhoods_;
   std::unordered_map<Id, Stranger> strangers_;
   std::unordered_map<Id, Time> inside_;  ///< since when
+  std::unordered_set<Id> gone_;          ///< of those inside
   uint64_t last_turn_ = 0;
   std::map<uint64_t, Neighbourhoods::iterator> turns_;         ///< those of whom somebody waits
   std::set<std::pair<size_t, const std::string*>> by_number_;  ///< the same, by how many wait

@@ -20,6 +20,7 @@ TEST_F(Hostile, MessagesThatAreAnnouncedAndNeverEndAreBrokenOff) {
                              "/hyades.v1.Farm/Info", "/hyades.v1.Assets/Upload"}) {
     peers.push_back(std::make_unique<test::RawHttp2>(world.address));
     test::RawHttp2& peer = *peers.back();
+    EXPECT_TRUE(peer.greeted(20'000));
     const uint32_t call = peer.call(method);
     peer.send(call, test::RawHttp2::head(0xFFFFFFFF));
     for (int i = 0; i < 75; ++i) {

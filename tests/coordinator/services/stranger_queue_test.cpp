@@ -131,5 +131,27 @@ TEST(StrangerQueue, BoundsHoldWhateverHappens) {
   }
 }
 
+TEST(StrangerQueue, WhoHasGoneKeepsHisPlaceForATime) {
+  StrangerQueue::Limits limits;
+  limits.inside = 2;
+  limits.inside_of_one = 1;
+  limits.patience_when_full = 2s;
+  StrangerQueue queue(limits);
+  queue.come(1, "a");
+  queue.come(2, "a");
+  ASSERT_EQ(let_in_all(queue, kBegin), (std::vector<StrangerQueue::Id>{2}));
+  queue.go(2, kBegin + 1s);
+  EXPECT_TRUE(let_in_all(queue, kBegin + 1s).empty());
+  EXPECT_TRUE(queue.all_inside().empty()) << "but nobody is there";
+  EXPECT_EQ(queue.next_expiry(), kBegin + 2s);
+  queue.expel(kBegin + 2s);
+  EXPECT_EQ(let_in_all(queue, kBegin + 2s), (std::vector<StrangerQueue::Id>{1}));
+  queue.leave(1);  // he is known
+  EXPECT_EQ(queue.inside(), 0U);
+  queue.come(3, "a");
+  queue.go(3, kBegin + 3s);
+  EXPECT_EQ(queue.waiting(), 0U);
+}
+
 }  // namespace
 }  // namespace hyades::coordinator
