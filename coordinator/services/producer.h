@@ -169,17 +169,17 @@ class Producer : public OutgoingStream {
         status = end_status_;
       }
       Step step = Step::end;
-      message_.Clear();
+      Message message;  // not kept: an emptied message holds on to its memory
       if (cancelled) {
         status = {grpc::StatusCode::CANCELLED, "the client is gone"};
       } else if (status.ok()) {
         status = within_memory([&] {
           grpc::Status end;
-          step = next(message_, end, may_wait);
+          step = next(message, end, may_wait);
           return end;
         });
         if (step == Step::message) {
-          status = farm::serialise(message_, bytes_);
+          status = farm::serialise(message, bytes_);
           if (!status.ok()) step = Step::end;
         }
       }
@@ -215,8 +215,7 @@ class Producer : public OutgoingStream {
   const std::chrono::milliseconds patience_;
   OutgoingCall* call_ = nullptr;           ///< since begin()
   std::unique_ptr<grpc::Alarm> too_slow_;  ///< while a message is on its way
-  Message message_;
-  grpc::ByteBuffer bytes_;  ///< the message on its way
+  grpc::ByteBuffer bytes_;                 ///< the message on its way
   core::Mutex mutex_;
   bool busy_ HYADES_GUARDED_BY(mutex_) =
       true;  ///< not begun, next() or a write is going on, or all is over

@@ -23,8 +23,8 @@ class Server {
     std::chrono::milliseconds idle = std::chrono::minutes(5);
     /// How long the one message of a call that is admitted may be on its way, and its answer.
     std::chrono::milliseconds request_patience = std::chrono::minutes(2);
-    /// Bytes that wait for their readers, in all and with one token: answers, and what workers are
-    /// told, where it is more than 64 KiB of a call.
+    /// Bytes that wait for their readers, in all and with one token: answers, streams' messages,
+    /// and what workers are told, where that is more than 64 KiB.
     uint64_t waiting = uint64_t{512} << 20U;
     uint64_t waiting_of_one = uint64_t{128} << 20U;
     ConnectionGate::Limits gate{};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -24,8 +25,14 @@ using grpc::internal::CallbackClientStreamingHandler;
 
 /// Messages in one request; a job with as many files as it may have has about half of that.
 constexpr uint64_t kMostContributors = 200'000;
-/// Answers of so many bytes are let go without being counted.
-constexpr size_t kShortAnswer = size_t{64} << 10U;
+/// What a call takes besides the message that waits for its reader [bytes].
+constexpr uint64_t kCallBytes = uint64_t{16} << 10U;
+
+grpc::Status too_much_waits() {
+  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                           "answers that are not read yet take as much as they may",
+                           std::chrono::seconds(2));
+}
 
 }  // namespace
 
@@ -46,7 +53,7 @@ class Service::UnaryCall final : public RequestCall {
   }
 
   ~UnaryCall() override {
-    if (long_ > 0) service_.waiting_.give_back(ByteBudget::owner_of(work_->caller), long_);
+    if (waiting_ > 0) service_.waiting_.give_back(owner_, waiting_);
   }
 
  private:
@@ -112,33 +119,40 @@ class Service::UnaryCall final : public RequestCall {
     }
     return read_request();
   }
-  /// What is long takes memory until it is read, and there is room for so many of them.
+  /// Sends said_, as soon as the caller reads it, and where there is room for it until then.
   void respond() {
-    const size_t bytes = said_.Length();
-    if (bytes > kShortAnswer) {
-      if (!service_.waiting_.try_take(ByteBudget::owner_of(work_->caller), bytes)) {
-        return Finish(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                                        "answers that are not read yet take as much as they may",
-                                        std::chrono::seconds(2)));
-      }
-      long_ = bytes;
+    // Nobody asks for what was asked any more, and the answer may wait.
+    asked_.Clear();
+    owner_ = ByteBudget::owner_of(work_->caller);
+    work_.reset();
+    const uint64_t bytes = said_.Length() + kCallBytes;
+    if (!service_.waiting_.try_take(owner_, bytes)) {
+      said_.Clear();
+      return Finish(too_much_waits());
     }
+    waiting_ = bytes;
     answer(said_, service_.patience_);
   }
 
   Service& service_;
   const Operation& operation_;
-  const std::shared_ptr<Work> work_;
+  std::shared_ptr<Work> work_;
   Bytes said_;
-  size_t long_ = 0;  ///< its bytes among the long answers
+  std::string owner_;     ///< for whom the answer is counted
+  uint64_t waiting_ = 0;  ///< bytes that are counted until the answer has been read
 };
 
 /// A call that a stream answers.
 class Service::StreamCall final : public RequestCall, public OutgoingCall {
  public:
-  StreamCall(const Service& service, const Rule& rule, const MakeRawStream& make, Context& context)
-      : RequestCall(context), admission_(service.admission_), make_(make), context_(context) {
+  StreamCall(Service& service, const Rule& rule, const MakeRawStream& make, Context& context)
+      : RequestCall(context),
+        admission_(service.admission_),
+        waiting_(service.waiting_),
+        make_(make),
+        context_(context) {
     grpc::Status refused = admission_.check(context, rule, caller_);
+    owner_ = ByteBudget::owner_of(caller_);
     if (refused.ok()) entry_ = count_connection(service.at_.controller, caller_, refused);
     if (refused.ok()) {
       ask(service.patience_);
@@ -147,7 +161,12 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
     }
   }
 
-  void OnWriteDone(bool ok) override { stream_->written(ok); }
+  ~StreamCall() override { uncount(); }
+
+  void OnWriteDone(bool ok) override {
+    uncount();
+    stream_->written(ok);
+  }
   void OnCancel() override {
     const core::MutexLock lock(mutex_);
     cancelled_ = true;
@@ -158,7 +177,12 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
     RequestCall::OnDone();
   }
 
-  void write(const Bytes& message) override { StartWrite(&message); }
+  void write(const Bytes& message) override {
+    const uint64_t bytes = message.Length() + kCallBytes;
+    if (!waiting_.try_take(owner_, bytes)) return Finish(too_much_waits());
+    counted_ = bytes;
+    StartWrite(&message);
+  }
   void finish(const grpc::Status& status) override { Finish(status); }
 
  private:
@@ -175,10 +199,17 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
     stream_->begin(*this);
   }
 
+  void uncount() {
+    if (counted_ > 0) waiting_.give_back(owner_, std::exchange(counted_, 0));
+  }
+
   const Admission& admission_;
+  ByteBudget& waiting_;
   const MakeRawStream& make_;
   Context& context_;
   Caller caller_;
+  std::string owner_;                               ///< ByteBudget::owner_of(caller_)
+  uint64_t counted_ = 0;                            ///< bytes of the message on its way
   std::unique_ptr<OwnerConnections::Entry> entry_;  ///< among the owner's
   OutgoingStream* stream_ = nullptr;
   core::Mutex mutex_;

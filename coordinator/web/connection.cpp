@@ -51,6 +51,7 @@ constexpr std::chrono::seconds kSend{60};
 constexpr uint32_t kMostHeaderBytes = 16U << 10U;
 /// Bodies that always have room: each connection has one, and of those there are not many.
 constexpr uint64_t kSmallBody = farm::kMaxRequestBytes;
+constexpr uint64_t kSmallAnswer = uint64_t{4} << 10U;
 /// Of what has come and is not parsed yet. Beast waits for the whole of a chunk's head, and of the
 /// fields behind the last chunk, however long they are.
 constexpr size_t kMostUnparsed = size_t{64} << 10U;
@@ -231,6 +232,7 @@ class ConnectionOver final : public Connection,
   void send(WebReply reply) {
     reply_ = std::move(reply);
     leave_out_known(reply_, known_);
+    count_answer();
     if (reply_.topic || reply_.source) {
       grpc::Status refused;
       entry_ = world_.entry(caller_, refused);
@@ -255,6 +257,19 @@ class ConnectionOver final : public Connection,
       if (error) return me->close();
       me->send_body();
     });
+  }
+
+  /// What others hold, too, is counted where it is made.
+  void count_answer() {
+    if (!reply_.text || reply_.text.use_count() > 1 || reply_.text->size() <= kSmallAnswer) return;
+    owner_ = ByteBudget::owner_of(caller_);
+    if (world_.answers.try_take(owner_, reply_.text->size())) {
+      answered_ = reply_.text->size();
+    } else {
+      reply_ = error_reply(farm::retry_later(
+          grpc::StatusCode::RESOURCE_EXHAUSTED,
+          "answers that are not read yet take as much as they may", std::chrono::seconds(2)));
+    }
   }
 
   void send_body() {
@@ -413,6 +428,8 @@ class ConnectionOver final : public Connection,
   void give_back() {
     if (granted_ > 0) world_.bodies.give_back(owner_, granted_);
     granted_ = 0;
+    if (answered_ > 0) world_.answers.give_back(owner_, answered_);
+    answered_ = 0;
   }
 
   void close() {
@@ -440,7 +457,8 @@ class ConnectionOver final : public Connection,
   std::unique_ptr<Visit> visit_;
   std::unique_ptr<OwnerConnections::Entry> entry_;  ///< while its answer takes its time
   std::string owner_;                               ///< whom its body is counted for
-  uint64_t granted_ = 0;  ///< bytes that its body may have, out of those of all
+  uint64_t granted_ = 0;   ///< bytes that its body may have, out of those of all
+  uint64_t answered_ = 0;  ///< the same, of its answer
   unsigned version_ = 11;
   bool keep_alive_ = false;
   bool head_only_ = false;

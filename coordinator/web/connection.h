@@ -62,6 +62,9 @@ struct ConnectionWorld {
   std::set<std::shared_ptr<Connection>> open{};
   /// What the bodies of requests in work may have together. Small ones are not counted.
   ByteBudget bodies{kMostBodyBytes, kMostBodyBytesOfOne};
+  /// What answers may have together that are read by one connection alone. Small ones, and what
+  /// comes from a BodySource, are not counted.
+  ByteBudget answers{kMostBodyBytes, kMostBodyBytesOfOne};
 };
 
 /// A connection over an accepted socket. `tls`: null for plain text. The world outlives it.

@@ -41,7 +41,7 @@ TEST(Crowds, AFewAddressesDoNotTakeAllConnections) {
   }
 }
 
-/// Connections that begin a request and never end it.
+/// Connections that begin a request and never end it, or read nothing of the answer.
 class SlowRequests {
  public:
   SlowRequests(const std::string& url, int count, const std::string& begin) {
@@ -51,6 +51,8 @@ class SlowRequests {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     for (int i = 0; i < count; ++i) {
       const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+      const int small = 4096;  // what the kernel takes in of an answer
+      ::setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
       if (::connect(socket, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) {
         (void)!::send(socket, begin.data(), begin.size(), MSG_NOSIGNAL);
       }
@@ -138,6 +140,36 @@ TEST(Crowds, BodiesThatNeverComeLeaveRoomForOthers) {
   }
   EXPECT_TRUE(eventually([&] { return large(bob) == 503; })) << "four of them have all";
   expect_small_ones_come_in();
+}
+
+// Each answer is 15 MB, and a quarter of 256 MiB is one caller's.
+TEST(UnreadAnswers, LeaveRoomForThoseOfOthers) {
+  WebWorld world;
+  world.start();
+  std::string text = FarmWorld::document(1);
+  while (text.size() < 15'000'000) text += "# " + std::string(1000, 'x') + "\n";
+  ASSERT_TRUE(world.farm.upload(text).ok());
+  v1::SubmitResponse job;
+  ASSERT_TRUE(
+      world.farm.jobs->Submit(world.farm.context().get(), FarmWorld::request(text), &job).ok());
+  const auto token_of = [&](const std::string& name) {
+    std::string token;
+    StoredToken row;
+    EXPECT_TRUE(world.farm.authority->create(name, v1::ROLE_ADMIN, 0, token, row).ok());
+    return token;
+  };
+  const std::string ada = token_of("ada");
+  const std::string bob = token_of("bob");
+  const std::string path = "/api/v1/jobs/" + std::to_string(job.job().id()) + "/document";
+  const auto status_for = [&](const std::string& token) {
+    return world.client->get(path, {{"Authorization", "Bearer " + token}}).status;
+  };
+  ASSERT_EQ(status_for(ada), 200);
+  const SlowRequests unread(
+      world.web->url(), 6,
+      "GET " + path + " HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer " + ada + "\r\n\r\n");
+  EXPECT_TRUE(eventually([&] { return status_for(ada) == 503; }));
+  EXPECT_EQ(status_for(bob), 200);
 }
 
 TEST(Crowds, HealthHasAPlaceThatTheyDoNotReach) {

@@ -276,5 +276,29 @@ TEST_F(GrpcCrowd, WhatWorkersDoNotReadCountsToo) {
   EXPECT_TRUE(eventually([&] { return !refused(); })) << "what waited is not counted any more";
 }
 
+TEST_F(GrpcCrowd, StreamsThatAreNotReadCountToo) {
+  world.serving.waiting_of_one = uint64_t{3} << 19U;
+  world.start();
+  const std::string file(uint64_t{2} << 20U, 'x');
+  ASSERT_TRUE(world.upload(file).ok());
+  v1::DownloadRequest request;
+  request.set_sha256(farm::to_wire(core::sha256(file)));
+  const auto download = [&](test::RawHttp2& peer) {
+    EXPECT_TRUE(peer.greeted(20'000));
+    const uint32_t call =
+        peer.call("/hyades.v1.Assets/Download",
+                  {{"authorization", std::string("Bearer ") + kToken}, {"hyades-protocol", "2"}});
+    peer.send(call, framed(request));
+    peer.finish(call);
+    return call;
+  };
+  test::RawHttp2 first(world.address);
+  const uint32_t waits = download(first);
+  EXPECT_FALSE(first.ended(waits, 500)) << "of the first mebibyte it has read 64 KiB";
+  test::RawHttp2 second(world.address);
+  EXPECT_TRUE(second.ended(download(second), 20'000));
+  EXPECT_FALSE(first.ended(waits, 0));
+}
+
 }  // namespace
 }  // namespace hyades::coordinator
