@@ -18,7 +18,7 @@ class ByteBudget {
 
   /// Whether so many more may be held for the owner.
   bool has_room(const std::string& owner, uint64_t bytes) const;
-  /// The same, and counts them as held from now on where they may be.
+  /// Counts bytes as held from now on if so many more may be held for the owner; whether they may.
   bool try_take(const std::string& owner, uint64_t bytes);
   /// Counts bytes that are held from now on, whether there is room or not.
   void take(const std::string& owner, uint64_t bytes);

@@ -39,6 +39,13 @@ inline grpc::Status crowded() {
                            std::chrono::seconds(2));
 }
 
+/// Why an answer is not given whose bytes would wait for their reader with too many others.
+inline grpc::Status too_much_unread() {
+  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                           "answers that are not read yet take as much as they may",
+                           std::chrono::seconds(2));
+}
+
 /// To be held while a large request is parsed, whether it came by gRPC or by HTTP: many of them at
 /// once would fill the memory that both share. Holds nothing where somebody else holds it: then the
 /// answer is another_is_large().

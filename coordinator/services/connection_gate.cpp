@@ -137,8 +137,7 @@ void ConnectionGate::mark_unknown(const std::string& address) {
   if (found == by_address_.end()) return;
   Connection& connection = connections_.at(found->second);
   if (connection.known || ++connection.calls < limits_.stranger_calls) return;
-  drop(found->second);
-  crowded_ = true;  // what it has cost is given back, too
+  cut_off(found->second);
   wake();
 }
 
@@ -299,6 +298,12 @@ void ConnectionGate::drop(Id id) {
   connections_.erase(found);
 }
 
+/// Drops a stranger that has cost more than most; its memory is given back as a crowd's is.
+void ConnectionGate::cut_off(Id id) {
+  drop(id);
+  crowded_ = true;
+}
+
 /// Lets more of strangers inside in, and ends those that have sent more than they need to say who
 /// they are. Where the kernel bounds nothing this is the only bound, as quick as a busy machine
 /// lets it be.
@@ -309,8 +314,7 @@ void ConnectionGate::look_at_strangers(Time now) {
     Connection& connection = connections_.at(id);
     const uint64_t received = bytes_received(connection.socket);
     if (received >= limits_.stranger_bytes) {
-      drop(id);
-      crowded_ = true;  // what it has cost is given back, too
+      cut_off(id);
     } else if (connection.beginning && received >= connection.bound) {
       connection.bound =
           std::min(connection.bound + limits_.stranger_bytes_at_once, limits_.stranger_bytes);

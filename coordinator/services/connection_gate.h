@@ -91,6 +91,7 @@ class ConnectionGate {
   void advance(Time now, std::vector<int>& entering) HYADES_REQUIRES(mutex_);
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
+  void cut_off(Id id) HYADES_REQUIRES(mutex_);
   bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
   void look_at_strangers(Time now) HYADES_REQUIRES(mutex_);
   bool is_calm(Time now) HYADES_REQUIRES(mutex_);

@@ -28,12 +28,6 @@ constexpr uint64_t kMostContributors = 200'000;
 /// What a call takes besides the message that waits for its reader [bytes].
 constexpr uint64_t kCallBytes = uint64_t{16} << 10U;
 
-grpc::Status too_much_waits() {
-  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                           "answers that are not read yet take as much as they may",
-                           std::chrono::seconds(2));
-}
-
 }  // namespace
 
 /// A call that one message answers.
@@ -128,7 +122,7 @@ class Service::UnaryCall final : public RequestCall {
     const uint64_t bytes = said_.Length() + kCallBytes;
     if (!service_.waiting_.try_take(owner_, bytes)) {
       said_.Clear();
-      return Finish(too_much_waits());
+      return Finish(too_much_unread());
     }
     waiting_ = bytes;
     answer(said_, service_.patience_);
@@ -179,7 +173,7 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
 
   void write(const Bytes& message) override {
     const uint64_t bytes = message.Length() + kCallBytes;
-    if (!waiting_.try_take(owner_, bytes)) return Finish(too_much_waits());
+    if (!waiting_.try_take(owner_, bytes)) return Finish(too_much_unread());
     counted_ = bytes;
     StartWrite(&message);
   }

@@ -22,6 +22,7 @@
 
 #include "coordinator/access/address.h"
 #include "coordinator/meters/meters.h"
+#include "coordinator/operations/executors.h"
 #include "coordinator/web/message_heads.h"
 #include "coordinator/web/request_target.h"
 #include "farm/wire.h"
@@ -266,9 +267,7 @@ class ConnectionOver final : public Connection,
     if (world_.answers.try_take(owner_, reply_.text->size())) {
       answered_ = reply_.text->size();
     } else {
-      reply_ = error_reply(farm::retry_later(
-          grpc::StatusCode::RESOURCE_EXHAUSTED,
-          "answers that are not read yet take as much as they may", std::chrono::seconds(2)));
+      reply_ = error_reply(too_much_unread());
     }
   }
 
