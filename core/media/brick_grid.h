@@ -18,9 +18,15 @@ class BrickGrid {
   static constexpr int kSide = 8;
 
   /// Integer points lower..upper, both included. `value(point)` is asked at most once or twice for
-  /// each; `matters(box)`, for the points of a box, may say that all of them are 0.
-  template <class Value, class Matters>
-  BrickGrid(const Vec3i& lower, const Vec3i& upper, const Value& value, const Matters& matters);
+  /// each, and only for bricks that reach into one of the boxes for which `boxes(visit)` calls
+  /// visit(first, last), of integer points, both included: outside of all of them is 0.
+  template <class Value, class Boxes>
+  BrickGrid(const Vec3i& lower, const Vec3i& upper, const Value& value, const Boxes& boxes);
+
+  /// The same, where every point may have a value.
+  template <class Value>
+  BrickGrid(const Vec3i& lower, const Vec3i& upper, const Value& value)
+      : BrickGrid(lower, upper, value, [&](const auto& visit) { visit(lower, upper); }) {}
 
   T at(const Vec3& p) const;
 
@@ -38,12 +44,14 @@ class BrickGrid {
  private:
   static constexpr int kPoints = kSide + 1;
   static constexpr int32_t kNone = -1;
+  static constexpr int32_t kAwaited = -2;  ///< while the bricks are made
   using Brick = std::array<T, kPoints * kPoints * kPoints>;
 
   static size_t place(const Vec3i& p) {
     return static_cast<size_t>((p.z * kPoints + p.y) * kPoints + p.x);
   }
-  int32_t& entry(const Vec3i& brick) { return index_[index_of(brick)]; }
+  /// Makes the bricks that have one of the points first..last wait for their values.
+  void await_bricks(const Vec3i& first, const Vec3i& last);
   size_t index_of(const Vec3i& brick) const {
     return (static_cast<size_t>(brick.z) * static_cast<size_t>(counts_.y) +
             static_cast<size_t>(brick.y)) *
@@ -59,27 +67,43 @@ class BrickGrid {
 };
 
 template <class T>
-template <class Value, class Matters>
+void BrickGrid<T>::await_bricks(const Vec3i& first, const Vec3i& last) {
+  // The points of a brick are 0..8 from its corner: the last ones are those of the next one, too.
+  const Vec3i begin = glm::max((first - lower_ - 1) / kSide, Vec3i(0));
+  const Vec3i end = glm::min((last - lower_) / kSide, counts_ - 1);
+  Vec3i b;
+  for (b.z = begin.z; b.z <= end.z; ++b.z) {
+    for (b.y = begin.y; b.y <= end.y; ++b.y) {
+      for (b.x = begin.x; b.x <= end.x; ++b.x) index_[index_of(b)] = kAwaited;
+    }
+  }
+}
+
+template <class T>
+template <class Value, class Boxes>
 BrickGrid<T>::BrickGrid(const Vec3i& lower, const Vec3i& upper, const Value& value,
-                        const Matters& matters)
+                        const Boxes& boxes)
     : lower_(lower - 1), upper_(upper), counts_((upper - lower_ + kSide) / kSide) {
   index_.assign(static_cast<size_t>(counts_.x) * static_cast<size_t>(counts_.y) *
                     static_cast<size_t>(counts_.z),
                 kNone);
+  boxes([&](const Vec3i& first, const Vec3i& last) {
+    await_bricks(glm::max(first, lower), glm::min(last, upper));
+  });
   Vec3i b;
   for (b.z = 0; b.z < counts_.z; ++b.z) {
     for (b.y = 0; b.y < counts_.y; ++b.y) {
       for (b.x = 0; b.x < counts_.x; ++b.x) {
-        const Vec3i first = lower_ + b * kSide;
-        const Vec3i last = first + kSide;
-        if (!matters(glm::max(first, lower), glm::min(last, upper))) continue;
+        int32_t& entry = index_[index_of(b)];
+        if (entry != kAwaited) continue;
+        entry = kNone;
         Brick brick;
         bool empty = true;
         Vec3i p;
         for (p.z = 0; p.z < kPoints; ++p.z) {
           for (p.y = 0; p.y < kPoints; ++p.y) {
             for (p.x = 0; p.x < kPoints; ++p.x) {
-              const Vec3i at = first + p;
+              const Vec3i at = lower_ + b * kSide + p;
               const bool inside = at == glm::clamp(at, lower, upper);
               const T v = inside ? value(at) : T(0.0F);
               brick[place(p)] = v;
@@ -88,7 +112,7 @@ BrickGrid<T>::BrickGrid(const Vec3i& lower, const Vec3i& upper, const Value& val
           }
         }
         if (empty) continue;
-        entry(b) = static_cast<int32_t>(bricks_.size());
+        entry = static_cast<int32_t>(bricks_.size());
         bricks_.push_back(brick);
       }
     }

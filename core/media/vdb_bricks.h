@@ -20,7 +20,7 @@ Result<std::shared_ptr<const VdbGrid<T>>> bricks_of(const VdbTree<T>& tree, cons
     return Error{"has no active voxels"};
   }
   const Vec3i size = tree.upper() - tree.lower() + 1;
-  // Bricks are indexed and looked at one by one, also where there is nothing.
+  // Bricks are indexed one by one, also where there is nothing.
   const double bricks = (size.x / 8.0 + 1) * (size.y / 8.0 + 1) * (size.z / 8.0 + 1);
   const double most = 0x1p24 + 4096.0 * static_cast<double>(tree.block_count());
   if (bricks > most || bricks * sizeof(int32_t) > 0.25 * static_cast<double>(kMostVdbBytes)) {
@@ -37,19 +37,11 @@ Result<std::shared_ptr<const VdbGrid<T>>> bricks_of(const VdbTree<T>& tree, cons
     last = p;
     return block != nullptr ? block->values[VdbTree<T>::place(p)] : T(0.0F);
   };
-  const auto matters = [&](const Vec3i& lower, const Vec3i& upper) {
-    Vec3i at;
-    for (at.z = lower.z & ~7; at.z <= upper.z; at.z += 8) {
-      for (at.y = lower.y & ~7; at.y <= upper.y; at.y += 8) {
-        for (at.x = lower.x & ~7; at.x <= upper.x; at.x += 8) {
-          if (tree.block(at) != nullptr) return true;
-        }
-      }
-    }
-    return false;
+  const auto blocks = [&](const auto& visit) {
+    tree.visit_blocks([&](const Vec3i& origin) { visit(origin, origin + 7); });
   };
   return std::make_shared<const VdbGrid<T>>(
-      VdbGrid<T>{BrickGrid<T>(tree.lower(), tree.upper(), value, matters), to_file});
+      VdbGrid<T>{BrickGrid<T>(tree.lower(), tree.upper(), value, blocks), to_file});
 }
 
 }  // namespace hyades::core

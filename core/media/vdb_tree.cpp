@@ -161,6 +161,8 @@ VdbTree<T> VdbTree<T>::read(VdbCursor& cursor, const VdbEncoding& encoding, size
 
 template <class T>
 bool VdbTree<T>::fill(const Vec3i& origin, int side, const T& value, size_t most_blocks) {
+  const auto blocks_across = static_cast<size_t>(side / 8);
+  if (blocks_across * blocks_across * blocks_across > most_blocks) return false;
   for (int x = 0; x < side; x += 8) {
     for (int y = 0; y < side; y += 8) {
       for (int z = 0; z < side; z += 8) {

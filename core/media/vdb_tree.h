@@ -37,6 +37,14 @@ class VdbTree {
     const auto found = blocks_.find(key(p));
     return found == blocks_.end() ? nullptr : &found->second;
   }
+  /// Calls visit(origin) for every block, in any order.
+  template <class Visit>
+  void visit_blocks(const Visit& visit) const {
+    const auto part = [](uint64_t k) {  // 21 bits with a sign
+      return static_cast<int>(static_cast<int64_t>(k << 43U) >> 43U) * 8;
+    };
+    for (const auto& [k, block] : blocks_) visit(Vec3i(part(k >> 42U), part(k >> 21U), part(k)));
+  }
   static size_t place(const Vec3i& p) {
     return static_cast<size_t>(((p.x & 7) << 6) | ((p.y & 7) << 3) | (p.z & 7));
   }

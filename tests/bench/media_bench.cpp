@@ -46,10 +46,9 @@ float cloud_at(const Vec3& p, bool sparse) {
 }
 
 std::shared_ptr<const BrickGrid<float>> cloud_grid(bool sparse) {
-  return std::make_shared<const BrickGrid<float>>(
-      Vec3i(0), Vec3i(kSide - 1),
-      [&](const Vec3i& p) { return cloud_at(Vec3(p) / float{kSide}, sparse); },
-      [](const Vec3i&, const Vec3i&) { return true; });
+  return std::make_shared<const BrickGrid<float>>(Vec3i(0), Vec3i(kSide - 1), [&](const Vec3i& p) {
+    return cloud_at(Vec3(p) / float{kSide}, sparse);
+  });
 }
 
 /// Counts how often it is looked up.

@@ -22,8 +22,7 @@ TEST(BrickGrid, InterpolatesTrilinearlyAcrossBricks) {
     return static_cast<float>(p.x) + 0.5F * static_cast<float>(p.y) -
            0.25F * static_cast<float>(p.z);
   };
-  const BrickGrid<float> grid(Vec3i(-9, 0, 2), Vec3i(20, 17, 30), value,
-                              [](const Vec3i&, const Vec3i&) { return true; });
+  const BrickGrid<float> grid(Vec3i(-9, 0, 2), Vec3i(20, 17, 30), value);
   test::Random random(1);
   for (int n = 0; n < 2000; ++n) {
     const Vec3 p = within({Vec3(-9, 0, 2), Vec3(20, 17, 30)}, random);
@@ -36,11 +35,33 @@ TEST(BrickGrid, InterpolatesTrilinearlyAcrossBricks) {
 
 TEST(BrickGrid, KeepsOnlyBricksThatHoldSomething) {
   const auto value = [](const Vec3i& p) { return p == Vec3i(50, 60, 70) ? 2.0F : 0.0F; };
-  const BrickGrid<float> grid(Vec3i(0), Vec3i(127), value,
-                              [](const Vec3i&, const Vec3i&) { return true; });
+  const BrickGrid<float> grid(Vec3i(0), Vec3i(127), value);
   EXPECT_LE(grid.brick_count(), 8U);
   EXPECT_EQ(grid.at(Vec3(50.0F, 60.0F, 70.0F)), 2.0F);
   EXPECT_FLOAT_EQ(grid.at(Vec3(50.5F, 60.5F, 69.5F)), 0.25F);
+}
+
+TEST(BrickGrid, IsTheSameWhereItIsToldWhichBoxesHoldSomething) {
+  // Boxes that begin and end on every place of a brick, on both sides of 0.
+  const Vec3i lower(-21, -20, -19);
+  const Vec3i upper(60, 25, 24);
+  for (int shift = 0; shift < 9; ++shift) {
+    const Vec3i first = Vec3i(-20, -11, -3) + shift;
+    const Vec3i last = first + 7;
+    const auto value = [&](const Vec3i& p) {
+      return p == glm::clamp(p, first, last) ? 1.0F + static_cast<float>(p.x & 3) : 0.0F;
+    };
+    const BrickGrid<float> all(lower, upper, value);
+    const BrickGrid<float> told(lower, upper, value,
+                                [&](const auto& visit) { visit(first, last); });
+    EXPECT_EQ(told.brick_count(), all.brick_count());
+    test::Random random(static_cast<uint64_t>(shift));
+    const Bounds near{Vec3(first) - 9.0F, Vec3(last) + 9.0F};
+    for (int n = 0; n < 500; ++n) {
+      const Vec3 p = within(near, random);
+      ASSERT_EQ(told.at(p), all.at(p));
+    }
+  }
 }
 
 void expect_bounded(const DensityField& field, uint64_t seed) {

@@ -34,8 +34,7 @@ inline std::shared_ptr<const BrickGrid<float>> random_grid(int n, uint64_t seed)
     const auto cell = static_cast<uint64_t>((p.z * n + p.y) * n + p.x);
     return static_cast<float>(mix64(hash_combine(seed, cell)) >> 40) * 0x1p-24F;
   };
-  return std::make_shared<const BrickGrid<float>>(Vec3i(0), Vec3i(n - 1), value,
-                                                  [](const Vec3i&, const Vec3i&) { return true; });
+  return std::make_shared<const BrickGrid<float>>(Vec3i(0), Vec3i(n - 1), value);
 }
 
 inline std::shared_ptr<const Volume> volume_of(std::shared_ptr<const DensityField> field,
