@@ -118,7 +118,7 @@ void ConnectionGate::mark_known(const std::string& address, const std::string& t
   const Id id = found->second;
   Connection& connection = connections_.at(id);
   if (connection.known) return;
-  strangers_.leave(id);
+  strangers_.know(id, std::chrono::steady_clock::now());
   if (has_place_for(token_id)) {
     connection.known = true;
     connection.token_id = token_id;

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace hyades::coordinator {
 
+StrangerQueue::StrangerQueue(const Limits& limits) : limits_(limits) {
+  limits_.kept = std::min(limits_.kept, limits_.inside / 3);
+}
+
 void StrangerQueue::come(Id id, const std::string& neighbourhood) {
-  const auto of = neighbourhoods_.try_emplace(neighbourhood).first;
+  const auto [of, is_new] = neighbourhoods_.try_emplace(neighbourhood);
+  if (is_new) of->second.trusted = is_trusted(neighbourhood);
   std::list<Id>& waiting = of->second.waiting;
   if (waiting.empty()) {
     of->second.turn = ++last_turn_;
-    turns_.emplace(of->second.turn, of);
+    turns_of(of->second).emplace(of->second.turn, of);
   } else {
     by_number_.erase({waiting.size(), &of->first});
   }
@@ -25,11 +31,10 @@ std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
   if (of == neighbourhoods_.end()) return std::nullopt;
   Neighbourhood& one = of->second;
   const Id id = one.waiting.back();
-  turns_.erase(one.turn);
-  one.turn = ++last_turn_;
-  turns_.emplace(one.turn, of);
+  set_turn(of, ++last_turn_);
   stop_waiting(strangers_.at(id));
   ++one.inside;
+  if (one.trusted) ++trusted_inside_;
   inside_.emplace(id, now);
   return id;
 }
@@ -50,6 +55,21 @@ std::vector<StrangerQueue::Id> StrangerQueue::expel(Time now) {
   return late;
 }
 
+void StrangerQueue::know(Id id, Time now) {
+  const auto found = strangers_.find(id);
+  if (found == strangers_.end()) return;
+  const auto of = found->second.of;
+  Neighbourhood& one = of->second;
+  trust(of->first, now);
+  if (!one.trusted) {
+    turns_.erase(one.turn);
+    one.trusted = true;
+    trusted_inside_ += one.inside;
+  }
+  if (!one.waiting.empty()) set_turn(of, --first_turn_);
+  leave(id);
+}
+
 void StrangerQueue::leave(Id id) {
   const auto found = strangers_.find(id);
   if (found == strangers_.end()) return;
@@ -57,6 +77,7 @@ void StrangerQueue::leave(Id id) {
   gone_.erase(id);
   if (inside_.erase(id) > 0) {
     --stranger.of->second.inside;
+    if (stranger.of->second.trusted) --trusted_inside_;
   } else {
     stop_waiting(stranger);
   }
@@ -90,19 +111,50 @@ std::optional<StrangerQueue::Time> StrangerQueue::next_expiry() const {
   return first;
 }
 
+void StrangerQueue::set_turn(Neighbourhoods::iterator one, int64_t turn) {
+  Turns& turns = turns_of(one->second);
+  turns.erase(one->second.turn);
+  one->second.turn = turn;
+  turns.emplace(turn, one);
+}
+
 /// Few are full: those before the one that is looked for have all the places inside.
+StrangerQueue::Turns::const_iterator StrangerQueue::first_not_full(const Turns& turns) const {
+  return std::find_if(turns.begin(), turns.end(),
+                      [&](const auto& turn) { return !is_full(turn.second->second); });
+}
+
 StrangerQueue::Neighbourhoods::iterator StrangerQueue::next_in_turn() {
-  const auto found = std::find_if(turns_.begin(), turns_.end(),
-                                  [&](const auto& turn) { return !is_full(turn.second->second); });
-  return found == turns_.end() ? neighbourhoods_.end() : found->second;
+  const auto trusted = first_not_full(trusted_turns_);
+  const auto other = others_have_all() ? turns_.cend() : first_not_full(turns_);
+  if (trusted == trusted_turns_.cend()) {
+    return other == turns_.cend() ? neighbourhoods_.end() : other->second;
+  }
+  const bool kept = trusted_inside_ < limits_.kept;
+  return kept || other == turns_.cend() || trusted->first < other->first ? trusted->second
+                                                                         : other->second;
 }
 
 /// Whether somebody could come in if one of this neighbourhood went.
 bool StrangerQueue::is_waited_for(const Neighbourhood& one) const {
   if (is_full(one) && !one.waiting.empty()) return true;
-  return inside_.size() >= limits_.inside &&
-         std::any_of(turns_.begin(), turns_.end(),
-                     [&](const auto& turn) { return !is_full(turn.second->second); });
+  const bool full = inside_.size() >= limits_.inside;
+  if (full && first_not_full(trusted_turns_) != trusted_turns_.cend()) return true;
+  const bool others = others_have_all() ? !one.trusted : full;
+  return others && first_not_full(turns_) != turns_.cend();
+}
+
+/// In two generations, so that nothing has to be looked through.
+void StrangerQueue::trust(const std::string& neighbourhood, Time now) {
+  if (trusted_.size() >= limits_.trusted || now - trusted_since_ >= limits_.trust) {
+    trusted_before_ = std::exchange(trusted_, {});
+    trusted_since_ = now;
+  }
+  trusted_.insert(neighbourhood);
+}
+
+bool StrangerQueue::is_trusted(const std::string& neighbourhood) const {
+  return trusted_.contains(neighbourhood) || trusted_before_.contains(neighbourhood);
 }
 
 StrangerQueue::Time StrangerQueue::expiry(Id id, Time since) const {
@@ -116,7 +168,7 @@ void StrangerQueue::stop_waiting(const Stranger& stranger) {
   by_number_.erase({one.waiting.size(), name});
   one.waiting.erase(stranger.place);
   if (one.waiting.empty()) {
-    turns_.erase(one.turn);
+    turns_of(one).erase(one.turn);
   } else {
     by_number_.emplace(one.waiting.size(), name);
   }

@@ -16,7 +16,9 @@
 namespace hyades::coordinator {
 
 /// Who of those that nobody knows yet may come in, who waits, and who has to go: bounds in all and
-/// for each neighbourhood (neighbourhood_of()). Knows no sockets and no clock. Not thread-safe.
+/// for each neighbourhood (neighbourhood_of()). Some places are kept for neighbourhoods of which
+/// somebody has become known lately, so that no crowd of others keeps a farm's own machines out.
+/// Knows no sockets and no clock. Not thread-safe.
 class StrangerQueue {
  public:
   using Id = uint64_t;
@@ -26,13 +28,16 @@ class StrangerQueue {
   struct Limits {
     size_t inside = 24;
     size_t inside_of_one = 12;  ///< of one neighbourhood
+    size_t kept = 8;            ///< of those inside, for neighbourhoods that are trusted
     size_t waiting = 4000;
     std::chrono::milliseconds patience{10'000};  ///< with one who is inside, until known
     std::chrono::milliseconds patience_when_full{
-        2000};  ///< the same where others wait for the place
+        2000};                     ///< the same where others wait for the place
+    std::chrono::hours trust{24};  ///< how long a neighbourhood is trusted at least
+    size_t trusted = 4096;         ///< how many are at least
   };
 
-  explicit StrangerQueue(const Limits& limits) : limits_(limits) {}
+  explicit StrangerQueue(const Limits& limits);
 
   /// One comes, and waits.
   void come(Id id, const std::string& neighbourhood);
@@ -44,7 +49,10 @@ class StrangerQueue {
   std::optional<Id> turn_away();
   /// Those that have been inside for too long, who have to go.
   std::vector<Id> expel(Time now);
-  /// One has become known; nothing where this one was not there.
+  /// One has become known: its neighbourhood is trusted from now on, and the next of it comes in
+  /// in its place. Nothing where this one was not there.
+  void know(Id id, Time now);
+  /// One has gone, and its place is free at once; nothing where this one was not there.
   void leave(Id id);
   /// One has gone. Who was inside leaves its place empty for as long as it might have been there
   /// while others wait: gRPC may still have work of it, and more may not come than it can do.
@@ -60,7 +68,8 @@ class StrangerQueue {
   struct Neighbourhood {
     size_t inside = 0;
     std::list<Id> waiting{};  ///< in the order in which they came
-    uint64_t turn = 0;        ///< key in turns_, while somebody waits
+    bool trusted = false;
+    int64_t turn = 0;  ///< key in turns_of(), while somebody waits
   };
   using Neighbourhoods = std::map<std::string, Neighbourhood>;
   struct Stranger {
@@ -68,9 +77,21 @@ class StrangerQueue {
     std::list<Id>::iterator place;  ///< in Neighbourhood::waiting, while it waits
   };
 
+  /// Those of whom somebody waits, by whose turn it is.
+  using Turns = std::map<int64_t, Neighbourhoods::iterator>;
+  Turns& turns_of(const Neighbourhood& one) { return one.trusted ? trusted_turns_ : turns_; }
+  void set_turn(Neighbourhoods::iterator one, int64_t turn);
+
   bool is_full(const Neighbourhood& one) const { return one.inside >= limits_.inside_of_one; }
+  Turns::const_iterator first_not_full(const Turns& turns) const;
+  /// Whether those that are not trusted have all places that they may have.
+  bool others_have_all() const {
+    return inside_.size() - trusted_inside_ >= limits_.inside - limits_.kept;
+  }
   /// Whose turn it is, of those of whom one more may be inside.
   Neighbourhoods::iterator next_in_turn();
+  void trust(const std::string& neighbourhood, Time now);
+  bool is_trusted(const std::string& neighbourhood) const;
   bool is_waited_for(const Neighbourhood& one) const;
   Time expiry(Id id, Time since) const;
   void stop_waiting(const Stranger& stranger);
@@ -81,8 +102,15 @@ class StrangerQueue {
   std::unordered_map<Id, Stranger> strangers_;
   std::unordered_map<Id, Time> inside_;  ///< since when
   std::unordered_set<Id> gone_;          ///< of those inside
-  uint64_t last_turn_ = 0;
-  std::map<uint64_t, Neighbourhoods::iterator> turns_;         ///< those of whom somebody waits
+  int64_t last_turn_ = 0;
+  int64_t first_turn_ = 0;
+  Turns turns_;          ///< of those that are not trusted
+  Turns trusted_turns_;  ///< of those that are
+  size_t trusted_inside_ = 0;
+  /// Neighbourhoods that are trusted: since `trusted_since_`, and those of the time before.
+  std::set<std::string> trusted_;
+  std::set<std::string> trusted_before_;
+  Time trusted_since_{};
   std::set<std::pair<size_t, const std::string*>> by_number_;  ///< the same, by how many wait
 };
 

@@ -18,8 +18,12 @@ using Ids = std::vector<StrangerQueue::Id>;
 constexpr StrangerQueue::Time kBegin{};
 
 StrangerQueue::Limits few() {
-  return {
-      .inside = 4, .inside_of_one = 2, .waiting = 10, .patience = 10s, .patience_when_full = 2s};
+  return {.inside = 4,
+          .inside_of_one = 2,
+          .kept = 0,
+          .waiting = 10,
+          .patience = 10s,
+          .patience_when_full = 2s};
 }
 
 Ids let_in_all(StrangerQueue& queue, StrangerQueue::Time now = kBegin) {
@@ -97,7 +101,10 @@ TEST(StrangerQueue, ACrowdTurnsAwayItself) {
 }
 
 TEST(StrangerQueue, BoundsHoldWhateverHappens) {
-  StrangerQueue queue(few());
+  StrangerQueue::Limits limits = few();
+  limits.kept = 1;
+  limits.trusted = 1;
+  StrangerQueue queue(limits);
   std::map<StrangerQueue::Id, std::string> all;
   std::set<StrangerQueue::Id> inside;
   uint64_t state = 1;
@@ -128,7 +135,72 @@ TEST(StrangerQueue, BoundsHoldWhateverHappens) {
     ASSERT_LE(inside.size(), 4U);
     std::map<std::string, int> of;
     for (const auto in : inside) ASSERT_LE(++of[all[in]], 2);
+    if (!inside.empty() && choose(4) == 0) {
+      const auto one = *std::next(inside.begin(), static_cast<long>(choose(inside.size())));
+      queue.know(one, now);
+      forget(one);
+    }
   }
+}
+
+TEST(StrangerQueue, OneThatIsKnownLetsTheNextOfItsNeighbourhoodIn) {
+  // Thirty addresses of a crowd, each with six that say nothing, and forty machines behind one.
+  StrangerQueue queue({});
+  StrangerQueue::Id next = 1;
+  for (int address = 0; address < 30; ++address) {
+    for (int i = 0; i < 6; ++i) queue.come(next++, "crowd " + std::to_string(address));
+  }
+  let_in_all(queue);
+  const StrangerQueue::Id first = next;
+  while (next < first + 40) queue.come(next++, "farm");
+  StrangerQueue::Time now = kBegin;
+  size_t known = 0;
+  for (; known < 40 && now < kBegin + 60s; now += 100ms) {
+    queue.expel(now);
+    while (const auto id = queue.let_in(now)) {
+      if (*id < first) continue;
+      queue.know(*id, now);
+      ++known;
+    }
+  }
+  EXPECT_EQ(known, 40U);
+  EXPECT_LE(now, kBegin + 5s) << "the crowd had one round at most";
+}
+
+TEST(StrangerQueue, PlacesAreKeptForThoseWhoHaveBeenKnown) {
+  StrangerQueue queue({});
+  queue.come(1, "farm");
+  ASSERT_EQ(let_in_all(queue), Ids{1});
+  queue.know(1, kBegin);
+  StrangerQueue::Id next = 2;
+  for (int address = 0; address < 3000; ++address) queue.come(next++, std::to_string(address));
+  EXPECT_EQ(let_in_all(queue).size(), 16U) << "eight are kept";
+  queue.come(next, "farm");
+  EXPECT_EQ(let_in_all(queue), Ids{next}) << "at once";
+  // Nor can a neighbourhood that was trusted take all that are left.
+  for (int i = 0; i < 20; ++i) queue.come(++next, "farm");
+  EXPECT_EQ(let_in_all(queue).size(), 7U);
+  EXPECT_EQ(queue.inside(), 24U);
+  EXPECT_EQ(queue.expel(kBegin + 2s).size(), 24U) << "all are in somebody's way";
+  EXPECT_EQ(let_in_all(queue, kBegin + 2s).size(), 24U);
+}
+
+TEST(StrangerQueue, TrustIsForgottenInTime) {
+  StrangerQueue::Limits limits;
+  limits.trusted = 2;
+  StrangerQueue queue(limits);
+  StrangerQueue::Id next = 1;
+  for (const char* name : {"a", "b", "c", "d", "e"}) {
+    queue.come(next, name);
+    ASSERT_EQ(let_in_all(queue), Ids{next});
+    queue.know(next++, kBegin);
+  }
+  for (int address = 0; address < 100; ++address) queue.come(next++, std::to_string(address));
+  ASSERT_EQ(let_in_all(queue).size(), 16U);
+  queue.come(next, "a");
+  EXPECT_TRUE(let_in_all(queue).empty()) << "four have been known since";
+  queue.come(++next, "e");
+  EXPECT_EQ(let_in_all(queue), Ids{next});
 }
 
 TEST(StrangerQueue, WhoHasGoneKeepsHisPlaceForATime) {
