@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
-#include <malloc.h>
 #include <netinet/in.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "coordinator/access/address.h"
+#include "coordinator/services/memory_trim.h"
 #include "coordinator/services/receive_bound.h"
 
 namespace hyades::coordinator {
@@ -137,7 +137,7 @@ void ConnectionGate::mark_unknown(const std::string& address) {
   if (found == by_address_.end()) return;
   Connection& connection = connections_.at(found->second);
   if (connection.known || ++connection.calls < limits_.stranger_calls) return;
-  cut_off(found->second);
+  drop(found->second);
   wake();
 }
 
@@ -154,6 +154,7 @@ ConnectionGate::Count ConnectionGate::count() const {
 
 void ConnectionGate::run() {
   std::array<epoll_event, kEventsAtOnce> events{};
+  MemoryTrim memory;
   for (;;) {
     int patience = 0;
     {
@@ -163,30 +164,30 @@ void ConnectionGate::run() {
     }
     const int count = ::epoll_wait(poll_.get(), events.data(), kEventsAtOnce, patience);
     std::vector<int> entering;
-    bool calm = false;
+    bool trim = false;
     {
       const core::MutexLock lock(mutex_);
       const Time now = std::chrono::steady_clock::now();
       for (int i = 0; i < count; ++i) hear(events[i].data.u64, events[i].events, now);
       advance(now, entering);
-      calm = is_calm(now);
+      trim = trim_again_ <= now;
+      if (trim) trim_again_ = now + limits_.trim_every;
     }
     // Without the lock: what comes in may call, and so be known, before this returns.
     for (const int socket : entering) inside_(socket);
-    // Else the allocator keeps what it had for a crowd.
-    if (calm) ::malloc_trim(0);
+    if (trim) memory.look();
   }
 }
 
 int ConnectionGate::milliseconds_to_wait() const {
-  std::optional<Time> next = strangers_.next_expiry();
-  for (const std::optional<Time>& other : {accept_again_, calm_at_}) {
-    if (other) next = next ? std::min(*next, *other) : *other;
+  const std::optional<Time> next = strangers_.next_expiry();
+  Time first = trim_again_;
+  if (strangers_.inside() > 0) first = std::min(first, look_again_);
+  for (const std::optional<Time>& other : {next, accept_again_}) {
+    if (other) first = std::min(first, *other);
   }
-  if (strangers_.inside() > 0) next = next ? std::min(*next, look_again_) : look_again_;
-  if (!next) return kLongestWaitMs;
   const auto left =
-      std::chrono::ceil<std::chrono::milliseconds>(*next - std::chrono::steady_clock::now());
+      std::chrono::ceil<std::chrono::milliseconds>(first - std::chrono::steady_clock::now());
   return static_cast<int>(std::clamp<int64_t>(left.count(), 0, kLongestWaitMs));
 }
 
@@ -255,7 +256,6 @@ void ConnectionGate::advance(Time now, std::vector<int>& entering) {
   while (const auto id = strangers_.let_in(now)) {
     if (const int socket = enter(*id); socket >= 0) entering.push_back(socket);
   }
-  if (strangers_.waiting() > 0) crowded_ = true;
   while (const auto id = strangers_.turn_away()) drop(*id);
 }
 
@@ -298,12 +298,6 @@ void ConnectionGate::drop(Id id) {
   connections_.erase(found);
 }
 
-/// Drops a stranger that has cost more than most; its memory is given back as a crowd's is.
-void ConnectionGate::cut_off(Id id) {
-  drop(id);
-  crowded_ = true;
-}
-
 /// Lets more of strangers inside in, and ends those that have sent more than they need to say who
 /// they are. Where the kernel bounds nothing this is the only bound, as quick as a busy machine
 /// lets it be.
@@ -314,26 +308,13 @@ void ConnectionGate::look_at_strangers(Time now) {
     Connection& connection = connections_.at(id);
     const uint64_t received = bytes_received(connection.socket);
     if (received >= limits_.stranger_bytes) {
-      cut_off(id);
+      drop(id);
     } else if (connection.beginning && received >= connection.bound) {
       connection.bound =
           std::min(connection.bound + limits_.stranger_bytes_at_once, limits_.stranger_bytes);
       bound_received(connection.socket, *connection.beginning, connection.bound);
     }
   }
-}
-
-/// Whether a crowd has been gone for long enough; true once.
-bool ConnectionGate::is_calm(Time now) {
-  if (!crowded_ || strangers_.waiting() > 0) {
-    calm_at_.reset();
-    return false;
-  }
-  if (!calm_at_) calm_at_ = now + limits_.calm;
-  if (*calm_at_ > now) return false;
-  crowded_ = false;
-  calm_at_.reset();
-  return true;
 }
 
 void ConnectionGate::wake() const {

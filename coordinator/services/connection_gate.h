@@ -38,8 +38,8 @@ class ConnectionGate {
     /// Connections of those that are known; also bounded by the files that may be open. With one
     /// token as many as are free at most, so half of them, and then who has another comes in.
     size_t known = 20'000;
-    /// How long after a crowd its memory is given back to the system.
-    std::chrono::milliseconds calm{15'000};
+    /// How often it is looked whether memory can be given back to the system.
+    std::chrono::milliseconds trim_every{15'000};
   };
   /// Takes a connected socket over, which does not block.
   using Inside = std::function<void(int socket)>;
@@ -91,10 +91,8 @@ class ConnectionGate {
   void advance(Time now, std::vector<int>& entering) HYADES_REQUIRES(mutex_);
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
-  void cut_off(Id id) HYADES_REQUIRES(mutex_);
   bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
   void look_at_strangers(Time now) HYADES_REQUIRES(mutex_);
-  bool is_calm(Time now) HYADES_REQUIRES(mutex_);
   void wake() const;
 
   const Limits limits_;
@@ -109,13 +107,12 @@ class ConnectionGate {
   std::unordered_map<Id, Connection> connections_ HYADES_GUARDED_BY(mutex_);
   std::unordered_map<std::string, Id> by_address_ HYADES_GUARDED_BY(mutex_);
   Time look_again_ HYADES_GUARDED_BY(mutex_);  ///< at strangers
+  Time trim_again_ HYADES_GUARDED_BY(mutex_);  ///< memory
   size_t known_ HYADES_GUARDED_BY(mutex_) = 0;
   std::unordered_map<std::string, size_t> known_by_ HYADES_GUARDED_BY(mutex_);  ///< by token
   Id next_id_ HYADES_GUARDED_BY(mutex_);
   /// No file could be opened: when it is tried again.
   std::optional<Time> accept_again_ HYADES_GUARDED_BY(mutex_);
-  bool crowded_ HYADES_GUARDED_BY(mutex_) = false;         ///< since memory was given back
-  std::optional<Time> calm_at_ HYADES_GUARDED_BY(mutex_);  ///< when it is
 };
 
 }  // namespace hyades::coordinator
