@@ -3,46 +3,66 @@
 #include "coordinator/access/address.h"
 
 namespace hyades::coordinator {
+namespace {
 
-bool ByteBudget::has_room(const std::string& owner, uint64_t bytes) const {
+uint64_t at(const std::map<std::string, uint64_t>& held, const std::string& name) {
+  const auto known = held.find(name);
+  return known == held.end() ? 0 : known->second;
+}
+
+/// Whoever holds nothing is forgotten.
+void set(std::map<std::string, uint64_t>& held, const std::string& name, uint64_t bytes) {
+  if (bytes > 0) {
+    held[name] = bytes;
+  } else {
+    held.erase(name);
+  }
+}
+
+}  // namespace
+
+ByteBudget::Owner ByteBudget::owner_of(const Caller& caller) {
+  if (caller.name.empty()) return {neighbourhood_of(caller.address)};
+  return {caller.name, caller.worker};
+}
+
+bool ByteBudget::has_room(const Owner& owner, uint64_t bytes) const {
   const core::MutexLock lock(mutex_);
   return fits(owner, bytes);
 }
 
-bool ByteBudget::try_take(const std::string& owner, uint64_t bytes) {
-  const core::MutexLock lock(mutex_);
-  if (!fits(owner, bytes)) return false;
-  add(owner, bytes);
+bool ByteBudget::Share::try_hold(uint64_t bytes) {
+  if (!budget_.change(owner_, held_, bytes, false)) return false;
+  held_ = bytes;
   return true;
 }
 
-void ByteBudget::take(const std::string& owner, uint64_t bytes) {
+void ByteBudget::Share::hold(uint64_t bytes) {
+  budget_.change(owner_, held_, bytes, true);
+  held_ = bytes;
+}
+
+std::string ByteBudget::machine_of(const Owner& owner) { return owner.name + '\n' + owner.machine; }
+
+bool ByteBudget::fits(const Owner& owner, uint64_t bytes) const {
+  return held_ + bytes <= most_ && at(held_for_, owner.name) + bytes <= most_of_one_ &&
+         (owner.machine.empty() ||
+          at(held_for_machines_, machine_of(owner)) + bytes <= most_of_one_ / 4);
+}
+
+bool ByteBudget::change(const Owner& owner, uint64_t before, uint64_t after, bool in_any_case) {
+  if (before == after) return true;
   const core::MutexLock lock(mutex_);
-  add(owner, bytes);
-}
-
-bool ByteBudget::fits(const std::string& owner, uint64_t bytes) const {
-  if (held_ + bytes > most_) return false;
-  const auto known = held_for_.find(owner);
-  return (known == held_for_.end() ? 0 : known->second) + bytes <= most_of_one_;
-}
-
-void ByteBudget::add(const std::string& owner, uint64_t bytes) {
-  held_for_[owner] += bytes;
-  held_ += bytes;
-}
-
-void ByteBudget::give_back(const std::string& owner, uint64_t bytes) {
-  const core::MutexLock lock(mutex_);
-  const auto known = held_for_.find(owner);
-  if (known == held_for_.end()) return;
-  held_ -= bytes;
-  known->second -= bytes;
-  if (known->second == 0) held_for_.erase(known);
-}
-
-std::string ByteBudget::owner_of(const Caller& caller) {
-  return caller.name.empty() ? neighbourhood_of(caller.address) : caller.name;
+  if (!in_any_case && after > before && !fits(owner, after - before)) return false;
+  // Unsigned numbers: what is less is added as well.
+  const uint64_t more = after - before;
+  held_ += more;
+  set(held_for_, owner.name, at(held_for_, owner.name) + more);
+  if (!owner.machine.empty()) {
+    const std::string machine = machine_of(owner);
+    set(held_for_machines_, machine, at(held_for_machines_, machine) + more);
+  }
+  return true;
 }
 
 }  // namespace hyades::coordinator

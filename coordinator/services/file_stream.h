@@ -11,16 +11,19 @@
 
 #include "coordinator/services/producer.h"
 #include "core/base/bytes.h"
-#include "farm/wire.h"
 #include "hyades/v1/common.pb.h"
 
 namespace hyades::coordinator {
 
-/// Puts what `bytes` holds from `offset` on into `chunk`, a mebibyte at most, and moves `offset`
+/// Bytes of a file in one message. Each waits in memory until the client reads it, and many
+/// clients may be slow.
+inline constexpr uint64_t kFilePieceBytes = uint64_t{64} << 10U;
+
+/// Puts what `bytes` holds from `offset` on into `chunk`, one piece at most, and moves `offset`
 /// behind it. False where nothing is left.
 inline bool take_chunk(std::span<const std::byte> bytes, uint64_t& offset, v1::Chunk& chunk) {
   if (offset >= bytes.size()) return false;
-  const uint64_t count = std::min<uint64_t>(farm::kMaxChunkBytes, bytes.size() - offset);
+  const uint64_t count = std::min<uint64_t>(kFilePieceBytes, bytes.size() - offset);
   chunk.set_offset(offset);
   chunk.set_data(bytes.data() + offset, count);
   offset += count;

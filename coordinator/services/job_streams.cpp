@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,7 +20,11 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint32_t kRowsAtOnce = 500;
+/// Rows that are read at once: few at first, more as they turn out to be small. What is read ahead
+/// waits in memory until the client has read what comes before it.
+constexpr uint32_t kFewRows = 16;
+constexpr uint32_t kManyRows = 500;
+constexpr uint64_t kMostBytesAhead = uint64_t{64} << 10U;
 
 /// Frames, or ranges of them, in one question.
 constexpr int kMostFrames = 10'000;
@@ -84,8 +89,10 @@ class RowFollower : public Follower<Message> {
       : Follower<Message>(context, pool, controller, job), after_(after), follow_(follow) {}
 
  private:
-  /// The next rows behind `after`.
-  virtual core::Result<std::vector<Row>> read(uint64_t after) = 0;
+  /// The next rows behind `after`, at most `limit`.
+  virtual core::Result<std::vector<Row>> read(uint64_t after, uint32_t limit) = 0;
+  /// What a row takes in memory [bytes].
+  virtual uint64_t bytes_of(const Row& row) const = 0;
   /// Whether a row that was just read is told.
   virtual bool wants(const Row& row, bool job_has_ended) = 0;
   /// Puts a row into an empty message.
@@ -97,6 +104,7 @@ class RowFollower : public Follower<Message> {
     for (;;) {
       if (!ready_.empty()) {
         tell(ready_.front(), message);
+        bytes_ahead_ -= bytes_of(ready_.front());
         ready_.pop_front();
         return Step::message;
       }
@@ -104,16 +112,13 @@ class RowFollower : public Follower<Message> {
       bool job_has_ended = false;
       status = look(job_has_ended);
       if (!status.ok()) return Step::end;
-      auto rows = read(after_);
+      auto rows = read(after_, rows_at_once_);
       if (!rows) {
         status = farm::unavailable(rows.error());
         return Step::end;
       }
       if (!rows->empty()) {
-        after_ = rows->back().number;
-        for (Row& row : *rows) {
-          if (wants(row, job_has_ended)) ready_.push_back(std::move(row));
-        }
+        keep(*rows, job_has_ended);
       } else if (job_has_ended && wants_again()) {
         after_ = 0;
       } else {
@@ -121,6 +126,21 @@ class RowFollower : public Follower<Message> {
       }
     }
   }
+
+  /// Keeps those that are wanted, up to what may be ahead; the others are read again.
+  void keep(std::vector<Row>& rows, bool job_has_ended) {
+    for (Row& row : rows) {
+      if (bytes_ahead_ >= kMostBytesAhead) break;
+      after_ = row.number;
+      if (!wants(row, job_has_ended)) continue;
+      bytes_ahead_ += bytes_of(row);
+      ready_.push_back(std::move(row));
+    }
+    rows_at_once_ = bytes_ahead_ < kMostBytesAhead / 2 ? std::min(2 * rows_at_once_, kManyRows)
+                                                       : std::max(rows_at_once_ / 2, kFewRows);
+  }
+
+  uint64_t bytes_ahead() const final { return bytes_ahead_; }
 
   /// Whether the job has ended, or why it cannot be followed.
   grpc::Status look(bool& job_has_ended) {
@@ -131,6 +151,8 @@ class RowFollower : public Follower<Message> {
 
   ChangeCursor cursor_;
   std::deque<Row> ready_;
+  uint64_t bytes_ahead_ = 0;  ///< of ready_
+  uint32_t rows_at_once_ = kFewRows;
   uint64_t after_;  ///< the number of the row that was read last
   const bool follow_;
 };
@@ -144,18 +166,27 @@ class OutputList final : public RowFollower<v1::OutputFile, StoredOutput> {
         request_(request) {}
 
  private:
-  core::Result<std::vector<StoredOutput>> read(uint64_t after) override {
-    return controller_.store().outputs(job_, after, kRowsAtOnce);
+  core::Result<std::vector<StoredOutput>> read(uint64_t after, uint32_t limit) override {
+    return controller_.store().outputs(job_, after, limit);
+  }
+  uint64_t bytes_of(const StoredOutput& output) const override {
+    return sizeof(output) + output.path.size() + output.sha256.size();
   }
 
   bool wants(const StoredOutput& output, bool job_has_ended) override {
     if (!is_asked_for(output.frame)) return false;
-    // Those for a video go when it is made, and are of use only where it never will be.
-    if (!job_has_ended && controller_.queries().is_for_video(job_, output.path)) {
-      passed_over_.insert(output.path);
-      return false;
+    if (again_) {
+      return output.number <= passed_over_until_ && passed_over_.contains(folder_of(output));
     }
-    return !again_ || passed_over_.contains(output.path);
+    // Those for a video go when it is made, and are of use only where it never will be.
+    if (job_has_ended || !controller_.queries().is_for_video(job_, output.path)) return true;
+    passed_over_.insert(folder_of(output));
+    passed_over_until_ = output.number;
+    return false;
+  }
+
+  static std::string folder_of(const StoredOutput& output) {
+    return std::filesystem::path(output.path).parent_path().string();
   }
 
   bool is_asked_for(int32_t frame) const {
@@ -178,7 +209,8 @@ class OutputList final : public RowFollower<v1::OutputFile, StoredOutput> {
   bool wants_again() override { return !std::exchange(again_, true) && !passed_over_.empty(); }
 
   const v1::OutputsRequest request_;
-  std::set<std::string> passed_over_;  ///< paths of a video's pictures, as long as the job was open
+  std::set<std::string> passed_over_;  ///< folders of videos' pictures, as long as the job was open
+  uint64_t passed_over_until_ = 0;     ///< the number of the last of those
   bool again_ = false;  ///< only those that were passed over, and are still there, are told
 };
 
@@ -191,8 +223,11 @@ class LogLines final : public RowFollower<v1::LogLine, StoredLine> {
         frames_(request.frames().begin(), request.frames().end()) {}
 
  private:
-  core::Result<std::vector<StoredLine>> read(uint64_t after) override {
-    return controller_.store().lines(job_, after, kRowsAtOnce);
+  core::Result<std::vector<StoredLine>> read(uint64_t after, uint32_t limit) override {
+    return controller_.store().lines(job_, after, limit);
+  }
+  uint64_t bytes_of(const StoredLine& line) const override {
+    return sizeof(line) + line.worker.size() + line.text.size();
   }
 
   bool wants(const StoredLine& line, bool /*job_has_ended*/) override {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 
 #include <grpcpp/alarm.h>
@@ -43,6 +44,8 @@ class OutgoingStream {
   virtual void guard(const Admission& admission, const Caller& caller) = 0;
   /// Called once, when everything is set up. `call` lives until end().
   virtual void begin(OutgoingCall& call) = 0;
+  /// What is read already and comes with later messages [bytes]. Asked from within write().
+  virtual uint64_t bytes_ahead() const { return 0; }
   /// The message is on its way; or, where not `ok`, the client is gone.
   virtual void written(bool ok) = 0;
   /// The call has been broken off. By any thread; perhaps before begin().

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -44,10 +45,6 @@ class Service::UnaryCall final : public RequestCall {
     } else {
       Finish(admitted);
     }
-  }
-
-  ~UnaryCall() override {
-    if (waiting_ > 0) service_.waiting_.give_back(owner_, waiting_);
   }
 
  private:
@@ -117,14 +114,12 @@ class Service::UnaryCall final : public RequestCall {
   void respond() {
     // Nobody asks for what was asked any more, and the answer may wait.
     asked_.Clear();
-    owner_ = ByteBudget::owner_of(work_->caller);
+    waiting_.emplace(service_.waiting_, ByteBudget::owner_of(work_->caller));
     work_.reset();
-    const uint64_t bytes = said_.Length() + kCallBytes;
-    if (!service_.waiting_.try_take(owner_, bytes)) {
+    if (!waiting_->try_hold(said_.Length() + kCallBytes)) {
       said_.Clear();
       return Finish(too_much_unread());
     }
-    waiting_ = bytes;
     answer(said_, service_.patience_);
   }
 
@@ -132,21 +127,16 @@ class Service::UnaryCall final : public RequestCall {
   const Operation& operation_;
   std::shared_ptr<Work> work_;
   Bytes said_;
-  std::string owner_;     ///< for whom the answer is counted
-  uint64_t waiting_ = 0;  ///< bytes that are counted until the answer has been read
+  std::optional<ByteBudget::Share> waiting_;  ///< of the answer, until it has been read
 };
 
 /// A call that a stream answers.
 class Service::StreamCall final : public RequestCall, public OutgoingCall {
  public:
   StreamCall(Service& service, const Rule& rule, const MakeRawStream& make, Context& context)
-      : RequestCall(context),
-        admission_(service.admission_),
-        waiting_(service.waiting_),
-        make_(make),
-        context_(context) {
+      : RequestCall(context), admission_(service.admission_), make_(make), context_(context) {
     grpc::Status refused = admission_.check(context, rule, caller_);
-    owner_ = ByteBudget::owner_of(caller_);
+    counted_.emplace(service.waiting_, ByteBudget::owner_of(caller_));
     if (refused.ok()) entry_ = count_connection(service.at_.controller, caller_, refused);
     if (refused.ok()) {
       ask(service.patience_);
@@ -155,10 +145,8 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
     }
   }
 
-  ~StreamCall() override { uncount(); }
-
   void OnWriteDone(bool ok) override {
-    uncount();
+    counted_->hold(0);
     stream_->written(ok);
   }
   void OnCancel() override {
@@ -172,9 +160,8 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
   }
 
   void write(const Bytes& message) override {
-    const uint64_t bytes = message.Length() + kCallBytes;
-    if (!waiting_.try_take(owner_, bytes)) return Finish(too_much_unread());
-    counted_ = bytes;
+    const uint64_t bytes = message.Length() + stream_->bytes_ahead() + kCallBytes;
+    if (!counted_->try_hold(bytes)) return Finish(too_much_unread());
     StartWrite(&message);
   }
   void finish(const grpc::Status& status) override { Finish(status); }
@@ -193,17 +180,11 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
     stream_->begin(*this);
   }
 
-  void uncount() {
-    if (counted_ > 0) waiting_.give_back(owner_, std::exchange(counted_, 0));
-  }
-
   const Admission& admission_;
-  ByteBudget& waiting_;
   const MakeRawStream& make_;
   Context& context_;
   Caller caller_;
-  std::string owner_;                               ///< ByteBudget::owner_of(caller_)
-  uint64_t counted_ = 0;                            ///< bytes of the message on its way
+  std::optional<ByteBudget::Share> counted_;        ///< while a message is on its way
   std::unique_ptr<OwnerConnections::Entry> entry_;  ///< among the owner's
   OutgoingStream* stream_ = nullptr;
   core::Mutex mutex_;

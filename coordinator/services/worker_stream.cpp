@@ -39,8 +39,8 @@ class Link final : public WorkerLink {
   };
 
   /// `waiting`: what much of what waits is counted in, for `owner`; outlives the stream.
-  Link(Wire& wire, ByteBudget& waiting, std::string owner)
-      : wire_(&wire), budget_(waiting), owner_(std::move(owner)) {}
+  Link(Wire& wire, ByteBudget& waiting, ByteBudget::Owner owner)
+      : wire_(&wire), counted_(waiting, std::move(owner)) {}
 
   void send(grpc::ByteBuffer message) override {
     const core::MutexLock lock(mutex_);
@@ -98,14 +98,7 @@ class Link final : public WorkerLink {
 
   /// Whether there is room for what waits now; what there is no room for is not counted.
   bool count() HYADES_REQUIRES(mutex_) {
-    const uint64_t wanted = waiting_ > kFewWaitingBytes ? waiting_ : 0;
-    if (wanted > counted_) {
-      if (!budget_.try_take(owner_, wanted - counted_)) return false;
-    } else if (wanted < counted_) {
-      budget_.give_back(owner_, counted_ - wanted);
-    }
-    counted_ = wanted;
-    return true;
+    return counted_.try_hold(waiting_ > kFewWaitingBytes ? waiting_ : 0);
   }
   void forget_waiting() HYADES_REQUIRES(mutex_) {
     queue_.clear();
@@ -131,9 +124,7 @@ class Link final : public WorkerLink {
 
   core::Mutex mutex_;
   Wire* wire_ HYADES_GUARDED_BY(mutex_);
-  ByteBudget& budget_;
-  const std::string owner_;
-  uint64_t counted_ HYADES_GUARDED_BY(mutex_) = 0;  ///< bytes in budget_
+  ByteBudget::Share counted_ HYADES_GUARDED_BY(mutex_);
   std::deque<grpc::ByteBuffer> queue_ HYADES_GUARDED_BY(mutex_);
   uint64_t waiting_ HYADES_GUARDED_BY(mutex_) = 0;    ///< bytes in queue_
   grpc::ByteBuffer bytes_ HYADES_GUARDED_BY(mutex_);  ///< the message that is being written

@@ -57,6 +57,8 @@ constexpr uint64_t kSmallAnswer = uint64_t{4} << 10U;
 /// fields behind the last chunk, however long they are.
 constexpr size_t kMostUnparsed = size_t{64} << 10U;
 constexpr size_t kPiece = size_t{1} << 20U;
+/// How soon it is looked again whether a piece has room.
+constexpr std::chrono::milliseconds kRoomAgain{250};
 /// What may wait for a reader of what happens before it is broken off.
 constexpr size_t kMostWaitingBytes = size_t{8} << 20U;
 constexpr std::chrono::seconds kHeartbeat{15};
@@ -78,7 +80,7 @@ class ConnectionOver final : public Connection,
       : world_(world),
         tls_(std::move(tls)),
         stream_(std::forward<Arguments>(stream)...),
-        heartbeat_(stream_.get_executor()) {}
+        timer_(stream_.get_executor()) {}
 
   void begin() override {
     world_.open.insert(self());
@@ -170,14 +172,12 @@ class ConnectionOver final : public Connection,
     // Even without a body there would be chunks' heads and fields to wait for.
     if (parser_->chunked() && most_bytes == 0) return refuse(http::error::body_limit);
     const uint64_t asked = length ? *length : parser_->chunked() ? most_bytes : 0;
-    const uint64_t counted = asked > kSmallBody ? asked : 0;
-    owner_ = ByteBudget::owner_of(caller_);
-    if (counted > 0 && !world_.bodies.try_take(owner_, counted)) {
+    body_share_.emplace(world_.bodies, ByteBudget::owner_of(caller_));
+    if (!body_share_->try_hold(asked > kSmallBody ? asked : 0)) {
       return send_away(error_reply(farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                                                      "the coordinator takes in as much as it may",
                                                      std::chrono::seconds(1))));
     }
-    granted_ = counted;
     parser_->body_limit(most_bytes);
     tcp(stream_).expires_after(kReceive + std::chrono::seconds(static_cast<int64_t>(
                                               length.value_or(most_bytes) / kSlowLine)));
@@ -262,19 +262,18 @@ class ConnectionOver final : public Connection,
 
   /// What others hold, too, is counted where it is made.
   void count_answer() {
-    if (!reply_.text || reply_.text.use_count() > 1 || reply_.text->size() <= kSmallAnswer) return;
-    owner_ = ByteBudget::owner_of(caller_);
-    if (world_.answers.try_take(owner_, reply_.text->size())) {
-      answered_ = reply_.text->size();
-    } else {
-      reply_ = error_reply(too_much_unread());
+    uint64_t bytes = reply_.source ? reply_.source->bytes_kept() : 0;
+    if (reply_.text && reply_.text.use_count() == 1 && reply_.text->size() > kSmallAnswer) {
+      bytes = reply_.text->size();
     }
+    answer_share_.emplace(world_.answers, ByteBudget::owner_of(caller_));
+    if (!answer_share_->try_hold(bytes)) reply_ = error_reply(too_much_unread());
   }
 
   void send_body() {
     if (head_only_) return sent();
-    if (reply_.topic) return go_live();
     if (reply_.source) return next_piece();
+    if (reply_.topic) return go_live();
     if (!reply_.text) return sent();
     send_text(reply_.text, 0, [this] { sent(); });
   }
@@ -296,6 +295,10 @@ class ConnectionOver final : public Connection,
 
   void next_piece() {
     tcp(stream_).expires_never();
+    if (!answer_share_) return close();  // it was closed meanwhile
+    if (!answer_share_->try_hold(BodySource::kPieceBytes + reply_.source->bytes_kept())) {
+      return wait_for_room();
+    }
     const bool taken =
         world_.files.submit([io = world_.io, weak = weak_from_this_(), source = reply_.source] {
           std::optional<std::string> piece = source->next();
@@ -306,13 +309,29 @@ class ConnectionOver final : public Connection,
     if (!taken) close();
   }
 
+  /// Others read slowly what is counted for the same owner; who reads nothing goes after kSend.
+  void wait_for_room() {
+    answer_share_->hold(reply_.source->bytes_kept());
+    timer_.expires_after(kRoomAgain);
+    timer_.async_wait([weak = weak_from_this_()](ErrorCode error) {
+      const auto me = weak.lock();
+      if (!error && me && me->reply_.source) me->next_piece();
+    });
+  }
+
   void send_piece(std::optional<std::string> piece) {
     // Half of a body is told from the whole by the connection's end.
-    if (!piece) return close();
+    if (!piece || !answer_share_) return close();
     const bool chunked = header_->chunked();
     const bool last = piece->empty();
+    if (last && reply_.topic) {
+      reply_.source.reset();
+      answer_share_->hold(0);
+      return go_live();
+    }
     if (last && !chunked) return sent();
     piece_ = std::move(*piece);
+    answer_share_->hold(piece_.size() + reply_.source->bytes_kept());
     world_.meters.http_bytes(piece_.size());
     tcp(stream_).expires_after(kSend);
     const auto then = [me = self(), last](ErrorCode error, size_t) {
@@ -359,8 +378,8 @@ class ConnectionOver final : public Connection,
   }
 
   void beat() {
-    heartbeat_.expires_after(kHeartbeat);
-    heartbeat_.async_wait([weak = weak_from_this_()](ErrorCode error) {
+    timer_.expires_after(kHeartbeat);
+    timer_.async_wait([weak = weak_from_this_()](ErrorCode error) {
       const auto me = weak.lock();
       if (error || !me || !me->live_) return;
       static const auto kComment = std::make_shared<const std::string>(":\n\n");
@@ -399,8 +418,8 @@ class ConnectionOver final : public Connection,
   void shut_down() {
     live_ = false;
     give_back();
-    heartbeat_.expires_after(kFarewell);
-    heartbeat_.async_wait([weak = weak_from_this_()](ErrorCode error) {
+    timer_.expires_after(kFarewell);
+    timer_.async_wait([weak = weak_from_this_()](ErrorCode error) {
       const auto me = weak.lock();
       if (!error && me) me->close();
     });
@@ -425,10 +444,8 @@ class ConnectionOver final : public Connection,
   }
 
   void give_back() {
-    if (granted_ > 0) world_.bodies.give_back(owner_, granted_);
-    granted_ = 0;
-    if (answered_ > 0) world_.answers.give_back(owner_, answered_);
-    answered_ = 0;
+    body_share_.reset();
+    answer_share_.reset();
   }
 
   void close() {
@@ -436,7 +453,7 @@ class ConnectionOver final : public Connection,
     give_back();
     visit_.reset();
     entry_.reset();
-    heartbeat_.cancel();
+    timer_.cancel();
     ErrorCode ignored;
     tcp(stream_).socket().close(ignored);
     if (world_.open.erase(self()) == 0) return;
@@ -455,9 +472,8 @@ class ConnectionOver final : public Connection,
   Caller caller_;           ///< of the request in work
   std::unique_ptr<Visit> visit_;
   std::unique_ptr<OwnerConnections::Entry> entry_;  ///< while its answer takes its time
-  std::string owner_;                               ///< whom its body is counted for
-  uint64_t granted_ = 0;   ///< bytes that its body may have, out of those of all
-  uint64_t answered_ = 0;  ///< the same, of its answer
+  std::optional<ByteBudget::Share> body_share_;     ///< of its body
+  std::optional<ByteBudget::Share> answer_share_;   ///< of what answers it
   unsigned version_ = 11;
   bool keep_alive_ = false;
   bool head_only_ = false;
@@ -466,7 +482,7 @@ class ConnectionOver final : public Connection,
   std::optional<ReplyHead> header_;
   std::optional<http::response_serializer<http::empty_body>> serializer_;
   std::string piece_;
-  asio::steady_timer heartbeat_;
+  asio::steady_timer timer_;  ///< for heartbeats, for room, for the other side's farewell
   bool live_ = false;
   bool ending_ = false;  ///< once all that waits is sent
   char unexpected_ = 0;

@@ -34,9 +34,9 @@ class Connection : public LiveReader {
 
 /// What all connections of a server share.
 struct ConnectionWorld {
-  /// Of the bodies of all requests in work together, and of those of one caller.
-  static constexpr uint64_t kMostBodyBytes = uint64_t{256} << 20U;
-  static constexpr uint64_t kMostBodyBytesOfOne = kMostBodyBytes / 4;
+  /// Of the bodies of all requests in work together, and of those of one caller; of answers, too.
+  static constexpr uint64_t kMostBytes = uint64_t{256} << 20U;
+  static constexpr uint64_t kMostBytesOfOne = kMostBytes / 4;
 
   /// What becomes of a request whose body has not been read yet.
   struct Admitted {
@@ -56,15 +56,16 @@ struct ConnectionWorld {
   farm::ThreadPool& files;  ///< who reads what is sent from the disk
   std::shared_ptr<IoHandle> io;
   Meters& meters;
+  /// What the bodies of requests in work may have together. Small ones are not counted. Outlives
+  /// all connections, as the other one does.
+  ByteBudget& bodies;
+  /// What answers may have in memory together that are read by one connection alone: a text, but
+  /// for small ones; of a BodySource the piece that is on its way, and what it keeps.
+  ByteBudget& answers;
 
   // Of the network's thread.
   ConnectionCount count;
   std::set<std::shared_ptr<Connection>> open{};
-  /// What the bodies of requests in work may have together. Small ones are not counted.
-  ByteBudget bodies{kMostBodyBytes, kMostBodyBytesOfOne};
-  /// What answers may have together that are read by one connection alone. Small ones, and what
-  /// comes from a BodySource, are not counted.
-  ByteBudget answers{kMostBodyBytes, kMostBodyBytesOfOne};
 };
 
 /// A connection over an accepted socket. `tls`: null for plain text. The world outlives it.

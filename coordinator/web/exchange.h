@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -34,6 +35,10 @@ struct WebRequest {
 /// Bytes that are not all there at once: a file, an archive in the making.
 class BodySource {
  public:
+  /// A piece has about as many bytes at most. Each waits in memory until the client reads it, and
+  /// many clients may be slow.
+  static constexpr size_t kPieceBytes = size_t{64} << 10U;
+
   virtual ~BodySource() = default;
   /// The next bytes, which may be read from the disk: never called by the network's thread, never
   /// twice at once. Empty: that was all. Nothing: they cannot be read, and the connection is broken
@@ -41,6 +46,8 @@ class BodySource {
   virtual std::optional<std::string> next() = 0;
   /// How many bytes all together, where that is known.
   virtual std::optional<uint64_t> size() const = 0;
+  /// What it keeps in memory all the time, besides a piece [bytes].
+  virtual uint64_t bytes_kept() const { return 0; }
 };
 
 /// Somebody who reads what happens, as it happens.
@@ -61,15 +68,15 @@ class LiveTopic {
   virtual void join(std::weak_ptr<LiveReader> reader) = 0;
 };
 
-/// What a request is answered with, whatever connection it goes by: a status, headers, and a body
-/// that comes from one of three places, or none.
+/// What a request is answered with, whatever connection it goes by: a status, headers, and a body:
+/// a text, or what a source gives and then what a topic tells, or none.
 struct WebReply {
   unsigned status = 200;
   std::string type = "application/json; charset=utf-8";
   std::vector<std::pair<std::string, std::string>> headers;
   std::shared_ptr<const std::string> text;  ///< the whole body, or
-  std::shared_ptr<BodySource> source;       ///< where it comes from, or
-  std::shared_ptr<LiveTopic> topic;         ///< what it tells of until the reader goes
+  std::shared_ptr<BodySource> source;       ///< where it comes from, and
+  std::shared_ptr<LiveTopic> topic;         ///< what is told after that until the reader goes
 };
 
 /// Where the reply goes: called once, by any thread. Where the connection is gone nothing happens.

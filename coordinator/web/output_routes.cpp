@@ -23,6 +23,8 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr uint32_t kRowsAtOnce = 1000;
+/// Of what an archive in the making knows of its files: more than a hundred thousand.
+constexpr uint64_t kMostArchiveBytes = uint64_t{32} << 20U;
 /// Of an answer: some two megabytes.
 constexpr uint32_t kMostListed = 10'000;
 
@@ -54,7 +56,7 @@ class FileSource final : public BodySource {
       : bytes_(std::move(bytes)), at_(first), end_(first + count), size_(count) {}
 
   std::optional<std::string> next() override {
-    const uint64_t count = std::min(kPiece, end_ - at_);
+    const uint64_t count = std::min<uint64_t>(kPieceBytes, end_ - at_);
     std::string piece(bytes_.chars() + at_, count);
     at_ += count;
     return piece;
@@ -62,7 +64,6 @@ class FileSource final : public BodySource {
   std::optional<uint64_t> size() const override { return size_; }
 
  private:
-  static constexpr uint64_t kPiece = uint64_t{1} << 20U;
   core::Bytes bytes_;
   uint64_t at_;
   uint64_t end_;
@@ -172,18 +173,26 @@ WebReply send_archive(Controller& controller, uint64_t job) {
   if (const grpc::Status there = job_is_there(job, stored); !there.ok()) {
     return error_reply(there);
   }
-  const auto page = finished_files(controller, job, 0, SIZE_MAX);
-  if (!page) return error_reply(farm::unavailable(page.error()));
-  std::vector<ZipSource::File> files;
-  for (const StoredOutput& output : page->outputs) {
-    files.push_back({output.path, controller.output_folder(job) + "/" + output.path, output.size});
+  auto source = std::make_shared<ZipSource>(controller.output_folder(job));
+  uint64_t after = 0;
+  for (bool more = true; more;) {
+    const auto page = finished_files(controller, job, after, kRowsAtOnce);
+    if (!page) return error_reply(farm::unavailable(page.error()));
+    after = page->after;
+    more = page->more;
+    for (const StoredOutput& output : page->outputs) source->add(output.path, output.size);
+    if (source->bytes_kept() > kMostArchiveBytes) {
+      return error_reply({grpc::StatusCode::FAILED_PRECONDITION,
+                          "the job has more files than fit into one archive: `hyades fetch` gets "
+                          "them one by one"});
+    }
   }
   WebReply reply;
   reply.type = "application/zip";
   reply.headers = {{"Cache-Control", "no-store"},
                    {"Content-Disposition", fmt::format("attachment; filename=\"{}-{}.zip\"",
                                                        header_name((*stored)->name), job)}};
-  reply.source = std::make_shared<ZipSource>(std::move(files));
+  reply.source = std::move(source);
   return reply;
 }
 

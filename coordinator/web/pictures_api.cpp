@@ -125,7 +125,8 @@ void PicturesApi::answer_picture(const Asked& asked, const Asker& asker) {
   }
 }
 
-WebReply PicturesApi::of_file(const Asked& asked, const std::string& owner, const FrameNow& now) {
+WebReply PicturesApi::of_file(const Asked& asked, const ByteBudget::Owner& owner,
+                              const FrameNow& now) {
   const auto outputs = controller_.store().outputs_of(asked.job, asked.frame);
   if (!outputs) return error_reply(farm::unavailable(outputs.error()));
   const StoredOutput* best = nullptr;
@@ -166,7 +167,7 @@ bool PicturesApi::enqueue(const Asked& asked, const Asker& asker) {
   if (known == wanted_.end()) {
     if (wanted_.size() >= kMostFrames) return false;
     queue_.push_back(id);
-  } else if (!may_want(known->second, asked, asker.owner)) {
+  } else if (!may_want(known->second, asked, asker.owner.name)) {
     return false;
   }
   wanted_[id][asked].push_back(asker);
@@ -178,7 +179,7 @@ bool PicturesApi::may_want(const Wanted& wanted, const Asked& asked, const std::
   if (wanted.contains(asked)) return true;
   const auto own = std::count_if(wanted.begin(), wanted.end(), [&](const auto& one) {
     return std::any_of(one.second.begin(), one.second.end(),
-                       [&](const Asker& asker) { return asker.owner == owner; });
+                       [&](const Asker& asker) { return asker.owner.name == owner; });
   });
   return wanted.size() < kMostOfFrame && static_cast<size_t>(own) < kMostOfFrameOfOne;
 }
@@ -248,7 +249,7 @@ void PicturesApi::make_all(FrameId id, const FrameNow& now, const grpc::Status& 
 }
 
 /// Whether a picture may be made for the owner: how large it becomes is not known before.
-bool PicturesApi::has_room(const std::string& owner) {
+bool PicturesApi::has_room(const ByteBudget::Owner& owner) {
   if (held_->has_room(owner, 1)) return true;
   // What is kept in case somebody asks for it gives way to what somebody asks for.
   Kept gone;
@@ -263,16 +264,20 @@ bool PicturesApi::has_room(const std::string& owner) {
 }
 
 /// Counts the picture for as long as anybody holds it: a connection that does not read, say.
-void PicturesApi::count(WebReply& reply, const std::string& owner) const {
+void PicturesApi::count(WebReply& reply, const ByteBudget::Owner& owner) const {
   if (reply.status != 200) return;
-  const uint64_t bytes = reply.text->size();
-  held_->take(owner, bytes);
-  const std::string* const all = reply.text.get();
-  reply.text = std::shared_ptr<const std::string>(
-      all, [held = held_, owner, bytes, text = std::move(reply.text)](const std::string*) mutable {
-        text.reset();
-        held->give_back(owner, bytes);
-      });
+  struct Counted {
+    Counted(std::shared_ptr<ByteBudget> of, const ByteBudget::Owner& owner,
+            std::shared_ptr<const std::string> bytes)
+        : budget(std::move(of)), share(*budget, owner), text(std::move(bytes)) {
+      share.hold(text->size());
+    }
+    std::shared_ptr<ByteBudget> budget;
+    ByteBudget::Share share;
+    std::shared_ptr<const std::string> text;
+  };
+  const auto counted = std::make_shared<Counted>(held_, owner, std::move(reply.text));
+  reply.text = std::shared_ptr<const std::string>(counted, counted->text.get());
 }
 
 /// Everybody who waits for pictures of the frame gets them.

@@ -72,7 +72,7 @@ class PicturesApi {
   using Kept = std::list<std::pair<Asked, Made>>;
   /// Who waits for a picture.
   struct Asker {
-    std::string owner;  ///< whom its bytes are counted for (ByteBudget::owner_of)
+    ByteBudget::Owner owner;  ///< whom its bytes are counted for
     Answer answer;
   };
   using Askers = std::vector<Asker>;
@@ -86,7 +86,7 @@ class PicturesApi {
   };
 
   void answer_picture(const Asked& asked, const Asker& asker);
-  WebReply of_file(const Asked& asked, const std::string& owner, const FrameNow& now);
+  WebReply of_file(const Asked& asked, const ByteBudget::Owner& owner, const FrameNow& now);
   void want(const Asked& asked, const Asker& asker);
   bool enqueue(const Asked& asked, const Asker& asker);
   static bool may_want(const Wanted& wanted, const Asked& asked, const std::string& owner);
@@ -94,8 +94,8 @@ class PicturesApi {
   void take_film(FrameId id);
   void make_all(FrameId id, const FrameNow& now, const grpc::Status& found, const core::Film* film);
   void end(FrameId id, const std::function<WebReply(const Asked&, const Askers&)>& reply);
-  bool has_room(const std::string& owner);
-  void count(WebReply& reply, const std::string& owner) const;
+  bool has_room(const ByteBudget::Owner& owner);
+  void count(WebReply& reply, const ByteBudget::Owner& owner) const;
   std::optional<WebReply> find(const Asked& asked, const std::string& tag, bool over);
   void keep(const Asked& asked, const std::string& tag, bool over, const WebReply& reply);
 

@@ -41,6 +41,8 @@ core::Result<TlsContext::Context> TlsContext::load() const {
     }
   }
   if (error) return core::Error{listen_.cert_file + ": " + error.message()};
+  // Or each connection that says nothing keeps what it read and wrote last in.
+  ::SSL_CTX_set_mode(context->native_handle(), SSL_MODE_RELEASE_BUFFERS);
   return context;
 }
 

@@ -43,6 +43,8 @@ using asio::ip::tcp;
 constexpr size_t kMostConnections = 4000;
 /// From one address: a person has some ten, a proxy in front of many people more.
 constexpr size_t kMostOfAddress = 1000;
+/// With TLS each takes about a hundred kilobytes, whoever it is of.
+constexpr size_t kFewerWithTls = 4;
 /// ... that it has however many there are.
 constexpr size_t kSureOfAddress = 8;
 constexpr std::chrono::milliseconds kAcceptAgain{200};
@@ -80,7 +82,10 @@ struct WebServer::Parts {
               executors.files,
               io,
               meters,
-              ConnectionCount(kMostConnections, kMostOfAddress, kSureOfAddress)},
+              bodies,
+              answers,
+              ConnectionCount(kMostConnections / (secure ? kFewerWithTls : 1),
+                              kMostOfAddress / (secure ? kFewerWithTls : 1), kSureOfAddress)},
         acceptor(network),
         again(network),
         sweep(network),
@@ -256,6 +261,8 @@ struct WebServer::Parts {
     }
   }
 
+  ByteBudget bodies{ConnectionWorld::kMostBytes, ConnectionWorld::kMostBytesOfOne};
+  ByteBudget answers{ConnectionWorld::kMostBytes, ConnectionWorld::kMostBytesOfOne};
   // The network is there before all that belongs to it, and ends after it.
   asio::io_context network{1};
   Meters& meters;

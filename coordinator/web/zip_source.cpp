@@ -14,7 +14,8 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint64_t kZipPiece = uint64_t{1} << 20U;
+/// What the archive's directory and the allocator add for each file, besides its name.
+constexpr uint64_t kBytesOfFile = 128;
 
 la_ssize_t append(archive*, void* to, const void* bytes, size_t count) {
   static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), count);
@@ -23,7 +24,7 @@ la_ssize_t append(archive*, void* to, const void* bytes, size_t count) {
 
 }  // namespace
 
-ZipSource::ZipSource(std::vector<File> files) : files_(std::move(files)) {
+ZipSource::ZipSource(std::string folder) : folder_(std::move(folder)) {
   archive_ = archive_write_new();
   const bool ready = archive_write_set_format_zip(archive_) == ARCHIVE_OK &&
                      archive_write_zip_set_compression_store(archive_) == ARCHIVE_OK &&
@@ -39,9 +40,14 @@ ZipSource::~ZipSource() {
   if (archive_ != nullptr) archive_write_free(archive_);
 }
 
+void ZipSource::add(std::string name, uint64_t size) {
+  bytes_kept_ += 2 * name.size() + sizeof(File) + kBytesOfFile;
+  files_.push_back({std::move(name), size});
+}
+
 std::optional<std::string> ZipSource::next() {
   if (archive_ == nullptr) return std::nullopt;
-  while (!over_ && made_.size() < kZipPiece) {
+  while (!over_ && made_.size() < kPieceBytes) {
     if (!step()) return std::nullopt;
   }
   return std::exchange(made_, {});
@@ -50,7 +56,7 @@ std::optional<std::string> ZipSource::next() {
 /// The next file's header, some more of its bytes, or the archive's end.
 bool ZipSource::step() {
   if (in_file_) {
-    const uint64_t count = std::min<uint64_t>(kZipPiece, bytes_.size() - at_);
+    const uint64_t count = std::min<uint64_t>(kPieceBytes, bytes_.size() - at_);
     if (archive_write_data(archive_, bytes_.chars() + at_, count) !=
         static_cast<la_ssize_t>(count)) {
       return false;
@@ -67,7 +73,7 @@ bool ZipSource::step() {
     return archive_write_close(archive_) == ARCHIVE_OK;
   }
   const File& file = files_[file_++];
-  auto bytes = core::map_file(file.path);
+  auto bytes = core::map_file(folder_ + "/" + file.name);
   if (!bytes || bytes->size() != file.size) return false;
   bytes_ = std::move(*bytes);
   archive_entry* entry = archive_entry_new();

@@ -18,22 +18,29 @@ namespace hyades::coordinator {
 /// any number and size (zip64).
 class ZipSource final : public BodySource {
  public:
-  struct File {
-    std::string name;  ///< in the archive
-    std::string path;  ///< on disk
-    uint64_t size = 0;
-  };
-  explicit ZipSource(std::vector<File> files);
+  /// Of files in `folder`.
+  explicit ZipSource(std::string folder);
   ~ZipSource() override;
+
+  /// Adds a file by its path in the folder, by which it is called in the archive, too. Before the
+  /// first piece is asked for.
+  void add(std::string name, uint64_t size);
 
   std::optional<std::string> next() override;
   std::optional<uint64_t> size() const override { return std::nullopt; }
+  uint64_t bytes_kept() const override { return bytes_kept_; }
 
  private:
+  struct File {
+    std::string name;
+    uint64_t size = 0;
+  };
   /// False where it cannot go on: a file is gone, say.
   bool step();
 
+  const std::string folder_;
   std::vector<File> files_;
+  uint64_t bytes_kept_ = 0;  ///< what is known of all files, here and for the archive's end
   size_t file_ = 0;
   core::Bytes bytes_;  ///< of the file that is being added
   uint64_t at_ = 0;

@@ -277,7 +277,7 @@ TEST_F(GrpcCrowd, WhatWorkersDoNotReadCountsToo) {
 }
 
 TEST_F(GrpcCrowd, StreamsThatAreNotReadCountToo) {
-  world.serving.waiting_of_one = uint64_t{3} << 19U;
+  world.serving.waiting_of_one = uint64_t{120} << 10U;
   world.start();
   const std::string file(uint64_t{2} << 20U, 'x');
   ASSERT_TRUE(world.upload(file).ok());
@@ -294,10 +294,41 @@ TEST_F(GrpcCrowd, StreamsThatAreNotReadCountToo) {
   };
   test::RawHttp2 first(world.address);
   const uint32_t waits = download(first);
-  EXPECT_FALSE(first.ended(waits, 500)) << "of the first mebibyte it has read 64 KiB";
+  EXPECT_FALSE(first.ended(waits, 500)) << "a piece is larger than what it may send unread";
   test::RawHttp2 second(world.address);
   EXPECT_TRUE(second.ended(download(second), 20'000));
   EXPECT_FALSE(first.ended(waits, 0));
+}
+
+TEST_F(GrpcCrowd, RowsThatAreReadAheadCountToo) {
+  world.serving.waiting_of_one = uint64_t{256} << 10U;
+  world.start();
+  std::string path;
+  for (int i = 0; i < 8; ++i) path += std::string(240, static_cast<char>('a' + i)) + "/";
+  const uint64_t job = world.submit_text(
+      "hyades: 1\nframes: {range: 1-60}\nfilm: {size: [4, 4]}\nsampling: {samples: 1}\n"
+      "environment: {color: 1}\noutputs: [{file: '" +
+      path + "####.png'}]\n");
+  {
+    const ScriptedWorker worker(world.address, world.script());
+    ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  }
+  v1::OutputsRequest request;
+  request.set_job(job);
+  std::deque<test::RawHttp2> peers;
+  bool refused = false;
+  while (!refused && peers.size() < 12) {
+    test::RawHttp2& peer = peers.emplace_back(world.address);
+    EXPECT_TRUE(peer.greeted(20'000));
+    const uint32_t call =
+        peer.call("/hyades.v1.Jobs/Outputs",
+                  {{"authorization", std::string("Bearer ") + kToken}, {"hyades-protocol", "2"}});
+    peer.send(call, framed(request));
+    peer.finish(call);
+    refused = peer.ended(call, 500);
+  }
+  EXPECT_TRUE(refused) << "of 120 kB of rows each has read 64 KiB, and others wait in memory";
+  EXPECT_LE(peers.size(), 8U);
 }
 
 }  // namespace
