@@ -16,6 +16,9 @@ namespace {
 constexpr std::chrono::seconds kPerValue{5};
 constexpr size_t kMostValues = 720;  // an hour
 
+/// Of snapshots that slow readers hold: where they are more, those who come wait for theirs.
+constexpr size_t kMostSnapshotBytes = size_t{64} << 20U;
+
 /// Bytes a second of what always changes, to each reader: a hundred of them are told a megabyte or
 /// two. Of up to some hundred busy workers everything is told each second, of a thousand every few
 /// seconds.
@@ -85,7 +88,7 @@ void FarmFeed::step() {
   bool fresh = false;
   {
     const core::MutexLock lock(mutex_);
-    fresh = readers_.has_fresh();
+    fresh = readers_.has_fresh() && unread_snapshots() <= kMostSnapshotBytes;
     if (readers_.empty()) {
       // Nobody has to be told what changes meanwhile.
       jobs_.clear();
@@ -104,6 +107,7 @@ void FarmFeed::step() {
                                           {"jobs", jobs_.all()},
                                           {"workers", workers_.all()},
                                           {"samples_per_second", throughput_}});
+    snapshots_.push_back(all);
   }
   const core::MutexLock lock(mutex_);
   if (!change.empty()) readers_.tell(changed);
@@ -111,6 +115,16 @@ void FarmFeed::step() {
   LiveReaders::Group newcomers = readers_.take_fresh();
   LiveReaders::tell(newcomers, all);
   readers_.know(std::move(newcomers));
+}
+
+/// Bytes of the snapshots that somebody has not read yet.
+size_t FarmFeed::unread_snapshots() {
+  std::erase_if(snapshots_, [](const auto& snapshot) { return snapshot.expired(); });
+  size_t bytes = 0;
+  for (const auto& weak : snapshots_) {
+    if (const auto snapshot = weak.lock()) bytes += snapshot->size();
+  }
+  return bytes;
 }
 
 /// What is other than with the last step.

@@ -2,11 +2,13 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "coordinator/controller/controller.h"
@@ -34,6 +36,7 @@ class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<Far
   void note_throughput(const std::vector<v1::Worker>& workers);
   farm::Json changes(const std::vector<v1::Worker>& workers);
   farm::Json tell_jobs(LiveRows::Rows& jobs);
+  size_t unread_snapshots();
 
   Controller& controller_;
   Executors& executors_;
@@ -42,6 +45,7 @@ class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<Far
   LiveReaders readers_ HYADES_GUARDED_BY(mutex_);
 
   // Of the thread that steps.
+  std::vector<std::weak_ptr<const std::string>> snapshots_;  ///< that may not be read yet
   farm::Json info_;
   LiveRows jobs_;
   LiveRows workers_;

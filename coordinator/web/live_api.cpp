@@ -11,11 +11,10 @@ namespace {
 
 constexpr std::chrono::milliseconds kTick{500};
 
-WebReply live(std::shared_ptr<LiveTopic> topic) {
+WebReply live() {
   WebReply reply;
   reply.type = "text/event-stream; charset=utf-8";
   reply.headers = {{"Cache-Control", "no-store"}, {"X-Accel-Buffering", "no"}};
-  reply.topic = std::move(topic);
   return reply;
 }
 
@@ -30,8 +29,11 @@ LiveApi::LiveApi(Controller& controller, Executors& executors, boost::asio::io_c
       farm_(std::make_shared<FarmFeed>(controller, executors)) {}
 
 void LiveApi::add_routes(Router& router) {
-  router.add("GET", "/api/v1/events",
-             [this](const WebRequest&, const Answer& answer) { answer(live(farm_)); });
+  router.add("GET", "/api/v1/events", [this](const WebRequest&, const Answer& answer) {
+    WebReply reply = live();
+    reply.topic = farm_;
+    answer(std::move(reply));
+  });
   add_by_hand<v1::JobRequest>(
       router, "GET", "/api/v1/jobs/{job}/events",
       [this](const v1::JobRequest& asked, const WebRequest&, const Answer& answer) {
@@ -40,7 +42,11 @@ void LiveApi::add_routes(Router& router) {
           v1::GetJobResponse got;
           const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
           if (!status.ok()) return answer(error_reply(status));
-          io_->post([this, job, answer] { answer(live(feed_of(job))); });
+          io_->post([this, job, answer] {
+            WebReply reply = live();
+            feed_of(job)->tell(reply);
+            answer(std::move(reply));
+          });
         });
         if (!taken) answer(error_reply(crowded()));
       });

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "tests/coordinator/web/web_world.h"
 
@@ -48,6 +49,36 @@ TEST(Live, ReadersThatComeAtAnyTimeEndWithTheSame) {
   }
   for (std::thread& reader : readers) reader.join();
   EXPECT_EQ(wrong, 0);
+}
+
+// More frames than are read at once.
+TEST(Live, ASnapshotOfManyFramesIsOneEvent) {
+  WebWorld world;
+  world.start();
+  const uint64_t job = world.farm.submit(5000);
+  const std::string path = "/api/v1/jobs/" + std::to_string(job);
+  HttpClient::Events early(*world.client, path + "/events");
+  HttpClient::Events late(*world.client, path + "/events");
+  for (HttpClient::Events* events : {&early, &late}) {
+    const auto first = events->next();
+    ASSERT_EQ(first.name, "snapshot");
+    const Json data = Json::parse(first.data);
+    EXPECT_EQ(data["job"]["id"], job);
+    std::set<int> frames;
+    for (const Json& frame : data["frames"]) frames.insert(frame["id"].get<int>());
+    EXPECT_EQ(frames.size(), 5000U);
+    EXPECT_EQ(data["frames"].size(), 5000U) << "each once";
+  }
+  ASSERT_EQ(world.client->post(path + "/cancel").status, 200);
+  for (HttpClient::Events* events : {&early, &late}) {
+    std::string last;
+    frames_at_end(*events, last);
+    EXPECT_EQ(last, "end") << "they hear what comes after their snapshots";
+  }
+  HttpClient::Events over(*world.client, path + "/events");
+  EXPECT_EQ(over.next().name, "snapshot");
+  EXPECT_EQ(over.next().name, "end");
+  EXPECT_EQ(over.next().name, "") << "and the stream is over";
 }
 
 TEST(Live, WhoReadsAJobThatIsDeletedIsToldSo) {
