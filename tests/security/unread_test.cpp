@@ -31,7 +31,7 @@ using asio::ip::tcp;
 /// More bytes than the kernel keeps for one who does not read.
 class LongSource final : public BodySource {
  public:
-  static constexpr uint64_t kBytes = uint64_t{32} << 20U;
+  static constexpr uint64_t kBytes = uint64_t{8} << 20U;
   std::optional<std::string> next() override {
     const uint64_t count = std::min<uint64_t>(kPieceBytes, kBytes - at_);
     at_ += count;
