@@ -145,7 +145,9 @@ TEST(StrangerQueue, BoundsHoldWhateverHappens) {
 
 TEST(StrangerQueue, OneThatIsKnownLetsTheNextOfItsNeighbourhoodIn) {
   // Thirty addresses of a crowd, each with six that say nothing, and forty machines behind one.
-  StrangerQueue queue({});
+  StrangerQueue::Limits limits;
+  limits.kept = 0;
+  StrangerQueue queue(limits);
   StrangerQueue::Id next = 1;
   for (int address = 0; address < 30; ++address) {
     for (int i = 0; i < 6; ++i) queue.come(next++, "crowd " + std::to_string(address));
