@@ -1,6 +1,7 @@
 #include "coordinator/controller/active_job.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -157,6 +158,11 @@ void Speed::note(uint64_t done, TimePoint now) {
   }
   last_ = now;
   done_ = done;
+}
+
+uint64_t ActiveJob::next_life() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
 }
 
 FrameNote& ActiveJob::touch(int32_t frame) {

@@ -72,8 +72,9 @@ struct ActiveJob {
       : spec(std::move(spec_)), stored(std::move(stored_)) {}
 
   JobId id{};
-  v1::JobSpec spec;        ///< empty once it is in `brief`
-  grpc::ByteBuffer brief;  ///< a CoordinatorMessage, which tells workers of the job
+  const uint64_t life = next_life();  ///< another one whenever a job is opened, or reopened
+  v1::JobSpec spec;                   ///< empty once it is in `brief`
+  grpc::ByteBuffer brief;             ///< a CoordinatorMessage, which tells workers of the job
   uint64_t bytes = 0;  ///< that it takes in memory while it is open, but for its frames and films
 
   // What is asked for all the time of its document; all else of that is in JobDocuments.
@@ -150,6 +151,9 @@ struct ActiveJob {
   v1::Job describe(uint32_t leased) const HYADES_REQUIRES(state_lock);
   /// A frame of it as the wire shows it.
   v1::Frame describe_frame(int32_t frame, const FrameNote& note) const;
+
+ private:
+  static uint64_t next_life();
 };
 
 /// What the film of a frame of the job is. Takes its time: it hashes all that the job says.

@@ -21,9 +21,7 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr uint32_t kMostListed = 1000;  ///< jobs
-/// Bytes of frames in an answer: answers to those who read slowly, or never, lie in memory.
-constexpr size_t kMostFrameBytes = size_t{64} << 10U;
+constexpr uint32_t kMostListed = 1000;        ///< jobs
 constexpr uint32_t kMostFramesAtOnce = 2000;  ///< that are read from the store
 constexpr uint32_t kMostSteps = 2000;         ///< of a timeline, in an answer
 
@@ -67,8 +65,9 @@ v1::Frame describe_over(const StoredFrame& frame, const StoredJob& job) {
 /// Frames as far as they fit into one message.
 class FramePage {
  public:
-  explicit FramePage(google::protobuf::RepeatedPtrField<v1::Frame>& frames) : frames_(frames) {}
-  bool full() const { return bytes_ > kMostFrameBytes; }
+  FramePage(google::protobuf::RepeatedPtrField<v1::Frame>& frames, size_t most_bytes)
+      : frames_(frames), most_bytes_(most_bytes) {}
+  bool full() const { return bytes_ > most_bytes_; }
   void add(const v1::Frame& frame) {
     bytes_ += frame.ByteSizeLong() + kEnvelope;
     *frames_.Add() = frame;
@@ -77,6 +76,7 @@ class FramePage {
  private:
   google::protobuf::RepeatedPtrField<v1::Frame>& frames_;
   static constexpr size_t kEnvelope = 3;  // tag and length
+  const size_t most_bytes_;
   size_t bytes_ = 0;
 };
 
@@ -152,11 +152,11 @@ grpc::Status JobQueries::list(const v1::ListJobsRequest& request, v1::ListJobsRe
 }
 
 bool JobQueries::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response,
-                          v1::FrameState only) {
+                          v1::FrameState only, size_t most_bytes) {
   const StateLock lock(context_.mutex);
   const ActiveJob* active = jobs_.find(id);
   if (active == nullptr) return false;
-  FramePage page(*response.mutable_frames());
+  FramePage page(*response.mutable_frames(), most_bytes);
   *response.mutable_job() = describe(*active);
   for (auto it = above(active->frames, after); it != active->frames.end(); ++it) {
     if (!is_wanted(it->second.state, only)) continue;
@@ -168,9 +168,9 @@ bool JobQueries::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobR
 }
 
 grpc::Status JobQueries::get(uint64_t id, std::optional<int32_t> after,
-                             v1::GetJobResponse& response, v1::FrameState only) {
-  if (get_open(id, after, response, only)) return grpc::Status::OK;
-  FramePage page(*response.mutable_frames());
+                             v1::GetJobResponse& response, v1::FrameState only, size_t most_bytes) {
+  if (get_open(id, after, response, only, most_bytes)) return grpc::Status::OK;
+  FramePage page(*response.mutable_frames(), most_bytes);
   const auto stored = context_.store->job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
   *response.mutable_job() = describe(**stored);
@@ -199,7 +199,13 @@ bool JobQueries::changes_of_open(uint64_t id, ChangeCursor& cursor, v1::WatchEve
   const ActiveJob* active = jobs_.find(id);
   if (active == nullptr) return false;
   *event.mutable_job() = describe(*active);
-  FramePage page(*event.mutable_changed());
+  if (cursor.life != active->life) {
+    ChangeCursor begin;
+    begin.life = active->life;
+    begin.page_bytes = cursor.page_bytes;
+    cursor = begin;
+  }
+  FramePage page(*event.mutable_changed(), cursor.page_bytes);
   if (cursor.version != 0) {
     auto it = active->changed.upper_bound(cursor.version);
     for (; it != active->changed.end() && !page.full(); ++it) {
@@ -228,7 +234,8 @@ grpc::Status JobQueries::changes(uint64_t id, ChangeCursor& cursor, v1::WatchEve
   if (changes_of_open(id, cursor, event)) return grpc::Status::OK;
   if (!std::exchange(cursor.over, true)) cursor.after.reset();
   v1::GetJobResponse over;
-  const grpc::Status status = get(id, cursor.after, over);
+  const grpc::Status status =
+      get(id, cursor.after, over, v1::FRAME_STATE_UNSPECIFIED, cursor.page_bytes);
   if (!status.ok()) return status;
   if (over.frames_size() > 0) cursor.after = over.frames().rbegin()->frame();
   event.set_more(over.more());

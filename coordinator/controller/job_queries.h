@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -17,13 +18,18 @@ namespace hyades::coordinator {
 
 class DiskWatch;
 
+/// Bytes of frames in an answer: answers to those who read slowly, or never, lie in memory.
+inline constexpr size_t kMostFrameBytes = size_t{64} << 10U;
+
 /// How far a reader has heard of a job's changes; at first of nothing.
 struct ChangeCursor {
   uint64_t version =
       0;  ///< heard of all changes up to this version of the job; 0: not of all frames
-  uint64_t first_version = 0;    ///< of the job when the first frame was told
-  std::optional<int32_t> after;  ///< the last frame that was told
-  bool over = false;             ///< what is told is how the job has ended
+  uint64_t first_version = 0;           ///< of the job when the first frame was told
+  std::optional<int32_t> after;         ///< the last frame that was told
+  bool over = false;                    ///< what is told is how the job has ended
+  uint64_t life = 0;                    ///< ActiveJob::life: in another one all is told again
+  size_t page_bytes = kMostFrameBytes;  ///< of frames that are told at once
 };
 
 /// A frame as it is now, and how its job shows it.
@@ -52,13 +58,15 @@ class JobQueries {
   /// list() without waiting, of jobs that have not ended; false where others are asked for.
   bool list_open(const v1::ListJobsRequest& request, v1::ListJobsResponse& response)
       HYADES_EXCLUDES(state_lock);
-  /// The job, and its frames above `after` as far as they fit; only those in state `only`, where
-  /// one is given. NOT_FOUND. May wait for the store.
+  /// The job, and its frames above `after` as far as they fit into `most_bytes`; only those in
+  /// state `only`, where one is given. NOT_FOUND. May wait for the store.
   grpc::Status get(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response,
-                   v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED) HYADES_EXCLUDES(state_lock);
+                   v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED,
+                   size_t most_bytes = kMostFrameBytes) HYADES_EXCLUDES(state_lock);
   /// get() without waiting; false where the job has ended or is none.
   bool get_open(uint64_t job, std::optional<int32_t> after, v1::GetJobResponse& response,
-                v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED) HYADES_EXCLUDES(state_lock);
+                v1::FrameState only = v1::FRAME_STATE_UNSPECIFIED,
+                size_t most_bytes = kMostFrameBytes) HYADES_EXCLUDES(state_lock);
   /// What has changed of the job since `cursor`, which goes on, as far as it fits. `ended`: there
   /// will be no other changes. NOT_FOUND. May wait for the store.
   grpc::Status changes(uint64_t job, ChangeCursor& cursor, v1::WatchEvent& event, bool& ended)

@@ -62,6 +62,10 @@ constexpr std::chrono::milliseconds kRoomAgain{250};
 /// What may wait for a reader of what happens before it is broken off.
 constexpr size_t kMostWaitingBytes = size_t{8} << 20U;
 constexpr std::chrono::seconds kHeartbeat{15};
+/// Of server-sent events: nothing to who reads them.
+constexpr const char* kComment = ":\n\n";
+/// How soon it is looked again whether there is news.
+constexpr std::chrono::milliseconds kNewsAgain{500};
 constexpr std::chrono::seconds kFarewell{10};
 /// Read and thrown away after a refusal, so that the other side reads it before it hears that
 /// nobody listens any more.
@@ -110,6 +114,12 @@ class ConnectionOver final : public Connection,
   void end() override {
     world_.io->post([weak = weak_from_this_()] {
       if (const auto me = weak.lock()) me->end_live();
+    });
+  }
+
+  void cut_off() override {
+    world_.io->post([weak = weak_from_this_()] {
+      if (const auto me = weak.lock()) me->close();
     });
   }
 
@@ -272,8 +282,11 @@ class ConnectionOver final : public Connection,
 
   void send_body() {
     if (head_only_) return sent();
-    if (reply_.source) return next_piece();
     if (reply_.topic) return go_live();
+    if (reply_.source) {
+      if (reply_.source->goes_on()) watch_for_end();
+      return next_piece();
+    }
     if (!reply_.text) return sent();
     send_text(reply_.text, 0, [this] { sent(); });
   }
@@ -296,7 +309,8 @@ class ConnectionOver final : public Connection,
   void next_piece() {
     tcp(stream_).expires_never();
     if (!answer_share_) return close();  // it was closed meanwhile
-    if (!answer_share_->try_hold(BodySource::kPieceBytes + reply_.source->bytes_kept())) {
+    const BodySource& source = *reply_.source;
+    if (!answer_share_->try_hold(source.bytes_needed() + source.bytes_kept())) {
       return wait_for_room();
     }
     const bool taken =
@@ -319,33 +333,47 @@ class ConnectionOver final : public Connection,
     });
   }
 
+  /// In between a comment tells the other side that there is somebody, and us whether he is there.
+  void wait_for_news(std::chrono::milliseconds so_far) {
+    answer_share_->hold(reply_.source->bytes_kept());
+    timer_.expires_after(kNewsAgain);
+    timer_.async_wait([weak = weak_from_this_(), so_far](ErrorCode error) {
+      const auto me = weak.lock();
+      if (error || !me || !me->answer_share_) return;
+      if (me->reply_.source->has_news()) return me->next_piece();
+      if (so_far < kHeartbeat) return me->wait_for_news(so_far + kNewsAgain);
+      me->piece_ = kComment;
+      me->write_piece(asio::buffer(me->piece_), false);
+    });
+  }
+
   void send_piece(std::optional<std::string> piece) {
     // Half of a body is told from the whole by the connection's end.
     if (!piece || !answer_share_) return close();
     const bool chunked = header_->chunked();
     const bool last = piece->empty();
-    if (last && reply_.topic) {
-      reply_.source.reset();
-      answer_share_->hold(0);
-      return go_live();
-    }
+    if (last && reply_.source->goes_on()) return wait_for_news({});
     if (last && !chunked) return sent();
     piece_ = std::move(*piece);
     answer_share_->hold(piece_.size() + reply_.source->bytes_kept());
+    if (!chunked) {
+      write_piece(asio::buffer(piece_), false);
+    } else if (last) {
+      write_piece(http::make_chunk_last(), true);
+    } else {
+      write_piece(http::make_chunk(asio::buffer(piece_)), false);
+    }
+  }
+
+  template <class Buffers>
+  void write_piece(const Buffers& buffers, bool last) {
     world_.meters.http_bytes(piece_.size());
     tcp(stream_).expires_after(kSend);
-    const auto then = [me = self(), last](ErrorCode error, size_t) {
+    asio::async_write(stream_, buffers, [me = self(), last](ErrorCode error, size_t) {
       if (error) return me->close();
       if (last) return me->sent();
       me->next_piece();
-    };
-    if (!chunked) {
-      asio::async_write(stream_, asio::buffer(piece_), then);
-    } else if (last) {
-      asio::async_write(stream_, http::make_chunk_last(), then);
-    } else {
-      asio::async_write(stream_, http::make_chunk(asio::buffer(piece_)), then);
-    }
+    });
   }
 
   void sent() {
@@ -382,8 +410,7 @@ class ConnectionOver final : public Connection,
     timer_.async_wait([weak = weak_from_this_()](ErrorCode error) {
       const auto me = weak.lock();
       if (error || !me || !me->live_) return;
-      static const auto kComment = std::make_shared<const std::string>(":\n\n");
-      me->enqueue(kComment);
+      me->enqueue(std::make_shared<const std::string>(kComment));
       me->beat();
     });
   }

@@ -46,8 +46,13 @@ class BodySource {
   virtual std::optional<std::string> next() = 0;
   /// How many bytes all together, where that is known.
   virtual std::optional<uint64_t> size() const = 0;
-  /// What it keeps in memory all the time, besides a piece [bytes].
+  /// What it keeps in memory besides a piece [bytes].
   virtual uint64_t bytes_kept() const { return 0; }
+  /// What the next piece takes, with what is read for it [bytes].
+  virtual uint64_t bytes_needed() const { return kPieceBytes; }
+  /// An empty piece is no end: there is one again when has_news(), which any thread may ask.
+  virtual bool goes_on() const { return false; }
+  virtual bool has_news() const { return false; }
 };
 
 /// Somebody who reads what happens, as it happens.
@@ -58,6 +63,8 @@ class LiveReader {
   virtual void push(std::shared_ptr<const std::string> bytes) = 0;
   /// Nothing more will come.
   virtual void end() = 0;
+  /// The reader is broken off, whatever he has not read.
+  virtual void cut_off() = 0;
 };
 
 /// Something that happens, told to those who have joined.
@@ -68,15 +75,15 @@ class LiveTopic {
   virtual void join(std::weak_ptr<LiveReader> reader) = 0;
 };
 
-/// What a request is answered with, whatever connection it goes by: a status, headers, and a body:
-/// a text, or what a source gives and then what a topic tells, or none.
+/// What a request is answered with, whatever connection it goes by: a status, headers, and a body
+/// that comes from one of three places, or none.
 struct WebReply {
   unsigned status = 200;
   std::string type = "application/json; charset=utf-8";
   std::vector<std::pair<std::string, std::string>> headers;
   std::shared_ptr<const std::string> text;  ///< the whole body, or
-  std::shared_ptr<BodySource> source;       ///< where it comes from, and
-  std::shared_ptr<LiveTopic> topic;         ///< what is told after that until the reader goes
+  std::shared_ptr<BodySource> source;       ///< where it comes from, or
+  std::shared_ptr<LiveTopic> topic;         ///< what it tells of until the reader goes
 };
 
 /// Where the reply goes: called once, by any thread. Where the connection is gone nothing happens.

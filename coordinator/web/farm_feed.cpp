@@ -16,7 +16,7 @@ namespace {
 constexpr std::chrono::seconds kPerValue{5};
 constexpr size_t kMostValues = 720;  // an hour
 
-/// Of snapshots that slow readers hold: where they are more, those who come wait for theirs.
+/// Of snapshots that slow readers hold: where they are more, those who have had one for longest go.
 constexpr size_t kMostSnapshotBytes = size_t{64} << 20U;
 
 /// Bytes a second of what always changes, to each reader: a hundred of them are told a megabyte or
@@ -88,7 +88,7 @@ void FarmFeed::step() {
   bool fresh = false;
   {
     const core::MutexLock lock(mutex_);
-    fresh = readers_.has_fresh() && unread_snapshots() <= kMostSnapshotBytes;
+    fresh = readers_.has_fresh();
     if (readers_.empty()) {
       // Nobody has to be told what changes meanwhile.
       jobs_.clear();
@@ -107,24 +107,29 @@ void FarmFeed::step() {
                                           {"jobs", jobs_.all()},
                                           {"workers", workers_.all()},
                                           {"samples_per_second", throughput_}});
-    snapshots_.push_back(all);
   }
   const core::MutexLock lock(mutex_);
   if (!change.empty()) readers_.tell(changed);
   if (!fresh) return;
   LiveReaders::Group newcomers = readers_.take_fresh();
   LiveReaders::tell(newcomers, all);
+  snapshots_.push_back({all, newcomers});
   readers_.know(std::move(newcomers));
+  all.reset();
+  cut_off_slow_readers();
 }
 
-/// Bytes of the snapshots that somebody has not read yet.
-size_t FarmFeed::unread_snapshots() {
-  std::erase_if(snapshots_, [](const auto& snapshot) { return snapshot.expired(); });
+/// Each second's newcomers have a snapshot of their own, which may be megabytes.
+void FarmFeed::cut_off_slow_readers() {
+  std::erase_if(snapshots_, [](const Unread& one) { return one.snapshot.expired(); });
   size_t bytes = 0;
-  for (const auto& weak : snapshots_) {
-    if (const auto snapshot = weak.lock()) bytes += snapshot->size();
+  for (auto it = snapshots_.rbegin(); it != snapshots_.rend(); ++it) {
+    if (const auto snapshot = it->snapshot.lock()) bytes += snapshot->size();
+    if (bytes <= kMostSnapshotBytes) continue;
+    for (const auto& weak : it->readers) {
+      if (const auto reader = weak.lock()) reader->cut_off();
+    }
   }
-  return bytes;
 }
 
 /// What is other than with the last step.

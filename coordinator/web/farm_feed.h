@@ -36,7 +36,7 @@ class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<Far
   void note_throughput(const std::vector<v1::Worker>& workers);
   farm::Json changes(const std::vector<v1::Worker>& workers);
   farm::Json tell_jobs(LiveRows::Rows& jobs);
-  size_t unread_snapshots();
+  void cut_off_slow_readers();
 
   Controller& controller_;
   Executors& executors_;
@@ -45,7 +45,12 @@ class FarmFeed final : public LiveTopic, public std::enable_shared_from_this<Far
   LiveReaders readers_ HYADES_GUARDED_BY(mutex_);
 
   // Of the thread that steps.
-  std::vector<std::weak_ptr<const std::string>> snapshots_;  ///< that may not be read yet
+  /// A snapshot that may not have been read yet, and by whom.
+  struct Unread {
+    std::weak_ptr<const std::string> snapshot;
+    LiveReaders::Group readers;
+  };
+  std::vector<Unread> snapshots_;
   farm::Json info_;
   LiveRows jobs_;
   LiveRows workers_;

@@ -1,15 +1,18 @@
 #include "coordinator/web/live_api.h"
 
 #include <chrono>
+#include <cstdint>
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include "coordinator/web/job_events.h"
 #include "coordinator/web/route_helpers.h"
 
 namespace hyades::coordinator {
 namespace {
 
-constexpr std::chrono::milliseconds kTick{500};
+constexpr std::chrono::seconds kTick{1};
 
 WebReply live() {
   WebReply reply;
@@ -42,36 +45,22 @@ void LiveApi::add_routes(Router& router) {
           v1::GetJobResponse got;
           const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
           if (!status.ok()) return answer(error_reply(status));
-          io_->post([this, job, answer] {
-            WebReply reply = live();
-            feed_of(job)->tell(reply);
-            answer(std::move(reply));
-          });
+          WebReply reply = live();
+          reply.source = std::make_shared<JobEvents>(controller_, job);
+          answer(std::move(reply));
         });
         if (!taken) answer(error_reply(crowded()));
       });
 }
 
-std::shared_ptr<JobFeed> LiveApi::feed_of(uint64_t job) {
-  auto& feed = jobs_[job];
-  if (!feed) feed = std::make_shared<JobFeed>(controller_, executors_, job);
-  return feed;
-}
-
 void LiveApi::begin() { tick(); }
 
 void LiveApi::tick() {
-  static constexpr int kFarmEvery = 2;  // once a second
-  if (++ticks_ % kFarmEvery == 0) farm_->tick();
-  // A reader that is about to join holds the feed already.
-  std::erase_if(
-      jobs_, [](const auto& feed) { return !feed.second->tick() && feed.second.use_count() == 1; });
+  farm_->tick();
   timer_.expires_after(kTick);
   timer_.async_wait([this](const boost::system::error_code& error) {
     if (!error) tick();
   });
 }
-
-void LiveApi::stop() { jobs_.clear(); }
 
 }  // namespace hyades::coordinator

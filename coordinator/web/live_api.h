@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <map>
 #include <memory>
 
 #include <boost/asio/io_context.hpp>
@@ -11,13 +9,11 @@
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/farm_feed.h"
 #include "coordinator/web/io_handle.h"
-#include "coordinator/web/job_feed.h"
 #include "coordinator/web/router.h"
 
 namespace hyades::coordinator {
 
-/// What happens on the farm and with jobs, as server-sent events. Each event is made once, however
-/// many read it.
+/// What happens on the farm and with jobs, as server-sent events.
 class LiveApi {
  public:
   /// What the arguments refer to outlives it.
@@ -26,20 +22,15 @@ class LiveApi {
   void add_routes(Router& router);
   /// Begins to note the farm's throughput, whether anybody looks or not.
   void begin();
-  /// Lets go of all readers; to be called after the network's thread has ended.
-  void stop();
 
  private:
   void tick();
-  std::shared_ptr<JobFeed> feed_of(uint64_t job);
 
   Controller& controller_;
   Executors& executors_;
   std::shared_ptr<IoHandle> io_;
   boost::asio::steady_timer timer_;
   std::shared_ptr<FarmFeed> farm_;
-  std::map<uint64_t, std::shared_ptr<JobFeed>> jobs_;  ///< that somebody reads; network's thread
-  unsigned ticks_ = 0;
 };
 
 }  // namespace hyades::coordinator

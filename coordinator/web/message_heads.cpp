@@ -74,12 +74,13 @@ ReplyHead head_of(const WebReply& reply, unsigned version, bool& keep_alive) {
   head.set("X-Content-Type-Options", "nosniff");
   for (const auto& [name, value] : reply.headers) head.set(name, value);
   const std::optional<uint64_t> length = length_of(reply);
-  if (reply.topic) keep_alive = false;
+  const bool goes_on = reply.topic || (reply.source && reply.source->goes_on());
+  if (goes_on) keep_alive = false;
   if (reply.status == 204 || reply.status == 304) {
     // No body, so no length.
   } else if (length) {
     head.set(http::field::content_length, std::to_string(*length));
-  } else if (!reply.topic && version >= 11) {
+  } else if (!goes_on && version >= 11) {
     head.chunked(true);
   } else {
     keep_alive = false;  // the end of the body is that of the connection

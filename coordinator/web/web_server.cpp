@@ -295,7 +295,6 @@ WebServer::~WebServer() {
   if (parts_->thread.joinable()) parts_->thread.join();
   parts_->io->close();
   parts_->pictures.close();
-  parts_->live.stop();
   parts_->world.open.clear();
 }
 

@@ -81,6 +81,34 @@ TEST(Live, ASnapshotOfManyFramesIsOneEvent) {
   EXPECT_EQ(over.next().name, "") << "and the stream is over";
 }
 
+// Versions of a job begin anew when it is opened again.
+TEST(Live, WhoHeardOfAJobBeforeItWasOpenedAgainHearsAllOfIt) {
+  WebWorld world;
+  world.start();
+  const uint64_t job = world.farm.submit(3);
+  ChangeCursor cursor;
+  const auto frames_told = [&] {
+    size_t count = 0;
+    for (bool more = true; more;) {
+      v1::WatchEvent event;
+      bool ended = false;
+      const auto status = world.farm.controller->queries().changes(job, cursor, event, ended);
+      EXPECT_TRUE(status.ok()) << status.error_message();
+      count += static_cast<size_t>(event.changed_size());
+      more = event.more();
+    }
+    return count;
+  };
+  EXPECT_EQ(frames_told(), 3U);
+  cursor.version += 1000;  // as if much had happened
+  EXPECT_EQ(frames_told(), 0U);
+  const std::string path = "/api/v1/jobs/" + std::to_string(job);
+  ASSERT_EQ(world.client->post(path + "/cancel").status, 200);
+  ASSERT_TRUE(world.farm.wait_for(job, v1::JOB_STATE_CANCELLED));
+  ASSERT_EQ(world.client->post(path + "/retry").status, 200);
+  EXPECT_EQ(frames_told(), 3U);
+}
+
 TEST(Live, WhoReadsAJobThatIsDeletedIsToldSo) {
   WebWorld world;
   world.start();
