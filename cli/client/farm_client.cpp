@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/base/hash.h"
+#include "core/base/printable.h"
 #include "core/base/text.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -124,10 +125,10 @@ bool FarmClient::wait_after(const grpc::Status& status) {
   if (wait < 0) return false;
   if (bool& known = no_room ? told_room_ : told_; !known && (no_room || patience_.was_reached())) {
     known = true;
-    const std::string text =
-        fmt::format("{} ({}): trying for up to {}", options_.peer.address,
-                    farm::connection_trouble(status.error_message(), options_.peer),
-                    core::format_duration(options_.later_patience));
+    const std::string text = fmt::format(
+        "{} ({}): trying for up to {}", options_.peer.address,
+        core::printable(farm::connection_trouble(status.error_message(), options_.peer)),
+        core::format_duration(options_.later_patience));
     tell_ ? tell_(text) : static_cast<void>(std::fprintf(stderr, "%s\n", text.c_str()));
   }
   std::this_thread::sleep_for(std::chrono::duration<double>(wait));

@@ -21,6 +21,15 @@ TEST_F(HostileCoordinator, WritesNoHiddenFiles) {
   EXPECT_TRUE(fs::exists(out + "/a/.b/c"));
 }
 
+TEST_F(HostileCoordinator, ReachesNoTerminalByWordsOfRefusal) {
+  farm_.full = 1;
+  farm_.full_words = "\x1b]0;OWNED\x07\x1b[2J\u202e\u009b31m";
+  const Ran ran = run(jobs_command, at({}));
+  EXPECT_EQ(ran.status, kDone);
+  EXPECT_TRUE(has(ran.err, "trying for up to")) << ran.err;
+  for (const char* raw : {"\x1b", "\x07", "\u202e", "\u009b"}) EXPECT_FALSE(has(ran.err, raw));
+}
+
 TEST_F(HostileCoordinator, IsNotToldWhatIsInHiddenFiles) {
   add_job("a", v1::JOB_STATE_DONE);
   const std::string out = folder_.file("out");

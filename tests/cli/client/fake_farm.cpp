@@ -373,6 +373,10 @@ Status FakeFarm::enter(const ServerContext& context) {
     --unavailable;
     return {StatusCode::UNAVAILABLE, "starting"};
   }
+  if (full > 0) {
+    --full;
+    return {StatusCode::RESOURCE_EXHAUSTED, full_words};
+  }
   return Status::OK;
 }
 

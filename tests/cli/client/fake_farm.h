@@ -42,7 +42,9 @@ class FakeFarm {
   std::vector<v1::SubmitRequest> submitted;
   std::vector<v1::Worker> workers;
 
-  int unavailable = 0;        ///< so many calls fail with UNAVAILABLE first
+  int unavailable = 0;  ///< so many calls fail with UNAVAILABLE first
+  int full = 0;         ///< so many calls fail with RESOURCE_EXHAUSTED and these words
+  std::string full_words;
   int forget_files = 0;       ///< so many times Submit misses all files, which are forgotten
   int break_streams = 0;      ///< so many streams of the server break in the middle
   uint64_t upload_cut = 0;    ///< an upload breaks after so many bytes, once; 0: none
