@@ -47,8 +47,6 @@ constexpr std::chrono::seconds kBegin{10};
 /// For a request's body: a little, and what its bytes take over a slow line (64 KiB/s).
 constexpr std::chrono::seconds kReceive{20};
 constexpr uint64_t kSlowLine = 64U << 10U;
-/// What a reader may take for a piece of at most a megabyte.
-constexpr std::chrono::seconds kSend{60};
 constexpr uint32_t kMostHeaderBytes = 16U << 10U;
 /// Bodies that always have room: each connection has one, and of those there are not many.
 constexpr uint64_t kSmallBody = farm::kMaxRequestBytes;
@@ -263,7 +261,7 @@ class ConnectionOver final : public Connection,
       header_->set(http::field::strict_transport_security, kOnlyByTls);
     }
     serializer_.emplace(*header_);
-    tcp(stream_).expires_after(kSend);
+    tcp(stream_).expires_after(world_.send_patience);
     http::async_write_header(stream_, *serializer_, [me = self()](ErrorCode error, size_t) {
       if (error) return me->close();
       me->send_body();
@@ -284,6 +282,8 @@ class ConnectionOver final : public Connection,
     if (head_only_) return sent();
     if (reply_.topic) return go_live();
     if (reply_.source) {
+      // What is waited for without an end has no time to come in.
+      tcp(stream_).expires_never();
       if (reply_.source->goes_on()) watch_for_end();
       return next_piece();
     }
@@ -295,7 +295,7 @@ class ConnectionOver final : public Connection,
   void send_text(std::shared_ptr<const std::string> text, size_t from, std::function<void()> then) {
     if (from >= text->size()) return then();
     const size_t count = std::min(kPiece, text->size() - from);
-    tcp(stream_).expires_after(kSend);
+    tcp(stream_).expires_after(world_.send_patience);
     const auto piece = asio::buffer(text->data() + from, count);
     world_.meters.http_bytes(count);
     asio::async_write(
@@ -323,7 +323,7 @@ class ConnectionOver final : public Connection,
     if (!taken) close();
   }
 
-  /// Others read slowly what is counted for the same owner; who reads nothing goes after kSend.
+  /// Others read slowly what is counted for the same owner; who reads nothing goes in time.
   void wait_for_room() {
     answer_share_->hold(reply_.source->bytes_kept());
     timer_.expires_after(kRoomAgain);
@@ -334,14 +334,15 @@ class ConnectionOver final : public Connection,
   }
 
   /// In between a comment tells the other side that there is somebody, and us whether he is there.
-  void wait_for_news(std::chrono::milliseconds so_far) {
+  void wait_for_news() {
     answer_share_->hold(reply_.source->bytes_kept());
     timer_.expires_after(kNewsAgain);
-    timer_.async_wait([weak = weak_from_this_(), so_far](ErrorCode error) {
+    timer_.async_wait([weak = weak_from_this_()](ErrorCode error) {
       const auto me = weak.lock();
       if (error || !me || !me->answer_share_) return;
+      me->silent_ += kNewsAgain;
       if (me->reply_.source->has_news()) return me->next_piece();
-      if (so_far < kHeartbeat) return me->wait_for_news(so_far + kNewsAgain);
+      if (me->silent_ < kHeartbeat) return me->wait_for_news();
       me->piece_ = kComment;
       me->write_piece(asio::buffer(me->piece_), false);
     });
@@ -352,7 +353,7 @@ class ConnectionOver final : public Connection,
     if (!piece || !answer_share_) return close();
     const bool chunked = header_->chunked();
     const bool last = piece->empty();
-    if (last && reply_.source->goes_on()) return wait_for_news({});
+    if (last && reply_.source->goes_on()) return wait_for_news();
     if (last && !chunked) return sent();
     piece_ = std::move(*piece);
     answer_share_->hold(piece_.size() + reply_.source->bytes_kept());
@@ -367,8 +368,9 @@ class ConnectionOver final : public Connection,
 
   template <class Buffers>
   void write_piece(const Buffers& buffers, bool last) {
+    silent_ = {};
     world_.meters.http_bytes(piece_.size());
-    tcp(stream_).expires_after(kSend);
+    tcp(stream_).expires_after(world_.send_patience);
     asio::async_write(stream_, buffers, [me = self(), last](ErrorCode error, size_t) {
       if (error) return me->close();
       if (last) return me->sent();
@@ -509,6 +511,7 @@ class ConnectionOver final : public Connection,
   std::optional<ReplyHead> header_;
   std::optional<http::response_serializer<http::empty_body>> serializer_;
   std::string piece_;
+  std::chrono::milliseconds silent_{0};  ///< since something was sent
   asio::steady_timer timer_;  ///< for heartbeats, for room, for the other side's farewell
   bool live_ = false;
   bool ending_ = false;  ///< once all that waits is sent

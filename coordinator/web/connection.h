@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -66,6 +67,8 @@ struct ConnectionWorld {
   // Of the network's thread.
   ConnectionCount count;
   std::set<std::shared_ptr<Connection>> open{};
+  /// What a reader may take for a piece of at most a megabyte.
+  std::chrono::milliseconds send_patience{60'000};
 };
 
 /// A connection over an accepted socket. `tls`: null for plain text. The world outlives it.

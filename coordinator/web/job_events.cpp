@@ -40,7 +40,7 @@ std::optional<std::string> JobEvents::next() {
   if (text_.empty() && std::exchange(rests_, false)) return std::string();
   if (text_.empty() && !over_) {
     const grpc::Status read_now = within_memory([&] { return read(); });
-    if (read_now.error_code() == grpc::StatusCode::NOT_FOUND && told_) {
+    if (read_now.error_code() == grpc::StatusCode::NOT_FOUND && (told_ || !begun_)) {
       text_ = *LiveReaders::event("gone", {{"message", read_now.error_message()}});
       over_ = true;
     } else if (!read_now.ok()) {

@@ -44,11 +44,28 @@ class LongSource final : public BodySource {
   uint64_t at_ = 0;
 };
 
+/// Something that happens from time to time.
+class NewsSource final : public BodySource {
+ public:
+  std::optional<std::string> next() override { return has_news() && ++told_ > 0 ? "news" : ""; }
+  std::optional<uint64_t> size() const override { return std::nullopt; }
+  bool goes_on() const override { return true; }
+  bool has_news() const override { return Clock::now() >= begun_ + told_ * kEvery; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kEvery{1};
+  const Clock::time_point begun_ = Clock::now();
+  int told_ = 0;
+};
+
 /// A server of which every answer is long.
 class LongAnswers {
  public:
-  /// At most `most` bytes of answers are in memory.
-  explicit LongAnswers(uint64_t most)
+  /// At most `most` bytes of answers are in memory. `make`: makes what is sent.
+  explicit LongAnswers(
+      uint64_t most, std::function<std::shared_ptr<BodySource>()> make =
+                         [] { return std::make_shared<LongSource>(); })
       : budget(most, most),
         world{
             [](WebRequest& request) {
@@ -59,9 +76,9 @@ class LongAnswers {
               return std::unique_ptr<Visit>();
             },
             [](const Caller&, grpc::Status&) { return std::unique_ptr<OwnerConnections::Entry>(); },
-            [](const WebRequest&, const Answer& answer) {
+            [make = std::move(make)](const WebRequest&, const Answer& answer) {
               WebReply reply;
-              reply.source = std::make_shared<LongSource>();
+              reply.source = make();
               answer(reply);
             },
             files,
@@ -82,6 +99,8 @@ class LongAnswers {
   LongAnswers(const LongAnswers&) = delete;
   LongAnswers& operator=(const LongAnswers&) = delete;
 
+  /// Before anybody asks.
+  void set_patience(std::chrono::milliseconds patience) { world.send_patience = patience; }
   unsigned short port() { return acceptor.local_endpoint().port(); }
 
  private:
@@ -125,6 +144,19 @@ class Asker {
     return sum;
   }
 
+  /// Whether `words` have come before nothing came for so long; `text`: what has.
+  bool read_until(const std::string& words, std::string& text, std::chrono::milliseconds patience) {
+    timeval wait{patience.count() / 1000, patience.count() % 1000 * 1000};
+    ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
+    std::string some(1000, '\0');
+    while (text.find(words) == std::string::npos) {
+      const ssize_t got = ::recv(socket_.native_handle(), some.data(), some.size(), 0);
+      if (got <= 0) return false;
+      text.append(some, 0, static_cast<size_t>(got));
+    }
+    return true;
+  }
+
  private:
   asio::io_context none_;
   tcp::socket socket_{none_};
@@ -143,6 +175,15 @@ TEST(UnreadPieces, WaitUntilOthersAreRead) {
   EXPECT_GE(third.read(LongSource::kBytes, std::chrono::seconds(20)), LongSource::kBytes);
   EXPECT_GE(second.read(LongSource::kBytes - 1, std::chrono::seconds(20)),
             LongSource::kBytes - 100'000);
+}
+
+TEST(UnreadPieces, WhoWaitsForNewsHasAllTheTime) {
+  LongAnswers server(uint64_t{1} << 20U, [] { return std::make_shared<NewsSource>(); });
+  server.set_patience(std::chrono::milliseconds(700));
+  Asker reader(server.port());
+  ASSERT_GT(reader.read(1, std::chrono::seconds(20)), 0U);
+  std::string text;
+  EXPECT_TRUE(reader.read_until("newsnewsnews", text, std::chrono::seconds(20))) << text;
 }
 
 TEST(UnreadPieces, WhatSourcesKeepCountsToo) {
