@@ -138,8 +138,14 @@ void print_contents(const core::Job& job, const core::Scene& scene, double sampl
   std::printf("  objects    %s, %s triangles, %zu lights\n",
               core::format_count(scene.objects.size()).c_str(),
               core::format_count(scene.triangles).c_str(), scene.lights.size());
-  std::printf("  samples    %u per pixel, %s in all\n", job.sampling.samples,
-              samples_in_words(samples).c_str());
+  if (job.sampling.noise > 0.0F) {
+    std::printf("  samples    at most %u per pixel, %s in all; tiles stop at a noise of %g\n",
+                job.sampling.samples, samples_in_words(samples).c_str(),
+                double{job.sampling.noise});
+  } else {
+    std::printf("  samples    %u per pixel, %s in all\n", job.sampling.samples,
+                samples_in_words(samples).c_str());
+  }
   std::printf("  batches    %s per frame, of %u samples of a pixel each\n",
               core::format_count(core::batch_count(job.sampling.samples)).c_str(),
               core::kBatchSamples);

@@ -243,6 +243,7 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
   info.height = job.film.height;
   info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
+  info.noise = job.sampling.noise;
   info.worker_class = machine_class();
   info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
   return info;

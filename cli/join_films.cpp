@@ -1,6 +1,8 @@
 #include "cli/join_films.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -47,6 +49,10 @@ core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths) {
 }
 
 std::string share_held(const core::FilmFile& file) {
+  if (file.info.noise > 0) {
+    const double each = file.film.all_samples() / static_cast<double>(file.info.crop.area());
+    return fmt::format("{:.1f} of at most {} samples per pixel", each, file.info.samples);
+  }
   const double all = static_cast<double>(file.info.crop.area()) *
                      static_cast<double>(core::batch_count(file.info.samples));
   const double held = all > 0.0 ? static_cast<double>(file.film.coverage().volume()) / all : 0.0;
@@ -55,8 +61,9 @@ std::string share_held(const core::FilmFile& file) {
 }
 
 std::string what_is_missing(const core::FilmFile& file) {
-  const auto gaps =
-      core::gaps(file.film.coverage(), file.info.crop, core::batch_count(file.info.samples));
+  const uint32_t all = core::batch_count(file.info.samples);
+  const uint32_t batches = file.info.noise > 0 ? std::min(all, 2U) : all;
+  const auto gaps = core::gaps(file.film.coverage(), file.info.crop, batches);
   return gaps.empty() ? std::string() : core::describe_gaps(gaps, file.info.samples);
 }
 

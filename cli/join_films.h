@@ -12,10 +12,13 @@ namespace hyades::cli {
 /// cannot be read, or the two that do not fit each other and why.
 core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths);
 
-/// "62.5 % of 256 samples per pixel"; only a whole film has 100 %.
+/// "62.5 % of 256 samples per pixel"; only a whole film has 100 %. Where tiles have samples enough
+/// at some noise: "57.3 of at most 256 samples per pixel".
 std::string share_held(const core::FilmFile& file);
 
-/// What is missing of a film, in words; empty where it is whole.
+/// What is missing of a film, in words; empty where it is whole. Where tiles have samples enough at
+/// some noise a film is whole when every pixel has the two batches that all get; how many more each
+/// needs it does not say.
 std::string what_is_missing(const core::FilmFile& file);
 
 }  // namespace hyades::cli

@@ -14,6 +14,7 @@ void make_preview(core::Job& job, int width) {
   film.width = width;
   film.crop.reset();
   job.sampling.samples = kPreviewSamples;
+  job.sampling.noise = 0.0F;
   job.keep_films = false;
 
   core::OutputDesc preview;

@@ -37,7 +37,8 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
   // In front: a line that is cut to the terminal's width still says why nothing happens.
   if (!p.trouble.empty()) return text + "  " + p.trouble;
   if (p.samples_per_second > 0.0) text += "  " + rate(p.samples_per_second);
-  if (p.noise >= 0.0) text += fmt::format("  noise {:.2g} %", 100.0 * p.noise);
+  if (p.noise >= 0.0) text += fmt::format("  noise {:.2g}", p.noise);
+  if (p.noise_aim > 0.0) text += fmt::format(" (aim {:.2g})", p.noise_aim);
   if (p.seconds_left >= 0.0) text += "  " + core::format_duration(p.seconds_left) + " left";
   return text;
 }

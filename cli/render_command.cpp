@@ -30,6 +30,7 @@
 #include "core/base/atomic_file.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
+#include "core/job/noise_threshold.h"
 #include "core/render/chain_batch.h"
 
 namespace hyades::cli {
@@ -147,6 +148,7 @@ coordinator::LocalPlan plan_of(const RenderOptions& options, const core::Job& jo
   plan.region = room.window;
   plan.samples = job.sampling.samples;
   plan.batches = batches_of(options, job);
+  plan.threshold = core::noise_threshold(job);
   plan.threads = options.threads;
   if (core::makes_splats(job.integrator)) plan.tile_size = coordinator::kSplatTile;
   plan.frames_in_flight = room.frames_in_flight();

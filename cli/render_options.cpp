@@ -195,6 +195,11 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
   if (options.samples.range) {
     const auto batches = batches_of(*options.samples.range, job.sampling.samples);
     if (!batches) return complain(batches.error().message);
+    if (job.sampling.noise > 0.0F) {
+      return complain(
+          "--samples: expected how many, not which: the job stops at a noise, which cannot be told "
+          "of some samples alone");
+    }
   }
   return loaded;
 }

@@ -44,6 +44,7 @@ v1::FilmHeader to_wire(const core::FilmInfo& info) {
   wire.set_height(info.height);
   *wire.mutable_crop() = to_wire(info.crop);
   wire.set_samples(info.samples);
+  wire.set_noise(info.noise);
   wire.set_worker_class(info.worker_class);
   wire.set_build(info.build);
   return wire;
@@ -90,6 +91,7 @@ core::Result<core::FilmInfo> from_wire(const v1::FilmHeader& wire) {
   info.height = wire.height();
   info.crop = *crop;
   info.samples = wire.samples();
+  info.noise = wire.noise();
   info.worker_class = wire.worker_class();
   info.build = wire.build();
   return info;

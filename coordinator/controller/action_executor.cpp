@@ -51,6 +51,9 @@ void ActionExecutor::act(const std::vector<Action>& actions, Turn& turn, Deliver
             },
             [&](const Confirmed& sure) HYADES_REQUIRES(state_lock) { divergent_.confirmed(sure); },
             [&](const Merge& merge) { turn.defer(merge); },
+            [&](const JudgeTile& judge) HYADES_REQUIRES(state_lock) {
+              if (ActiveJob* active = jobs_.find(judge.job)) frames_.judge(*active, judge);
+            },
             [&](const TileVoided& voided) { turn.defer(voided); },
             [&](const FrameReopened& reopened) { turn.defer(reopened); },
             [&](const FinishFrame& finish) { turn.defer(finish); },

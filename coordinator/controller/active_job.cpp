@@ -15,6 +15,7 @@
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/job/layers.h"
+#include "core/job/noise_threshold.h"
 #include "core/job/ocio_files.h"
 #include "core/job/render_key.h"
 #include "core/job/video.h"
@@ -33,7 +34,6 @@ constexpr size_t kLongestPath = 4096;
 /// malloc had given for a thousand of them.
 constexpr uint64_t kJobBytes = 6144;
 constexpr int64_t kMostFrames = 1'000'000;
-constexpr int32_t kSmallTile = 32;
 constexpr int32_t kLargeTile = 64;
 constexpr uint32_t kManySamples = 512;
 constexpr uint64_t kEnoughPieces = 512;  ///< of a frame, each one batch of a tile
@@ -112,11 +112,9 @@ core::Status check_outputs(const core::Job& job) {
 
 /// What is asked for of the job's outputs all the time.
 void note_outputs(const core::Job& job, ActiveJob& active) {
-  for (const core::OutputDesc& output : job.outputs) {
-    if (output.file.ends_with(".exr")) continue;
-    active.tone_map = output.tone_map;
-    active.exposure = output.exposure;
-    break;
+  if (const core::OutputDesc* output = core::display_output(job.outputs)) {
+    active.tone_map = output->tone_map;
+    active.exposure = output->exposure;
   }
   if (job.videos.empty()) return;
   active.leaves_out_videos = !core::are_all_frames(job, active.numbers);
@@ -135,17 +133,18 @@ uint64_t memory_of(const std::vector<core::VideoDesc>& videos) {
 
 }  // namespace
 
-int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats) {
+int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats, bool adaptive) {
   if (splats) return kSplatTile;
+  if (adaptive) return kTile;
   const auto along = [](int32_t pixels) { return (pixels + kLargeTile - 1) / kLargeTile; };
   const uint64_t pieces = static_cast<uint64_t>(along(region.width())) *
                           static_cast<uint64_t>(along(region.height())) *
                           core::batch_count(samples);
-  return samples < kManySamples && pieces >= kEnoughPieces ? kLargeTile : kSmallTile;
+  return samples < kManySamples && pieces >= kEnoughPieces ? kLargeTile : kTile;
 }
 
 int32_t tile_size_of(const ActiveJob& job) {
-  return tile_size_of(job.region, job.samples, job.layout.layers.splats);
+  return tile_size_of(job.region, job.samples, job.layout.layers.splats, job.threshold.adaptive());
 }
 
 void Speed::note(uint64_t done, TimePoint now) {
@@ -247,14 +246,15 @@ std::optional<int32_t> ActiveJob::preview_frame() const {
 
 v1::Job ActiveJob::describe(uint32_t leased) const {
   v1::Job wire = coordinator::describe(stored);
+  const uint64_t samples = stored.samples - samples_spared;
+  wire.set_samples(samples);
   wire.set_samples_done(samples_done);
   wire.set_leased(leased);
   if (const auto shown = preview_frame()) wire.set_preview_frame(*shown);
   wire.set_samples_per_second(speed.per_second());
   if (speed.per_second() > 0) {
-    wire.set_seconds_left(
-        static_cast<double>(stored.samples - std::min(samples_done, stored.samples)) /
-        speed.per_second());
+    wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
+                          speed.per_second());
   }
   if (!row_trouble.empty()) wire.set_reason(farm::wire_text(row_trouble));
   if (!trouble.empty()) wire.set_reason(farm::wire_text(trouble));
@@ -265,7 +265,7 @@ v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const
   v1::Frame wire;
   wire.set_frame(number);
   wire.set_state(note.state);
-  wire.set_samples(samples_per_frame);
+  wire.set_samples(samples_per_frame - note.samples_spared);
   wire.set_samples_done(note.samples_done);
   wire.set_reason(farm::wire_text(note.reason));
   wire.set_worker_class(note.worker_class);
@@ -283,6 +283,7 @@ core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame) {
   info.height = job.film.height;
   info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
+  info.noise = job.sampling.noise;
   info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
   return info;
 }
@@ -347,6 +348,7 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
         core::format_bytes(active->film_bytes), core::format_bytes(film_memory))};
   }
   active->samples = job.sampling.samples;
+  active->threshold = core::noise_threshold(job);
   active->samples_per_frame =
       static_cast<uint64_t>(active->region.area()) * uint64_t{active->samples};
   active->key = key_of(spec, layers);

@@ -18,6 +18,7 @@
 #include "coordinator/scheduler/ids.h"
 #include "coordinator/scheduler/job_plan.h"
 #include "core/film/film_info.h"
+#include "core/film/noise.h"
 #include "core/job/video.h"
 #include "farm/content_store.h"
 #include "farm/job_package.h"
@@ -32,10 +33,11 @@ inline constexpr size_t kLongestName = 200;
 /// What those who ask are told of a frame of an open job.
 struct FrameNote {
   v1::FrameState state = v1::FRAME_STATE_WAITING;
-  uint64_t samples_done = 0;  ///< durable
-  std::string reason;         ///< why it failed
-  std::string worker_class;   ///< of those who render it; empty: nobody has begun
-  uint32_t restarts = 0;      ///< how often it has begun again
+  uint64_t samples_done = 0;    ///< durable
+  uint64_t samples_spared = 0;  ///< that its tiles were found not to need
+  std::string reason;           ///< why it failed
+  std::string worker_class;     ///< of those who render it; empty: nobody has begun
+  uint32_t restarts = 0;        ///< how often it has begun again
   uint64_t begun = 0;  ///< StoredFrame::moment of the last frame that was finished then; 0: unknown
   uint64_t version = 0;  ///< of the job when this last changed
 };
@@ -78,10 +80,11 @@ struct ActiveJob {
   uint64_t bytes = 0;  ///< that it takes in memory while it is open, but for its frames and films
 
   // What is asked for all the time of its document; all else of that is in JobDocuments.
-  std::vector<int32_t> numbers;   ///< of its frames, in order
-  uint32_t samples = 0;           ///< per pixel
-  std::string tone_map = "srgb";  ///< of its first output for displays
-  float exposure = 0;             ///< of that output, in stops
+  std::vector<int32_t> numbers;    ///< of its frames, in order
+  uint32_t samples = 0;            ///< per pixel, at most
+  core::NoiseThreshold threshold;  ///< when a tile has enough of them
+  std::string tone_map = "srgb";   ///< of its first output for displays
+  float exposure = 0;              ///< of that output, in stops
   /// The videos that are made when all frames are done: none where the spec asks for some frames
   /// only.
   std::vector<core::VideoDesc> videos;
@@ -105,6 +108,7 @@ struct ActiveJob {
   StoredJob stored HYADES_GUARDED_BY(state_lock);
   std::map<int32_t, FrameNote> frames HYADES_GUARDED_BY(state_lock);
   uint64_t samples_done HYADES_GUARDED_BY(state_lock) = 0;
+  uint64_t samples_spared HYADES_GUARDED_BY(state_lock) = 0;
   uint64_t version HYADES_GUARDED_BY(state_lock) = 1;  ///< grows with every change
   /// The frames that have changed, by the version of their last change.
   std::map<uint64_t, int32_t> changed HYADES_GUARDED_BY(state_lock);
@@ -161,9 +165,10 @@ core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame);
 
 /// Pixels along the side of a job's tiles, by its crop window and samples per pixel. Every unit
 /// costs the farm some milliseconds, and none is larger than a tile with all its samples: 64 where
-/// these are few, if the frame is still cut into enough pieces for many threads; else 32. Where
-/// films have `splats`: kSplatTile.
-int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats);
+/// these are few, if the frame is still cut into enough pieces for many threads; else 32, as where
+/// tiles are judged (`adaptive`), and as on a single machine. Where films have `splats`:
+/// kSplatTile.
+int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats, bool adaptive);
 
 /// Pixels along the side of the tiles of this job.
 int32_t tile_size_of(const ActiveJob& job);

@@ -78,7 +78,7 @@ struct Controller::Parts {
   FarmControl farm{context, dispatcher, jobs, workers, records, disk};
   JobFilms films{context, dispatcher, jobs, divergent};
   FrameFinisher finisher{context, dispatcher, jobs, disk, timelines};
-  FrameProgress frames{context, jobs, workers, finisher, timelines};
+  FrameProgress frames{context, dispatcher, jobs, workers, finisher, timelines};
   VideoMaker videos{context, jobs, records, disk, timelines};
   JobRecovery recovery{context, dispatcher, jobs, films};
   Sweeper sweeper{context, unclaimed};

@@ -37,26 +37,22 @@ core::Status find_color_files(FinishTask& task, const std::vector<core::AssetRec
   return {};
 }
 
-/// Whether every sample of its frame is in the film: where one could not be merged some are not.
-bool is_whole(const core::Film* film, const ActiveJob& active) {
-  const uint32_t batches = core::batch_count(active.samples);
-  return film != nullptr &&
-         film->coverage().volume() == static_cast<uint64_t>(active.region.area()) * batches;
-}
-
 }  // namespace
 
 /// A frame whose film is complete.
 struct FrameFinisher::Completed {
   JobId job{};
   int32_t frame = 0;
+  uint64_t volume = 0;  ///< FinishFrame::volume
   std::shared_ptr<const core::Film> film;
   std::vector<std::string> parts;                     ///< StoredFrame::parts
   std::optional<std::string> failure = std::nullopt;  ///< why its outputs could not be made
 };
 
-void FrameFinisher::add(ActiveJob& active, int32_t frame, std::vector<std::string> parts) {
-  Completed completed{active.id, frame, active.complete[frame], std::move(parts)};
+void FrameFinisher::add(ActiveJob& active, const FinishFrame& asked,
+                        std::vector<std::string> parts) {
+  Completed completed{active.id, asked.frame, asked.volume, active.complete[asked.frame],
+                      std::move(parts)};
   queue_.add(active.stored.id,
              [this, completed = std::move(completed)]() mutable { return finish(completed); });
 }
@@ -115,7 +111,8 @@ bool FrameFinisher::begin(Completed& completed, std::string& spec, StoredFrame& 
   const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(completed.job);
   if (active == nullptr) return false;
-  if (!is_whole(completed.film.get(), *active)) {
+  // Where a film could not be merged some of it is missing.
+  if (!completed.film || completed.film->coverage().volume() != completed.volume) {
     completed.failure = "its film is not whole: 'retry' renders it again";
     return false;
   }

@@ -30,7 +30,7 @@ class FrameFinisher {
 
   /// Has the frame finished, whose film is among those of `active` that are complete. `parts`:
   /// StoredFrame::parts.
-  void add(ActiveJob& active, int32_t frame, std::vector<std::string> parts)
+  void add(ActiveJob& active, const FinishFrame& asked, std::vector<std::string> parts)
       HYADES_REQUIRES(state_lock);
 
  private:

@@ -68,6 +68,35 @@ void FrameProgress::count_film(ActiveJob& active, const Merge& merge, int64_t be
   timelines_.note(id, {v1::TimelineStep::KIND_MERGE, {}, 0, merge.unit, begun_us, now_us});
 }
 
+void FrameProgress::judge(ActiveJob& active, const JudgeTile& judge) {
+  active.film_store->call([this, judge] {
+    const FilmStore* film_store = nullptr;
+    core::NoiseThreshold threshold;
+    {
+      const StateLock lock(context_.mutex);
+      const ActiveJob* found = jobs_.find(judge.job);
+      if (found == nullptr) return;
+      film_store = found->film_store.get();
+      threshold = found->threshold;
+    }
+    const auto film = film_store->film(judge.frame);
+    const bool enough = film && core::is_clean(*film, judge.tile, threshold);
+    Turn turn(dispatcher_);
+    ActiveJob* still = jobs_.find(judge.job);
+    if (still == nullptr) return;
+    if (enough) spare(*still, judge);
+    turn.tell(TileJudged{judge.job, judge.frame, judge.tile, judge.serial, enough});
+  });
+}
+
+/// The tile needs no more batches than it has.
+void FrameProgress::spare(ActiveJob& active, const JudgeTile& judge) {
+  const core::BatchRange rest{judge.batches, core::batch_count(active.samples) - judge.batches};
+  const uint64_t samples = samples_of(active, judge.tile, rest);
+  active.touch(judge.frame).samples_spared += samples;
+  active.samples_spared += samples;
+}
+
 void FrameProgress::tile_voided(ActiveJob& active, const TileVoided& voided) {
   uint64_t samples = 0;
   for (const core::BatchRange& batches : voided.batches) {
@@ -77,6 +106,10 @@ void FrameProgress::tile_voided(ActiveJob& active, const TileVoided& voided) {
   samples = std::min(samples, frame.samples_done);
   frame.samples_done -= samples;
   active.samples_done -= samples;
+  const uint32_t all = core::batch_count(active.samples);
+  const uint64_t spared = samples_of(active, voided.tile, {all - voided.spared, voided.spared});
+  frame.samples_spared -= spared;
+  active.samples_spared -= spared;
   jobs_.note(active, v1::LOG_LEVEL_WARNING, voided.frame, {},
              fmt::format("tile {},{} is rendered again: a quarantined worker had a part in it",
                          voided.tile.x0, voided.tile.y0));
@@ -110,13 +143,13 @@ void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {
 }
 
 void FrameProgress::hand_over(ActiveJob& active, const FinishFrame& finish) {
-  finisher_.add(active, finish.frame, workers_.names_of(finish.unconfirmed));
+  finisher_.add(active, finish, workers_.names_of(finish.unconfirmed));
 }
 
 void FrameProgress::done(ActiveJob& active, const FrameDone& action) {
   if (active.ending) return;
   const int32_t frame = action.frame;
-  active.film_store->forget(frame, true);
+  active.film_store->forget(frame, FrameEnd::finished);
   active.complete.erase(frame);
   active.touch(frame).state = v1::FRAME_STATE_DONE;
   active.in_work.erase(frame);
@@ -129,13 +162,14 @@ void FrameProgress::done(ActiveJob& active, const FrameDone& action) {
 void FrameProgress::failed(ActiveJob& active, const FrameFailed& action) {
   if (active.ending) return;
   const int32_t frame = action.frame;
-  active.film_store->forget(frame, false);
-  active.complete.erase(frame);
+  const bool complete = active.complete.erase(frame) > 0;
+  active.film_store->forget(frame, complete ? FrameEnd::unwritten : FrameEnd::failed);
   FrameNote& noted = active.touch(frame);
   noted.state = v1::FRAME_STATE_FAILED;
   active.in_work.erase(frame);
   noted.reason = farm::wire_text(action.reason);
   active.samples_done -= std::exchange(noted.samples_done, 0);
+  active.samples_spared -= std::exchange(noted.samples_spared, 0);
   ++active.stored.frames_failed;
   jobs_.note(active, v1::LOG_LEVEL_ERROR, frame, {}, "failed: " + action.reason);
 }
@@ -152,6 +186,7 @@ void FrameProgress::restarted(ActiveJob& active, const FrameRestarted& action) {
   noted.worker_class.clear();
   ++noted.restarts;
   active.samples_done -= std::exchange(noted.samples_done, 0);
+  active.samples_spared -= std::exchange(noted.samples_spared, 0);
   jobs_.note(active, v1::LOG_LEVEL_WARNING, frame, {}, "is rendered again from its beginning");
 }
 

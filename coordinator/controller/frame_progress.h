@@ -13,9 +13,10 @@ class FrameFinisher;
 /// about frames.
 class FrameProgress {
  public:
-  FrameProgress(ControllerContext& context, JobTable& jobs, WorkerTable& workers,
-                FrameFinisher& finisher, Timelines& timelines)
+  FrameProgress(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
+                WorkerTable& workers, FrameFinisher& finisher, Timelines& timelines)
       : context_(context),
+        dispatcher_(dispatcher),
         jobs_(jobs),
         workers_(workers),
         finisher_(finisher),
@@ -24,6 +25,9 @@ class FrameProgress {
   /// Merges a film that is durable into its frame's. On the film store's thread, where the films
   /// are.
   void merged(const Merge& merge) HYADES_EXCLUDES(state_lock);
+  /// Has the film store's thread judge whether the tile has samples enough, once it has merged what
+  /// was handed over before; the scheduler hears of it.
+  void judge(ActiveJob& active, const JudgeTile& judge) HYADES_REQUIRES(state_lock);
   /// The film store has taken the tile out of its frame's film.
   void tile_voided(ActiveJob& active, const TileVoided& voided) HYADES_REQUIRES(state_lock);
   /// Hands the frame to the finisher once its film has all that was delivered.
@@ -38,11 +42,13 @@ class FrameProgress {
   void reopened(ActiveJob& active, const FrameReopened& action) HYADES_REQUIRES(state_lock);
 
  private:
+  void spare(ActiveJob& active, const JudgeTile& judge) HYADES_REQUIRES(state_lock);
   void count_film(ActiveJob& active, const Merge& merge, int64_t begun_us)
       HYADES_REQUIRES(state_lock);
   void hand_over(ActiveJob& active, const FinishFrame& finish) HYADES_REQUIRES(state_lock);
 
   ControllerContext& context_;
+  Dispatcher& dispatcher_;
   JobTable& jobs_;
   WorkerTable& workers_;
   FrameFinisher& finisher_;

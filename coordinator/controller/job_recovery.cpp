@@ -55,6 +55,7 @@ JobPlan plan_of(const ActiveJob& active, int32_t tile_size, uint64_t film_memory
   plan.region = active.region;
   plan.tile_size = tile_size;
   plan.batches = core::batch_count(active.samples);
+  plan.rounds = active.threshold.rounds;
   plan.priority = active.stored.priority;
   plan.owner = active.stored.owner;
   plan.max_workers = options.max_workers();
@@ -319,7 +320,8 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
       std::erase(restored.finished, number);
     }
     if (frame.state != v1::FRAME_STATE_WAITING) {
-      active.film_store->forget(number, frame.state == v1::FRAME_STATE_DONE);
+      active.film_store->forget(
+          number, frame.state == v1::FRAME_STATE_DONE ? FrameEnd::finished : FrameEnd::unwritten);
       continue;
     }
     frame.state = v1::FRAME_STATE_RENDERING;

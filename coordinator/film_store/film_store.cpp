@@ -377,14 +377,12 @@ std::shared_ptr<const core::Film> FilmStore::film(int32_t frame) const {
   return it == films_.end() ? nullptr : it->second;
 }
 
-void FilmStore::forget(int32_t frame, bool finished) {
+void FilmStore::forget(int32_t frame, FrameEnd end) {
   if (const auto bytes = frame_bytes_.extract(frame)) useless_bytes_ += bytes.mapped();
   const auto it = films_.find(frame);
   if (it == films_.end()) return;
-  if (finished) classes_.erase(frame);
-  const uint64_t all = static_cast<uint64_t>(set_.region.area()) * set_.batches;
-  if (!finished && log_ && it->second->coverage().volume() == all &&
-      unfinished_.size() < kUnfinishedFilms) {
+  if (end == FrameEnd::finished) classes_.erase(frame);
+  if (end == FrameEnd::unwritten && log_ && unfinished_.size() < kUnfinishedFilms) {
     unfinished_.insert(*it);
   }
   films_.erase(it);

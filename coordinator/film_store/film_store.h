@@ -27,7 +27,13 @@ struct FilmSet {
   std::vector<int32_t> frames;
   core::PixelRect region;  ///< of every frame
   uint32_t samples = 1;    ///< per pixel, of the whole job
-  uint32_t batches = 1;    ///< that a complete film has
+};
+
+/// What became of a frame that is over.
+enum class FrameEnd : uint8_t {
+  finished,
+  failed,
+  unwritten,  ///< its film is complete, but its outputs could not be written
 };
 
 /// Where and how a store keeps its films.
@@ -110,9 +116,8 @@ class FilmStore {
   core::Status merge(RecordId record);
   /// What has been merged of the frame; null where nothing has.
   std::shared_ptr<const core::Film> film(int32_t frame) const;
-  /// The frame is over. Its film, if it is complete but its outputs could not be written, stays in
-  /// the log for another run.
-  void forget(int32_t frame, bool finished);
+  /// The frame is over. A film whose outputs could not be written stays in the log for another run.
+  void forget(int32_t frame, FrameEnd end);
 
  private:
   struct Item {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "coordinator/local/local_run.h"
-#include "coordinator/local/noise.h"
+#include "core/film/noise.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -25,6 +25,22 @@ void LocalRun::act(const Persist& persist) {
   // A unit's film is handed over by the thread that has it, see deliver().
   if (std::holds_alternative<UnitRecord>(persist.record)) return;
   film_store_.append(persist.id, persist.record);
+}
+
+/// By the store's thread, whose films they are, once it has merged what was handed over before.
+void LocalRun::judge_later(const JudgeTile& judge) {
+  film_store_.call([this, judge] {
+    const auto film = film_store_.film(judge.frame);
+    const bool enough = film && core::is_clean(*film, judge.tile, plan_.threshold);
+    if (enough) {
+      const core::BatchRange rest{judge.batches, batches_of(plan_).count - judge.batches};
+      const uint64_t samples = core::samples_in(judge.tile, rest, plan_.samples);
+      const core::MutexLock lock(mutex_);
+      progress_.samples -= samples;
+      spared_samples_[judge.frame] += samples;
+    }
+    carry_out(tell(TileJudged{kJob, judge.frame, judge.tile, judge.serial, enough}));
+  });
 }
 
 void LocalRun::act(const Merge& merge) {
@@ -55,8 +71,9 @@ void LocalRun::act(const FinishFrame& finish) {
 }
 
 void LocalRun::act(const FrameDone& done) {
-  film_store_.forget(done.frame, true);
+  film_store_.forget(done.frame, FrameEnd::finished);
   const core::MutexLock lock(mutex_);
+  spared_samples_.erase(done.frame);
   in_flight_.erase(done.frame);
   complete_.erase(done.frame);
   frame_samples_.erase(done.frame);
@@ -64,14 +81,16 @@ void LocalRun::act(const FrameDone& done) {
 }
 
 void LocalRun::act(const FrameFailed& failed) {
-  film_store_.forget(failed.frame, false);
   const core::MutexLock lock(mutex_);
+  film_store_.forget(failed.frame,
+                     complete_.contains(failed.frame) ? FrameEnd::unwritten : FrameEnd::failed);
   works_.erase(failed.frame);
   in_flight_.erase(failed.frame);
   complete_.erase(failed.frame);
-  progress_.samples -= samples_per_frame();
+  progress_.samples -= samples_per_frame() - spared_samples_[failed.frame];
   progress_.samples_done -= frame_samples_[failed.frame];
   frame_samples_.erase(failed.frame);
+  spared_samples_.erase(failed.frame);
   ++progress_.frames_failed;
   outcome_.failures.push_back({failed.frame, failed.reason});
 }
@@ -113,7 +132,7 @@ void LocalRun::note_film(int32_t frame, const core::Film& film) {
   const TimePoint now = std::chrono::steady_clock::now();
   if (now - last_noise_ < kNoiseEvery) return;
   last_noise_ = now;
-  const double noise = estimate_noise(film);
+  const double noise = core::picture_noise(film, plan_.threshold.exposure);
   const core::MutexLock lock(mutex_);
   progress_.noise = noise;
   progress_.noise_frame = frame;

@@ -36,8 +36,7 @@ LocalRun::LocalRun(LocalPlan plan, const FilmStoreOptions& log, FrameSource& sou
       sink_(sink),
       audience_(audience),
       scheduler_(scheduler_options(plan_)),
-      film_store_({plan_.frames, plan_.region, plan_.samples, batches_of(plan_).count}, log,
-                  *this) {
+      film_store_({plan_.frames, plan_.region, plan_.samples}, log, *this) {
   plan_.threads = std::max(plan_.threads, 1);
 }
 
@@ -53,6 +52,9 @@ core::Status LocalRun::start() {
   }
   if (batches_of(plan_).end() > core::batch_count(plan_.samples)) {
     return core::Error{"there are not so many batches"};
+  }
+  if (plan_.threshold.adaptive() && plan_.batches.count > 0) {
+    return core::Error{"whether tiles have samples enough cannot be told of some batches alone"};
   }
   auto contents = film_store_.open();
   if (!contents) return contents.error();
@@ -85,9 +87,11 @@ JobAdded LocalRun::recover(const LogContents& contents) {
   job.plan.region = plan_.region;
   job.plan.tile_size = plan_.tile_size;
   job.plan.batches = batches_of(plan_).count;
+  job.plan.rounds = plan_.threshold.rounds;
   job.plan.shuffle = plan_.shuffle;
   job.plan.frames_in_flight = plan_.frames_in_flight;
   for (const int32_t frame : plan_.frames) restore(contents, frame, job.restored);
+  progress_.noise_aim = plan_.threshold.noise;
   progress_.frames = static_cast<uint32_t>(plan_.frames.size());
   progress_.frames_done = static_cast<uint32_t>(job.restored.finished.size());
   progress_.samples = samples_per_frame() * plan_.frames.size();
@@ -177,6 +181,7 @@ std::vector<LocalRun::DeferredAction> LocalRun::tell_locked(const Event& event) 
   for (Action& action : scheduler_.handle(event, std::chrono::steady_clock::now())) {
     std::visit(core::Overloaded{
                    [&](Lease& lease) HYADES_REQUIRES(mutex_) { hand_out(lease); },
+                   [&](JudgeTile& judge) { judge_later(judge); },
                    [&](OpenFrame& open) HYADES_REQUIRES(mutex_) {
                      in_flight_.insert(open.frame);
                      to_load_.push_back(open.frame);

@@ -90,6 +90,7 @@ class LocalRun : private FilmStore::Owner {
   std::vector<DeferredAction> tell_locked(const Event& event) HYADES_REQUIRES(mutex_);
   void hand_out(const Lease& lease) HYADES_REQUIRES(mutex_);
   void carry_out(const std::vector<DeferredAction>& actions);
+  void judge_later(const JudgeTile& judge);
   void act(const Persist& persist);
   void act(const Merge& merge);
   void act(const FinishFrame& finish);
@@ -135,6 +136,8 @@ class LocalRun : private FilmStore::Owner {
   std::set<int32_t> in_flight_ HYADES_GUARDED_BY(mutex_);
   std::map<int32_t, uint64_t> frame_samples_
       HYADES_GUARDED_BY(mutex_);  ///< done, of frames in flight
+  std::map<int32_t, uint64_t> spared_samples_
+      HYADES_GUARDED_BY(mutex_);  ///< not needed, of frames in flight
   Progress progress_ HYADES_GUARDED_BY(mutex_);
   uint64_t samples_before_ HYADES_GUARDED_BY(mutex_) = 0;  ///< done by earlier runs
   TimePoint started_ HYADES_GUARDED_BY(mutex_);

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -111,9 +112,13 @@ void LocalRun::load_loop() {
     }
     if (stop_) return;
     if (work) {
-      const core::MutexLock lock(mutex_);
-      works_[frame] = std::move(*work);
-      tell_locked(FrameOpened{kJob, frame});
+      std::vector<DeferredAction> actions;
+      {
+        const core::MutexLock lock(mutex_);
+        works_[frame] = std::move(*work);
+        actions = tell_locked(FrameOpened{kJob, frame});
+      }
+      carry_out(actions);
     } else {
       carry_out(tell(FrameRefused{kJob, frame, work.error().message}));
     }

@@ -18,7 +18,8 @@ struct Progress {
   double elapsed = 0;         ///< seconds since start()
   double samples_per_second = 0;
   double seconds_left = -1;  ///< -1: cannot be told yet
-  double noise = -1;         ///< of the newest film, see estimate_noise; -1: not known
+  double noise = -1;         ///< of the newest film, see picture_noise(); -1: not known
+  double noise_aim = 0;      ///< at which tiles have samples enough; 0: they get all
   int32_t noise_frame = 0;   ///< which frame that is
   std::string trouble;  ///< why nothing happens at the moment: "paused"; empty where something does
 };

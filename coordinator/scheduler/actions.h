@@ -106,6 +106,16 @@ struct Acknowledge {
   core::Unit unit;
 };
 
+/// All batches that were planned of the tile are merged, or will be once the films are that Merge
+/// named before: judge whether it has enough, by them alone. Answered by TileJudged.
+struct JudgeTile {
+  JobId job{};
+  int32_t frame = 0;
+  core::PixelRect tile;
+  uint32_t batches = 0;  ///< that it has, from the first on
+  uint64_t serial = 0;   ///< tells this question from others about the tile
+};
+
 enum class RejectReason : uint8_t {
   unknown,    ///< no such job or frame, or the frame is over; the worker drops the film
   malformed,  ///< not a unit of this job; dropped
@@ -154,6 +164,7 @@ struct TileVoided {
   int32_t frame = 0;
   core::PixelRect tile;
   std::vector<core::BatchRange> batches;  ///< that counted
+  uint32_t spared = 0;                    ///< batches of which it had been found not to need them
 };
 
 /// The outputs that FinishFrame asked for do not count: a film is suspect. There will be another
@@ -163,10 +174,12 @@ struct FrameReopened {
   int32_t frame = 0;
 };
 
-/// Every batch of the frame is merged: make its outputs; answered by FinishDone or FinishFailed.
+/// Every batch that the frame needs is merged: make its outputs; answered by FinishDone or
+/// FinishFailed.
 struct FinishFrame {
   JobId job{};
   int32_t frame = 0;
+  uint64_t volume = 0;  ///< (pixel, batch) pairs that its film holds
   /// Whose films of it nobody else agreed on, each worker once; 0: somebody's from before a
   /// restart.
   std::vector<WorkerId> unconfirmed;
@@ -198,8 +211,8 @@ struct JobEnded {
   bool cancelled = false;
 };
 
-using Action = std::variant<OpenFrame, Lease, Revoke, Persist, Merge, Acknowledge, Reject, Conflict,
-                            Quarantine, Confirmed, TileVoided, FrameReopened, FinishFrame,
-                            FrameDone, FrameFailed, FrameRestarted, JobEnded>;
+using Action = std::variant<OpenFrame, Lease, Revoke, Persist, Merge, JudgeTile, Acknowledge,
+                            Reject, Conflict, Quarantine, Confirmed, TileVoided, FrameReopened,
+                            FinishFrame, FrameDone, FrameFailed, FrameRestarted, JobEnded>;
 
 }  // namespace hyades::coordinator

@@ -167,8 +167,14 @@ void Conflicts::suspect_frame(ScheduledJob& job, FrameSlot& slot) {
 void Conflicts::persisted(const TileVoidedRecord& record) {
   if (!still_wanted(record)) return;
   const auto [job, slot] = jobs_.find_frame({record.job, record.frame});
-  auto batches = slot->ledger->void_tile(*job->grid.index_of(record.tile));
-  step_.say(TileVoided{record.job, record.frame, record.tile, std::move(batches)});
+  const uint32_t tile = *job->grid.index_of(record.tile);
+  FrameLedger& ledger = *slot->ledger;
+  // What these are for was found by films that are void.
+  for (const Extent& e : ledger.assigned_beyond_first_round(tile)) {
+    leases_.end_assignment(*job, *slot, e, {});
+  }
+  const uint32_t spared = ledger.spared(tile);
+  step_.say(TileVoided{record.job, record.frame, record.tile, ledger.void_tile(tile), spared});
   jobs_.update_offer(*job);
   frames_.open(*job);
 }

@@ -75,6 +75,15 @@ struct FinishFailed {
   std::string reason;
 };
 
+/// The answer to JudgeTile: whether the tile has batches enough.
+struct TileJudged {
+  JobId job{};
+  int32_t frame = 0;
+  core::PixelRect tile;
+  uint64_t serial = 0;  ///< of the question
+  bool enough = false;
+};
+
 // Workers.
 
 /// A unit that a worker holds from a lease, rendered or not.
@@ -182,10 +191,10 @@ struct PersistFailed {
 /// Nothing but time has passed.
 struct Tick {};
 
-using Event =
-    std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised, FramesRetried,
-                 FramesSuspected, FrameOpened, FrameRefused, FinishDone, FinishFailed, WorkerJoined,
-                 WorkRequested, LeasingHeld, WorkerAlive, ResultArrived, UnitFailed, UnitReturned,
-                 WorkerBarred, WorkerLost, WorkerForgotten, Persisted, PersistFailed, Tick>;
+using Event = std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised,
+                           FramesRetried, FramesSuspected, FrameOpened, FrameRefused, FinishDone,
+                           FinishFailed, TileJudged, WorkerJoined, WorkRequested, LeasingHeld,
+                           WorkerAlive, ResultArrived, UnitFailed, UnitReturned, WorkerBarred,
+                           WorkerLost, WorkerForgotten, Persisted, PersistFailed, Tick>;
 
 }  // namespace hyades::coordinator

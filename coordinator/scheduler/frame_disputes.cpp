@@ -120,7 +120,8 @@ std::vector<core::BatchRange> FrameLedger::void_tile(uint32_t tile) {
   const uint64_t before = BatchMap::count_free(held_, leased_, tile, all);
   held_.clear(tile, all);
   free_ += BatchMap::count_free(held_, leased_, tile, all) - before;
-  open_.push_back({tile, all});
+  if (!rounds_.empty()) begin_rounds_again(tile);
+  open_.push_back({tile, {0, planned(tile)}});
   return voided;
 }
 

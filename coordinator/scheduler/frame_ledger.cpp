@@ -8,13 +8,20 @@
 
 namespace hyades::coordinator {
 
-FrameLedger::FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches)
+FrameLedger::FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches,
+                         std::vector<uint32_t> rounds)
     : batches_(batches),
-      total_(uint64_t{tile_order.size()} * batches),
-      free_(total_),
-      held_(static_cast<uint32_t>(tile_order.size()), batches),
-      leased_(static_cast<uint32_t>(tile_order.size()), batches) {
-  for (const uint32_t tile : tile_order) open_.push_back({tile, {0, batches}});
+      tile_count_(static_cast<uint32_t>(tile_order.size())),
+      rounds_(std::move(rounds)),
+      held_(tile_count_, batches),
+      leased_(tile_count_, batches) {
+  const uint32_t first = rounds_.empty() ? batches : rounds_.front();
+  total_ = free_ = uint64_t{tile_count_} * first;
+  if (!rounds_.empty()) {
+    rounds_of_.assign(tile_count_, {first});
+    undecided_ = tile_count_;
+  }
+  for (const uint32_t tile : tile_order) open_.push_back({tile, {0, first}});
 }
 
 void FrameLedger::hold(const Extent& e, const HeldRecord& record) {
@@ -71,7 +78,7 @@ bool FrameLedger::all_free(const Extent& e) const {
 
 bool FrameLedger::may_assign(const Extent& e, Voice voice) const {
   const std::vector<Voice> others = heard(e);
-  if (others.empty()) return all_free(e);
+  if (others.empty()) return is_planned(e) && all_free(e);
   return !being_checked(e) && std::find(others.begin(), others.end(), voice) == others.end();
 }
 
@@ -217,16 +224,21 @@ FrameLedger::Failures FrameLedger::take_blame(const Extent& e) {
 }
 
 std::string FrameLedger::audit() const {
-  const auto tiles = static_cast<uint32_t>(total_ / std::max(batches_, 1U));
-  BatchMap reachable(tiles, batches_);
+  BatchMap reachable(tile_count_, batches_);
   for (const Extent& e : open_) reachable.set(e.tile, e.batches);
   for (const Extent& e : retries_) reachable.set(e.tile, e.batches);
   uint64_t free = 0;
   uint64_t held = 0;
   uint64_t recorded = 0;
   uint64_t durable = 0;
-  for (uint32_t tile = 0; tile < tiles; ++tile) {
-    for (uint32_t b = 0; b < batches_; ++b) {
+  uint64_t planned_batches = 0;
+  for (uint32_t tile = 0; tile < tile_count_; ++tile) {
+    const core::BatchRange beyond{planned(tile), batches_ - planned(tile)};
+    if (BatchMap::count_free(held_, leased_, tile, beyond) != beyond.count) {
+      return fmt::format("tile {} has batches that are not planned", tile);
+    }
+    planned_batches += planned(tile);
+    for (uint32_t b = 0; b < planned(tile); ++b) {
       const core::BatchRange one{b, 1};
       const bool is_free = BatchMap::count_free(held_, leased_, tile, one) == 1;
       free += is_free;
@@ -247,10 +259,14 @@ std::string FrameLedger::audit() const {
   }
   uint64_t leased = 0;
   uint64_t leased_bits = 0;
-  for (uint32_t tile = 0; tile < tiles; ++tile) leased_bits += leased_.count(tile, {0, batches_});
+  for (uint32_t tile = 0; tile < tile_count_; ++tile)
+    leased_bits += leased_.count(tile, {0, batches_});
   for (const auto& [k, a] : assignments_) {
     leased += a.extent.batches.count;
     if (a.holders.empty()) return "an assignment without a holder";
+  }
+  if (planned_batches != total_) {
+    return fmt::format("{} batches are planned, {} counted", planned_batches, total_);
   }
   if (free != free_) return fmt::format("{} batches are free, {} counted", free, free_);
   if (held != recorded) return fmt::format("{} batches are held, {} recorded", held, recorded);

@@ -70,15 +70,19 @@ struct Dispute {
 /// in the frame's film; held means that its film has arrived, durable or about to be.
 class FrameLedger {
  public:
-  FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches);
+  /// `rounds`: see JobPlan.
+  FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches,
+              std::vector<uint32_t> rounds = {});
 
-  uint64_t total() const { return total_; }
-  uint64_t free() const { return free_; }        ///< tile-batches neither leased nor held
+  uint64_t total() const { return total_; }      ///< tile-batches that are planned
+  uint64_t free() const { return free_; }        ///< of these, neither leased nor held
   uint64_t durable() const { return durable_; }  ///< tile-batches whose films are durable
-  /// Whether all films are durable and none is suspect.
-  bool complete() const { return durable_ == total_ && settled(); }
+  /// Whether every tile has what it needs, all films are durable and none is suspect.
+  bool complete() const { return durable_ == total_ && undecided_ == 0 && settled(); }
   /// Whether all films have come, durable or not, and nobody has to render anything.
-  bool all_held() const { return free_ == 0 && assignments_.empty() && disputes_.empty(); }
+  bool all_held() const {
+    return free_ == 0 && undecided_ == 0 && assignments_.empty() && disputes_.empty();
+  }
   bool any_assigned() const { return !assignments_.empty(); }
   /// Workers of all assignments together: a copied unit has several.
   size_t holders() const;
@@ -102,6 +106,35 @@ class FrameLedger {
   void made_durable(const Extent& e);
   /// The film was lost before it was durable: its batches are free again.
   void unhold(const Extent& e);
+
+  // Rounds (frame_rounds.cpp): a tile that has all batches planned for it is judged.
+
+  /// How many batches of the tile are planned, from the first on.
+  uint32_t planned(uint32_t tile) const {
+    return rounds_.empty() ? batches_ : rounds_of_[tile].planned;
+  }
+  /// Whether the extent is of batches that are planned.
+  bool is_planned(const Extent& e) const { return e.batches.end() <= planned(e.tile); }
+  /// Whether it is not known yet if the tile needs more batches than are planned.
+  bool is_undecided(uint32_t tile) const {
+    return planned(tile) < batches_ && !rounds_of_[tile].enough;
+  }
+  /// Batches that the tile was found not to need.
+  uint32_t spared(uint32_t tile) const { return is_undecided(tile) ? 0 : batches_ - planned(tile); }
+  /// The extent was rendered before a restart, when the tile had been found to need it.
+  void plan_for(const Extent& e);
+  /// Whether the tile has all that is planned, durably, and nobody has been asked yet if that is
+  /// enough.
+  bool is_to_judge(uint32_t tile) const;
+  /// The tiles of which that is so, in order.
+  std::vector<uint32_t> to_judge() const;
+  /// Somebody is asked about the tile; `serial` is of no question before.
+  void ask(uint32_t tile, uint64_t serial) { rounds_of_[tile].asked = serial; }
+  /// The answer to question `serial`: the tile has enough, or the next round begins. Whether it
+  /// counts: not where the films that were judged are void, or about to be.
+  bool judge(uint32_t tile, uint64_t serial, bool enough);
+  /// Assigned units of the tile that will not be planned once its films are void.
+  std::vector<Extent> assigned_beyond_first_round(uint32_t tile) const;
 
   // Leased batches.
 
@@ -208,6 +241,16 @@ class FrameLedger {
     std::string reason;
   };
 
+  /// How far a tile is, of a job that judges its tiles.
+  struct TileRounds {
+    uint32_t planned = 0;
+    bool enough = false;
+    uint64_t asked = 0;  ///< the question that is not answered yet; 0: none
+  };
+
+  uint32_t round_after(uint32_t batches) const;
+  void extend(uint32_t tile, uint32_t planned);
+  void begin_rounds_again(uint32_t tile);
   bool all_free(const Extent& e) const;
   static uint64_t key(const Extent& e) { return (uint64_t{e.tile} << 32) | e.batches.first; }
   std::optional<Extent> next_retry(const MayTry& may_try);
@@ -219,8 +262,12 @@ class FrameLedger {
   bool being_checked(const Extent& e) const { return leased_.count(e.tile, e.batches) != 0; }
 
   uint32_t batches_;
-  uint64_t total_;
-  uint64_t free_;
+  uint32_t tile_count_;
+  std::vector<uint32_t> rounds_;
+  std::vector<TileRounds> rounds_of_;  ///< by tile; empty where there are no rounds
+  uint64_t total_ = 0;
+  uint64_t free_ = 0;
+  uint64_t undecided_ = 0;  ///< tiles of which it is not known yet if they need more
   uint64_t durable_ = 0;
   BatchMap held_;
   BatchMap leased_;

@@ -24,6 +24,7 @@ void FrameLifecycle::on(const FrameOpened& e) {
   slot->phase = FramePhase::rendering;
   if (slot->suspect) return restart(*job, *slot);
   void_suspect_tiles(*job, *slot);  // what it has from before a restart
+  for (const uint32_t tile : slot->ledger->to_judge()) judge_if_due(*job, *slot, tile);
   jobs_.update_offer(*job);
   finish_if_complete(*job, *slot);  // a frame without pixels
 }
@@ -50,15 +51,25 @@ void FrameLifecycle::on(const FinishFailed& e) {
   if (job->begins_again(*slot)) return restart(*job, *slot);
   if (!slot->ledger->settled()) return reopen(*job, *slot);
   if (++slot->finish_attempts < job->plan.max_attempts) {
-    step_.say(FinishFrame{job->id, slot->frame, slot->ledger->unconfirmed()});
+    say_finish(*job, *slot);
   } else {
     fail(*job, *slot, e.reason);
   }
 }
 
+void FrameLifecycle::on(const TileJudged& e) {
+  const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
+  const auto tile = job ? job->grid.index_of(e.tile) : std::nullopt;
+  if (!tile || slot->phase != FramePhase::rendering) return;
+  if (!slot->ledger->judge(*tile, e.serial, e.enough)) return;
+  jobs_.update_offer(*job);
+  open(*job);
+  finish_if_complete(*job, *slot);
+}
+
 void FrameLifecycle::open(ScheduledJob& job) {
   if (job.paused) return;
-  const uint64_t frame_total = uint64_t{job.grid.size()} * job.plan.batches;
+  const uint64_t frame_total = uint64_t{job.grid.size()} * job.plan.first_batches();
   const uint64_t enough = std::max(frame_total / 2, 2 * workers_.threads());
   const size_t most = std::max(job.plan.frames_in_flight, 1U);
   while (job.in_flight.size() < 2 * most) {
@@ -88,7 +99,8 @@ void FrameLifecycle::open(ScheduledJob& job) {
     slot.phase = FramePhase::opening;
     --job.waiting;
     if (!slot.ledger) {
-      slot.ledger = std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches);
+      slot.ledger =
+          std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches, job.plan.rounds);
     }
     job.in_flight.push_back(index);
     step_.say(OpenFrame{job.id, slot.frame});
@@ -103,7 +115,23 @@ void FrameLifecycle::finish(ScheduledJob& job, FrameSlot& slot) {
   // Late films may have overtaken units that are still out.
   leases_.take_back(job, slot);
   slot.phase = FramePhase::finishing;
-  step_.say(FinishFrame{job.id, slot.frame, slot.ledger->unconfirmed()});
+  say_finish(job, slot);
+}
+
+void FrameLifecycle::say_finish(const ScheduledJob& job, const FrameSlot& slot) {
+  uint64_t volume = 0;
+  for (uint32_t tile = 0; tile < job.grid.size(); ++tile) {
+    volume += static_cast<uint64_t>(job.grid.tile(tile).area()) * slot.ledger->planned(tile);
+  }
+  step_.say(FinishFrame{job.id, slot.frame, volume, slot.ledger->unconfirmed()});
+}
+
+void FrameLifecycle::judge_if_due(const ScheduledJob& job, FrameSlot& slot, uint32_t tile) {
+  FrameLedger& ledger = *slot.ledger;
+  if (slot.phase != FramePhase::rendering || !ledger.is_to_judge(tile)) return;
+  ledger.ask(tile, ++last_question_);
+  step_.say(
+      JudgeTile{job.id, slot.frame, job.grid.tile(tile), ledger.planned(tile), last_question_});
 }
 
 void FrameLifecycle::fail(ScheduledJob& job, FrameSlot& slot, std::string reason) {

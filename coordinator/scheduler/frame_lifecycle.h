@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -28,6 +29,7 @@ class FrameLifecycle {
   void on(const FrameRefused& e);
   void on(const FinishDone& e);
   void on(const FinishFailed& e);
+  void on(const TileJudged& e);
 
   /// Opens frames while there is less than half a frame left to lease, or too little for all
   /// threads, or those that are open have workers enough: the next scene is there before the last
@@ -37,6 +39,8 @@ class FrameLifecycle {
   void finish(ScheduledJob& job, FrameSlot& slot);
   /// Finishes a frame that is being rendered, if every film of it is durable and none is suspect.
   void finish_if_complete(ScheduledJob& job, FrameSlot& slot);
+  /// Has the tile judged, if all films that are planned of it are durable.
+  void judge_if_due(const ScheduledJob& job, FrameSlot& slot, uint32_t tile);
   /// Gives the frame up, which is in flight, for this reason.
   void fail(ScheduledJob& job, FrameSlot& slot, std::string reason);
   /// A unit of the frame is hopeless for workers of its class, to which this one belongs: where
@@ -65,6 +69,7 @@ class FrameLifecycle {
   std::optional<TimePoint> next_wake() const;
 
  private:
+  void say_finish(const ScheduledJob& job, const FrameSlot& slot);
   void reopen(ScheduledJob& job, FrameSlot& slot);
   bool note_left(FrameSlot& slot, Origin origin) const;
   bool is_orphaned(const ScheduledJob& job, FrameSlot& slot);
@@ -80,6 +85,7 @@ class FrameLifecycle {
   PendingRecords& records_;
   const Affinity& affinity_;
   TimePoint next_look_;  ///< of restart_stranded()
+  uint64_t last_question_ = 0;
 };
 
 }  // namespace hyades::coordinator

@@ -47,11 +47,13 @@ void JobLifecycle::restore(ScheduledJob& job, const RestoredJob& restored) {
     const auto extent = job.extent_of(accepted.unit);
     if (slot == nullptr || slot->phase != FramePhase::waiting || !extent) continue;
     if (!slot->ledger) {
-      slot->ledger = std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches);
+      slot->ledger =
+          std::make_unique<FrameLedger>(job.grid.order(), job.plan.batches, job.plan.rounds);
       slot->worker_class = class_id(accepted.worker_class);
       films_.take(job, *slot);
     }
     if (slot->ledger->any_held(*extent)) continue;
+    slot->ledger->plan_for(*extent);
     slot->ledger->hold(*extent, {extent->batches, accepted.digest, WorkerId{}, RecordId{}});
   }
 }

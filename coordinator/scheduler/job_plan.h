@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "coordinator/scheduler/ids.h"
+#include "coordinator/scheduler/tile_grid.h"
 #include "core/base/rect.h"
 #include "core/film/unit.h"
 
@@ -27,9 +28,12 @@ struct JobNeeds {
 struct JobPlan {
   std::vector<int32_t> frames;  ///< in the order in which they are rendered; no number twice
   core::PixelRect region;       ///< the pixels of every frame (the crop window)
-  int32_t tile_size = 32;       ///< pixels; fixed for the life of a job
-  uint32_t batches = 1;         ///< of every pixel of every frame
-  uint64_t shuffle = 0;         ///< not 0: lease tiles in a random order (tests)
+  int32_t tile_size = kTile;    ///< pixels; fixed for the life of a job
+  uint32_t batches = 1;         ///< of every pixel of every frame, at most
+  /// After so many batches of a tile it is judged whether it needs more (JudgeTile); ascending, all
+  /// fewer than `batches`. None: every tile gets all.
+  std::vector<uint32_t> rounds;
+  uint64_t shuffle = 0;  ///< not 0: lease tiles in a random order (tests)
 
   int priority = 0;   ///< higher goes first
   std::string owner;  ///< owners of one priority share the farm alike
@@ -49,6 +53,9 @@ struct JobPlan {
   uint32_t max_attempts = 3;
   uint32_t redundancy = 0;       ///< percent of its units that two voices have to render alike
   uint64_t redundancy_seed = 0;  ///< of which units these are: workers must not know it
+
+  /// Batches that every tile gets.
+  uint32_t first_batches() const { return rounds.empty() ? batches : rounds.front(); }
 };
 
 /// A unit whose film is durable.

@@ -40,6 +40,12 @@ void Results::on(const ResultArrived& e) {
   if (ledger.is_suspect(extent->tile) || job->begins_again(*slot)) {
     return reject(e, RejectReason::not_now);
   }
+  // Rendered for a coordinator that has ended, which had found the tile to need it. Whether it does
+  // is asked again, so that nobody has to be believed.
+  if (!ledger.is_planned(*extent)) {
+    return reject(
+        e, ledger.is_undecided(extent->tile) ? RejectReason::not_now : RejectReason::unknown);
+  }
   const HeldRecord* held = ledger.find_held(*extent);
   // After a restart what was merged has no digest any more.
   const bool differs = held && held->digest != Digest{} && held->digest != e.digest;
@@ -196,7 +202,9 @@ void Results::unit_persisted(const UnitRecord& record, const PendingRecord& pend
   for (const Holder& waiter : pending.waiters) {
     step_.say(Acknowledge{waiter.worker, waiter.lease, record.job, unit});
   }
-  if (counts) frames_.finish_if_complete(*job, *slot);
+  if (!counts) return;
+  frames_.judge_if_due(*job, *slot, pending.extent.tile);
+  frames_.finish_if_complete(*job, *slot);
 }
 
 void Results::on(const PersistFailed& e) {

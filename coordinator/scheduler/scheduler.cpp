@@ -69,6 +69,7 @@ std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
           [&](const FrameRefused& e) { p.frames.on(e); },
           [&](const FinishDone& e) { p.frames.on(e); },
           [&](const FinishFailed& e) { p.frames.on(e); },
+          [&](const TileJudged& e) { p.frames.on(e); },
           [&](const WorkerJoined& e) { p.worker_lifecycle.on(e); },
           [&](const WorkerAlive& e) { p.worker_lifecycle.on(e); },
           [&](const WorkerBarred& e) { p.worker_lifecycle.on(e); },

@@ -16,6 +16,9 @@ inline int32_t tile_begin(int32_t at, int32_t tile_size) {
   return past < 0 ? at - past - tile_size : at - past;
 }
 
+/// Pixels along the side of a tile where nothing speaks for another size.
+inline constexpr int32_t kTile = 32;
+
 /// Pixels along the side of a tile of films with splats. Their layer lies over the frame however
 /// small the tile is, so that a unit should be of many samples.
 inline constexpr int32_t kSplatTile = 128;

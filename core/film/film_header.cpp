@@ -109,6 +109,7 @@ std::string write_film_header(const FilmFile& file) {
   text += fmt::format("job {}\nkey {}\nframe {}\nsize {} {}\ncrop {}\nsamples {}\n",
                       escape(info.job_name), escape(info.render_key), info.frame, info.width,
                       info.height, rect_text(info.crop), info.samples);
+  if (info.noise > 0) text += fmt::format("noise {}\n", info.noise);
   text += fmt::format("class {}\nbuild {}\n", escape(info.worker_class), escape(info.build));
   if (version < kNamedLayers) {
     text += fmt::format("layers {} {} {}{}\n", int{layers.depth}, int{layers.albedo},
@@ -148,6 +149,7 @@ Result<FilmHeader> parse_film_header(std::string_view text) {
   lines.numbers("size", info.width, info.height);
   lines.rect("crop", info.crop);
   lines.numbers("samples", info.samples);
+  if (lines.next_is("noise")) lines.numbers("noise", info.noise);
   info.worker_class = unescape(lines.value("class"));
   info.build = unescape(lines.value("build"));
   if (version < kNamedLayers) {

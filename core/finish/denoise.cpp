@@ -140,7 +140,7 @@ struct Found {
   GuidedPicture guided;
   bool albedo = false;
   bool normal = false;
-  float samples = 1e9F;  ///< of a pixel; many where it is not known
+  float samples = 1e9F;  ///< of the pixel that has fewest; many where it is not known
 };
 
 Result<Found> gather(const Image& picture) {
@@ -151,13 +151,12 @@ Result<Found> gather(const Image& picture) {
   const Channels normal = find_channels(picture, "normal.", "XYZ");
   const int alpha = picture.find_channel("A");
   Found found{{}, complete(albedo), complete(normal)};
-  if (const int count = picture.find_channel("samples.N"); count >= 0 && !picture.data.empty())
-    found.samples = picture.data[static_cast<size_t>(count)];
   GuidedPicture& guided = found.guided;
   guided.width = picture.width;
   guided.height = picture.height;
   const size_t stride = picture.channels.size();
   const size_t pixels = picture.data.size() / stride;
+  const int count = picture.find_channel("samples.N");
   guided.color.resize(pixels);
   guided.variance.resize(pixels);
   guided.features.resize(pixels);
@@ -173,6 +172,7 @@ Result<Found> gather(const Image& picture) {
         features[3 + k] = kNormalScale * in[normal[k]];
     }
     if (alpha >= 0) features[6] = std::min(light(in[alpha]), 1.0F);
+    if (count >= 0) found.samples = std::min(found.samples, in[count]);
   }
   return found;
 }

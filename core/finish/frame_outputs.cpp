@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/finish/cryptomatte.h"
 #include "core/finish/denoise.h"
 #include "core/finish/picture.h"
@@ -92,7 +94,7 @@ class OutputWriter {
 Result<std::vector<std::string>> write_outputs(std::span<const OutputDesc> outputs,
                                                const std::string& folder, const FilmInfo& info,
                                                const Film& film, const DisplayTransform* display) {
-  const ImageMetadata metadata = {
+  ImageMetadata metadata = {
       {"hyades.job", info.job_name},
       {"hyades.frame", std::to_string(info.frame)},
       {"hyades.samples", std::to_string(info.samples)},
@@ -100,6 +102,7 @@ Result<std::vector<std::string>> write_outputs(std::span<const OutputDesc> outpu
       {"hyades.class", info.worker_class},
       {"hyades.build", info.build},
   };
+  if (info.noise > 0) metadata.push_back({"hyades.noise", fmt::format("{}", info.noise)});
   Image picture = film.normalised();
   const PixelRect& window = film.window();
   if (window != PixelRect{0, 0, info.width, info.height}) {

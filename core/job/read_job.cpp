@@ -76,6 +76,17 @@ void check_splats(MapReader& top, const Job& job) {
                   job.integrator.type));
 }
 
+/// Light paths end anywhere on the film: whether a tile is clean is no matter of its own samples.
+void check_noise(MapReader& top, const Job& job) {
+  if (job.sampling.noise <= 0.0F || !makes_splats(job.integrator)) return;
+  top.complain(
+      top.where_of("sampling"),
+      fmt::format("sampling has a noise to stop at, which the integrator {} does not know: "
+                  "its light paths end anywhere on the film; expected path, or samples "
+                  "alone",
+                  job.integrator.type));
+}
+
 }  // namespace
 
 void read_job(MapReader& top, Job& job) {
@@ -88,6 +99,7 @@ void read_job(MapReader& top, Job& job) {
   read_sampling(top, job.sampling);
   read_integrator(top, job.integrator);
   check_splats(top, job);
+  check_noise(top, job);
   read_camera(top, job.camera);
   read_textures(top);
   read_materials(top);

@@ -104,6 +104,19 @@ void check_keys(MapReader& reader, FilmDesc& film) {
                               int64_t{film.width} * film.height, kMostPixels));
 }
 
+void check_keys(MapReader& reader, SamplingDesc& sampling) {
+  if (!reader.has("min_samples")) return;
+  if (sampling.noise <= 0.0F) {
+    reader.complain(reader.where_of("min_samples"),
+                    "min_samples without a noise to stop at, expected noise too: without it every "
+                    "pixel gets all samples");
+  } else if (sampling.min_samples > sampling.samples) {
+    reader.complain(reader.where_of("min_samples"),
+                    fmt::format("min_samples is {}, expected at most samples, {}",
+                                sampling.min_samples, sampling.samples));
+  }
+}
+
 void check_keys(MapReader& reader, IntegratorDesc& integrator) {
   const int32_t s = integrator.light_vertices;
   const int32_t t = integrator.camera_vertices;

@@ -4,6 +4,7 @@
 #include "core/job/field_writer.h"
 #include "core/job/layers.h"
 #include "core/job/mesh_files.h"
+#include "core/job/noise_threshold.h"
 #include "core/job/old_lines.h"
 #include "core/job/resolved_parts.h"
 
@@ -17,6 +18,8 @@ constexpr OldLine kOldFilmLines[] = {
     {"filter"},
     {"filter_radius", "00000000"},
 };
+
+constexpr OldLine kOldSamplingLines[] = {{"samples"}, {"seed"}, {"sampler"}};
 
 constexpr OldLine kOldIntegratorLines[] = {
     {"max_depth"},      {"roulette_depth"},  {"clamp", "00000000"},
@@ -70,7 +73,8 @@ std::string resolved_job_text(const Job& job, int32_t frame,
   out.put("units", job.units);
   write_desc(out, "film", job.film, kOldFilmLines);
   if (makes_splats(job.integrator)) write_region(out, job.film);
-  out.map("sampling", "", job.sampling);
+  write_desc(out, "sampling", job.sampling, kOldSamplingLines);
+  if (job.sampling.noise > 0.0F) out.put("noise_exposure", noise_threshold(job).exposure);
   write_desc(out, "integrator", job.integrator, kOldIntegratorLines);
   write_desc(out, "camera", job.camera, kOldCameraLines);
   for (const TextureDesc& texture : job.textures) write_texture(out, texture);

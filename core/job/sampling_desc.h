@@ -66,12 +66,16 @@ struct SamplingDesc {
   uint32_t samples = 64;
   uint64_t seed = 0;
   SamplerName sampler = SamplerName::sobol;
+  float noise = 0.0F;         ///< at which a tile has samples enough; 0: it gets all
+  uint32_t min_samples = 32;  ///< that it gets in any case, where there is a `noise`
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit.integer("samples", self.samples, 1, int64_t{1} << 24);
     visit.integer("seed", self.seed);
     visit.choice("sampler", self.sampler, kSamplerNames);
+    visit.number("noise", self.noise, kUnitInterval);
+    visit.integer("min_samples", self.min_samples, 1, int64_t{1} << 24);
   }
 };
 

@@ -44,7 +44,7 @@ class Kept final : public FilmStore::Owner {
     return told;
   }
   void finish(int32_t frame) {
-    on_its_thread([&] { film_store_.forget(frame, true); });
+    on_its_thread([&] { film_store_.forget(frame, FrameEnd::finished); });
   }
   void make_room() {
     film_store_.make_room();
@@ -68,7 +68,7 @@ class Kept final : public FilmStore::Owner {
   void drained() override {}
 
  private:
-  static FilmSet films() { return {{1, 2}, {0, 0, 64, 16}, kFilmSamples, 1}; }
+  static FilmSet films() { return {{1, 2}, {0, 0, 64, 16}, kFilmSamples}; }
   static FilmStoreOptions log(FaultyFiles& files, Duration patience) {
     FilmStoreOptions log;
     log.patience = patience;

@@ -15,16 +15,29 @@ void SimulatedWorld::act(const OpenFrame& a) {
   }
 }
 
+core::Film SimulatedWorld::oracle_of(const SimJob& job, int32_t number) {
+  if (job.plan.rounds.empty()) return job.disk->oracle(number);
+  core::Film film = job.disk->blank();
+  const TileGrid grid(job.plan.region, job.plan.tile_size);
+  for (uint32_t t = 0; t < grid.size(); ++t) {
+    const core::PixelRect tile = grid.tile(t);
+    (void)film.merge(job.disk->film_of({number, tile, {0, job.batches_of(number, tile)}}, 0));
+  }
+  return film;
+}
+
 void SimulatedWorld::act(const FinishFrame& a) {
   SimJob& job = jobs_.at(a.job);
   SimFrame& frame = job.frames.at(a.frame);
   const TileGrid grid(job.plan.region, job.plan.tile_size);
   uint64_t oracle = 0;
+  uint64_t volume = 0;
   for (uint32_t t = 0; t < grid.size(); ++t) {
-    for (uint32_t b = 0; b < job.plan.batches; ++b) {
-      oracle += value_of(a.frame, grid.tile(t), b);
-    }
+    const uint32_t batches = job.batches_of(a.frame, grid.tile(t));
+    volume += batches * static_cast<uint64_t>(grid.tile(t).area());
+    for (uint32_t b = 0; b < batches; ++b) oracle += value_of(a.frame, grid.tile(t), b);
   }
+  if (a.volume != volume) fail("a frame is finished with other batches than it needs");
   bool wrong = false;
   SimRow row{a.unconfirmed, {}};
   for (const auto& [place, batch] : frame.batches) {
@@ -44,7 +57,7 @@ void SimulatedWorld::act(const FinishFrame& a) {
       }
     }
   }
-  if (real_store_ && !wrong && frame.film.digest() != job.disk->oracle(a.frame).digest()) {
+  if (real_store_ && !wrong && frame.film.digest() != oracle_of(job, a.frame).digest()) {
     fail("a film is finished whose bits are not the frame's");
   }
   frames_wrong += wrong;

@@ -151,6 +151,23 @@ void SimulatedWorld::act(const Merge& a) {
   if (!merged) fail("a film cannot be merged: " + merged.error().message);
 }
 
+/// By the store, when what it was handed before is merged. It may take its time, and die meanwhile.
+void SimulatedWorld::act(const JudgeTile& a) {
+  ++tiles_judged;
+  const SimJob& job = jobs_.at(a.job);
+  std::set<uint32_t> there;
+  for (const auto& [place, batch] : job.frames.at(a.frame).batches) {
+    if (std::get<0>(place) == a.tile.x0 && std::get<1>(place) == a.tile.y0) {
+      there.insert(std::get<2>(place));
+    }
+  }
+  if (there.size() != a.batches || *there.rbegin() + 1 != a.batches) {
+    fail("a tile is judged by other batches than those planned");
+  }
+  tell_later(
+      TileJudged{a.job, a.frame, a.tile, a.serial, job.is_enough(a.frame, a.tile, a.batches)});
+}
+
 void SimulatedWorld::act(const FrameRestarted& a) {
   ++frames_restarted;
   SimFrame& frame = frame_of(a.job, a.frame);

@@ -51,6 +51,7 @@ class SimulatedWorld {
   uint64_t left_suspect = 0;  ///< ... after their job had ended
   uint64_t struck_out = 0;    ///< workers in quarantine because they failed unit after unit
   uint64_t frames_wrong = 0;  ///< finished before anybody compared
+  uint64_t tiles_judged = 0;
   // Of the real store.
   uint64_t films_replayed = 0;
   uint64_t power_cuts = 0;
@@ -105,6 +106,7 @@ class SimulatedWorld {
     return jobs_.at(job).stored_units.contains(name(unit));
   }
   void act(const Merge& a);
+  void act(const JudgeTile& a);
   void act(const FrameRestarted& a);
   void act(const TileVoided& a);
 
@@ -119,6 +121,8 @@ class SimulatedWorld {
   void check_disks();
 
   // simulated_frames.cpp
+  /// The film that the frame must have in the end.
+  static core::Film oracle_of(const SimJob& job, int32_t number);
   void act(const OpenFrame& a);
   void act(const FinishFrame& a);
   void act(const FrameDone& a);

@@ -52,6 +52,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   uint64_t failed_commits = 0;
   uint64_t refused = 0;
   uint64_t compactions = 0;
+  uint64_t judged = 0;
   for (uint64_t i = 0; i < worlds; ++i) {
     const uint64_t seed = only != 0 ? only : i + 1;
     SimulatedWorld world(seed);
@@ -81,6 +82,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
     failed_commits += world.failed_commits;
     refused += world.refused;
     compactions += world.compactions;
+    judged += world.tiles_judged;
   }
   RecordProperty("restarts", std::to_string(restarts));
   RecordProperty("kills", std::to_string(kills));
@@ -128,6 +130,7 @@ TEST(Simulation, EveryBatchCountsOnceAndEveryJobEnds) {
   EXPECT_GE(failed_commits, worlds / 2);
   EXPECT_GE(refused, worlds / 10);
   EXPECT_GE(compactions, worlds / 10);
+  EXPECT_GE(judged, worlds);
 }
 
 }  // namespace

@@ -168,7 +168,10 @@ class FarmWorld {
     v1::GetJobRequest request;
     request.set_job(job);
     v1::GetJobResponse response;
-    const grpc::Status status = jobs->Get(context().get(), request, &response);
+    const auto c = context();
+    // gRPC may still wait before it tries this address again, where nobody was a moment ago.
+    c->set_wait_for_ready(true);
+    const grpc::Status status = jobs->Get(c.get(), request, &response);
     EXPECT_TRUE(status.ok()) << status.error_message();
     return response;
   }
@@ -222,6 +225,13 @@ class FarmWorld {
 
   /// The pixels of frame `frame` of a job are those of the oracle, to the last bit.
   void expect_truth(uint64_t job, int32_t frame) const {
+    expect_picture(job, frame,
+                   fake_film({frame, {0, 0, kWidth, kHeight}, {0, core::batch_count(kSamples)}},
+                             kSamples, core::make_film_layout({})));
+  }
+
+  /// The pixels of frame `frame` of a job are those of `film`, to the last bit.
+  void expect_picture(uint64_t job, int32_t frame, const core::Film& film) const {
     char name[32];
     std::snprintf(name, sizeof name, "balls.%04d.exr", frame);
     const std::string path = folder.file(name);
@@ -232,10 +242,7 @@ class FarmWorld {
     std::fclose(file);
     const auto got = core::read_image_file(path);
     ASSERT_TRUE(got.ok()) << got.error().message;
-    const core::Image truth =
-        fake_film({frame, {0, 0, kWidth, kHeight}, {0, core::batch_count(kSamples)}}, kSamples,
-                  core::make_film_layout({}))
-            .normalised();
+    const core::Image truth = film.normalised();
     ASSERT_EQ(got->width, truth.width);
     ASSERT_EQ(got->height, truth.height);
     for (const char* name_of : {"R", "G", "B"}) {

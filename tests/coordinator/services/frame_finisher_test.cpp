@@ -129,7 +129,8 @@ TEST(FrameFinisher, FailsAFrameWhoseFilmIsNotWhole) {
     const StateLock lock(world.context->mutex);
     // Of the two batches that are said to be there one is missing.
     world.active->complete[1] = std::make_shared<core::Film>(FinisherWorld::film_of({0, 1}));
-    world.finisher->add(*world.active, 1, {});
+    world.finisher->add(*world.active, {kJob, 1, 2 * static_cast<uint64_t>(kRegion.area()), {}},
+                        {});
   }
   EXPECT_TRUE(eventually([&] { return !world.failures.reason().empty(); }));
   EXPECT_NE(world.failures.reason().find("not whole"), std::string::npos)
@@ -139,18 +140,18 @@ TEST(FrameFinisher, FailsAFrameWhoseFilmIsNotWhole) {
 TEST(FrameFinisher, WaitsForAFilmThatIsStillBeingMerged) {
   FinisherWorld world;
   WorkerTable workers(*world.context, *world.jobs);
-  FrameProgress progress(*world.context, *world.jobs, workers, *world.finisher, world.timelines);
+  FrameProgress progress(*world.context, *world.dispatcher, *world.jobs, workers, *world.finisher,
+                         world.timelines);
   SlowMerger merger(*world.active);
   auto& store = world.active->film_store;
-  store =
-      std::make_unique<FilmStore>(FilmSet{{1}, kRegion, kSamples, 2}, FilmStoreOptions{}, merger);
+  store = std::make_unique<FilmStore>(FilmSet{{1}, kRegion, kSamples}, FilmStoreOptions{}, merger);
   ASSERT_TRUE(store->start(32).ok());
   store->append(RecordId{1}, UnitRecord{kJob, {{1, kRegion, {0, 2}}, {}, {}}},
                 FinisherWorld::film_of({0, 2}));
   ASSERT_TRUE(eventually([&] { return merger.begun.load(); }));
   {
     const StateLock lock(world.context->mutex);
-    progress.finish(*world.active, {kJob, 1, {}});
+    progress.finish(*world.active, {kJob, 1, 2 * static_cast<uint64_t>(kRegion.area()), {}});
   }
   std::this_thread::sleep_for(200ms);
   EXPECT_EQ(world.failures.reason(), "") << "it was finished without the film";
@@ -166,12 +167,13 @@ TEST(FrameFinisher, WaitsForAFilmThatIsStillBeingMerged) {
 TEST(FrameProgress, AFrameThatIsToldOverAfterItsJobIsNotCountedTwice) {
   FinisherWorld world;
   WorkerTable workers(*world.context, *world.jobs);
-  FrameProgress progress(*world.context, *world.jobs, workers, *world.finisher, world.timelines);
+  FrameProgress progress(*world.context, *world.dispatcher, *world.jobs, workers, *world.finisher,
+                         world.timelines);
   ActiveJob& active = *world.active;
   SlowMerger merger(active);
   const StateLock lock(world.context->mutex);
   active.film_store =
-      std::make_unique<FilmStore>(FilmSet{{1}, kRegion, kSamples, 2}, FilmStoreOptions{}, merger);
+      std::make_unique<FilmStore>(FilmSet{{1}, kRegion, kSamples}, FilmStoreOptions{}, merger);
   // The turn of another thread was quicker, and has counted the frame with all others.
   active.stored.frames_done = 1;
   active.making_videos = true;

@@ -82,6 +82,20 @@ TEST(Complaints, Outputs) {
   EXPECT_EQ(complaints("name: b\noutputs: [{file: ./b.film.exr}]\n"), "");
 }
 
+TEST(Complaints, ANoiseToStopAt) {
+  EXPECT_EQ(complaints("sampling: {samples: 512, noise: 0.02, min_samples: 64}\n"), "");
+  EXPECT_EQ(complaints("sampling: {noise: -0.1}\n"),
+            "job.yaml:2:19: noise is '-0.1', expected a number from 0 to 1\n");
+  EXPECT_EQ(complaints("sampling: {min_samples: 64}\n"),
+            "job.yaml:2:25: min_samples without a noise to stop at, expected noise too: without it "
+            "every pixel gets all samples\n");
+  EXPECT_EQ(complaints("sampling: {noise: 0.1, samples: 32, min_samples: 64}\n"),
+            "job.yaml:2:50: min_samples is 64, expected at most samples, 32\n");
+  EXPECT_EQ(complaints("sampling: {noise: 0.1}\nintegrator: bdpt\n"),
+            "job.yaml:2:11: sampling has a noise to stop at, which the integrator bdpt does not "
+            "know: its light paths end anywhere on the film; expected path, or samples alone\n");
+}
+
 TEST(Complaints, AFilterThatHasNoRoomForSplats) {
   for (const std::string type : {"bdpt", "mlt"}) {
     EXPECT_EQ(complaints("film: {filter: center}\nintegrator: {type: " + type + "}\n"),

@@ -12,8 +12,8 @@ TEST(Complaints, UnknownKeysSuggestTheNearestOne) {
   EXPECT_EQ(complaints("flim: {size: [2, 2]}\n"),
             "job.yaml:2:1: unknown key 'flim' in the job, did you mean 'film'?\n");
   EXPECT_EQ(complaints("sampling: {quality: 7}\n"),
-            "job.yaml:2:12: unknown key 'quality' in sampling; expected sampler, samples or "
-            "seed\n");
+            "job.yaml:2:12: unknown key 'quality' in sampling; expected min_samples, noise, "
+            "sampler, samples or seed\n");
 }
 
 TEST(Complaints, KeysOfAnotherTypeSayWhereTheyBelong) {

@@ -221,6 +221,7 @@ Pairs company(const JobKey& id) {
   if (id == JobKey{"materials.principled", "emission_color"}) return {{"emission_strength", "2"}};
   if (id == JobKey{"materials.principled", "diffuse_transmission"})
     return {{"thin_walled", "true"}};
+  if (id == JobKey{"sampling", "min_samples"}) return {{"noise", "0.1"}};
   if (id == JobKey{"integrator.bdpt", "mis"}) return {{"strategy", "[1, 2]"}};
   if (id == JobKey{"textures.mapping", "space"}) return {{"type", "spherical"}};
   if (id == JobKey{"textures.mapping", "blend"}) return {{"type", "triplanar"}};

@@ -48,6 +48,16 @@ TEST(RenderKey, KnowsTheCropOnlyWhereLightPathsSplat) {
   EXPECT_NE(key(crop + "integrator: bdpt\n"), key(whole + "integrator: bdpt\n"));
 }
 
+TEST(RenderKey, KnowsTheExposureOnlyWhereTilesStopAtANoise) {
+  const std::string dark = "outputs: [{file: a.exr}, {file: a.png}]\n";
+  const std::string light = "outputs: [{file: a.exr}, {file: a.png, exposure: 1}]\n";
+  EXPECT_EQ(key(dark), key(light));
+  const std::string noise = "sampling: {noise: 0.1}\n";
+  EXPECT_NE(key(dark), key(noise + dark));
+  EXPECT_NE(key(noise + dark), key(noise + light));
+  EXPECT_NE(key(noise + dark), key("sampling: {noise: 0.1, min_samples: 48}\n" + dark));
+}
+
 TEST(RenderKey, DependsOnTheFrameAndOnMotionWithinTheShutter) {
   const std::string moving =
       "frames: {range: 1-9, shutter: SHUTTER}\nobjects: {a: {shape: sphere, "
