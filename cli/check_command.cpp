@@ -22,6 +22,7 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/job/layers.h"
+#include "core/job/noise_threshold.h"
 #include "core/render/frame_renderer.h"
 #include "core/scene/build_scene.h"
 #include "core/scene/scene_files.h"
@@ -138,7 +139,7 @@ void print_contents(const core::Job& job, const core::Scene& scene, double sampl
   std::printf("  objects    %s, %s triangles, %zu lights\n",
               core::format_count(scene.objects.size()).c_str(),
               core::format_count(scene.triangles).c_str(), scene.lights.size());
-  if (job.sampling.noise > 0.0F) {
+  if (core::noise_threshold(job).adaptive()) {
     std::printf("  samples    at most %u per pixel, %s in all; tiles stop at a noise of %g\n",
                 job.sampling.samples, samples_in_words(samples).c_str(),
                 double{job.sampling.noise});
@@ -209,8 +210,9 @@ core::Status print_summary(const CheckOptions& options, const core::Job& job,
   print_memory(job, **scene);
   if (seconds) {
     const double hours = *seconds * samples / 3600.0;
-    std::printf("  cost       about %s of one core like this one (%.3g core-hours)\n",
-                duration_in_words(hours).c_str(), hours);
+    const bool adaptive = core::noise_threshold(job).adaptive();
+    std::printf("  cost       %s %s of one core like this one (%.3g core-hours)\n",
+                adaptive ? "at most" : "about", duration_in_words(hours).c_str(), hours);
   }
   return {};
 }

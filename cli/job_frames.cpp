@@ -19,6 +19,7 @@
 #include "core/finish/picture.h"
 #include "core/job/film_file.h"
 #include "core/job/layers.h"
+#include "core/job/noise_threshold.h"
 #include "core/job/output_path.h"
 #include "core/job/render_key.h"
 #include "core/render/class_probe.h"
@@ -243,7 +244,7 @@ core::FilmInfo JobFrames::film_info(int32_t frame) const {
   info.height = job.film.height;
   info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
-  info.noise = job.sampling.noise;
+  info.aim = core::noise_threshold(job).aim;
   info.worker_class = machine_class();
   info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
   return info;

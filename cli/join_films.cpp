@@ -1,12 +1,12 @@
 #include "cli/join_films.h"
 
-#include <algorithm>
 #include <cstddef>
-#include <cstdint>
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "core/film/coverage_gaps.h"
+#include "core/film/noise.h"
 #include "core/film/unit.h"
 
 namespace hyades::cli {
@@ -49,7 +49,7 @@ core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths) {
 }
 
 std::string share_held(const core::FilmFile& file) {
-  if (file.info.noise > 0) {
+  if (file.info.aim.noise > 0) {
     const double each = file.film.all_samples() / static_cast<double>(file.info.crop.area());
     return fmt::format("{:.1f} of at most {} samples per pixel", each, file.info.samples);
   }
@@ -61,9 +61,19 @@ std::string share_held(const core::FilmFile& file) {
 }
 
 std::string what_is_missing(const core::FilmFile& file) {
-  const uint32_t all = core::batch_count(file.info.samples);
-  const uint32_t batches = file.info.noise > 0 ? std::min(all, 2U) : all;
-  const auto gaps = core::gaps(file.film.coverage(), file.info.crop, batches);
+  const core::NoiseThreshold threshold =
+      core::make_noise_threshold(file.info.aim, file.info.samples);
+  if (threshold.adaptive()) {
+    const std::vector<core::PixelRect> tiles =
+        core::unfinished_tiles(file.film, file.info.crop, file.info.samples, threshold);
+    if (tiles.empty()) return {};
+    const core::PixelRect& first = tiles.front();
+    return fmt::format("samples of {}, the first at pixels x {} to {}, y {} to {}",
+                       core::counted(tiles.size(), "tile"), first.x0, first.x1 - 1, first.y0,
+                       first.y1 - 1);
+  }
+  const auto gaps =
+      core::gaps(file.film.coverage(), file.info.crop, core::batch_count(file.info.samples));
   return gaps.empty() ? std::string() : core::describe_gaps(gaps, file.info.samples);
 }
 

@@ -17,8 +17,7 @@ core::Result<core::FilmFile> join_films(const std::vector<std::string>& paths);
 std::string share_held(const core::FilmFile& file);
 
 /// What is missing of a film, in words; empty where it is whole. Where tiles have samples enough at
-/// some noise a film is whole when every pixel has the two batches that all get; how many more each
-/// needs it does not say.
+/// some noise: the tiles that have not.
 std::string what_is_missing(const core::FilmFile& file);
 
 }  // namespace hyades::cli

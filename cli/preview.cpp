@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/job/output_path.h"
+#include "core/job/noise_threshold.h"
 
 namespace hyades::cli {
 
@@ -18,15 +18,8 @@ void make_preview(core::Job& job, int width) {
   job.keep_films = false;
 
   core::OutputDesc preview;
-  const auto shown = std::find_if(job.outputs.begin(), job.outputs.end(), [](const auto& output) {
-    return core::file_extension(output.file) != ".exr";
-  });
-  if (shown != job.outputs.end()) {
-    preview.tone_map = shown->tone_map;
-    preview.exposure = shown->exposure;
-  } else if (!job.outputs.empty()) {
-    preview.exposure = job.outputs.front().exposure;  // the camera's
-  }
+  if (const core::OutputDesc* shown = core::display_output(job)) preview.tone_map = shown->tone_map;
+  preview.exposure = core::shown_exposure(job);
   const char* const marks = job.frames.first == job.frames.last ? "" : ".####";
   preview.file = job.name + marks + ".preview.png";
   preview.denoise = "true";

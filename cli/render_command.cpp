@@ -149,6 +149,7 @@ coordinator::LocalPlan plan_of(const RenderOptions& options, const core::Job& jo
   plan.samples = job.sampling.samples;
   plan.batches = batches_of(options, job);
   plan.threshold = core::noise_threshold(job);
+  if (plan.threshold.adaptive()) plan.tile_size = core::kJudgedTile;
   plan.threads = options.threads;
   if (core::makes_splats(job.integrator)) plan.tile_size = coordinator::kSplatTile;
   plan.frames_in_flight = room.frames_in_flight();

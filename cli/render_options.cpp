@@ -15,6 +15,7 @@
 #include "cli/number_range.h"
 #include "cli/preview.h"
 #include "core/job/film_file.h"
+#include "core/job/noise_threshold.h"
 #include "core/job/output_path.h"
 
 namespace hyades::cli {
@@ -43,6 +44,15 @@ core::PixelRect crop_of(const RenderOptions& options, const core::Job& job) {
   const core::PixelRect whole = core::render_window(job.film);
   if (options.crop.empty()) return whole;
   return intersection(whole, {options.crop[0], options.crop[1], options.crop[2], options.crop[3]});
+}
+
+/// Whether an edge of `part` lies within tiles of `whole` that are judged by their noise.
+bool cuts_judged_tiles(const core::PixelRect& part, const core::PixelRect& whole) {
+  const auto cuts = [](int32_t edge, int32_t first, int32_t last) {
+    return edge != first && edge != last && edge % core::kJudgedTile != 0;
+  };
+  return cuts(part.x0, whole.x0, whole.x1) || cuts(part.x1, whole.x0, whole.x1) ||
+         cuts(part.y0, whole.y0, whole.y1) || cuts(part.y1, whole.y0, whole.y1);
 }
 
 /// ".tile-2-of-3.samples-0-31"
@@ -188,14 +198,20 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
     return complain("--preview: expected no --tile and no --samples of a range beside it");
   }
   if (options.tile) {
-    if (const auto tile = tile_of(crop_of(options, job), *options.tile); !tile) {
-      return complain(tile.error().message);
+    const core::PixelRect whole = crop_of(options, job);
+    const auto tile = tile_of(whole, *options.tile);
+    if (!tile) return complain(tile.error().message);
+    if (core::noise_threshold(job).adaptive() && cuts_judged_tiles(*tile, whole)) {
+      return complain(fmt::format(
+          "--tile {}/{}: expected fewer parts, for the job stops at a noise: its tiles of {} x {} "
+          "pixels are judged whole",
+          options.tile->index, options.tile->count, core::kJudgedTile, core::kJudgedTile));
     }
   }
   if (options.samples.range) {
     const auto batches = batches_of(*options.samples.range, job.sampling.samples);
     if (!batches) return complain(batches.error().message);
-    if (job.sampling.noise > 0.0F) {
+    if (core::noise_threshold(job).adaptive()) {
       return complain(
           "--samples: expected how many, not which: the job stops at a noise, which cannot be told "
           "of some samples alone");

@@ -44,7 +44,9 @@ v1::FilmHeader to_wire(const core::FilmInfo& info) {
   wire.set_height(info.height);
   *wire.mutable_crop() = to_wire(info.crop);
   wire.set_samples(info.samples);
-  wire.set_noise(info.noise);
+  wire.set_noise(info.aim.noise);
+  wire.set_noise_exposure(info.aim.exposure);
+  wire.set_min_samples(info.aim.min_samples);
   wire.set_worker_class(info.worker_class);
   wire.set_build(info.build);
   return wire;
@@ -91,7 +93,7 @@ core::Result<core::FilmInfo> from_wire(const v1::FilmHeader& wire) {
   info.height = wire.height();
   info.crop = *crop;
   info.samples = wire.samples();
-  info.noise = wire.noise();
+  info.aim = {wire.noise(), wire.noise_exposure(), wire.min_samples()};
   info.worker_class = wire.worker_class();
   info.build = wire.build();
   return info;

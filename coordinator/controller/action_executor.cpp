@@ -37,6 +37,9 @@ void ActionExecutor::act(const std::vector<Action>& actions, Turn& turn, Deliver
             [&](const Revoke& revoke) HYADES_REQUIRES(state_lock) { send(revoke); },
             [&](const Persist& persist)
                 HYADES_REQUIRES(state_lock) { films_.persist(persist, delivery); },
+            [&](const TileSpared& spared) HYADES_REQUIRES(state_lock) {
+              if (ActiveJob* active = jobs_.find(spared.job)) frames_.spare(*active, spared);
+            },
             [&](const Acknowledge& taken) HYADES_REQUIRES(state_lock) { send(taken, delivery); },
             [&](const Reject& reject) HYADES_REQUIRES(state_lock) { send(reject, delivery); },
             [&](const Conflict& conflict) HYADES_REQUIRES(state_lock) { note(conflict); },

@@ -112,7 +112,7 @@ core::Status check_outputs(const core::Job& job) {
 
 /// What is asked for of the job's outputs all the time.
 void note_outputs(const core::Job& job, ActiveJob& active) {
-  if (const core::OutputDesc* output = core::display_output(job.outputs)) {
+  if (const core::OutputDesc* output = core::display_output(job)) {
     active.tone_map = output->tone_map;
     active.exposure = output->exposure;
   }
@@ -135,7 +135,7 @@ uint64_t memory_of(const std::vector<core::VideoDesc>& videos) {
 
 int32_t tile_size_of(const core::PixelRect& region, uint32_t samples, bool splats, bool adaptive) {
   if (splats) return kSplatTile;
-  if (adaptive) return kTile;
+  if (adaptive) return core::kJudgedTile;
   const auto along = [](int32_t pixels) { return (pixels + kLargeTile - 1) / kLargeTile; };
   const uint64_t pieces = static_cast<uint64_t>(along(region.width())) *
                           static_cast<uint64_t>(along(region.height())) *
@@ -246,7 +246,8 @@ std::optional<int32_t> ActiveJob::preview_frame() const {
 
 v1::Job ActiveJob::describe(uint32_t leased) const {
   v1::Job wire = coordinator::describe(stored);
-  const uint64_t samples = stored.samples - samples_spared;
+  const uint64_t samples = expected_samples(samples_done, samples_spared,
+                                            stored.samples - samples_spared - samples_done);
   wire.set_samples(samples);
   wire.set_samples_done(samples_done);
   wire.set_leased(leased);
@@ -265,7 +266,8 @@ v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const
   v1::Frame wire;
   wire.set_frame(number);
   wire.set_state(note.state);
-  wire.set_samples(samples_per_frame - note.samples_spared);
+  wire.set_samples(expected_samples(note.samples_done, note.samples_spared,
+                                    samples_per_frame - note.samples_spared - note.samples_done));
   wire.set_samples_done(note.samples_done);
   wire.set_reason(farm::wire_text(note.reason));
   wire.set_worker_class(note.worker_class);
@@ -283,7 +285,7 @@ core::FilmInfo film_info(const farm::ReadJob& read, int32_t frame) {
   info.height = job.film.height;
   info.crop = core::render_window(job.film);
   info.samples = job.sampling.samples;
-  info.noise = job.sampling.noise;
+  info.aim = core::noise_threshold(job).aim;
   info.build = fmt::format("hyades {}, renderer {}", core::kVersion, core::kRendererRevision);
   return info;
 }

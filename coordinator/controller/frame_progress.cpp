@@ -82,18 +82,14 @@ void FrameProgress::judge(ActiveJob& active, const JudgeTile& judge) {
     const auto film = film_store->film(judge.frame);
     const bool enough = film && core::is_clean(*film, judge.tile, threshold);
     Turn turn(dispatcher_);
-    ActiveJob* still = jobs_.find(judge.job);
-    if (still == nullptr) return;
-    if (enough) spare(*still, judge);
     turn.tell(TileJudged{judge.job, judge.frame, judge.tile, judge.serial, enough});
   });
 }
 
-/// The tile needs no more batches than it has.
-void FrameProgress::spare(ActiveJob& active, const JudgeTile& judge) {
-  const core::BatchRange rest{judge.batches, core::batch_count(active.samples) - judge.batches};
-  const uint64_t samples = samples_of(active, judge.tile, rest);
-  active.touch(judge.frame).samples_spared += samples;
+void FrameProgress::spare(ActiveJob& active, const TileSpared& spared) {
+  const core::BatchRange rest{spared.batches, core::batch_count(active.samples) - spared.batches};
+  const uint64_t samples = samples_of(active, spared.tile, rest);
+  active.touch(spared.frame).samples_spared += samples;
   active.samples_spared += samples;
 }
 

@@ -28,6 +28,8 @@ class FrameProgress {
   /// Has the film store's thread judge whether the tile has samples enough, once it has merged what
   /// was handed over before; the scheduler hears of it.
   void judge(ActiveJob& active, const JudgeTile& judge) HYADES_REQUIRES(state_lock);
+  /// The tile needs no more batches than it has.
+  void spare(ActiveJob& active, const TileSpared& spared) HYADES_REQUIRES(state_lock);
   /// The film store has taken the tile out of its frame's film.
   void tile_voided(ActiveJob& active, const TileVoided& voided) HYADES_REQUIRES(state_lock);
   /// Hands the frame to the finisher once its film has all that was delivered.
@@ -42,7 +44,6 @@ class FrameProgress {
   void reopened(ActiveJob& active, const FrameReopened& action) HYADES_REQUIRES(state_lock);
 
  private:
-  void spare(ActiveJob& active, const JudgeTile& judge) HYADES_REQUIRES(state_lock);
   void count_film(ActiveJob& active, const Merge& merge, int64_t begun_us)
       HYADES_REQUIRES(state_lock);
   void hand_over(ActiveJob& active, const FinishFrame& finish) HYADES_REQUIRES(state_lock);

@@ -96,7 +96,7 @@ void JobFilms::fail_frame(ActiveJob& active, RecordId id, const FrameFailedRecor
 
 std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
   const uint32_t samples = active.samples;
-  FilmSet films{active.numbers, active.region, samples};
+  FilmSet films{active.numbers, active.region, samples, active.threshold.adaptive()};
   FilmStoreOptions place;
   place.max_waiting_bytes = kWaitingBytes;
   place.folder = context_.films_folder(active.stored.id);

@@ -46,6 +46,21 @@ grpc::ByteBuffer brief_of(ActiveJob& active) {
   return bytes_of(told);
 }
 
+/// What became of a frame that is over, by its state and what its film holds.
+FrameEnd end_of(const ActiveJob& active, int32_t frame, v1::FrameState state)
+    HYADES_REQUIRES(state_lock) {
+  if (state == v1::FRAME_STATE_DONE) return FrameEnd::finished;
+  const auto film = active.film_store->film(frame);
+  const auto batches =
+      static_cast<uint64_t>(active.region.area()) * core::batch_count(active.samples);
+  const bool complete =
+      film &&
+      (active.threshold.adaptive()
+           ? core::unfinished_tiles(*film, active.region, active.samples, active.threshold).empty()
+           : film->coverage().volume() == batches);
+  return complete ? FrameEnd::unwritten : FrameEnd::failed;
+}
+
 /// What the scheduler is told of the job.
 JobPlan plan_of(const ActiveJob& active, int32_t tile_size, uint64_t film_memory)
     HYADES_REQUIRES(state_lock) {
@@ -320,8 +335,7 @@ void JobRecovery::restore_films(ActiveJob& active, const LogContents& contents,
       std::erase(restored.finished, number);
     }
     if (frame.state != v1::FRAME_STATE_WAITING) {
-      active.film_store->forget(
-          number, frame.state == v1::FRAME_STATE_DONE ? FrameEnd::finished : FrameEnd::unwritten);
+      active.film_store->forget(number, end_of(active, number, frame.state));
       continue;
     }
     frame.state = v1::FRAME_STATE_RENDERING;

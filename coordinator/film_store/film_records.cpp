@@ -227,7 +227,9 @@ class Reader {
     if (size < 1) return core::Error{"a film stands before the record of its cut"};
     for (int32_t y = tile_begin(common.y0, size); y < common.y1; y += size) {
       for (int32_t x = tile_begin(common.x0, size); x < common.x1; x += size) {
-        const core::PixelRect tile = core::intersection(filter_.region, {x, y, x + size, y + size});
+        const core::PixelRect cell{x, y, x + size, y + size};
+        const core::PixelRect tile = core::intersection(filter_.region, cell);
+        if (filter_.judged && core::intersection(contents_.cut.region, cell) != tile) continue;
         if (core::Status merged = merge_tile(film, tile, whole); !merged) return merged;
       }
     }

@@ -76,6 +76,9 @@ struct LogFilter {
   core::PixelRect region;
   uint32_t samples = 1;
   std::function<FrameKey(int32_t frame)> key;
+  /// How many batches a tile has was decided by all of its pixels: of films of another region only
+  /// tiles are taken that are the same there.
+  bool judged = false;
 };
 
 /// Reads all of `log`, which has just been opened, merging the films of the frames of `filter`;

@@ -95,8 +95,11 @@ core::Status FilmStore::open_log(bool erase) {
 core::Result<LogContents> FilmStore::open() {
   if (options_.folder.empty()) return LogContents{};
   if (core::Status opened = open_log(!options_.resume); !opened) return opened.error();
-  const LogFilter filter{
-      {set_.frames.begin(), set_.frames.end()}, set_.region, set_.samples, options_.frame_key};
+  const LogFilter filter{{set_.frames.begin(), set_.frames.end()},
+                         set_.region,
+                         set_.samples,
+                         options_.frame_key,
+                         set_.judged};
   auto contents = read_log(*log_, filter);
   if (contents && !contents->empty && contents->cut.tile_size == 0) {
     // Its beginning is damaged: without the cut the films cannot be told apart into units.
@@ -329,12 +332,14 @@ void FilmStore::apply(const Record& record) {
                  },
                  [&](const FrameFinishedRecord& done) {
                    finished_[done.frame] = {key_of(done.frame), set_.region};
+                   unfinished_.erase(done.frame);
                  },
                  [](const FrameFailedRecord&) {},
                  [&](const FrameRestartedRecord& restarted) {
                    films_.erase(restarted.frame);
                    classes_.erase(restarted.frame);
                    finished_.erase(restarted.frame);
+                   unfinished_.erase(restarted.frame);
                  },
                  [&](const TileVoidedRecord& voided) {
                    const auto whole = films_.find(voided.frame);

@@ -27,6 +27,7 @@ struct FilmSet {
   std::vector<int32_t> frames;
   core::PixelRect region;  ///< of every frame
   uint32_t samples = 1;    ///< per pixel, of the whole job
+  bool judged = false;     ///< its tiles are judged: see LogFilter
 };
 
 /// What became of a frame that is over.

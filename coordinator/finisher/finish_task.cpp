@@ -57,7 +57,7 @@ core::Status write_finish_task(const std::string& folder, const FinishTask& task
                {"size", {info.width, info.height}},
                {"crop", {info.crop.x0, info.crop.y0, info.crop.x1, info.crop.y1}},
                {"samples", info.samples},
-               {"noise", info.noise},
+               {"noise", {info.aim.noise, info.aim.exposure, info.aim.min_samples}},
                {"class", info.worker_class},
                {"build", info.build},
                {"film", task.film},
@@ -89,7 +89,8 @@ core::Result<FinishTask> read_finish_task(const std::string& folder) {
     const Json& crop = json->at("crop");
     info.crop = {crop.at(0), crop.at(1), crop.at(2), crop.at(3)};
     info.samples = json->at("samples");
-    info.noise = json->at("noise");
+    const Json& aim = json->at("noise");
+    info.aim = {aim.at(0), aim.at(1), aim.at(2)};
     info.worker_class = json->at("class");
     info.build = json->at("build");
     task.film = json->at("film");

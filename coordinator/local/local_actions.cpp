@@ -32,15 +32,15 @@ void LocalRun::judge_later(const JudgeTile& judge) {
   film_store_.call([this, judge] {
     const auto film = film_store_.film(judge.frame);
     const bool enough = film && core::is_clean(*film, judge.tile, plan_.threshold);
-    if (enough) {
-      const core::BatchRange rest{judge.batches, batches_of(plan_).count - judge.batches};
-      const uint64_t samples = core::samples_in(judge.tile, rest, plan_.samples);
-      const core::MutexLock lock(mutex_);
-      progress_.samples -= samples;
-      spared_samples_[judge.frame] += samples;
-    }
     carry_out(tell(TileJudged{kJob, judge.frame, judge.tile, judge.serial, enough}));
   });
+}
+
+void LocalRun::spare(const TileSpared& spared) {
+  const core::BatchRange rest{spared.batches, batches_of(plan_).count - spared.batches};
+  const uint64_t samples = core::samples_in(spared.tile, rest, plan_.samples);
+  spared_ += samples;
+  spared_samples_[spared.frame] += samples;
 }
 
 void LocalRun::act(const Merge& merge) {
@@ -87,7 +87,8 @@ void LocalRun::act(const FrameFailed& failed) {
   works_.erase(failed.frame);
   in_flight_.erase(failed.frame);
   complete_.erase(failed.frame);
-  progress_.samples -= samples_per_frame() - spared_samples_[failed.frame];
+  progress_.samples -= samples_per_frame();
+  spared_ -= spared_samples_[failed.frame];
   progress_.samples_done -= frame_samples_[failed.frame];
   frame_samples_.erase(failed.frame);
   spared_samples_.erase(failed.frame);
@@ -132,7 +133,7 @@ void LocalRun::note_film(int32_t frame, const core::Film& film) {
   const TimePoint now = std::chrono::steady_clock::now();
   if (now - last_noise_ < kNoiseEvery) return;
   last_noise_ = now;
-  const double noise = core::picture_noise(film, plan_.threshold.exposure);
+  const double noise = core::picture_noise(film, plan_.threshold.aim.exposure);
   const core::MutexLock lock(mutex_);
   progress_.noise = noise;
   progress_.noise_frame = frame;

@@ -36,7 +36,8 @@ LocalRun::LocalRun(LocalPlan plan, const FilmStoreOptions& log, FrameSource& sou
       sink_(sink),
       audience_(audience),
       scheduler_(scheduler_options(plan_)),
-      film_store_({plan_.frames, plan_.region, plan_.samples}, log, *this) {
+      film_store_({plan_.frames, plan_.region, plan_.samples, plan_.threshold.adaptive()}, log,
+                  *this) {
   plan_.threads = std::max(plan_.threads, 1);
 }
 
@@ -91,7 +92,7 @@ JobAdded LocalRun::recover(const LogContents& contents) {
   job.plan.shuffle = plan_.shuffle;
   job.plan.frames_in_flight = plan_.frames_in_flight;
   for (const int32_t frame : plan_.frames) restore(contents, frame, job.restored);
-  progress_.noise_aim = plan_.threshold.noise;
+  progress_.noise_aim = plan_.threshold.aim.noise;
   progress_.frames = static_cast<uint32_t>(plan_.frames.size());
   progress_.frames_done = static_cast<uint32_t>(job.restored.finished.size());
   progress_.samples = samples_per_frame() * plan_.frames.size();
@@ -144,6 +145,7 @@ Progress LocalRun::progress() const {
   {
     const core::MutexLock lock(mutex_);
     p = progress_;
+    p.samples = expected_samples(p.samples_done, spared_, p.samples - spared_ - p.samples_done);
     p.frames_in_flight.assign(in_flight_.begin(), in_flight_.end());
     const TimePoint now = std::chrono::steady_clock::now();
     p.elapsed = seconds(now - started_);
@@ -182,6 +184,7 @@ std::vector<LocalRun::DeferredAction> LocalRun::tell_locked(const Event& event) 
     std::visit(core::Overloaded{
                    [&](Lease& lease) HYADES_REQUIRES(mutex_) { hand_out(lease); },
                    [&](JudgeTile& judge) { judge_later(judge); },
+                   [&](TileSpared& spared) HYADES_REQUIRES(mutex_) { spare(spared); },
                    [&](OpenFrame& open) HYADES_REQUIRES(mutex_) {
                      in_flight_.insert(open.frame);
                      to_load_.push_back(open.frame);

@@ -23,8 +23,8 @@ namespace hyades::coordinator {
 
 /// A job on this machine: the farm's scheduler, with threads where the farm has workers. One thread
 /// renders one unit; one loads the next frame while the last one's tail renders; one keeps films
-/// (FilmStore); one finishes frames. Films are the same bits whatever the number of threads, the
-/// tile size, and how often the run was stopped, killed and resumed.
+/// (FilmStore); one finishes frames. Films are the same bits whatever the number of threads and how
+/// often the run was stopped, killed and resumed; without a threshold also whatever the tile size.
 class LocalRun : private FilmStore::Owner {
  public:
   /// `source`, `sink` and `audience`, which may be null, outlive the run.
@@ -91,6 +91,7 @@ class LocalRun : private FilmStore::Owner {
   void hand_out(const Lease& lease) HYADES_REQUIRES(mutex_);
   void carry_out(const std::vector<DeferredAction>& actions);
   void judge_later(const JudgeTile& judge);
+  void spare(const TileSpared& spared) HYADES_REQUIRES(mutex_);
   void act(const Persist& persist);
   void act(const Merge& merge);
   void act(const FinishFrame& finish);
@@ -137,7 +138,8 @@ class LocalRun : private FilmStore::Owner {
   std::map<int32_t, uint64_t> frame_samples_
       HYADES_GUARDED_BY(mutex_);  ///< done, of frames in flight
   std::map<int32_t, uint64_t> spared_samples_
-      HYADES_GUARDED_BY(mutex_);  ///< not needed, of frames in flight
+      HYADES_GUARDED_BY(mutex_);                   ///< not needed, of frames in flight
+  uint64_t spared_ HYADES_GUARDED_BY(mutex_) = 0;  ///< samples not needed, of all frames
   Progress progress_ HYADES_GUARDED_BY(mutex_);
   uint64_t samples_before_ HYADES_GUARDED_BY(mutex_) = 0;  ///< done by earlier runs
   TimePoint started_ HYADES_GUARDED_BY(mutex_);

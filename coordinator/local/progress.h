@@ -12,7 +12,8 @@ struct Progress {
   uint32_t frames_done = 0;
   uint32_t frames_failed = 0;
   std::vector<int32_t> frames_in_flight;
-  uint64_t samples = 0;       ///< of all frames that have not failed
+  uint64_t samples = 0;       ///< of all frames that have not failed; an estimate where tiles stop
+                              ///< at a noise
   uint64_t samples_done = 0;  ///< of these, including those of finished frames
   uint64_t units_done = 0;    ///< in this run
   double elapsed = 0;         ///< seconds since start()

@@ -116,6 +116,14 @@ struct JudgeTile {
   uint64_t serial = 0;   ///< tells this question from others about the tile
 };
 
+/// The tile was found to have enough: it gets no more batches.
+struct TileSpared {
+  JobId job{};
+  int32_t frame = 0;
+  core::PixelRect tile;
+  uint32_t batches = 0;  ///< that it has
+};
+
 enum class RejectReason : uint8_t {
   unknown,    ///< no such job or frame, or the frame is over; the worker drops the film
   malformed,  ///< not a unit of this job; dropped
@@ -211,8 +219,9 @@ struct JobEnded {
   bool cancelled = false;
 };
 
-using Action = std::variant<OpenFrame, Lease, Revoke, Persist, Merge, JudgeTile, Acknowledge,
-                            Reject, Conflict, Quarantine, Confirmed, TileVoided, FrameReopened,
-                            FinishFrame, FrameDone, FrameFailed, FrameRestarted, JobEnded>;
+using Action =
+    std::variant<OpenFrame, Lease, Revoke, Persist, Merge, JudgeTile, TileSpared, Acknowledge,
+                 Reject, Conflict, Quarantine, Confirmed, TileVoided, FrameReopened, FinishFrame,
+                 FrameDone, FrameFailed, FrameRestarted, JobEnded>;
 
 }  // namespace hyades::coordinator

@@ -68,7 +68,8 @@ double Affinity::seconds_left(const FramePlace& place, uint64_t threads) const {
   const ScheduledJob& job = *place.job;
   const double cost =
       job.mean_cost > 0 ? job.mean_cost : kUnknownCost * seconds(options_.unit_time);
-  return static_cast<double>(place.frame().ledger->free()) * cost /
+  const FrameLedger& ledger = *place.frame().ledger;
+  return static_cast<double>(ledger.free() + ledger.likely_more()) * cost /
          static_cast<double>(std::max<uint64_t>(threads, 1));
 }
 

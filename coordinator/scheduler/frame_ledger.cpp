@@ -232,12 +232,14 @@ std::string FrameLedger::audit() const {
   uint64_t recorded = 0;
   uint64_t durable = 0;
   uint64_t planned_batches = 0;
+  uint64_t undecided = 0;
   for (uint32_t tile = 0; tile < tile_count_; ++tile) {
     const core::BatchRange beyond{planned(tile), batches_ - planned(tile)};
     if (BatchMap::count_free(held_, leased_, tile, beyond) != beyond.count) {
       return fmt::format("tile {} has batches that are not planned", tile);
     }
     planned_batches += planned(tile);
+    undecided += is_undecided(tile);
     for (uint32_t b = 0; b < planned(tile); ++b) {
       const core::BatchRange one{b, 1};
       const bool is_free = BatchMap::count_free(held_, leased_, tile, one) == 1;
@@ -264,6 +266,9 @@ std::string FrameLedger::audit() const {
   for (const auto& [k, a] : assignments_) {
     leased += a.extent.batches.count;
     if (a.holders.empty()) return "an assignment without a holder";
+  }
+  if (undecided != undecided_) {
+    return fmt::format("{} tiles are undecided, {} counted", undecided, undecided_);
   }
   if (planned_batches != total_) {
     return fmt::format("{} batches are planned, {} counted", planned_batches, total_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -77,6 +78,9 @@ class FrameLedger {
   uint64_t total() const { return total_; }      ///< tile-batches that are planned
   uint64_t free() const { return free_; }        ///< of these, neither leased nor held
   uint64_t durable() const { return durable_; }  ///< tile-batches whose films are durable
+  /// Tile-batches that may be planned besides: a tile that is not decided gets half as many more,
+  /// if it gets any.
+  uint64_t likely_more() const { return undecided_ * (total_ / std::max(tile_count_, 1U)) / 2; }
   /// Whether every tile has what it needs, all films are durable and none is suspect.
   bool complete() const { return durable_ == total_ && undecided_ == 0 && settled(); }
   /// Whether all films have come, durable or not, and nobody has to render anything.

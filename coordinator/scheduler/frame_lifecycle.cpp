@@ -62,6 +62,9 @@ void FrameLifecycle::on(const TileJudged& e) {
   const auto tile = job ? job->grid.index_of(e.tile) : std::nullopt;
   if (!tile || slot->phase != FramePhase::rendering) return;
   if (!slot->ledger->judge(*tile, e.serial, e.enough)) return;
+  if (e.enough) {
+    step_.say(TileSpared{job->id, slot->frame, e.tile, slot->ledger->planned(*tile)});
+  }
   jobs_.update_offer(*job);
   open(*job);
   finish_if_complete(*job, *slot);
@@ -83,7 +86,7 @@ void FrameLifecycle::open(ScheduledJob& job) {
         continue;
       }
       if (slot.phase == FramePhase::opening || slot.phase == FramePhase::rendering) {
-        free += slot.ledger->free();
+        free += slot.ledger->free() + slot.ledger->likely_more();
         room = room || affinity_.has_room({&job, i});
       }
     }

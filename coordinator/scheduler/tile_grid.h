@@ -19,6 +19,15 @@ inline int32_t tile_begin(int32_t at, int32_t tile_size) {
 /// Pixels along the side of a tile where nothing speaks for another size.
 inline constexpr int32_t kTile = 32;
 
+/// How many samples a job takes of which so many are done and so many were found not needed, while
+/// of `left` that is not known yet: as large a part of these as of the others.
+inline uint64_t expected_samples(uint64_t done, uint64_t spared, uint64_t left) {
+  if (spared == 0) return done + left;
+  const double part =
+      static_cast<double>(done) / (static_cast<double>(done) + static_cast<double>(spared));
+  return done + static_cast<uint64_t>(part * static_cast<double>(left));
+}
+
 /// Pixels along the side of a tile of films with splats. Their layer lies over the frame however
 /// small the tile is, so that a unit should be of many samples.
 inline constexpr int32_t kSplatTile = 128;

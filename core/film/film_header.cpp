@@ -109,7 +109,10 @@ std::string write_film_header(const FilmFile& file) {
   text += fmt::format("job {}\nkey {}\nframe {}\nsize {} {}\ncrop {}\nsamples {}\n",
                       escape(info.job_name), escape(info.render_key), info.frame, info.width,
                       info.height, rect_text(info.crop), info.samples);
-  if (info.noise > 0) text += fmt::format("noise {}\n", info.noise);
+  const NoiseAim& aim = info.aim;
+  if (aim.noise > 0) {
+    text += fmt::format("noise {} {} {}\n", aim.noise, aim.exposure, aim.min_samples);
+  }
   text += fmt::format("class {}\nbuild {}\n", escape(info.worker_class), escape(info.build));
   if (version < kNamedLayers) {
     text += fmt::format("layers {} {} {}{}\n", int{layers.depth}, int{layers.albedo},
@@ -149,7 +152,8 @@ Result<FilmHeader> parse_film_header(std::string_view text) {
   lines.numbers("size", info.width, info.height);
   lines.rect("crop", info.crop);
   lines.numbers("samples", info.samples);
-  if (lines.next_is("noise")) lines.numbers("noise", info.noise);
+  NoiseAim& aim = info.aim;
+  if (lines.next_is("noise")) lines.numbers("noise", aim.noise, aim.exposure, aim.min_samples);
   info.worker_class = unescape(lines.value("class"));
   info.build = unescape(lines.value("build"));
   if (version < kNamedLayers) {

@@ -69,12 +69,11 @@ double block_noise(const Film& film, const PixelRect& block, double scale, doubl
 
 }  // namespace
 
-NoiseThreshold make_noise_threshold(float noise, float exposure, uint32_t min_samples,
-                                    uint32_t samples) {
-  NoiseThreshold threshold{noise, exposure, {}};
-  if (noise <= 0) return threshold;
+NoiseThreshold make_noise_threshold(const NoiseAim& aim, uint32_t samples) {
+  NoiseThreshold threshold{aim, {}};
+  if (aim.noise <= 0) return threshold;
   const uint32_t all = batch_count(samples);
-  for (uint32_t round = std::max(2U, batch_count(min_samples)); round < all;
+  for (uint32_t round = std::max(2U, batch_count(aim.min_samples)); round < all;
        round += std::max(1U, round / 2)) {
     threshold.rounds.push_back(round);
   }
@@ -117,7 +116,35 @@ double picture_noise(const Film& film, float exposure) {
 }
 
 bool is_clean(const Film& film, const PixelRect& tile, const NoiseThreshold& threshold) {
-  return tile_noise(film, tile, threshold.exposure) <= double{threshold.noise};
+  return tile_noise(film, tile, threshold.aim.exposure) <= double{threshold.aim.noise};
+}
+
+std::vector<PixelRect> unfinished_tiles(const Film& film, const PixelRect& crop, uint32_t samples,
+                                        const NoiseThreshold& threshold) {
+  const uint32_t all = batch_count(samples);
+  const auto has_enough = [&](const PixelRect& tile) {
+    if (!film.window().contains(tile)) return false;
+    if (film.coverage().contains({tile, {0, all}})) return true;
+    // The last round that is there; beyond it nothing may be.
+    const auto round =
+        std::find_if(threshold.rounds.rbegin(), threshold.rounds.rend(), [&](uint32_t batches) {
+          return film.coverage().contains({tile, {0, batches}});
+        });
+    if (round == threshold.rounds.rend()) return false;
+    return !film.coverage().overlap({tile, {*round, all - *round}}) &&
+           is_clean(film, tile, threshold);
+  };
+  const auto begin_of = [](int32_t at) {
+    return at - ((at % kJudgedTile) + kJudgedTile) % kJudgedTile;
+  };
+  std::vector<PixelRect> tiles;
+  for (int32_t y = begin_of(crop.y0); y < crop.y1; y += kJudgedTile) {
+    for (int32_t x = begin_of(crop.x0); x < crop.x1; x += kJudgedTile) {
+      const PixelRect tile = intersection(crop, {x, y, x + kJudgedTile, y + kJudgedTile});
+      if (!has_enough(tile)) tiles.push_back(tile);
+    }
+  }
+  return tiles;
 }
 
 }  // namespace hyades::core

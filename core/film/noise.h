@@ -5,13 +5,17 @@
 
 #include "core/base/rect.h"
 #include "core/film/film.h"
+#include "core/film/film_info.h"
 
 namespace hyades::core {
 
-/// When a tile has samples enough (docs/job.md, sampling.noise).
+/// Pixels along the side of the tiles that are judged. They begin at multiples of it in the full
+/// frame, and end where what the job renders ends.
+inline constexpr int32_t kJudgedTile = 32;
+
+/// When tiles are judged, and when they have samples enough.
 struct NoiseThreshold {
-  float noise = 0;     ///< tile_noise() at which it has; 0: every tile gets all samples
-  float exposure = 0;  ///< stops, with which the picture is looked at
+  NoiseAim aim;
   /// After so many batches each tile is judged; ascending, all fewer than the job has. Fixed, so
   /// that how many batches of a tile are there tells all that was ever decided about it.
   std::vector<uint32_t> rounds;
@@ -19,10 +23,10 @@ struct NoiseThreshold {
   bool adaptive() const { return !rounds.empty(); }
 };
 
-/// The threshold of a job with so many samples per pixel: the first round is after `min_samples` of
-/// them, at least two batches; each of the others after half as many again.
-NoiseThreshold make_noise_threshold(float noise, float exposure, uint32_t min_samples,
-                                    uint32_t samples);
+/// The threshold of a job with so many samples per pixel: the first round is after aim.min_samples
+/// of them, at least two batches; each of the others after half as many again. Not adaptive where
+/// there is no aim, or too few samples for a round.
+NoiseThreshold make_noise_threshold(const NoiseAim& aim, uint32_t samples);
 
 /// Side of the blocks by which tile_noise() judges, pixels.
 inline constexpr int32_t kNoiseBlock = 8;
@@ -36,11 +40,16 @@ inline constexpr int32_t kNoiseBlock = 8;
 double tile_noise(const Film& film, const PixelRect& tile, float exposure);
 
 /// The noise of a picture in one number: the mean of that of its blocks, as tile_noise() has it,
-/// over at most 64 of them all over the film's window. -1 where none of them has two batches of
+/// over at most 256 of them all over the film's window. -1 where none of them has two batches of
 /// every pixel. Knows splats. Costs well below a millisecond.
 double picture_noise(const Film& film, float exposure);
 
 /// Whether the tile has samples enough.
 bool is_clean(const Film& film, const PixelRect& tile, const NoiseThreshold& threshold);
+
+/// The tiles of `crop`, what a job with so many samples per pixel renders, of which `film` has not
+/// all that they need by an adaptive `threshold`.
+std::vector<PixelRect> unfinished_tiles(const Film& film, const PixelRect& crop, uint32_t samples,
+                                        const NoiseThreshold& threshold);
 
 }  // namespace hyades::core

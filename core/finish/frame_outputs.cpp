@@ -102,7 +102,9 @@ Result<std::vector<std::string>> write_outputs(std::span<const OutputDesc> outpu
       {"hyades.class", info.worker_class},
       {"hyades.build", info.build},
   };
-  if (info.noise > 0) metadata.push_back({"hyades.noise", fmt::format("{}", info.noise)});
+  if (const float noise = info.aim.noise; noise > 0) {
+    metadata.push_back({"hyades.noise", fmt::format("{}", noise)});
+  }
   Image picture = film.normalised();
   const PixelRect& window = film.window();
   if (window != PixelRect{0, 0, info.width, info.height}) {

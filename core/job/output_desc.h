@@ -22,14 +22,6 @@ struct OutputDesc {
   int32_t bits = 8;               ///< PNG and TIFF: 8 or 16 per channel
 };
 
-/// The first of `outputs` that is for a display, not EXR; null where there is none.
-inline const OutputDesc* display_output(const std::vector<OutputDesc>& outputs) {
-  for (const OutputDesc& output : outputs) {
-    if (!output.file.ends_with(".exr")) return &output;
-  }
-  return nullptr;
-}
-
 /// A video of all frames. Each frame leaves a picture for it, which is one of Job::outputs.
 struct VideoDesc {
   SourceLocation where;

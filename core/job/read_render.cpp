@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
@@ -11,6 +12,7 @@
 #include <system_error>
 
 #include "core/base/text.h"
+#include "core/film/noise.h"
 #include "core/job/read_sections.h"
 
 /// frames, film, sampling, integrator: what is rendered and how.
@@ -19,6 +21,10 @@ namespace hyades::core {
 namespace {
 
 constexpr int32_t kLastFrame = 9'999'999;
+/// Samples that a pixel gets at most where a noise ends them and nothing else is said.
+constexpr uint32_t kNoiseSamples = 4096;
+/// Before two batches are there nothing is known of the noise.
+constexpr uint32_t kFirstJudged = 2 * kBatchSamples;
 constexpr int64_t kMostPixels = int64_t{1} << 28;
 
 /// Reads the digits at the front of `text` and removes them.
@@ -105,16 +111,20 @@ void check_keys(MapReader& reader, FilmDesc& film) {
 }
 
 void check_keys(MapReader& reader, SamplingDesc& sampling) {
-  if (!reader.has("min_samples")) return;
   if (sampling.noise <= 0.0F) {
-    reader.complain(reader.where_of("min_samples"),
-                    "min_samples without a noise to stop at, expected noise too: without it every "
-                    "pixel gets all samples");
-  } else if (sampling.min_samples > sampling.samples) {
-    reader.complain(reader.where_of("min_samples"),
-                    fmt::format("min_samples is {}, expected at most samples, {}",
-                                sampling.min_samples, sampling.samples));
+    if (!reader.has("min_samples")) return;
+    return reader.complain(reader.where_of("min_samples"),
+                           "min_samples without a noise to stop at, expected noise too: without it "
+                           "every pixel gets all samples");
   }
+  if (!reader.has("samples")) sampling.samples = kNoiseSamples;
+  const NoiseAim aim{sampling.noise, 0.0F, sampling.min_samples};
+  if (make_noise_threshold(aim, sampling.samples).adaptive()) return;
+  reader.complain(
+      reader.where_of("noise"),
+      fmt::format("noise cannot stop {} samples: tiles are judged for the first time "
+                  "after {} (min_samples, at least {}); expected more samples",
+                  sampling.samples, std::max(sampling.min_samples, kFirstJudged), kFirstJudged));
 }
 
 void check_keys(MapReader& reader, IntegratorDesc& integrator) {

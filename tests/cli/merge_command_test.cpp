@@ -29,7 +29,7 @@ class MergeCommand : public ::testing::Test {
 
   void write(const std::string& name, const core::PixelRect& tile, core::BatchRange batches,
              const std::string& key = "k") const {
-    core::FilmFile file{{"fog", key, 7, 20, 10, {0, 0, 20, 10}, 64, "c", "b"},
+    core::FilmFile file{{"fog", key, 7, 20, 10, {0, 0, 20, 10}, 64, "c", "b", {}},
                         core::render(core::make_film_layout({}), tile, batches, 64)};
     ASSERT_TRUE(core::write_film_exr(path(name), file).ok());
   }

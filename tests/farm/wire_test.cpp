@@ -38,6 +38,7 @@ TEST(Wire, UnitsAndFilmInfoComeBackAsTheyWent) {
   info.samples = 17;
   info.worker_class = "c";
   info.build = "b";
+  info.aim = {0.02F, -1.5F, 48};
   const auto same = from_wire(to_wire(info));
   ASSERT_TRUE(same.ok());
   EXPECT_EQ(same->job_name, info.job_name);
@@ -49,6 +50,7 @@ TEST(Wire, UnitsAndFilmInfoComeBackAsTheyWent) {
   EXPECT_EQ(same->samples, info.samples);
   EXPECT_EQ(same->worker_class, info.worker_class);
   EXPECT_EQ(same->build, info.build);
+  EXPECT_EQ(same->aim, info.aim);
 }
 
 TEST(Wire, RefusesWhatIsNoUnit) {

@@ -12,7 +12,7 @@ namespace hyades::fuzz {
 std::vector<std::string> seeds() {
   const core::PixelRect tile{0, 0, 5, 4};
   core::FilmFile file;
-  file.info = {"job", std::string(64, 'a'), 1, 8, 6, {0, 0, 8, 6}, 64, "class", "build"};
+  file.info = {"job", std::string(64, 'a'), 1, 8, 6, {0, 0, 8, 6}, 64, "class", "build", {}};
   file.film = core::render(core::make_film_layout(core::kAllLayers), tile, {0, 2}, 64);
   test::TempFolder folder;
   const std::string path = folder.file("film.exr");

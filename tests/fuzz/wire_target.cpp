@@ -57,7 +57,7 @@ std::vector<std::string> seeds() {
   *hello.mutable_hello()->add_in_hand()->mutable_unit() = unit;
   v1::WorkerMessage failure;
   *failure.mutable_failure()->mutable_unit()->mutable_unit() = unit;
-  core::FilmInfo info{"job", std::string(64, 'a'), 1, 8, 6, {0, 0, 8, 6}, 64, "class", "build"};
+  core::FilmInfo info{"job", std::string(64, 'a'), 1, 8, 6, {0, 0, 8, 6}, 64, "class", "build", {}};
   return {"w" + result.SerializeAsString(), "w" + hello.SerializeAsString(),
           "w" + failure.SerializeAsString(), "f" + farm::to_wire(info).SerializeAsString()};
 }

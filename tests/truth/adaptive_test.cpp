@@ -155,8 +155,8 @@ TEST(AdaptiveTruth, StoppingEarlyMakesPicturesHardlyDarker) {
       std::sqrt(adaptive.variance_of_mean() + plain.variance_of_mean()) / plain.mean();
   RecordProperty("ratio", std::to_string(ratio));
   RecordProperty("sigma", std::to_string(sigma));
-  EXPECT_LT(sigma, 0.002) << "or the test could not tell a bias of half a percent";
-  EXPECT_NEAR(ratio, 1.0, 0.005 + 3 * sigma);
+  EXPECT_LT(sigma, 0.001) << "or the test could not tell a bias of half a percent";
+  EXPECT_NEAR(ratio, 1.0, 0.005);
 }
 
 }  // namespace

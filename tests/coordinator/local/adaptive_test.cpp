@@ -24,7 +24,7 @@ LocalPlan noisy_plan() {
   plan.samples = 1000;
   plan.threads = 2;
   plan.tile_size = 16;
-  plan.threshold = core::make_noise_threshold(0.055F, 0, 32, plan.samples);
+  plan.threshold = core::make_noise_threshold({0.055F, 0, 32}, plan.samples);
   return plan;
 }
 
@@ -50,14 +50,14 @@ core::Film film_of_tiles(const LocalPlan& plan, int32_t frame, std::map<uint32_t
   return whole;
 }
 
-void expect_what_tiles_need(const LocalPlan& plan, const FakeRender& render) {
+void expect_what_tiles_need(const LocalPlan& plan, const FakeRender& render, size_t kinds = 3) {
   std::map<uint32_t, int> batches;
   for (const int32_t frame : plan.frames) {
     const auto digests = render.digests();
     ASSERT_TRUE(digests.contains(frame)) << frame;
     EXPECT_EQ(digests.at(frame), film_of_tiles(plan, frame, batches).digest()) << frame;
   }
-  EXPECT_GE(batches.size(), 3U) << "tiles are to differ, or nothing is shown";
+  EXPECT_GE(batches.size(), kinds) << "tiles are to differ, or nothing is shown";
 }
 
 TEST(Adaptive, TilesStopWhereTheirOwnFilmsSaySoWhateverTheThreads) {
@@ -92,7 +92,7 @@ TEST(Adaptive, InterruptionsChangeNoBit) {
     LocalRun run(plan, log, render, render);
     const core::Status started = run.start();
     ASSERT_TRUE(started) << started.error().message;
-    over = run.wait_for(std::chrono::milliseconds(60));
+    over = run.wait_for(std::chrono::milliseconds(15));
     if (!over) run.stop();
     EXPECT_TRUE(run.wait_for(kWholeRun));
     EXPECT_EQ(run.outcome().error, "");
@@ -100,6 +100,35 @@ TEST(Adaptive, InterruptionsChangeNoBit) {
   }
   EXPECT_GT(interruptions, 3);
   expect_what_tiles_need(plan, render);
+}
+
+void run_to_its_end(const LocalPlan& plan, const FilmStoreOptions& log, FakeRender& render) {
+  LocalRun run(plan, log, render, render);
+  const core::Status started = run.start();
+  ASSERT_TRUE(started) << started.error().message;
+  ASSERT_TRUE(run.wait_for(kWholeRun));
+}
+
+TEST(Adaptive, AnotherCropJudgesItsTilesByItself) {
+  const test::TempFolder folder;
+  LocalPlan plan = noisy_plan();
+  plan.frames = {1, 2};
+  FilmStoreOptions log;
+  log.folder = folder.path();
+  FakeRender render(plan.samples);
+  for (const core::PixelRect& region :
+       {core::PixelRect{0, 0, 80, 64}, core::PixelRect{0, 0, 70, 50}}) {
+    plan.region = region;
+    // What is rendered is kept, and has no outputs.
+    render.finish_fault = [](int32_t) { return core::Error{"no room"}; };
+    run_to_its_end(plan, log, render);
+    log.resume = true;
+    render.finish_fault = {};
+    run_to_its_end(plan, log, render);
+    // Of the first crop all tiles are whole, and alike.
+    expect_what_tiles_need(plan, render, plan.region.x1 == 70 ? 2 : 1);
+    for (const int32_t frame : plan.frames) render.lose_output(frame);
+  }
 }
 
 TEST(Adaptive, OfSomeBatchesAloneNothingCanBeTold) {

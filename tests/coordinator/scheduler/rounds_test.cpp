@@ -143,8 +143,8 @@ TEST_F(Rounds, TheNextFrameIsOpenedByWhatIsPlanned) {
   EXPECT_TRUE(other.all<OpenFrame>().empty()) << "there is all of a first round to do";
 }
 
-/// A frame of two tiles, judged after two batches and after four, of which the left one has all of
-/// the second round but one batch when it shows that Bert, who rendered its first batch, diverges.
+/// A frame of one tile, judged after two batches and after four, that has its first round, of which
+/// Bert has rendered the first batch wrongly.
 class VoidedRounds : public testing::Test {
  protected:
   void SetUp() override {
@@ -192,8 +192,24 @@ TEST_F(VoidedRounds, AnAnswerAboutFilmsThatAreVoidDoesNotCount) {
   ASSERT_EQ(voided_.batches.size(), 2U);
   EXPECT_EQ(voided_.spared, 0U);
   b.tell(TileJudged{kJob, 1, judge_.tile, judge_.serial, true});
+  EXPECT_TRUE(b.all<TileSpared>().empty());
   EXPECT_TRUE(b.all<FinishFrame>().empty());
   EXPECT_EQ(b.ask(kAnna).units[0].batches.first, 0U) << "it begins at its first round";
+}
+
+TEST_F(VoidedRounds, ATileThatHadEnoughIsJudgedAnew) {
+  b.tell(TileJudged{kJob, 1, judge_.tile, judge_.serial, true});
+  EXPECT_EQ(b.only<TileSpared>().batches, 2U);
+  ASSERT_EQ(b.all<FinishFrame>().size(), 1U);
+  find_bert_out();  // while the outputs are made
+  b.tell(FinishDone{kJob, 1});
+  EXPECT_EQ(b.all<FrameReopened>().size(), 1U);
+  make_durable();
+  EXPECT_EQ(voided_.spared, 6U);
+  b.join(kDora);
+  b.deliver_durably(b.ask(kDora));
+  b.deliver_durably(b.ask(kDora));
+  EXPECT_EQ(b.only<JudgeTile>().batches, 2U);
 }
 
 TEST_F(VoidedRounds, UnitsThatWrongFilmsHadAskedForAreTakenBack) {

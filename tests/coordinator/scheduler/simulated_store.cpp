@@ -156,16 +156,18 @@ void SimulatedWorld::act(const JudgeTile& a) {
   ++tiles_judged;
   const SimJob& job = jobs_.at(a.job);
   std::set<uint32_t> there;
+  bool wrong = false;
   for (const auto& [place, batch] : job.frames.at(a.frame).batches) {
     if (std::get<0>(place) == a.tile.x0 && std::get<1>(place) == a.tile.y0) {
       there.insert(std::get<2>(place));
+      wrong = wrong || batch.corrupted_by != 0;
     }
   }
   if (there.size() != a.batches || *there.rbegin() + 1 != a.batches) {
     fail("a tile is judged by other batches than those planned");
   }
-  tell_later(
-      TileJudged{a.job, a.frame, a.tile, a.serial, job.is_enough(a.frame, a.tile, a.batches)});
+  tell_later(TileJudged{a.job, a.frame, a.tile, a.serial,
+                        job.is_enough(a.frame, a.tile, a.batches, wrong)});
 }
 
 void SimulatedWorld::act(const FrameRestarted& a) {

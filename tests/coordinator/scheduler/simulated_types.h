@@ -101,11 +101,12 @@ struct SimJob {
   bool cancelled = false;
 
   /// Whether the tile has enough with so many batches, where tiles are judged: a pure function of
-  /// what is there.
-  bool is_enough(int32_t frame, const core::PixelRect& tile, uint32_t batches) const {
+  /// what is there. Wrong films give wrong answers.
+  bool is_enough(int32_t frame, const core::PixelRect& tile, uint32_t batches,
+                 bool wrong = false) const {
     const uint64_t place = core::hash_combine(static_cast<uint32_t>(tile.x0), uint32_t(tile.y0));
     const uint64_t h = core::hash_combine(place, core::hash_combine(uint32_t(frame), batches));
-    return h % 3 == 0;
+    return (h % 3 == 0) != wrong;
   }
   /// How many batches the tile ends with.
   uint32_t batches_of(int32_t frame, const core::PixelRect& tile) const {

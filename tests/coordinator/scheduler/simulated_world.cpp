@@ -86,7 +86,7 @@ void SimulatedWorld::make_job(JobId id) {
   plan.shuffle = static_cast<uint64_t>(number(0, 1));
   // Where there are workers enough of one class to check each other. Not by chance: worlds of old
   // have to stay what they were.
-  if (corrupt_ && static_cast<uint64_t>(id) % 2 == 0) plan.redundancy = 40;
+  if (corrupt_ && static_cast<uint64_t>(id) != 1) plan.redundancy = 40;
   // Not by chance either.
   if (static_cast<uint64_t>(id) == 3 && !plan.whole_frames) {
     for (uint32_t round = 2; round < plan.batches; round += std::max(1U, round / 2)) {

@@ -52,6 +52,7 @@ class SimulatedWorld {
   uint64_t struck_out = 0;    ///< workers in quarantine because they failed unit after unit
   uint64_t frames_wrong = 0;  ///< finished before anybody compared
   uint64_t tiles_judged = 0;
+  uint64_t tiles_spared = 0;
   // Of the real store.
   uint64_t films_replayed = 0;
   uint64_t power_cuts = 0;
@@ -107,6 +108,7 @@ class SimulatedWorld {
   }
   void act(const Merge& a);
   void act(const JudgeTile& a);
+  void act(const TileSpared&) { ++tiles_spared; }
   void act(const FrameRestarted& a);
   void act(const TileVoided& a);
 

@@ -23,7 +23,7 @@ std::string noisy_document(int last_frame) {
 
 /// The film of the frame as its tiles need it; `batches` of each are counted.
 core::Film film_of_frame(int32_t frame, std::map<uint32_t, int>& batches) {
-  const auto threshold = core::make_noise_threshold(kNoise, 0, 32, kMostSamples);
+  const auto threshold = core::make_noise_threshold({kNoise, 0, 32}, kMostSamples);
   const core::FilmLayout layout = core::make_film_layout({});
   const core::PixelRect region{0, 0, FarmWorld::kWidth, FarmWorld::kHeight};
   core::Film whole(layout, region);

@@ -62,7 +62,8 @@ FilmInfo info() {
           {4, 2, 60, 40},
           200,
           "class7",
-          "hyades 0.1"};
+          "hyades 0.1",
+          {0.02F, -1.5F, 48}};
 }
 
 FilmFile patchwork_file(const LayerSet& layers = kAllLayers) {
@@ -123,6 +124,7 @@ TEST_F(FilmExr, GivesBackTheSameBits) {
     EXPECT_EQ(back->info.samples, file.info.samples);
     EXPECT_EQ(back->info.worker_class, file.info.worker_class);
     EXPECT_EQ(back->info.build, file.info.build);
+    EXPECT_EQ(back->info.aim, file.info.aim);
   }
 }
 

@@ -126,7 +126,7 @@ TEST(FilmLayers, ComeBackFromBytes) {
 TEST(FilmLayers, ComeBackFromAFile) {
   const std::string path = testing::TempDir() + "film_layers_test.exr";
   for (const bool splats : {false, true}) {
-    const FilmFile file{{"a", "key", 1, 64, 48, kRegion, 200, "class", "build"},
+    const FilmFile file{{"a", "key", 1, 64, 48, kRegion, 200, "class", "build", {}},
                         all_of(parts(splats))};
     const Status written = write_film_exr(path, file);
     ASSERT_TRUE(written.ok()) << written.error().message;

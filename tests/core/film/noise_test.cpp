@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -121,20 +122,43 @@ TEST(TileNoise, IsNotKnownOfOneBatch) {
 }
 
 TEST(NoiseThreshold, IsLookedAtAfterEveryHalfAsManyBatchesMore) {
-  EXPECT_EQ(make_noise_threshold(0.02F, 0, 32, 512).rounds,
+  EXPECT_EQ(make_noise_threshold({0.02F, 0, 32}, 512).rounds,
             (std::vector<uint32_t>{2, 3, 4, 6, 9, 13, 19, 28}));
-  EXPECT_EQ(make_noise_threshold(0.02F, 0, 100, 512).rounds,
+  EXPECT_EQ(make_noise_threshold({0.02F, 0, 100}, 512).rounds,
             (std::vector<uint32_t>{7, 10, 15, 22}));
-  EXPECT_TRUE(make_noise_threshold(0.02F, 0, 512, 512).rounds.empty());
-  EXPECT_TRUE(make_noise_threshold(0, 0, 32, 512).rounds.empty());
+  EXPECT_TRUE(make_noise_threshold({0.02F, 0, 512}, 512).rounds.empty());
+  EXPECT_TRUE(make_noise_threshold({0, 0, 32}, 512).rounds.empty());
 }
 
 TEST(NoiseThreshold, IsReachedWhereNoBlockIsNoisier) {
   const PixelRect tile{0, 0, 16, 16};
   const Film film = film_of(tile, 64);
   const auto noise = static_cast<float>(tile_noise(film, tile, 0));
-  EXPECT_TRUE(is_clean(film, tile, make_noise_threshold(noise * 1.001F, 0, 32, 512)));
-  EXPECT_FALSE(is_clean(film, tile, make_noise_threshold(noise * 0.999F, 0, 32, 512)));
+  EXPECT_TRUE(is_clean(film, tile, make_noise_threshold({noise * 1.001F, 0, 32}, 512)));
+  EXPECT_FALSE(is_clean(film, tile, make_noise_threshold({noise * 0.999F, 0, 32}, 512)));
+}
+
+TEST(UnfinishedTiles, AreThoseThatAreNoisyOrHaveNoRound) {
+  const PixelRect crop{10, 0, 74, 20};  // tiles begin at 10, 32 and 64
+  const std::array<PixelRect, 3> tiles = {PixelRect{10, 0, 32, 20}, PixelRect{32, 0, 64, 20},
+                                          PixelRect{64, 0, 74, 20}};
+  const NoiseThreshold threshold = make_noise_threshold({0.1F, 0, 32}, 512);
+  const auto unfinished = [&](uint32_t first, uint32_t second, uint32_t third) {
+    Film film(make_film_layout({}), crop);
+    const std::array<uint32_t, 3> samples = {first, second, third};
+    for (size_t i = 0; i < 3; ++i) {
+      if (samples[i] == 0) continue;
+      EXPECT_TRUE(film.merge(film_of(tiles[i], samples[i])).ok());
+    }
+    return unfinished_tiles(film, crop, 512, threshold);
+  };
+  // 64 samples have a noise of 0.051.
+  EXPECT_TRUE(unfinished(64, 96, 512).empty());
+  EXPECT_EQ(unfinished(64, 80, 64), std::vector{tiles[1]}) << "five batches are no round";
+  EXPECT_EQ(unfinished(0, 64, 16), (std::vector{tiles[0], tiles[2]}));
+  const NoiseThreshold strict = make_noise_threshold({0.03F, 0, 32}, 512);
+  EXPECT_EQ(unfinished_tiles(film_of(crop, 64), crop, 512, strict).size(), 3U);
+  EXPECT_TRUE(unfinished_tiles(film_of(crop, 512), crop, 512, strict).empty());
 }
 
 }  // namespace

@@ -89,8 +89,11 @@ TEST(Complaints, ANoiseToStopAt) {
   EXPECT_EQ(complaints("sampling: {min_samples: 64}\n"),
             "job.yaml:2:25: min_samples without a noise to stop at, expected noise too: without it "
             "every pixel gets all samples\n");
-  EXPECT_EQ(complaints("sampling: {noise: 0.1, samples: 32, min_samples: 64}\n"),
-            "job.yaml:2:50: min_samples is 64, expected at most samples, 32\n");
+  EXPECT_EQ(
+      complaints("sampling: {noise: 0.1, samples: 64, min_samples: 64}\n"),
+      "job.yaml:2:19: noise cannot stop 64 samples: tiles are judged for the first time after "
+      "64 (min_samples, at least 32); expected more samples\n");
+  EXPECT_EQ(complaints("sampling: {noise: 0.1, min_samples: 4000}\n"), "");
   EXPECT_EQ(complaints("sampling: {noise: 0.1}\nintegrator: bdpt\n"),
             "job.yaml:2:11: sampling has a noise to stop at, which the integrator bdpt does not "
             "know: its light paths end anywhere on the film; expected path, or samples alone\n");
