@@ -5,6 +5,12 @@
 #include <utility>
 
 namespace hyades::coordinator {
+namespace {
+
+/// How many places a neighbourhood hands on to its next before it waits for a turn again.
+constexpr int kHandedOn = 16;
+
+}  // namespace
 
 StrangerQueue::StrangerQueue(const Limits& limits) : limits_(limits) {
   limits_.kept = std::min(limits_.kept, limits_.inside / 3);
@@ -65,8 +71,16 @@ void StrangerQueue::know(Id id, Time now) {
     turns_.erase(one.turn);
     one.trusted = true;
     trusted_inside_ += one.inside;
+    if (!one.waiting.empty()) trusted_turns_.emplace(one.turn, of);
   }
-  if (!one.waiting.empty()) set_turn(of, --first_turn_);
+  if (one.waiting.empty()) return leave(id);
+  // Not for ever: whoever has a token and two addresses could keep all others out.
+  if (one.handed_on < kHandedOn) {
+    ++one.handed_on;
+    set_turn(of, --first_turn_);
+  } else {
+    one.handed_on = 0;
+  }
   leave(id);
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <map>
 #include <set>
 #include <string>
@@ -166,7 +167,32 @@ TEST(StrangerQueue, OneThatIsKnownLetsTheNextOfItsNeighbourhoodIn) {
     }
   }
   EXPECT_EQ(known, 40U);
-  EXPECT_LE(now, kBegin + 5s) << "the crowd had one round at most";
+  EXPECT_LE(now, kBegin + 9s) << "three turns: in each seventeen come in, and then the crowd again";
+}
+
+TEST(StrangerQueue, ThoseWhoAreKnownDoNotHandOnAllPlaces) {
+  // Somebody with a token at two addresses shows it wherever one of his has been inside for long.
+  StrangerQueue queue({});
+  StrangerQueue::Id next = 1;
+  const auto fill = [&](StrangerQueue::Id id) { queue.come(id, id % 2 == 0 ? "a" : "b"); };
+  for (; next <= 80; ++next) fill(next);
+  for (const auto id : let_in_all(queue)) queue.know(id, kBegin);
+  std::deque<StrangerQueue::Id> inside;
+  for (const auto id : let_in_all(queue)) inside.push_back(id);
+  ASSERT_EQ(inside.size(), 24U);
+  queue.come(100'000, "new");
+  StrangerQueue::Id in = 0;
+  int places = 0;
+  for (; places < 1000 && in != 100'000; ++places) {
+    fill(next++);
+    queue.know(inside.front(), kBegin);
+    inside.pop_front();
+    const auto let = queue.let_in(kBegin);
+    ASSERT_TRUE(let);
+    in = *let;
+    inside.push_back(in);
+  }
+  EXPECT_LE(places, 2 * 17) << "each has a turn and hands it on sixteen times";
 }
 
 TEST(StrangerQueue, PlacesAreKeptForThoseWhoHaveBeenKnown) {
