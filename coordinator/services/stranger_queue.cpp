@@ -5,12 +5,6 @@
 #include <utility>
 
 namespace hyades::coordinator {
-namespace {
-
-/// How many places a neighbourhood hands on to its next before it waits for a turn again.
-constexpr int kHandedOn = 16;
-
-}  // namespace
 
 StrangerQueue::StrangerQueue(const Limits& limits) : limits_(limits) {
   limits_.kept = std::min(limits_.kept, limits_.inside / 3);
@@ -37,6 +31,7 @@ std::optional<StrangerQueue::Id> StrangerQueue::let_in(Time now) {
   if (of == neighbourhoods_.end()) return std::nullopt;
   Neighbourhood& one = of->second;
   const Id id = one.waiting.back();
+  if (one.turn > 0) one.turn_began = now;
   set_turn(of, ++last_turn_);
   stop_waiting(strangers_.at(id));
   ++one.inside;
@@ -73,14 +68,9 @@ void StrangerQueue::know(Id id, Time now) {
     trusted_inside_ += one.inside;
     if (!one.waiting.empty()) trusted_turns_.emplace(one.turn, of);
   }
-  if (one.waiting.empty()) return leave(id);
   // Not for ever: whoever has a token and two addresses could keep all others out.
-  if (one.handed_on < kHandedOn) {
-    ++one.handed_on;
-    set_turn(of, --first_turn_);
-  } else {
-    one.handed_on = 0;
-  }
+  const bool early = now < one.turn_began + limits_.patience_when_full;
+  if (early && !one.waiting.empty()) set_turn(of, --first_turn_);
   leave(id);
 }
 

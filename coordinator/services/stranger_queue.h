@@ -50,7 +50,8 @@ class StrangerQueue {
   /// Those that have been inside for too long, who have to go.
   std::vector<Id> expel(Time now);
   /// One has become known: its neighbourhood is trusted from now on, and the next of it comes in
-  /// in its place, up to sixteen times in a row. Nothing where this one was not there.
+  /// in its place, for as long as `patience_when_full` since one came in in turn. Nothing where
+  /// this one was not there.
   void know(Id id, Time now);
   /// One has gone, and its place is free at once; nothing where this one was not there.
   void leave(Id id);
@@ -69,8 +70,8 @@ class StrangerQueue {
     size_t inside = 0;
     std::list<Id> waiting{};  ///< in the order in which they came
     bool trusted = false;
-    int64_t turn = 0;   ///< key in turns_of(), while somebody waits
-    int handed_on = 0;  ///< places that those who became known have left to the next, in a row
+    int64_t turn = 0;  ///< key in turns_of(), while somebody waits; negative: out of turn
+    Time turn_began;   ///< when one came in in turn
   };
   using Neighbourhoods = std::map<std::string, Neighbourhood>;
   struct Stranger {
