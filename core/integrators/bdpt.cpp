@@ -217,7 +217,8 @@ class BidirectionalSample final : public SubpathWatcher {
   /// s = 1: a place on a light is chosen from the camera path's vertex t - 1.
   void choose_light(int t) {
     const PathVertex& v = camera_[t - 1];
-    if (!v.joins() || t - 1 > settings_.max_depth || !wanted(1, t) || scene_.lights.empty()) return;
+    if (!v.joins() || t - 1 > settings_.max_depth || !wanted(1, t) || scene_.selector->empty())
+      return;
     sampler_.set_dimension(kCameraDimensions + static_cast<uint32_t>(t - 2) * kPerEvent +
                            kLightChoice);
     const Vec4 u = sampler_.next_4d();

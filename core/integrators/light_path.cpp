@@ -82,7 +82,7 @@ LightPathStart begin_light_path(const Scene& scene, float time, Sampler& sampler
   const Vec4 b = sampler.next_4d();
   LightPathStart start;
   start.lens = {b.z, b.w};
-  if (scene.lights.empty()) return start;
+  if (scene.selector->empty()) return start;
   const auto selected = scene.selector->select_emitter(a.z);
   if (!selected) return start;
   const Light& light = *scene.lights[selected->index];

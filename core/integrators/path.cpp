@@ -39,7 +39,7 @@ class Path final : public WalkWatcher {
         walk_(settings, scene, sampler, work,
               {TransportMode::radiance, kCameraDimensions + kBsdf, kPerBounce,
                MediaNumbers::Purpose::flight, MediaNumbers::Purpose::passing},
-              {.ray = ray, .specular = true, .around = bodies_around_lens(scene, ray)}, *this) {
+              camera_segment(scene, ray), *this) {
     previous_.position = ray.origin;
   }
 
@@ -55,6 +55,14 @@ class Path final : public WalkWatcher {
   /// Scattering events so far.
   int depth() const { return walk_.events(); }
   const Ray& ray() const { return walk_.segment().ray; }
+
+  static PathSegment camera_segment(const Scene& scene, const Ray& ray) {
+    PathSegment segment;  // by assignment: an initializer list would clear what is not used, too
+    segment.ray = ray;
+    segment.specular = true;
+    segment.around = bodies_around_lens(scene, ray);
+    return segment;
+  }
 
   /// The first of the sampler's dimensions for choosing a light before the next scattering event.
   uint32_t light_dimension() const {
@@ -106,7 +114,7 @@ class Path final : public WalkWatcher {
   /// path scattered or, in a medium, from another place on the way there.
   float bsdf_weight(uint32_t index, float light_pdf) const {
     const PathSegment& segment = walk_.segment();
-    if (segment.specular) return 1.0F;
+    if (segment.specular || !(light_pdf > 0.0F)) return 1.0F;
     const float chosen =
         scene_.selector->probability(previous_.position, previous_.normal, index) * light_pdf;
     const float near =
@@ -195,7 +203,7 @@ class Path final : public WalkWatcher {
   void add_light_from_near(const MediumSegment& flight, const SurfacePoint* surface,
                            const Vec4& u) {
     if (depth() >= std::min(settings_.max_depth, settings_.max_events)) return;
-    if (scene_.lights.empty()) return;
+    if (scene_.selector->empty()) return;
     sampler_.set_dimension(light_dimension());
     const auto selected =
         scene_.selector->select_along(flight.ray, flight.t_max, sampler_.next_4d().z);
@@ -236,7 +244,7 @@ class Path final : public WalkWatcher {
 
   /// For the place `from` with normal `normal` (zero: none, in a medium).
   std::optional<ChosenLight> choose_light(const Vec3& from, const Vec3& normal) {
-    if (scene_.lights.empty()) return std::nullopt;
+    if (scene_.selector->empty()) return std::nullopt;
     sampler_.set_dimension(light_dimension());
     const Vec4 u = sampler_.next_4d();
     const auto selected = scene_.selector->select(from, normal, u.z);

@@ -16,15 +16,16 @@ float flux(const Rgb& integral, float world_radius) {
   return luminance(integral) * kPi * world_radius * world_radius;
 }
 
-/// The same radiance from everywhere.
+/// The same radiance from everywhere. By its excess it is never chosen.
 class ConstantSky : public InfiniteLight {
  public:
-  ConstantSky(const Rgb& radiance, float world_radius)
-      : radiance_(radiance), power_(flux(4.0F * kPi * radiance, world_radius)) {}
+  ConstantSky(const Rgb& radiance, float world_radius, SkyDensity density)
+      : radiance_(radiance),
+        power_(density == SkyDensity::excess ? 0.0F : flux(4.0F * kPi * radiance, world_radius)) {}
 
   std::optional<LightSample> sample_direct(const Vec3& /*from*/, float /*time*/, float /*pick*/,
                                            const Vec2& u) const override {
-    if (is_black(radiance_)) return std::nullopt;
+    if (!(power_ > 0.0F)) return std::nullopt;
     LightSample sample;
     sample.radiance = radiance_;
     sample.pdf = uniform_sphere_pdf();
@@ -36,7 +37,7 @@ class ConstantSky : public InfiniteLight {
 
   float pdf_direct(const Vec3& /*from*/, const Vec3& /*direction*/,
                    const SurfacePoint& /*on*/) const override {
-    return is_black(radiance_) ? 0.0F : uniform_sphere_pdf();
+    return power_ > 0.0F ? uniform_sphere_pdf() : 0.0F;
   }
 
   Rgb radiance(const SurfacePoint& /*on*/, const Vec3& /*outward*/) const override {
@@ -59,7 +60,7 @@ class ImageSky : public InfiniteLight {
         // Turning the map counter-clockwise lowers the azimuth atan2(z, x) of what is on it.
         turn_(rotate_y / (2.0F * kPi)),
         scale_(scale),
-        power_(flux(scale * map_->integral(), world_radius)) {}
+        power_(flux(scale * map_->integral(), world_radius) * sampled_share(*map_)) {}
 
   std::optional<LightSample> sample_direct(const Vec3& /*from*/, float /*time*/, float /*pick*/,
                                            const Vec2& u) const override {
@@ -88,7 +89,13 @@ class ImageSky : public InfiniteLight {
   float power() const override { return power_; }
 
  private:
-  bool is_dark() const { return !(luminance(scale_ * map_->integral()) > 0.0F); }
+  /// What of its light the sky is to be chosen for.
+  static float sampled_share(const EnvironmentMap& map) {
+    const float all = luminance(map.integral());
+    return all > 0.0F ? map.sampled() / all : 0.0F;
+  }
+
+  bool is_dark() const { return !(power_ > 0.0F); }
 
   std::shared_ptr<const EnvironmentMap> map_;
   float turn_;
@@ -104,12 +111,12 @@ LightPtr make_environment_map_light(std::shared_ptr<const EnvironmentMap> map, f
 }
 
 LightPtr make_environment_light(std::shared_ptr<const Image> image, float rotate_y,
-                                const Rgb& scale, float world_radius) {
+                                const Rgb& scale, float world_radius, SkyDensity density) {
   if (image == nullptr || image->data.empty()) {
-    return std::make_shared<ConstantSky>(scale, world_radius);
+    return std::make_shared<ConstantSky>(scale, world_radius, density);
   }
-  return make_environment_map_light(std::make_shared<EnvironmentMap>(std::move(image)), rotate_y,
-                                    scale, world_radius);
+  return make_environment_map_light(std::make_shared<EnvironmentMap>(std::move(image), density),
+                                    rotate_y, scale, world_radius);
 }
 
 }  // namespace hyades::core

@@ -9,7 +9,7 @@
 
 namespace hyades::core {
 
-EnvironmentMap::EnvironmentMap(std::shared_ptr<const Image> image)
+EnvironmentMap::EnvironmentMap(std::shared_ptr<const Image> image, SkyDensity density)
     : picture_(std::move(image)), width_(picture_.width()), height_(picture_.height()) {
   // 1 - cos = 2 sin^2(theta / 2) keeps its figures near the upper pole; the lower one mirrors it.
   const int rows = height_ + 1;
@@ -22,45 +22,70 @@ EnvironmentMap::EnvironmentMap(std::shared_ptr<const Image> image)
     const double cosine = 2 * edge == rows ? 0.0 : 1.0 - 2.0 * half * half;
     cosines_[static_cast<size_t>(edge)] = edge == mirrored ? cosine : -cosine;
   }
-  measure();
+  measure(density);
 }
 
 /// The mean of a bilinear cell is that of its corners.
-void EnvironmentMap::measure() {
+Rgb EnvironmentMap::integrate() const {
+  Vec3d integral(0.0);
+  Vec3d upper(0.0);
+  Vec3d lower(0.0);
+  for (int row = 0; row <= height_; ++row) {
+    upper = lower;
+    if (row < height_) {
+      lower = Vec3d(0.0);
+      for (int x = 0; x < width_; ++x) lower += Vec3d(picture_.at(x, row));
+    }
+    if (row == 0) upper = lower;
+    integral += 0.5 * (upper + lower) * cell_angle(row);
+  }
+  return Rgb(integral);
+}
+
+void EnvironmentMap::measure(SkyDensity density) {
+  integral_ = integrate();
+  sampled_ = luminance(integral_);
+  // A little above the mean, so that rounding leaves nothing of an even picture.
+  if (density == SkyDensity::excess) floor_ = sampled_ * (1.0001F / (4.0F * kPi));
   const auto columns = static_cast<size_t>(width_);
   std::vector<float> upper(columns + 1);
   std::vector<float> lower(columns + 1);
-  Vec3d upper_sum(0.0);
-  Vec3d lower_sum(0.0);
-  const auto read_row = [&](int y, std::vector<float>& luminances, Vec3d& sum) {
-    sum = Vec3d(0.0);
+  const auto read_row = [&](int y, std::vector<float>& luminances) {
     for (size_t x = 0; x < columns; ++x) {
-      const Rgb value = picture_.at(static_cast<int>(x), y);
-      luminances[x] = luminance(value);
-      sum += Vec3d(value);
+      luminances[x] = excess(picture_.at(static_cast<int>(x), y));
     }
     luminances[columns] = luminances[0];
   };
-  read_row(0, lower, lower_sum);
+  read_row(0, lower);
 
   std::vector<float> weights;
   weights.reserve(columns * static_cast<size_t>(height_ + 1));
-  Vec3d integral(0.0);
+  double sum = 0.0;
   for (int row = 0; row <= height_; ++row) {
     std::swap(upper, lower);
-    std::swap(upper_sum, lower_sum);
-    read_row(std::min(row, height_ - 1), lower, lower_sum);
-    if (row == 0) read_row(0, upper, upper_sum);
+    read_row(std::min(row, height_ - 1), lower);
+    if (row == 0) read_row(0, upper);
     const double angle = cell_angle(row);
     for (size_t x = 0; x < columns; ++x) {
       const float mean = 0.25F * (upper[x] + upper[x + 1] + lower[x] + lower[x + 1]);
       weights.push_back(static_cast<float>(double{mean} * angle));
+      sum += double{weights.back()};
     }
-    integral += 0.5 * (upper_sum + lower_sum) * angle;
   }
+  if (density == SkyDensity::excess) sampled_ = static_cast<float>(sum);
   cells_ =
       Distribution2D(weights, static_cast<uint32_t>(width_), static_cast<uint32_t>(height_ + 1));
-  integral_ = Rgb(integral);
+}
+
+float EnvironmentMap::excess(const Rgb& value) const {
+  return std::max(luminance(value) - floor_, 0.0F);
+}
+
+/// What directions within `cell` are chosen in proportion to.
+BilinearCell EnvironmentMap::sampled(const BilinearCell& cell) const {
+  if (!(floor_ > 0.0F)) return cell;
+  return {Rgb(excess(cell.top_left)), Rgb(excess(cell.top_right)), Rgb(excess(cell.bottom_left)),
+          Rgb(excess(cell.bottom_right))};
 }
 
 double EnvironmentMap::cell_angle(int row) const {
@@ -78,9 +103,10 @@ EnvironmentMap::View EnvironmentMap::view(const Vec3& direction, float turn) con
   const BilinearCell c = cell(place.column, place.row);
   View view;
   view.radiance = c.at({place.across, place.down});
-  const float mean = c.mean();
+  const BilinearCell chosen = sampled(c);
+  const float mean = chosen.mean();
   if (!(mean > 0.0F)) return view;
-  const float here = luminance(c.at({place.across, place.lower}));
+  const float here = luminance(chosen.at({place.across, place.lower}));
   const Vec2 middle((static_cast<float>(place.column) + 0.5F) / static_cast<float>(width_),
                     (static_cast<float>(place.row) + 0.5F) / static_cast<float>(height_ + 1));
   const double cells = static_cast<double>(width_) * (height_ + 1);
@@ -97,7 +123,7 @@ Vec3 EnvironmentMap::sample(const Vec2& u, float turn) const {
       std::max(chosen.at.x * static_cast<float>(width_) - static_cast<float>(column), 0.0F);
   const float down_u =
       std::max(chosen.at.y * static_cast<float>(height_ + 1) - static_cast<float>(row), 0.0F);
-  const Vec2 within = cell(column, row).sample({across_u, down_u});
+  const Vec2 within = sampled(cell(column, row)).sample({across_u, down_u});
 
   const auto r = static_cast<size_t>(row);
   const double cosine =

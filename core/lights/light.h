@@ -53,7 +53,7 @@ class Light {
   virtual Rgb radiance(const SurfacePoint& on, const Vec3& outward) const = 0;
 
   /// Total flux in W as luminance (infinite lights: through a disc around the world), for choosing
-  /// among lights.
+  /// among lights; of a sky that is chosen by its excess, the flux of that. 0: never to be chosen.
   virtual float power() const = 0;
 
   virtual bool is_infinite() const { return false; }

@@ -22,6 +22,9 @@ class LightSelector {
  public:
   virtual ~LightSelector() = default;
 
+  /// Whether no light has power: then none is ever chosen.
+  virtual bool empty() const = 0;
+
   /// A light for the point `from` with normal `normal` (zero: none, in a medium); nothing where no
   /// light has power.
   virtual std::optional<SelectedLight> select(const Vec3& from, const Vec3& normal,

@@ -67,11 +67,12 @@ LightPtr make_sun_light(const Vec3& direction, const Rgb& irradiance, float angl
 
 /// Lat-long environment: direction (x, y, z) -> u = atan2(z, x) / 2pi + 0.5, v = acos(y) / pi from
 /// the top, after the map has been turned by `rotate_y` [radians, counter-clockwise seen from +y];
-/// values times `scale`. Bilinear; sampled in proportion to luminance x solid angle of what
-/// bilinear look-up really returns (no zero pdf where there is light). A null image is constant
+/// values times `scale`. Bilinear; directions are chosen by `density` of what bilinear look-up
+/// really returns: by luminance none has density 0 where there is light. A null image is constant
 /// radiance `scale`.
 LightPtr make_environment_light(std::shared_ptr<const Image> image, float rotate_y,
-                                const Rgb& scale, float world_radius);
+                                const Rgb& scale, float world_radius,
+                                SkyDensity density = SkyDensity::luminance);
 
 /// An environment light of a map that is ready: maps take time to make and can be shared between
 /// frames.

@@ -41,6 +41,8 @@ class PowerSelector : public LightSelector {
     return SelectedLight{choice.index, choice.probability};
   }
 
+  bool empty() const override { return distribution_.empty(); }
+
   float emitter_probability(uint32_t light) const override {
     return light < distribution_.size() ? distribution_.probability(light) : 0.0F;
   }

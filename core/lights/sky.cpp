@@ -57,7 +57,7 @@ Sky make_sky(const SkySettings& settings) {
       put(*image, kWidth - 1 - x, y, radiance);
     }
   }
-  sky.map = std::make_shared<const EnvironmentMap>(std::move(image));
+  sky.map = std::make_shared<const EnvironmentMap>(std::move(image), settings.density);
   return sky;
 }
 

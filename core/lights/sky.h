@@ -7,12 +7,13 @@
 
 namespace hyades::core {
 
-/// What decides a clear sky's picture, all but the direction of the compass.
+/// What decides a clear sky's picture and how it is sampled, all but the direction of the compass.
 struct SkySettings {
   float elevation = 0.5F;  ///< of the sun's middle above the horizon [rad]
   float turbidity = 3.0F;  ///< as SkyModel
   Rgb ground_albedo{0.3F};
   float sun_radius = 0.0046F;  ///< angular [rad]: how much of the sun is above the horizon
+  SkyDensity density = SkyDensity::luminance;  ///< of the map
 
   bool operator==(const SkySettings&) const = default;
 };

@@ -101,6 +101,8 @@ class TreeSelector : public LightSelector {
     tree_ = LightTree(std::move(entries), lights.size());
   }
 
+  bool empty() const override { return emitters_->empty(); }
+
   std::optional<SelectedLight> select(const Vec3& from, const Vec3& normal,
                                       float u) const override {
     return select_by(u, AtPoint{from, normal});

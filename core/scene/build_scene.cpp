@@ -262,7 +262,9 @@ class SceneBuilder {
     return {};
   }
 
-  LightSetting setting() const { return {time_, job_.units, world_radius(*scene_->world)}; }
+  LightSetting setting() const {
+    return {time_, job_.units, world_radius(*scene_->world), sky_density(job_.integrator)};
+  }
 
   /// The middle of the bounds of object `name` (groups: of all within).
   Vec3 center_of(const std::string& name, float shutter_time) const {

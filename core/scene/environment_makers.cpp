@@ -36,6 +36,7 @@ std::vector<NamedLight> make_clear_sky(const SkyDesc& desc, float turn, const Rg
   settings.ground_albedo = desc.ground_albedo.at(time);
   const float size = desc.sun_size.at(time) * kRadians;
   settings.sun_radius = 0.5F * size;
+  settings.density = setting.sky_density;
   const std::shared_ptr<const Sky> sky = cache.sky(settings);
   const Rgb irradiance = scale * desc.irradiance.at(time);
   std::vector<NamedLight> lights;
@@ -53,6 +54,10 @@ std::vector<NamedLight> make_clear_sky(const SkyDesc& desc, float turn, const Rg
 
 }  // namespace
 
+SkyDensity sky_density(const IntegratorDesc& integrator) {
+  return integrator.type == "path" ? SkyDensity::excess : SkyDensity::luminance;
+}
+
 Result<std::vector<NamedLight>> make_environment(const EnvironmentDesc& desc,
                                                  const LightSetting& setting, SceneCache& cache) {
   const Rgb scale = desc.color.at(setting.time) * desc.strength.at(setting.time);
@@ -60,10 +65,11 @@ Result<std::vector<NamedLight>> make_environment(const EnvironmentDesc& desc,
   if (desc.sky) return make_clear_sky(*desc.sky, turn, scale, setting, cache);
   std::vector<NamedLight> lights;
   if (desc.image.empty()) {
-    lights.push_back({kSky, make_environment_light(nullptr, 0.0F, scale, setting.world_radius)});
+    lights.push_back({kSky, make_environment_light(nullptr, 0.0F, scale, setting.world_radius,
+                                                   setting.sky_density)});
     return lights;
   }
-  auto map = cache.environment_map(desc.image);
+  auto map = cache.environment_map(desc.image, setting.sky_density);
   if (!map) return map.error().in("environment");
   lights.push_back({kSky, make_environment_map_light(*map, turn, scale, setting.world_radius)});
   return lights;

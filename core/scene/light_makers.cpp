@@ -59,7 +59,7 @@ Result<LightPtr> make(const PointLightDesc& desc, const LightPlace& place,
   const Vec3 at = place.place(desc.at.at(setting.time));
   const Rgb power = power_of(desc, setting.time);
   if (desc.image.empty()) return make_point_light(at, power);
-  auto map = cache.environment_map(desc.image);
+  auto map = cache.environment_map(desc.image, SkyDensity::luminance);
   if (!map) return map.error();
   return make_goniometric_light(at, place.axes(Mat3(1.0F)), power, std::move(*map));
 }

@@ -12,6 +12,7 @@ struct LightSetting {
   JobTime time;
   float units = 1.0F;         ///< metres per unit of length of the job
   float world_radius = 1.0F;  ///< metres; infinite lights weigh their power by it
+  SkyDensity sky_density = SkyDensity::luminance;  ///< of the environment
 };
 
 /// The light that `desc` describes (no shape's emission, no environment); its picture is of

@@ -121,11 +121,13 @@ Result<std::shared_ptr<const std::vector<int>>> SceneCache::udim(const std::stri
   });
 }
 
-Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const std::string& file) {
-  return environment_maps_.get(file, [&]() -> Result<std::shared_ptr<const EnvironmentMap>> {
+Result<std::shared_ptr<const EnvironmentMap>> SceneCache::environment_map(const std::string& file,
+                                                                          SkyDensity density) {
+  const auto key = std::pair(file, density);
+  return environment_maps_.get(key, [&]() -> Result<std::shared_ptr<const EnvironmentMap>> {
     auto picture = image(file, ColorSpace::automatic);
     if (!picture) return picture.error();
-    return std::make_shared<const EnvironmentMap>(*picture);
+    return std::make_shared<const EnvironmentMap>(*picture, density);
   });
 }
 

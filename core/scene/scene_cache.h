@@ -92,7 +92,8 @@ class SceneCache {
   Result<std::shared_ptr<const std::vector<int>>> udim(const std::string& pattern);
 
   /// An image as a sky, ready to be sampled.
-  Result<std::shared_ptr<const EnvironmentMap>> environment_map(const std::string& file);
+  Result<std::shared_ptr<const EnvironmentMap>> environment_map(const std::string& file,
+                                                                SkyDensity density);
 
   /// An image as a projector's picture, ready to be sampled.
   Result<std::shared_ptr<const Gobo>> gobo(const std::string& file);
@@ -157,7 +158,7 @@ class SceneCache {
   OnceMap<std::pair<std::string, ColorSpace>, Image> images_;
   OnceMap<std::pair<std::string, ImageUse>, ImagePyramid> pyramids_;
   OnceMap<std::string, std::vector<int>> udims_;
-  OnceMap<std::string, EnvironmentMap> environment_maps_;
+  OnceMap<std::pair<std::string, SkyDensity>, EnvironmentMap> environment_maps_;
   OnceMap<std::string, Gobo> gobos_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<float>> vdb_numbers_;
   OnceMap<std::pair<std::string, std::string>, VdbGrid<Rgb>> vdb_colors_;

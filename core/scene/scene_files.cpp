@@ -13,6 +13,7 @@
 #include "core/base/udim.h"
 #include "core/job/mesh_files.h"
 #include "core/job/references.h"
+#include "core/scene/environment_makers.h"
 #include "core/scene/shape_makers.h"
 #include "core/scene/texture_makers.h"
 
@@ -65,13 +66,15 @@ class Walk {
     for (const LightDesc& light : job.lights) {
       const bool projects = std::holds_alternative<ProjectorLightDesc>(light.kind);
       for (const std::string& image : files_in(light)) {
-        add_light_map(image, projects ? LightMap::gobo : LightMap::surroundings,
+        add_light_map(image, projects ? LightMap::gobo : LightMap::luminance,
                       "light '" + light.name + "'", light.where);
       }
     }
     if (!job.environment) return;
-    add_light_map(job.environment->image, LightMap::surroundings, "environment",
-                  job.environment->where);
+    add_light_map(
+        job.environment->image,
+        sky_density(job.integrator) == SkyDensity::excess ? LightMap::excess : LightMap::luminance,
+        "environment", job.environment->where);
   }
 
   void add_light_map(const std::string& file, LightMap how, const std::string& user,
@@ -235,7 +238,9 @@ Status load_files(const SceneFiles& named, SceneCache& cache, Diagnostics& diagn
       if (map.how == LightMap::gobo) {
         note(i, cache.gobo(map.file), map.user, map.where);
       } else {
-        note(i, cache.environment_map(map.file), map.user, map.where);
+        const auto density =
+            map.how == LightMap::excess ? SkyDensity::excess : SkyDensity::luminance;
+        note(i, cache.environment_map(map.file, density), map.user, map.where);
       }
     }
   });

@@ -11,8 +11,8 @@
 
 namespace hyades::core {
 
-/// What a light makes of its picture.
-enum class LightMap { surroundings, gobo };
+/// What a light makes of its picture; a map of directions is chosen from by its SkyDensity.
+enum class LightMap { luminance, excess, gobo };
 
 /// A file as the cache is asked for it, and who asks first.
 template <class How>

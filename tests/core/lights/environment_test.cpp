@@ -180,6 +180,64 @@ TEST(ImageEnvironment, ConstantPictureIsAConstantSky) {
   }
 }
 
+LightPtr sky_by_excess(std::shared_ptr<const Image> image) {
+  return make_environment_light(std::move(image), 0.3F, Rgb(2, 1, 3), 2.0F, SkyDensity::excess);
+}
+
+TEST(SkyByExcess, ChoosesWhereItIsBrighterThanItsMean) {
+  const auto image = paint(16, 8, [](int x, int y) { return Rgb(static_cast<float>(x * y)); });
+  const auto light = sky_by_excess(image);
+  const auto whole = make_environment_light(image, 0.3F, Rgb(2, 1, 3), 2.0F);
+  expect_sampled_right(*light, 50);
+  // Its own scale does not count.
+  const double mean = test::integrate_sphere(
+                          [&](const Vec3& d) {
+                            return static_cast<double>(luminance(seen(*whole, d) / Rgb(2, 1, 3)));
+                          },
+                          -1.0, 1.0, 1e-3, 32) /
+                      (4.0 * M_PI);
+  test::Random random(51);
+  int chosen = 0;
+  int bright = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 d = random.direction();
+    ASSERT_EQ(seen(*light, d), seen(*whole, d));
+    const bool can = light->pdf_direct({}, d, {}) > 0.0F;
+    const bool brighter =
+        static_cast<double>(luminance(seen(*light, d) / Rgb(2, 1, 3))) > 1.01 * mean;
+    EXPECT_TRUE(can || !brighter) << d.x << ' ' << d.y << ' ' << d.z;
+    chosen += can ? 1 : 0;
+    bright += brighter ? 1 : 0;
+  }
+  // A cell with one corner above the mean has a density everywhere.
+  EXPECT_GT(bright, 5000);
+  EXPECT_LT(chosen, 13000);
+  EXPECT_GT(light->power(), 0.05F * whole->power());
+  EXPECT_LT(light->power(), 0.5F * whole->power());
+}
+
+TEST(SkyByExcess, KnowsHowMuchThatIs) {
+  // The northern half is twice as bright as the southern: mean 1.5, a sixth of all is above it.
+  const auto image = paint(64, 512, [](int, int y) { return Rgb(y < 256 ? 2.0F : 1.0F); });
+  const float share = sky_by_excess(image)->power() /
+                      make_environment_light(image, 0.3F, Rgb(2, 1, 3), 2.0F)->power();
+  EXPECT_NEAR(share, 1.0F / 6.0F, 1e-3F);
+  const auto light = sky_by_excess(image);
+  EXPECT_NEAR(light->pdf_direct({}, {0.0F, 0.8F, 0.6F}, {}), 0.5F * kInvPi, 1e-3F);
+  EXPECT_EQ(light->pdf_direct({}, {0.0F, -0.8F, 0.6F}, {}), 0.0F);
+}
+
+TEST(SkyByExcess, AnEvenSkyIsNeverChosen) {
+  const auto even = paint(64, 32, [](int, int) { return Rgb(0.7F, 0.31F, 0.123F); });
+  for (const auto& image : {even, std::shared_ptr<Image>()}) {
+    const auto light = sky_by_excess(image);
+    EXPECT_EQ(light->power(), 0.0F);
+    EXPECT_EQ(light->pdf_direct({}, {0, 1, 0}, {}), 0.0F);
+    EXPECT_FALSE(light->sample_direct({}, 0.0F, 0.5F, {0.5F, 0.5F}));
+    EXPECT_GT(min_component(seen(*light, {0, 1, 0})), 0.1F);
+  }
+}
+
 TEST(ImageEnvironment, CountsBrokenPixelsAsBlack) {
   const float inf = std::numeric_limits<float>::infinity();
   const auto light = sky(paint(4, 2, [&](int x, int y) {

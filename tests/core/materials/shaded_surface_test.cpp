@@ -72,6 +72,23 @@ TEST(ShadedSurface, WeightIsValueOverPdf) {
   }
 }
 
+// Skies that are as bright as their mean, or less, are found by following the BSDF alone: it must
+// lead to wherever it scatters.
+TEST(ShadedSurface, CanLeadWhereverItScatters) {
+  test::Random random(95);
+  for (const BsdfCase& c : smooth_cases()) {
+    for (int n = 0; n < 5000; ++n) {
+      BsdfArena arena;
+      const SurfacePoint p = leaning(random.direction(), n % 2 == 0 ? 0.0F : 0.6F);
+      const ShadedSurface surface(p, *c.material, arena);
+      const Vec3 wo = random.direction();
+      const Vec3 wi = random.direction();
+      if (is_black(surface.evaluate(wo, wi, TransportMode::radiance))) continue;
+      ASSERT_GT(surface.pdf(wo, wi, TransportMode::radiance), 0.0F) << c.name;
+    }
+  }
+}
+
 TEST(ShadedSurface, LightDoesNotLeakThroughTheGeometricSurface) {
   test::Random random(93);
   const MaterialPtr material = make_lambert(color_of(Rgb(1.0F)));

@@ -115,9 +115,9 @@ environment: {image: sky.hdr}
   EXPECT_THAT(files.images, ElementsAre(Asked("leaf.png", ImageUse{}),
                                         Asked("bark.png", ImageUse{ColorSpace::linear}),
                                         Asked("bump.png", ImageUse{})));
-  EXPECT_THAT(files.light_maps, ElementsAre(Asked("lamp.exr", LightMap::surroundings),
-                                            Asked("film.png", LightMap::gobo),
-                                            Asked("sky.hdr", LightMap::surroundings)));
+  EXPECT_THAT(files.light_maps,
+              ElementsAre(Asked("lamp.exr", LightMap::luminance), Asked("film.png", LightMap::gobo),
+                          Asked("sky.hdr", LightMap::excess)));
 }
 
 TEST(SceneFiles, AreWhatDisplacesMeshes) {
