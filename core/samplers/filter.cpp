@@ -112,6 +112,26 @@ class SeparableFilter final : public PixelFilter {
   Profile profile_;
 };
 
+/// The same everywhere within its radius.
+class BoxFilter final : public PixelFilter {
+ public:
+  explicit BoxFilter(float radius) : radius_(radius), value_(0.5F / radius) {}
+
+  FilterSample sample(const Vec2& u) const override {
+    return {Vec2(-radius_) + 2.0F * radius_ * u, 1.0F};
+  }
+  float evaluate(const Vec2& offset) const override {
+    return evaluate_along(offset.x) * evaluate_along(offset.y);
+  }
+  float evaluate_along(float x) const override {
+    return x >= -radius_ && x < radius_ ? value_ : 0.0F;
+  }
+
+ private:
+  float radius_;
+  float value_;
+};
+
 class CenterFilter final : public PixelFilter {
  public:
   FilterSample sample(const Vec2& /*u*/) const override { return {}; }
@@ -156,19 +176,16 @@ Profile make_profile(FilterShape shape, float radius) {
       return tabulate(mitchell, radius);
     case FilterShape::blackman_harris:
       return tabulate(blackman_harris, radius);
-    case FilterShape::triangle:
-      return {{-radius, 0.0F, radius}, {0.0F, 1.0F, 0.0F}};
-    case FilterShape::box:
-    case FilterShape::center:
-      break;
+    default:
+      return {{-radius, 0.0F, radius}, {0.0F, 1.0F, 0.0F}};  // a triangle
   }
-  return {{-radius, radius}, {1.0F, 1.0F}};
 }
 
 }  // namespace
 
 std::unique_ptr<PixelFilter> make_pixel_filter(FilterShape shape, float radius) {
   if (shape == FilterShape::center || !(radius > 0.0F)) return std::make_unique<CenterFilter>();
+  if (shape == FilterShape::box) return std::make_unique<BoxFilter>(radius);
   return std::make_unique<SeparableFilter>(make_profile(shape, radius));
 }
 
