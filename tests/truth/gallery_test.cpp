@@ -33,7 +33,7 @@ const GalleryJob kJobs[] = {
     {"color-bleeding", 64, 32, 10, 0.015},  {"soft-shadows", 576, 288, 6, 0.2},
     {"depth-of-field", 512, 320, 10, 0.15}, {"antialiasing", 64, 32, 10, 0.025},
     {"perlin-sphere", 256, 128, 10, 0.1},   {"mesh-100k", 64, 32, 10, 0.015},
-    {"glass-caustics", 640, 64, 10, 0.06},  {"gloss", 128, 64, 10, 0.06},
+    {"glass-caustics", 640, 256, 10, 0.06}, {"gloss", 128, 64, 10, 0.06},
     {"textured", 64, 32, 10, 0.1},          {"textured-gloss", 320, 160, 10, 0.12},
     {"leaves", 64, 32, 10, 0.01},           {"island", 64, 32, 8, 0.015},
     {"lanterns", 64, 32, 6, 0.1},           {"panorama", 192, 96, 6, 0.1},
