@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/scheduler/frame_ledger.h"
 #include "coordinator/scheduler/tile_grid.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
@@ -129,6 +130,14 @@ uint64_t memory_of(const std::vector<core::VideoDesc>& videos) {
     bytes += sizeof video + video.where.file.size() + video.file.size() + video.pictures.size();
   }
   return bytes;
+}
+
+/// Bytes that it takes to know who has which samples of a frame, when somebody has had some of
+/// every tile.
+uint64_t ledger_memory(const core::PixelRect& region, uint32_t samples) {
+  const auto across = static_cast<uint64_t>(region.width() / kTile + 2);
+  const auto down = static_cast<uint64_t>(region.height() / kTile + 2);
+  return FrameLedger::memory(across * down, core::batch_count(samples));
 }
 
 }  // namespace
@@ -341,13 +350,16 @@ core::Result<std::unique_ptr<ActiveJob>> make_active_job(const StoredJob& stored
   active->region = core::render_window(job.film);
   const core::LayerSet layers = core::needed_layers(job);
   active->layout = core::make_film_layout(layers);
-  active->film_bytes = core::film_memory(active->layout, active->region);
+  active->film_bytes = core::film_memory(active->layout, active->region) +
+                       ledger_memory(active->region, job.sampling.samples);
   if (active->film_bytes > film_memory) {
     return core::Error{fmt::format(
-        "film: {} x {} pixels of {} channels take {} of the coordinator's memory, which holds at "
-        "most {} of films (--film-memory); expected a smaller size, a crop, or fewer layers",
+        "film: {} x {} pixels of {} channels and {} samples take {} of the coordinator's memory, "
+        "which holds at most {} of films (--film-memory); expected a smaller size, a crop, fewer "
+        "layers or fewer samples",
         active->region.width(), active->region.height(), active->layout.channels.size(),
-        core::format_bytes(active->film_bytes), core::format_bytes(film_memory))};
+        job.sampling.samples, core::format_bytes(active->film_bytes),
+        core::format_bytes(film_memory))};
   }
   active->samples = job.sampling.samples;
   active->threshold = core::noise_threshold(job);

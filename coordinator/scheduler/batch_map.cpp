@@ -22,20 +22,33 @@ void for_each_word(core::BatchRange range, Visit visit) {
 }  // namespace
 
 BatchMap::BatchMap(uint32_t tiles, uint32_t batches)
-    : words_per_tile_((batches + 63) / 64), words_(size_t{tiles} * words_per_tile_) {}
+    : words_per_tile_((batches + 63) / 64), words_(tiles) {}
+
+uint64_t BatchMap::memory(uint64_t tiles, uint64_t batches) {
+  return tiles * (sizeof(Words) + (batches + 63) / 64 * sizeof(uint64_t));
+}
+
+BatchMap::Words& BatchMap::words_to_set(uint32_t tile) {
+  Words& words = words_[tile];
+  if (words.empty()) words.resize(words_per_tile_);
+  return words;
+}
 
 void BatchMap::set(uint32_t tile, core::BatchRange range) {
-  for_each_word(range, [&](size_t w, uint64_t mask) { words_[word(tile, 0) + w] |= mask; });
+  Words& words = words_to_set(tile);
+  for_each_word(range, [&](size_t w, uint64_t mask) { words[w] |= mask; });
 }
 
 void BatchMap::clear(uint32_t tile, core::BatchRange range) {
-  for_each_word(range, [&](size_t w, uint64_t mask) { words_[word(tile, 0) + w] &= ~mask; });
+  Words& words = words_[tile];
+  if (words.empty()) return;
+  for_each_word(range, [&](size_t w, uint64_t mask) { words[w] &= ~mask; });
 }
 
 uint32_t BatchMap::count(uint32_t tile, core::BatchRange range) const {
   uint32_t n = 0;
   for_each_word(range, [&](size_t w, uint64_t mask) {
-    n += static_cast<uint32_t>(std::popcount(words_[word(tile, 0) + w] & mask));
+    n += static_cast<uint32_t>(std::popcount(bits(tile, w) & mask));
   });
   return n;
 }
@@ -44,8 +57,8 @@ std::optional<core::BatchRange> BatchMap::first_free(const BatchMap& a, const Ba
                                                      uint32_t tile, core::BatchRange range) {
   uint32_t at = range.first;
   const auto taken_from = [&](uint32_t batch) {
-    const size_t w = a.word(tile, batch);
-    return (a.words_[w] | b.words_[w]) >> (batch % 64);
+    const size_t w = batch / 64;
+    return (a.bits(tile, w) | b.bits(tile, w)) >> (batch % 64);
   };
   while (at < range.end()) {
     const uint64_t taken = taken_from(at);
@@ -68,8 +81,8 @@ uint32_t BatchMap::count_free(const BatchMap& a, const BatchMap& b, uint32_t til
                               core::BatchRange range) {
   uint32_t n = 0;
   for_each_word(range, [&](size_t w, uint64_t mask) {
-    const size_t i = a.word(tile, 0) + w;
-    n += static_cast<uint32_t>(std::popcount(~(a.words_[i] | b.words_[i]) & mask));
+    const uint64_t taken = a.bits(tile, w) | b.bits(tile, w);
+    n += static_cast<uint32_t>(std::popcount(~taken & mask));
   });
   return n;
 }

@@ -9,10 +9,14 @@
 
 namespace hyades::coordinator {
 
-/// One bit per (tile, batch) of a frame.
+/// One bit per (tile, batch) of a frame. A tile's bits take memory once one of them was set: frames
+/// are opened before anybody works at them.
 class BatchMap {
  public:
   BatchMap(uint32_t tiles, uint32_t batches);
+
+  /// Bytes that it takes when every tile has bits that are set.
+  static uint64_t memory(uint64_t tiles, uint64_t batches);
 
   /// Sets the bits of the range to one.
   void set(uint32_t tile, core::BatchRange range);
@@ -29,10 +33,17 @@ class BatchMap {
                              core::BatchRange range);
 
  private:
-  size_t word(uint32_t tile, uint32_t batch) const { return tile * words_per_tile_ + batch / 64; }
+  using Words = std::vector<uint64_t>;
+
+  Words& words_to_set(uint32_t tile);
+  /// The bits of word `word` of the tile.
+  uint64_t bits(uint32_t tile, size_t word) const {
+    const Words& words = words_[tile];
+    return words.empty() ? 0 : words[word];
+  }
 
   size_t words_per_tile_;
-  std::vector<uint64_t> words_;
+  std::vector<Words> words_;  ///< by tile; empty: none is set
 };
 
 }  // namespace hyades::coordinator

@@ -75,6 +75,11 @@ class FrameLedger {
   FrameLedger(const std::vector<uint32_t>& tile_order, uint32_t batches,
               std::vector<uint32_t> rounds = {});
 
+  /// Bytes that who has which batch takes at most, of a frame of so many tiles.
+  static uint64_t memory(uint64_t tiles, uint64_t batches) {
+    return 2 * BatchMap::memory(tiles, batches);
+  }
+
   uint64_t total() const { return total_; }      ///< tile-batches that are planned
   uint64_t free() const { return free_; }        ///< of these, neither leased nor held
   uint64_t durable() const { return durable_; }  ///< tile-batches whose films are durable

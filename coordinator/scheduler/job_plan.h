@@ -41,7 +41,7 @@ struct JobPlan {
   /// Frames that may be opened, rendered or finished at once: each costs its film's memory. They
   /// are begun with as the workers need them, so a farm wants more of them than one machine.
   uint32_t frames_in_flight = 16;
-  uint64_t film_bytes = 0;  ///< that the film of a frame takes in memory
+  uint64_t film_bytes = 0;  ///< that the film of a frame and its FrameLedger take in memory
   FrameOrder order = FrameOrder::sequential;
   /// What a tile's films hold cannot be taken out of a frame's (splats): where one is wrong the
   /// whole frame begins again.

@@ -1,5 +1,6 @@
 // What clients and workers may send, and what they are told beyond it.
 #include <gtest/gtest.h>
+#include <fstream>
 
 #include <atomic>
 #include <thread>
@@ -220,6 +221,45 @@ TEST_F(Limits, OfTheMemoryThatAFilmTakes) {
   const v1::Job now = world.get(job).job();
   EXPECT_EQ(now.state(), v1::JOB_STATE_FAILED);
   EXPECT_NE(now.reason().find("80 x 48"), std::string::npos) << now.reason();
+}
+
+uint64_t resident_bytes() {
+  uint64_t pages = 0;
+  std::ifstream statm("/proc/self/statm");
+  statm >> pages >> pages;
+  return pages * 4096;
+}
+
+// A frame of so many samples knows of each batch who has it: 64 KiB for each tile at which somebody
+// works. Frames that are open, and at which nobody does, take none of it.
+TEST_F(Limits, OfTheMemoryThatSamplesTake) {
+  world.stop();
+  world.options.film_memory = uint64_t{256} << 20U;
+  world.start();
+  std::string many = FarmWorld::document(256);
+  many.replace(many.find("samples: 40"), 11, "samples: 16777216");
+  const auto sized = [&](const char* size) {
+    std::string text = many;
+    text.replace(text.find("[80, 48]"), 8, size);
+    return text;
+  };
+  v1::SubmitResponse response;
+  const auto submitted = [&](const std::string& text) {
+    v1::SubmitRequest request = FarmWorld::request(text);
+    request.set_frame_order(v1::FRAME_ORDER_PROGRESSIVE);
+    return world.jobs->Submit(world.context().get(), request, &response);
+  };
+  ASSERT_TRUE(world.upload(sized("[1024, 1024]")).ok());
+  expect_refused(submitted(sized("[1024, 1024]")), StatusCode::INVALID_ARGUMENT,
+                 "16777216 samples take");
+  const uint64_t before = resident_bytes();
+  for (int i = 0; i < 4; ++i) {
+    const std::string text = sized(i % 2 == 0 ? "[400, 400]" : "[384, 384]");
+    ASSERT_TRUE(world.upload(text).ok());
+    const grpc::Status status = submitted(text);
+    ASSERT_TRUE(status.ok()) << status.error_message();
+  }
+  EXPECT_LT(resident_bytes(), before + (uint64_t{32} << 20U));
 }
 
 TEST_F(Limits, OfFramesThatAreNamedAgainAndAgain) {
