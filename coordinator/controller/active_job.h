@@ -93,7 +93,7 @@ struct ActiveJob {
 
   core::PixelRect region;
   core::FilmLayout layout;
-  uint64_t film_bytes = 0;  ///< that the film of one frame takes in memory
+  uint64_t film_bytes = 0;  ///< that the film of one frame and its FrameLedger take in memory
   uint64_t samples_per_frame = 0;
   Digest key{};  ///< JobBrief.key
 
@@ -112,8 +112,9 @@ struct ActiveJob {
   uint64_t version HYADES_GUARDED_BY(state_lock) = 1;  ///< grows with every change
   /// The frames that have changed, by the version of their last change.
   std::map<uint64_t, int32_t> changed HYADES_GUARDED_BY(state_lock);
-  /// Frames that may be in work, for preview_frame().
+  /// Frames that may be in work: all that are rendered or finished, and a few others.
   std::set<int32_t> in_work HYADES_GUARDED_BY(state_lock);
+  std::set<int32_t> failed HYADES_GUARDED_BY(state_lock);  ///< frames that have failed
   Speed speed HYADES_GUARDED_BY(state_lock);
 
   std::vector<StoredLine> lines HYADES_GUARDED_BY(state_lock);  ///< not stored yet

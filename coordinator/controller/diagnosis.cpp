@@ -105,11 +105,13 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
   if (!out && may_begin && !orphans && active->stored.state == StoredState::running) {
     explain_rivals(*active, reasons);
   }
-  const auto waiting = std::count_if(
-      active->frames.begin(), active->frames.end(),
-      [](const auto& frame) { return frame.second.state == v1::FRAME_STATE_WAITING; });
+  const auto in_work = static_cast<size_t>(std::count_if(
+      active->in_work.begin(), active->in_work.end(),
+      [&](int32_t number) { return active->frames.at(number).state != v1::FRAME_STATE_WAITING; }));
+  const size_t begun = in_work + active->failed.size() + active->stored.frames_done;
+  const size_t waiting = active->frames.size() - std::min(begun, active->frames.size());
   if (waiting > 0) {
-    reasons.say(core::counted(static_cast<uint64_t>(waiting), "frame") +
+    reasons.say(core::counted(waiting, "frame") +
                 (waiting == 1 ? " waits for its turn" : " wait for their turn"));
   }
   if (response.reasons().empty()) reasons.say("nothing stands in its way");
@@ -143,18 +145,18 @@ bool Diagnosis::explain_workers(const ActiveJob& active, bool anybody, Reasons& 
 /// Whether some were begun by workers of which none is there, though others are.
 bool Diagnosis::explain_frames(const ActiveJob& active, const std::set<std::string>& classes,
                                Reasons& reasons) const {
-  for (const auto& [number, note] : active.frames) {
-    if (note.state != v1::FRAME_STATE_FINISHING) continue;
+  for (const int32_t number : active.in_work) {
+    if (active.frames.at(number).state != v1::FRAME_STATE_FINISHING) continue;
     reasons.say_one("frame {} is rendered; its outputs are being made", number);
   }
   reasons.end_kind("frames are rendered; their outputs are being made");
-  for (const auto& [number, note] : active.frames) {
-    if (note.state != v1::FRAME_STATE_FAILED) continue;
-    reasons.say_one("frame {} failed: {}", number, note.reason);
+  for (const int32_t number : active.failed) {
+    reasons.say_one("frame {} failed: {}", number, active.frames.at(number).reason);
   }
   reasons.end_kind("frames failed");
   bool orphans = false;
-  for (const auto& [number, note] : active.frames) {
+  for (const int32_t number : active.in_work) {
+    const FrameNote& note = active.frames.at(number);
     if (note.state != v1::FRAME_STATE_RENDERING || classes.empty() || note.worker_class.empty() ||
         classes.contains(note.worker_class)) {
       continue;

@@ -163,6 +163,7 @@ void FrameProgress::failed(ActiveJob& active, const FrameFailed& action) {
   FrameNote& noted = active.touch(frame);
   noted.state = v1::FRAME_STATE_FAILED;
   active.in_work.erase(frame);
+  active.failed.insert(frame);
   noted.reason = farm::wire_text(action.reason);
   active.samples_done -= std::exchange(noted.samples_done, 0);
   active.samples_spared -= std::exchange(noted.samples_spared, 0);
@@ -178,6 +179,7 @@ void FrameProgress::restarted(ActiveJob& active, const FrameRestarted& action) {
   active.complete.erase(frame);
   noted.state = v1::FRAME_STATE_WAITING;
   active.in_work.erase(frame);
+  active.failed.erase(frame);
   noted.reason.clear();
   noted.worker_class.clear();
   ++noted.restarts;

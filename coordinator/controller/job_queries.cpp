@@ -80,6 +80,9 @@ class FramePage {
   size_t bytes_ = 0;
 };
 
+/// Frames that are looked at before others get the state lock.
+constexpr int kMostLookedAt = 10'000;
+
 bool is_wanted(v1::FrameState state, v1::FrameState only) {
   return only == v1::FRAME_STATE_UNSPECIFIED || state == only;
 }
@@ -153,16 +156,25 @@ grpc::Status JobQueries::list(const v1::ListJobsRequest& request, v1::ListJobsRe
 
 bool JobQueries::get_open(uint64_t id, std::optional<int32_t> after, v1::GetJobResponse& response,
                           v1::FrameState only, size_t most_bytes) {
-  const StateLock lock(context_.mutex);
-  const ActiveJob* active = jobs_.find(id);
-  if (active == nullptr) return false;
   FramePage page(*response.mutable_frames(), most_bytes);
-  *response.mutable_job() = describe(*active);
-  for (auto it = above(active->frames, after); it != active->frames.end(); ++it) {
-    if (!is_wanted(it->second.state, only)) continue;
-    response.set_more(page.full());
-    if (page.full()) break;
-    page.add(active->describe_frame(it->first, it->second));
+  // A job may have a million frames, and few of them in that state: others get the lock in between.
+  for (bool at_end = false; !at_end;) {
+    const StateLock lock(context_.mutex);
+    const ActiveJob* active = jobs_.find(id);
+    if (active == nullptr) {
+      response.clear_frames();
+      return false;
+    }
+    *response.mutable_job() = describe(*active);
+    auto it = above(active->frames, after);
+    for (int looked = 0; looked < kMostLookedAt && it != active->frames.end(); ++looked, ++it) {
+      after = it->first;
+      if (!is_wanted(it->second.state, only)) continue;
+      response.set_more(page.full());
+      if (page.full()) return true;
+      page.add(active->describe_frame(it->first, it->second));
+    }
+    at_end = it == active->frames.end();
   }
   return true;
 }

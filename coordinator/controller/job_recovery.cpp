@@ -233,6 +233,7 @@ core::Result<RestoredJob> JobRecovery::restore_frames(ActiveJob& active) {
       restored.failed.push_back({frame.frame, frame.reason});
       note.state = v1::FRAME_STATE_FAILED;
       note.reason = frame.reason;
+      active.failed.insert(frame.frame);
     }
   }
   active.stored.frames_done = static_cast<uint32_t>(restored.finished.size());
