@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <map>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -11,7 +13,8 @@
 namespace hyades::farm {
 
 /// A few threads that do, one thing after the other, what may wait for the disk, so that those who
-/// hand it to them (gRPC's threads above all, of which there are few) never do. Thread-safe.
+/// hand it to them (gRPC's threads above all, of which there are few) never do. Those whom things
+/// are done for take turns. Thread-safe.
 class ThreadPool {
  public:
   /// `threads`: at least 1. `most_waiting`: of things that nobody has begun with.
@@ -21,9 +24,10 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Has one of them call `what` soon. False, and `what` is never called, where as much waits as
-  /// may. Never waits itself.
-  [[nodiscard]] bool submit(std::function<void()> what) HYADES_EXCLUDES(mutex_);
+  /// Has one of them call `what` soon, for `owner`. False, and `what` is never called, where as
+  /// much waits as may, or half of that for an owner with a name. Never waits itself.
+  [[nodiscard]] bool submit(std::function<void()> what, const std::string& owner = {})
+      HYADES_EXCLUDES(mutex_);
 
  private:
   void work() HYADES_EXCLUDES(mutex_);
@@ -31,7 +35,9 @@ class ThreadPool {
   const size_t most_waiting_;
   core::Mutex mutex_;
   core::CondVar wake_;
-  std::deque<std::function<void()>> waiting_ HYADES_GUARDED_BY(mutex_);
+  size_t waiting_ HYADES_GUARDED_BY(mutex_) = 0;
+  std::map<std::string, std::deque<std::function<void()>>> of_ HYADES_GUARDED_BY(mutex_);
+  std::deque<std::string> turns_ HYADES_GUARDED_BY(mutex_);  ///< the owners for whom things wait
   bool end_ HYADES_GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;
 };

@@ -104,7 +104,8 @@ void PicturesApi::add_routes(Router& router) {
           return;
         }
         const Asker asker{ByteBudget::owner_of(from.caller), answer};
-        const bool taken = pool_.submit([this, asked, asker] { answer_picture(asked, asker); });
+        const bool taken =
+            pool_.submit([this, asked, asker] { answer_picture(asked, asker); }, asker.owner.name);
         if (!taken) answer(error_reply(crowded()));
       });
 }

@@ -6,6 +6,8 @@
 #include <future>
 #include <mutex>
 #include <new>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include "farm/last_words.h"
@@ -111,6 +113,26 @@ TEST(ThreadPool, TakeNoMoreThanMayWait) {
     go.set_value();
   }
   EXPECT_EQ(done, 5) << "all that was taken is done, and nothing else";
+}
+
+TEST(ThreadPool, TakesTurnsBetweenOwners) {
+  std::promise<void> go;
+  const std::shared_future<void> gone = go.get_future().share();
+  std::string order;
+  {
+    ThreadPool pool(1, 8);
+    std::atomic<bool> begun{false};
+    ASSERT_TRUE(pool.submit([&, gone] {
+      begun = true;
+      gone.wait();
+    }));
+    while (!begun) std::this_thread::yield();
+    for (int i = 0; i < 4; ++i) EXPECT_TRUE(pool.submit([&] { order += 'v'; }, "vic"));
+    EXPECT_FALSE(pool.submit([&] { order += 'v'; }, "vic")) << "half of what may wait";
+    for (int i = 0; i < 2; ++i) EXPECT_TRUE(pool.submit([&] { order += 'b'; }, "bob"));
+    go.set_value();
+  }
+  EXPECT_EQ(order, "vbvbvv");
 }
 
 }  // namespace
