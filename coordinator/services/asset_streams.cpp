@@ -130,7 +130,8 @@ void add_asset_streams(Service& service) {
       v1::UploadResponse::default_instance());
   service.add_server_stream<v1::DownloadRequest>(
       "Assets/Download",
-      [&service, &controller](Service::Context& context, v1::DownloadRequest&& request,
+      [&service, &controller](Service::Context& context, const Caller& /*caller*/,
+                              v1::DownloadRequest&& request,
                               grpc::Status& refused) -> OutgoingStream* {
         const auto digest = farm::digest_from_wire(request.sha256());
         if (!digest) {

@@ -43,8 +43,8 @@ class AuditEntries final : public Producer<v1::AuditEntry> {
 
 void add_audit_stream(Service& service) {
   service.add_server_stream<v1::AuditRequest>(
-      "Admin/Audit",
-      [&service](Service::Context& context, v1::AuditRequest&& request, grpc::Status&) {
+      "Admin/Audit", [&service](Service::Context& context, const Caller& /*caller*/,
+                                v1::AuditRequest&& request, grpc::Status&) {
         return new AuditEntries(context, service.executors().files, service.admission().audit(),
                                 request.since_ms());
       });

@@ -3,13 +3,17 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/services/file_stream.h"
 #include "coordinator/services/service.h"
+#include "core/base/mutex.h"
 #include "core/film/film_codec.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -17,24 +21,47 @@
 namespace hyades::coordinator {
 namespace {
 
-/// Films on their way at once: each is in memory as a whole.
+/// Films on their way at once, and with one token's name: each is in memory as a whole.
 constexpr int kMostFilms = 4;
+constexpr int kMostFilmsOfOne = 2;
+
+/// How many films are on their way, and to whom. Thread-safe.
+class OpenFilms {
+ public:
+  /// False where as many are as may be.
+  bool open(const std::string& owner) HYADES_EXCLUDES(mutex_) {
+    const core::MutexLock lock(mutex_);
+    if (all_ >= kMostFilms || of_[owner] >= kMostFilmsOfOne) return false;
+    ++all_;
+    ++of_[owner];
+    return true;
+  }
+  void close(const std::string& owner) HYADES_EXCLUDES(mutex_) {
+    const core::MutexLock lock(mutex_);
+    --all_;
+    if (--of_[owner] == 0) of_.erase(owner);
+  }
+
+ private:
+  core::Mutex mutex_;
+  int all_ HYADES_GUARDED_BY(mutex_) = 0;
+  std::map<std::string, int> of_ HYADES_GUARDED_BY(mutex_);
+};
 
 /// Sends what is rendered of a frame: what it is, then its bytes, in chunks.
 class FilmStream final : public Producer<v1::FilmPart> {
  public:
-  /// `open`: how many such streams there are, which this one counts into.
+  /// `films`: where this one is counted in already, for `owner`.
   FilmStream(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
-             v1::FilmRequest request, std::shared_ptr<std::atomic<int>> open)
+             v1::FilmRequest request, std::shared_ptr<OpenFilms> films, std::string owner)
       : Producer(context, pool),
         controller_(controller),
         request_(std::move(request)),
-        open_(std::move(open)),
-        found_(std::make_shared<Found>()) {
-    ++*open_;
-  }
+        films_(std::move(films)),
+        owner_(std::move(owner)),
+        found_(std::make_shared<Found>()) {}
 
-  ~FilmStream() override { --*open_; }
+  ~FilmStream() override { films_->close(owner_); }
 
  private:
   struct Found {
@@ -81,7 +108,8 @@ class FilmStream final : public Producer<v1::FilmPart> {
 
   Controller& controller_;
   const v1::FilmRequest request_;
-  const std::shared_ptr<std::atomic<int>> open_;
+  const std::shared_ptr<OpenFilms> films_;
+  const std::string owner_;
   const std::shared_ptr<Found> found_;
   bool asked_ = false;
   std::vector<std::byte> bytes_;
@@ -93,16 +121,17 @@ class FilmStream final : public Producer<v1::FilmPart> {
 void add_film_stream(Service& service) {
   service.add_server_stream<v1::FilmRequest>(
       "Jobs/Film",
-      [&service, films = std::make_shared<std::atomic<int>>(0)](
-          Service::Context& context, v1::FilmRequest&& request,
+      [&service, films = std::make_shared<OpenFilms>()](
+          Service::Context& context, const Caller& caller, v1::FilmRequest&& request,
           grpc::Status& refused) -> OutgoingStream* {
-        if (*films < kMostFilms) {
+        const std::string owner = ByteBudget::owner_of(caller).name;
+        if (films->open(owner)) {
           return new FilmStream(context, service.executors().files, service.backend().controller,
-                                std::move(request), films);
+                                std::move(request), films, owner);
         }
         refused =
             farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
-                              "enough films are on their way to others", std::chrono::seconds(2));
+                              "enough films are on their way already", std::chrono::seconds(2));
         return nullptr;
       });
 }

@@ -265,22 +265,24 @@ void add_job_streams(Service& service) {
   farm::ThreadPool& files = service.executors().files;
   using Context = Service::Context;
   service.add_server_stream<v1::WatchRequest>(
-      "Jobs/Watch", [&](Context& context, v1::WatchRequest&& request, grpc::Status&) {
+      "Jobs/Watch",
+      [&](Context& context, const Caller& /*caller*/, v1::WatchRequest&& request, grpc::Status&) {
         return new JobChanges(context, store, controller, request.job());
       });
-  service.add_server_stream<v1::OutputsRequest>("Jobs/Outputs",
-                                                [&](Context& context, v1::OutputsRequest&& request,
-                                                    grpc::Status& refused) -> OutgoingStream* {
-                                                  if (request.frames_size() <= kMostFrames) {
-                                                    return new OutputList(context, store,
-                                                                          controller, request);
-                                                  }
-                                                  refused = too_many("ranges of frames");
-                                                  return nullptr;
-                                                });
+  service.add_server_stream<v1::OutputsRequest>(
+      "Jobs/Outputs",
+      [&](Context& context, const Caller& /*caller*/, v1::OutputsRequest&& request,
+          grpc::Status& refused) -> OutgoingStream* {
+        if (request.frames_size() <= kMostFrames) {
+          return new OutputList(context, store, controller, request);
+        }
+        refused = too_many("ranges of frames");
+        return nullptr;
+      });
   service.add_server_stream<v1::LogsRequest>(
       "Jobs/Logs",
-      [&](Context& context, v1::LogsRequest&& request, grpc::Status& refused) -> OutgoingStream* {
+      [&](Context& context, const Caller& /*caller*/, v1::LogsRequest&& request,
+          grpc::Status& refused) -> OutgoingStream* {
         if (request.frames_size() <= kMostFrames) {
           return new LogLines(context, store, controller, request);
         }
@@ -288,7 +290,8 @@ void add_job_streams(Service& service) {
         return nullptr;
       });
   service.add_server_stream<v1::FetchRequest>(
-      "Jobs/Fetch", [&](Context& context, v1::FetchRequest&& request, grpc::Status&) {
+      "Jobs/Fetch",
+      [&](Context& context, const Caller& /*caller*/, v1::FetchRequest&& request, grpc::Status&) {
         const uint64_t offset = request.offset();
         return new FileStream(
             context, files,

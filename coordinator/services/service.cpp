@@ -169,7 +169,7 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
  private:
   void take() override {
     grpc::Status refused;
-    stream_ = make_(context_, asked_, refused);
+    stream_ = make_(context_, caller_, asked_, refused);
     if (stream_ == nullptr) return Finish(refused);
     stream_->guard(admission_, caller_);
     {

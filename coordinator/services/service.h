@@ -36,17 +36,18 @@ class Service final : public grpc::Service {
 
   /// Makes the stream that answers a Request; or null, with the reason in `refused`.
   template <class Request>
-  using MakeStream = std::function<OutgoingStream*(Context&, Request&&, grpc::Status& refused)>;
+  using MakeStream =
+      std::function<OutgoingStream*(Context&, const Caller&, Request&&, grpc::Status& refused)>;
   /// Adds a method that answers a Request of an admitted caller with the stream that `make` makes.
   /// The stream ends with the caller's token.
   template <class Request>
   void add_server_stream(const char* method, MakeStream<Request> make) {
-    add_raw_server_stream(
-        method, [make](Context& context, const Bytes& asked, grpc::Status& refused) {
-          Request request;
-          refused = farm::parse(asked, farm::kMaxRequestBytes, request);
-          return refused.ok() ? make(context, std::move(request), refused) : nullptr;
-        });
+    add_raw_server_stream(method, [make](Context& context, const Caller& caller, const Bytes& asked,
+                                         grpc::Status& refused) {
+      Request request;
+      refused = farm::parse(asked, farm::kMaxRequestBytes, request);
+      return refused.ok() ? make(context, caller, std::move(request), refused) : nullptr;
+    });
   }
   /// Makes the reactor of a call that sends a stream. Where the caller was not admitted, the
   /// reactor ends the call with `admitted`.
@@ -71,8 +72,8 @@ class Service final : public grpc::Service {
   class StreamCall;
   using Method = grpc::internal::RpcMethod;
   /// Adds a method that one request begins and a stream answers; `make` gets the request's bytes.
-  using MakeRawStream =
-      std::function<OutgoingStream*(Context&, const Bytes& asked, grpc::Status& refused)>;
+  using MakeRawStream = std::function<OutgoingStream*(Context&, const Caller&, const Bytes& asked,
+                                                      grpc::Status& refused)>;
   void add(const char* method, Method::RpcType type, grpc::internal::MethodHandler* handler);
   void add_raw_server_stream(const char* method, const MakeRawStream& make);
 

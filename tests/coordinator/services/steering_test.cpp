@@ -445,5 +445,41 @@ TEST(Steering, TheFilmOfAFrameCanBeSeenInMidRender) {
   EXPECT_GT(film->coverage().volume(), 0U);
 }
 
+// Four films may be on their way; who does not read his keeps two places of others.
+TEST(Steering, FilmsThatAreNotReadLeaveRoomForThoseOfOthers) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  ScriptedWorker::Script script = world.script();
+  std::atomic<int> units{0};
+  script.meddle = [&](ScriptedWorker&, const v1::LeasedUnit&) { return ++units <= 5; };
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return worker.acknowledged() >= 5; }));
+  grpc::ChannelArguments narrow;
+  narrow.SetInt(GRPC_ARG_HTTP2_STREAM_LOOKAHEAD_BYTES, 1000);
+  narrow.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  const auto jobs = v1::Jobs::NewStub(
+      grpc::CreateCustomChannel(world.address, grpc::InsecureChannelCredentials(), narrow));
+  v1::FilmRequest request;
+  request.set_job(job);
+  request.set_frame(1);
+  v1::FilmPart part;
+  const auto first = world.context();
+  const auto unread = jobs->Film(first.get(), request);
+  ASSERT_TRUE(unread->Read(&part));
+  const auto second = world.context();
+  const auto unread_too = jobs->Film(second.get(), request);
+  ASSERT_TRUE(unread_too->Read(&part));
+  const auto ask = [&] {
+    const auto context = world.context();
+    const auto reader = world.jobs->Film(context.get(), request);
+    while (reader->Read(&part)) continue;
+    return reader->Finish().error_code();
+  };
+  EXPECT_EQ(ask(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  first->TryCancel();
+  EXPECT_TRUE(eventually([&] { return ask() == grpc::StatusCode::OK; }));
+}
+
 }  // namespace
 }  // namespace hyades::coordinator
