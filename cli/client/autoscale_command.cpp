@@ -20,6 +20,7 @@
 #include "cli/client_commands.h"
 #include "cli/duration_option.h"
 #include "cli/number_range.h"
+#include "core/base/printable.h"
 
 namespace hyades::cli {
 namespace {
@@ -135,7 +136,7 @@ class Autoscaler {
   }
 
   static void say(const std::string& text) {
-    std::fprintf(stderr, "hyades autoscale: %s\n", text.c_str());
+    std::fprintf(stderr, "hyades autoscale: %s\n", core::printable(text).c_str());
     std::fflush(stderr);
   }
 

@@ -19,8 +19,9 @@ size_t columns_of(const std::string& text) {
 }  // namespace
 
 void print_json(const Json& json) {
-  // What is no UTF-8 becomes a replacement character, not an exception.
-  std::printf("%s\n", json.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
+  // What is no ASCII is escaped, for names may turn a terminal's text around; what is no UTF-8
+  // becomes a replacement character, not an exception.
+  std::printf("%s\n", json.dump(-1, ' ', true, Json::error_handler_t::replace).c_str());
 }
 
 std::string percent(uint64_t part, uint64_t whole) {

@@ -25,6 +25,7 @@
 #include "coordinator/access/audit_log.h"
 #include "coordinator/access/token.h"
 #include "core/base/duration.h"
+#include "core/base/printable.h"
 #include "core/base/wall_clock.h"
 #include "farm/small_file.h"
 #include "farm/token_term.h"
@@ -225,6 +226,9 @@ std::string shown_state(const v1::Token& token) {
 /// The token itself goes to standard output or into a file, what is said of it to standard error.
 int hand_out(const ClientApp& app, const TokenOptions& options, const v1::Token& token,
              const std::string& secret) {
+  if (core::printable(secret) != secret || secret.find('\n') != std::string::npos) {
+    return app.report({kFailed, "the coordinator made a token that cannot be printed; revoke it"});
+  }
   if (!options.output.empty()) {
     if (const auto written = farm::write_secret(options.output, secret + "\n"); !written) {
       return app.report({kFailed, fmt::format("{} (the token {} is made: revoke it)",
@@ -239,7 +243,7 @@ int hand_out(const ClientApp& app, const TokenOptions& options, const v1::Token&
   }
   if (options.output.empty()) std::printf("%s\n", secret.c_str());
   std::fprintf(
-      stderr, "token %s of %s, %s, expires: %s%s\n", token.id().c_str(),
+      stderr, "token %s of %s, %s, expires: %s%s\n", core::printable(token.id()).c_str(),
       core::printable(token.name()).c_str(), farm::role_name(token.role()).c_str(),
       moment(token.expires_ms(), "never").c_str(),
       options.output.empty() ? "; it is shown only now" : (", is in " + options.output).c_str());
@@ -279,8 +283,8 @@ int list(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
       {"id", "role", "name", "pool", "machines", "state", "made", "expires", "last used"}};
   for (const v1::Token& token : response.tokens()) {
     const bool joins = token.role() == v1::ROLE_WORKER;
-    rows.push_back({token.id(), farm::role_name(token.role()), core::printable(token.name()),
-                    core::printable(token.pool()),
+    rows.push_back({core::printable(token.id()), farm::role_name(token.role()),
+                    core::printable(token.name()), core::printable(token.pool()),
                     joins ? std::to_string(token.machines()) : std::string(), shown_state(token),
                     format_time(token.created_ms()), moment(token.expires_ms(), "never"),
                     moment(token.used_ms(), "never")});
@@ -295,7 +299,7 @@ int revoke(const ClientApp& app, const TokenOptions& options, Tokens& tokens) {
   if (options.json) {
     print_json(to_json(token));
   } else {
-    std::printf("token %s (%s, %s) is revoked\n", token.id().c_str(),
+    std::printf("token %s (%s, %s) is revoked\n", core::printable(token.id()).c_str(),
                 farm::role_name(token.role()).c_str(), core::printable(token.name()).c_str());
   }
   return kDone;
@@ -347,8 +351,8 @@ int whoami(const ClientApp& app, const TokenOptions& options) {
     std::printf("the farm asks for no token: everybody may do everything\n");
   } else {
     std::printf("%s, %s (token %s, expires: %s)\n",
-                me.name().empty() ? "nobody in particular" : me.name().c_str(),
-                farm::role_name(me.role()).c_str(), me.token_id().c_str(),
+                me.name().empty() ? "nobody in particular" : core::printable(me.name()).c_str(),
+                farm::role_name(me.role()).c_str(), core::printable(me.token_id()).c_str(),
                 moment(me.expires_ms(), "never").c_str());
   }
   return kDone;

@@ -30,6 +30,14 @@ TEST_F(HostileCoordinator, ReachesNoTerminalByWordsOfRefusal) {
   for (const char* raw : {"\x1b", "\x07", "\u202e", "\u009b"}) EXPECT_FALSE(has(ran.err, raw));
 }
 
+TEST_F(HostileCoordinator, ReachesNoTerminalByJson) {
+  add_job("\x1b[31m\u009b31m\u202egnp.exe", v1::JOB_STATE_DONE);
+  const Ran ran = run(jobs_command, at({"--json"}));
+  EXPECT_EQ(ran.status, kDone);
+  EXPECT_TRUE(has(ran.out, "\\u202egnp.exe")) << ran.out;
+  for (const char* raw : {"\x1b", "\u202e", "\u009b"}) EXPECT_FALSE(has(ran.out, raw));
+}
+
 TEST_F(HostileCoordinator, IsNotToldWhatIsInHiddenFiles) {
   add_job("a", v1::JOB_STATE_DONE);
   const std::string out = folder_.file("out");
