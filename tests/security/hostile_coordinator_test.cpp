@@ -31,7 +31,7 @@ TEST_F(HostileCoordinator, ReachesNoTerminalByWordsOfRefusal) {
 }
 
 TEST_F(HostileCoordinator, ReachesNoTerminalByJson) {
-  add_job("\x1b[31m\u009b31m\u202egnp.exe", v1::JOB_STATE_DONE);
+  add_job("\x1b[31m\u009b31m\u202egnp.exe");
   const Ran ran = run(jobs_command, at({"--json"}));
   EXPECT_EQ(ran.status, kDone);
   EXPECT_TRUE(has(ran.out, "\\u202egnp.exe")) << ran.out;
