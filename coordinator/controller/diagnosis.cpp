@@ -105,9 +105,10 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
   if (!out && may_begin && !orphans && active->stored.state == StoredState::running) {
     explain_rivals(*active, reasons);
   }
-  const auto in_work = static_cast<size_t>(std::count_if(
-      active->in_work.begin(), active->in_work.end(),
-      [&](int32_t number) { return active->frames.at(number).state != v1::FRAME_STATE_WAITING; }));
+  size_t in_work = 0;
+  for (const int32_t number : active->in_work) {
+    if (active->frames.at(number).state != v1::FRAME_STATE_WAITING) ++in_work;
+  }
   const size_t begun = in_work + active->failed.size() + active->stored.frames_done;
   const size_t waiting = active->frames.size() - std::min(begun, active->frames.size());
   if (waiting > 0) {
