@@ -226,7 +226,7 @@ std::string shown_state(const v1::Token& token) {
 /// The token itself goes to standard output or into a file, what is said of it to standard error.
 int hand_out(const ClientApp& app, const TokenOptions& options, const v1::Token& token,
              const std::string& secret) {
-  if (core::printable(secret) != secret || secret.find('\n') != std::string::npos) {
+  if (!core::is_printable(secret)) {
     return app.report({kFailed, "the coordinator made a token that cannot be printed; revoke it"});
   }
   if (!options.output.empty()) {

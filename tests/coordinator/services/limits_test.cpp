@@ -1,8 +1,8 @@
 // What clients and workers may send, and what they are told beyond it.
 #include <gtest/gtest.h>
-#include <fstream>
 
 #include <atomic>
+#include <fstream>
 #include <thread>
 #include <vector>
 
@@ -230,8 +230,8 @@ uint64_t resident_bytes() {
   return pages * 4096;
 }
 
-// A frame of so many samples knows of each batch who has it: 64 KiB for each tile at which somebody
-// works. Frames that are open, and at which nobody does, take none of it.
+// A frame of so many samples knows of each batch who has it: 256 KiB for each tile at which
+// somebody works. Frames that are open, and at which nobody does, take none of it.
 TEST_F(Limits, OfTheMemoryThatSamplesTake) {
   world.stop();
   world.options.film_memory = uint64_t{256} << 20U;
