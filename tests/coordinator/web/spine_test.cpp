@@ -161,13 +161,15 @@ TEST(WebSpine, TheFarmIsToldAsItChanges) {
     if (change.contains("jobs")) {
       for (const Json& one : change["jobs"]) {
         job_came = job_came || one["id"] == job;
-        job_ended = job_ended || one["state"] == "done";
+        // Of a row that is known only what has changed is told.
+        job_ended = job_ended || one.value("state", "") == "done";
       }
     }
     if (change.contains("workers")) {
       for (const Json& one : change["workers"]) {
-        worker_came = worker_came || one["state"] == "active";
-        worker_went = worker_went || one["state"] == "gone";
+        const std::string state = one.value("state", "");
+        worker_came = worker_came || state == "active";
+        worker_went = worker_went || state == "gone";
       }
     }
     if (job_came && !worker) worker.emplace(world.farm.address, world.farm.script());
