@@ -1,10 +1,13 @@
 #include "coordinator/web/assets_api.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "coordinator/operations/file_transfer.h"
 #include "coordinator/web/route_helpers.h"
@@ -14,7 +17,9 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr size_t kMostOpen = 64;
+/// Of all, and of one owner.
+constexpr size_t kMostOpen = 512;
+constexpr size_t kMostOpenOfOne = 64;
 constexpr std::chrono::seconds kOpenFor{60};
 
 grpc::Status invalid(const std::string& message) {
@@ -70,7 +75,12 @@ grpc::Status AssetsApi::take(const Caller& caller, const v1::PieceRequest& asked
                              "another piece of this file is being written",
                              std::chrono::milliseconds(500));
   }
-  auto writer = take_open(file, asked.size());
+  auto writer = take_open(file);
+  if (writer && writer->size() != asked.size()) {
+    const uint64_t size = writer->size();
+    put_back(file, std::move(writer));
+    return invalid(fmt::format("size: expected {}, with which the upload began", size));
+  }
   if (!writer) {
     const grpc::Status begun =
         begin_upload(controller_, audit_, caller, file.name, asked.size(), writer);
@@ -89,17 +99,19 @@ void AssetsApi::sweep() {
   let_go_of_old();
 }
 
-std::unique_ptr<farm::ContentWriter> AssetsApi::take_open(const FileOf& file, uint64_t size) {
+std::unique_ptr<farm::ContentWriter> AssetsApi::take_open(const FileOf& file) {
   const core::MutexLock lock(mutex_);
   let_go_of_old();
   const auto open = open_.extract(file);
-  return open && open.mapped().writer->size() == size ? std::move(open.mapped().writer) : nullptr;
+  return open ? std::move(open.mapped().writer) : nullptr;
 }
 
 void AssetsApi::put_back(const FileOf& file, std::unique_ptr<farm::ContentWriter> writer) {
   const core::MutexLock lock(mutex_);
+  const auto own = std::count_if(open_.begin(), open_.end(),
+                                 [&](const auto& open) { return open.first.owner == file.owner; });
   // Without its writer the next piece reads again what is there.
-  if (open_.size() < kMostOpen) {
+  if (open_.size() < kMostOpen && static_cast<size_t>(own) < kMostOpenOfOne) {
     open_[file] = {std::move(writer), std::chrono::steady_clock::now()};
   }
 }

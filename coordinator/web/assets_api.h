@@ -46,7 +46,7 @@ class AssetsApi {
     std::string name;
     auto operator<=>(const FileOf&) const = default;
   };
-  std::unique_ptr<farm::ContentWriter> take_open(const FileOf& file, uint64_t size);
+  std::unique_ptr<farm::ContentWriter> take_open(const FileOf& file);
   void put_back(const FileOf& file, std::unique_ptr<farm::ContentWriter> writer);
   void let_go_of_old() HYADES_REQUIRES(mutex_);
 

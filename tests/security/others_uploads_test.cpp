@@ -64,6 +64,15 @@ class OthersUploads : public ::testing::Test {
     return response.missing_size() == 1 ? response.missing(0).offset() : 0;
   }
 
+  /// How often a file was begun or opened again, with all that is there of it read.
+  int opened(const Digest& digest) {
+    world.farm.authority->audit()->flush();
+    AuditLog::Reader reader = world.farm.authority->audit()->read();
+    int times = 0;
+    while (const auto entry = reader.next()) times += entry->target() == core::to_hex(digest);
+    return times;
+  }
+
   WebWorld world;
   std::string ada;
   std::string eve;
@@ -97,6 +106,27 @@ TEST_F(OthersUploads, TheSameOverHttp) {
   const auto whole = put(ada, digest, file.size(), 50'000, file.substr(50'000));
   EXPECT_EQ(whole.status, 200) << whole.body;
   EXPECT_TRUE(farm::Json::parse(whole.body)["complete"].get<bool>()) << whole.body;
+}
+
+TEST_F(OthersUploads, NobodyHasAFileReadAgainForEachByteOfIt) {
+  ASSERT_EQ(put(eve, digest, file.size(), 0, file.substr(0, 50'000)).status, 200);
+  for (uint64_t i = 0; i < 4; ++i) {
+    const auto other = put(eve, digest, file.size() + 1, 50'000 + i, "b");
+    EXPECT_EQ(other.status, 400) << other.body;
+    EXPECT_NE(other.body.find("size: expected 100000"), std::string::npos) << other.body;
+    EXPECT_EQ(put(eve, digest, file.size(), 50'000 + i, "b").status, 200);
+  }
+  EXPECT_EQ(opened(digest), 1);
+}
+
+TEST_F(OthersUploads, ManyOfOnesThatAreOpenCloseNobodyElses) {
+  for (int i = 0; i < 64; ++i) {
+    ASSERT_EQ(put(eve, core::sha256("file " + std::to_string(i)), 2, 0, "f").status, 200);
+  }
+  for (uint64_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(put(ada, digest, file.size(), i, "a").status, 200);
+  }
+  EXPECT_EQ(opened(digest), 1);
 }
 
 TEST_F(OthersUploads, ThousandsThatAreNeverEndedAreRefused) {
