@@ -26,11 +26,24 @@ constexpr uint32_t kFewRows = 16;
 constexpr uint32_t kManyRows = 500;
 constexpr uint64_t kMostBytesAhead = uint64_t{64} << 10U;
 
-/// Frames, or ranges of them, in one question.
+/// Frames, or ranges of them, in one question; and of those ranges such as hold more than one
+/// frame, each of which is looked at for each row.
 constexpr int kMostFrames = 10'000;
+constexpr int kMostLongRanges = 100;
 
-grpc::Status too_many(const char* what) {
-  return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("at most {} {}", kMostFrames, what)};
+bool is_long(const v1::FrameRange& range) { return range.first() != range.last(); }
+
+grpc::Status too_many(int most, const char* what) {
+  return {grpc::StatusCode::INVALID_ARGUMENT, fmt::format("at most {} {}", most, what)};
+}
+
+/// Whether outputs may be asked for so.
+grpc::Status check(const v1::OutputsRequest& request) {
+  if (request.frames_size() > kMostFrames) return too_many(kMostFrames, "ranges of frames");
+  if (std::count_if(request.frames().begin(), request.frames().end(), is_long) > kMostLongRanges) {
+    return too_many(kMostLongRanges, "ranges of more than one frame");
+  }
+  return grpc::Status::OK;
 }
 
 /// Follows a job: wakes up whenever it has changed.
@@ -163,7 +176,15 @@ class OutputList final : public RowFollower<v1::OutputFile, StoredOutput> {
   OutputList(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Controller& controller,
              const v1::OutputsRequest& request)
       : RowFollower(context, pool, controller, request.job(), 0, request.follow()),
-        request_(request) {}
+        all_frames_(request.frames().empty()) {
+    for (const v1::FrameRange& range : request.frames()) {
+      if (is_long(range)) {
+        ranges_.push_back(range);
+      } else {
+        frames_.insert(range.first());
+      }
+    }
+  }
 
  private:
   core::Result<std::vector<StoredOutput>> read(uint64_t after, uint32_t limit) override {
@@ -190,13 +211,11 @@ class OutputList final : public RowFollower<v1::OutputFile, StoredOutput> {
   }
 
   bool is_asked_for(int32_t frame) const {
-    if (request_.frames().empty()) return true;
-    return std::any_of(request_.frames().begin(), request_.frames().end(),
-                       [&](const v1::FrameRange& r) {
-                         const int64_t step = r.step() > 0 ? r.step() : 1;
-                         return frame >= r.first() && frame <= r.last() &&
-                                (int64_t{frame} - r.first()) % step == 0;
-                       });
+    if (all_frames_ || frames_.contains(frame)) return true;
+    return std::any_of(ranges_.begin(), ranges_.end(), [&](const v1::FrameRange& r) {
+      const int64_t step = r.step() > 0 ? r.step() : 1;
+      return frame >= r.first() && frame <= r.last() && (int64_t{frame} - r.first()) % step == 0;
+    });
   }
 
   void tell(const StoredOutput& output, v1::OutputFile& message) override {
@@ -208,7 +227,9 @@ class OutputList final : public RowFollower<v1::OutputFile, StoredOutput> {
 
   bool wants_again() override { return !std::exchange(again_, true) && !passed_over_.empty(); }
 
-  const v1::OutputsRequest request_;
+  const bool all_frames_;
+  std::set<int32_t> frames_;  ///< that are asked for one by one
+  std::vector<v1::FrameRange> ranges_;
   std::set<std::string> passed_over_;  ///< folders of videos' pictures, as long as the job was open
   uint64_t passed_over_until_ = 0;     ///< the number of the last of those
   bool again_ = false;  ///< only those that were passed over, and are still there, are told
@@ -273,11 +294,9 @@ void add_job_streams(Service& service) {
       "Jobs/Outputs",
       [&](Context& context, const Caller& /*caller*/, v1::OutputsRequest&& request,
           grpc::Status& refused) -> OutgoingStream* {
-        if (request.frames_size() <= kMostFrames) {
-          return new OutputList(context, store, controller, request);
-        }
-        refused = too_many("ranges of frames");
-        return nullptr;
+        refused = check(request);
+        if (!refused.ok()) return nullptr;
+        return new OutputList(context, store, controller, request);
       });
   service.add_server_stream<v1::LogsRequest>(
       "Jobs/Logs",
@@ -286,7 +305,7 @@ void add_job_streams(Service& service) {
         if (request.frames_size() <= kMostFrames) {
           return new LogLines(context, store, controller, request);
         }
-        refused = too_many("frames");
+        refused = too_many(kMostFrames, "frames");
         return nullptr;
       });
   service.add_server_stream<v1::FetchRequest>(

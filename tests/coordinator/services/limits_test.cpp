@@ -86,6 +86,16 @@ TEST_F(Limits, OfOtherRequestsAreMuchLower) {
     expect_refused(reader->Finish(), StatusCode::INVALID_ARGUMENT, "10000 frames");
   }
   {
+    v1::OutputsRequest request;
+    request.set_job(job);
+    for (int i = 0; i <= 100; ++i) request.add_frames()->set_last(1);
+    const auto context = world.context();
+    const auto reader = world.jobs->Outputs(context.get(), request);
+    v1::OutputFile file;
+    EXPECT_FALSE(reader->Read(&file));
+    expect_refused(reader->Finish(), StatusCode::INVALID_ARGUMENT, "100 ranges of more than one");
+  }
+  {
     const auto context = world.context();
     v1::UploadResponse response;
     const auto writer = world.assets->Upload(context.get(), &response);
