@@ -285,10 +285,10 @@ grpc::Status JobQueries::frame_now(uint64_t id, int32_t frame, FrameNow& now) {
 grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& then) {
   const auto stored = context_.store->job(id);
   if (const grpc::Status there = job_is_there(id, stored); !there.ok()) return there;
-  const auto outputs = context_.store->outputs(id, 0, UINT32_MAX);
+  const auto outputs = context_.store->outputs_of(id, frame);
   if (!outputs) return farm::unavailable(outputs.error());
   for (const StoredOutput& output : *outputs) {
-    if (output.frame != frame || !output.path.ends_with(".film.exr")) continue;
+    if (!output.path.ends_with(".film.exr")) continue;
     auto file = core::read_film_exr(context_.output_folder(id) + "/" + output.path);
     if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
     then(grpc::Status::OK, file->info, std::make_shared<const core::Film>(std::move(file->film)));

@@ -180,6 +180,24 @@ TEST(Keeping, WhatACrashLeftGoesThoughTheStoreDidNotAnswerAtFirst) {
   EXPECT_TRUE(eventually([&] { return !std::filesystem::exists(folder_of(world, "films", 999)); }));
 }
 
+TEST(Keeping, AFilmIsFoundByTheOutputsOfItsFrameAlone) {
+  FarmWorld world;
+  const auto trouble = std::make_shared<Trouble>();
+  world.wrap_store = [&](std::unique_ptr<JobStore> store) {
+    return std::make_unique<TroubledStore>(std::move(store), trouble);
+  };
+  world.start();
+  const uint64_t job = world.submit_text(FarmWorld::document(2) + "keep_films: true\n");
+  const ScriptedWorker worker(world.address, world.script());
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  // Of a job with a million frames they are many.
+  trouble->of_outputs(Trouble::Kind::fails);
+  std::string bytes;
+  const grpc::Status status = fetch_film(world, job, 2, bytes);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(core::decode_film(std::as_bytes(std::span(bytes)))->digest(), truth(2).digest());
+}
+
 TEST(Keeping, AJobThatWasTakenInHasItsFilesHoweverEagerTheSweeperIs) {
   FarmWorld world;
   world.options.asset_grace = 0ms;

@@ -20,8 +20,9 @@ class Trouble {
   /// What becomes of calls that write, and of those that read.
   void of_writes(Kind kind) { set(writes_, kind); }
   void of_reads(Kind kind) { set(reads_, kind); }
-  /// What becomes of reading the frames of a job, and of reading its state, alone.
+  /// What becomes of reading the frames of a job, all its outputs, or its state, alone.
   void of_frames(Kind kind) { set(frames_, kind); }
+  void of_outputs(Kind kind) { set(outputs_, kind); }
   void of_states(Kind kind) { set(states_, kind); }
   /// How many calls were waiting at once at most.
   int most_waiting() const {
@@ -38,6 +39,7 @@ class Trouble {
   core::Status write() { return pass(writes_); }
   core::Status read() { return pass(reads_); }
   core::Status read_frames() { return pass(frames_); }
+  core::Status read_outputs() { return pass(outputs_); }
   core::Status read_state() { return pass(states_); }
 
  private:
@@ -61,6 +63,7 @@ class Trouble {
   Kind writes_ = Kind::none;
   Kind reads_ = Kind::none;
   Kind frames_ = Kind::none;
+  Kind outputs_ = Kind::none;
   Kind states_ = Kind::none;
   int waiting_ = 0;
   int most_waiting_ = 0;
@@ -123,6 +126,7 @@ class TroubledStore final : public JobStore {
   }
   core::Result<std::vector<StoredOutput>> outputs(uint64_t job, uint64_t after,
                                                   uint32_t limit) override {
+    if (core::Status passed = trouble_->read_outputs(); !passed) return passed.error();
     return read([&] { return store_->outputs(job, after, limit); });
   }
   core::Result<std::vector<StoredOutput>> outputs_of(uint64_t job, int32_t frame) override {
