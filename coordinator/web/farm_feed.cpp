@@ -152,15 +152,15 @@ farm::Json FarmFeed::changes(const std::vector<v1::Worker>& workers) {
   farm::Json ended = tell_jobs(jobs_now);
   farm::Json gone = farm::Json::array();
   told = jobs_.changes(jobs_now, gone);
-  for (farm::Json& job : ended) told.push_back(std::move(job));
+  std::set<farm::Json> ended_ids;
+  for (farm::Json& job : ended) {
+    ended_ids.insert(job["id"]);
+    told.push_back(std::move(job));
+  }
   if (!told.empty()) change["jobs"] = std::move(told);
   farm::Json deleted = farm::Json::array();
   for (const farm::Json& id : gone) {
-    bool is_told = false;
-    if (change.contains("jobs")) {
-      for (const farm::Json& job : change["jobs"]) is_told = is_told || job["id"] == id;
-    }
-    if (!is_told) deleted.push_back(id);
+    if (!ended_ids.contains(id)) deleted.push_back(id);
   }
   if (!deleted.empty()) change["removed_jobs"] = std::move(deleted);
   if (new_value_) change["samples_per_second"] = *new_value_;
