@@ -174,14 +174,27 @@ Outcome FarmClient::stream(std::unique_ptr<grpc::ClientReader<Message>> (Stub::*
   return stopped ? stopped : outcome;
 }
 
+Failure FarmClient::too_much(const char* what) const {
+  return {kFailed,
+          fmt::format("the coordinator at {} sends {} of more than half of the memory here, {}",
+                      options_.peer.address, what, core::format_bytes(options_.most_bytes))};
+}
+
+Outcome FarmClient::count_part(const google::protobuf::Message& part, uint64_t& bytes) const {
+  bytes += part.SpaceUsedLong();
+  if (bytes > options_.most_bytes) return too_much("a list");
+  return std::nullopt;
+}
+
 Outcome FarmClient::get(uint64_t job, v1::GetJobResponse& response) {
   v1::GetJobRequest request;
   request.set_job(job);
   response.Clear();
   v1::GetJobResponse part;
+  uint64_t bytes = 0;
   do {
-    auto failure = call(&v1::Jobs::Stub::Get, request, part);
-    if (failure) return failure;
+    if (auto failure = call(&v1::Jobs::Stub::Get, request, part)) return failure;
+    if (auto failure = count_part(part, bytes)) return failure;
     response.mutable_job()->Swap(part.mutable_job());
     response.mutable_frames()->MergeFrom(part.frames());
     if (part.frames_size() > 0) request.set_after(part.frames().rbegin()->frame());
@@ -232,6 +245,7 @@ Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, st
         if (part.has_header()) {  // the first message of each try
           header = part.header();
           bytes.clear();
+          if (header.size() > options_.most_bytes) stopped = too_much("a film");
         } else if (part.chunk().offset() == bytes.size() &&
                    part.chunk().data().size() <= header.size() - bytes.size()) {
           bytes += part.chunk().data();
@@ -329,12 +343,13 @@ Outcome FarmClient::audit(int64_t since_ms,
 Outcome FarmClient::workers(v1::WorkersResponse& response) {
   response.Clear();
   v1::WorkersRequest request;
+  uint64_t bytes = 0;
   for (;;) {
     v1::WorkersResponse page;
-    Outcome failed = call(&v1::Farm::Stub::Workers, request, page);
-    if (failed) return failed;
+    if (auto failure = call(&v1::Farm::Stub::Workers, request, page)) return failure;
+    if (auto failure = count_part(page, bytes)) return failure;
     for (v1::Worker& worker : *page.mutable_workers()) *response.add_workers() = std::move(worker);
-    if (page.next_after() <= request.after()) break;
+    if (page.workers().empty() || page.next_after() <= request.after()) break;
     request.set_after(page.next_after());
   }
   std::sort(response.mutable_workers()->begin(), response.mutable_workers()->end(),

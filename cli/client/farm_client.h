@@ -9,12 +9,14 @@
 #include <string>
 #include <utility>
 
+#include <google/protobuf/message.h>
 #include <grpcpp/channel.h>
 #include <grpcpp/client_context.h>
 
 #include "cli/client/failure.h"
 #include "cli/client/patience.h"
 #include "core/base/assets.h"
+#include "core/base/machine.h"
 #include "core/base/result.h"
 #include "farm/channel.h"
 #include "hyades/v1/admin.grpc.pb.h"
@@ -29,6 +31,9 @@ struct ClientOptions {
   farm::Peer peer;
   double first_patience = 3;    ///< s without any answer, for a coordinator that was never reached
   double later_patience = 300;  ///< s, for one that was there: it may be starting again
+  /// Of a film, or of one list, that is kept in memory: a coordinator may be hostile, and tell of
+  /// more than there is anywhere.
+  uint64_t most_bytes = core::half_of_memory();
 };
 
 /// The coordinator as the commands see it: what is worth another try is tried again, with jittered
@@ -55,6 +60,9 @@ class FarmClient {
       return (stub.*method)(&context, request, &response);
     });
   }
+
+  /// Counts a part of a list in `bytes`; a failure where all of them are too much to keep.
+  Outcome count_part(const google::protobuf::Message& part, uint64_t& bytes) const;
 
   /// The job with all its frames.
   Outcome get(uint64_t job, v1::GetJobResponse& response);
@@ -96,6 +104,7 @@ class FarmClient {
 
   void reached();
   std::string no_answer(const std::string& reason) const;
+  Failure too_much(const char* what) const;
   Failure failure(const grpc::Status& status) const;
   /// Whether to try again, after having waited.
   bool wait_after(const grpc::Status& status);

@@ -208,10 +208,11 @@ class FetchRun {
     // Which files there are is heard first, so that it is known how much is to come; those that are
     // waited for come one by one.
     std::vector<v1::OutputFile> files;
+    uint64_t bytes = 0;
     Outcome failure = client_.outputs(request, [&](const v1::OutputFile& file) -> Outcome {
       if (options_.follow) return take(file);
       files.push_back(file);
-      return std::nullopt;
+      return client_.count_part(file, bytes);
     });
     for (const v1::OutputFile& file : files) {
       if (failure) break;

@@ -42,11 +42,13 @@ Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
   request.set_ended(ended);
   request.set_owner(owner);
   v1::ListJobsResponse response;
+  uint64_t bytes = 0;
   do {
     if (auto failure = client.call(&v1::Jobs::Stub::List, request, response)) return failure;
+    if (auto failure = client.count_part(response, bytes)) return failure;
     jobs.insert(jobs.end(), response.jobs().begin(), response.jobs().end());
     request.set_before(response.next_before());
-  } while (response.next_before() != 0);
+  } while (response.next_before() != 0 && response.jobs_size() > 0);
   return std::nullopt;
 }
 

@@ -1,4 +1,10 @@
 // What a coordinator that is hostile, or was taken over, can do to those who fetch from it.
+#include <string>
+#include <vector>
+
+#include "cli/client/farm_client.h"
+#include "cli/client/find_job.h"
+#include "core/film/film.h"
 #include "tests/cli/client/client_testing.h"
 
 namespace hyades::cli {
@@ -49,6 +55,30 @@ TEST_F(HostileCoordinator, IsNotToldWhatIsInHiddenFiles) {
     EXPECT_EQ(ran.status, kFailed) << guess;
     EXPECT_TRUE(has(ran.err, "(--hidden writes them)")) << ran.err;
   }
+}
+
+TEST_F(HostileCoordinator, FillsNoMemoryByWhatHasNoEnd) {
+  add_job("a");
+  farm_.endless = true;
+  farm_.films.emplace(1, core::Film(core::make_film_layout({}), {0, 0, 8, 8}));
+  ClientOptions options;
+  options.peer.address = farm_.address();
+  options.most_bytes = 1'000'000;
+  const auto client = FarmClient::open(options);
+  ASSERT_TRUE(client.ok());
+  v1::GetJobResponse job;
+  v1::WorkersResponse workers;
+  std::vector<v1::Job> jobs;
+  v1::FilmHeader header;
+  std::string film;
+  for (const Outcome& outcome :
+       {(*client)->get(1, job), (*client)->workers(workers),
+        list_all_jobs(**client, true, "", jobs), (*client)->film(1, 1, header, film)}) {
+    ASSERT_TRUE(outcome);
+    EXPECT_EQ(outcome->code, kFailed);
+    EXPECT_TRUE(has(outcome->message, "half of the memory here")) << outcome->message;
+  }
+  EXPECT_LT(farm_.calls, 40);
 }
 
 TEST_F(HostileCoordinator, ReplacesNoFileThatFetchHasNotWritten) {

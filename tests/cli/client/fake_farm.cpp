@@ -17,6 +17,13 @@ using grpc::ServerContext;
 using grpc::Status;
 using grpc::StatusCode;
 
+namespace {
+
+/// What makes a page of an endless list long.
+const std::string kPadding(100'000, 'x');
+
+}  // namespace
+
 struct FakeFarm::JobsService : v1::Jobs::Service {
   explicit JobsService(FakeFarm& owner) : farm(owner) {}
 
@@ -52,6 +59,11 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
               v1::ListJobsResponse* response) override {
     const std::lock_guard lock(farm.mutex_);
     if (Status s = farm.enter(*context); !s.ok()) return s;
+    if (farm.endless) {
+      response->add_jobs()->set_reason(kPadding);
+      response->set_next_before(request->before() - 1);
+      return Status::OK;
+    }
     constexpr int kPage = 2;  // small, so that paging is tried
     for (auto job = farm.jobs.rbegin(); job != farm.jobs.rend(); ++job) {
       if (request->before() != 0 && job->id() >= request->before()) continue;
@@ -74,6 +86,12 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
     if (Status s = farm.find(request->job(), job); !s.ok()) return s;
     *response->mutable_job() = *job;
     for (const v1::Frame& frame : farm.frames) *response->add_frames() = frame;
+    if (farm.endless) {
+      v1::Frame& frame = *response->add_frames();
+      frame.set_frame(request->after() + 1);
+      frame.set_reason(kPadding);
+      response->set_more(true);
+    }
     return Status::OK;
   }
 
@@ -105,7 +123,7 @@ struct FakeFarm::JobsService : v1::Jobs::Service {
     const std::vector<std::byte> bytes = core::encode_film(found->second);
     v1::FilmPart part;
     part.mutable_header()->set_frame(request->frame());
-    part.mutable_header()->set_size(bytes.size());
+    part.mutable_header()->set_size(farm.endless ? UINT64_MAX : bytes.size());
     writer->Write(part);
     part.mutable_chunk()->set_data(bytes.data(), bytes.size());
     writer->Write(part);
@@ -305,10 +323,14 @@ struct FakeFarm::AssetsService : v1::Assets::Service {
 struct FakeFarm::FarmService : v1::Farm::Service {
   explicit FarmService(FakeFarm& owner) : farm(owner) {}
 
-  Status Workers(ServerContext* context, const v1::WorkersRequest*,
+  Status Workers(ServerContext* context, const v1::WorkersRequest* request,
                  v1::WorkersResponse* response) override {
     const std::lock_guard lock(farm.mutex_);
     if (Status s = farm.enter(*context); !s.ok()) return s;
+    if (farm.endless) {
+      response->add_workers()->set_reason(kPadding);
+      response->set_next_after(request->after() + 1);
+    }
     for (const v1::Worker& worker : farm.workers) *response->add_workers() = worker;
     return Status::OK;
   }
