@@ -35,13 +35,15 @@ OutputName output_name(const std::string& file) {
   const std::filesystem::path path(file);
   if (path.is_absolute()) return OutputName::outside;
   bool special = false;
+  bool reserved = false;
   for (const std::filesystem::path& each : path) {
     const std::string part = each.string();
     if (part == "..") return OutputName::outside;
+    reserved = reserved || part == ".hyades";
     special = special || part.starts_with('-') || (part.starts_with('.') && part != ".");
   }
-  const std::filesystem::path normal = path.lexically_normal();
-  if (!normal.empty() && *normal.begin() == ".hyades") return OutputName::reserved;
+  // At any depth: a folder among one run's outputs may be the output folder of another.
+  if (reserved) return OutputName::reserved;
   return special ? OutputName::special : OutputName::plain;
 }
 

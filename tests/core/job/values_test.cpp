@@ -232,10 +232,11 @@ TEST(OutputPath, TellsWhatANameIsLikeByAllOfItsParts) {
   for (const char* outside : {"/a", "..", "../a", "a/../b", "a/.."}) {
     EXPECT_EQ(output_name(outside), OutputName::outside) << outside;
   }
-  for (const char* reserved : {".hyades", ".hyades/log", "./.hyades/a"}) {
+  for (const char* reserved :
+       {".hyades", ".hyades/log", "./.hyades/a", "a/.hyades/fetched", "a/b/.hyades"}) {
     EXPECT_EQ(output_name(reserved), OutputName::reserved) << reserved;
   }
-  for (const char* special : {".a", "a/.b/c", "-a", "a/-b/c", "a/.hyades/b"}) {
+  for (const char* special : {".a", "a/.b/c", "-a", "a/-b/c", "a/.hyades-b/c"}) {
     EXPECT_EQ(output_name(special), OutputName::special) << special;
   }
 }
