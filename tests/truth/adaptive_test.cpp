@@ -135,8 +135,8 @@ TEST(AdaptiveTruth, NoBlockIsNoisierThanWasAskedFor) {
   // A block's own noise is known to 4 % by 6 times 64 pixels.
   EXPECT_LE(noisier, 4) << "of " << noise.size();
   EXPECT_LT(std::sqrt(all), kNoise);
-  // Nor is much more done than was asked for: blocks of a tile differ, and rounds are steps.
-  EXPECT_GT(std::sqrt(all), kNoise / 3);
+  // Nor is much more done than was asked for: what keeps a tile going is its noisiest block.
+  EXPECT_GT(std::sqrt(*std::max_element(noise.begin(), noise.end())), 0.8 * kNoise);
   EXPECT_GT(samples, 40.0);
   EXPECT_LT(samples, 1500.0);
 }
