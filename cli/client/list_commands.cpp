@@ -84,6 +84,11 @@ void print_status(const v1::GetJobResponse& response, bool all) {
   print_line("frames", frames_text(job));
   print_line("samples", fmt::format("{} of {}", percent(job.samples_done(), job.samples()),
                                     core::format_count(job.samples())));
+  if (job.has_noise()) {
+    print_line("noise",
+               fmt::format("{:.2g}", job.noise()) +
+                   (job.noise_aim() > 0 ? fmt::format(" (aim {:.2g})", job.noise_aim()) : ""));
+  }
   if (job.state() == v1::JOB_STATE_RUNNING) {
     print_line("now", fmt::format("{} units with workers, {:.2f} Msamples/s, {} left", job.leased(),
                                   job.samples_per_second() * 1e-6, left_text(job)));

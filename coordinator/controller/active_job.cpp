@@ -39,6 +39,9 @@ constexpr int32_t kLargeTile = 64;
 constexpr uint32_t kManySamples = 512;
 constexpr uint64_t kEnoughPieces = 512;  ///< of a frame, each one batch of a tile
 
+/// The decimal that was read as `number`.
+double as_written(float number) { return std::stod(fmt::format("{}", number)); }
+
 /// The frames that the spec asks for, in order; an error where the document does not have them.
 core::Result<std::vector<int32_t>> frames_of(const v1::JobSpec& spec, const core::Job& job) {
   std::vector<int32_t> numbers;
@@ -261,6 +264,8 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
   wire.set_samples_done(samples_done);
   wire.set_leased(leased);
   if (const auto shown = preview_frame()) wire.set_preview_frame(*shown);
+  if (threshold.adaptive()) wire.set_noise_aim(as_written(threshold.aim.noise));
+  if (noise) wire.set_noise(*noise);
   wire.set_samples_per_second(speed.per_second());
   if (speed.per_second() > 0) {
     wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
@@ -281,6 +286,7 @@ v1::Frame ActiveJob::describe_frame(int32_t number, const FrameNote& note) const
   wire.set_reason(farm::wire_text(note.reason));
   wire.set_worker_class(note.worker_class);
   wire.set_restarts(note.restarts);
+  if (note.noise) wire.set_noise(*note.noise);
   return wire;
 }
 

@@ -38,6 +38,7 @@ struct FrameNote {
   std::string reason;           ///< why it failed
   std::string worker_class;     ///< of those who render it; empty: nobody has begun
   uint32_t restarts = 0;        ///< how often it has begun again
+  std::optional<double> noise;  ///< of its film when that was last measured, see picture_noise()
   uint64_t begun = 0;  ///< StoredFrame::moment of the last frame that was finished then; 0: unknown
   uint64_t version = 0;  ///< of the job when this last changed
 };
@@ -116,6 +117,8 @@ struct ActiveJob {
   std::set<int32_t> in_work HYADES_GUARDED_BY(state_lock);
   std::set<int32_t> failed HYADES_GUARDED_BY(state_lock);  ///< frames that have failed
   Speed speed HYADES_GUARDED_BY(state_lock);
+  std::optional<double> noise HYADES_GUARDED_BY(state_lock);  ///< that was measured last
+  TimePoint noise_measured HYADES_GUARDED_BY(state_lock);     ///< when that was
 
   std::vector<StoredLine> lines HYADES_GUARDED_BY(state_lock);  ///< not stored yet
   /// Lines too many since they were last taken.

@@ -116,6 +116,7 @@ bool Diagnosis::explain_open(uint64_t id, v1::ExplainResponse& response) {
                 (waiting == 1 ? " waits for its turn" : " wait for their turn"));
   }
   if (response.reasons().empty()) reasons.say("nothing stands in its way");
+  explain_noise(*active, reasons);
   return true;
 }
 
@@ -171,6 +172,20 @@ bool Diagnosis::explain_frames(const ActiveJob& active, const std::set<std::stri
   }
   reasons.end_kind("frames were begun by workers of classes of which none is there");
   return orphans;
+}
+
+/// What tiles are waited for that have samples, but not enough.
+void Diagnosis::explain_noise(const ActiveJob& active, Reasons& reasons) const {
+  if (!active.threshold.adaptive()) return;
+  for (const int32_t number : active.in_work) {
+    const FrameNote& note = active.frames.at(number);
+    if (note.state != v1::FRAME_STATE_RENDERING || !note.noise) continue;
+    reasons.say_one(
+        "frame {} has a noise of {:.2g} on average; its tiles go on until the noisiest part of "
+        "each has {:.2g}",
+        number, *note.noise, active.threshold.aim.noise);
+  }
+  reasons.end_kind("frames have tiles that are noisier than the job asks for");
 }
 
 /// Whether some are out with workers.

@@ -44,6 +44,7 @@ class Diagnosis {
                       Reasons& reasons) const HYADES_REQUIRES(state_lock);
   bool explain_units(const ActiveJob& active, bool anybody, Reasons& reasons) const
       HYADES_REQUIRES(state_lock);
+  void explain_noise(const ActiveJob& active, Reasons& reasons) const HYADES_REQUIRES(state_lock);
   void explain_rivals(const ActiveJob& active, Reasons& reasons) const HYADES_REQUIRES(state_lock);
   // diagnosis_needs.cpp
   std::string unmet_needs(const JobNeeds& job) const HYADES_REQUIRES(state_lock);

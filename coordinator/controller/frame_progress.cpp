@@ -14,6 +14,9 @@
 namespace hyades::coordinator {
 namespace {
 
+/// How often the noise of a job's films is measured, at most: it takes a millisecond.
+constexpr auto kNoiseEvery = std::chrono::seconds(1);
+
 uint64_t samples_of(const ActiveJob& active, const core::PixelRect& tile,
                     const core::BatchRange& batches) {
   return core::samples_in(tile, batches, active.samples);
@@ -30,19 +33,43 @@ void FrameProgress::merged(const Merge& merge) {
   if (film_store == nullptr) return;
   const int64_t begun_us = core::wall_us();
   const core::Status status = film_store->merge(merge.record);
-  const StateLock lock(context_.mutex);
-  ActiveJob* active = jobs_.find(merge.job);
-  if (active == nullptr) return;
-  if (!status) {
-    // Checked when it arrived: this is a bug. The finisher will find that the film is not whole.
-    jobs_.note(*active, v1::LOG_LEVEL_ERROR, merge.unit.frame, {},
-               "a film cannot be merged: " + status.error().message);
-    return;
+  {
+    const StateLock lock(context_.mutex);
+    ActiveJob* active = jobs_.find(merge.job);
+    if (active == nullptr) return;
+    if (!status) {
+      // Checked when it arrived: this is a bug. The finisher will find that the film is not whole.
+      jobs_.note(*active, v1::LOG_LEVEL_ERROR, merge.unit.frame, {},
+                 "a film cannot be merged: " + status.error().message);
+      return;
+    }
+    const uint64_t samples = samples_of(*active, merge.unit.tile, merge.unit.batches);
+    active->touch(merge.unit.frame).samples_done += samples;
+    active->samples_done += samples;
+    count_film(*active, merge, begun_us);
+    if (std::chrono::steady_clock::now() - active->noise_measured < kNoiseEvery) return;
   }
-  const uint64_t samples = samples_of(*active, merge.unit.tile, merge.unit.batches);
-  active->touch(merge.unit.frame).samples_done += samples;
-  active->samples_done += samples;
-  count_film(*active, merge, begun_us);
+  measure_noise(merge.job, merge.unit.frame);
+}
+
+/// Tells those who ask how noisy the frame's film is. On the film store's thread, where it is.
+void FrameProgress::measure_noise(JobId job, int32_t frame) {
+  std::shared_ptr<const core::Film> film;
+  float exposure = 0;
+  {
+    const StateLock lock(context_.mutex);
+    const ActiveJob* active = jobs_.find(job);
+    if (active == nullptr) return;
+    film = active->film_store->film(frame);
+    exposure = active->threshold.aim.exposure;
+  }
+  const double noise = film ? core::picture_noise(*film, exposure) : -1;
+  if (noise < 0) return;
+  const StateLock lock(context_.mutex);
+  if (ActiveJob* active = jobs_.find(job)) {
+    active->noise = active->touch(frame).noise = noise;
+    active->noise_measured = std::chrono::steady_clock::now();
+  }
 }
 
 /// A film has been merged, since `begun_us`: what it took counts now.
@@ -130,6 +157,7 @@ void FrameProgress::finish(ActiveJob& active, const FinishFrame& finish) {
   // By any thread, as a result may be what completes a frame: the film store's may still be merging
   // its last film, and comes to this when it has.
   active.film_store->call([this, finish] {
+    measure_noise(finish.job, finish.frame);
     const StateLock again(context_.mutex);
     ActiveJob* still = jobs_.find(finish.job);
     if (still == nullptr) return;
@@ -182,6 +210,7 @@ void FrameProgress::restarted(ActiveJob& active, const FrameRestarted& action) {
   active.failed.erase(frame);
   noted.reason.clear();
   noted.worker_class.clear();
+  noted.noise.reset();
   ++noted.restarts;
   active.samples_done -= std::exchange(noted.samples_done, 0);
   active.samples_spared -= std::exchange(noted.samples_spared, 0);

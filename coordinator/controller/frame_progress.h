@@ -44,6 +44,7 @@ class FrameProgress {
   void reopened(ActiveJob& active, const FrameReopened& action) HYADES_REQUIRES(state_lock);
 
  private:
+  void measure_noise(JobId job, int32_t frame) HYADES_EXCLUDES(state_lock);
   void count_film(ActiveJob& active, const Merge& merge, int64_t begun_us)
       HYADES_REQUIRES(state_lock);
   void hand_over(ActiveJob& active, const FinishFrame& finish) HYADES_REQUIRES(state_lock);

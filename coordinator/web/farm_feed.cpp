@@ -33,9 +33,9 @@ const std::set<std::string>& lively_of_workers() {
 }
 
 const std::set<std::string>& lively_of_jobs() {
-  static const std::set<std::string> fields{"samples_done", "leased",       "samples_per_second",
-                                            "seconds_left", "core_seconds", "cost",
-                                            "preview_frame"};
+  static const std::set<std::string> fields{"samples_done",  "leased",       "samples_per_second",
+                                            "seconds_left",  "core_seconds", "cost",
+                                            "preview_frame", "noise"};
   return fields;
 }
 

@@ -13,6 +13,7 @@ import {
   percent,
   rateInWords,
   short,
+  value,
   whole,
 } from './format.js';
 import { h, keyed, say, setText } from './dom.js';
@@ -102,6 +103,7 @@ class JobView {
     this.gauge.classList.add('big');
     this.figures = {
       progress: figure('Progress', 'job-progress'),
+      noise: figure('Noise', 'job-noise'),
       frames: figure('Frames', 'job-frames'),
       left: figure('Time left', 'job-left'),
       speed: figure('Speed', 'job-speed', 'Samples per second, lately'),
@@ -284,6 +286,9 @@ class JobView {
     const { figures } = this;
     figures.progress.set(percent(part));
     figures.progress.title = `${short(job.samples_done)} of ${short(job.samples)} samples`;
+    figures.noise.hidden = job.noise === undefined || job.noise === null;
+    figures.noise.set(`${value(job.noise)}${job.noise_aim > 0 ? ` (aim ${value(job.noise_aim)})` : ''}`);
+    figures.noise.title = 'How far pixels are off on average, in parts of white: 0.02 is 2 % where the picture is white';
     figures.frames.set(
       `${whole(job.frames_done)} / ${whole(job.frames)}${job.frames_failed ? `, ${whole(job.frames_failed)} failed` : ''}`,
     );

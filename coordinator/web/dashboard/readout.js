@@ -57,6 +57,7 @@ export class Readout {
         ? `${each(frame.samples_done)} of ${each(frame.samples)} samples per pixel`
         : `${short(frame.samples_done)} samples`,
       frame.state === 'rendering' && percent(frameShare(frame)),
+      frame.noise !== undefined && frame.noise !== null && `noise ${value(frame.noise)}`,
       main?.exact === false && 'from a finished file of 8 bits',
       frame.reason,
     ];

@@ -1,4 +1,5 @@
 // Jobs whose tiles stop at a noise, over real gRPC.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -86,6 +87,43 @@ TEST(Adaptive, WhatIsNotNeededIsNoWork) {
   EXPECT_EQ(frame.samples(), frame.samples_done());
   EXPECT_LT(frame.samples(), uint64_t{FarmWorld::kWidth} * FarmWorld::kHeight * kMostSamples / 2);
   ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+}
+
+TEST(Adaptive, TheFarmTellsHowNoisyAFrameIs) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit_text(noisy_document(2));
+  EXPECT_FALSE(world.get(job).job().has_noise()) << "nothing is there yet";
+  ScriptedWorker::Script script = script_of(world, 1);
+  // What it renders of the second frame the worker keeps.
+  script.meddle = [](ScriptedWorker&, const v1::LeasedUnit& leased) {
+    return leased.unit().frame() == 1;
+  };
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return world.get(job).frames(0).state() == v1::FRAME_STATE_DONE; }));
+  const v1::GetJobResponse now = world.get(job);
+  EXPECT_EQ(now.job().noise_aim(), 0.246);
+  std::map<uint32_t, int> batches;
+  const double truth = core::picture_noise(film_of_frame(1, batches), 0);
+  EXPECT_GT(truth, 0.02);
+  EXPECT_EQ(now.frames(0).noise(), truth);
+  EXPECT_TRUE(now.job().has_noise());
+  EXPECT_FALSE(now.frames(1).has_noise()) << "nothing of it is there";
+}
+
+TEST(Adaptive, ExplainTellsOfTilesThatAreTooNoisy) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit_text(noisy_document(1));
+  ScriptedWorker::Script script = script_of(world, 1);
+  // Each tile's first round is delivered, what comes after that is kept.
+  script.meddle = [](ScriptedWorker&, const v1::LeasedUnit& leased) {
+    return leased.unit().first_batch() < 2;
+  };
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(eventually([&] { return world.get(job).job().has_noise(); }));
+  EXPECT_THAT(world.explain(job), testing::HasSubstr("frame 1 has a noise of"));
+  EXPECT_THAT(world.explain(job), testing::HasSubstr("until the noisiest part of each has 0.25"));
 }
 
 TEST(Adaptive, ARestartedCoordinatorDecidesAsTheFirst) {

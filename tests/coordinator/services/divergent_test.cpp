@@ -33,15 +33,6 @@ class DivergentWorker : public testing::Test {
     const std::lock_guard lock(mutex_);
     return disputed_;
   }
-  std::string explain(uint64_t job) {
-    v1::JobRequest request;
-    request.set_job(job);
-    v1::ExplainResponse response;
-    EXPECT_TRUE(world_.jobs->Explain(world_.context().get(), request, &response).ok());
-    std::string all;
-    for (const std::string& reason : response.reasons()) all += reason + "\n";
-    return all;
-  }
   std::string log(uint64_t job) {
     const auto lines = world_.controller->store().lines(job, 0, 1000);
     std::string all;
@@ -79,13 +70,13 @@ TEST_F(DivergentWorker, HasItsFinishedFramesRenderedAgain) {
   ASSERT_TRUE(world_.wait_for(ended, v1::JOB_STATE_DONE));
   const uint64_t open = world_.submit(3);
   ASSERT_TRUE(has_finished_a_frame(open));
-  EXPECT_THAT(explain(ended), HasSubstr("it is done"));
+  EXPECT_THAT(world_.explain(ended), HasSubstr("it is done"));
   expect_found_out(open);
   EXPECT_THAT(log(open), HasSubstr("which are in doubt: 1"));
   // The job that had ended is told of, and not touched until somebody wants it.
   EXPECT_TRUE(world_.get(ended).frames(0).doubtful());
   EXPECT_EQ(world_.get(ended).job().state(), v1::JOB_STATE_DONE);
-  EXPECT_THAT(explain(ended), HasSubstr("frame 1 is in doubt"));
+  EXPECT_THAT(world_.explain(ended), HasSubstr("frame 1 is in doubt"));
   EXPECT_THAT(log(ended), HasSubstr("which are in doubt: 1"));
   v1::JobRequest again;
   again.set_job(ended);

@@ -180,6 +180,17 @@ class FarmWorld {
     return eventually([&] { return get(job).job().state() == state; });
   }
 
+  /// Why the job does or does not get on, a line for each reason.
+  std::string explain(uint64_t job) const {
+    v1::JobRequest request;
+    request.set_job(job);
+    v1::ExplainResponse response;
+    EXPECT_TRUE(jobs->Explain(context().get(), request, &response).ok());
+    std::string all;
+    for (const std::string& reason : response.reasons()) all += reason + "\n";
+    return all;
+  }
+
   /// The unit as if it had been leased to this worker, too.
   v1::LeasedUnit leased_to(const ScriptedWorker& worker, v1::LeasedUnit unit) const {
     const LeaseProofs proofs(*controller->store().secret());

@@ -25,19 +25,10 @@ TEST(FilmRoom, AJobSaysThatItWaitsForMemoryForItsFilm) {
     return eventually([&] { return go.load(); });
   };
   ScriptedWorker worker(world.address, script);
-  const auto explain = [&](uint64_t job) {
-    v1::JobRequest request;
-    request.set_job(job);
-    v1::ExplainResponse response;
-    EXPECT_TRUE(world.jobs->Explain(world.context().get(), request, &response).ok());
-    std::string all;
-    for (const std::string& reason : response.reasons()) all += reason + "\n";
-    return all;
-  };
   EXPECT_TRUE(eventually([&] {
-    return explain(second).find("waits for memory for its film") != std::string::npos;
-  })) << explain(second);
-  EXPECT_EQ(explain(first).find("memory"), std::string::npos);
+    return world.explain(second).find("waits for memory for its film") != std::string::npos;
+  })) << world.explain(second);
+  EXPECT_EQ(world.explain(first).find("memory"), std::string::npos);
   EXPECT_EQ(world.get(second).job().leased(), 0U);
   go = true;
   EXPECT_TRUE(world.wait_for(first, v1::JOB_STATE_DONE));

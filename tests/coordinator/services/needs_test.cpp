@@ -9,14 +9,6 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string explain(FarmWorld& world, uint64_t job) {
-  v1::ExplainResponse response;
-  EXPECT_TRUE(world.controller->diagnosis().explain(job, response).ok());
-  std::string text;
-  for (const std::string& reason : response.reasons()) text += reason + "\n";
-  return text;
-}
-
 TEST(Needs, AreMetOrNamedAlsoAfterARestart) {
   FarmWorld world;
   world.start();
@@ -36,14 +28,14 @@ TEST(Needs, AreMetOrNamedAlsoAfterARestart) {
     return s;
   };
   const auto says = [&](const std::string& what) {
-    return eventually([&] { return explain(world, job).find(what) != std::string::npos; });
+    return eventually([&] { return world.explain(job).find(what) != std::string::npos; });
   };
   ScriptedWorker plain(world.address, script("plain", {"gpu"}, 0));
-  EXPECT_TRUE(says("tag 'quiet'")) << explain(world, job);
+  EXPECT_TRUE(says("tag 'quiet'")) << world.explain(job);
   world.stop();
   world.start();
   ScriptedWorker small(world.address, script("small", {"quiet", "gpu"}, 999));
-  EXPECT_TRUE(says("both all its tags")) << explain(world, job);
+  EXPECT_TRUE(says("both all its tags")) << world.explain(job);
   const v1::GetJobResponse now = world.get(job);
   EXPECT_EQ(now.job().tags_size(), 2);
   EXPECT_EQ(now.job().memory_bytes(), 1000U);
