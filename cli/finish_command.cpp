@@ -34,8 +34,8 @@ core::Status write_result(const std::string& folder, const std::string& outputs,
   for (const std::string& path : paths) {
     const auto bytes = core::map_file(path);
     if (!bytes) return bytes.error().in(path);
-    files.push_back({std::filesystem::path(path).lexically_relative(outputs).string(),
-                     bytes->size(), core::to_hex(core::sha256(bytes->span()))});
+    files.push_back({coordinator::told_path(outputs, path), bytes->size(),
+                     core::to_hex(core::sha256(bytes->span()))});
   }
   return coordinator::write_finish_result(folder, files);
 }

@@ -9,17 +9,18 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
-#include <sstream>
+#include <span>
 #include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
 
+#include "coordinator/finisher/made_file.h"
 #include "core/base/io_reason.h"
 #include "core/base/own_environment.h"
 #include "core/base/posix_file.h"
@@ -31,21 +32,22 @@ constexpr std::chrono::minutes kLongest{10};  ///< of one frame
 /// The program ends a video without progress itself; others may take days.
 constexpr std::chrono::hours kLongestVideo{24 * 365};
 constexpr std::chrono::seconds kGrace{3};  ///< from SIGTERM to SIGKILL
-constexpr size_t kLongestComplaint = 1000;
+constexpr uint64_t kLongestComplaint = 1000;
+constexpr const char* kSaid = "said.txt";
 
-/// The end of what the process has said.
-std::string complaint(const std::string& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  std::string said = text.str();
+/// The end of what the process has said. It may have done with the file whatever it wanted.
+std::string complaint(const std::string& folder) {
+  const auto file = MadeFile::find(folder, kSaid);
+  if (!file) return {};
+  std::string said(std::min<uint64_t>(file->size(), kLongestComplaint), '\0');
+  if (!file->read(file->size() - said.size(), std::as_writable_bytes(std::span(said)))) return {};
   while (!said.empty() && said.back() == '\n') said.pop_back();
-  return said.size() > kLongestComplaint ? said.substr(said.size() - kLongestComplaint) : said;
+  return said;
 }
 
 core::Status run(const std::string& program, std::string word, const std::string& folder,
                  std::chrono::steady_clock::duration longest, const std::atomic<bool>& stop) {
-  const std::string said = folder + "/said.txt";
+  const std::string said = folder + "/" + kSaid;
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT, 0600);
@@ -92,15 +94,18 @@ core::Status run(const std::string& program, std::string word, const std::string
     return core::Error{fmt::format("the finisher was ended by signal {}", WTERMSIG(status))};
   }
   if (WEXITSTATUS(status) != 0) {
-    const std::string why = complaint(said);
+    const std::string why = complaint(folder);
     return core::Error{why.empty() ? fmt::format("the finisher failed ({})", WEXITSTATUS(status))
                                    : why};
   }
   return {};
 }
 
-/// What `make` has made, in a folder that is there meanwhile.
+/// Which of the files that are expected among the outputs `make` has made, in a folder that is
+/// there meanwhile.
 core::Result<std::vector<FinishedFile>> in_folder(const std::string& folder,
+                                                  const std::string& outputs,
+                                                  const std::vector<std::string>& expected,
                                                   const std::function<core::Status()>& make) {
   std::error_code failed;
   std::filesystem::remove_all(folder, failed);
@@ -108,7 +113,7 @@ core::Result<std::vector<FinishedFile>> in_folder(const std::string& folder,
   if (failed) return core::Error{folder + ": cannot be made: " + failed.message()};
   const core::Status done = make();
   core::Result<std::vector<FinishedFile>> files = core::Error{};
-  if (done) files = read_finish_result(folder);
+  if (done) files = read_finish_result(folder, outputs, expected);
   std::filesystem::remove_all(folder, failed);
   if (!done) return done.error();
   return files;
@@ -120,7 +125,7 @@ core::Result<std::vector<FinishedFile>> run_finisher(const std::string& program,
                                                      const std::string& folder,
                                                      const FinishTask& task, const core::Film& film,
                                                      const std::atomic<bool>& stop) {
-  return in_folder(folder, [&] {
+  return in_folder(folder, task.folder, files_of(task), [&] {
     core::Status done = write_finish_task(folder, task, film);
     return done ? run(program, "finish", folder, kLongest, stop) : done;
   });
@@ -130,7 +135,7 @@ core::Result<std::vector<FinishedFile>> run_video_maker(const std::string& progr
                                                         const std::string& folder,
                                                         const VideoTask& task,
                                                         const std::atomic<bool>& stop) {
-  return in_folder(folder, [&] {
+  return in_folder(folder, task.frames.folder, files_of(task), [&] {
     core::Status done = write_video_task(folder, task);
     return done ? run(program, "video", folder, kLongestVideo, stop) : done;
   });

@@ -1,10 +1,15 @@
 #include "coordinator/finisher/finish_task.h"
 
 #include <filesystem>
+#include <set>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include "coordinator/finisher/json_file.h"
+#include "coordinator/finisher/made_file.h"
 #include "core/film/film_codec.h"
+#include "core/job/output_path.h"
 
 namespace hyades::core {
 
@@ -21,6 +26,9 @@ using Json = nlohmann::json;
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FinishedFile, path, size, sha256)
 
 namespace {
+
+constexpr uint64_t kOneResult = 512;    ///< bytes of what is told of a file, without its path
+constexpr uint64_t kLongestEscape = 6;  ///< of a byte in JSON
 
 /// Configurations name files above themselves (../luts/a.cube), up to so many folders.
 constexpr const char* kBelow = "/color/1/2/3/4/5/6/7/8/";
@@ -44,6 +52,34 @@ core::Status put_color_file(const std::string& folder, const std::string& config
   std::filesystem::create_directories(path.parent_path(), failed);
   if (failed) return core::Error{path.string() + ": " + failed.message()};
   return core::write_file(path.string(), bytes.span());
+}
+
+/// The JSON that the finisher has left, as far as it is of a length that fits to the files.
+core::Result<Json> read_result_json(const std::string& folder,
+                                    const std::vector<std::string>& files) {
+  uint64_t most = kOneResult;
+  for (const std::string& file : files) most += kOneResult + kLongestEscape * file.size();
+  const auto file = MadeFile::find(folder, "result.json");
+  if (!file) return file.error();
+  const auto bytes = file->read_whole(most);
+  if (!bytes) return bytes.error();
+  Json json = Json::parse(bytes->chars(), bytes->chars() + bytes->size(), nullptr, false);
+  if (json.is_discarded()) return core::Error{"not JSON"};
+  return json;
+}
+
+/// Whether the file is there as the finisher says.
+core::Status check_file(const std::string& outputs, const FinishedFile& told) {
+  const auto file = MadeFile::find(outputs, told.path);
+  if (!file) return file.error();
+  if (file->size() != told.size) {
+    return core::Error{fmt::format("has {} bytes, not {}", file->size(), told.size)};
+  }
+  if (told.sha256.size() != 64 ||
+      told.sha256.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    return core::Error{"its SHA-256 is none"};
+  }
+  return {};
 }
 
 }  // namespace
@@ -109,20 +145,48 @@ core::Result<core::Film> read_finish_film(const std::string& folder) {
   return core::decode_film(bytes->span());
 }
 
+std::string told_path(const std::string& folder, const std::string& path) {
+  return std::filesystem::path(path).lexically_relative(folder).string();
+}
+
+std::vector<std::string> files_of(const FinishTask& task) {
+  std::vector<std::string> files;
+  const auto add = [&](const std::string& file) {
+    files.push_back(
+        told_path(task.folder, task.folder + "/" + core::output_path(file, task.info.frame)));
+  };
+  for (const core::OutputDesc& output : task.outputs) add(output.file);
+  if (!task.film.empty()) add(task.film);
+  return files;
+}
+
 core::Status write_finish_result(const std::string& folder,
                                  const std::vector<FinishedFile>& files) {
   return write_json(folder + "/result.json", files);
 }
 
-core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& folder) {
-  const std::string path = folder + "/result.json";
-  const auto json = read_json(path);
-  if (!json) return json.error();
+core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& folder,
+                                                           const std::string& outputs,
+                                                           const std::vector<std::string>& files) {
+  const auto json = read_result_json(folder, files);
+  if (!json) return json.error().in("the finisher's result");
+  std::vector<FinishedFile> made;
   try {
-    return json->get<std::vector<FinishedFile>>();
+    made = json->get<std::vector<FinishedFile>>();
   } catch (const Json::exception& e) {
-    return core::Error{path + ": " + e.what()};
+    return core::Error{std::string("the finisher's result: ") + e.what()};
   }
+  std::set<std::string> left(files.begin(), files.end());
+  for (const FinishedFile& file : made) {
+    if (left.erase(file.path) == 0) {
+      return core::Error{"the finisher tells of a file that it was not to make: '" + file.path +
+                         "'"};
+    }
+    if (core::Status right = check_file(outputs, file); !right) {
+      return right.error().in("the finisher's " + file.path);
+    }
+  }
+  return made;
 }
 
 }  // namespace hyades::coordinator

@@ -29,6 +29,11 @@ struct FinishTask {
   std::vector<std::pair<std::string, core::Bytes>> color_files;
 };
 
+/// The path of a file below `folder` as results have it.
+std::string told_path(const std::string& folder, const std::string& path);
+/// The paths of the files that the task makes, below FinishTask::folder.
+std::vector<std::string> files_of(const FinishTask& task);
+
 /// A file that was made.
 struct FinishedFile {
   std::string path;  ///< below FinishTask::folder
@@ -44,6 +49,10 @@ core::Result<FinishTask> read_finish_task(const std::string& folder);
 core::Result<core::Film> read_finish_film(const std::string& folder);
 /// Tells what has been made; for the process that finishes.
 core::Status write_finish_result(const std::string& folder, const std::vector<FinishedFile>& files);
-core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& folder);
+/// What has been made below `outputs`. The process that tells it may have been taken over by what a
+/// job brings: an error where it is not of `files` alone, each once, or they are not as it says.
+core::Result<std::vector<FinishedFile>> read_finish_result(const std::string& folder,
+                                                           const std::string& outputs,
+                                                           const std::vector<std::string>& files);
 
 }  // namespace hyades::coordinator

@@ -3,11 +3,17 @@
 #include <cstdint>
 #include <vector>
 
+#include "coordinator/finisher/finish_task.h"
 #include "coordinator/finisher/json_file.h"
 
 namespace hyades::coordinator {
 
 using Json = nlohmann::json;
+
+std::vector<std::string> files_of(const VideoTask& task) {
+  const std::string& folder = task.frames.folder;
+  return {told_path(folder, folder + "/" + task.video.file)};
+}
 
 core::Status write_video_task(const std::string& folder, const VideoTask& task) {
   const Json json = {{"file", task.video.file},        {"pictures", task.video.pictures},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/base/result.h"
 #include "core/job/video.h"
@@ -15,6 +16,9 @@ struct VideoTask {
   core::VideoDesc video;
   core::VideoFrames frames;
 };
+
+/// The paths of the files that the task makes, below VideoFrames::folder.
+std::vector<std::string> files_of(const VideoTask& task);
 
 /// Writes the task into the folder, and reads it there.
 core::Status write_video_task(const std::string& folder, const VideoTask& task);
