@@ -141,12 +141,20 @@ bool IdLayer::add_sorted(std::span<const IdCount> counts) {
 }
 
 Status IdLayer::check() const {
+  std::vector<uint32_t> named;
+  named.reserve(names_.size());
+  for (const auto& [id, text] : names_) named.push_back(id);
+  std::vector<bool> met(named.size());
   for (const auto& row : rows_) {
     for (const IdCount& entry : row) {
-      if (entry.id != kNothing && !names_.contains(entry.id))
-        return Error{"a pixel holds an id without a name"};
+      if (entry.id == kNothing) continue;
+      const auto at = std::lower_bound(named.begin(), named.end(), entry.id);
+      if (at == named.end() || *at != entry.id) return Error{"a pixel holds an id without a name"};
+      met[static_cast<size_t>(at - named.begin())] = true;
     }
   }
+  if (std::find(met.begin(), met.end(), false) != met.end())
+    return Error{"it names an id that no pixel holds"};
   return {};
 }
 

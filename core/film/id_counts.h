@@ -64,7 +64,8 @@ class IdLayer {
   /// For readers of files.
   bool add_sorted(std::span<const IdCount> counts);
 
-  /// Whether every id but kNothing has a name, for layers that were read.
+  /// Whether every id but kNothing has a name, and every name an id that is met, for layers that
+  /// were read.
   Status check() const;
 
   /// SHA-256, in hex, of counts and names.

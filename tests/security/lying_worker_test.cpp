@@ -80,6 +80,37 @@ TEST(LyingWorker, FilmsOfUnitsThatItWasNotLeasedDoNotCount) {
   EXPECT_EQ(world.get(job).job().samples_done(), 0U);
 }
 
+std::string document_with_ids() {
+  std::string document = FarmWorld::document(1);
+  document.resize(document.find("outputs:"));
+  return document + "outputs: [{file: balls.####.exr, layers: [beauty, crypto_object]}]\n";
+}
+
+ScriptedWorker::Script script_with_ids(const FarmWorld& world) {
+  core::LayerSet layers;
+  layers.ids = {true, false};
+  ScriptedWorker::Script script = world.script(1);
+  script.layout = core::make_film_layout(layers);
+  return script;
+}
+
+TEST(LyingWorker, FillsNoMemoryByNamesThatNoPixelHas) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit_text(document_with_ids());
+  ScriptedWorker::Script script = script_with_ids(world);
+  script.corrupt = [](core::Film& film) {
+    for (uint32_t id = 1; id <= 120'000; ++id) film.mutable_ids(core::IdKind::object).name(id, "");
+  };
+  const ScriptedWorker liar(world.address, script);
+  ASSERT_TRUE(eventually([&] { return liar.rejections().size() > 2; }));
+  for (const v1::Rejected& rejected : liar.rejections()) {
+    EXPECT_EQ(rejected.reason(), v1::Rejected::REASON_DAMAGED);
+    EXPECT_NE(rejected.text().find("no pixel holds"), std::string::npos) << rejected.text();
+  }
+  EXPECT_EQ(world.get(job).job().samples_done(), 0U);
+}
+
 TEST(LyingWorker, GivesNoUnitsOfOthersBackAndBlamesNoneOfThem) {
   FarmWorld world;
   world.start();

@@ -2,7 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/film/film_codec.h"
 #include "farm/wire.h"
+#include "tests/coordinator/services/fake_films.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -29,6 +36,38 @@ TEST(ResultCheck, WhatNobodyWasLeasedIsNotDecoded) {
   EXPECT_EQ(reason(proofs.make(expected.worker, JobId{8}, unit)), v1::Rejected::REASON_UNKNOWN);
   EXPECT_EQ(reason(proofs.make(expected.worker, JobId{7}, unit)), v1::Rejected::REASON_DAMAGED)
       << "it was looked at";
+}
+
+/// What is said of a worker's film of `unit`.
+std::string refusal_of(const core::Film& film, const core::Unit& unit) {
+  const LeaseProofs proofs("secret");
+  ExpectedFilm expected;
+  expected.worker = "a-worker-of-this-farm";
+  expected.layout = film.layout();
+  expected.region = unit.tile;
+  v1::UnitResult result;
+  result.set_job(7);
+  *result.mutable_unit() = farm::to_wire(unit);
+  result.mutable_unit()->set_proof(proofs.make(expected.worker, JobId{7}, unit));
+  const std::vector<std::byte> bytes = core::encode_film(film);
+  result.set_film(bytes.data(), bytes.size());
+  result.set_digest(farm::to_wire(*farm::digest_from_hex(film.digest())));
+  const auto checked = check_result(result, expected, proofs);
+  const auto* refusal = std::get_if<ResultRefusal>(&checked);
+  return refusal == nullptr ? "" : refusal->text;
+}
+
+TEST(ResultCheck, NamesThatNoPixelHasStayNowhere) {
+  core::LayerSet layers;
+  layers.ids = {true, false};
+  const core::Unit unit{.frame = 3, .tile = {0, 0, 16, 16}, .batches = {0, 2}};
+  core::Film film = fake_film(unit, 32, core::make_film_layout(layers));
+  core::IdLayer& ids = film.mutable_ids(core::IdKind::object);
+  ids.deposit({{5, 77, 3}});
+  ids.name(77, "ball");
+  EXPECT_EQ(refusal_of(film, unit), "");
+  for (uint32_t id = 1000; id < 121'000; ++id) ids.name(id, "");
+  EXPECT_TRUE(refusal_of(film, unit).ends_with("it names an id that no pixel holds"));
 }
 
 }  // namespace

@@ -157,6 +157,29 @@ TEST(FilmLayers, DamageIsRefused) {
   EXPECT_GT(refused, 100);
 }
 
+TEST(FilmLayers, NamesOfIdsThatNoPixelHoldsAreRefused) {
+  const std::string path = testing::TempDir() + "film_layers_names_test.exr";
+  for (const IdKind kind : {IdKind::object, IdKind::material}) {
+    Film film(make_film_layout(every_layer(false)), kRegion);
+    EXPECT_TRUE(decode_film(encode_film(film)).ok()) << "nothing, and no names";
+    ASSERT_TRUE(film.merge(part_of(false, kRegion, {0, 1})).ok());
+    EXPECT_TRUE(decode_film(encode_film(film)).ok());
+    film.mutable_ids(kind).name(8, "");
+    for (const uint32_t id : {8U, 1'000'000U}) {
+      const Result<Film> read = decode_film(encode_film(film));
+      ASSERT_FALSE(read.ok());
+      EXPECT_TRUE(read.error().message.ends_with("it names an id that no pixel holds"))
+          << read.error().message;
+      film.mutable_ids(kind).deposit({{0, 8, 1}});  // the first has one now
+      film.mutable_ids(kind).name(id + 1'000'000U, "a name");
+    }
+    const FilmFile file{{"a", "key", 1, 64, 48, kRegion, 200, "class", "build", {}}, film};
+    ASSERT_TRUE(write_film_exr(path, file).ok());
+    EXPECT_FALSE(read_film_exr(path).ok());
+  }
+  std::filesystem::remove(path);
+}
+
 TEST(FilmLayers, ErasedTilesLeaveNoIds) {
   Film film = part_of(false, kRegion, {0, 1});
   Film west = part_of(false, {4, 2, 30, 40}, {0, 1});
