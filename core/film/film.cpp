@@ -254,6 +254,11 @@ Status Film::check() const {
       }
     }
   }
+  for (int c = layout_.moment2; c < layout_.moment2 + 3; ++c) {
+    const std::span<const Fixed128> squares = plane(c);
+    if (std::any_of(squares.begin(), squares.end(), [](const Fixed128& s) { return s.high < 0; }))
+      return Error{"a sum of squares is negative"};
+  }
   if (const Status ids = check_ids(); !ids) return ids;
   return check_splats();
 }

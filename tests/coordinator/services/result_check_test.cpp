@@ -70,5 +70,13 @@ TEST(ResultCheck, NamesThatNoPixelHasStayNowhere) {
   EXPECT_TRUE(refusal_of(film, unit).ends_with("it names an id that no pixel holds"));
 }
 
+TEST(ResultCheck, SumsOfSquaresAreNotNegative) {
+  const core::Unit unit{.frame = 3, .tile = {0, 0, 16, 16}, .batches = {0, 2}};
+  core::Film film = fake_film(unit, 32, core::make_film_layout({}));
+  EXPECT_EQ(refusal_of(film, unit), "");
+  film.mutable_plane(film.layout().moment2)[9] = {0, -1};
+  EXPECT_TRUE(refusal_of(film, unit).ends_with("a sum of squares is negative"));
+}
+
 }  // namespace
 }  // namespace hyades::coordinator

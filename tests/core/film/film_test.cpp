@@ -245,5 +245,18 @@ TEST(Film, CheckFindsWhatDoesNotAgree) {
   EXPECT_FALSE(film.check().ok());
 }
 
+TEST(Film, CheckRefusesNegativeSumsOfSquares) {
+  const FilmLayout layout = make_film_layout(kAllLayers);
+  for (int channel = 0; channel < 3; ++channel) {
+    Film film = render(layout, {0, 0, 4, 4}, {0, 2});
+    film.mutable_plane(layout.moment2 + channel)[7] = {0, -1};
+    const Status checked = film.check();
+    ASSERT_FALSE(checked.ok()) << channel;
+    EXPECT_EQ(checked.error().message, "a sum of squares is negative");
+    film.mutable_plane(layout.moment2 + channel)[7] = {};
+    EXPECT_TRUE(film.check().ok()) << channel;
+  }
+}
+
 }  // namespace
 }  // namespace hyades::core
