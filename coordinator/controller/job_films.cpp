@@ -26,6 +26,9 @@ class JobFilms::Owner final : public FilmStore::Owner {
   void not_persisted(RecordId record, const std::string& reason) override {
     films_.not_persisted(job_, record, reason);
   }
+  void outgrown(int32_t frame, const std::string& reason) override {
+    films_.outgrown(job_, frame, reason);
+  }
   void try_again() override {}  // the controller's clock ticks anyway
   void storage_failed(const std::string& reason) override { films_.storage_failed(job_, reason); }
   void drained() override {}
@@ -155,6 +158,11 @@ void JobFilms::not_persisted(JobId job, RecordId record, const std::string& reas
     active->touch();
   }
   turn.tell(PersistFailed{record, reason});
+}
+
+void JobFilms::outgrown(JobId job, int32_t frame, const std::string& reason) {
+  Turn turn(dispatcher_);
+  turn.tell(FrameRefused{job, frame, reason});
 }
 
 void JobFilms::storage_failed(JobId job, const std::string& reason) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -39,6 +40,7 @@ class JobFilms {
   void persisted(JobId job, RecordId record) HYADES_EXCLUDES(state_lock);
   void not_persisted(JobId job, RecordId record, const std::string& reason)
       HYADES_EXCLUDES(state_lock);
+  void outgrown(JobId job, int32_t frame, const std::string& reason) HYADES_EXCLUDES(state_lock);
   void storage_failed(JobId job, const std::string& reason) HYADES_EXCLUDES(state_lock);
 
   ControllerContext& context_;

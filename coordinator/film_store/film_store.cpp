@@ -374,7 +374,13 @@ core::Status FilmStore::merge(RecordId record) {
   }
   const core::Status merged = whole->merge(film);
   core::failpoint("mid-merge");
-  return merged;
+  if (!merged) return merged;
+  if (const core::Status fits = whole->check_id_room(); !fits) {
+    // Whoever looks at the film meanwhile keeps what was there.
+    whole = std::make_shared<core::Film>(film.layout(), set_.region, film.splats().region());
+    owner_.outgrown(unit->accepted.unit.frame, fits.error().message);
+  }
+  return {};
 }
 
 std::shared_ptr<const core::Film> FilmStore::film(int32_t frame) const {

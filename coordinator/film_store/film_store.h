@@ -70,6 +70,9 @@ class FilmStore {
     virtual void persisted(RecordId record) = 0;
     /// The record could not be taken; the film of a unit is lost.
     virtual void not_persisted(RecordId record, const std::string& reason) = 0;
+    /// By merge(): the frame's film would take more memory than it may. It holds nothing any more,
+    /// and the frame is to fail.
+    virtual void outgrown(int32_t frame, const std::string& reason) = 0;
     /// Some time after not_persisted: it may be tried again.
     virtual void try_again() = 0;
     /// Nothing could be stored for too long.

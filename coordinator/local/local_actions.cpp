@@ -58,6 +58,7 @@ void LocalRun::act(const FinishFrame& finish) {
   std::shared_ptr<const core::Film> film;
   {
     const core::MutexLock lock(mutex_);
+    if (outgrown_.contains(finish.frame)) return;  // with its last unit; it fails
     works_.erase(finish.frame);
     in_flight_.insert(finish.frame);
     // The store's films are its thread's; a second attempt comes from the finishing thread.

@@ -222,6 +222,15 @@ void LocalRun::not_persisted(RecordId record, const std::string& reason) {
   carry_out(tell(PersistFailed{record, reason}));
 }
 
+void LocalRun::outgrown(int32_t frame, const std::string& reason) {
+  const std::vector<DeferredAction> actions = tell(FrameRefused{kJob, frame, reason});
+  {
+    const core::MutexLock lock(mutex_);
+    outgrown_.insert(frame);
+  }
+  carry_out(actions);
+}
+
 void LocalRun::try_again() { carry_out(tell(Tick{})); }
 
 void LocalRun::storage_failed(const std::string& reason) {

@@ -111,6 +111,7 @@ class LocalRun : private FilmStore::Owner {
   // FilmStore::Owner
   void persisted(RecordId record) override;
   void not_persisted(RecordId record, const std::string& reason) override;
+  void outgrown(int32_t frame, const std::string& reason) override;
   void try_again() override;
   void storage_failed(const std::string& reason) override;
   void drained() override;
@@ -135,6 +136,7 @@ class LocalRun : private FilmStore::Owner {
   std::map<int32_t, std::shared_ptr<const core::Film>> complete_
       HYADES_GUARDED_BY(mutex_);  ///< until their frame is over
   std::set<int32_t> in_flight_ HYADES_GUARDED_BY(mutex_);
+  std::set<int32_t> outgrown_ HYADES_GUARDED_BY(mutex_);  ///< frames that fail for that
   std::map<int32_t, uint64_t> frame_samples_
       HYADES_GUARDED_BY(mutex_);  ///< done, of frames in flight
   std::map<int32_t, uint64_t> spared_samples_

@@ -57,7 +57,7 @@ struct FrameOpened {
   JobId job{};
   int32_t frame = 0;
 };
-/// The frame cannot be rendered at all.
+/// The frame cannot be rendered at all, or not to its end.
 struct FrameRefused {
   JobId job{};
   int32_t frame = 0;

@@ -31,7 +31,12 @@ void FrameLifecycle::on(const FrameOpened& e) {
 
 void FrameLifecycle::on(const FrameRefused& e) {
   const auto [job, slot] = jobs_.find_frame({e.job, e.frame});
-  if (slot == nullptr || slot->phase != FramePhase::opening) return;
+  if (slot == nullptr) return;
+  const FramePhase phase = slot->phase;
+  if (phase != FramePhase::opening && phase != FramePhase::rendering &&
+      phase != FramePhase::finishing) {
+    return;
+  }
   fail(*job, *slot, e.reason);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/base/ray.h"
+#include "core/base/text.h"
 
 namespace hyades::core {
 namespace {
@@ -277,6 +278,21 @@ Status Film::check_ids() const {
           return Error{"a pixel holds more ids than samples"};
       }
     }
+  }
+  return {};
+}
+
+Status Film::check_id_room() const {
+  constexpr uint64_t kTimes = 8;
+  constexpr const char* kWhat[kIdKinds] = {"object", "material"};
+  const uint64_t most = kTimes * id_room(window_);
+  for (size_t kind = 0; kind < kIdKinds; ++kind) {
+    const uint64_t memory = ids_[kind].memory();
+    if (memory <= most) continue;
+    return Error{fmt::format(
+        "its pixels meet so many {0}s that their ids take {1}, more than the {2} that they may; "
+        "expected fewer samples, a smaller aperture, or no layers crypto_{0} and {0}_id",
+        kWhat[kind], format_bytes(memory), format_bytes(most))};
   }
   return {};
 }

@@ -30,7 +30,11 @@ void fold(std::vector<IdCount>& sorted) {
     }
   }
   sorted.resize(kept);
+  if (sorted.capacity() > kept + kept / 4) sorted.shrink_to_fit();
 }
+
+/// What a name takes besides its letters.
+constexpr uint64_t kNameOverhead = 96;
 
 }  // namespace
 
@@ -68,7 +72,10 @@ void IdLayer::deposit(std::vector<IdCount> counts) {
 void IdLayer::name(uint32_t id, const std::string& name) {
   if (id == kNothing) return;
   const auto [known, is_new] = names_.emplace(id, name);
-  if (!is_new && name < known->second) known->second = name;
+  if (is_new) name_bytes_ += name.size();
+  if (is_new || known->second <= name) return;
+  name_bytes_ += name.size() - known->second.size();  // wraps back where it is less
+  known->second = name;
 }
 
 void IdLayer::merge(const IdLayer& other) {
@@ -99,7 +106,11 @@ void IdLayer::erase(const PixelRect& tile) {
   for (const auto& row : rows_) {
     for (const IdCount& entry : row) left.insert(entry.id);
   }
-  std::erase_if(names_, [&](const auto& named) { return !left.contains(named.first); });
+  std::erase_if(names_, [&](const auto& named) {
+    if (left.contains(named.first)) return false;
+    name_bytes_ -= named.second.size();
+    return true;
+  });
 }
 
 std::span<const IdCount> IdLayer::row(int y) const {
@@ -123,10 +134,7 @@ uint64_t IdLayer::count() const {
 }
 
 uint64_t IdLayer::memory() const {
-  uint64_t bytes = 0;
-  for (const auto& row : rows_) bytes += row.capacity() * sizeof(IdCount);
-  for (const auto& [id, text] : names_) bytes += sizeof(id) + text.size();
-  return bytes;
+  return count() * sizeof(IdCount) + names_.size() * kNameOverhead + name_bytes_;
 }
 
 bool IdLayer::add_sorted(std::span<const IdCount> counts) {

@@ -57,8 +57,9 @@ class IdLayer {
   std::span<const IdCount> at(int x, int y) const;
 
   const std::map<uint32_t, std::string>& names() const { return names_; }
-  uint64_t count() const;   ///< pairs of pixel and id
-  uint64_t memory() const;  ///< bytes that it takes
+  uint64_t count() const;  ///< pairs of pixel and id
+  /// Bytes that it takes. They depend on what it holds alone, not on how that came together.
+  uint64_t memory() const;
 
   /// Adds counts in ascending order, each pair once; false where they are not that, or are outside.
   /// For readers of files.
@@ -77,6 +78,7 @@ class IdLayer {
   PixelRect window_;
   std::vector<std::vector<IdCount>> rows_;  ///< ascending each
   std::map<uint32_t, std::string> names_;
+  uint64_t name_bytes_ = 0;  ///< of all names together
 };
 
 }  // namespace hyades::core

@@ -164,10 +164,14 @@ uint64_t film_memory(const FilmLayout& layout, const PixelRect& window) {
   return film_memory(layout, window, window);
 }
 
+uint64_t id_room(const PixelRect& window) {
+  constexpr uint64_t kNames = uint64_t{1} << 20U;
+  return static_cast<uint64_t>(window.area()) * 4 * sizeof(IdCount) + kNames;
+}
+
 uint64_t film_memory(const FilmLayout& layout, const PixelRect& window, const PixelRect& region) {
   uint64_t bytes = static_cast<uint64_t>(window.area()) * layout.channels.size() * sizeof(Fixed128);
-  for (const bool ids : layout.layers.ids)
-    bytes += ids ? static_cast<uint64_t>(window.area()) * 4 * sizeof(IdCount) : 0;
+  for (const bool ids : layout.layers.ids) bytes += ids ? id_room(window) : 0;
   if (!layout.layers.splats) return bytes;
   return bytes + static_cast<uint64_t>(region.area()) *
                      (sizeof(SplatSums) + layout.part_count() * sizeof(PartSums));

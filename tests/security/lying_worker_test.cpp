@@ -111,6 +111,37 @@ TEST(LyingWorker, FillsNoMemoryByNamesThatNoPixelHas) {
   EXPECT_EQ(world.get(job).job().samples_done(), 0U);
 }
 
+TEST(LyingWorker, FramesFailWhoseIdsOutgrowTheirRoom) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit_text(document_with_ids());
+  ScriptedWorker::Script script = script_with_ids(world);
+  // Every sample meets an object of its own, as those of a crowd out of focus may.
+  script.corrupt = [](core::Film& film) {
+    core::IdLayer& ids = film.mutable_ids(core::IdKind::object);
+    const uint32_t before = 16 * film.coverage().boxes().front().batches.first;
+    const auto width = static_cast<uint32_t>(film.window().width());
+    std::vector<core::IdCount> counts;
+    for (uint32_t i = 0; i < film.window().area(); ++i) {
+      const int x = film.window().x0 + static_cast<int>(i % width);
+      const int y = film.window().y0 + static_cast<int>(i / width);
+      const auto samples = static_cast<uint32_t>(film.sum(x, y, film.layout().samples).high);
+      for (uint32_t s = 0; s < samples; ++s) {
+        const uint32_t id = 1 + static_cast<uint32_t>(y * 80 + x) * 64 + before + s;
+        counts.push_back({i, id, 1});
+        ids.name(id, "one of a crowd");
+      }
+    }
+    ids.deposit(std::move(counts));
+  };
+  const ScriptedWorker worker(world.address, script);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_FAILED));
+  const v1::GetJobResponse told = world.get(job);
+  ASSERT_EQ(told.frames_size(), 1);
+  EXPECT_NE(told.frames(0).reason().find("crypto_object"), std::string::npos)
+      << told.frames(0).reason();
+}
+
 TEST(LyingWorker, GivesNoUnitsOfOthersBackAndBlamesNoneOfThem) {
   FarmWorld world;
   world.start();

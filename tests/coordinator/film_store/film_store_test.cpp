@@ -52,6 +52,7 @@ class Kept final : public FilmStore::Owner {
     on_its_thread([] {});  // and dealt with
   }
 
+  void outgrown(int32_t, const std::string&) override {}
   void persisted(RecordId record) override {
     EXPECT_TRUE(film_store_.merge(record).ok());
     const std::lock_guard lock(mutex_);

@@ -29,6 +29,7 @@ class FakeRender final : public FrameSource, public FrameSink {
   std::chrono::microseconds unit_delay{0};  ///< given up at once on stop
   std::chrono::milliseconds finish_delay{0};
   std::function<core::Status(const core::Unit&)> unit_fault;
+  std::function<core::Film(const core::Unit&)> film_of;  ///< instead of fake ones
   std::function<core::Status(int32_t frame)> prepare_fault;
   std::function<core::Status(int32_t frame)> finish_fault;
 
@@ -100,6 +101,7 @@ class FakeRender final : public FrameSource, public FrameSink {
       }
       if (stop) return core::Error{"stopped"};
       ++owner_.units_;
+      if (owner_.film_of) return owner_.film_of(unit);
       return fake_film(unit, owner_.samples_, owner_.splat_region);
     }
 

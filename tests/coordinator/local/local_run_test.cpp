@@ -68,6 +68,38 @@ TEST(LocalRun, FramesArePipelinedWithinBounds) {
   EXPECT_LE(render.most_alive(), 3);
 }
 
+TEST(LocalRun, AFrameWhoseIdsOutgrowTheirRoomFailsAndOthersDoNot) {
+  LocalPlan plan = small_plan();
+  plan.frames = {1, 2};
+  plan.tile_size = 100;  // what completes the film makes it too large
+  plan.samples = 16;
+  core::LayerSet layers;
+  layers.ids = {true, false};
+  const core::FilmLayout layout = core::make_film_layout(layers);
+  FakeRender render(plan.samples);
+  render.film_of = [&](const core::Unit& unit) {
+    core::Film film(layout, unit.tile);
+    core::IdLayer& ids = film.mutable_ids(core::IdKind::object);
+    const auto area = static_cast<uint32_t>(unit.tile.area());
+    for (uint32_t b = unit.batches.first; b < unit.batches.end(); ++b) {
+      film.deposit(unit.tile, b, core::samples_in_batch(b, plan.samples),
+                   std::vector<float>(area * static_cast<size_t>(layout.deposited)));
+    }
+    for (uint32_t id = 1; id <= area; ++id) {
+      ids.deposit({{id - 1, id, 1}});
+      ids.name(id, std::string(unit.frame == 1 ? 5000 : 5, 'o'));
+    }
+    return film;
+  };
+  const LocalOutcome outcome = run_to_the_end(plan, render);
+  EXPECT_TRUE(outcome.complete);
+  EXPECT_EQ(outcome.frames_done, 1U);
+  ASSERT_EQ(outcome.failures.size(), 1U);
+  EXPECT_EQ(outcome.failures[0].frame, 1);
+  EXPECT_THAT(outcome.failures[0].reason, testing::HasSubstr("crypto_object"));
+  EXPECT_EQ(render.digests().count(1), 0U) << "no outputs of a film without pixels";
+}
+
 TEST(LocalRun, StopsWithinASecond) {
   LocalPlan plan = small_plan();
   FakeRender render(plan.samples);

@@ -220,6 +220,18 @@ TEST(Scheduler, AFrameThatCannotBeOpenedFails) {
   EXPECT_EQ(b.only<OpenFrame>().frame, 2);
 }
 
+TEST(Scheduler, AFrameWhoseFilmOutgrowsItsRoomFails) {
+  Bench b;
+  b.join(kAnna);
+  b.add(small_plan({1, 2}));
+  b.tell(FrameOpened{kJob, 1});
+  const Lease lease = b.ask(kAnna);
+  b.tell(FrameRefused{kJob, 1, "too many ids"});
+  EXPECT_EQ(b.only<Revoke>().unit, lease.units[0]);
+  b.tell(Persisted{b.only<Persist>().id});
+  EXPECT_EQ(b.only<FrameFailed>().reason, "too many ids");
+}
+
 TEST(Scheduler, FinishingIsTriedThreeTimes) {
   Bench b;
   b.join(kAnna);

@@ -113,6 +113,7 @@ class SlowMerger final : public FilmStore::Owner {
     EXPECT_TRUE(active_.film_store->merge(record).ok());
   }
   void not_persisted(RecordId, const std::string&) override {}
+  void outgrown(int32_t, const std::string&) override {}
   void try_again() override {}
   void storage_failed(const std::string&) override {}
   void drained() override {}

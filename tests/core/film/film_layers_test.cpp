@@ -180,6 +180,47 @@ TEST(FilmLayers, NamesOfIdsThatNoPixelHoldsAreRefused) {
   std::filesystem::remove(path);
 }
 
+TEST(FilmLayers, IdsHaveEightTimesTheRoomThatCountsWhateverTheirOrder) {
+  LayerSet layers;
+  layers.ids = {false, true};
+  const FilmLayout layout = make_film_layout(layers);
+  const PixelRect window{0, 0, 8, 8};
+  const uint64_t most = 8 * id_room(window);
+  EXPECT_EQ(film_memory(layout, window) - film_memory(make_film_layout({}), window),
+            id_room(window));
+  // Many names, and one that makes it just fit: their bytes are what counts.
+  std::vector<Film> films;
+  for (uint32_t part = 0; part < 4; ++part) {
+    Film& film = films.emplace_back(layout, window);
+    std::vector<IdCount> counts;
+    for (uint32_t i = 0; i < 5000; ++i) {
+      const uint32_t id = 1 + i * 3 + part;  // some are in two
+      counts.push_back({id % 64, id, 1});
+      film.mutable_ids(IdKind::material).name(id, std::string(part == 3 ? 390 : 400, 'm'));
+    }
+    film.mutable_ids(IdKind::material).deposit(std::move(counts));
+  }
+  Film all(layout, window);
+  Film other(layout, window);
+  for (size_t i = 0; i < films.size(); ++i) {
+    all.mutable_ids(IdKind::material).merge(films[i].ids(IdKind::material));
+    other.mutable_ids(IdKind::material).merge(films[3 - i].ids(IdKind::material));
+  }
+  EXPECT_EQ(all.ids(IdKind::material).digest(), other.ids(IdKind::material).digest());
+  EXPECT_EQ(all.memory(), other.memory());
+  ASSERT_LT(all.ids(IdKind::material).memory(), most);
+  EXPECT_TRUE(all.check_id_room().ok());
+  all.mutable_ids(IdKind::material)
+      .name(1U << 30U, std::string(most - all.ids(IdKind::material).memory(), 'm'));
+  const Status fits = all.check_id_room();
+  ASSERT_FALSE(fits.ok());
+  for (const char* said : {"crypto_material", "material_id", "fewer samples", "aperture"})
+    EXPECT_NE(fits.error().message.find(said), std::string::npos) << fits.error().message;
+  all.erase(window);
+  EXPECT_EQ(all.ids(IdKind::material).memory(), 0U);
+  EXPECT_TRUE(all.check_id_room().ok());
+}
+
 TEST(FilmLayers, ErasedTilesLeaveNoIds) {
   Film film = part_of(false, kRegion, {0, 1});
   Film west = part_of(false, {4, 2, 30, 40}, {0, 1});
