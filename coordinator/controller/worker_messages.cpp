@@ -76,6 +76,21 @@ bool WorkerSessions::has(const WorkerSession& session, const v1::LeasedUnit& nam
                                        unit);
 }
 
+/// Nanoseconds that a thread of the worker may say it took for the unit: no more than the unit has
+/// been out, and where it is the worker's no more, than the worker has been here.
+uint64_t WorkerSessions::longest_rendering(const WorkerSession& session,
+                                           const v1::UnitResult& result,
+                                           const core::Unit& unit) const {
+  using std::chrono::nanoseconds;
+  const Scheduler& scheduler = dispatcher_.scheduler();
+  const UnitInHand held{from_wire(result.lease()), JobId{result.job()}, unit};
+  nanoseconds most = std::chrono::milliseconds(core::wall_ms() - session.joined_ms);
+  if (scheduler.holds(session.id, held.lease, held.job, unit)) {
+    most = std::chrono::steady_clock::now() - scheduler.since(held);
+  }
+  return std::min(static_cast<uint64_t>(std::max<int64_t>(most.count(), 0)), kLongestRendering);
+}
+
 void WorkerSessions::on_failure(WorkerSession& session, const v1::UnitFailure& failure,
                                 Turn& turn) {
   const auto unit = farm::from_wire(failure.unit().unit());
@@ -184,13 +199,14 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
   delivery.rendered.worker = session.id;
   delivery.rendered.name = session.hello.name();
   delivery.rendered.thread = result.thread();
-  delivery.rendered.render_ns = std::min(result.render_ns(), kLongestRendering);
+  delivery.rendered.render_ns =
+      std::min(result.render_ns(), longest_rendering(session, result, unit));
   delivery.rendered.came_us = core::wall_us();
   for (int i = 0; active != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
     jobs_.note(*active, v1::LOG_LEVEL_WARNING, unit.frame, session.hello.name(),
                farm::wire_text(result.notes(i)), &unit);
   }
-  const Duration took{static_cast<int64_t>(std::min<uint64_t>(result.render_ns(), INT64_MAX))};
+  const Duration took{static_cast<int64_t>(delivery.rendered.render_ns)};
   const Digest digest = delivery.unit.digest;
   turn.tell(
       ResultArrived{session.id, from_wire(result.lease()), JobId{result.job()}, unit, digest, took},

@@ -74,6 +74,8 @@ class WorkerSessions {
   // What workers say (worker_messages.cpp, lease_renewal.cpp).
   bool has(const WorkerSession& session, const v1::LeasedUnit& named, const core::Unit& unit) const
       HYADES_REQUIRES(state_lock);
+  uint64_t longest_rendering(const WorkerSession& session, const v1::UnitResult& result,
+                             const core::Unit& unit) const HYADES_REQUIRES(state_lock);
   void on_heartbeat(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn)
       HYADES_REQUIRES(state_lock);
   void renew_leases(WorkerSession& session, const v1::Heartbeat& beat, Turn& turn)

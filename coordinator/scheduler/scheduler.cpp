@@ -132,6 +132,8 @@ bool Scheduler::holds(WorkerId worker, const LeaseId& lease, JobId job,
   return parts_->leases.holds(worker, lease, job, unit);
 }
 
+TimePoint Scheduler::since(const UnitInHand& held) const { return parts_->leases.since(held); }
+
 std::vector<UnitInHand> Scheduler::units_of(WorkerId worker) const {
   return parts_->leases.units_of(worker);
 }

@@ -41,6 +41,8 @@ class Scheduler {
   bool has_lease(WorkerId worker, const LeaseId& lease) const;
   /// Whether the worker has this unit of the job, or what it is a part of, under this lease.
   bool holds(WorkerId worker, const LeaseId& lease, JobId job, const core::Unit& unit) const;
+  /// Since when the unit, which the worker holds, is out.
+  TimePoint since(const UnitInHand& held) const;
 
   /// All units that the worker has, under whatever lease.
   std::vector<UnitInHand> units_of(WorkerId worker) const;
