@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -65,11 +66,11 @@ class Watcher {
     job_ = event.job();
     more_ = event.more();
     for (const v1::Frame& frame : event.changed()) {
-      if (frame.state() == v1::FRAME_STATE_FAILED) {
-        failed_[frame.frame()] = frame.reason();
-      } else {
-        failed_.erase(frame.frame());
-      }
+      failed_.erase(frame.frame());
+      if (frame.state() != v1::FRAME_STATE_FAILED) continue;
+      failed_[frame.frame()] = frame.reason();
+      // The others are only counted, whatever number of them the coordinator tells of.
+      if (failed_.size() > kMostFramesTold) failed_.erase(std::prev(failed_.end()));
     }
     if (!display_)
       display_ = std::make_unique<ProgressDisplay>(core::printable(job_.name()), quiet_);
@@ -96,14 +97,12 @@ class Watcher {
       }
       return std::nullopt;
     }
-    size_t told = 0;
     for (const auto& [frame, reason] : failed_) {
-      if (++told > kMostFramesTold) break;
       std::fprintf(stderr, "frame %d failed: %s\n", frame, core::printable(reason).c_str());
     }
-    if (failed_.size() > kMostFramesTold) {
+    if (job_.frames_failed() > failed_.size()) {
       std::fprintf(stderr, "... and %zu more (hyades status %lu)\n",
-                   failed_.size() - kMostFramesTold, job_.id());
+                   job_.frames_failed() - failed_.size(), job_.id());
     }
     const std::string why = job_.reason().empty() ? "" : ": " + core::printable(job_.reason());
     if (job_.state() == v1::JOB_STATE_CANCELLED) {
@@ -119,7 +118,7 @@ class Watcher {
   bool quiet_;
   v1::Job job_;
   bool more_ = false;                      ///< the last event was not all
-  std::map<int32_t, std::string> failed_;  ///< reasons by frame
+  std::map<int32_t, std::string> failed_;  ///< reasons of the first by frame
   std::unique_ptr<ProgressDisplay> display_;
 };
 

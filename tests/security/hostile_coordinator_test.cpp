@@ -81,6 +81,28 @@ TEST_F(HostileCoordinator, FillsNoMemoryByWhatHasNoEnd) {
   EXPECT_LT(farm_.calls, 40);
 }
 
+TEST_F(HostileCoordinator, FillsNoMemoryByFramesThatFail) {
+  add_job("a");
+  farm_.events.clear();
+  for (int32_t hundred = 30; hundred-- > 0;) {  // the first come last
+    v1::WatchEvent& told = farm_.events.emplace_back(
+        event(hundred > 0 ? v1::JOB_STATE_RUNNING : v1::JOB_STATE_FAILED, 0));
+    told.mutable_job()->set_frames_failed(12);
+    for (int32_t frame = 0; frame < 100; ++frame) {
+      v1::Frame& failed = *told.add_changed();
+      failed.set_frame(100 * hundred + frame);
+      failed.set_state(v1::FRAME_STATE_FAILED);
+      failed.set_reason("broken");
+    }
+  }
+  const Ran ran = run(watch_command, at({"1"}));
+  EXPECT_EQ(ran.status, kFailed);
+  EXPECT_TRUE(has(ran.err, "frame 0 failed: broken\n")) << ran.err;
+  EXPECT_TRUE(has(ran.err, "frame 9 failed: broken\n")) << ran.err;
+  EXPECT_FALSE(has(ran.err, "frame 10 failed")) << ran.err;
+  EXPECT_TRUE(has(ran.err, "... and 2 more")) << "as the job says, for no others are kept";
+}
+
 TEST_F(HostileCoordinator, ReplacesNoFileThatFetchHasNotWritten) {
   add_job("a", v1::JOB_STATE_DONE);
   const std::string out = folder_.file("out");
