@@ -12,6 +12,7 @@
 
 #include "coordinator/controller/disk_watch.h"
 #include "coordinator/controller/not_found.h"
+#include "coordinator/controller/stored_outputs.h"
 #include "core/film/film_exr.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
@@ -289,7 +290,9 @@ grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& 
   if (!outputs) return farm::unavailable(outputs.error());
   for (const StoredOutput& output : *outputs) {
     if (!output.path.ends_with(".film.exr")) continue;
-    auto file = core::read_film_exr(context_.output_folder(id) + "/" + output.path);
+    const auto bytes = read_output(context_.output_folder(id), output);
+    if (!bytes) return {grpc::StatusCode::DATA_LOSS, bytes.error().message};
+    auto file = core::read_film_exr(*bytes, output.path);
     if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
     then(grpc::Status::OK, file->info, std::make_shared<const core::Film>(std::move(file->film)));
     return grpc::Status::OK;

@@ -9,7 +9,6 @@
 #include "coordinator/access/audit_log.h"
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/operation.h"
-#include "core/base/assets.h"
 #include "farm/wire_status.h"
 
 namespace hyades::coordinator {
@@ -80,7 +79,7 @@ grpc::Status damaged_output(const std::string& path) {
 }
 
 grpc::Status open_output(Controller& controller, uint64_t job, const std::string& path,
-                         StoredOutput& output, core::Bytes& bytes) {
+                         StoredOutput& output, MadeFile& file) {
   // The path is looked up among the job's outputs and never taken for one of the file system's.
   auto stored = controller.store().output(job, path);
   if (!stored) return farm::unavailable(stored.error());
@@ -88,9 +87,9 @@ grpc::Status open_output(Controller& controller, uint64_t job, const std::string
     return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no output '{}' (yet)", job, path)};
   }
   output = std::move(**stored);
-  auto file = core::map_file(controller.output_folder(job) + "/" + output.path);
-  if (!file || file->size() != output.size) return damaged_output(path);
-  bytes = std::move(*file);
+  auto found = MadeFile::find(controller.output_folder(job), output.path);
+  if (!found || found->size() != output.size) return damaged_output(path);
+  file = std::move(*found);
   return grpc::Status::OK;
 }
 

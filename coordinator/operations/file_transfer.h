@@ -9,8 +9,8 @@
 #include <grpcpp/support/status.h>
 
 #include "coordinator/access/caller.h"
+#include "coordinator/finisher/made_file.h"
 #include "coordinator/job_store/job_store.h"
-#include "core/base/bytes.h"
 #include "farm/content_writer.h"
 
 namespace hyades::coordinator {
@@ -33,11 +33,11 @@ grpc::Status begin_upload(Controller& controller, AuditLog* log, const Caller& c
 grpc::Status take_piece(Controller& controller, const Caller& caller, farm::ContentWriter& writer,
                         uint64_t offset, std::span<const std::byte> bytes);
 
-/// Reads the bytes of a job's output, and what is stored of it. NOT_FOUND, or DATA_LOSS where they
-/// are not as they were. May wait for the disk.
+/// Finds the file of a job's output, and what is stored of it. NOT_FOUND, or DATA_LOSS where it is
+/// not as it was. May wait for the disk.
 grpc::Status open_output(Controller& controller, uint64_t job, const std::string& path,
-                         StoredOutput& output, core::Bytes& bytes);
-/// DATA_LOSS: the bytes of an output are not as they were.
+                         StoredOutput& output, MadeFile& file);
+/// DATA_LOSS: the file of an output is not as it was.
 grpc::Status damaged_output(const std::string& path);
 
 }  // namespace hyades::coordinator

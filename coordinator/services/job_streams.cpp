@@ -12,7 +12,7 @@
 
 #include "coordinator/controller/controller.h"
 #include "coordinator/operations/file_transfer.h"
-#include "coordinator/services/file_stream.h"
+#include "coordinator/services/output_stream.h"
 #include "coordinator/services/service.h"
 #include "core/base/result.h"
 #include "farm/wire_status.h"
@@ -268,8 +268,8 @@ class LogLines final : public RowFollower<v1::LogLine, StoredLine> {
   const std::set<int32_t> frames_;  ///< none: all
 };
 
-/// The bytes of an output as it was listed.
-grpc::Status fetch(Controller& controller, const v1::FetchRequest& request, core::Bytes& file) {
+/// The file of an output as it was listed.
+grpc::Status fetch(Controller& controller, const v1::FetchRequest& request, MadeFile& file) {
   StoredOutput output;
   grpc::Status opened = open_output(controller, request.job(), request.path(), output, file);
   const bool other = !request.sha256().empty() && request.sha256() != output.sha256;
@@ -311,13 +311,10 @@ void add_job_streams(Service& service) {
   service.add_server_stream<v1::FetchRequest>(
       "Jobs/Fetch",
       [&](Context& context, const Caller& /*caller*/, v1::FetchRequest&& request, grpc::Status&) {
-        const uint64_t offset = request.offset();
-        return new FileStream(
+        return new OutputStream(
             context, files,
-            [&controller, request = std::move(request)](core::Bytes& file) {
-              return fetch(controller, request, file);
-            },
-            offset);
+            [&controller, request](MadeFile& file) { return fetch(controller, request, file); },
+            request.path(), request.offset());
       });
 }
 

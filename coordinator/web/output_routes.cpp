@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,22 +50,25 @@ std::string header_name(const std::string& path) {
   return name;
 }
 
-/// Bytes [first, first + count) of a mapped file.
+/// Bytes [first, first + count) of an output's file.
 class FileSource final : public BodySource {
  public:
-  FileSource(core::Bytes bytes, uint64_t first, uint64_t count)
-      : bytes_(std::move(bytes)), at_(first), end_(first + count), size_(count) {}
+  FileSource(MadeFile file, uint64_t first, uint64_t count)
+      : file_(std::move(file)), at_(first), end_(first + count), size_(count) {}
 
   std::optional<std::string> next() override {
     const uint64_t count = std::min<uint64_t>(kPieceBytes, end_ - at_);
-    std::string piece(bytes_.chars() + at_, count);
+    std::string piece(count, '\0');
+    if (count > 0 && !file_.read(at_, std::as_writable_bytes(std::span(piece)))) {
+      return std::nullopt;
+    }
     at_ += count;
     return piece;
   }
   std::optional<uint64_t> size() const override { return size_; }
 
  private:
-  core::Bytes bytes_;
+  MadeFile file_;
   uint64_t at_;
   uint64_t end_;
   uint64_t size_;
@@ -132,10 +136,10 @@ WebReply list(Controller& controller, const v1::OutputsPageRequest& asked) {
 WebReply file(Controller& controller, const v1::OutputRequest& asked, const WebRequest& request) {
   const std::string& path = asked.path();
   StoredOutput output;
-  core::Bytes bytes;
-  const grpc::Status opened = open_output(controller, asked.job(), path, output, bytes);
+  MadeFile made;
+  const grpc::Status opened = open_output(controller, asked.job(), path, output, made);
   if (!opened.ok()) return error_reply(opened);
-  const uint64_t size = bytes.size();
+  const uint64_t size = made.size();
   WebReply reply;
   reply.type = media_type_of(path);
   reply.headers = {{"Accept-Ranges", "bytes"},
@@ -164,7 +168,7 @@ WebReply file(Controller& controller, const v1::OutputRequest& asked, const WebR
                                fmt::format("bytes {}-{}/{}", part.first, part.last, size));
   }
   const uint64_t count = size == 0 ? 0 : part.last - part.first + 1;
-  reply.source = std::make_shared<FileSource>(std::move(bytes), part.first, count);
+  reply.source = std::make_shared<FileSource>(std::move(made), part.first, count);
   return reply;
 }
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "coordinator/controller/stored_outputs.h"
 #include "coordinator/operations/file_transfer.h"
 #include "coordinator/web/picture_encoding.h"
 #include "coordinator/web/route_helpers.h"
@@ -142,7 +143,9 @@ WebReply PicturesApi::of_file(const Asked& asked, const ByteBudget::Owner& owner
   const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
   if (const auto made = find(asked, tag, true)) return *made;
   if (!has_room(owner)) return too_many();
-  auto image = core::read_image_file(controller_.output_folder(asked.job) + "/" + best->path);
+  const auto bytes = read_output(controller_.output_folder(asked.job), *best);
+  if (!bytes) return error_reply(damaged_output(best->path));
+  auto image = core::read_image(*bytes, best->path);
   if (!image) return error_reply(damaged_output(best->path));
   FrameNow plain = now;
   plain.tone_map = "srgb";  // a finished picture has its own

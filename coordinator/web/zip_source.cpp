@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <ctime>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <archive.h>
 #include <archive_entry.h>
-
-#include "core/base/assets.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -56,16 +55,14 @@ std::optional<std::string> ZipSource::next() {
 /// The next file's header, some more of its bytes, or the archive's end.
 bool ZipSource::step() {
   if (in_file_) {
-    const uint64_t count = std::min<uint64_t>(kPieceBytes, bytes_.size() - at_);
-    if (archive_write_data(archive_, bytes_.chars() + at_, count) !=
-        static_cast<la_ssize_t>(count)) {
+    std::string piece(std::min<uint64_t>(kPieceBytes, bytes_.size() - at_), '\0');
+    if (!bytes_.read(at_, std::as_writable_bytes(std::span(piece))) ||
+        archive_write_data(archive_, piece.data(), piece.size()) !=
+            static_cast<la_ssize_t>(piece.size())) {
       return false;
     }
-    at_ += count;
-    if (at_ == bytes_.size()) {
-      in_file_ = false;
-      bytes_ = {};
-    }
+    at_ += piece.size();
+    in_file_ = at_ < bytes_.size();
     return true;
   }
   if (file_ == files_.size()) {
@@ -73,7 +70,7 @@ bool ZipSource::step() {
     return archive_write_close(archive_) == ARCHIVE_OK;
   }
   const File& file = files_[file_++];
-  auto bytes = core::map_file(folder_ + "/" + file.name);
+  auto bytes = MadeFile::find(folder_, file.name);
   if (!bytes || bytes->size() != file.size) return false;
   bytes_ = std::move(*bytes);
   archive_entry* entry = archive_entry_new();
