@@ -53,6 +53,8 @@ coordinator::Progress progress_of(const v1::Job& job) {
   progress.samples_done = job.samples_done();
   progress.samples_per_second = job.samples_per_second();
   progress.seconds_left = job.seconds_left();
+  if (job.has_noise()) progress.noise = job.noise();
+  progress.noise_aim = job.noise_aim();
   progress.trouble = job.state() == v1::JOB_STATE_PAUSED ? "paused" : core::printable(job.reason());
   return progress;
 }
