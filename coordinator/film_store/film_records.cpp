@@ -61,6 +61,23 @@ FrameKey get_key(std::span<const std::byte> bytes, size_t at) {
   return key;
 }
 
+/// The ids of the tile that is the window of `into`, and their names.
+void cut_ids(const core::IdLayer& ids, core::IdLayer& into) {
+  const core::PixelRect& tile = into.window();
+  std::vector<core::IdCount> counts;
+  uint32_t pixel = 0;
+  for (int32_t y = tile.y0; y < tile.y1; ++y) {
+    for (int32_t x = tile.x0; x < tile.x1; ++x, ++pixel) {
+      for (const core::IdCount& entry : ids.at(x, y)) {
+        counts.push_back({pixel, entry.id, entry.count});
+        const auto named = ids.names().find(entry.id);
+        if (named != ids.names().end()) into.name(entry.id, named->second);
+      }
+    }
+  }
+  into.deposit(std::move(counts));
+}
+
 /// The part of a film within one tile, of which `units` are all that it holds.
 core::Film cut_film(const core::Film& film, std::span<const core::Unit> units) {
   const core::PixelRect& tile = units.front().tile;
@@ -75,6 +92,10 @@ core::Film cut_film(const core::Film& film, std::span<const core::Unit> units) {
                          static_cast<size_t>(tile.x0 - film.window().x0);
       std::copy_n(from + row, width, into);
     }
+  }
+  for (const core::IdKind kind : {core::IdKind::object, core::IdKind::material}) {
+    if (film.layout().layers.ids[static_cast<size_t>(kind)])
+      cut_ids(film.ids(kind), part.mutable_ids(kind));
   }
   for (const core::Unit& unit : units) part.mutable_coverage().add({tile, unit.batches});
   return part;

@@ -92,6 +92,33 @@ TEST(WrittenFilm, IsOneRecordWhereThereAreSplats) {
   }
 }
 
+TEST(WrittenFilm, KeepsTheIdsOfEachTileAndTheirNames) {
+  core::LayerSet layers;
+  layers.ids = {true, true};
+  core::Film whole(core::make_film_layout(layers), kRegion);
+  const std::vector<float> black(16 * 16 * static_cast<size_t>(whole.layout().deposited));
+  for (const core::Unit& unit : {kLeft, kRight}) {
+    for (uint32_t b = 0; b < unit.batches.count; ++b)
+      whole.deposit(unit.tile, b, core::samples_in_batch(b, kSamples), black);
+  }
+  for (const core::IdKind kind : {core::IdKind::object, core::IdKind::material}) {
+    core::IdLayer& ids = whole.mutable_ids(kind);
+    ids.deposit({{3, 7, 2}, {3, 9, 1}, {31, 9, 5}, {32 * 15 + 16, 11, 1}, {40, 0, 4}});
+    for (const uint32_t id : {7U, 9U, 11U}) ids.name(id, "object " + std::to_string(id));
+  }
+  ASSERT_TRUE(whole.check());
+  for (const std::string worker_class : {"", "class"}) {
+    std::vector<std::vector<std::byte>> records;
+    ASSERT_TRUE(write_film(1, {}, whole, {kRegion, 16, kSamples}, worker_class,
+                           [&](std::span<const std::byte> record) -> core::Status {
+                             records.emplace_back(record.begin(), record.end());
+                             return {};
+                           }));
+    EXPECT_EQ(records.size(), 2U);
+    EXPECT_EQ(replayed(records).films.at(1)->digest(), whole.digest());
+  }
+}
+
 TEST(BegunAgain, LeavesNothingOfTheSplatsThatCameBefore) {
   const core::PixelRect region{0, 0, 40, 20};
   const auto splatted = [&](const core::Unit& unit, uint32_t samples) {
