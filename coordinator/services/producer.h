@@ -3,12 +3,14 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include <grpcpp/alarm.h>
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/status.h>
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/services/admission.h"
 #include "core/base/mutex.h"
@@ -75,6 +77,7 @@ class Producer : public OutgoingStream {
   }
 
   void guard(const Admission& admission, const Caller& caller) override {
+    owner_ = ByteBudget::owner_of(caller).name;
     visit_ = admission.visit(
         caller, [handle = handle_](const grpc::Status& why) { handle->send_away(why); });
   }
@@ -192,7 +195,7 @@ class Producer : public OutgoingStream {
         case Step::end:
           return call_->finish(status);
         case Step::needs_thread:
-          if (!pool_.submit([this] { advance(true); })) call_->finish(crowded());
+          if (!pool_.submit([this] { advance(true); }, owner_)) call_->finish(crowded());
           return;
         case Step::wait:
           break;
@@ -226,6 +229,7 @@ class Producer : public OutgoingStream {
   bool cancelled_ HYADES_GUARDED_BY(mutex_) = false;
   grpc::Status end_status_ HYADES_GUARDED_BY(mutex_);  ///< not OK: the caller may stay no longer
   std::unique_ptr<Visit> visit_;                       ///< of who reads
+  std::string owner_;                                  ///< whose turn it takes in the pool
 };
 
 }  // namespace hyades::coordinator

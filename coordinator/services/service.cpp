@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include "coordinator/access/byte_budget.h"
 
 #include <fmt/format.h>
 #include <grpcpp/impl/codegen/server_callback_handlers.h>
@@ -72,7 +73,7 @@ class Service::UnaryCall final : public RequestCall {
       Finish(status);
     } else if (executor == nullptr) {
       proceed();
-    } else if (!executor->submit([this] { proceed(); })) {
+    } else if (!executor->submit([this] { proceed(); }, ByteBudget::owner_of(work_->caller).name)) {
       Finish(crowded());
     }
   }

@@ -13,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+#include "coordinator/access/byte_budget.h"
 
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/write.hpp>
@@ -313,13 +314,14 @@ class ConnectionOver final : public Connection,
     if (!answer_share_->try_hold(source.bytes_needed() + source.bytes_kept())) {
       return wait_for_room();
     }
-    const bool taken =
-        world_.files.submit([io = world_.io, weak = weak_from_this_(), source = reply_.source] {
+    const bool taken = world_.files.submit(
+        [io = world_.io, weak = weak_from_this_(), source = reply_.source] {
           std::optional<std::string> piece = source->next();
           io->post([weak, piece = std::move(piece)]() mutable {
             if (const auto me = weak.lock()) me->send_piece(std::move(piece));
           });
-        });
+        },
+        ByteBudget::owner_of(caller_).name);
     if (!taken) close();
   }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 #include <vector>
+#include "coordinator/access/byte_budget.h"
 
 #include "coordinator/web/job_events.h"
 #include "coordinator/web/route_helpers.h"
@@ -39,16 +40,18 @@ void LiveApi::add_routes(Router& router) {
   });
   add_by_hand<v1::JobRequest>(
       router, "GET", "/api/v1/jobs/{job}/events",
-      [this](const v1::JobRequest& asked, const WebRequest&, const Answer& answer) {
+      [this](const v1::JobRequest& asked, const WebRequest& request, const Answer& answer) {
         // Whether there is such a job is known before the stream begins.
-        const bool taken = executors_.store.submit([this, job = asked.job(), answer] {
-          v1::GetJobResponse got;
-          const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
-          if (!status.ok()) return answer(error_reply(status));
-          WebReply reply = live();
-          reply.source = std::make_shared<JobEvents>(controller_, job);
-          answer(std::move(reply));
-        });
+        const bool taken = executors_.store.submit(
+            [this, job = asked.job(), answer] {
+              v1::GetJobResponse got;
+              const grpc::Status status = controller_.queries().get(job, INT32_MAX, got);
+              if (!status.ok()) return answer(error_reply(status));
+              WebReply reply = live();
+              reply.source = std::make_shared<JobEvents>(controller_, job);
+              answer(std::move(reply));
+            },
+            ByteBudget::owner_of(request.caller).name);
         if (!taken) answer(error_reply(crowded()));
       });
 }

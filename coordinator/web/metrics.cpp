@@ -162,8 +162,8 @@ std::string metrics_text(Controller& controller) {
 }  // namespace
 
 void add_metrics(Router& router, Controller& controller, Executors& executors) {
-  router.add("GET", "/metrics", [&](const WebRequest&, const Answer& answer) {
-    answer_by(executors.store, answer, [&controller] {
+  router.add("GET", "/metrics", [&](const WebRequest& request, const Answer& answer) {
+    answer_by(executors.store, request.caller, answer, [&controller] {
       return text_reply(metrics_text(controller), "text/plain; version=0.0.4; charset=utf-8");
     });
   });

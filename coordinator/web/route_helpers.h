@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/exchange.h"
 #include "coordinator/web/request_form.h"
@@ -21,11 +22,13 @@ WebReply reply_in_memory(const Make& make) {
   return done.ok() ? reply : error_reply(done);
 }
 
-/// Has a thread of `pool` answer with the WebReply that `what()` gives: for what may wait for the
-/// disk.
+/// Has a thread of `pool`, when it is the caller's turn, answer with the WebReply that `what()`
+/// gives: for what may wait for the disk.
 template <class What>
-void answer_by(farm::ThreadPool& pool, const Answer& answer, const What& what) {
-  const bool taken = pool.submit([answer, what] { answer(reply_in_memory(what)); });
+void answer_by(farm::ThreadPool& pool, const Caller& caller, const Answer& answer,
+               const What& what) {
+  const bool taken = pool.submit([answer, what] { answer(reply_in_memory(what)); },
+                                 ByteBudget::owner_of(caller).name);
   if (!taken) answer(error_reply(crowded()));
 }
 
@@ -52,7 +55,8 @@ void add_by_hand(Router& router, farm::ThreadPool& pool, const std::string& meth
   add_by_hand<Asked>(
       router, method, pattern,
       [&pool, what](const Asked& asked, const WebRequest& request, const Answer& answer) {
-        answer_by(pool, answer, [what, asked, request] { return what(asked, request); });
+        answer_by(pool, request.caller, answer,
+                  [what, asked, request] { return what(asked, request); });
       });
 }
 
