@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "coordinator/finisher/finish_task.h"
-#include "coordinator/finisher/made_file.h"
 #include "coordinator/job_store/job_store.h"
 #include "core/base/bytes.h"
 #include "core/base/machine.h"
 #include "core/base/result.h"
+#include "core/job/made_file.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -31,7 +31,7 @@ inline std::vector<StoredOutput> stored_outputs(const std::vector<FinishedFile>&
 /// where it is not as long as it was, or longer than memory bears.
 inline core::Result<core::Bytes> read_output(const std::string& folder,
                                              const StoredOutput& output) {
-  const auto file = MadeFile::find(folder, output.path);
+  const auto file = core::MadeFile::find(folder, output.path);
   if (!file) return file.error().in(output.path);
   if (file->size() != output.size) return core::Error{output.path + ": is of another length"};
   auto bytes = file->read_whole(core::usable_memory() / 4);

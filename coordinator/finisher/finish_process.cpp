@@ -20,10 +20,10 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/finisher/made_file.h"
 #include "core/base/io_reason.h"
 #include "core/base/own_environment.h"
 #include "core/base/posix_file.h"
+#include "core/job/made_file.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -37,7 +37,7 @@ constexpr const char* kSaid = "said.txt";
 
 /// The end of what the process has said. It may have done with the file whatever it wanted.
 std::string complaint(const std::string& folder) {
-  const auto file = MadeFile::find(folder, kSaid);
+  const auto file = core::MadeFile::find(folder, kSaid);
   if (!file) return {};
   std::string said(std::min<uint64_t>(file->size(), kLongestComplaint), '\0');
   if (!file->read(file->size() - said.size(), std::as_writable_bytes(std::span(said)))) return {};

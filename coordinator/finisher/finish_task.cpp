@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "coordinator/finisher/json_file.h"
-#include "coordinator/finisher/made_file.h"
 #include "core/film/film_codec.h"
+#include "core/job/made_file.h"
 #include "core/job/output_path.h"
 
 namespace hyades::core {
@@ -59,7 +59,7 @@ core::Result<Json> read_result_json(const std::string& folder,
                                     const std::vector<std::string>& files) {
   uint64_t most = kOneResult;
   for (const std::string& file : files) most += kOneResult + kLongestEscape * file.size();
-  const auto file = MadeFile::find(folder, "result.json");
+  const auto file = core::MadeFile::find(folder, "result.json");
   if (!file) return file.error();
   const auto bytes = file->read_whole(most);
   if (!bytes) return bytes.error();
@@ -70,7 +70,7 @@ core::Result<Json> read_result_json(const std::string& folder,
 
 /// Whether the file is there as the finisher says.
 core::Status check_file(const std::string& outputs, const FinishedFile& told) {
-  const auto file = MadeFile::find(outputs, told.path);
+  const auto file = core::MadeFile::find(outputs, told.path);
   if (!file) return file.error();
   if (file->size() != told.size) {
     return core::Error{fmt::format("has {} bytes, not {}", file->size(), told.size)};

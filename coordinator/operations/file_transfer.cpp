@@ -79,7 +79,7 @@ grpc::Status damaged_output(const std::string& path) {
 }
 
 grpc::Status open_output(Controller& controller, uint64_t job, const std::string& path,
-                         StoredOutput& output, MadeFile& file) {
+                         StoredOutput& output, core::MadeFile& file) {
   // The path is looked up among the job's outputs and never taken for one of the file system's.
   auto stored = controller.store().output(job, path);
   if (!stored) return farm::unavailable(stored.error());
@@ -87,7 +87,7 @@ grpc::Status open_output(Controller& controller, uint64_t job, const std::string
     return {grpc::StatusCode::NOT_FOUND, fmt::format("job {} has no output '{}' (yet)", job, path)};
   }
   output = std::move(**stored);
-  auto found = MadeFile::find(controller.output_folder(job), output.path);
+  auto found = core::MadeFile::find(controller.output_folder(job), output.path);
   if (!found || found->size() != output.size) return damaged_output(path);
   file = std::move(*found);
   return grpc::Status::OK;

@@ -9,8 +9,8 @@
 #include <grpcpp/support/status.h>
 
 #include "coordinator/access/caller.h"
-#include "coordinator/finisher/made_file.h"
 #include "coordinator/job_store/job_store.h"
+#include "core/job/made_file.h"
 #include "farm/content_writer.h"
 
 namespace hyades::coordinator {
@@ -36,7 +36,7 @@ grpc::Status take_piece(Controller& controller, const Caller& caller, farm::Cont
 /// Finds the file of a job's output, and what is stored of it. NOT_FOUND, or DATA_LOSS where it is
 /// not as it was. May wait for the disk.
 grpc::Status open_output(Controller& controller, uint64_t job, const std::string& path,
-                         StoredOutput& output, MadeFile& file);
+                         StoredOutput& output, core::MadeFile& file);
 /// DATA_LOSS: the file of an output is not as it was.
 grpc::Status damaged_output(const std::string& path);
 

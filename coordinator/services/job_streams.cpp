@@ -269,7 +269,7 @@ class LogLines final : public RowFollower<v1::LogLine, StoredLine> {
 };
 
 /// The file of an output as it was listed.
-grpc::Status fetch(Controller& controller, const v1::FetchRequest& request, MadeFile& file) {
+grpc::Status fetch(Controller& controller, const v1::FetchRequest& request, core::MadeFile& file) {
   StoredOutput output;
   grpc::Status opened = open_output(controller, request.job(), request.path(), output, file);
   const bool other = !request.sha256().empty() && request.sha256() != output.sha256;
@@ -313,7 +313,9 @@ void add_job_streams(Service& service) {
       [&](Context& context, const Caller& /*caller*/, v1::FetchRequest&& request, grpc::Status&) {
         return new OutputStream(
             context, files,
-            [&controller, request](MadeFile& file) { return fetch(controller, request, file); },
+            [&controller, request](core::MadeFile& file) {
+              return fetch(controller, request, file);
+            },
             request.path(), request.offset());
       });
 }

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "coordinator/finisher/made_file.h"
 #include "coordinator/operations/file_transfer.h"
 #include "coordinator/services/file_stream.h"
 #include "coordinator/services/producer.h"
+#include "core/job/made_file.h"
 #include "hyades/v1/common.pb.h"
 
 namespace hyades::coordinator {
@@ -23,7 +23,7 @@ namespace hyades::coordinator {
 class OutputStream final : public Producer<v1::Chunk> {
  public:
   /// Finds the file, or says why there is none; called once, by a thread of the pool.
-  using Find = std::function<grpc::Status(MadeFile&)>;
+  using Find = std::function<grpc::Status(core::MadeFile&)>;
   OutputStream(grpc::CallbackServerContext& context, farm::ThreadPool& pool, Find find,
                std::string path, uint64_t offset)
       : Producer(context, pool), find_(std::move(find)), path_(std::move(path)), offset_(offset) {}
@@ -53,7 +53,7 @@ class OutputStream final : public Producer<v1::Chunk> {
 
   Find find_;
   const std::string path_;
-  MadeFile file_;
+  core::MadeFile file_;
   uint64_t offset_;
 };
 

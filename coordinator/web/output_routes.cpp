@@ -53,7 +53,7 @@ std::string header_name(const std::string& path) {
 /// Bytes [first, first + count) of an output's file.
 class FileSource final : public BodySource {
  public:
-  FileSource(MadeFile file, uint64_t first, uint64_t count)
+  FileSource(core::MadeFile file, uint64_t first, uint64_t count)
       : file_(std::move(file)), at_(first), end_(first + count), size_(count) {}
 
   std::optional<std::string> next() override {
@@ -68,7 +68,7 @@ class FileSource final : public BodySource {
   std::optional<uint64_t> size() const override { return size_; }
 
  private:
-  MadeFile file_;
+  core::MadeFile file_;
   uint64_t at_;
   uint64_t end_;
   uint64_t size_;
@@ -136,7 +136,7 @@ WebReply list(Controller& controller, const v1::OutputsPageRequest& asked) {
 WebReply file(Controller& controller, const v1::OutputRequest& asked, const WebRequest& request) {
   const std::string& path = asked.path();
   StoredOutput output;
-  MadeFile made;
+  core::MadeFile made;
   const grpc::Status opened = open_output(controller, asked.job(), path, output, made);
   if (!opened.ok()) return error_reply(opened);
   const uint64_t size = made.size();

@@ -70,7 +70,7 @@ bool ZipSource::step() {
     return archive_write_close(archive_) == ARCHIVE_OK;
   }
   const File& file = files_[file_++];
-  auto bytes = MadeFile::find(folder_, file.name);
+  auto bytes = core::MadeFile::find(folder_, file.name);
   if (!bytes || bytes->size() != file.size) return false;
   bytes_ = std::move(*bytes);
   archive_entry* entry = archive_entry_new();

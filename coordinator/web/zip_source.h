@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/finisher/made_file.h"
 #include "coordinator/web/exchange.h"
+#include "core/job/made_file.h"
 
 struct archive;
 
@@ -42,7 +42,7 @@ class ZipSource final : public BodySource {
   std::vector<File> files_;
   uint64_t bytes_kept_ = 0;  ///< what is known of all files, here and for the archive's end
   size_t file_ = 0;
-  MadeFile bytes_;  ///< of the file that is being added
+  core::MadeFile bytes_;  ///< of the file that is being added
   uint64_t at_ = 0;
   bool in_file_ = false;
   bool over_ = false;

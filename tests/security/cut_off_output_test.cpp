@@ -94,11 +94,11 @@ TEST(CutOffFile, IsNotReachedThroughLinkedFolders) {
   std::ofstream(folder.file("outputs/frames/a.png")) << "own";
   std::filesystem::create_symlink(folder.file("other"), folder.file("outputs/linked"));
   const std::string outputs = folder.file("outputs");
-  EXPECT_TRUE(MadeFile::find(outputs, "frames/a.png").ok());
-  EXPECT_FALSE(MadeFile::find(outputs, "linked/a.png").ok());
-  EXPECT_FALSE(MadeFile::find(outputs, "../other/a.png").ok());
-  EXPECT_FALSE(MadeFile::find(outputs, folder.file("other/a.png")).ok());
-  EXPECT_FALSE(MadeFile::find(outputs, "frames").ok());
+  EXPECT_TRUE(core::MadeFile::find(outputs, "frames/a.png").ok());
+  EXPECT_FALSE(core::MadeFile::find(outputs, "linked/a.png").ok());
+  EXPECT_FALSE(core::MadeFile::find(outputs, "../other/a.png").ok());
+  EXPECT_FALSE(core::MadeFile::find(outputs, folder.file("other/a.png")).ok());
+  EXPECT_FALSE(core::MadeFile::find(outputs, "frames").ok());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "coordinator/finisher/made_file.h"
+#include "core/job/made_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -17,44 +17,42 @@
 #include "core/base/posix_file.h"
 #include "core/job/output_path.h"
 
-namespace hyades::coordinator {
+namespace hyades::core {
 namespace {
 
 // O_NONBLOCK: a pipe without a writer must not keep anybody.
 constexpr int kToRead = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 constexpr int kToPass = O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC;
 
-core::Error not_opened(int error) {
-  if (error == ENOENT) return core::Error{"no such file"};
-  if (error == ELOOP) return core::Error{"is a link, a regular file was expected"};
-  return core::Error{"cannot be opened: " + core::io_reason(error)};
+Error not_opened(int error) {
+  if (error == ENOENT) return Error{"no such file"};
+  if (error == ELOOP) return Error{"is a link, a regular file was expected"};
+  return Error{"cannot be opened: " + io_reason(error)};
 }
 
 /// Opens the file as MadeFile::find() finds it.
-core::Result<core::Descriptor> open_below(const std::string& folder, const std::string& path,
-                                          struct stat& info) {
-  if (path.find('\0') != std::string::npos ||
-      core::output_name(path) == core::OutputName::outside) {
-    return core::Error{"does not lie below the folder"};
+Result<Descriptor> open_below(const std::string& folder, const std::string& path,
+                              struct stat& info) {
+  if (path.find('\0') != std::string::npos || output_name(path) == OutputName::outside) {
+    return Error{"does not lie below the folder"};
   }
-  core::Descriptor at = core::open_file(folder, O_PATH | O_DIRECTORY);
+  Descriptor at = open_file(folder, O_PATH | O_DIRECTORY);
   if (!at.valid()) return not_opened(errno);
   const std::filesystem::path parts(path);
   for (auto part = parts.begin(); part != parts.end(); ++part) {
     const int flags = std::next(part) == parts.end() ? kToRead : kToPass;
-    core::Descriptor below(
-        core::uninterrupted([&] { return ::openat(at.get(), part->c_str(), flags); }));
+    Descriptor below(uninterrupted([&] { return ::openat(at.get(), part->c_str(), flags); }));
     if (!below.valid()) return not_opened(errno);
     at = std::move(below);
   }
   if (::fstat(at.get(), &info) != 0) return not_opened(errno);
-  if (!S_ISREG(info.st_mode)) return core::Error{"is no regular file"};
+  if (!S_ISREG(info.st_mode)) return Error{"is no regular file"};
   return at;
 }
 
 }  // namespace
 
-core::Result<MadeFile> MadeFile::find(const std::string& folder, const std::string& path) {
+Result<MadeFile> MadeFile::find(const std::string& folder, const std::string& path) {
   struct stat info {};
   const auto opened = open_below(folder, path, info);
   if (!opened) return opened.error();
@@ -71,17 +69,17 @@ bool MadeFile::read(uint64_t offset, std::span<std::byte> into) const {
   struct stat info {};
   const auto opened = open_below(folder_, path_, info);
   return opened && info.st_dev == device_ && info.st_ino == number_ &&
-         core::read_all_at(opened->get(), into, offset) == into.size();
+         read_all_at(opened->get(), into, offset) == into.size();
 }
 
-core::Result<core::Bytes> MadeFile::read_whole(uint64_t most) const {
-  if (size_ > most) return core::Error{fmt::format("has {} bytes, more than {}", size_, most)};
+Result<Bytes> MadeFile::read_whole(uint64_t most) const {
+  if (size_ > most) return Error{fmt::format("has {} bytes, more than {}", size_, most)};
   // Not made zero before: it may be large.
   const std::shared_ptr<std::byte[]> bytes(new (std::nothrow) std::byte[size_]);
-  if (!bytes) return core::Error{"not enough memory to read it"};
+  if (!bytes) return Error{"not enough memory to read it"};
   const std::span<std::byte> all(bytes.get(), size_);
-  if (!read(0, all)) return core::Error{"cannot be read"};
-  return core::Bytes(bytes, all);
+  if (!read(0, all)) return Error{"cannot be read"};
+  return Bytes(bytes, all);
 }
 
-}  // namespace hyades::coordinator
+}  // namespace hyades::core

@@ -10,7 +10,7 @@
 #include "core/base/bytes.h"
 #include "core/base/result.h"
 
-namespace hyades::coordinator {
+namespace hyades::core {
 
 /// A file in a folder that finishers and encoders may write to. What they open runs in them, and
 /// may put a link in the file's place or cut it off at any time: so it is never mapped. It is open
@@ -19,7 +19,7 @@ class MadeFile {
  public:
   /// Finds the regular file `path` below `folder`; neither it nor a folder on the way to it, below
   /// `folder`, may be a link. Errors do not repeat the name.
-  static core::Result<MadeFile> find(const std::string& folder, const std::string& path);
+  static Result<MadeFile> find(const std::string& folder, const std::string& path);
 
   MadeFile() = default;
 
@@ -29,7 +29,7 @@ class MadeFile {
   /// it is not as long any more.
   bool read(uint64_t offset, std::span<std::byte> into) const;
   /// Reads it whole; an error where it has more bytes than `most`.
-  core::Result<core::Bytes> read_whole(uint64_t most) const;
+  Result<Bytes> read_whole(uint64_t most) const;
 
  private:
   std::string folder_;
@@ -39,4 +39,4 @@ class MadeFile {
   ino_t number_ = 0;
 };
 
-}  // namespace hyades::coordinator
+}  // namespace hyades::core
