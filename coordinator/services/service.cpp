@@ -8,11 +8,11 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include "coordinator/access/byte_budget.h"
 
 #include <fmt/format.h>
 #include <grpcpp/impl/codegen/server_callback_handlers.h>
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/controller/owner_connections.h"
 #include "coordinator/operations/ownership.h"
 #include "coordinator/services/part_count.h"

@@ -13,7 +13,6 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
-#include "coordinator/access/byte_budget.h"
 
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/write.hpp>
@@ -22,6 +21,7 @@
 #include <boost/beast/ssl.hpp>
 
 #include "coordinator/access/address.h"
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/operations/executors.h"
 #include "coordinator/web/message_heads.h"

@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 #include <vector>
-#include "coordinator/access/byte_budget.h"
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/web/job_events.h"
 #include "coordinator/web/route_helpers.h"
 

@@ -5,8 +5,8 @@
 #include <mutex>
 #include <string>
 #include <utility>
-#include "coordinator/access/byte_budget.h"
 
+#include "coordinator/access/byte_budget.h"
 #include "coordinator/web/request_form.h"
 #include "coordinator/web/route_helpers.h"
 

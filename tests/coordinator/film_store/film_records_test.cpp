@@ -66,6 +66,18 @@ TEST(VoidedTile, LeavesNothingOfAFrameThatHadNoOther) {
   EXPECT_TRUE(contents.problems.empty());
 }
 
+/// The records of which a snapshot of the film consists.
+std::vector<std::vector<std::byte>> written(const core::Film& film,
+                                            const std::string& worker_class) {
+  std::vector<std::vector<std::byte>> records;
+  EXPECT_TRUE(write_film(1, {}, film, {kRegion, 16, kSamples}, worker_class,
+                         [&](std::span<const std::byte> record) -> core::Status {
+                           records.emplace_back(record.begin(), record.end());
+                           return {};
+                         }));
+  return records;
+}
+
 /// A snapshot of a film with splats is one record: none of it can be lost without the rest.
 TEST(WrittenFilm, IsOneRecordWhereThereAreSplats) {
   const core::PixelRect region{0, 0, 40, 20};
@@ -75,12 +87,7 @@ TEST(WrittenFilm, IsOneRecordWhereThereAreSplats) {
     ASSERT_TRUE(whole.merge(fake_film(kLeft, kSamples, of)));
     ASSERT_TRUE(whole.merge(fake_film(kRight, kSamples, of)));
     for (const std::string worker_class : {"", "class"}) {
-      std::vector<std::vector<std::byte>> records;
-      ASSERT_TRUE(write_film(1, {}, whole, {kRegion, 16, kSamples}, worker_class,
-                             [&](std::span<const std::byte> record) -> core::Status {
-                               records.emplace_back(record.begin(), record.end());
-                               return {};
-                             }));
+      const std::vector<std::vector<std::byte>> records = written(whole, worker_class);
       EXPECT_EQ(records.size(), splats ? 1U : 2U);
       const LogContents contents = replayed(records);
       EXPECT_EQ(contents.films.at(1)->digest(), whole.digest());
@@ -108,12 +115,7 @@ TEST(WrittenFilm, KeepsTheIdsOfEachTileAndTheirNames) {
   }
   ASSERT_TRUE(whole.check());
   for (const std::string worker_class : {"", "class"}) {
-    std::vector<std::vector<std::byte>> records;
-    ASSERT_TRUE(write_film(1, {}, whole, {kRegion, 16, kSamples}, worker_class,
-                           [&](std::span<const std::byte> record) -> core::Status {
-                             records.emplace_back(record.begin(), record.end());
-                             return {};
-                           }));
+    const std::vector<std::vector<std::byte>> records = written(whole, worker_class);
     EXPECT_EQ(records.size(), 2U);
     EXPECT_EQ(replayed(records).films.at(1)->digest(), whole.digest());
   }

@@ -48,15 +48,7 @@ class Losses : public ::testing::Test {
     EXPECT_EQ(lines(text)[0].worker(), "anna");
     EXPECT_EQ(lines(text)[0].level(), v1::LOG_LEVEL_WARNING);
   }
-  std::string explain() const {
-    v1::JobRequest request;
-    request.set_job(job_);
-    v1::ExplainResponse response;
-    EXPECT_TRUE(world_.jobs->Explain(world_.context().get(), request, &response).ok());
-    std::string all;
-    for (const std::string& reason : response.reasons()) all += reason + "\n";
-    return all;
-  }
+  std::string explain() const { return world_.explain(job_); }
   bool explains(const std::string& text) const {
     return eventually([&] { return explain().find(text) != std::string::npos; });
   }
