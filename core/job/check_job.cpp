@@ -13,6 +13,7 @@
 
 #include "core/base/text.h"
 #include "core/base/udim.h"
+#include "core/job/check_colors.h"
 #include "core/job/check_frame.h"
 #include "core/job/check_materials.h"
 #include "core/job/mesh_files.h"
@@ -271,6 +272,7 @@ void check_job(ReadContext& context, AssetResolver& assets) {
   check_material_cycles(context);
   check_two_sided(context);
   check_emission(context);
+  check_texture_colors(context);
   read_normal_maps_as_numbers(context);
   check_groups(context);
   check_atmosphere(context);

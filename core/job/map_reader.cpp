@@ -13,6 +13,7 @@
 #include "core/job/read_color.h"
 #include "core/job/read_textures.h"
 #include "core/job/read_values.h"
+#include "core/job/suggest.h"
 
 namespace hyades::core {
 
@@ -156,7 +157,7 @@ void MapReader::choice(std::string_view key, std::string& target,
   if (known) {
     target = node->scalar;
   } else {
-    mismatch(key, *node, join_names(names) + did_you_mean(node->scalar, names));
+    mismatch(key, *node, join_names(names) + suggest(node->scalar, names));
   }
 }
 
@@ -364,7 +365,8 @@ void MapReader::finish() {
   for (const YamlEntry& entry : map_.map) {
     if (std::binary_search(asked_.begin(), asked_.end(), entry.key)) continue;
     if (context_.diagnostics.full()) return;
-    std::string hint = belongs_elsewhere(section_, entry.key);
+    std::string hint = other_word(entry.key, asked_);
+    if (hint.empty()) hint = belongs_elsewhere(section_, entry.key);
     if (hint.empty()) hint = did_you_mean(entry.key, asked_);
     if (hint.empty()) hint = "; expected " + join_names(asked_);
     complain(entry.key_where, fmt::format("unknown key '{}' in {}{}", entry.key.substr(0, 60),
@@ -391,7 +393,7 @@ bool read_by_type(MapReader& reader, std::string_view key, const std::string& se
   if (found == names.end()) {
     reader.complain(node != nullptr ? SourceLocation(node->where) : reader.where(),
                     fmt::format("{} is '{}', expected {}{}", key, type.substr(0, 60),
-                                join_names(names), did_you_mean(type, names)));
+                                join_names(names), suggest(type, names)));
     return false;
   }
   reader.enter_section(section + "." + type);

@@ -58,6 +58,18 @@ bool parse_range(std::string_view text, FramesDesc& frames) {
   return true;
 }
 
+/// "1-5" of "5-1"; empty where the text is no range whose last frame comes first.
+std::string turned_round(const std::string& text) {
+  const size_t dash = text.find('-', 1);
+  if (dash == std::string::npos) return "";
+  const size_t end = std::min(text.find('x'), text.size());
+  if (end <= dash) return "";
+  const std::string turned =
+      text.substr(dash + 1, end - dash - 1) + "-" + text.substr(0, dash) + text.substr(end);
+  FramesDesc unused;
+  return parse_range(turned, unused) ? turned : "";
+}
+
 }  // namespace
 
 void read_frames(MapReader& top, FramesDesc& frames) {
@@ -66,9 +78,10 @@ void read_frames(MapReader& top, FramesDesc& frames) {
     const std::string expected =
         fmt::format("a frame or range such as 7, 1-120 or 1-120x2, up to {}", kLastFrame);
     reader.text(key, text, expected);
-    if (!text.empty() && !parse_range(text, frames)) {
-      reader.mismatch(key, *reader.find(key), expected);
-    }
+    if (text.empty() || parse_range(text, frames)) return;
+    const std::string turned = turned_round(text);
+    reader.mismatch(key, *reader.find(key),
+                    turned.empty() ? expected : "the first frame first: " + turned);
   };
   const YamlNode* node = top.find("frames");
   if (node != nullptr && node->kind == YamlNode::Kind::scalar) {

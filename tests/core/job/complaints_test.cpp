@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/core/job/complaints_testing.h"
@@ -14,6 +15,23 @@ TEST(Complaints, UnknownKeysSuggestTheNearestOne) {
   EXPECT_EQ(complaints("sampling: {quality: 7}\n"),
             "job.yaml:2:12: unknown key 'quality' in sampling; expected min_samples, noise, "
             "sampler, samples or seed\n");
+}
+
+TEST(Complaints, WordsOfOtherRenderersAreKnown) {
+  const auto says = [](const std::string& job, const std::string& hint) {
+    EXPECT_THAT(complaints(job), testing::HasSubstr(hint)) << job;
+  };
+  says("materials: {m: {type: metal}}\n", "or black, did you mean 'conductor'?");
+  says("materials: {m: {type: principled, color: 1}}\n", ", did you mean 'base_color'?");
+  says("objects: {a: {shape: cube}}\n", "or cylinder, did you mean 'box'?");
+  says("objects: {a: {shape: box, position: 1}}\n", ", did you mean 'at'?");
+  says("lights: {a: {type: area}}\n", "or sun; a lamp with an area is an object with 'emit'");
+  says("samples: 16\n", "in the job, did you mean 'sampling: {samples: N}'?");
+  says("resolution: [3, 3]\n", "in the job, did you mean 'film: {size: [WIDTH, HEIGHT]}'?");
+  says("textures: {t: {type: voronoi}}\n", ", did you mean 'cellular'?");
+  says("frames: {range: 5-1}\n", "range is '5-1', expected the first frame first: 1-5");
+  says("frames: 20-2x3\n", "expected the first frame first: 2-20x3");
+  says("frames: 5-\n", "expected a frame or range such as 7");
 }
 
 TEST(Complaints, KeysOfAnotherTypeSayWhereTheyBelong) {

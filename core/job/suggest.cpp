@@ -1,0 +1,108 @@
+#include "core/job/suggest.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/text.h"
+
+namespace hyades::core {
+namespace {
+
+/// A word of other renderers, and what it is called where that name is among those expected.
+struct OtherWord {
+  std::string_view word;
+  std::string_view name;
+  std::string_view instead = "";  ///< what is said where the name does not mean the same
+};
+
+constexpr auto kOtherWords = std::to_array<OtherWord>({
+    // materials
+    {"metal", "conductor"},
+    {"glass", "dielectric"},
+    {"diffuse", "lambert"},
+    {"matte", "lambert"},
+    {"plastic", "glossy"},
+    {"disney", "principled"},
+    {"translucent", "diffuse-transmission"},
+    {"clearcoat", "coat"},
+    {"velvet", "sheen"},
+    {"blend", "mix"},
+    {"emission", "lambert", "; what an object gives off is its 'emit'"},
+    {"emissive", "lambert", "; what an object gives off is its 'emit'"},
+    {"light", "lambert", "; what an object gives off is its 'emit'"},
+    {"transparent", "lambert", "; what lets light straight through is 'opacity' of any material"},
+    // shapes
+    {"cube", "box"},
+    {"plane", "rectangle"},
+    {"quad", "rectangle"},
+    {"ball", "sphere"},
+    {"circle", "disk"},
+    {"mesh", "sphere", "; a mesh is told by its file: 'mesh: body.ply'"},
+    // lights
+    {"area", "point", "; a lamp with an area is an object with 'emit'"},
+    {"directional", "sun"},
+    {"distant", "sun"},
+    {"omni", "point"},
+    {"projection", "projector"},
+    {"sky", "point", "; light from all around is the job's 'environment'"},
+    {"infinite", "point", "; light from all around is the job's 'environment'"},
+    {"environment", "point", "; light from all around is the job's 'environment'"},
+    // textures
+    {"bitmap", "image"},
+    {"imagemap", "image"},
+    {"checkerboard", "checker"},
+    {"voronoi", "cellular"},
+    {"worley", "cellular"},
+    {"noise", "fbm3d"},
+    {"multiply", "scale"},
+    {"clamp", "remap"},
+    // keys
+    {"samples", "sampling", ", did you mean 'sampling: {samples: N}'?"},
+    {"spp", "sampling", ", did you mean 'sampling: {samples: N}'?"},
+    {"spp", "samples"},
+    {"resolution", "film", ", did you mean 'film: {size: [WIDTH, HEIGHT]}'?"},
+    {"resolution", "size"},
+    {"world", "environment"},
+    {"background", "environment"},
+    {"sky", "environment"},
+    {"shapes", "objects"},
+    {"meshes", "objects"},
+    {"animation", "frames"},
+    {"output", "outputs"},
+    {"position", "at"},
+    {"location", "at"},
+    {"translate", "at"},
+    {"origin", "look_from"},
+    {"position", "look_from"},
+    {"target", "look_at"},
+    {"emission", "emit"},
+    {"albedo", "color"},
+    {"intensity", "power"},
+    {"intensity", "radiance"},
+});
+
+bool is_among(std::string_view name, std::span<const std::string> names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string meant(std::string_view name) { return ", did you mean '" + std::string(name) + "'?"; }
+
+}  // namespace
+
+std::string other_word(std::string_view word, std::span<const std::string> names) {
+  for (const OtherWord& other : kOtherWords) {
+    if (other.word != word || !is_among(other.name, names)) continue;
+    return other.instead.empty() ? meant(other.name) : std::string(other.instead);
+  }
+  const std::string ending = "_" + std::string(word);
+  const auto longer = std::find_if(names.begin(), names.end(),
+                                   [&](const std::string& name) { return name.ends_with(ending); });
+  return longer != names.end() ? meant(*longer) : "";
+}
+
+std::string suggest(std::string_view word, std::span<const std::string> names) {
+  const std::string other = other_word(word, names);
+  return other.empty() ? did_you_mean(word, names) : other;
+}
+
+}  // namespace hyades::core
