@@ -1,6 +1,7 @@
 #include "import/scene_job.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <utility>
@@ -21,32 +22,65 @@ const YamlNode& section_of_job(const YamlNode& tree, const char* key) {
   return entry != nullptr ? *entry->value : empty_map();
 }
 
-/// Whether an object, or one in its groups, shines.
-bool shines(const YamlNode& objects) {
-  return std::any_of(objects.map.begin(), objects.map.end(), [](const YamlEntry& entry) {
+/// The number that an entry says; 1 where it says something else, a texture, keys or an expression.
+double number_in(const YamlNode& entry) {
+  double number = 1.0;
+  const std::string& text = entry.scalar;
+  if (entry.kind == Kind::scalar) std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+/// The largest of the numbers of a colour.
+double brightest(const YamlNode& color) {
+  if (color.kind != Kind::list) return number_in(color);
+  double most = 0.0;
+  for (const YamlPtr& part : color.list) most = std::max(most, number_in(*part));
+  return most;
+}
+
+/// Whether what gives off more than `least` lights a scene; `color` and `strength` are 1 where they
+/// are null.
+bool lights_up(const YamlEntry* color, const YamlEntry* strength, double least) {
+  const double amount = strength == nullptr ? 1.0 : number_in(*strength->value);
+  return amount * (color == nullptr ? 1.0 : brightest(*color->value)) > least;
+}
+
+/// Whether an object, or one in its groups, lights the scene.
+bool shines(const YamlNode& objects, double least) {
+  return std::any_of(objects.map.begin(), objects.map.end(), [&](const YamlEntry& entry) {
     const YamlNode& object = *entry.value;
     if (object.kind != Kind::map) return false;
-    const YamlEntry* group = object.find("group");
-    return object.find("emit") != nullptr ||
-           (group != nullptr && shines(section_of_job(*group->value, "objects")));
+    if (const YamlEntry* group = object.find("group");
+        group != nullptr && shines(section_of_job(*group->value, "objects"), least)) {
+      return true;
+    }
+    const YamlEntry* emit = object.find("emit");
+    if (emit == nullptr) return false;
+    const YamlNode& how = *emit->value;
+    return how.find("power") != nullptr ||
+           lights_up(how.find("color"), how.find("radiance"), least);
   });
 }
 
-bool has_light(const YamlNode& scene) {
+/// Whether the scene has light of its own; of surfaces, what gives off more than `least`.
+bool has_light(const YamlNode& scene, double least) {
   if (scene.find("environment") != nullptr || scene.find("lights") != nullptr) return true;
-  const YamlNode& materials = section_of_job(scene, "materials");
-  const auto any_has = [](const YamlNode& things, const char* key) {
+  const auto any_of = [&](const char* section, const auto& test) {
+    const YamlNode& things = section_of_job(scene, section);
     return std::any_of(things.map.begin(), things.map.end(), [&](const YamlEntry& entry) {
-      return entry.value->kind == Kind::map && entry.value->find(key) != nullptr;
+      return entry.value->kind == Kind::map && test(*entry.value);
     });
   };
-  const bool glowing = any_has(materials, "emission_strength") ||
-                       any_has(section_of_job(scene, "media"), "emission");
-  if (glowing || shines(section_of_job(scene, "objects"))) return true;
-  const YamlNode& groups = section_of_job(scene, "groups");
-  return std::any_of(groups.map.begin(), groups.map.end(), [](const YamlEntry& entry) {
-    return shines(section_of_job(*entry.value, "objects"));
-  });
+  const auto glows = [&](const YamlNode& material) {
+    const YamlEntry* strength = material.find("emission_strength");
+    return strength != nullptr && lights_up(material.find("emission_color"), strength, least);
+  };
+  const auto burns = [](const YamlNode& medium) { return medium.find("emission") != nullptr; };
+  const auto holds_lamps = [&](const YamlNode& group) {
+    return shines(section_of_job(group, "objects"), least);
+  };
+  return any_of("materials", glows) || any_of("media", burns) ||
+         shines(section_of_job(scene, "objects"), least) || any_of("groups", holds_lamps);
 }
 
 bool has_interiors(const YamlNode& objects) {
@@ -155,10 +189,14 @@ void put_head(YamlMap& job, const YamlNode& scene, const std::string& name, bool
   own_or("integrator", has_media ? deep.node() : nullptr);
 }
 
+/// White paper in full light gives off as much; labels, screens and what is to look the same in any
+/// light do.
+constexpr double kDim = 1.0;
+
 /// The job; `added` gets what the scene does not say itself.
-YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& name,
+YamlPtr staged(const YamlNode& scene, const SceneSections& told, const std::string& name,
                std::vector<std::string>& added) {
-  const Extent extent(bounds);
+  const Extent extent(told.bounds);
   const YamlNode& own = section_of_job(scene, "objects");
   const YamlNode& groups = section_of_job(scene, "groups");
   const bool has_media =
@@ -166,7 +204,7 @@ YamlPtr staged(const YamlNode& scene, const Bounds& bounds, const std::string& n
       std::any_of(groups.map.begin(), groups.map.end(), [](const YamlEntry& group) {
         return has_interiors(section_of_job(*group.value, "objects"));
       });
-  const bool lit = has_light(scene);
+  const bool lit = has_light(scene, told.emitters_are_lamps ? 0.0 : kDim);
   const bool seen = scene.find("camera") != nullptr;
   YamlMap job;
   put_head(job, scene, name, has_media);
@@ -219,7 +257,7 @@ Result<SceneJob> scene_job(AssetResolver& files, const SceneJobRequest& request)
   }
   const std::string stem = std::filesystem::path(request.scene).stem().string();
   SceneJob job{nullptr, *source, std::move(told->notes), std::move(told->files), {}};
-  job.tree = staged(*scene, told->bounds, safe_name(stem, "scene"), job.added);
+  job.tree = staged(*scene, *told, safe_name(stem, "scene"), job.added);
   return job;
 }
 

@@ -41,6 +41,9 @@ struct SceneSections {
   std::vector<std::string> notes;
   /// The files beside the scene's that the sections name, from the scene's folder on.
   std::vector<std::string> files{};
+  /// Whether all that emits is a lamp, however dim. In other formats labels and screens emit, in
+  /// scenes that are looked at by the light of whoever shows them.
+  bool emitters_are_lamps = false;
 };
 
 /// One scene file that has been read. Immutable and thread-safe.

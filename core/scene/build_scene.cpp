@@ -52,6 +52,7 @@ class SceneBuilder {
     if (auto done = add_objects(); !done) return done.error();
     if (auto done = add_lights(); !done) return done.error();
     if (auto done = add_environment(); !done) return done.error();
+    warn_of_darkness();
     if (auto done = add_camera(); !done) return done.error();
     if (auto done = add_motion(); !done) return done.error();
     add_media_around_camera();
@@ -229,6 +230,15 @@ class SceneBuilder {
     for (auto& [name, light] : *lights) add_light(std::move(light), name, sky.light_group);
     scene_->environment_visible = sky.visible_to_camera;
     return {};
+  }
+
+  void warn_of_darkness() {
+    const bool glows = std::any_of(job_.media.begin(), job_.media.end(),
+                                   [](const MediumDesc& medium) { return medium.emission; });
+    if (!scene_->lights.empty() || glows) return;
+    scene_->warnings.emplace_back(
+        "nothing gives light, the picture will be black: expected lights, an environment, or an "
+        "object with 'emit'");
   }
 
   Status add_camera() {

@@ -148,7 +148,8 @@ class PbrtSource : public SceneSource {
       }
       return Error{all};
     }
-    return SceneSections{out.node(), {}, std::move(context.report.notes), std::move(context.files)};
+    return SceneSections{
+        out.node(), {}, std::move(context.report.notes), std::move(context.files), true};
   }
 
   Result<Bytes> made_file(const std::string& name) const override {

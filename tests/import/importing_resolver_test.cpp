@@ -173,6 +173,24 @@ TEST_F(Importing, MediaThatGlowAreLight) {
   EXPECT_THAT(glowing, testing::Not(HasSubstr("environment")));
 }
 
+// A label that emits as much as white paper shows does not light a scene; a lamp does. In pbrt's
+// scenes whoever wrote them has thought of all light.
+TEST_F(Importing, LabelsThatEmitAreNoLamps) {
+  const auto job = [&](const std::string& file) {
+    const auto files = JobFiles::open(path(file));
+    return files ? text_of((*files)->files(), (*files)->document()) : files.error().message;
+  };
+  write("s.obj", "mtllib s.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("s.mtl", "newmtl m\nKe 1 0.5 1\n");
+  EXPECT_THAT(job("s.obj"), testing::AllOf(HasSubstr("emi"), HasSubstr("key:")));
+  write("s.mtl", "newmtl m\nKe 17 12 4\n");
+  EXPECT_THAT(job("s.obj"), testing::Not(HasSubstr("key:")));
+  write("s.pbrt",
+        "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [0.5 0.5 0.5] "
+        "Shape \"sphere\"");
+  EXPECT_THAT(job("s.pbrt"), testing::AllOf(HasSubstr("emit:"), testing::Not(HasSubstr("key:"))));
+}
+
 // A picture that is missing may be stood in for, a mesh may not.
 TEST_F(Importing, AFileThatAPbrtLacksIsToldWithItsPlace) {
   const auto error = [&](const std::string& world, MissingTextures missing) {

@@ -40,7 +40,8 @@ class MeshSequences : public testing::Test {
             const std::string& object = "") {
     Diagnostics diagnostics;
     job_ = parse_job("hyades: 1\nframes: {range: 2-4, shutter: " + shutter +
-                         "}\nobjects: {body: {mesh: b.###.obj" + object + "}}\n" + more,
+                         "}\nenvironment: {color: 1}\nobjects: {body: {mesh: b.###.obj" + object +
+                         "}}\n" + more,
                      "d.yaml", records_, diagnostics);
     complaints_ = diagnostics.to_string();
   }
