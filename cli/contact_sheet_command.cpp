@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,10 +29,13 @@ int contact_sheet_error(const std::string& message) {
   return kExitRefused;
 }
 
-/// What a picture is called: its file's name up to the first dot.
+/// What a picture is called: its file's name with the frame's number, without ".png" and, of
+/// `render --preview`, ".preview".
 std::string name_of(const std::string& path) {
-  const std::string file = std::filesystem::path(path).filename().string();
-  return file.substr(0, file.find('.'));
+  constexpr std::string_view kPreview = ".preview";
+  std::string name = std::filesystem::path(path).stem().string();
+  if (name.ends_with(kPreview)) name.resize(name.size() - kPreview.size());
+  return name;
 }
 
 int make_contact_sheet(const ContactSheetOptions& options) {
@@ -55,7 +59,7 @@ int contact_sheet_command(int argc, char** argv) {
   CLI::App app("puts many pictures on one sheet, with their names", "hyades contact-sheet");
   ContactSheetOptions options;
   app.add_option("pictures", options.pictures, "PNG or JPEG files")->required();
-  app.add_option("-o,--output", options.output, "PNG to write")->required();
+  app.add_option("-o,--output", options.output, "PNG to write")->required()->type_name("FILE");
   app.add_option("--columns", options.columns, "pictures in a row")
       ->check(in_range(1, 1000))
       ->capture_default_str();

@@ -37,7 +37,7 @@ std::string transfer_line(const Transfer& transfer, bool bar) {
         fmt::format("  {}/s", core::format_bytes(static_cast<uint64_t>(transfer.bytes_per_second)));
     if (transfer.total > 0) {
       const double left = static_cast<double>(transfer.total - moved) / transfer.bytes_per_second;
-      line += "  " + core::format_duration(left) + " left";
+      line += "  " + core::format_time_left(left) + " left";
     }
   }
   return line;

@@ -3,8 +3,24 @@
 #include <cstdio>
 
 #include "cli/interrupt.h"
+#include "core/base/text.h"
 
 namespace hyades::cli {
+namespace {
+
+/// `video` with pictures that are there, where its own are not: those of a job that was rendered
+/// whole are gone.
+core::VideoDesc with_pictures_at_hand(const core::Job& job, const core::VideoDesc& video,
+                                      const core::VideoFrames& frames) {
+  core::VideoDesc found = video;
+  for (const std::string& pictures : core::alike_pictures(job, video)) {
+    found.pictures = pictures;
+    if (core::missing_pictures(found, frames).empty()) return found;
+  }
+  return video;
+}
+
+}  // namespace
 
 bool make_videos(const core::Job& job, const std::string& folder,
                  const std::vector<int32_t>& numbers, bool quiet) {
@@ -13,12 +29,17 @@ bool make_videos(const core::Job& job, const std::string& folder,
   for (const core::VideoDesc& video : job.videos) {
     const std::string file = core::video_file(video, frames);
     if (!quiet) {
-      std::fprintf(stderr, "making %s/%s of %zu frames\n", folder.c_str(), file.c_str(),
-                   frames.numbers.size());
+      std::fprintf(stderr, "making %s/%s of %s\n", folder.c_str(), file.c_str(),
+                   core::counted(frames.numbers.size(), "frame").c_str());
     }
     core::VideoPatience patience;
     patience.stop = interrupted;
-    if (const auto made = core::make_video(video, frames, patience); !made) {
+    const core::VideoDesc at_hand = with_pictures_at_hand(job, video, frames);
+    if (!quiet && at_hand.pictures != video.pictures) {
+      std::fprintf(stderr, "of %s, which look the same as its own pictures\n",
+                   at_hand.pictures.c_str());
+    }
+    if (const auto made = core::make_video(at_hand, frames, patience); !made) {
       std::fprintf(stderr, "%s\n", made.error().message.c_str());
       all = false;
     } else if (!quiet) {

@@ -99,6 +99,28 @@ std::string format_duration(double seconds) {
   return fmt::format("{} d {:02} h", hours / 24, hours % 24);
 }
 
+std::string format_time_left(double seconds) {
+  if (!(seconds < 59.5)) return format_duration(std::floor(seconds + 0.5));
+  if (seconds < 0.0) return "?";
+  return fmt::format("{:.0f} s", seconds > 0.0 ? std::max(seconds, 1.0) : 0.0);
+}
+
+std::string format_sample_rate(double per_second) {
+  const char* unit = "samples/s";
+  for (const char* larger : {"ksamples/s", "Msamples/s", "Gsamples/s"}) {
+    if (per_second < 999.5) break;
+    per_second *= 1e-3;
+    unit = larger;
+  }
+  const int decimals = per_second < 9.995 ? 2 : per_second < 99.95 ? 1 : 0;
+  return fmt::format("{:.{}f} {}", per_second, decimals, unit);
+}
+
+std::string format_noise(double noise) {
+  if (noise >= 9.95) return fmt::format("{:.0f}", noise);
+  return noise >= 0.995 ? fmt::format("{:.1f}", noise) : fmt::format("{:.2g}", noise);
+}
+
 std::string format_bytes(uint64_t bytes) {
   if (bytes < 1024) return fmt::format("{} B", bytes);
   constexpr const char* kUnits[] = {"KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};

@@ -34,6 +34,16 @@ std::string join_names(std::span<const std::string> names);
 /// "3 d 04 h". Negative and non-finite: "?".
 std::string format_duration(double seconds);
 
+/// format_duration() of a guess, how long something will yet take, in whole seconds: "2 s",
+/// "4 min 05 s".
+std::string format_time_left(double seconds);
+
+/// A rate of samples, with three digits: "850 samples/s", "12.3 ksamples/s", "2.35 Msamples/s".
+std::string format_sample_rate(double per_second);
+
+/// A noise (core/film/noise.h) with two digits: "0.016", "1.6", "160".
+std::string format_noise(double noise);
+
 /// "512 B", "1.5 KiB", "12.3 MiB", "1.0 GiB", ...
 std::string format_bytes(uint64_t bytes);
 

@@ -35,10 +35,12 @@ Result<RawPicture> read_picture(const std::string& path) {
   if (!image) return image.error();
   auto codes = encode_codes(*image, false);
   if (!codes) return codes.error().in(path);
-  const auto texts = read_png_texts(path);
-  if (!texts) return texts.error();
   RawPicture raw;
-  raw.texts = {texts->begin(), texts->end()};
+  if (file_extension(path) == ".png") {  // others say nothing that is asked for
+    const auto texts = read_png_texts(path);
+    if (!texts) return texts.error();
+    raw.texts = {texts->begin(), texts->end()};
+  }
   raw.width = image->width + image->width % 2;
   raw.height = image->height + image->height % 2;
   raw.data.reserve(static_cast<size_t>(raw.width) * static_cast<size_t>(raw.height) * 3);

@@ -40,6 +40,25 @@ std::vector<std::string> video_pictures(const VideoDesc& video, const VideoFrame
   return paths;
 }
 
+std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video) {
+  const auto own =
+      std::find_if(job.outputs.begin(), job.outputs.end(),
+                   [&](const OutputDesc& output) { return output.file == video.pictures; });
+  std::vector<std::string> lossless = {video.pictures};
+  std::vector<std::string> lossy;
+  for (const OutputDesc& output : job.outputs) {
+    const std::string ending = file_extension(output.file);
+    if (own == job.outputs.end() || &output == &*own || ending == ".exr" || output.transparent ||
+        output.layers != own->layers || output.tone_map != own->tone_map ||
+        output.exposure != own->exposure || output.denoise != own->denoise) {
+      continue;
+    }
+    (ending == ".jpg" || ending == ".jpeg" ? lossy : lossless).push_back(output.file);
+  }
+  lossless.insert(lossless.end(), lossy.begin(), lossy.end());
+  return lossless;
+}
+
 bool are_all_frames(const Job& job, const std::vector<int32_t>& numbers) {
   const int64_t all = (int64_t{job.frames.last} - job.frames.first) / job.frames.step + 1;
   return static_cast<int64_t>(numbers.size()) == all &&

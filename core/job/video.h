@@ -20,6 +20,10 @@ struct VideoFrames {
 /// speed: where every second one is left out, `rate` is half the job's fps.
 VideoFrames video_frames(const Job& job, std::string folder, std::vector<int32_t> numbers);
 
+/// The outputs of the job whose files look like the pictures of `video`, whose own come first: the
+/// same layer, exposure and tone map, no alpha. The less is lost in them the sooner they come.
+std::vector<std::string> alike_pictures(const Job& job, const VideoDesc& video);
+
 /// Whether these frames are all of the job's, each once: only then are its videos made unasked.
 bool are_all_frames(const Job& job, const std::vector<int32_t>& numbers);
 

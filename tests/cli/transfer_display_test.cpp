@@ -23,7 +23,7 @@ TEST(TransferLine, SaysBytesRateAndTimeLeft) {
   transfer.total = 120 * kMiB;
   transfer.bytes_per_second = 3.0 * kMiB;
   EXPECT_EQ(transfer_line(transfer, false),
-            "uploading   25 %  file 2 of 7  30.0 MiB of 120.0 MiB  3.0 MiB/s  30.0 s left");
+            "uploading   25 %  file 2 of 7  30.0 MiB of 120.0 MiB  3.0 MiB/s  30 s left");
   EXPECT_THAT(transfer_line(transfer, true), HasSubstr("██████░░"));
 }
 
@@ -70,9 +70,9 @@ TEST(TransferDisplay, PlainLinesNowAndThenWhereNothingCanBeDrawnAgain) {
   ::testing::internal::CaptureStderr();
   show_transfer();
   EXPECT_EQ(::testing::internal::GetCapturedStderr(),
-            "uploading   33 %  1.0 MiB of 3.0 MiB  102.4 KiB/s  20.0 s left\n"
-            "uploading   67 %  2.0 MiB of 3.0 MiB  102.4 KiB/s  10.0 s left\n"
-            "uploading  100 %  3.0 MiB of 3.0 MiB  102.4 KiB/s  0.00 s left\n");
+            "uploading   33 %  1.0 MiB of 3.0 MiB  102.4 KiB/s  20 s left\n"
+            "uploading   67 %  2.0 MiB of 3.0 MiB  102.4 KiB/s  10 s left\n"
+            "uploading  100 %  3.0 MiB of 3.0 MiB  102.4 KiB/s  0 s left\n");
 }
 
 /// What a terminal of `columns` is sent, whose kind is `term`.

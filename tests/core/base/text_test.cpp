@@ -80,5 +80,31 @@ TEST(Text, SizesAndCounts) {
   EXPECT_EQ(format_count(1234567), "1,234,567");
 }
 
+TEST(Text, GuessesOfTimeAreWholeSeconds) {
+  EXPECT_EQ(format_time_left(0.0), "0 s");
+  EXPECT_EQ(format_time_left(0.2), "1 s");
+  EXPECT_EQ(format_time_left(1.67), "2 s");
+  EXPECT_EQ(format_time_left(59.4), "59 s");
+  EXPECT_EQ(format_time_left(59.6), "1 min 00 s");
+  EXPECT_EQ(format_time_left(-1.0), "?");
+  EXPECT_EQ(format_time_left(std::numeric_limits<double>::infinity()), "?");
+}
+
+TEST(Text, RatesHaveThreeDigits) {
+  EXPECT_EQ(format_sample_rate(0.0), "0.00 samples/s");
+  EXPECT_EQ(format_sample_rate(850.0), "850 samples/s");
+  EXPECT_EQ(format_sample_rate(999.6), "1.00 ksamples/s");
+  EXPECT_EQ(format_sample_rate(12'340.0), "12.3 ksamples/s");
+  EXPECT_EQ(format_sample_rate(2.346e6), "2.35 Msamples/s");
+  EXPECT_EQ(format_sample_rate(5e12), "5000 Gsamples/s");
+}
+
+TEST(Text, NoiseIsNeverInPowersOfTen) {
+  EXPECT_EQ(format_noise(0.0158), "0.016");
+  EXPECT_EQ(format_noise(0.999), "1.0");
+  EXPECT_EQ(format_noise(1.58), "1.6");
+  EXPECT_EQ(format_noise(160.4), "160");
+}
+
 }  // namespace
 }  // namespace hyades::core
