@@ -18,6 +18,7 @@
 #include "cli/number_range.h"
 #include "cli/videos.h"
 #include "core/base/fp_mode.h"
+#include "core/base/printable.h"
 
 namespace hyades::cli {
 namespace {
@@ -29,6 +30,7 @@ struct Options {
   SceneOptions scene;
   uint32_t samples = 0;  ///< of the films, where not the job's; 0: the job's
   bool film = false;
+  bool overwrite = false;
   bool quiet = false;
 };
 
@@ -39,12 +41,16 @@ std::optional<int> parse(int argc, char** argv, Options& options) {
   app.add_option("job", options.job, "the job, as it was rendered")->required();
   app.add_option("films", options.films, "film EXRs of its frames, in any order")->required();
   declare_scene_options(app, options.scene);
-  app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
+  app.add_option("-o,--output", options.folder, "folder for what is written")
+      ->capture_default_str()
+      ->type_name("DIR");
   app.add_option("--samples", options.samples,
                  "samples per pixel that the films were rendered with (default: the job's)")
       ->check(in_range(1U, 1U << 24U));
   app.add_flag("--film", options.film, "also write each frame's whole film (NAME.film.exr)");
-  app.add_flag("--quiet", options.quiet, "say nothing where all goes well");
+  app.add_flag("--overwrite", options.overwrite,
+               "replace files that are there, whoever made them (default: those of this job)");
+  app.add_flag("-q,--quiet", options.quiet, "say nothing where all goes well");
   app.footer(
       "examples:\n"
       "  hyades render job.yaml --frames 7 --tile 1/3 --film 1.exr\n"
@@ -115,8 +121,9 @@ int finish_job_command(int argc, char** argv) {
     const auto info = core::read_film_info(path);
     if (!info) return fail(info.error().message);
     if (info->frame < job.frames.first || info->frame > job.frames.last) {
-      return fail(path + ": a film of frame " + std::to_string(info->frame) +
-                  ", which the job does not have");
+      return fail(fmt::format("{}: a film of frame {} of '{}', expected one of {} to {} of '{}'",
+                              path, info->frame, core::printable(info->job_name), job.frames.first,
+                              job.frames.last, job.name));
     }
     films[info->frame].push_back(path);
   }
@@ -124,6 +131,11 @@ int finish_job_command(int argc, char** argv) {
                              core::render_window(job.film), false});
   if (const auto names = frames.check_film_names(); !names) return fail(names.error().message);
   if (const auto display = frames.load_display(); !display) return fail(display.error().message);
+  std::vector<int32_t> numbers;
+  for (const auto& [frame, paths] : films) numbers.push_back(frame);
+  if (!options.overwrite) {
+    if (const auto own = frames.check_own_outputs(numbers); !own) return fail(own.error().message);
+  }
 
   watch_for_interrupts();
   const core::FpMode mode;
@@ -133,8 +145,6 @@ int finish_job_command(int argc, char** argv) {
     worst = std::max(worst, finish_frame(options, paths, job, frames));
   }
   if (worst != 0 || job.videos.empty()) return worst;
-  std::vector<int32_t> numbers;
-  for (const auto& [frame, paths] : films) numbers.push_back(frame);
   if (!core::are_all_frames(job, numbers)) {
     if (!options.quiet) note_no_videos(job, options.folder, options.job);
     return 0;

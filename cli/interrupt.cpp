@@ -3,7 +3,10 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <csignal>
+#include <cstddef>
 #include <cstring>
 
 namespace hyades::cli {
@@ -13,6 +16,11 @@ constexpr unsigned kPatience = 1;  // seconds
 
 volatile std::sig_atomic_t g_signals = 0;
 
+// Two, so that a handler never reads what is being written.
+std::array<std::array<char, 200>, 2> g_words{{{"interrupted\n"}, {}}};
+std::atomic<size_t> g_current{0};
+static_assert(std::atomic<size_t>::is_always_lock_free);
+
 // Handlers call only what POSIX allows in them.
 
 void leave() {
@@ -21,7 +29,8 @@ void leave() {
   if (::poll(&out, 1, 0) > 0) {
     const char* clear = "\r\033[K";  // the line of progress
     if (::isatty(STDERR_FILENO) == 1) (void)!::write(STDERR_FILENO, clear, std::strlen(clear));
-    (void)!::write(STDERR_FILENO, kInterruptedWords, std::strlen(kInterruptedWords));
+    const char* words = interrupted_words();
+    (void)!::write(STDERR_FILENO, words, std::strlen(words));
   }
   ::_exit(kInterrupted);
 }
@@ -45,6 +54,15 @@ void watch_for_interrupts() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }
+
+void set_interrupted_words(const std::string& words) {
+  const size_t next = 1 - g_current;
+  std::array<char, 200>& room = g_words[next];
+  room[words.copy(room.data(), room.size() - 1)] = '\0';
+  g_current = next;
+}
+
+const char* interrupted_words() { return g_words[g_current].data(); }
 
 bool interrupted() { return g_signals > 0; }
 

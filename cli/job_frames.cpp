@@ -11,8 +11,10 @@
 
 #include <fmt/format.h>
 
+#include "cli/own_files.h"
 #include "core/base/hash.h"
 #include "core/base/leftovers.h"
+#include "core/base/printable.h"
 #include "core/base/version.h"
 #include "core/film/film_exr.h"
 #include "core/finish/frame_outputs.h"
@@ -73,7 +75,7 @@ JobFrames::JobFrames(LoadedJob& loaded, Options options)
 core::Status JobFrames::check_film_names() const {
   if (!options_.write_films) return {};
   const std::string film =
-      options_.film_file.empty() ? core::film_file(loaded_.job) : options_.film_file;
+      options_.film_file.empty() ? core::film_file(loaded_.job) : below_folder(options_.film_file);
   for (const core::OutputDesc& output : loaded_.job.outputs) {
     if (!core::same_output_path(output.file, film) &&
         !core::nested_output_paths(output.file, film)) {
@@ -84,6 +86,24 @@ core::Status JobFrames::check_film_names() const {
     return core::Error{core::Diagnostic{output.where, message}.to_string()};
   }
   return {};
+}
+
+core::Status JobFrames::check_own_outputs(const std::vector<int32_t>& frames) const {
+  std::vector<std::string> paths;
+  for (const int32_t frame : frames) {
+    for (std::string& path : output_paths(frame)) paths.push_back(std::move(path));
+  }
+  if (!options_.only_films) {
+    for (const std::filesystem::path& video : video_paths()) paths.push_back(video.string());
+  }
+  return check_own_files(paths, loaded_.job.name);
+}
+
+std::string JobFrames::below_folder(const std::string& path) const {
+  const auto plain = [](const std::string& given) {
+    return std::filesystem::absolute(given).lexically_normal();
+  };
+  return plain(path).lexically_relative(plain(options_.folder + "/")).string();
 }
 
 core::Status JobFrames::load_display() {
@@ -133,6 +153,12 @@ core::Status JobFrames::finish(int32_t frame, const core::Film& film) {
 core::Status JobFrames::write_outputs_of(const core::FilmFile& file) {
   const int32_t frame = file.info.frame;
   if (core::render_key(loaded_.job, frame, assets_) != file.info.render_key) {
+    if (file.info.job_name != loaded_.job.name) {
+      return core::Error{
+          fmt::format("frame {}: its films are of another picture: of the job '{}', "
+                      "not of '{}'",
+                      frame, core::printable(file.info.job_name), loaded_.job.name)};
+    }
     return core::Error{fmt::format(
         "frame {}: its films are of another picture: what decides the pixels of {} is not what "
         "it was (or another version of Hyades rendered them)",
@@ -225,10 +251,7 @@ void JobFrames::remove_leftovers(const std::vector<int32_t>& frames,
 }
 
 std::string JobFrames::film_path(int32_t frame) const {
-  if (!options_.film_file.empty()) {
-    const std::string file = core::output_path(options_.film_file, frame);
-    return (std::filesystem::path(options_.folder) / file).string();
-  }
+  if (!options_.film_file.empty()) return core::output_path(options_.film_file, frame);
   core::OutputDesc film;
   film.file = core::film_file(loaded_.job);
   return core::output_path(film, options_.folder, frame);

@@ -35,7 +35,7 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   struct Options {
     std::string folder;        ///< where outputs go
     bool write_films = false;  ///< also NAME.####.film.exr
-    std::string film_file;     ///< instead of that name, #### for the frame; empty: that one
+    std::string film_file;     ///< instead of that place, #### for the frame; empty: that one
     bool only_films = false;   ///< no outputs: what is rendered is a part
     core::PixelRect window;    ///< what is rendered of each frame
     bool trust_outputs =
@@ -47,6 +47,10 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
 
   /// An error where the frames' films and an output of the job would be the same file.
   core::Status check_film_names() const;
+
+  /// An error where outputs of `frames`, or videos of them, are there that another job has made, or
+  /// another program.
+  core::Status check_own_outputs(const std::vector<int32_t>& frames) const;
 
   /// Opens the colour configuration, which write_outputs() needs.
   core::Status load_display();
@@ -85,6 +89,8 @@ class JobFrames : public coordinator::FrameSource, public coordinator::FrameSink
   class Work;
   core::Status write_pictures(const core::FilmInfo& info, const core::Film& film);
   core::FilmInfo film_info(int32_t frame) const;
+  /// `path` as seen from the outputs' folder: it begins with ".." where it lies elsewhere.
+  std::string below_folder(const std::string& path) const;
   std::string film_path(int32_t frame) const;
   std::vector<std::filesystem::path> video_paths() const;
   void note(int32_t frame, const core::RenderCounters& counters);

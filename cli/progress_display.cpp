@@ -1,6 +1,7 @@
 #include "cli/progress_display.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -17,12 +18,11 @@ double fraction(const coordinator::Progress& p) {
   return p.samples > 0 ? static_cast<double>(p.samples_done) / static_cast<double>(p.samples) : 0.0;
 }
 
-std::string rate(double samples_per_second) {
-  if (samples_per_second >= 1e6) return fmt::format("{:.2f} Msamples/s", samples_per_second * 1e-6);
-  return fmt::format("{:.0f} ksamples/s", samples_per_second * 1e-3);
-}
-
 }  // namespace
+
+std::string percent_done(const coordinator::Progress& progress) {
+  return fmt::format("{:.0f} %", std::floor(100.0 * fraction(progress)));
+}
 
 ProgressDisplay::ProgressDisplay(std::string name, bool quiet)
     : name_(std::move(name)), quiet_(quiet), last_(std::chrono::steady_clock::now()) {}
@@ -36,10 +36,10 @@ std::string ProgressDisplay::line(const coordinator::Progress& p) const {
     text += fmt::format("  frame {}/{}", std::min(p.frames_done + 1, p.frames), p.frames);
   // In front: a line that is cut to the terminal's width still says why nothing happens.
   if (!p.trouble.empty()) return text + "  " + p.trouble;
-  if (p.samples_per_second > 0.0) text += "  " + rate(p.samples_per_second);
-  if (p.noise >= 0.0) text += fmt::format("  noise {:.2g}", p.noise);
-  if (p.noise_aim > 0.0) text += fmt::format(" (aim {:.2g})", p.noise_aim);
-  if (p.seconds_left >= 0.0) text += "  " + core::format_duration(p.seconds_left) + " left";
+  if (p.samples_per_second > 0.0) text += "  " + core::format_sample_rate(p.samples_per_second);
+  if (p.noise >= 0.0) text += "  noise " + core::format_noise(p.noise);
+  if (p.noise_aim > 0.0) text += " (aim " + core::format_noise(p.noise_aim) + ")";
+  if (p.seconds_left >= 0.0) text += "  " + core::format_time_left(p.seconds_left) + " left";
   return text;
 }
 

@@ -8,6 +8,9 @@
 
 namespace hyades::cli {
 
+/// "37 %" of the samples, rounded down.
+std::string percent_done(const coordinator::Progress& progress);
+
 /// Shows how far a run is: one line that is redrawn on a terminal, plain lines now and then
 /// elsewhere, nothing where `quiet`. Writes to standard error.
 class ProgressDisplay {

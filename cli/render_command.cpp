@@ -73,7 +73,23 @@ std::optional<int32_t> first_written(const std::vector<int32_t>& numbers,
   return first == numbers.end() ? std::nullopt : std::optional(*first);
 }
 
-int report(const RenderOptions& options, const JobFrames& frames,
+/// An interrupt is answered with how far the run has come.
+void note_share(const RenderOptions& options, const coordinator::Progress& progress) {
+  const char* kept = options.keep_work ? ": what is done is kept, the same command goes on" : "";
+  set_interrupted_words(fmt::format("interrupted at {}{}\n", percent_done(progress), kept));
+}
+
+/// Why the run ended before its time, and what helps.
+void print_error(const RenderOptions& options, const FilmRoom& room, const std::string& error) {
+  std::fprintf(stderr, "%s\n", error.c_str());
+  if (!options.keep_work) return;
+  std::fprintf(stderr,
+               "what is done is kept: the same command goes on. Until a frame is written its film "
+               "lies in %s/.hyades, up to %s; --no-resume keeps none\n",
+               options.folder.c_str(), core::format_bytes(room.film).c_str());
+}
+
+int report(const RenderOptions& options, const FilmRoom& room, const JobFrames& frames,
            const std::vector<int32_t>& numbers, const coordinator::LocalOutcome& outcome,
            const coordinator::Progress& progress) {
   const RunTotals totals = frames.totals();
@@ -82,24 +98,25 @@ int report(const RenderOptions& options, const JobFrames& frames,
     std::fprintf(stderr, "frame %d failed: %s\n", failure.frame, failure.reason.c_str());
   }
   if (!outcome.error.empty()) {
-    std::fprintf(stderr, "%s\nwhat is done is kept: continue with --resume\n",
-                 outcome.error.c_str());
+    print_error(options, room, outcome.error);
     return 1;
   }
   if (!outcome.complete) {
-    std::fputs(kInterruptedWords, stderr);
+    note_share(options, progress);
+    std::fputs(interrupted_words(), stderr);
     return kInterrupted;
   }
   const auto first = first_written(numbers, outcome);
-  if (!options.quiet && first) {
+  if (!options.quiet && first && totals.counters.samples > 0) {
     const std::string others =
         outcome.frames_done > 1 ? fmt::format(" ... ({} frames)", outcome.frames_done) : "";
     for (const std::string& path : frames.output_paths(*first, false)) {
       std::fprintf(stderr, "wrote %s%s\n", path.c_str(), others.c_str());
     }
     const auto samples = static_cast<double>(totals.counters.samples);
-    std::fprintf(stderr, "%s, %.2f Msamples/s, %.2f Mrays/s, %.1f rays per sample\n",
-                 core::format_duration(progress.elapsed).c_str(), samples / progress.elapsed * 1e-6,
+    std::fprintf(stderr, "%s, %s, %.2f Mrays/s, %.1f rays per sample\n",
+                 core::format_duration(progress.elapsed).c_str(),
+                 core::format_sample_rate(samples / progress.elapsed).c_str(),
                  static_cast<double>(totals.counters.rays) / progress.elapsed * 1e-6,
                  samples > 0 ? static_cast<double>(totals.counters.rays) / samples : 0.0);
   }
@@ -119,11 +136,11 @@ core::Status check_film_file(const std::string& file, size_t frames) {
 }
 
 /// Reads what no frame could be rendered without.
-core::Status load_inputs(JobFrames& frames, bool resume, int32_t first) {
+core::Status load_inputs(JobFrames& frames, bool goes_on, int32_t first) {
   if (auto names = frames.check_film_names(); !names) return names;
   if (auto files = frames.load_files(); !files) return files;
   // A resumed run may have its first frame behind it.
-  if (resume && frames.outputs_exist(first)) return {};
+  if (goes_on && frames.outputs_exist(first)) return {};
   const auto warnings = frames.load_first(first);
   if (!warnings) return warnings.error();
   for (const std::string& warning : *warnings) {
@@ -157,13 +174,22 @@ coordinator::LocalPlan plan_of(const RenderOptions& options, const core::Job& jo
 }
 
 /// Until the run has ended, shows how far it is; false where somebody interrupted it.
-bool follow(coordinator::LocalRun& run, const std::string& name, bool quiet, Viewer* viewer) {
-  ProgressDisplay display(name, quiet);
+bool follow(const RenderOptions& options, coordinator::LocalRun& run, const std::string& name,
+            Viewer* viewer) {
+  ProgressDisplay display(name, options.quiet);
   const auto tell_of_viewer = [&] {
     const auto notice = viewer != nullptr ? viewer->take_notice() : std::nullopt;
     if (!notice) return;
     display.clear();
     std::fprintf(stderr, "%s\n", notice->c_str());
+  };
+  const auto tell_of_frames = [&] {
+    for (const coordinator::FrameTime& frame : run.take_finished()) {
+      if (options.quiet || run.progress().frames < 2) continue;
+      display.clear();
+      std::fprintf(stderr, "frame %d took %s\n", frame.frame,
+                   core::format_duration(frame.seconds).c_str());
+    }
   };
   bool stopping = false;
   while (!run.wait_for(std::chrono::milliseconds(50))) {
@@ -172,10 +198,14 @@ bool follow(coordinator::LocalRun& run, const std::string& name, bool quiet, Vie
       run.stop();
     }
     tell_of_viewer();
-    display.update(run.progress());
+    tell_of_frames();
+    const coordinator::Progress progress = run.progress();
+    note_share(options, progress);
+    display.update(progress);
   }
   display.clear();
   tell_of_viewer();
+  tell_of_frames();
   return !stopping;
 }
 
@@ -186,7 +216,7 @@ std::optional<int> make_videos_of_run(const RenderOptions& options, const core::
   if (make_videos(job, options.folder, numbers, options.quiet)) return std::nullopt;
   std::fprintf(stderr,
                "all frames are rendered and their pictures are kept: 'hyades video %s --output "
-               "%s' (or --resume) goes on\n",
+               "%s' (or the same command) goes on\n",
                options.path.c_str(), options.folder.c_str());
   return interrupted() ? kInterrupted : 1;
 }
@@ -221,13 +251,28 @@ int finish_run(const RenderOptions& options, const core::Job& job,
   return 0;
 }
 
+coordinator::KeptFilms kept_films(const RenderOptions& options) {
+  if (options.restart) return coordinator::KeptFilms::erase;
+  return options.resume ? coordinator::KeptFilms::require : coordinator::KeptFilms::use;
+}
+
+/// Says so where an earlier run has begun what this one goes on with.
+void note_begun(const coordinator::Progress& progress) {
+  if (progress.samples_done == 0) return;
+  if (progress.frames_done == progress.frames) {
+    std::fprintf(stderr, "rendered by an earlier run (--restart renders again)\n");
+  } else {
+    std::fprintf(stderr, "goes on at %s with what an earlier run has kept (--restart does not)\n",
+                 percent_done(progress).c_str());
+  }
+}
+
 /// Renders what has been found good; the exit status.
 int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoom& room,
                const std::vector<int32_t>& numbers, JobFrames& frames, const OutputNote& note,
                const std::string& kept) {
   const auto begin = std::filesystem::file_time_type::clock::now();
   std::error_code failed;
-  const bool begins_over = !options.resume && std::filesystem::exists(kept, failed);
   std::filesystem::create_directories(options.folder, failed);
   if (failed) {
     return refuse({options.folder + ": the folder could not be made: " + failed.message()}, 1);
@@ -237,9 +282,9 @@ int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoo
                  core::kNoFfmpeg);
   }
   coordinator::FilmStoreOptions log;
-  log.folder = kept;
+  if (options.keep_work) log.folder = kept;
   log.frame_key = [&frames](int32_t frame) { return frames.frame_key(frame); };
-  log.resume = options.resume;
+  log.kept = kept_films(options);
   // What is durable is safe however the process ends.
   watch_for_interrupts();
   std::optional<Viewer> viewer;
@@ -251,20 +296,16 @@ int run_frames(const RenderOptions& options, const core::Job& job, const FilmRoo
   coordinator::LocalRun run(plan_of(options, job, numbers, room), log, frames, frames,
                             shown ? &*shown : nullptr);
   if (auto started = run.start(); !started) return refuse(started.error(), 1);
-  if (begins_over) {
-    std::fprintf(stderr,
-                 "the work kept from an earlier run is given up; --resume would have "
-                 "gone on with it\n");
-  }
   // The log is ours now, so nobody else writes these files.
   frames.remove_leftovers(numbers, begin);
   note.write();
   for (const std::string& problem : run.log_problems()) {
     std::fprintf(stderr, "%s\n", problem.c_str());
   }
-  const bool to_its_end = follow(run, job.name, options.quiet, viewer ? &*viewer : nullptr);
+  if (!options.quiet) note_begun(run.progress());
+  const bool to_its_end = follow(options, run, job.name, viewer ? &*viewer : nullptr);
   const coordinator::LocalOutcome outcome = run.outcome();
-  int status = report(options, frames, numbers, outcome, run.progress());
+  int status = report(options, room, frames, numbers, outcome, run.progress());
   if (outcome.complete && outcome.failures.empty()) {
     status = finish_run(options, job, numbers, kept);
   }
@@ -301,10 +342,13 @@ int render_command(int argc, char** argv) {
   JobFrames frames(*loaded,
                    {options.folder, options.film || job.keep_films || options.is_part(), film_file,
                     options.is_part(), window, note.still_true(), options.texture_memory});
-  if (const auto ready = load_inputs(frames, options.resume, numbers->front()); !ready) {
+  if (const auto ready = load_inputs(frames, !options.restart, numbers->front()); !ready) {
     return refuse(ready.error());
   }
   if (const auto own = check_own_folders(options.folder, kept); !own) return refuse(own.error());
+  if (!options.overwrite) {
+    if (const auto own = frames.check_own_outputs(*numbers); !own) return refuse(own.error());
+  }
   return run_frames(options, job, room, *numbers, frames, note, kept);
 }
 

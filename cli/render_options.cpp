@@ -1,10 +1,17 @@
 #include "cli/render_options.h"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -20,6 +27,8 @@
 
 namespace hyades::cli {
 namespace {
+
+constexpr int32_t kMostSide = 65536;  ///< pixels
 
 /// A check for options of CLI11 out of what parses their text.
 template <auto Parse>
@@ -67,6 +76,46 @@ std::string part_text(const RenderOptions& options) {
   return text;
 }
 
+/// "640x360".
+std::optional<std::pair<int32_t, int32_t>> size_in(const std::string& text) {
+  const size_t cross = text.find('x');
+  if (cross == std::string::npos) return std::nullopt;
+  std::array<int32_t, 2> sides{};
+  const std::array<std::string_view, 2> parts = {std::string_view(text).substr(0, cross),
+                                                 std::string_view(text).substr(cross + 1)};
+  for (size_t i = 0; i < 2; ++i) {
+    const auto read = std::from_chars(parts[i].data(), parts[i].data() + parts[i].size(), sides[i]);
+    if (read.ec != std::errc() || read.ptr != parts[i].data() + parts[i].size())
+      return std::nullopt;
+    if (sides[i] < 1 || sides[i] > kMostSide) return std::nullopt;
+  }
+  return std::pair(sides[0], sides[1]);
+}
+
+std::string size_error(const std::string& text) {
+  return size_in(text) ? std::string() : text + ": expected WIDTHxHEIGHT, such as 640x360";
+}
+
+int32_t scaled(int32_t length, double scale) {
+  return static_cast<int32_t>(
+      std::clamp(std::round(length * scale), 1.0, static_cast<double>(kMostSide)));
+}
+
+/// The film at another size; what of it is rendered (crop) stays the same part.
+void resize(core::FilmDesc& film, int32_t width, int32_t height) {
+  if (film.crop) {
+    const double x = static_cast<double>(width) / film.width;
+    const double y = static_cast<double>(height) / film.height;
+    core::PixelRect& crop = *film.crop;
+    crop = {static_cast<int32_t>(std::floor(crop.x0 * x)),
+            static_cast<int32_t>(std::floor(crop.y0 * y)),
+            std::min(static_cast<int32_t>(std::ceil(crop.x1 * x)), width),
+            std::min(static_cast<int32_t>(std::ceil(crop.y1 * y)), height)};
+  }
+  film.width = width;
+  film.height = height;
+}
+
 /// Options as they are written.
 struct Words {
   std::string samples;
@@ -81,21 +130,33 @@ void declare_what(CLI::App& app, RenderOptions& options, Words& words) {
   declare_scene_options(app, options.scene);
   app.add_option("--frames", options.frames,
                  "frames to render: 7, 1-10 or 1-10x2 (default: all; at most a million)")
-      ->check(no_frames_error);
+      ->check(no_frames_error)
+      ->type_name("RANGE");
   app.add_option("--samples", words.samples,
                  "samples per pixel (default: the job's); 0-31, or 0-31/256: only these of them, "
                  "whole batches of 16, which writes only films")
-      ->check(is_right<parse_samples>);
+      ->check(is_right<parse_samples>)
+      ->type_name("N");
   app.add_option("--tile", words.tile, "2/3: only this part of each frame, which writes only films")
-      ->check(is_right<parse_tile>);
+      ->check(is_right<parse_tile>)
+      ->type_name("I/N");
+  auto* size = app.add_option("--size", options.size,
+                              "the film's size in pixels, 640x360, instead of the job's")
+                   ->check(size_error)
+                   ->type_name("WIDTHxHEIGHT");
+  app.add_option("--scale", options.scale, "of the film's size: 0.5 has half as many columns")
+      ->check(in_range(0.001, 100.0))
+      ->excludes(size);
   app.add_option("--crop", options.crop, "X0,Y0,X1,Y1: render only these pixels")
       ->delimiter(',')
-      ->expected(4);
+      ->expected(4)
+      ->type_name("X0,Y0,X1,Y1");
   // Not a plain flag: CLI11 2.4 sets those that have a default and were not given, and counts them.
   app.add_flag_function(
-      "--preview{320}", [&words](int64_t width) { words.preview = width; },
-      "render a small denoised picture of the first frame (or --frames) with 32 samples, "
-      "NAME.preview.png; --preview=N makes it N pixels wide, 16 to 8192");
+         "--preview{320}", [&words](int64_t width) { words.preview = width; },
+         "render a small denoised picture of the first frame (or --frames) with 32 samples, "
+         "NAME.preview.png; --preview=N makes it N pixels wide, 16 to 8192")
+      ->type_name("[=N]");
 }
 
 void declare_resources(CLI::App& app, RenderOptions& options) {
@@ -118,18 +179,31 @@ void declare_results(CLI::App& app, RenderOptions& options) {
                  "HOST:PORT of the viewer tev: shows the picture there while it is rendered, with "
                  "all its layers (tev listens on 127.0.0.1:14158)")
       ->check(address_error);
-  app.add_option("--output", options.folder, "folder for what is written")->capture_default_str();
-  app.add_flag("--film{*}", options.film_file,
-               "also write each frame's film, for 'hyades merge' and 'hyades finish': to "
-               "NAME.film.exr below --output, as keep_films in the job does, or to --film FILE.exr "
-               "(#### for the frame)")
+  app.add_option("-o,--output", options.folder, "folder for what is written")
+      ->capture_default_str()
+      ->type_name("DIR");
+  app.add_flag(
+         "--film{*}", options.film_file,
+         "also write each frame's film, for 'hyades merge' and 'hyades finish': to "
+         "NAME.film.exr below --output, as keep_films in the job does, or to the file of --film "
+         "FILE.exr, wherever --output is (#### for the frame)")
       ->check([](const std::string& file) {
         return file == "*" || core::file_extension(file) == ".exr"
                    ? std::string()
                    : file + ": expected a file .exr";
       });
-  app.add_flag("--resume", options.resume, "continue a run that was interrupted, to the same bits");
-  app.add_flag("--quiet", options.quiet, "show no progress");
+  auto* resume = app.add_flag(
+      "--resume", options.resume,
+      "go on with what an interrupted run has kept, as is done anyway, or else render nothing");
+  app.add_flag("--restart", options.restart,
+               "render from the beginning, whatever an interrupted run has kept")
+      ->excludes(resume);
+  app.add_flag("!--no-resume", options.keep_work,
+               "keep nothing for a run that is interrupted: where the disk has no room for films")
+      ->excludes(resume);
+  app.add_flag("--overwrite", options.overwrite,
+               "replace files that are there, whoever made them (default: those of this job)");
+  app.add_flag("-q,--quiet", options.quiet, "show no progress");
 }
 
 }  // namespace
@@ -144,13 +218,14 @@ std::optional<int> parse_render_options(int argc, char** argv, RenderOptions& op
   app.footer(
       "examples:\n"
       "  hyades render jobs/quickstart/job.yaml\n"
-      "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out --resume\n"
+      "  hyades render jobs/perlin-sphere/job.yaml --frames 1-24 --output out\n"
       "  hyades render jobs/atlas/job.yaml --preview\n"
       "  hyades render jobs/cornell/job.yaml --display 127.0.0.1:14158\n"
       "  hyades render robot.glb --samples 64\n"
       "  hyades render bottles.obj --media media.json\n"
       "  hyades render job.yaml --frames 7 --tile 2/3 --samples 0-127 --film part.exr\n"
-      "Ctrl-C stops; --resume continues, also after a crash.\n"
+      "Ctrl-C stops; the same command goes on with what is done, to the same bits, also after a "
+      "crash.\n"
       "exit status: 0 done, 1 something failed, 2 the job or the arguments are wrong, 130 "
       "interrupted");
   auto arguments = joined_film(argc, argv);
@@ -178,6 +253,10 @@ std::optional<LoadedJob> load_for_render(const RenderOptions& options) {
   auto loaded = load_job(options.path, options.scene);
   if (!loaded) return std::nullopt;
   core::Job& job = loaded->job;
+  if (const auto size = size_in(options.size)) resize(job.film, size->first, size->second);
+  if (options.scale > 0.0) {
+    resize(job.film, scaled(job.film.width, options.scale), scaled(job.film.height, options.scale));
+  }
   if (options.preview > 0) make_preview(job, options.preview);
   if (options.samples.of > 0) job.sampling.samples = options.samples.of;
   if (!options.crop.empty()) {
@@ -234,10 +313,13 @@ std::string film_file_of(const RenderOptions& options, const core::Job& job) {
   if (!options.film_file.empty() || !options.is_part()) return options.film_file;
   constexpr std::string_view kEnd = ".film.exr";
   std::string file = core::film_file(job);
-  return file.insert(file.size() - kEnd.size(), part_text(options));
+  file.insert(file.size() - kEnd.size(), part_text(options));
+  return (std::filesystem::path(options.folder) / file).string();
 }
 
 std::string kept_name(const RenderOptions& options, const core::Job& job) {
+  // It writes other files, and must not cost what is kept of the job's own.
+  if (options.preview > 0) return job.name + ".preview";
   if (!options.is_part()) return job.name;
   return job.name + ".frames-" + (options.frames.empty() ? "all" : options.frames) +
          part_text(options);

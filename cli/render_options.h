@@ -24,10 +24,15 @@ struct RenderOptions {
   std::optional<TileOption> tile;
   uint64_t film_memory = 0;  ///< bytes; 0: what the machine is good for
   uint64_t texture_memory = core::TexelStore::default_budget();  ///< bytes
+  std::string size;                                              ///< "640x360"; empty: the job's
+  double scale = 0.0;  ///< of the film's size; 0: none was asked for
   std::vector<int> crop;
-  std::string display;  ///< HOST:PORT of a viewer; empty: none
-  int preview = 0;      ///< width in pixels; 0: the job as it is
-  bool resume = false;
+  std::string display;     ///< HOST:PORT of a viewer; empty: none
+  int preview = 0;         ///< width in pixels; 0: the job as it is
+  bool resume = false;     ///< only with what an earlier run has kept of this very picture
+  bool restart = false;    ///< without what an earlier run has kept
+  bool overwrite = false;  ///< also files that the job has not made
+  bool keep_work = true;   ///< films are kept until all is written, for a run that is interrupted
   bool quiet = false;
   bool film = false;
   std::string film_file;  ///< where films go, #### for the frame; empty: the usual name

@@ -104,7 +104,7 @@ std::unique_ptr<FilmStore> JobFilms::make(ActiveJob& active, bool resume) {
   place.max_waiting_bytes = kWaitingBytes;
   place.folder = context_.films_folder(active.stored.id);
   place.frame_key = [key = active.key](int32_t) { return key; };
-  place.resume = resume;
+  place.kept = resume ? KeptFilms::require : KeptFilms::erase;
   place.compact_bytes = context_.options.compact_bytes;
   place.on_sync = [meters = context_.meters.get()](std::chrono::nanoseconds took) {
     meters->synced(took);

@@ -345,13 +345,13 @@ core::Result<LogContents> read_log(FilmLog& log, const LogFilter& filter) {
   contents.problems = std::move(report->problems);
   if (contents.cut.tile_size == 0) return contents;
   if (contents.cut.samples != filter.samples) {
-    return core::Error{fmt::format("the kept films are of {} samples per pixel, the job has {}",
-                                   contents.cut.samples, filter.samples)};
-  }
-  if (const auto frame = reader.other_pixels()) {
-    return core::Error{fmt::format(
+    contents.other_picture =
+        fmt::format("the kept films are of {} samples per pixel, the job has {}",
+                    contents.cut.samples, filter.samples);
+  } else if (const auto frame = reader.other_pixels()) {
+    contents.other_picture = fmt::format(
         "the kept films of frame {} are of another picture: what decides its pixels has changed",
-        *frame)};
+        *frame);
   }
   return contents;
 }

@@ -68,6 +68,9 @@ struct LogContents {
   uint64_t bytes = 0;                 ///< of all records
   bool others = false;                ///< there are films of frames that were not asked for
   std::vector<std::string> problems;  ///< damage, in words; costs rendering again
+  /// Why the films of these frames have other pixels: another key, or another number of samples.
+  /// Empty: they have not. Else the films are not to be used.
+  std::string other_picture;
 };
 
 /// What is wanted of a log.
@@ -83,8 +86,7 @@ struct LogFilter {
 
 /// Reads all of `log`, which has just been opened, merging the films of the frames of `filter`;
 /// others are skipped. Of films of another region the tiles are taken that lie within both, where
-/// the films have no splats. Fails where the log has films of these frames that have other pixels:
-/// another key, or another number of samples.
+/// the films have no splats. Fails where the log cannot be read.
 core::Result<LogContents> read_log(FilmLog& log, const LogFilter& filter);
 
 /// The units that a film holds: its coverage, cut along the tiles; those of a tile stand together.

@@ -94,24 +94,30 @@ core::Status FilmStore::open_log(bool erase) {
 
 core::Result<LogContents> FilmStore::open() {
   if (options_.folder.empty()) return LogContents{};
-  if (core::Status opened = open_log(!options_.resume); !opened) return opened.error();
+  const bool erase = options_.kept == KeptFilms::erase;
+  if (core::Status opened = open_log(erase); !opened) return opened.error();
   const LogFilter filter{{set_.frames.begin(), set_.frames.end()},
                          set_.region,
                          set_.samples,
                          options_.frame_key,
                          set_.judged};
   auto contents = read_log(*log_, filter);
-  if (contents && !contents->empty && contents->cut.tile_size == 0) {
+  if (!contents) return contents.error().in(options_.folder);
+  std::string useless = contents->other_picture;
+  if (!useless.empty() && options_.kept == KeptFilms::require) {
+    return core::Error{useless}.in(options_.folder);
+  }
+  if (!contents->empty && contents->cut.tile_size == 0) {
     // Its beginning is damaged: without the cut the films cannot be told apart into units.
+    useless = "how the frames were cut is lost";
+  }
+  if (!useless.empty()) {
     if (core::Status opened = open_log(true); !opened) return opened.error();
     auto problems = std::move(contents->problems);
     contents = read_log(*log_, filter);
-    problems.emplace_back("how the frames were cut is lost: it begins afresh");
-    if (contents) contents->problems = std::move(problems);
-  }
-  if (!contents) {
-    return core::Error{contents.error().in(options_.folder).message +
-                       "; render without --resume to begin afresh, or into another folder"};
+    if (!contents) return contents.error().in(options_.folder);
+    problems.push_back(useless + ": it begins afresh");
+    contents->problems = std::move(problems);
   }
   finished_ = contents->finished;
   films_ = contents->films;
@@ -218,6 +224,11 @@ void FilmStore::drain() {
   draining_ = true;
   wake_.notify_one();
   room_.notify_all();
+}
+
+uint64_t FilmStore::waiting_bytes() const {
+  const core::MutexLock lock(mutex_);
+  return waiting_bytes_;
 }
 
 std::string FilmStore::trouble() const {

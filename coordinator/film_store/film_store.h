@@ -37,15 +37,20 @@ enum class FrameEnd : uint8_t {
   unwritten,  ///< its film is complete, but its outputs could not be written
 };
 
+/// What becomes of films that an earlier run has kept.
+enum class KeptFilms : uint8_t {
+  erase,    ///< they go
+  use,      ///< they are gone on with; where they are of other pictures, they go
+  require,  ///< they are gone on with; where they are of other pictures, nothing begins
+};
+
 /// Where and how a store keeps its films.
 struct FilmStoreOptions {
   std::string folder;  ///< empty: nothing is kept, the run cannot be resumed
-  /// Hash of what decides a frame's pixels: a kept film of another key is never mixed in, it ends
-  /// the run before it begins. Called by many threads. All frames have the same key where it is
-  /// empty.
+  /// Hash of what decides a frame's pixels: a kept film of another key is never mixed in. Called by
+  /// many threads. All frames have the same key where it is empty.
   std::function<FrameKey(int32_t frame)> frame_key;
-  /// Continue with what the folder holds; otherwise it is emptied first.
-  bool resume = false;
+  KeptFilms kept = KeptFilms::erase;  ///< what the folder holds
   /// Films that may wait for the disk before those who hand them over wait too.
   uint64_t max_waiting_bytes = uint64_t{512} << 20U;
   /// The log is rewritten when it has grown by this much, and by as much as the films take.
@@ -107,6 +112,8 @@ class FilmStore {
   void drain();
   /// Why nothing can be stored at the moment; empty where it can.
   std::string trouble() const;
+  /// So many bytes of films wait for the disk.
+  uint64_t waiting_bytes() const;
   /// As much waits for the disk as may: who delivers should come again later.
   bool crowded() const;
   /// The disk is short: the log is rewritten soon, if that frees something.

@@ -51,7 +51,9 @@ void LocalRun::act(const Merge& merge) {
   }
   const core::Film& film = *film_store_.film(merge.unit.frame);
   note_film(merge.unit.frame, film);
-  if (audience_ != nullptr) audience_->grown(merge.unit.frame, film, merge.unit.tile);
+  if (audience_ == nullptr) return;
+  audience_->grown(merge.unit.frame, film, merge.unit.tile);
+  carry_out(tell(FrameWatched{kJob, merge.unit.frame}));
 }
 
 void LocalRun::act(const FinishFrame& finish) {
@@ -79,6 +81,9 @@ void LocalRun::act(const FrameDone& done) {
   complete_.erase(done.frame);
   frame_samples_.erase(done.frame);
   ++progress_.frames_done;
+  if (const auto begun = begun_.extract(done.frame)) {
+    finished_.push_back({done.frame, seconds(std::chrono::steady_clock::now() - begun.mapped())});
+  }
 }
 
 void LocalRun::act(const FrameFailed& failed) {
@@ -87,6 +92,7 @@ void LocalRun::act(const FrameFailed& failed) {
                      complete_.contains(failed.frame) ? FrameEnd::unwritten : FrameEnd::failed);
   works_.erase(failed.frame);
   in_flight_.erase(failed.frame);
+  begun_.erase(failed.frame);
   complete_.erase(failed.frame);
   progress_.samples -= samples_per_frame();
   spared_ -= spared_samples_[failed.frame];

@@ -6,7 +6,10 @@
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
+
 #include "core/base/overloaded.h"
+#include "core/base/text.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -159,9 +162,15 @@ Progress LocalRun::progress() const {
     }
   }
   if (const std::string trouble = film_store_.trouble(); !trouble.empty()) {
-    p.trouble = "waits for the disk: " + reason_of(trouble);
+    p.trouble = fmt::format("waits for the disk: {} ({} of films wait)", reason_of(trouble),
+                            core::format_bytes(film_store_.waiting_bytes()));
   }
   return p;
+}
+
+std::vector<FrameTime> LocalRun::take_finished() {
+  const core::MutexLock lock(mutex_);
+  return std::exchange(finished_, {});
 }
 
 LocalOutcome LocalRun::outcome() const {
@@ -211,6 +220,7 @@ void LocalRun::hand_out(const Lease& lease) {
   if (!first_lease_) first_lease_ = std::chrono::steady_clock::now();
   TaskQueue& queue = *task_queues_[static_cast<size_t>(lease.worker)];
   for (const core::Unit& unit : lease.units) {
+    begun_.try_emplace(unit.frame, std::chrono::steady_clock::now());
     queue.tasks.push_back({unit, lease.lease, works_.at(unit.frame)});
   }
   queue.wake.notify_one();

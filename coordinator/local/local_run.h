@@ -51,6 +51,9 @@ class LocalRun : private FilmStore::Owner {
   /// How far the run is now.
   Progress progress() const;
 
+  /// The frames that were finished since the last call, in that order.
+  std::vector<FrameTime> take_finished();
+
   /// How the run ended; to be asked once it is over.
   LocalOutcome outcome() const;
 
@@ -136,6 +139,8 @@ class LocalRun : private FilmStore::Owner {
   std::map<int32_t, std::shared_ptr<const core::Film>> complete_
       HYADES_GUARDED_BY(mutex_);  ///< until their frame is over
   std::set<int32_t> in_flight_ HYADES_GUARDED_BY(mutex_);
+  std::map<int32_t, TimePoint> begun_ HYADES_GUARDED_BY(mutex_);  ///< frames in flight
+  std::vector<FrameTime> finished_ HYADES_GUARDED_BY(mutex_);
   std::set<int32_t> outgrown_ HYADES_GUARDED_BY(mutex_);  ///< frames that fail for that
   std::map<int32_t, uint64_t> frame_samples_
       HYADES_GUARDED_BY(mutex_);  ///< done, of frames in flight

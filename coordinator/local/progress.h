@@ -25,6 +25,12 @@ struct Progress {
   std::string trouble;  ///< why nothing happens at the moment: "paused"; empty where something does
 };
 
+/// How long a frame took, from the first thread that had a unit of it until it was written.
+struct FrameTime {
+  int32_t frame = 0;
+  double seconds = 0;
+};
+
 /// Why a frame has no picture.
 struct FrameFailure {
   int32_t frame = 0;

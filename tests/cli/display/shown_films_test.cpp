@@ -92,7 +92,7 @@ TEST(ShownFilms, WhatAnEarlierRunLeftIsShownToo) {
     first.stop();
     ASSERT_TRUE(first.wait_for(std::chrono::seconds(60)));
   }
-  log.resume = true;
+  log.kept = coordinator::KeptFilms::require;
   run(plan, false, shown, log);
   EXPECT_TRUE(shows_film(fake, "walk.0003", 3, plan, false));
 }

@@ -84,7 +84,7 @@ TEST(Adaptive, InterruptionsChangeNoBit) {
   FilmStoreOptions log;
   log.folder = folder.path();
   log.compact_bytes = 100'000;
-  log.resume = true;
+  log.kept = KeptFilms::require;
   FakeRender render(plan.samples);
   render.unit_delay = std::chrono::microseconds(200);
   int interruptions = 0;
@@ -122,7 +122,7 @@ TEST(Adaptive, AnotherCropJudgesItsTilesByItself) {
     // What is rendered is kept, and has no outputs.
     render.finish_fault = [](int32_t) { return core::Error{"no room"}; };
     run_to_its_end(plan, log, render);
-    log.resume = true;
+    log.kept = KeptFilms::require;
     render.finish_fault = {};
     run_to_its_end(plan, log, render);
     // Of the first crop all tiles are whole, and alike.

@@ -38,7 +38,7 @@ FilmStoreOptions log_in(const std::string& folder, bool resume) {
   FilmStoreOptions log;
   log.folder = folder;
   log.frame_key = [](int32_t frame) { return core::sha256("pixels " + std::to_string(frame)); };
-  log.resume = resume;
+  log.kept = resume ? KeptFilms::require : KeptFilms::erase;
   return log;
 }
 
@@ -163,7 +163,7 @@ TEST(Resume, AFrameWhoseOutputCouldNotBeWrittenIsOnlyFinishedAgain) {
   EXPECT_TRUE(render.digests().empty());
   const uint64_t units = render.units();
   render.finish_fault = nullptr;
-  log.resume = true;
+  log.kept = KeptFilms::require;
   ASSERT_TRUE(run_for(plan, log, render, kLongWait));
   EXPECT_EQ(render.units(), units);
   expect_the_truth(plan, render);
@@ -234,7 +234,7 @@ TEST(Resume, AnotherCropKeepsTheTilesThatItShares) {
     FilmStoreOptions log = log_in(folder.file("log"), false);
     log.compact_bytes = compact_bytes;
     render_without_outputs(plan, log, render);
-    log.resume = true;
+    log.kept = KeptFilms::require;
     const auto new_units = [&](const core::PixelRect& region) {
       const uint64_t before = render.units();
       plan.region = region;
