@@ -8,6 +8,7 @@
 #include "cli/program.h"
 #include "coordinator/backup/backup.h"
 #include "core/base/machine.h"
+#include "core/base/printable.h"
 #include "core/base/text.h"
 
 namespace {
@@ -25,6 +26,10 @@ int tell(const char* command, const hyades::core::Result<BackupCount>& done,
   }
   std::printf("%s: %s files, %s\n", what.c_str(), hyades::core::format_count(done->files).c_str(),
               hyades::core::format_bytes(done->bytes).c_str());
+  for (const std::string& file : done->left_out) {
+    std::printf("left out, as no job can have made it: %s\n",
+                hyades::core::printable(file).c_str());
+  }
   return 0;
 }
 
@@ -34,7 +39,7 @@ int backup_command(int argc, char** argv) {
   std::string data;
   std::string to;
   app.add_option("--data", data, "the coordinator's folder")->required();
-  app.add_option("-o,--output", to, "the tar file")->required();
+  app.add_option("-o,--output", to, "the tar file")->required()->type_name("FILE");
   app.footer(
       "examples:\n  hyades backup --data /var/lib/hyades -o /backup/hyades.tar\n"
       "Run it as the coordinator's user. The file appears when it is whole.\n"

@@ -1,16 +1,25 @@
 #include "cli/command_line.h"
 
 #include <cstdio>
+#include <memory>
 #include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "cli/help_formatter.h"
 #include "core/base/printable.h"
 #include "core/base/text.h"
 
 namespace hyades::cli {
 namespace {
+
+void format_help(CLI::App& app) {
+  static const auto formatter = std::make_shared<HelpFormatter>();
+  app.formatter(formatter);
+  for (CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) format_help(*sub);
+  if (CLI::Option* help = app.get_help_ptr()) help->description("print this help");
+}
 
 /// A subcommand's --help ends with those lines of its command's that are about it: the examples
 /// that call it, and the exit statuses.
@@ -70,6 +79,7 @@ std::string in_our_words(const CLI::App& app, const CLI::ParseError& error) {
 
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv, int wrong) {
   share_footer(app);
+  format_help(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

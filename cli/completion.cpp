@@ -10,14 +10,21 @@ namespace {
 // The scripts ask the program itself (--help) for commands and options: nothing to keep in step.
 
 constexpr std::string_view kBash = R"sh(_hyades() {
-  local word=${COMP_WORDS[COMP_CWORD]} program=${COMP_WORDS[0]}
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} program=${COMP_WORDS[0]} offers=
   COMPREPLY=()
   if [ "$COMP_CWORD" = 1 ]; then
-    COMPREPLY=($(compgen -W "$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
+    COMPREPLY=($(compgen -W "$("$program" --help 2>/dev/null | sed -nE '/^examples:/q;s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
   elif [[ $word == -* ]]; then
     COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]*' | sort -u)" -- "$word"))
   elif [ "${COMP_WORDS[1]}" = completion ]; then
     COMPREPLY=($(compgen -W "bash zsh fish" -- "$word"))
+  elif [[ $before == --* ]]; then
+    offers=$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE "s/^.*$before ([a-z]+(\|[a-z]+)+)( .*)?$/\1/p" | tr '|' ' ')
+    COMPREPLY=($(compgen -W "$offers" -- "$word"))
+  elif [[ " status watch fetch logs trace explain pause resume cancel retry priority delete " == *" ${COMP_WORDS[1]} "* ]]; then
+    COMPREPLY=($(compgen -W "$(timeout 2 "$program" jobs --all --names 2>/dev/null)" -- "$word"))
+  elif [[ " drain quarantine release " == *" ${COMP_WORDS[1]} "* ]]; then
+    COMPREPLY=($(compgen -W "$(timeout 2 "$program" workers --names 2>/dev/null)" -- "$word"))
   elif [ "$COMP_CWORD" = 2 ]; then
     COMPREPLY=($(compgen -W "$("$program" "${COMP_WORDS[1]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) .*/\1/p')" -- "$word"))
   fi
@@ -30,7 +37,7 @@ _hyades() {
   local program=${words[1]}
   if (( CURRENT == 2 )); then
     local -a commands
-    commands=(${(f)"$("$program" --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z-]+) +(.*)/\1:\2/p')"})
+    commands=(${(f)"$("$program" --help 2>/dev/null | sed -nE '/^examples:/q;s/^  ([a-z-]+) +(.*)/\1:\2/p')"})
     _describe command commands
   elif [[ ${words[CURRENT]} == -* ]]; then
     local -a options
@@ -38,6 +45,14 @@ _hyades() {
     compadd -- $options
   elif [[ ${words[2]} == completion ]]; then
     compadd bash zsh fish
+  elif [[ ${words[CURRENT-1]} == --* ]]; then
+    local -a values
+    values=(${(s:|:)"$("$program" "${words[2]}" --help 2>/dev/null | sed -nE "s/^.*${words[CURRENT-1]} ([a-z]+(\|[a-z]+)+)( .*)?$/\1/p")"})
+    if (( ${#values} )); then compadd -- $values; else _files; fi
+  elif [[ " status watch fetch logs trace explain pause resume cancel retry priority delete " == *" ${words[2]} "* ]]; then
+    compadd -- ${(f)"$(timeout 2 "$program" jobs --all --names 2>/dev/null)"}
+  elif [[ " drain quarantine release " == *" ${words[2]} "* ]]; then
+    compadd -- ${(f)"$(timeout 2 "$program" workers --names 2>/dev/null)"}
   else
     local -a verbs
     (( CURRENT == 3 )) && verbs=(${(f)"$("$program" "${words[2]}" --help 2>/dev/null | sed -nE '/^(Subcommands|SUBCOMMANDS):/,/^$/s/^  ([a-z-]+) +(.*)/\1:\2/p')"})
@@ -49,7 +64,7 @@ if [[ ${funcstack[1]} == _hyades ]]; then _hyades "$@"; else compdef _hyades hya
 )sh";
 
 constexpr std::string_view kFish = R"sh(function __hyades_commands
-  hyades --help 2>/dev/null | sed -nE '/^commands:/,/^$/s/^  ([a-z-]+) +(.*)/\1\t\2/p'
+  hyades --help 2>/dev/null | sed -nE '/^examples:/q;s/^  ([a-z-]+) +(.*)/\1\t\2/p'
 end
 function __hyades_verbs
   set -l words (commandline -opc)
@@ -62,6 +77,8 @@ end
 complete -c hyades -n 'test (count (commandline -opc)) -eq 1' -f -a '(__hyades_commands)'
 complete -c hyades -n 'test (count (commandline -opc)) -eq 2' -a '(__hyades_verbs)'
 complete -c hyades -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__hyades_options)'
+complete -c hyades -n '__fish_seen_subcommand_from status watch fetch logs trace explain pause resume cancel retry priority delete' -f -a '(timeout 2 hyades jobs --all --names 2>/dev/null)'
+complete -c hyades -n '__fish_seen_subcommand_from drain quarantine release' -f -a '(timeout 2 hyades workers --names 2>/dev/null)'
 complete -c hyades -n '__fish_seen_subcommand_from completion' -f -a 'bash zsh fish'
 )sh";
 

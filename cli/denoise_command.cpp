@@ -2,17 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstdio>
-#include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/shown_output.h"
 #include "core/base/fp_mode.h"
-#include "core/base/text.h"
 #include "core/finish/denoise.h"
 #include "core/finish/picture.h"
 #include "core/image/read_image.h"
@@ -24,8 +20,7 @@ struct DenoiseOptions {
   std::string input;
   std::string denoiser = "auto";
   int threads = 0;
-  std::optional<float> exposure;
-  core::OutputDesc output;
+  ShownOutput shown;
 };
 
 void declare_denoise(CLI::App& app, DenoiseOptions& options) {
@@ -33,13 +28,7 @@ void declare_denoise(CLI::App& app, DenoiseOptions& options) {
                  "EXR with the layers beauty and, best, variance, albedo, normal and alpha; or a "
                  "film EXR")
       ->required();
-  app.add_option("-o,--output", options.output.file, "EXR, PNG or JPEG to write")->required();
-  const auto curves = core::tone_curve_names();
-  app.add_option("--tone-map", options.output.tone_map, "for PNG and JPEG")
-      ->check(CLI::IsMember(std::vector<std::string>(curves.begin(), curves.end())))
-      ->capture_default_str();
-  app.add_option("--exposure", options.exposure,
-                 "stops, for PNG and JPEG (default: what the EXR says that its job shows it with)");
+  declare_shown_output(app, options.shown);
   app.add_option(
          "--with", options.denoiser,
          "features (our own filter), oidn (Open Image Denoise, where its library is found), "
@@ -77,19 +66,6 @@ core::Image with_alpha_of(const core::Image& picture, const core::Image& clean) 
   return out;
 }
 
-/// What an EXR of ours says of itself; 0 where it says nothing.
-float own_exposure(const std::string& path) {
-  const auto texts = core::read_exr_texts(path);
-  if (!texts) return 0.0F;  // another kind of picture
-  for (const auto& [name, value] : *texts) {
-    float stops = 0.0F;
-    if (name != core::kExposureText) continue;
-    const auto read = std::from_chars(value.data(), value.data() + value.size(), stops);
-    if (read.ec == std::errc() && std::abs(stops) <= 64.0F) return stops;
-  }
-  return 0.0F;
-}
-
 int denoise_file(const DenoiseOptions& options) {
   const core::FpMode mode;
   const auto picture = core::read_image_file(options.input);
@@ -97,9 +73,8 @@ int denoise_file(const DenoiseOptions& options) {
   const auto clean = core::denoise(*picture, denoiser_of(options.denoiser), options.threads);
   if (!clean) return denoise_error(clean.error().in(options.input).message);
   const core::Image out = with_alpha_of(*picture, *clean);
-  core::OutputDesc output = options.output;
-  output.exposure = options.exposure ? *options.exposure : own_exposure(options.input);
-  if (const auto written = core::write_output(output, out, options.output.file); !written)
+  const core::OutputDesc output = options.shown.desc(options.input);
+  if (const auto written = core::write_output(output, out, output.file); !written)
     return denoise_error(written.error().message);
   return 0;
 }

@@ -9,6 +9,14 @@ namespace hyades::cli {
 /// exceeded, 2 wrong arguments or pictures that cannot be read or compared.
 int compare_command(int argc, char** argv);
 
+/// `hyades convert a.exr -o a.png`: a picture as a display shows it. Exit status: 0 fine, 2 wrong
+/// arguments, or a picture that cannot be read or written.
+int convert_command(int argc, char** argv);
+
+/// `hyades info a.exr ...`: what is in pictures and films. Exit status: 0 fine, 2 wrong arguments,
+/// or a picture that cannot be read.
+int info_command(int argc, char** argv);
+
 /// `hyades contact-sheet`: many pictures on one sheet.
 int contact_sheet_command(int argc, char** argv);
 

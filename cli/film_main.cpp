@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   hyades::core::ignore_file_size_signal();
   constexpr ProgramCommand kCommands[] = {
       {"compare", compare_command},    {"contact-sheet", contact_sheet_command},
+      {"convert", convert_command},    {"info", info_command},
       {"denoise", denoise_command},    {"encode", encode_command},
       {"finish", finish_command},      {"merge", merge_command},
       {"video", finish_video_command},

@@ -24,52 +24,75 @@ struct Command {
   const char* help;
 };
 
-constexpr Command kCommands[] = {
-    {"render", "hyades-render",
-     "render a job, or a scene or mesh of another tool, on this machine"},
-    {"check", "hyades-render", "read a job, report every mistake in it, and what it would cost"},
-    {"import", "hyades-render",
-     "write a scene of another tool (.glb, .gltf, .pbrt, .obj, .ply) as a job"},
-    {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
-    {"strategies", "hyades-render",
-     "what each strategy of bidirectional path tracing brings to a picture"},
-    {"media", "hyades-render",
-     "measured media: their numbers and colours; media files from other descriptions"},
-    {"bench", "hyades-render",
-     "measure this machine: 'bench scaling' renders a job with 1..N threads"},
-#ifdef HYADES_FARM
-    {"coordinator", "hyades-coordinator",
-     "own jobs, lease their units to workers, merge the films"},
-    {"worker", "hyades-worker", "render for a coordinator"},
-    {"backup", "hyades-backup", "write what a coordinator keeps into one file, while it runs"},
-    {"restore", "hyades-backup", "make a coordinator's folder out of a backup"},
-#endif
-    {"video", "hyades-render", "make a job's videos of the pictures that its frames have left"},
-    {"merge", "hyades-film", "join films of the same frame"},
-    {"finish", "hyades-render", "write a job's pictures out of films that others have rendered"},
-    {"contact-sheet", "hyades-film", "put many pictures on one sheet"},
-    {"denoise", "hyades-film", "take the noise out of a picture"},
-    {"compare", "hyades-film", "compare two pictures, statistically where they carry variances"},
-#ifdef HYADES_FARM
-#define HYADES_ROW(word, help) {#word, "hyades-client", help},
-    HYADES_CLIENT_COMMANDS(HYADES_ROW)
-#undef HYADES_ROW
-#endif
-        {"completion", nullptr, "print a script that completes commands in bash, zsh or fish"},
+struct Group {
+  const char* title;
+  std::vector<Command> commands;
 };
 
+const std::vector<Group>& groups() {
+#define HYADES_ROW(word, help) {#word, "hyades-client", help},
+  static const std::vector<Group> all = {
+      {"rendering",
+       {{"new", "hyades-render", "write a job with comments, to start from"},
+        {"render", "hyades-render",
+         "render a job, or a scene or mesh of another tool, on this machine"},
+        {"check", "hyades-render",
+         "read a job, report every mistake in it, and what it would cost"},
+        {"import", "hyades-render",
+         "write a scene of another tool (.glb, .gltf, .pbrt, .obj, .ply) as a job"},
+        {"finish", "hyades-render",
+         "write a job's pictures out of films that others have rendered"},
+        {"merge", "hyades-film", "join films of the same frame"},
+        {"video", "hyades-render",
+         "make a job's videos of the pictures that its frames have left"}}},
+#ifdef HYADES_FARM
+      {"jobs of a farm", {HYADES_JOB_COMMANDS(HYADES_ROW)}},
+      {"a farm",
+       {{"coordinator", "hyades-coordinator",
+         "own jobs, lease their units to workers, merge the films"},
+        {"worker", "hyades-worker", "render for a coordinator"},
+        {"backup", "hyades-backup", "write what a coordinator keeps into one file, while it runs"},
+        {"restore", "hyades-backup", "make a coordinator's folder out of a backup"},
+        HYADES_FARM_COMMANDS(HYADES_ROW)}},
+#endif
+      {"pictures",
+       {{"info", "hyades-film", "what is in a picture or a film"},
+        {"convert", "hyades-film", "write a picture as another one, as a display shows it"},
+        {"denoise", "hyades-film", "take the noise out of a picture"},
+        {"compare", "hyades-film",
+         "compare two pictures, statistically where they carry variances"},
+        {"contact-sheet", "hyades-film", "put many pictures on one sheet"}}},
+      {"tools",
+       {{"media", "hyades-render",
+         "measured media: their numbers and colours; media files from other descriptions"},
+        {"replay", "hyades-render", "trace one sample of one pixel and tell its path in words"},
+        {"strategies", "hyades-render",
+         "what each strategy of bidirectional path tracing brings to a picture"},
+        {"bench", "hyades-render",
+         "measure this machine: 'bench scaling' renders a job with 1..N threads"},
+        {"completion", nullptr, "print a script that completes commands in bash, zsh or fish"}}},
+  };
+#undef HYADES_ROW
+  return all;
+}
+
 void print_help() {
-  std::printf(
-      "hyades %s: a path-tracing render farm\n\nusage: hyades COMMAND [ARGUMENTS]\n\ncommands:\n",
-      hyades::core::kVersion);
-  for (const Command& command : kCommands) std::printf("  %-13s %s\n", command.name, command.help);
+  std::printf("hyades %s: a path-tracing render farm\n\nusage: hyades COMMAND [ARGUMENTS]\n",
+              hyades::core::kVersion);
+  for (const Group& group : groups()) {
+    std::printf("\n%s:\n", group.title);
+    for (const Command& command : group.commands) {
+      std::printf("  %-13s %s\n", command.name, command.help);
+    }
+  }
   std::printf(
       "\nexamples:\n"
       "  hyades render jobs/quickstart/job.yaml\n"
       "  hyades render robot.glb --samples 64\n"
       "  hyades check jobs/cornell/job.yaml\n"
-      "\n'hyades COMMAND --help' or 'hyades help COMMAND' tells more about a command. docs/job.md "
-      "describes jobs.\n");
+      "\n'hyades COMMAND --help' or 'hyades help COMMAND' tells more about a command, 'hyades "
+      "version' "
+      "which version this is. docs/job.md describes jobs.\n");
 }
 
 /// `help COMMAND...` as `COMMAND... --help`; other arguments as they are.
@@ -84,6 +107,18 @@ std::vector<char*> spelled_out(int argc, char** argv) {
   return words;
 }
 
+/// The command's exit status; where another program knows it, this one becomes that.
+int start(const Command& command, int argc, std::vector<char*>& words) {
+  if (command.program == nullptr) {
+    return hyades::cli::completion_command(argc - 1, words.data() + 1);
+  }
+  const std::string program = hyades::core::program_folder() + command.program;
+  execv(program.c_str(), words.data());
+  std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(),
+               std::strerror(errno));
+  return 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -93,22 +128,16 @@ int main(int argc, char** argv) {
     print_help();
     return 0;
   }
-  if (name == "--version") {
+  if (name == "--version" || name == "version") {
     std::printf("hyades %s\n", hyades::core::kVersion);
     return 0;
   }
   std::vector<std::string> names;
-  for (const Command& command : kCommands) {
-    if (name == command.name) {
-      if (command.program == nullptr)
-        return hyades::cli::completion_command(argc - 1, words.data() + 1);
-      const std::string program = hyades::core::program_folder() + command.program;
-      execv(program.c_str(), words.data());
-      std::fprintf(stderr, "hyades: %s could not be started: %s\n", program.c_str(),
-                   std::strerror(errno));
-      return 1;
+  for (const Group& group : groups()) {
+    for (const Command& command : group.commands) {
+      if (name == command.name) return start(command, argc, words);
+      names.emplace_back(command.name);
     }
-    names.emplace_back(command.name);
   }
   std::fprintf(stderr, "hyades: there is no command '%s'", name.c_str());
   if (const auto close = hyades::core::closest_name(name, names)) {

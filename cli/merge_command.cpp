@@ -22,7 +22,9 @@ struct MergeOptions {
 void declare_merge(CLI::App& app, MergeOptions& options) {
   app.add_option("films", options.inputs, "film EXRs of the same frame of the same job")
       ->required();
-  app.add_option("-o,--output", options.output, "where to write the joined film")->required();
+  app.add_option("-o,--output", options.output, "where to write the joined film")
+      ->required()
+      ->type_name("FILE");
   app.add_flag("-q,--quiet", options.quiet, "say nothing where all goes well");
   app.footer(
       "examples:\n"

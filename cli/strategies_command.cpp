@@ -81,7 +81,9 @@ int strategies_command(int argc, char** argv) {
   app.add_option("--samples", samples, "per pixel (default: the job's)")
       ->check(in_range(1U, 16'777'216U));
   app.add_option("--threads", options.threads, "rendering threads")->check(in_range(1, 1024));
-  app.add_option("--output", options.output, "folder for the pictures")->capture_default_str();
+  app.add_option("-o,--output", options.output, "folder for the pictures")
+      ->capture_default_str()
+      ->type_name("DIR");
   app.footer(
       "examples:\n  hyades strategies jobs/cornell/job.yaml --events 2 --samples 64 --output "
       "parts\n"

@@ -45,8 +45,10 @@ int video_command(int argc, char** argv) {
   app.add_option("job", path, "the job (.yaml)")->required();
   app.add_option("--frames", range, "only of these frames: 1-10 or 1-10x2 (default: all)")
       ->check(no_frames_error);
-  app.add_option("--output", folder, "folder of the render's outputs")->capture_default_str();
-  app.add_flag("--quiet", quiet, "say nothing but what is wrong");
+  app.add_option("-o,--output", folder, "folder of the render's outputs")
+      ->capture_default_str()
+      ->type_name("DIR");
+  app.add_flag("-q,--quiet", quiet, "say nothing but what is wrong");
   app.footer(
       "examples:\n"
       "  hyades video jobs/perlin-sphere/job.yaml --output out\n"

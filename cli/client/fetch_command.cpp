@@ -51,7 +51,9 @@ FetchTarget target_of(const FetchOptions& options) {
 
 void declare(CLI::App& app, FetchOptions& options) {
   app.add_option("job", options.job, "its id, or its name (of several: the newest)")->required();
-  app.add_option("--output", options.folder, "folder for the files")->capture_default_str();
+  app.add_option("-o,--output", options.folder, "folder for the files")
+      ->capture_default_str()
+      ->type_name("DIR");
   app.add_option("--frame", options.frames, "only these frames")->delimiter(',');
   app.add_flag("--follow", options.follow, "stay, and bring each file as it is finished");
   app.add_option("--film", options.film,
@@ -61,7 +63,7 @@ void declare(CLI::App& app, FetchOptions& options) {
                "replace files that are there and that no fetch has written");
   app.add_flag("--hidden", options.hidden, "write files whose names begin with '.' or '-', too");
   app.add_flag("--list", options.list, "only tell which files there are");
-  app.add_flag("--quiet", options.quiet, "show no progress");
+  app.add_flag("-q,--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json, "print the files as JSON (field id: the path)");
   app.footer(
       "examples:\n"
@@ -101,7 +103,7 @@ Outcome fetch_film(FarmClient& client, uint64_t id, const FetchOptions& options)
   display.clear();
   auto info = farm::from_wire(header);
   if (!info) return Failure{kFailed, info.error().in("the film that came").message};
-  auto film = core::decode_film(std::as_bytes(std::span(bytes)));
+  auto film = core::decode_film(std::as_bytes(std::span(bytes)), client.film_limits(bytes));
   if (!film) return Failure{kFailed, film.error().in("the film that came").message};
   const std::string name = fmt::format("{}.{:04}.film.exr", header.job_name(), *options.film);
   FetchTarget target = target_of(options);

@@ -90,7 +90,7 @@ void declare_submit(CLI::App& app, SubmitOptions& options) {
                  "sequential: frame after frame (default); progressive: a few samples of every "
                  "frame first, then more")
       ->check(CLI::IsMember({"sequential", "progressive"}));
-  app.add_flag("--quiet", options.quiet, "show no progress");
+  app.add_flag("-q,--quiet", options.quiet, "show no progress");
   app.add_flag("--json", options.json,
                "print the job as JSON (field id); with --watch as it is at the end");
   app.footer(

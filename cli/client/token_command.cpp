@@ -373,7 +373,7 @@ int token_command(int argc, char** argv) {
     verb.add_option("--expires", options.expires,
                     "after a time such as 12h or 30d; or never (default: " + by_default + ")")
         ->check(expiry_error);
-    verb.add_option("--output", options.output,
+    verb.add_option("-o,--output", options.output,
                     "file to put it in, which nobody else may read (default: it is printed)");
   };
   CLI::App* made = app.add_subcommand("create", "make a token");

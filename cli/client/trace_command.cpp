@@ -117,10 +117,13 @@ int trace_command(int argc, char** argv) {
   bool follow = false;
   bool quiet = false;
   app.app().add_option("job", name, "its id, or its name (of several: the newest)")->required();
-  app.app().add_option("-o,--output", file, "the JSON file to write")->required();
+  app.app()
+      .add_option("-o,--output", file, "the JSON file to write")
+      ->required()
+      ->type_name("FILE");
   app.app().add_flag("--follow", follow,
                      "stay until the job has ended: the coordinator keeps the last 40,000 steps");
-  app.app().add_flag("--quiet", quiet, "say nothing where all goes well");
+  app.app().add_flag("-q,--quiet", quiet, "say nothing where all goes well");
   app.give_examples(
       {"hyades trace perlin-sphere -o trace.json", "hyades trace 12 --follow -o trace.json"},
       "Open the file at ui.perfetto.dev or chrome://tracing.");

@@ -17,7 +17,7 @@ int watch_command(int argc, char** argv) {
   bool quiet = false;
   std::string display;
   app.app().add_option("job", job, "its id, or the name of the only one (open)")->required();
-  app.app().add_flag("--quiet", quiet, "show no progress, only wait");
+  app.app().add_flag("-q,--quiet", quiet, "show no progress, only wait");
   app.app()
       .add_option("--display", display,
                   "HOST:PORT of the viewer tev: shows the frames there while they are rendered, "

@@ -1,0 +1,127 @@
+// `hyades new`: a job to start from.
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/command_line.h"
+#include "core/base/atomic_file.h"
+
+namespace hyades::cli {
+namespace {
+
+/// NAME, MARKS (for the frame's number, or nothing), FRAMES and TURN are filled in.
+constexpr std::string_view kJob =
+    R"yaml(# 'hyades render NAME.yaml' renders it; 'hyades check NAME.yaml' tells what is wrong in it, and what it costs.
+# docs/job.md describes every key. Lengths are metres, y is up, colours are linear [r, g, b], "#d8c8a8" or 3200K.
+hyades: 1
+name: NAME
+FRAMES
+film: {size: [960, 540]}
+sampling: {samples: 128}  # or {noise: 0.05, samples: 1024}: as many as each part of the picture needs
+
+camera:
+  look_from: [3.2, 1.9, 4.4]
+  look_at: [0, 0.7, 0]
+  fov: 34                 # degrees, from top to bottom
+  # aperture: {f_stop: 4}  # blurs what is not in focus
+  # focus: glass
+
+textures:
+  tiles: {type: checker, scale: 24, a: [0.55, 0.5, 0.45], b: [0.2, 0.19, 0.2]}
+  # photo: {type: image, file: photo.jpg}
+
+materials:
+  floor: {type: glossy, color: tiles, reflectiveness: 0.2, glossiness: 0.8}
+  glass: {type: dielectric, ior: 1.5}
+  brass: {type: conductor, metal: brass, roughness: 0.15}
+  clay: {type: lambert, color: [0.7, 0.25, 0.15]}
+
+objects:
+  ground: {shape: rectangle, size: [40, 40], material: floor}
+  glass: {shape: sphere, radius: 0.7, at: [-0.9, 0.7, 0.3], material: glass}
+  block: {shape: box, size: [0.9, 0.9, 0.9], material: clay, transform: [{rotate_y: TURN}], at: [0.5, 0.45, -0.6]}
+  ball: {shape: sphere, radius: 0.35, at: [0.75, 0.35, 0.75], material: brass}
+  # statue: {mesh: statue.ply, material: clay}   # also .obj; whole scenes: {gltf: statue.glb}
+  lamp: {shape: sphere, radius: 0.8, at: [-3, 4.5, 3], emit: {color: 3800K, power: 1200}}  # watts
+
+environment: {color: [0.5, 0.65, 0.9], strength: 0.9}  # or {image: sky.hdr}
+
+outputs:
+  - {file: NAMEMARKS.exr, layers: [beauty, alpha, albedo, normal]}
+  - {file: NAMEMARKS.png, tone_map: filmic}
+)yaml";
+
+constexpr std::string_view kVideo = "  - {file: NAME.mp4, tone_map: filmic}\n";
+
+std::string replaced(std::string text, std::string_view what, std::string_view with) {
+  for (size_t at = text.find(what); at != std::string::npos;
+       at = text.find(what, at + with.size())) {
+    text.replace(at, what.size(), with);
+  }
+  return text;
+}
+
+std::string job_called(const std::string& name, bool animated) {
+  std::string text(kJob);
+  if (animated) text += kVideo;
+  text = replaced(text, "FRAMES",
+                  animated ? "frames: {range: 1-48, fps: 24, shutter: 0.5}"
+                           : "# frames: {range: 1-48, fps: 24}  # of an animation");
+  text = replaced(text, "TURN", animated ? "\"= 45 * t\"" : "30");
+  text = replaced(text, "MARKS", animated ? ".####" : "");
+  return replaced(text, "NAME", name);
+}
+
+/// What outputs may be called so: letters, digits, '-', '_' and '.' of a file's name.
+bool is_plain(const std::string& name) {
+  return !name.empty() && name.front() != '.' && name.front() != '-' &&
+         name.find_first_not_of(
+             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
+             std::string::npos;
+}
+
+}  // namespace
+
+int new_command(int argc, char** argv) {
+  CLI::App app("Writes a job with comments, to start from.", "hyades new");
+  std::string file = "job.yaml";
+  bool animated = false;
+  bool overwrite = false;
+  app.add_option("job", file, "the job to write")->capture_default_str();
+  app.add_flag("--animated", animated, "of 48 frames, and a video of them");
+  app.add_flag("--overwrite", overwrite, "replace a file that is there");
+  app.footer(
+      "examples:\n"
+      "  hyades new shot.yaml\n"
+      "  hyades new turn.yaml --animated\n"
+      "exit status: 0 written, 1 it could not be, 2 the arguments are wrong, or the file is there");
+  if (const auto status = parse_command_line(app, argc, argv)) return *status;
+  const std::string name = std::filesystem::path(file).stem().string();
+  if (!is_plain(name)) {
+    std::fprintf(stderr, "hyades new: '%s': expected letters, digits, '-', '_' and '.' as a name\n",
+                 name.c_str());
+    return kExitRefused;
+  }
+  std::error_code none;
+  if (!overwrite && std::filesystem::exists(file, none)) {
+    std::fprintf(stderr, "hyades new: %s is there already (--overwrite replaces it)\n",
+                 file.c_str());
+    return kExitRefused;
+  }
+  const std::string text = job_called(name, animated);
+  if (const auto written = core::write_file(file, std::as_bytes(std::span(text))); !written) {
+    std::fprintf(stderr, "hyades new: %s\n", written.error().message.c_str());
+    return 1;
+  }
+  std::fprintf(stderr, "wrote %s: 'hyades render %s --preview' shows it\n", file.c_str(),
+               file.c_str());
+  return 0;
+}
+
+}  // namespace hyades::cli
