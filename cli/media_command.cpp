@@ -150,7 +150,7 @@ const CLI::App* declare_make(CLI::App& app, MediaOptions& said) {
       .add_option("--scale", said.wanted.scale,
                   "multiplies absorption and scattering: concentration")
       ->check(in_range(0.0F, 1e9F));
-  command.add_option("--output", said.file,
+  command.add_option("-o,--output", said.file,
                      "file (.json or .yaml; default: YAML on standard output)");
   command.add_flag("--json", said.json, "JSON, whatever the file is called");
   add_unit(command, said);
@@ -160,7 +160,9 @@ const CLI::App* declare_make(CLI::App& app, MediaOptions& said) {
 void declare_swatch(CLI::App& app, MediaOptions& said) {
   CLI::App& command = *app.add_subcommand("swatch", "renders a row of balls of media");
   command.add_option("media", said.names, "presets, or files (.json, .yaml)")->required();
-  command.add_option("--output", said.swatch.file, "the picture (.png, .jpg or .exr)")->required();
+  command.add_option("-o,--output", said.swatch.file, "the picture (.png, .jpg or .exr)")
+      ->required()
+      ->type_name("FILE");
   command.add_option("--size", said.size, "diameter of a ball (default: 20 mm)")
       ->check(in_range(1e-6F, 1e6F));
   command.add_option("--samples", said.swatch.samples, "samples per pixel")

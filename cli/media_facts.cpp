@@ -1,7 +1,10 @@
 #include "cli/media_facts.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -52,6 +55,43 @@ core::Result<std::vector<KnownMedium>> media_of_file(const std::string& path, fl
   return media;
 }
 
+/// ", did you mean 'whole-milk'?" of names that are like `name`, or that have a part which is:
+/// "mlik".
+std::string presets_like(const std::string& name) {
+  const std::vector<std::string>& all = core::measured_medium_names();
+  if (const std::string near = core::did_you_mean(name, all); !near.empty()) return near;
+  std::vector<std::string> parts;
+  for (const std::string& preset : all) {
+    std::istringstream words(preset);
+    for (std::string word; std::getline(words, word, '-');) parts.push_back(word);
+  }
+  const auto part = core::closest_name(name, parts);
+  if (!part) return "";
+  std::vector<std::string> like;
+  for (const std::string& preset : all) {
+    if (("-" + preset + "-").find("-" + *part + "-") == std::string::npos) continue;
+    like.push_back("'" + preset + "'");
+    if (like.size() == 4) break;
+  }
+  return ", did you mean " + core::join_names(like) + "?";
+}
+
+constexpr float kLayer = 0.01F;  // m
+
+/// What comes back from, and through, a layer in diffuse light: Kubelka 1948, "New contributions to
+/// the optics of intensely light-scattering materials, part I", with K = 2 a and S = 3/4 s (1 - g)
+/// (Mudgett and Richards 1971).
+float seen_of_layer(float absorption, float reduced_scattering, float thickness) {
+  const double k = 2.0 * absorption;
+  const double s = 0.75 * reduced_scattering;
+  if (s * thickness < 1e-6) return static_cast<float>(std::exp(-k * thickness));
+  const double a = 1.0 + k / s;
+  const double b = std::sqrt(std::max(a * a - 1.0, 1e-12));
+  const double x = std::min(b * s * thickness, 300.0);
+  const double below = a * std::sinh(x) + b * std::cosh(x);
+  return static_cast<float>((std::sinh(x) + b) / below);
+}
+
 }  // namespace
 
 MediumFacts facts_of(const KnownMedium& medium) {
@@ -68,6 +108,8 @@ MediumFacts facts_of(const KnownMedium& medium) {
     facts.albedo[c] = extinction > 0.0F ? medium.scattering[c] / extinction : 0.0F;
     facts.block_reflectance[c] = core::diffuse_reflectance(facts.albedo[c], medium.g[c]);
     facts.seen_reflectance[c] = core::reflectance_through(facts.block_reflectance[c], inner);
+    facts.in_a_layer[c] =
+        seen_of_layer(medium.absorption[c], (1.0F - medium.g[c]) * medium.scattering[c], kLayer);
   }
   return facts;
 }
@@ -86,7 +128,7 @@ core::Result<std::vector<KnownMedium>> find_media(const std::string& name, float
     return std::vector<KnownMedium>{known(*preset)};
   }
   return core::Error{"there is no preset '" + name + "', nor is it a file of media (.json, .yaml)" +
-                     core::did_you_mean(name, core::measured_medium_names())};
+                     presets_like(name)};
 }
 
 }  // namespace hyades::cli

@@ -27,6 +27,7 @@ struct MediumFacts {
   core::Rgb block_reflectance;  ///< of diffuse light on a half-space without a surface
   core::Rgb
       seen_reflectance;  ///< the same behind a smooth surface of its index, of the light let in
+  core::Rgb in_a_layer;  ///< what of diffuse light on both sides of 1 cm of it comes out again
 };
 
 MediumFacts facts_of(const KnownMedium& medium);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/status_line.h"
 #include "core/finish/frame_outputs.h"
 #include "core/finish/picture.h"
 #include "core/job/layers.h"
@@ -49,7 +50,7 @@ std::string swatch_job(const std::vector<KnownMedium>& media, const SwatchOption
       "212}}], "
       "visible_to_camera: false, emit: {{color: [1, 0.95, 0.87], radiance: 5}}}}\n",
       6.0F + width);
-  return text + "outputs: [{file: swatch.png, tone_map: filmic, exposure: 0.6}]\n";
+  return text + "outputs: [{file: swatch.png, tone_map: filmic, exposure: 0.6, denoise: true}]\n";
 }
 
 }  // namespace
@@ -68,11 +69,21 @@ core::Status render_swatch(const std::vector<KnownMedium>& media, const SwatchOp
   const core::FrameRenderer renderer(*scene, job, 1, core::needed_layers(job));
   core::RenderFrameOptions how;
   how.threads = options.threads;
+  StatusLine line;
+  how.progress = [&](double share) {
+    if (line.is_due()) line.show(fmt::format("{}  {:3.0f} %", progress_bar(share), 100.0 * share));
+  };
   const auto frame =
       core::render_frame(renderer, core::render_window(job.film), job.sampling.samples, 1, how);
-  core::OutputDesc output = job.outputs.front();
-  output.file = options.file;
-  return core::write_output(output, frame.film.normalised(), options.file);
+  line.clear();
+  const std::filesystem::path path(options.file);
+  job.outputs.front().file = path.filename().string();
+  const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+  core::FilmInfo info;
+  info.job_name = job.name;
+  info.samples = job.sampling.samples;
+  const auto written = core::write_outputs(job.outputs, folder, info, frame.film);
+  return written ? core::Status{} : written.error();
 }
 
 }  // namespace hyades::cli

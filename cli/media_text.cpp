@@ -51,13 +51,14 @@ ordered_json one_or_list(const Rgb& value) {
 }  // namespace
 
 std::string media_table(const std::vector<KnownMedium>& media) {
-  std::string text =
-      fmt::format("{:<30}{:<9}{:>12}  {:<22}{}\n", "name", "colour", "free path", "albedo", "from");
+  std::string text = fmt::format("{:<30}{:<9}{:<12}{:>12}  {:<22}{}\n", "name", "thick",
+                                 "1 cm of it", "free path", "albedo", "from");
   for (const KnownMedium& medium : media) {
     const MediumFacts facts = facts_of(medium);
-    text += fmt::format("{:<30}{:<9}{:>12}  {:<6.4f} {:<6.4f} {:<6.4f}  {}\n", medium.name,
-                        hex(facts.seen_reflectance), shortest(facts.mean_free_path), facts.albedo.x,
-                        facts.albedo.y, facts.albedo.z, medium.source);
+    text += fmt::format("{:<30}{:<9}{:<12}{:>12}  {:<6.4f} {:<6.4f} {:<6.4f}  {}\n", medium.name,
+                        hex(facts.seen_reflectance), hex(facts.in_a_layer),
+                        shortest(facts.mean_free_path), facts.albedo.x, facts.albedo.y,
+                        facts.albedo.z, medium.source);
   }
   return text;
 }
@@ -78,6 +79,7 @@ std::string medium_sheet(const KnownMedium& medium, const LengthUnit& unit) {
   text += row("albedo", facts.albedo, "");
   text += row("thick block reflects", facts.block_reflectance, hex(facts.block_reflectance));
   text += row("behind its surface", facts.seen_reflectance, hex(facts.seen_reflectance));
+  text += row("a layer of 1 cm", facts.in_a_layer, hex(facts.in_a_layer));
   return text;
 }
 
@@ -98,7 +100,8 @@ std::string media_json(const std::vector<KnownMedium>& media, const LengthUnit& 
                    {"transport_mean_free_path", list(facts.transport_path / m)},
                    {"albedo", list(facts.albedo)},
                    {"block_reflectance", list(facts.block_reflectance)},
-                   {"seen_reflectance", list(facts.seen_reflectance)}});
+                   {"seen_reflectance", list(facts.seen_reflectance)},
+                   {"in_a_layer", list(facts.in_a_layer)}});
   }
   return all.dump(2) + "\n";
 }

@@ -46,7 +46,8 @@ RenderedFrame render_frame(const FrameRenderer& renderer, const PixelRect& windo
                            int32_t frame, const RenderFrameOptions& options) {
   const std::vector<Unit> units = plan(window, samples, frame, options);
   RenderedFrame result{Film(renderer.layout(), window), {}};
-  std::mutex mutex;  // guards result
+  std::mutex mutex;  // guards result and done
+  size_t done = 0;
   std::atomic<size_t> next{0};
   const auto work = [&] {
     for (size_t i = next++; i < units.size(); i = next++) {
@@ -55,6 +56,10 @@ RenderedFrame render_frame(const FrameRenderer& renderer, const PixelRect& windo
       // Units of one plan cannot overlap, so a refusal would be a bug in plan() itself.
       if (!result.film.merge(unit.film)) std::abort();
       result.counters.add(unit.counters);
+      ++done;
+      if (options.progress) {
+        options.progress(static_cast<double>(done) / static_cast<double>(units.size()));
+      }
     }
   };
   std::vector<std::thread> threads;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 
 #include "core/render/frame_renderer.h"
 
@@ -12,6 +13,8 @@ struct RenderFrameOptions {
   int tile_size = 32;  ///< pixels
   uint32_t batches_per_unit = 4;
   bool shuffle = false;  ///< hand units out in a scrambled order (tests)
+  /// Told after each unit, by one thread at a time: which share of all is done, 0 to 1.
+  std::function<void(double share)> progress{};
 };
 
 struct RenderedFrame {
