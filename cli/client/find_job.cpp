@@ -19,6 +19,7 @@ namespace hyades::cli {
 namespace {
 
 constexpr size_t kMostShown = 8;
+constexpr size_t kMostCandidates = 10'000;  ///< for 'did you mean'
 
 }  // namespace
 
@@ -49,6 +50,26 @@ Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,
     jobs.insert(jobs.end(), response.jobs().begin(), response.jobs().end());
     request.set_before(response.next_before());
   } while (response.next_before() != 0 && response.jobs_size() > 0);
+  return std::nullopt;
+}
+
+Outcome list_latest_jobs(FarmClient& client, size_t most, const std::string& owner,
+                         std::vector<v1::Job>& jobs) {
+  if (auto failure = list_all_jobs(client, false, owner, jobs)) return failure;
+  v1::ListJobsRequest request;
+  request.set_ended(true);
+  request.set_owner(owner);
+  request.set_limit(200);
+  v1::ListJobsResponse response;
+  if (auto failure = client.call(&v1::Jobs::Stub::List, request, response)) return failure;
+  std::vector<v1::Job> over(response.jobs().begin(), response.jobs().end());
+  std::erase_if(over, [](const v1::Job& job) { return !farm::has_ended(job); });
+  const auto later = [](const v1::Job& a, const v1::Job& b) { return a.ended_ms() > b.ended_ms(); };
+  std::sort(over.begin(), over.end(), later);
+  over.resize(std::min(over.size(), most));
+  jobs.insert(jobs.end(), over.begin(), over.end());
+  const auto newer = [](const v1::Job& a, const v1::Job& b) { return a.id() > b.id(); };
+  std::sort(jobs.begin(), jobs.end(), newer);
   return std::nullopt;
 }
 
@@ -85,7 +106,7 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
 
   std::vector<v1::Job> jobs;
   if (auto failure = list_all_jobs(client, true, "", jobs)) return failure;
-  std::vector<std::string> names;
+  std::set<std::string> names;
   std::vector<uint64_t> ids;    // of all that are called so, the newest first
   std::vector<uint64_t> meant;  // of those that may be meant
   for (const v1::Job& job : jobs) {
@@ -93,13 +114,12 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
       ids.push_back(job.id());
       if (is_meant(job, namesakes)) meant.push_back(job.id());
     }
-    if (std::find(names.begin(), names.end(), job.name()) == names.end()) {
-      names.push_back(job.name());
-    }
+    if (names.size() < kMostCandidates) names.insert(job.name());
   }
   if (ids.empty()) {
-    return Failure{kUnknown,
-                   fmt::format("there is no job '{}'{}", text, core::did_you_mean(text, names))};
+    const std::vector<std::string> candidates(names.begin(), names.end());
+    return Failure{kUnknown, fmt::format("there is no job '{}'{}", text,
+                                         core::did_you_mean(text, candidates))};
   }
   id = ids.front();
   if (ids.size() == 1) return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ Outcome find_job(FarmClient& client, const std::string& text, Namesakes namesake
 
 /// A failure where `frames` are not all of the job; an empty list is not looked at.
 Outcome check_frames(FarmClient& client, uint64_t id, const std::vector<int32_t>& frames);
+
+/// The jobs that have not ended, and of the newest 200 up to `most` that ended last, the
+/// newest first; of one owner, or of all ("").
+Outcome list_latest_jobs(FarmClient& client, size_t most, const std::string& owner,
+                         std::vector<v1::Job>& jobs);
 
 /// Every job, the newest first: those that have not ended, or all; of one owner, or of all ("").
 Outcome list_all_jobs(FarmClient& client, bool ended, const std::string& owner,

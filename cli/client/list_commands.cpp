@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -14,6 +15,7 @@
 namespace hyades::cli {
 namespace {
 
+constexpr size_t kMostEnded = 5;    ///< told by jobs without --all
 constexpr size_t kMostFrames = 20;  ///< told by status without --json or --frames
 
 std::string frames_text(const v1::Job& job) {
@@ -23,21 +25,37 @@ std::string frames_text(const v1::Job& job) {
 }
 
 std::string left_text(const v1::Job& job) {
-  return job.state() == v1::JOB_STATE_RUNNING && job.seconds_left() >= 0
-             ? core::format_duration(job.seconds_left())
+  return job_look(job) == "running" && job.seconds_left() >= 0
+             ? core::format_time_left(job.seconds_left())
              : "-";
 }
 
 constexpr const char* kSuspect = "in doubt: a divergent worker had a part in it";
 
+/// How long the job has been rendered; "-" of one that nobody has begun.
+std::string taken_text(const v1::Job& job) {
+  const bool begun = job.begun_ms() != 0 || job.ended_ms() != 0;
+  return begun ? core::format_duration(seconds_taken(job)) : "-";
+}
+
+/// "1.25", and at the coordinator's price "1.25 (3.10)".
+std::string hours_text(const v1::Job& job) {
+  std::string text = fmt::format("{:.2f}", job.core_seconds() / 3600);
+  if (job.cost() > 0) text += fmt::format(" ({:.2f})", job.cost());
+  return text;
+}
+
 void print_jobs(const std::vector<v1::Job>& jobs) {
+  const bool priced =
+      std::any_of(jobs.begin(), jobs.end(), [](const v1::Job& job) { return job.cost() > 0; });
   std::vector<std::vector<std::string>> rows = {
-      {"id", "name", "owner", "prio", "state", "frames", "samples", "units out", "left", "reason"}};
+      {"id", "name", "owner", "prio", "state", "frames", "samples", "submitted", "took", "left",
+       priced ? "core-hours (cost)" : "core-hours", "reason"}};
   for (const v1::Job& job : jobs) {
     rows.push_back({std::to_string(job.id()), job.name(), job.owner(),
-                    std::to_string(job.priority()), state_name(job.state()), frames_text(job),
-                    percent(job.samples_done(), job.samples()), std::to_string(job.leased()),
-                    left_text(job), job.reason()});
+                    std::to_string(job.priority()), job_look(job), frames_text(job),
+                    percent(job.samples_done(), job.samples()), format_time(job.submitted_ms()),
+                    taken_text(job), left_text(job), hours_text(job), job.reason()});
   }
   print_table(rows);
 }
@@ -72,7 +90,7 @@ void print_frames(const v1::GetJobResponse& response, bool all) {
 void print_status(const v1::GetJobResponse& response, bool all) {
   const v1::Job& job = response.job();
   std::printf("job %lu: %s\n", job.id(), core::printable(job.name()).c_str());
-  print_line("state", state_name(job.state()) + (job.reason().empty() ? "" : ": " + job.reason()));
+  print_line("state", job_look(job) + (job.reason().empty() ? "" : ": " + job.reason()));
   print_line("owner", fmt::format("{}, priority {}", job.owner(), job.priority()));
   if (job.tags_size() > 0 || job.memory_bytes() > 0) {
     std::string needs = fmt::format("{}", fmt::join(job.tags(), ", "));
@@ -85,16 +103,20 @@ void print_status(const v1::GetJobResponse& response, bool all) {
   print_line("samples", fmt::format("{} of {}", percent(job.samples_done(), job.samples()),
                                     core::format_count(job.samples())));
   if (job.has_noise()) {
-    print_line("noise",
-               fmt::format("{:.2g}", job.noise()) +
-                   (job.noise_aim() > 0 ? fmt::format(" (aim {:.2g})", job.noise_aim()) : ""));
+    const std::string aim =
+        job.noise_aim() > 0 ? " (aim " + core::format_noise(job.noise_aim()) + ")" : "";
+    print_line("noise", core::format_noise(job.noise()) + aim);
   }
-  if (job.state() == v1::JOB_STATE_RUNNING) {
-    print_line("now", fmt::format("{} units with workers, {:.2f} Msamples/s, {} left", job.leased(),
-                                  job.samples_per_second() * 1e-6, left_text(job)));
+  if (job_look(job) == "running") {
+    print_line("now",
+               fmt::format("{} with workers, {}, {} left", core::counted(job.leased(), "unit"),
+                           core::format_sample_rate(job.samples_per_second()), left_text(job)));
   }
   print_line("submitted", format_time(job.submitted_ms()));
+  if (job.begun_ms() != 0) print_line("begun", format_time(job.begun_ms()));
   if (job.ended_ms() != 0) print_line("ended", format_time(job.ended_ms()));
+  print_line("took", taken_text(job));
+  print_line("core-hours", hours_text(job));
   print_frames(response, all);
 }
 
@@ -109,25 +131,35 @@ void print_log_line(const v1::LogLine& line) {
 }  // namespace
 
 int jobs_command(int argc, char** argv) {
-  ClientApp app("jobs", "Lists the farm's jobs, the newest first.");
+  ClientApp app("jobs",
+                "Lists the farm's open jobs and the last that have ended, the newest first.");
   bool all = false;
+  bool names = false;
   bool json = false;
   std::string owner;
-  app.app().add_flag("--all", all, "also those that have ended");
+  app.app().add_flag("--all", all, "all that have ended");
   app.app().add_option("--owner", owner, "only the jobs of this owner");
-  app.app().add_flag("--json", json, "print them as JSON (field id)");
+  app.app().add_flag("--names", names, "print their names alone, one a line");
+  app.app().add_flag("--json", json,
+                     "print them as JSON (field id); without --all only those that are open");
   app.give_examples({"hyades jobs", "hyades jobs --all --owner ann", "hyades jobs --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
   const auto client = app.connect();
   if (!client) return kBadArguments;
   std::vector<v1::Job> jobs;
-  if (auto failure = list_all_jobs(*client, all, owner, jobs)) return app.report(*failure);
+  const bool latest = !all && !json && !names;
+  if (auto failure = latest ? list_latest_jobs(*client, kMostEnded, owner, jobs)
+                            : list_all_jobs(*client, all, owner, jobs)) {
+    return app.report(*failure);
+  }
   if (json) {
     Json list = Json::array();
     for (const v1::Job& job : jobs) list.push_back(to_json(job));
     print_json(list);
+  } else if (names) {
+    for (const v1::Job& job : jobs) std::printf("%s\n", core::printable(job.name()).c_str());
   } else if (jobs.empty()) {
-    std::printf("%s\n", all ? "no jobs" : "no job is open (--all shows those that have ended)");
+    std::printf("no jobs\n");
   } else {
     print_jobs(jobs);
   }

@@ -7,6 +7,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "core/base/wall_clock.h"
+
 namespace hyades::cli {
 namespace {
 
@@ -22,6 +24,18 @@ void print_json(const Json& json) {
   // What is no ASCII is escaped, for names may turn a terminal's text around; what is no UTF-8
   // becomes a replacement character, not an exception.
   std::printf("%s\n", json.dump(-1, ' ', true, Json::error_handler_t::replace).c_str());
+}
+
+std::string job_look(const v1::Job& job) {
+  const bool waits = job.state() == v1::JOB_STATE_RUNNING && job.leased() == 0 &&
+                     job.samples_done() < job.samples();
+  return waits ? "waiting" : state_name(job.state());
+}
+
+double seconds_taken(const v1::Job& job) {
+  const int64_t begun = job.begun_ms() != 0 ? job.begun_ms() : job.submitted_ms();
+  const int64_t ended = job.ended_ms() != 0 ? job.ended_ms() : core::wall_ms();
+  return 1e-3 * static_cast<double>(std::max<int64_t>(ended - begun, 0));
 }
 
 std::string percent(uint64_t part, uint64_t whole) {

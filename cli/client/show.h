@@ -17,6 +17,12 @@ using farm::to_json;
 /// Prints JSON in one line to standard output.
 void print_json(const Json& json);
 
+/// What people call a job's state: one that runs is waiting while no worker has any of it.
+std::string job_look(const v1::Job& job);
+
+/// Seconds from when somebody began the job (before: from its submission) to its end, or to now.
+double seconds_taken(const v1::Job& job);
+
 /// "62.5 %" of something that may be nothing.
 std::string percent(uint64_t part, uint64_t whole);
 

@@ -102,9 +102,7 @@ class Page {
 };
 
 std::string speed_text(double samples) {
-  if (samples <= 0) return "-";
-  if (samples < 1e6) return fmt::format("{:.0f} k/s", samples * 1e-3);
-  return fmt::format("{:.2f} M/s", samples * 1e-6);
+  return samples > 0 ? core::format_sample_rate(samples) : "-";
 }
 
 std::string bar(double share, int columns) {
@@ -161,7 +159,7 @@ void add_jobs(Page& page, std::vector<v1::Job> jobs, int room) {
                        {percent(job.samples_done(), job.samples())},
                        {fmt::format("{}/{}", job.frames_done(), job.frames())},
                        {speed_text(job.samples_per_second())},
-                       {job.seconds_left() >= 0 ? core::format_duration(job.seconds_left()) : "-"},
+                       {job.seconds_left() >= 0 ? core::format_time_left(job.seconds_left()) : "-"},
                        {core::printable(job.reason()), Style::faint}});
   }
   if (shown < static_cast<int>(jobs.size())) {

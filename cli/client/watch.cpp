@@ -90,12 +90,9 @@ class Watcher {
     clear();
     if (job_.state() == v1::JOB_STATE_DONE) {
       if (!quiet_) {
-        std::fprintf(
-            stderr, "job %lu is done: %s in %s; hyades fetch %lu brings them\n", job_.id(),
-            core::counted(job_.frames_done(), "frame").c_str(),
-            core::format_duration(1e-3 * static_cast<double>(job_.ended_ms() - job_.submitted_ms()))
-                .c_str(),
-            job_.id());
+        std::fprintf(stderr, "job %lu is done: %s in %s; hyades fetch %lu brings them\n", job_.id(),
+                     core::counted(job_.frames_done(), "frame").c_str(),
+                     core::format_duration(seconds_taken(job_)).c_str(), job_.id());
       }
       return std::nullopt;
     }
@@ -112,8 +109,9 @@ class Watcher {
     }
     return Failure{
         kFailed,
-        fmt::format("job {} failed: {} of {} frames are done{}; hyades retry {} takes up the rest",
-                    job_.id(), job_.frames_done(), job_.frames(), why, job_.id())};
+        fmt::format("job {} failed: {} of {} are done{}; hyades retry {} takes up the rest",
+                    job_.id(), job_.frames_done(), core::counted(job_.frames(), "frame"), why,
+                    job_.id())};
   }
 
  private:

@@ -80,7 +80,9 @@ int act_on_worker(const char* command, const char* description, Method method, i
 
 int workers_command(int argc, char** argv) {
   ClientApp app("workers", "Lists the farm's workers.");
+  bool names = false;
   bool json = false;
+  app.app().add_flag("--names", names, "print their names alone, one a line");
   app.app().add_flag("--json", json, "print them as JSON (field id)");
   app.give_examples({"hyades workers", "hyades workers --json"});
   if (const auto status = app.parse(argc, argv)) return *status;
@@ -92,6 +94,10 @@ int workers_command(int argc, char** argv) {
     Json list = Json::array();
     for (const v1::Worker& worker : response.workers()) list.push_back(to_json(worker));
     print_json(list);
+  } else if (names) {
+    for (const v1::Worker& worker : response.workers()) {
+      std::printf("%s\n", core::printable(worker.name()).c_str());
+    }
   } else if (response.workers().empty()) {
     std::printf("no workers: start some with 'hyades worker'\n");
   } else {

@@ -236,9 +236,12 @@ v1::Job describe(const StoredJob& job) {
   wire.set_frames_done(job.frames_done);
   wire.set_frames_failed(job.frames_failed);
   wire.set_samples(job.samples);
-  if (job.frames > 0) wire.set_samples_done(job.samples / job.frames * job.frames_done);
+  // Of jobs that an older version has ended what is in frames that were not finished is not known.
+  const uint64_t finished = job.frames > 0 ? job.samples / job.frames * job.frames_done : 0;
+  wire.set_samples_done(std::max(job.samples_done, finished));
   wire.set_seconds_left(-1);
   wire.set_submitted_ms(job.submitted_ms);
+  wire.set_begun_ms(job.begun_ms);
   wire.set_ended_ms(job.ended_ms);
   wire.set_reason(farm::wire_text(job.reason));
   wire.set_core_seconds(1e-9 * static_cast<double>(job.core_ns));
@@ -267,7 +270,7 @@ v1::Job ActiveJob::describe(uint32_t leased) const {
   if (threshold.adaptive()) wire.set_noise_aim(as_written(threshold.aim.noise));
   if (noise) wire.set_noise(*noise);
   wire.set_samples_per_second(speed.per_second());
-  if (speed.per_second() > 0) {
+  if (speed.per_second() > 0 && leased > 0) {
     wire.set_seconds_left(static_cast<double>(samples - std::min(samples_done, samples)) /
                           speed.per_second());
   }

@@ -39,6 +39,8 @@ struct FrameNote {
   std::string worker_class;     ///< of those who render it; empty: nobody has begun
   uint32_t restarts = 0;        ///< how often it has begun again
   std::optional<double> noise;  ///< of its film when that was last measured, see picture_noise()
+  int64_t begun_ms = 0;    ///< when its first unit was leased; 0: before the last start, or never
+  uint64_t render_ns = 0;  ///< that threads took for the results which counted, since the start
   uint64_t begun = 0;  ///< StoredFrame::moment of the last frame that was finished then; 0: unknown
   uint64_t version = 0;  ///< of the job when this last changed
 };

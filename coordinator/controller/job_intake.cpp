@@ -20,6 +20,7 @@
 #include "coordinator/controller/sweeper.h"
 #include "core/base/failpoint.h"
 #include "core/base/printable.h"
+#include "core/base/text.h"
 #include "core/base/wall_clock.h"
 #include "farm/tags.h"
 #include "farm/wire.h"
@@ -155,8 +156,8 @@ grpc::Status JobIntake::take_in(std::unique_ptr<ActiveJob> active, v1::SubmitRes
     active->stored.id = added->id;
     const std::string& owner = active->stored.owner;
     jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
-               fmt::format("submitted by {}: {} frames",
-                           owner.empty() ? "nobody in particular" : owner, active->numbers.size()));
+               fmt::format("submitted by {}: {}", owner.empty() ? "nobody in particular" : owner,
+                           core::counted(active->numbers.size(), "frame")));
     if (core::Status started = recovery_.start(std::move(active), {}); !started) {
       // Nothing was promised yet.
       (void)context_.store->remove_job(added->id);

@@ -11,6 +11,7 @@
 
 #include "coordinator/controller/job_queries.h"
 #include "coordinator/controller/watchers.h"
+#include "core/base/text.h"
 #include "core/base/wall_clock.h"
 #include "farm/wire.h"
 #include "farm/wire_status.h"
@@ -166,6 +167,7 @@ void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) 
                  : stored.frames_failed > 0 || !why.empty() ? StoredState::failed
                                                             : StoredState::done;
   stored.ended_ms = core::wall_ms();
+  stored.samples_done = active.samples_done;
   stored.reason = farm::wire_text(why);
   for (const auto& [number, frame] : active.frames) {
     if (frame.state == v1::FRAME_STATE_FAILED && stored.reason.empty()) {
@@ -173,7 +175,7 @@ void JobRecords::end(ActiveJob& active, bool cancelled, const std::string& why) 
     }
   }
   jobs_.note(active, v1::LOG_LEVEL_INFO, std::nullopt, {},
-             fmt::format("ended: {} frames done, {} failed{}", stored.frames_done,
+             fmt::format("ended: {} done, {} failed{}", core::counted(stored.frames_done, "frame"),
                          stored.frames_failed, cancelled ? ", cancelled" : ""));
   context_.background.add(stored.id, [this, id = stored.id] { return store_end(id); });
 }

@@ -31,8 +31,10 @@ struct StoredJob {
   uint32_t frames = 0;
   uint32_t frames_done = 0;
   uint32_t frames_failed = 0;
-  uint64_t samples = 0;  ///< of all frames
+  uint64_t samples = 0;       ///< of all frames
+  uint64_t samples_done = 0;  ///< when it ended
   int64_t submitted_ms = 0;
+  int64_t begun_ms = 0;  ///< when its first unit was leased; 0: never, or it is not known
   int64_t ended_ms = 0;
   std::string reason;
   uint64_t core_ns = 0;            ///< that threads took for the results which counted

@@ -135,6 +135,10 @@ END;
 -- Tokens that are there already go on to be good for as many workers as a farm may have.
 ALTER TABLE tokens ADD COLUMN machines INTEGER NOT NULL DEFAULT 20000;
 )",
+    R"(
+ALTER TABLE jobs ADD COLUMN samples_done INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN begun_ms INTEGER NOT NULL DEFAULT 0;
+)",
 };
 
 /// A number as protobuf writes it.

@@ -23,8 +23,9 @@ namespace {
 
 constexpr std::string_view kJobColumns =
     "id, key, name, owner, priority, state, frames, frames_done, frames_failed, samples, "
-    "submitted_ms, ended_ms, reason, core_ns, preview, owner_proven, options";
-constexpr int kSpecColumn = 17;  ///< where it is asked for: behind all others
+    "submitted_ms, ended_ms, reason, core_ns, preview, owner_proven, options, "
+    "samples_done, begun_ms";
+constexpr int kSpecColumn = 19;  ///< where it is asked for: behind all others
 
 constexpr int64_t kMsPerHour = 3'600'000;
 
@@ -50,6 +51,8 @@ StoredJob read_job(const Query& row) {
   if (!row.is_null(14)) job.preview = static_cast<int32_t>(row.integer(14));
   job.owner_proven = row.integer(15) != 0;
   job.options = row.bytes(16);
+  job.samples_done = static_cast<uint64_t>(row.integer(17));
+  job.begun_ms = row.integer(18);
   return job;
 }
 
@@ -90,8 +93,8 @@ class SqliteJobStore final : public JobStore {
     Query insert(db_.get(),
                  "INSERT INTO jobs (key, spec, name, owner, priority, state, frames, "
                  "frames_done, frames_failed, samples, submitted_ms, ended_ms, reason, core_ns, "
-                 "preview, owner_proven, options, max_workers) "
-                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0)");
+                 "samples_done, begun_ms, preview, owner_proven, options, max_workers) "
+                 "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, 0)");
     if (job.key.empty()) {
       insert.bind_null();
     } else {
@@ -116,10 +119,12 @@ class SqliteJobStore final : public JobStore {
 
   core::Status update_row(const StoredJob& job) {
     const core::MutexLock lock(mutex_);
-    Query update(db_.get(),
-                 "UPDATE jobs SET priority = ?, state = ?, frames = ?, "
-                 "frames_done = ?, frames_failed = ?, samples = ?, submitted_ms = ?, "
-                 "ended_ms = ?, reason = ?, core_ns = ?, preview = ? WHERE id = ?");
+    Query update(
+        db_.get(),
+        "UPDATE jobs SET priority = ?, state = ?, frames = ?, "
+        "frames_done = ?, frames_failed = ?, samples = ?, submitted_ms = ?, "
+        "ended_ms = ?, reason = ?, core_ns = ?, samples_done = ?, begun_ms = ?, preview = ? "
+        "WHERE id = ?");
     bind_changing(update, job);
     return update.bind(number(job.id)).run();
   }
@@ -414,7 +419,9 @@ class SqliteJobStore final : public JobStore {
         .bind(job.submitted_ms)
         .bind(job.ended_ms)
         .bind(job.reason)
-        .bind(number(job.core_ns));
+        .bind(number(job.core_ns))
+        .bind(number(job.samples_done))
+        .bind(job.begun_ms);
     if (job.preview) {
       query.bind(int64_t{*job.preview});
     } else {

@@ -1,6 +1,7 @@
 #include "coordinator/notify/news.h"
 
 #include <fmt/format.h>
+#include <cstdint>
 
 #include "core/base/printable.h"
 #include "core/base/text.h"
@@ -37,12 +38,12 @@ std::string text_of(const News& news, QuoteText quote) {
   const auto because = [&](const std::string& reason) {
     return reason.empty() ? std::string() : ": " + quote(reason);
   };
+  const int64_t begun = job.begun_ms() != 0 ? job.begun_ms() : job.submitted_ms();
   switch (news.kind) {
     case News::Kind::done:
       return who +
              fmt::format("is done: {} in {}", core::counted(job.frames_done(), "frame"),
-                         core::format_duration(
-                             1e-3 * static_cast<double>(job.ended_ms() - job.submitted_ms())));
+                         core::format_duration(1e-3 * static_cast<double>(job.ended_ms() - begun)));
     case News::Kind::failed:
       return who + fmt::format("failed: {} of {} are done{}", job.frames_done(),
                                core::counted(job.frames(), "frame"), because(job.reason()));

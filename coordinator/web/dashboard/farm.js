@@ -8,7 +8,7 @@ import { flowChart } from './chart.js';
 import { Alerts } from './alerts.js';
 import { noJobs, noWorkers, welcome, workerCommand } from './welcome.js';
 import { preview } from './preview.js';
-import { leftOf, share } from './job_state.js';
+import { leftOf, share, tookOf } from './job_state.js';
 import { starMap } from './stars.js';
 import { Thumbs } from './thumbs.js';
 import { to } from './router.js';
@@ -36,7 +36,7 @@ class FarmView {
     this.now = h('div', { class: 'now-list', testid: 'now' });
     this.queue = h('ul', { class: 'queue-list', testid: 'queue' });
     this.queueCount = h('span', { class: 'soft' });
-    this.queueNone = h('p', { class: 'soft box-head', text: 'Nothing waits.' });
+    this.queueNone = h('p', { class: 'soft box-head', text: 'Nothing waits.', hidden: true });
     this.ended = h('ul', { class: 'queue-list', testid: 'ended' });
     this.endedBox = h(
       'div',
@@ -224,7 +224,7 @@ class FarmView {
           ? whole(rest.length)
           : '',
     );
-    this.queueNone.hidden = rest.length > 0;
+    this.queueNone.hidden = rest.length > 0 || !farm.info;
     const over = [...farm.jobs.values()]
       .filter((job) => !isOpen(job))
       .sort((a, b) => b.ended_ms - a.ended_ms)
@@ -246,7 +246,7 @@ class FarmView {
             sub,
             now.reason && now.state === 'failed'
               ? now.reason
-              : `${moment(now.ended_ms)} · ${counted(now.frames, 'frame')} in ${duration((now.ended_ms - now.submitted_ms) / 1000)}`,
+              : `${moment(now.ended_ms)} · ${counted(now.frames, 'frame')} in ${duration(tookOf(now))}`,
           );
         };
         return node;

@@ -18,7 +18,7 @@ import {
 } from './format.js';
 import { h, keyed, say, setText } from './dom.js';
 import { whyNotJob } from './me.js';
-import { leftOf, lookOf, share, watchJob } from './job_state.js';
+import { leftOf, lookOf, share, tookOf, watchJob } from './job_state.js';
 import { TABS, to } from './router.js';
 import { documentTab } from './document.js';
 import { Frames } from './frames.js';
@@ -272,6 +272,7 @@ class JobView {
       `#${job.id}`,
       job.owner && `by ${job.owner}`,
       `submitted ${moment(job.submitted_ms)}`,
+      job.begun_ms && `begun ${moment(job.begun_ms)}`,
       job.ended_ms && `ended ${moment(job.ended_ms)}`,
       job.frame_order === 'progressive' && 'all frames a little at a time',
       job.tags.length > 0 && `tags ${job.tags.join(', ')}`,
@@ -299,8 +300,8 @@ class JobView {
     const runs = lookOf(job) === 'running' && job.samples_per_second > 0;
     figures.speed.set(runs ? rateInWords(job.samples_per_second) : '–');
     figures.leased.set(open ? whole(job.leased) : '–');
-    setText(figures.took.firstChild, open ? 'Since submit' : 'Took');
-    figures.took.set(duration(((job.ended_ms || Date.now()) - job.submitted_ms) / 1000));
+    setText(figures.took.firstChild, open && !job.begun_ms ? 'Since submit' : 'Took');
+    figures.took.set(duration(tookOf(job)));
     figures.hours.set(coreHours(job.core_seconds));
     const price = farm.info?.price_per_core_hour ?? 0;
     figures.cost.hidden = price <= 0;

@@ -125,6 +125,9 @@ export const share = (job) => (job.samples > 0 ? Math.min(1, job.samples_done / 
 /** What people call its state: a job that runs is 'waiting' while no worker has any of it. */
 export const lookOf = (job) => (job.state === 'running' && job.leased === 0 && share(job) < 1 ? 'waiting' : job.state);
 
+/** Seconds from when somebody began it (before: from its submission) to its end, or to now. */
+export const tookOf = (job, now = Date.now()) => ((job.ended_ms || now) - (job.begun_ms || job.submitted_ms)) / 1000;
+
 /** Longer is not told: it only says that next to nothing was rendered lately. */
 const LONGEST_LEFT = 400 * 86400;
 

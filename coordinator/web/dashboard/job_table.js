@@ -5,7 +5,7 @@ import { h, setText } from './dom.js';
 import { askPriority } from './job_actions.js';
 import { farm, isOpen } from './farm_state.js';
 import { whyNotJob } from './me.js';
-import { leftOf, lookOf, share } from './job_state.js';
+import { leftOf, lookOf, share, tookOf } from './job_state.js';
 import { stamp } from './preview.js';
 import { Table } from './table.js';
 import { to } from './router.js';
@@ -44,8 +44,6 @@ function progressCell(td, job) {
 }
 
 const ORDER = { running: 0, waiting: 1, paused: 2, failed: 3, cancelled: 4, done: 5 };
-/** Seconds from its submission to its end, or to now. */
-const elapsed = (job, now = Date.now()) => ((job.ended_ms || now) - job.submitted_ms) / 1000;
 
 function costCell(td, job) {
   if (!td.firstChild) td.append(h('span', { class: 'two' }, h('span', {}), h('span', { class: 'sub' })));
@@ -151,8 +149,8 @@ const columnsWith = (thumbs) => [
     kind: 'num',
     drop: 3,
     always: true,
-    sort: (job) => elapsed(job),
-    cell: (td, job) => setText(td, duration(elapsed(job))),
+    sort: (job) => tookOf(job),
+    cell: (td, job) => setText(td, duration(tookOf(job))),
   },
   {
     key: 'id',

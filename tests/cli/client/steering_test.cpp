@@ -15,6 +15,37 @@ TEST_F(Client, JobsAreListed) {
   EXPECT_EQ(json::parse(run(jobs_command, at({"--json", "--all"})).out).size(), 5U);
   EXPECT_EQ(json::parse(run(jobs_command, at({"--json", "--owner", "bob"})).out).size(), 1U);
   EXPECT_TRUE(has(run(jobs_command, at({"--all"})).out, "done"));
+  EXPECT_EQ(run(jobs_command, at({"--names"})).out, "e\nd\nc\na\n");
+}
+
+TEST_F(Client, JobsThatEndedLastAreListedWithWhatTheyTook) {
+  for (int i = 0; i < 8; ++i) add_job("old" + std::to_string(i), v1::JOB_STATE_DONE);
+  for (int i = 0; i < 8; ++i) farm_.jobs[static_cast<size_t>(i)].set_ended_ms(1000 * (8 - i));
+  v1::Job& old = farm_.jobs[0];
+  old.set_submitted_ms(-3'600'000);
+  old.set_begun_ms(-2000);
+  old.set_core_seconds(5400);
+  old.set_cost(3.1);
+  add_job("open");
+  const std::string text = run(jobs_command, at({})).out;
+  for (const char* told : {"old0", "old4", "open", "10.0 s", "1.50 (3.10)"}) {
+    EXPECT_TRUE(has(text, told)) << text;
+  }
+  EXPECT_FALSE(has(text, "old5")) << "that ended before five others: " << text;
+}
+
+TEST_F(Client, AJobThatNobodyRendersWaits) {
+  add_job("ocean");
+  farm_.jobs[0].set_samples(100);
+  farm_.jobs[0].set_seconds_left(77);
+  for (const Command command : {jobs_command, status_command}) {
+    const std::string text = run(command, command == jobs_command ? at({}) : at({"ocean"})).out;
+    EXPECT_TRUE(has(text, "waiting")) << text;
+    EXPECT_FALSE(has(text, "1 min 17 s")) << text;
+  }
+  farm_.jobs[0].set_leased(2);
+  EXPECT_TRUE(has(run(jobs_command, at({})).out, "running"));
+  EXPECT_TRUE(has(run(status_command, at({"ocean"})).out, "1 min 17 s left"));
 }
 
 TEST_F(Client, JobsHaveIdsAndNames) {

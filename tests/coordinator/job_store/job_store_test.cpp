@@ -329,6 +329,8 @@ TEST(JobStore, FilesOfTheFirstSchemasAreBroughtUpToDate) {
                          "ALTER TABLE jobs DROP COLUMN core_ns; ALTER TABLE jobs DROP COLUMN "
                          "preview; ALTER TABLE jobs DROP COLUMN owner_proven; "
                          "ALTER TABLE jobs DROP COLUMN options; DROP TABLE secret; "
+                         "ALTER TABLE jobs DROP COLUMN samples_done; "
+                         "ALTER TABLE jobs DROP COLUMN begun_ms; "
                          "PRAGMA user_version=3",
                          nullptr, nullptr, nullptr),
             SQLITE_OK);

@@ -31,6 +31,7 @@ TEST(Steering, APausedJobRestsAlsoOverARestart) {
   v1::JobResponse now;
   ASSERT_TRUE(world.jobs->Pause(world.context().get(), about(job), &now).ok());
   EXPECT_EQ(now.job().state(), v1::JOB_STATE_PAUSED);
+  EXPECT_EQ(now.job().begun_ms(), 0) << "nobody has had any of it";
   world.stop();
   world.start();
   EXPECT_EQ(world.get(job).job().state(), v1::JOB_STATE_PAUSED);
@@ -56,10 +57,14 @@ TEST(Steering, ACancelledJobCanBeTakenUpAgainAndDeleted) {
     ASSERT_TRUE(world.jobs->Cancel(world.context().get(), about(job), &now).ok());
   }
   EXPECT_EQ(now.job().state(), v1::JOB_STATE_CANCELLED);
+  const v1::Job over = world.get(job).job();
+  EXPECT_GT(over.samples_done(), 0U) << "what 'retry' goes on with";
+  EXPECT_GE(over.begun_ms(), over.submitted_ms());
+  EXPECT_LE(over.begun_ms(), over.ended_ms());
   const grpc::Status late = world.jobs->Pause(world.context().get(), about(job), &now);
   EXPECT_EQ(late.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
   ASSERT_TRUE(world.jobs->Retry(world.context().get(), about(job), &now).ok());
-  EXPECT_GT(now.job().samples_done(), 0U) << "its films are still there";
+  EXPECT_EQ(now.job().samples_done(), over.samples_done()) << "its films are still there";
   const ScriptedWorker worker(world.address, world.script(2));
   ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
   for (int frame = 1; frame <= 3; ++frame) world.expect_truth(job, frame);
