@@ -8,6 +8,7 @@
 #include <string>
 
 #include "coordinator/controller/controller_options.h"
+#include "coordinator/controller/film_copies.h"
 #include "coordinator/controller/job_documents.h"
 #include "coordinator/controller/lease_proof.h"
 #include "coordinator/controller/state_lock.h"
@@ -34,6 +35,7 @@ struct ControllerContext {
   const std::unique_ptr<JobStore> store;
   const std::unique_ptr<farm::ContentStore> assets;
   JobDocuments documents{*assets, options.document_memory};
+  FilmCopies film_copies{options.film_memory / 4};
   const uint64_t incarnation;  ///< the number of this start
   const LeaseProofs proofs;
   const int64_t started_ms;  ///< since 1970, UTC

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "coordinator/controller/disk_watch.h"
 #include "coordinator/controller/not_found.h"
 #include "coordinator/controller/stored_outputs.h"
+#include "core/base/text.h"
 #include "core/film/film_exr.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
@@ -95,6 +97,29 @@ uint32_t most_listed(const v1::ListJobsRequest& request) {
 std::map<int32_t, FrameNote>::const_iterator above(const std::map<int32_t, FrameNote>& frames,
                                                    std::optional<int32_t> after) {
   return after ? frames.upper_bound(*after) : frames.begin();
+}
+
+/// The film, and the room that it takes, for as long as somebody has it.
+std::shared_ptr<const core::Film> kept_with(std::shared_ptr<const void> room, core::Film film) {
+  struct Kept {
+    std::shared_ptr<const void> room;
+    core::Film film;
+  };
+  const auto kept = std::make_shared<const Kept>(Kept{std::move(room), std::move(film)});
+  return {kept, &kept->film};
+}
+
+grpc::Status no_room_for_copy() {
+  return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
+                           "copies of films take as much memory as they may",
+                           std::chrono::seconds(2));
+}
+
+grpc::Status too_large(uint64_t bytes, const FilmCopies& copies) {
+  return {grpc::StatusCode::FAILED_PRECONDITION,
+          fmt::format("the film is too large to be shown while it is rendered: that takes {}, and "
+                      "may take {} (a quarter of --film-memory)",
+                      core::format_bytes(bytes), core::format_bytes(copies.most()))};
 }
 
 }  // namespace
@@ -290,17 +315,26 @@ grpc::Status JobQueries::kept_film(uint64_t id, int32_t frame, const FilmTaker& 
   if (!outputs) return farm::unavailable(outputs.error());
   for (const StoredOutput& output : *outputs) {
     if (!output.path.ends_with(".film.exr")) continue;
+    const auto room = room_for_picture(output.size);
+    if (!room) return no_room_for_copy();
     const auto bytes = read_output(context_.output_folder(id), output);
     if (!bytes) return {grpc::StatusCode::DATA_LOSS, bytes.error().message};
     auto file = core::read_film_exr(*bytes, output.path);
     if (!file) return {grpc::StatusCode::DATA_LOSS, file.error().message};
-    then(grpc::Status::OK, file->info, std::make_shared<const core::Film>(std::move(file->film)));
+    then(grpc::Status::OK, file->info, kept_with(room, std::move(file->film)));
     return grpc::Status::OK;
   }
   return {grpc::StatusCode::FAILED_PRECONDITION,
           fmt::format("there is no film of frame {} any more; 'keep_films: true' in the job keeps "
                       "those of finished frames",
                       frame)};
+}
+
+std::shared_ptr<const void> JobQueries::room_for_picture(uint64_t file_bytes) {
+  constexpr uint64_t kTimes = 40;  // of a PNG, or an EXR of zeros in most layers
+  constexpr uint64_t kLeast = uint64_t{16} << 20U;
+  FilmCopies& copies = context_.film_copies;
+  return copies.hold(std::min(std::max(kTimes * file_bytes, kLeast), copies.most()));
 }
 
 grpc::Status JobQueries::film(uint64_t id, int32_t frame, FilmTaker then) {
@@ -348,11 +382,16 @@ grpc::Status JobQueries::copy_film(uint64_t id, int32_t frame, std::optional<cor
   if (!active->film_store || !info) return nothing_yet();
   info->worker_class = noted->second.worker_class;
   // The film store's thread copies, as only it may look at films while they grow.
-  active->film_store->call([film_store = active->film_store.get(), frame, info = std::move(*info),
-                            then = std::move(then)] {
+  active->film_store->call([film_store = active->film_store.get(), copies = &context_.film_copies,
+                            frame, info = std::move(*info), then = std::move(then)] {
     const auto film = film_store->film(frame);
-    const auto copy = film ? std::make_shared<const core::Film>(*film) : nullptr;
-    then(copy ? grpc::Status::OK : nothing_yet(), info, copy);
+    if (!film) return then(nothing_yet(), info, nullptr);
+    const uint64_t bytes = film->memory() / 2 * 3;  // a picture is made of it
+    const auto room = copies->hold(bytes);
+    if (!room)
+      return then(bytes > copies->most() ? too_large(bytes, *copies) : no_room_for_copy(), info,
+                  {});
+    then(grpc::Status::OK, info, kept_with(room, core::Film(*film)));
   });
   return grpc::Status::OK;
 }

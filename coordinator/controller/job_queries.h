@@ -81,8 +81,12 @@ class JobQueries {
   using FilmTaker = std::function<void(const grpc::Status&, const core::FilmInfo&,
                                        std::shared_ptr<const core::Film>)>;
   /// A copy of the frame's film as it is now, or, where films are kept, was in the end; given to
-  /// `then` (which is quick), perhaps by another thread. May wait for the disk.
+  /// `then` (which is quick), perhaps by another thread. May wait for the disk. RESOURCE_EXHAUSTED
+  /// where there is no room for one (FilmCopies), FAILED_PRECONDITION where there never is.
   grpc::Status film(uint64_t job, int32_t frame, FilmTaker then) HYADES_EXCLUDES(state_lock);
+  /// Room for what is made of a file of so many bytes, a picture, for as long as the result is
+  /// kept; null where there is none now.
+  std::shared_ptr<const void> room_for_picture(uint64_t file_bytes);
   /// film() without what it is of, for which the job's document may have to be read.
   grpc::Status film_alone(uint64_t job, int32_t frame, FilmTaker then) HYADES_EXCLUDES(state_lock);
   /// What was done for the job where and when, as far as it is kept in memory. May wait for the

@@ -29,6 +29,12 @@ void JobSteering::pause(uint64_t id, JobReply then) { set_paused(id, true, std::
 
 void JobSteering::resume(uint64_t id, JobReply then) { set_paused(id, false, std::move(then)); }
 
+void JobSteering::note_watched(uint64_t id, int32_t frame) {
+  Turn turn(dispatcher_);
+  const ActiveJob* active = jobs_.find(id);
+  if (active != nullptr && !active->ending) turn.tell(FrameWatched{active->id, frame});
+}
+
 void JobSteering::set_paused(uint64_t id, bool paused, JobReply then) {
   change(id, std::move(then), [&](ActiveJob& active, Turn& turn) HYADES_REQUIRES(state_lock) {
     const StoredState wanted = paused ? StoredState::paused : StoredState::running;

@@ -41,6 +41,9 @@ class JobSteering {
   void resume(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
   /// The job ends as it is; one that waits to be recovered, too.
   void cancel(uint64_t job, JobReply then) HYADES_EXCLUDES(state_lock);
+  /// Somebody looks at the picture of a frame in work: for some seconds all of it is refined
+  /// together. Nobody is answered.
+  void note_watched(uint64_t job, int32_t frame) HYADES_EXCLUDES(state_lock);
   /// INVALID_ARGUMENT as check_priority() has it.
   void set_priority(uint64_t job, int priority, JobReply then) HYADES_EXCLUDES(state_lock);
 

@@ -122,6 +122,13 @@ struct LeasingHeld {
   bool held = false;
 };
 
+/// Somebody looks at the frame while it is rendered: for some seconds no tile gets ahead of the
+/// others by more than twice the samples, so that the whole picture refines.
+struct FrameWatched {
+  JobId job{};
+  int32_t frame = 0;
+};
+
 /// The worker is alive and still works on these leases: they are renewed. One that it does not
 /// name runs out, whatever became of it.
 struct WorkerAlive {
@@ -191,10 +198,11 @@ struct PersistFailed {
 /// Nothing but time has passed.
 struct Tick {};
 
-using Event = std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised,
-                           FramesRetried, FramesSuspected, FrameOpened, FrameRefused, FinishDone,
-                           FinishFailed, TileJudged, WorkerJoined, WorkRequested, LeasingHeld,
-                           WorkerAlive, ResultArrived, UnitFailed, UnitReturned, WorkerBarred,
-                           WorkerLost, WorkerForgotten, Persisted, PersistFailed, Tick>;
+using Event =
+    std::variant<JobAdded, JobPaused, JobResumed, JobCancelled, JobReprioritised, FramesRetried,
+                 FramesSuspected, FrameOpened, FrameRefused, FinishDone, FinishFailed, TileJudged,
+                 WorkerJoined, WorkRequested, LeasingHeld, FrameWatched, WorkerAlive, ResultArrived,
+                 UnitFailed, UnitReturned, WorkerBarred, WorkerLost, WorkerForgotten, Persisted,
+                 PersistFailed, Tick>;
 
 }  // namespace hyades::coordinator

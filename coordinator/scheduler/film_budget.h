@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 
 #include "coordinator/scheduler/scheduled_job.h"
 #include "coordinator/scheduler/step.h"
@@ -20,6 +22,8 @@ class FilmBudget {
 
   /// What all films take.
   uint64_t bytes() const { return bytes_; }
+  /// Whether films of the job's owner take more than half of what all may.
+  bool most_are_of(const ScheduledJob& job) const;
   /// Whether a film of the job fits beside those that are there.
   bool has_room(const ScheduledJob& job) const;
 
@@ -34,6 +38,7 @@ class FilmBudget {
   const uint64_t limit_;
   Step& step_;
   uint64_t bytes_ = 0;
+  std::map<std::string, uint64_t> bytes_of_;  ///< by owner
   bool refused_ = false;
 };
 

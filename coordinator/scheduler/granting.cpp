@@ -17,6 +17,8 @@ namespace {
 constexpr uint32_t kMaxWanted = 1U << 16;
 /// How long a worker waits that came too late for a frame.
 constexpr Duration kLookAgain = std::chrono::seconds(1);
+/// Pictures of frames in work are asked for again about every second by who looks at them.
+constexpr Duration kWatchedFor = std::chrono::seconds(10);
 /// How many frames of an owner's are considered that have workers enough.
 constexpr size_t kPlacesLookedAt = 12;
 
@@ -47,6 +49,12 @@ void Granting::on(const WorkRequested& e) {
 void Granting::on(const LeasingHeld& e) {
   held_ = e.held;
   step_.work_appeared = true;
+}
+
+void Granting::on(const FrameWatched& e) {
+  ScheduledJob* job = jobs_.find(e.job);
+  FrameSlot* slot = job != nullptr ? job->slot(e.frame) : nullptr;
+  if (slot != nullptr && slot->in_flight()) slot->watched_until = step_.now + kWatchedFor;
 }
 
 void Granting::on(const Tick&) {
@@ -127,11 +135,13 @@ std::optional<FramePlace> Granting::next_in_line(WorkerId id, const Worker& work
 /// The first frame of the share that the worker had better take; where all have workers enough, the
 /// one with most to do. Where a frame waits for room for its film `begun` is set, for all that
 /// follow: of these only frames that have begun count, so that a large film gets room some time.
+/// Who has taken most of the room himself holds up nobody else.
 std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
                                             const Worker& worker, bool fresh, bool& begun) {
   std::optional<FramePlace> roomiest;
   double most = -1;
   size_t looked = 0;
+  bool own = begun;
   for (const auto& [serial, job] : share.ready) {
     if (!ScheduledWorkers::may_join(*job, id, worker)) continue;
     if (job->plan.order == FrameOrder::progressive) {
@@ -145,8 +155,10 @@ std::optional<FramePlace> Granting::next_of(const FairShare& share, WorkerId id,
       const FramePlace place{job, slot};
       const FrameSlot& frame = place.frame();
       if (frame.phase == FramePhase::rendering && !frame.film) {
-        begun = begun || !film_fits(*job, frame);
-        if (begun) continue;
+        const bool fits = film_fits(*job, frame);
+        own = own || !fits;
+        begun = begun || (!fits && !films_.most_are_of(*job));
+        if (own) continue;
       }
       const Welcome welcome = welcome_at(place, id, worker, fresh);
       if (welcome == Welcome::yes) return place;
@@ -228,8 +240,8 @@ bool Granting::grant_from(const FramePlace& place, WorkerId id, Worker& worker, 
   if (grant_check(place, id, worker, allowed)) return true;
   std::vector<Extent> extents;
   while (extents.size() < (ahead ? 1 : worker.wanted)) {
-    const auto extent = slot.ledger->next(
-        allowed, [&](uint32_t tile) { return run_length_of(job, *slot.ledger, tile); });
+    const auto extent =
+        slot.ledger->next(allowed, [&](uint32_t tile) { return run_length_of(job, slot, tile); });
     if (!extent) break;
     copies_.note(place, leases_.assign(slot, *extent, id), worker.worker_class);
     extents.push_back(*extent);
@@ -243,8 +255,9 @@ bool Granting::grant_from(const FramePlace& place, WorkerId id, Worker& worker, 
   return true;
 }
 
-uint32_t Granting::run_length_of(const ScheduledJob& job, const FrameLedger& ledger,
+uint32_t Granting::run_length_of(const ScheduledJob& job, const FrameSlot& slot,
                                  uint32_t tile) const {
+  const FrameLedger& ledger = *slot.ledger;
   const double cost = job.batch_seconds(tile);
   if (cost <= 0) return 1;
   uint64_t left = std::max(jobs_.offered(), ledger.free());
@@ -252,7 +265,7 @@ uint32_t Granting::run_length_of(const ScheduledJob& job, const FrameLedger& led
     left += job.waiting * ledger.total();
   }
   uint64_t run = run_length(cost, options_.unit_time, left, workers_.threads());
-  if (job.plan.order == FrameOrder::progressive) {
+  if (job.plan.order == FrameOrder::progressive || step_.now < slot.watched_until) {
     // No tile gets ahead of its frame's pass.
     const uint32_t pass = pass_of(ledger, job.grid.size());
     run = std::min(run, uint64_t{1} << std::min(pass == 0 ? 0 : pass - 1, 31U));

@@ -27,6 +27,7 @@ class Granting {
 
   void on(const WorkRequested& e);
   void on(const LeasingHeld& e);
+  void on(const FrameWatched& e);
   void on(const Tick& e);
 
   /// Whether units are leased now: what is delivered can be made durable.
@@ -60,7 +61,7 @@ class Granting {
                                         const ScheduledJob& first, bool loads) const;
   bool has_work_for(const ScheduledJob& job, const FrameSlot& slot, WorkerId id,
                     const Worker& worker) const;
-  uint32_t run_length_of(const ScheduledJob& job, const FrameLedger& ledger, uint32_t tile) const;
+  uint32_t run_length_of(const ScheduledJob& job, const FrameSlot& slot, uint32_t tile) const;
   bool film_fits(const ScheduledJob& job, const FrameSlot& slot) const;
   bool any_film_in_work() const;
 

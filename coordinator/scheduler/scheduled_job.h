@@ -46,6 +46,7 @@ struct FrameSlot {
   uint64_t assigned_threads = 0;     ///< of the workers that render it
   uint64_t prefetching_threads = 0;  ///< of those that load its scene while they render another
   TimePoint last_leased;
+  TimePoint watched_until;  ///< somebody looks at its picture
   /// Since when no worker is there that may render it; nothing where one is.
   std::optional<TimePoint> orphaned;
   /// Since when its class is watched, as it may be somebody's invention, and how many of its

@@ -77,6 +77,7 @@ std::vector<Action> Scheduler::handle(const Event& event, TimePoint now) {
           [&](const WorkerForgotten& e) { p.worker_lifecycle.on(e); },
           [&](const WorkRequested& e) { p.granting.on(e); },
           [&](const LeasingHeld& e) { p.granting.on(e); },
+          [&](const FrameWatched& e) { p.granting.on(e); },
           [&](const ResultArrived& e) { p.results.on(e); },
           [&](const UnitFailed& e) { p.results.on(e); },
           [&](const UnitReturned& e) { p.results.on(e); },

@@ -143,6 +143,8 @@ WebReply PicturesApi::of_file(const Asked& asked, const ByteBudget::Owner& owner
   const std::string tag = "\"" + farm::hex_from_wire(best->sha256) + "\"";
   if (const auto made = find(asked, tag, true)) return *made;
   if (!has_room(owner)) return too_many();
+  const auto room = controller_.queries().room_for_picture(best->size);
+  if (!room) return too_many();
   const auto bytes = read_output(controller_.output_folder(asked.job), *best);
   if (!bytes) return error_reply(damaged_output(best->path));
   auto image = core::read_image(*bytes, best->path);
@@ -203,6 +205,7 @@ void PicturesApi::begin_some() {
 }
 
 void PicturesApi::take_film(FrameId id) {
+  controller_.steering().note_watched(id.first, id.second);
   // As of before the film, so that the picture never claims more than it shows.
   FrameNow now;
   grpc::Status status = controller_.queries().frame_now(id.first, id.second, now);

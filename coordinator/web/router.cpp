@@ -1,14 +1,18 @@
 #include "coordinator/web/router.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "coordinator/web/request_target.h"
+#include "core/base/text.h"
 
 namespace hyades::coordinator {
 namespace {
@@ -38,6 +42,18 @@ std::optional<std::map<std::string, std::string>> match(const std::vector<std::s
   }
   if (path.size() > pattern.size()) return std::nullopt;
   return found;
+}
+
+/// Whether a browser asks for what is a view of the dashboard.
+bool is_view(const WebRequest& request) {
+  static const std::set<std::string> kViews = {"jobs", "workers", "submit"};
+  const auto is_plain = [](const std::string& part) {
+    return std::all_of(part.begin(), part.end(),
+                       [](char c) { return core::is_letter_or_digit(c) || c == '-'; });
+  };
+  return request.method == "GET" && !request.path.empty() && kViews.contains(request.path[0]) &&
+         request.header("accept").find("text/html") != std::string::npos &&
+         std::all_of(request.path.begin(), request.path.end(), is_plain);
 }
 
 }  // namespace
@@ -71,6 +87,13 @@ void Router::answer(WebRequest request, const Answer& answer) const {
   }
   std::string path;
   for (const std::string& part : request.path) path += "/" + part;
+  if (allowed.empty() && is_view(request)) {
+    // Views stand behind the '#': who types their address without it is brought there.
+    WebReply there;
+    there.status = 302;
+    there.headers = {{"Location", "/#" + path}, {"Cache-Control", "no-store"}};
+    return answer(there);
+  }
   if (allowed.empty()) {
     answer(error_reply({grpc::StatusCode::NOT_FOUND, fmt::format("there is no '{}' here", path)}));
     return;

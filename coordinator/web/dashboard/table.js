@@ -26,13 +26,14 @@ export class Table {
       this.bottom,
     );
     this.heads = columns.map((column) => this.head(column));
-    this.nothing = h('div', { class: 'table-empty' });
+    this.nothing = h('div', { class: 'table-empty' }, h('p', { class: 'soft', text: 'Loading…' }));
     this.table = h(
       'table',
       { role: 'table', 'aria-label': label, testid, class: cards ? 'cards' : null },
       h('thead', { role: 'rowgroup' }, h('tr', { role: 'row', 'aria-rowindex': 1 }, this.heads)),
       this.body,
     );
+    this.table.hidden = true;
     this.node = h('div', { class: 'table' }, this.table, this.nothing);
     this.draw = oncePerFrame(() => this.layout());
     addEventListener('scroll', this.draw, { passive: true });

@@ -122,6 +122,21 @@ TEST_F(FilmRoom, SmallFilmsDoNotOvertakeForEver) {
   expect_bert_gets(kOther);
 }
 
+// Who has filled the memory with his own films waits for himself alone.
+TEST_F(FilmRoom, WhoHasTakenMostOfTheRoomHoldsUpNobodyElse) {
+  JobPlan hog = plan(60);
+  hog.owner = "mal";
+  JobPlan small = plan(10);
+  small.owner = "vic";
+  add(kJob, hog);
+  const Lease lease = b.ask(kAnna);
+  b.deliver_durably(lease);  // now it is being finished
+  add(kOther, hog);
+  add(kThird, small);
+  b.tell(WorkRequested{kBert, 1});
+  expect_bert_gets(kThird);
+}
+
 TEST_F(FilmRoom, FilmsFromBeforeARestartTakeRoom) {
   RestoredJob restored;
   restored.accepted.push_back({{1, {0, 0, 32, 32}, {0, 1}}, digest(1), "class"});

@@ -120,6 +120,25 @@ TEST(Preference, ProgressiveJobsSeeEveryFrameEarly) {
   EXPECT_EQ(longest, 2U) << "the last pass doubles";
 }
 
+TEST(Preference, AFrameThatSomebodyLooksAtIsRefinedAsAWhole) {
+  Bench b;
+  b.join(kAnna);
+  b.add(small_plan({1}, 64));  // of 2 tiles
+  b.tell(FrameOpened{kJob, 1});
+  const auto next_run = [&] {
+    const Lease lease = b.ask(kAnna);
+    b.deliver_durably(lease);
+    return lease.units[0].batches.count;
+  };
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(next_run(), 1U) << "what a batch costs is not known yet";
+  b.tell(FrameWatched{kJob, 1});
+  EXPECT_EQ(next_run(), 1U) << "nobody has more than twice what others have";
+  EXPECT_EQ(next_run(), 1U);
+  b.now += seconds(11);
+  EXPECT_GT(next_run(), 8U) << "nobody looks any more, and long units cost less";
+  b.tell(FrameWatched{JobId{77}, 1});  // of a job that is over
+}
+
 TEST(Preference, AWorkerStaysWithTheSceneThatItHas) {
   SchedulerOptions options;
   options.unit_time = milliseconds(1);  // a batch
