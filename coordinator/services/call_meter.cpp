@@ -5,9 +5,11 @@
 #include <chrono>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include <grpcpp/support/byte_buffer.h>
 
+#include "coordinator/access/address.h"
 #include "coordinator/access/audit_log.h"
 #include "coordinator/meters/meters.h"
 #include "coordinator/operations/operation.h"
@@ -19,6 +21,7 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::Interceptor;
 using grpc::experimental::InterceptorBatchMethods;
 using grpc::experimental::ServerRpcInfo;
+using Broken = std::function<void(const std::string& address)>;
 
 /// As gRPC writes it: "NOT_FOUND".
 std::string name_of(grpc::StatusCode code) {
@@ -41,14 +44,17 @@ bool is_unary(const std::string& method) {
 
 class CallMeter final : public Interceptor {
  public:
-  CallMeter(Meters& meters, const ServerRpcInfo& info)
+  CallMeter(Meters& meters, const Broken& broken, ServerRpcInfo& info)
       : meters_(meters),
+        broken_(broken),
+        address_(address_of_peer(info.server_context()->peer())),
         method_(short_name(info.method())),
         unary_(is_unary(method_)),
         begun_(std::chrono::steady_clock::now()) {}
 
   /// A call that was broken off has no status.
   ~CallMeter() override {
+    if (code_ == grpc::StatusCode::CANCELLED) broken_(address_);
     meters_.called(method_, name_of(code_).c_str(), unary_,
                    std::chrono::steady_clock::now() - begun_);
   }
@@ -75,6 +81,8 @@ class CallMeter final : public Interceptor {
 
  private:
   Meters& meters_;
+  const Broken& broken_;
+  const std::string address_;
   const std::string method_;
   const bool unary_;
   const std::chrono::steady_clock::time_point begun_;
@@ -83,21 +91,22 @@ class CallMeter final : public Interceptor {
 
 class Factory final : public grpc::experimental::ServerInterceptorFactoryInterface {
  public:
-  explicit Factory(Meters& meters) : meters_(meters) {}
+  Factory(Meters& meters, Broken broken) : meters_(meters), broken_(std::move(broken)) {}
   Interceptor* CreateServerInterceptor(ServerRpcInfo* info) override {
-    return new CallMeter(meters_, *info);  // gRPC deletes it
+    return new CallMeter(meters_, broken_, *info);  // gRPC deletes it
   }
 
  private:
   Meters& meters_;
+  const Broken broken_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> count_calls(
-    Meters& meters) {
+    Meters& meters, Broken broken) {
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> all;
-  all.push_back(std::make_unique<Factory>(meters));
+  all.push_back(std::make_unique<Factory>(meters, std::move(broken)));
   return all;
 }
 

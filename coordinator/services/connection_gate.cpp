@@ -117,6 +117,7 @@ void ConnectionGate::mark_known(const std::string& address, const std::string& t
   if (found == by_address_.end()) return;
   const Id id = found->second;
   Connection& connection = connections_.at(id);
+  connection.calls = 0;
   if (connection.known) return;
   strangers_.know(id, std::chrono::steady_clock::now());
   if (has_place_for(token_id)) {
@@ -136,15 +137,38 @@ void ConnectionGate::mark_unknown(const std::string& address) {
   const auto found = by_address_.find(address);
   if (found == by_address_.end()) return;
   Connection& connection = connections_.at(found->second);
-  if (connection.known || ++connection.calls < limits_.stranger_calls) return;
+  if (++connection.calls < limits_.stranger_calls) return;
   drop(found->second);
   wake();
+}
+
+void ConnectionGate::note_broken(const std::string& address) {
+  const core::MutexLock lock(mutex_);
+  const auto found = by_address_.find(address);
+  if (found == by_address_.end()) return;
+  Connection& connection = connections_.at(found->second);
+  if (!connection.known) return;  // of a stranger bytes are bounded
+  const Time now = std::chrono::steady_clock::now();
+  if (!connection.broken) {
+    connection.broken.emplace(limits_.broken_calls, limits_.broken_calls_per_second, now);
+  }
+  if (connection.broken->take(now)) return;
+  std::erase_if(resting_, [&](const auto& other) { return other.second <= now; });
+  if (!connection.token_id.empty()) resting_[connection.token_id] = now + limits_.broken_rest;
+  drop(found->second);
+  wake();
+}
+
+bool ConnectionGate::rests(const std::string& token_id) const {
+  const auto until = resting_.find(token_id);
+  return until != resting_.end() && std::chrono::steady_clock::now() < until->second;
 }
 
 bool ConnectionGate::has_place_for(const std::string& token_id) const {
   const size_t free = limits_.known - known_;
   const auto own = known_by_.find(token_id);
-  return free > 0 && (token_id.empty() || own == known_by_.end() || own->second < free);
+  return free > 0 && !rests(token_id) &&
+         (token_id.empty() || own == known_by_.end() || own->second < free);
 }
 
 ConnectionGate::Count ConnectionGate::count() const {

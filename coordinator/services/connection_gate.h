@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "coordinator/access/token_bucket.h"
 #include "coordinator/services/listening.h"
 #include "coordinator/services/stranger_queue.h"
 #include "core/base/descriptor.h"
@@ -33,8 +34,15 @@ class ConnectionGate {
     uint32_t stranger_bytes = uint32_t{16} << 10U;
     uint32_t stranger_bytes_at_once = uint32_t{4} << 10U;
     std::chrono::milliseconds stranger_pace{250};
-    /// Calls without a token that is one, after which a stranger goes.
+    /// Calls in a row without a token that is one, after which somebody goes: a stranger, or who
+    /// was known by a token that is revoked since.
     int stranger_calls = 8;
+    /// Calls that one who is known may break off at once, and how many more each second. gRPC keeps
+    /// twenty kilobytes of each until it comes to it. Who breaks off more goes, and nobody comes in
+    /// by the token for a while.
+    double broken_calls = 100;
+    double broken_calls_per_second = 5;
+    std::chrono::seconds broken_rest{10};
     /// Connections of those that are known; also bounded by the files that may be open. With one
     /// token as many as are free at most, so half of them, and then who has another comes in.
     size_t known = 20'000;
@@ -61,6 +69,9 @@ class ConnectionGate {
   /// Whoever called from there has shown no token that is one. Thread-safe.
   void mark_unknown(const std::string& address);
 
+  /// A call from there was broken off before it was answered. Thread-safe.
+  void note_broken(const std::string& address);
+
   /// How many there are.
   struct Count {
     size_t waiting = 0;
@@ -79,7 +90,8 @@ class ConnectionGate {
     std::string token_id{};               ///< by which it became known; empty: none
     std::optional<uint32_t> beginning{};  ///< of what it sends (take_beginning())
     uint32_t bound = 0;                   ///< of what is let in of a stranger
-    int calls = 0;                        ///< of a stranger
+    int calls = 0;                        ///< in a row without a token that is one
+    std::optional<TokenBucket> broken{};  ///< calls that may be broken off
   };
 
   void run();
@@ -92,6 +104,7 @@ class ConnectionGate {
   int enter(Id id) HYADES_REQUIRES(mutex_);
   void drop(Id id) HYADES_REQUIRES(mutex_);
   bool has_place_for(const std::string& token_id) const HYADES_REQUIRES(mutex_);
+  bool rests(const std::string& token_id) const HYADES_REQUIRES(mutex_);
   void look_at_strangers(Time now) HYADES_REQUIRES(mutex_);
   void wake() const;
 
@@ -110,6 +123,7 @@ class ConnectionGate {
   Time trim_again_ HYADES_GUARDED_BY(mutex_);  ///< memory
   size_t known_ HYADES_GUARDED_BY(mutex_) = 0;
   std::unordered_map<std::string, size_t> known_by_ HYADES_GUARDED_BY(mutex_);  ///< by token
+  std::unordered_map<std::string, Time> resting_ HYADES_GUARDED_BY(mutex_);  ///< tokens, until when
   Id next_id_ HYADES_GUARDED_BY(mutex_);
   /// No file could be opened: when it is tried again.
   std::optional<Time> accept_again_ HYADES_GUARDED_BY(mutex_);

@@ -40,7 +40,11 @@ class Service::UnaryCall final : public RequestCall {
         service_(service),
         operation_(operation),
         work_(std::make_shared<Work>()) {
-    const grpc::Status admitted = service.admission_.check(context, operation.rule, work_->caller);
+    grpc::Status admitted = service.admission_.check(context, operation.rule, work_->caller);
+    if (admitted.ok()) {
+      waiting_.emplace(service.waiting_, ByteBudget::owner_of(work_->caller));
+      if (!waiting_->try_hold(kCallBytes)) admitted = too_much_unread();
+    }
     if (admitted.ok()) {
       ask(service.patience_);
     } else {
@@ -115,7 +119,6 @@ class Service::UnaryCall final : public RequestCall {
   void respond() {
     // Nobody asks for what was asked any more, and the answer may wait.
     asked_.Clear();
-    waiting_.emplace(service_.waiting_, ByteBudget::owner_of(work_->caller));
     work_.reset();
     if (!waiting_->try_hold(said_.Length() + kCallBytes)) {
       said_.Clear();
@@ -128,7 +131,7 @@ class Service::UnaryCall final : public RequestCall {
   const Operation& operation_;
   std::shared_ptr<Work> work_;
   Bytes said_;
-  std::optional<ByteBudget::Share> waiting_;  ///< of the answer, until it has been read
+  std::optional<ByteBudget::Share> waiting_;  ///< of the call and its answer, until it was read
 };
 
 /// A call that a stream answers.
@@ -138,6 +141,7 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
       : RequestCall(context), admission_(service.admission_), make_(make), context_(context) {
     grpc::Status refused = admission_.check(context, rule, caller_);
     counted_.emplace(service.waiting_, ByteBudget::owner_of(caller_));
+    if (refused.ok() && !counted_->try_hold(kCallBytes)) refused = too_much_unread();
     if (refused.ok()) entry_ = count_connection(service.at_.controller, caller_, refused);
     if (refused.ok()) {
       ask(service.patience_);
@@ -147,7 +151,7 @@ class Service::StreamCall final : public RequestCall, public OutgoingCall {
   }
 
   void OnWriteDone(bool ok) override {
-    counted_->hold(0);
+    counted_->hold(kCallBytes);
     stream_->written(ok);
   }
   void OnCancel() override {

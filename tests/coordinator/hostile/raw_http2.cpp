@@ -107,10 +107,11 @@ uint64_t RawHttp2::endless_headers(uint64_t most) {
   return sent;
 }
 
-uint64_t RawHttp2::broken_calls(const std::string& path, uint64_t most) {
+uint64_t RawHttp2::broken_calls(const std::string& path, uint64_t most,
+                                const std::vector<std::pair<std::string, std::string>>& headers) {
   uint64_t sent = 0;
   while (sent < most && connected_) {
-    const uint32_t id = call(path);
+    const uint32_t id = call(path, headers);
     frame(kReset, 0, id, big_endian(8, 4));
     sent += 200;
     read(0);

@@ -38,7 +38,8 @@ class RawHttp2 {
   /// other side has ended the connection.
   uint64_t endless_headers(uint64_t most);
   /// Begins calls and breaks them off at once, up to so many bytes; the same.
-  uint64_t broken_calls(const std::string& path, uint64_t most);
+  uint64_t broken_calls(const std::string& path, uint64_t most,
+                        const std::vector<std::pair<std::string, std::string>>& headers = {});
 
   /// Sends bytes of the call's messages as fast as the other side wants them; how many have gone
   /// when it has had no wish for more for half a second, or the call was over.

@@ -328,5 +328,47 @@ TEST_F(ConnectionGateTest, AnAddressIsTheSameAtASocketForBothFamilies) {
   EXPECT_TRUE(holds(0, 0, 1));
 }
 
+TEST_F(ConnectionGateTest, WhoseTokenIsRevokedGoesAfterAFewCalls) {
+  limits.stranger_calls = 3;
+  open();
+  PlainCaller caller(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  gate->mark_known(caller.address(), "ada");
+  ASSERT_TRUE(holds(0, 0, 1));
+  gate->mark_unknown(caller.address());
+  gate->mark_unknown(caller.address());
+  gate->mark_known(caller.address(), "ada");  // behind a proxy others may call by it
+  gate->mark_unknown(caller.address());
+  gate->mark_unknown(caller.address());
+  EXPECT_FALSE(caller.ended(100ms));
+  gate->mark_unknown(caller.address());
+  EXPECT_TRUE(caller.ended(20s));
+  EXPECT_TRUE(holds(0, 0, 0));
+}
+
+TEST_F(ConnectionGateTest, WhoBreaksCallAfterCallOffGoesAndRests) {
+  limits.broken_calls = 10;
+  limits.broken_calls_per_second = 0;
+  limits.broken_rest = 1h;
+  open();
+  PlainCaller caller(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  for (int i = 0; i < 20; ++i) gate->note_broken(caller.address());
+  EXPECT_FALSE(caller.ended(100ms)) << "a stranger's bytes are bounded instead";
+  gate->mark_known(caller.address(), "ada");
+  for (int i = 0; i < 10; ++i) gate->note_broken(caller.address());
+  EXPECT_FALSE(caller.ended(100ms));
+  gate->note_broken(caller.address());
+  EXPECT_TRUE(caller.ended(20s));
+  PlainCaller again(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  gate->mark_known(again.address(), "ada");
+  EXPECT_TRUE(again.ended(20s)) << "by that token nobody comes in for a while";
+  PlainCaller other(port);
+  ASSERT_TRUE(holds(0, 1, 0));
+  gate->mark_known(other.address(), "bob");
+  EXPECT_TRUE(holds(0, 0, 1));
+}
+
 }  // namespace
 }  // namespace hyades::coordinator
