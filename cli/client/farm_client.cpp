@@ -233,6 +233,12 @@ Outcome FarmClient::fetch(v1::FetchRequest request, uint64_t size,
   return stream(&v1::Jobs::Stub::Fetch, request, transfer_time(size), on_chunk, stopped);
 }
 
+core::FilmLimits FarmClient::film_limits(const std::string& packed) const {
+  core::FilmLimits limits;
+  limits.max_bytes = options_.most_bytes - std::min<uint64_t>(options_.most_bytes, packed.size());
+  return limits;
+}
+
 Outcome FarmClient::film(uint64_t job, int32_t frame, v1::FilmHeader& header, std::string& bytes,
                          const std::function<void(uint64_t)>& on_progress) {
   v1::FilmRequest request;

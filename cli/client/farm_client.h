@@ -18,6 +18,7 @@
 #include "core/base/assets.h"
 #include "core/base/machine.h"
 #include "core/base/result.h"
+#include "core/film/film_codec.h"
 #include "farm/channel.h"
 #include "hyades/v1/admin.grpc.pb.h"
 #include "hyades/v1/assets.grpc.pb.h"
@@ -60,6 +61,9 @@ class FarmClient {
       return (stub.*method)(&context, request, &response);
     });
   }
+
+  /// What of a film may be kept, packed and unpacked together [bytes].
+  core::FilmLimits film_limits(const std::string& packed) const;
 
   /// Counts a part of a list in `bytes`; a failure where all of them are too much to keep.
   Outcome count_part(const google::protobuf::Message& part, uint64_t& bytes) const;

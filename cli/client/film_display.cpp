@@ -116,7 +116,7 @@ bool FilmDisplay::show_film(int32_t frame) {
   v1::FilmHeader header;
   std::string bytes;
   if (client_->film(job_, frame, header, bytes)) return false;
-  const auto film = core::decode_film(std::as_bytes(std::span(bytes)));
+  const auto film = core::decode_film(std::as_bytes(std::span(bytes)), client_->film_limits(bytes));
   if (!film || film->window().empty()) return false;
   show(frame, film->normalised());
   return true;

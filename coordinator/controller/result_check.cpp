@@ -41,9 +41,9 @@ bool is_of(const core::Film& film, const ExpectedFilm& expected, const core::Uni
 
 }  // namespace
 
-std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
-                                                   const std::optional<ExpectedFilm>& expected,
-                                                   const LeaseProofs& proofs) {
+std::optional<ResultRefusal> check_claim(const v1::UnitResult& result,
+                                         const std::optional<ExpectedFilm>& expected,
+                                         const LeaseProofs& proofs) {
   const auto unit = farm::from_wire(result.unit());
   if (!unit) return ResultRefusal{Rejected::REASON_MALFORMED, unit.error().message};
   const auto digest = farm::digest_from_wire(result.digest());
@@ -52,21 +52,28 @@ std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
   if (!proofs.holds(result.unit().proof(), expected->worker, JobId{result.job()}, *unit)) {
     return ResultRefusal{Rejected::REASON_UNKNOWN, "the unit was not leased to this worker"};
   }
+  return std::nullopt;
+}
+
+std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
+                                                   const ExpectedFilm& expected) {
+  const core::Unit unit = *farm::from_wire(result.unit());
+  const Digest digest = *farm::digest_from_wire(result.digest());
   const std::span<const std::byte> bytes = std::as_bytes(std::span(result.film()));
-  auto film = core::decode_film(bytes, {most_memory(*expected, *unit)});
+  auto film = core::decode_film(bytes, {most_memory(expected, unit), 1});
   if (!film) return ResultRefusal{Rejected::REASON_DAMAGED, film.error().message};
-  if (!is_of(*film, *expected, *unit)) {
+  if (!is_of(*film, expected, unit)) {
     return ResultRefusal{Rejected::REASON_MALFORMED,
                          "the film is not of the unit that it is said to be of"};
   }
-  if (film->digest() != core::to_hex(*digest)) {
+  if (film->digest() != core::to_hex(digest)) {
     return ResultRefusal{Rejected::REASON_DAMAGED, "the film is not what its digest says"};
   }
   Delivery delivery;
-  delivery.unit.worker_class = expected->worker_class;
-  delivery.unit.unit = *unit;
-  delivery.unit.digest = *digest;
-  delivery.record = encode_delivered(delivery.unit, expected->key, bytes);
+  delivery.unit.worker_class = expected.worker_class;
+  delivery.unit.unit = unit;
+  delivery.unit.digest = digest;
+  delivery.record = encode_delivered(delivery.unit, expected.key, bytes);
   delivery.film = std::move(*film);
   return delivery;
 }

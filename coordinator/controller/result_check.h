@@ -39,11 +39,16 @@ struct ResultRefusal {
   uint32_t retry_after_ms = 0;  ///< with REASON_NOT_NOW: when the worker is to send it again
 };
 
-/// Decodes a result and checks all that depends on its bytes alone; slow. What shows no proof that
-/// it was leased to its worker is refused before: what is said to be of a large tile may take much
-/// memory. `expected` is nothing where there is no such job.
+/// Checks what is known without the film: a proof that its unit was leased to the worker above all,
+/// for what is said to be of a large tile may take much memory. `expected` is nothing where there
+/// is no such job.
+std::optional<ResultRefusal> check_claim(const v1::UnitResult& result,
+                                         const std::optional<ExpectedFilm>& expected,
+                                         const LeaseProofs& proofs);
+
+/// Decodes a result for which check_claim() has found nothing wrong, and checks all that depends on
+/// its bytes alone; slow.
 std::variant<Delivery, ResultRefusal> check_result(const v1::UnitResult& result,
-                                                   const std::optional<ExpectedFilm>& expected,
-                                                   const LeaseProofs& proofs);
+                                                   const ExpectedFilm& expected);
 
 }  // namespace hyades::coordinator

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -16,6 +18,7 @@
 #include "coordinator/controller/worker_sessions.h"
 #include "coordinator/meters/meters.h"
 #include "core/base/wall_clock.h"
+#include "core/film/film_codec.h"
 #include "farm/wire.h"
 
 namespace hyades::coordinator {
@@ -26,12 +29,25 @@ constexpr uint32_t kCrowdedRetryMs = 500;
 constexpr uint32_t kFullRetryMs = 2000;
 /// Nanoseconds that a unit counts for at most, so that no worker makes a job more expensive.
 constexpr uint64_t kLongestRendering = 7ULL * 24 * 3600 * 1'000'000'000;
+/// What a film may take that is unpacked while others are; of larger ones it is one at a time.
+constexpr uint64_t kLargeFilm = uint64_t{64} << 20U;
+constexpr uint32_t kMostBadFilms = 20;
+
+ResultRefusal too_many_wait() {
+  return {v1::Rejected::REASON_NOT_NOW, "more films wait to be unpacked than may", kCrowdedRetryMs};
+}
+
+v1::LeasedUnit named_unit(const v1::UnitResult& result) {
+  v1::LeasedUnit named;
+  *named.mutable_lease() = result.lease();
+  named.set_job(result.job());
+  return named;
+}
 
 }  // namespace
 
-void WorkerSessions::receive(WorkerId worker, const WorkerLink* link,
-                             const v1::WorkerMessage& message) {
-  if (message.has_result()) return on_result(worker, link, message.result());
+void WorkerSessions::receive(WorkerId worker, const WorkerLink* link, v1::WorkerMessage message) {
+  if (message.has_result()) return on_result(worker, link, std::move(*message.mutable_result()));
   Turn turn(dispatcher_);
   WorkerSession* session = workers_.find(worker, link);
   if (session == nullptr) return;
@@ -148,35 +164,110 @@ void WorkerSessions::on_leaving(WorkerSession& session, const v1::Leaving& leavi
   turn.tell(WorkerBarred{session.id, true});
 }
 
-void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link,
-                               const v1::UnitResult& result) {
+struct WorkerSessions::Film {
+  WorkerId worker{};
+  std::shared_ptr<WorkerLink> link;
+  v1::UnitResult result;
+  ExpectedFilm expected;
+  TimePoint came;
+  std::string owner;  ///< who has let the worker in
+};
+
+/// Decides by what is known without unpacking the film, and has it unpacked.
+void WorkerSessions::on_result(WorkerId worker, const WorkerLink* link, v1::UnitResult result) {
   context_.meters->film_bytes(result.film().size());
+  const auto film = std::make_shared<Film>();
+  film->worker = worker;
+  film->came = std::chrono::steady_clock::now();
   std::optional<ExpectedFilm> expected;
-  const TimePoint came = std::chrono::steady_clock::now();
   {
     const StateLock lock(context_.mutex);
     WorkerSession* session = workers_.find(worker, link);
     if (session == nullptr) return;
-    session->heard = came;
+    session->heard = film->came;
     session->heard_ms = core::wall_ms();
+    film->link = session->link;
+    film->owner = session->joined_with.empty() ? session->owner : session->joined_with;
     if (const ActiveJob* active = jobs_.find(result.job())) {
       expected = {active->layout, active->region, active->key, session->hello.worker_id(),
                   session->hello.worker_class()};
     }
   }
-  std::variant<Delivery, ResultRefusal> checked = check_result(result, expected, context_.proofs);
+  std::optional<ResultRefusal> refusal = check_claim(result, expected, context_.proofs);
+  const bool large = core::memory_to_decode(std::as_bytes(std::span(result.film()))) > kLargeFilm;
+  if (expected) film->expected = std::move(*expected);
+  film->result = std::move(result);
+  if (!refusal) refusal = have_unpacked(film, large ? large_unpackers_ : unpackers_);
+  if (!refusal) return;
   Turn turn(dispatcher_);
   WorkerSession* session = workers_.find(worker, link);
   if (session == nullptr) return;
+  reject(*session, film->result, *refusal, turn);
+  want(*session, film->result.want(), turn);
+}
+
+std::optional<ResultRefusal> WorkerSessions::have_unpacked(const std::shared_ptr<Film>& film,
+                                                           farm::ThreadPool& pool) {
+  const StateLock lock(context_.mutex);
+  if (auto later = not_now(film->result)) return later;
+  const uint64_t bytes = film->result.film().size();
+  const uint64_t own = packed_of_[film->owner] + bytes;
+  if (packed_ + bytes > kMostPacked || own > kMostPacked / 2 ||
+      !pool.submit([this, film] { unpack(film); }, film->owner)) {
+    return too_many_wait();
+  }
+  packed_ += bytes;
+  packed_of_[film->owner] = own;
+  return std::nullopt;
+}
+
+void WorkerSessions::unpack(const std::shared_ptr<Film>& film) {
+  const v1::UnitResult& result = film->result;
+  std::variant<Delivery, ResultRefusal> checked = check_result(result, film->expected);
+  Turn turn(dispatcher_);
+  packed_ -= result.film().size();
+  const auto own = packed_of_.find(film->owner);
+  own->second -= result.film().size();
+  if (own->second == 0) packed_of_.erase(own);
+  WorkerSession* session = workers_.find(film->worker, film->link.get());
+  if (session == nullptr) return;
   std::optional<ResultRefusal> refusal;
   if (auto* delivery = std::get_if<Delivery>(&checked)) {
-    delivery->rendered.came = came;
+    delivery->rendered.came = film->came;
     refusal = deliver(*session, result, *delivery, turn);
   } else {
     refusal = std::get<ResultRefusal>(std::move(checked));
   }
-  if (refusal) refuse(*session, result, *refusal, turn);
+  if (refusal) reject(*session, result, *refusal, turn);
   want(*session, result.want(), turn);
+}
+
+/// Who sends one film that is none after the other is cut off, and has to come again.
+void WorkerSessions::reject(WorkerSession& session, const v1::UnitResult& result,
+                            const ResultRefusal& refusal, Turn& turn) {
+  refuse(session, result, refusal, turn);
+  const bool bad = refusal.reason == v1::Rejected::REASON_DAMAGED ||
+                   refusal.reason == v1::Rejected::REASON_MALFORMED;
+  if (!bad) return;
+  if (++session.bad_films < kMostBadFilms) return;
+  session.bad_films = 0;
+  if (session.link) {
+    session.link->close({grpc::StatusCode::INVALID_ARGUMENT, "film after film that is none"});
+  }
+}
+
+/// Why no film of the job is taken at the moment.
+std::optional<ResultRefusal> WorkerSessions::not_now(const v1::UnitResult& result) {
+  using Rejected = v1::Rejected;
+  if (disk_.level() == DiskLevel::full) {
+    return ResultRefusal{Rejected::REASON_NOT_NOW, "the coordinator's disk is full", kFullRetryMs};
+  }
+  const ActiveJob* active = jobs_.find(result.job());
+  if (active != nullptr && active->film_store && active->film_store->crowded()) {
+    return ResultRefusal{Rejected::REASON_NOT_NOW, "more films wait for the disk than may",
+                         kCrowdedRetryMs};
+  }
+  return std::nullopt;
 }
 
 /// The scheduler hears of the film, unless it cannot be taken now.
@@ -189,23 +280,21 @@ std::optional<ResultRefusal> WorkerSessions::deliver(WorkerSession& session,
     return ResultRefusal{Rejected::REASON_UNKNOWN, "the worker is quarantined"};
   }
   const core::Unit& unit = delivery.unit.unit;
-  if (disk_.level() == DiskLevel::full) {
-    return ResultRefusal{Rejected::REASON_NOT_NOW, "the coordinator's disk is full", kFullRetryMs};
-  }
-  if (active != nullptr && active->film_store && active->film_store->crowded()) {
-    return ResultRefusal{Rejected::REASON_NOT_NOW, "more films wait for the disk than may",
-                         kCrowdedRetryMs};
-  }
+  if (auto later = not_now(result)) return later;
   delivery.rendered.worker = session.id;
   delivery.rendered.name = session.hello.name();
   delivery.rendered.thread = result.thread();
   delivery.rendered.render_ns =
       std::min(result.render_ns(), longest_rendering(session, result, unit));
   delivery.rendered.came_us = core::wall_us();
-  for (int i = 0; active != nullptr && i < std::min(result.notes_size(), kMostNotes); ++i) {
+  // What a worker notes counts once, with a film of a unit that it has.
+  const v1::LeasedUnit named = named_unit(result);
+  const int notes = has(session, named, unit) ? std::min(result.notes_size(), kMostNotes) : 0;
+  for (int i = 0; active != nullptr && i < notes; ++i) {
     jobs_.note(*active, v1::LOG_LEVEL_WARNING, unit.frame, session.hello.name(),
                farm::wire_text(result.notes(i)), &unit);
   }
+  session.bad_films = 0;
   const Duration took{static_cast<int64_t>(delivery.rendered.render_ns)};
   const Digest digest = delivery.unit.digest;
   turn.tell(
@@ -260,10 +349,12 @@ void WorkerSessions::send_lease(const Lease& lease) {
   workers_.send(lease.worker, message);
   context_.meters->leased(lease.units.size(), lease.adopted);
 
+  if (active->stored.begun_ms == 0) active->stored.begun_ms = core::wall_ms();
   const int32_t number = lease.units.front().frame;
   FrameNote& frame = active->touch(number);
   if (frame.state == v1::FRAME_STATE_WAITING) {
     frame.state = v1::FRAME_STATE_RENDERING;
+    frame.begun_ms = core::wall_ms();
     frame.begun = jobs_.moment();
     jobs_.note(*active, v1::LOG_LEVEL_INFO, number, session->hello.name(), "begun");
   }

@@ -24,6 +24,7 @@ namespace hyades::coordinator {
 namespace {
 
 constexpr size_t kMostWorkers = 20'000;
+constexpr int kMostInHand = 20'000;                            ///< units that a worker brings along
 constexpr uint32_t kMostThreads = 4096;                        ///< of one worker
 constexpr int kHeartbeats = 6;                                 ///< of a worker, in one lease_time
 constexpr Duration kLateBeatMargin = std::chrono::seconds(1);  ///< that a heartbeat may be late by
@@ -61,6 +62,9 @@ std::string complaint(const v1::Hello& hello) {
   }
   if (!core::is_printable(hello.worker_class())) return "class: expected printable characters";
   if (hello.threads() < 1 || hello.threads() > kMostThreads) return "threads: expected 1 to 4096";
+  if (hello.in_hand_size() > kMostInHand) {
+    return fmt::format("units in hand: at most {}", kMostInHand);
+  }
   return {};
 }
 
@@ -85,10 +89,26 @@ core::Result<WorkerJoined> joining(const v1::Hello& hello, const LeaseProofs& pr
   return joined;
 }
 
+/// What a session keeps of what a worker says of itself, field by field: a message that is emptied
+/// holds on to its memory, and one that is copied keeps what this version does not know.
+v1::Hello without_units(const v1::Hello& hello) {
+  v1::Hello kept;
+  kept.set_protocol(hello.protocol());
+  kept.set_worker_id(hello.worker_id());
+  kept.set_name(hello.name());
+  kept.set_host(hello.host());
+  kept.set_worker_class(hello.worker_class());
+  kept.set_build(hello.build());
+  kept.set_threads(hello.threads());
+  kept.set_memory_bytes(hello.memory_bytes());
+  *kept.mutable_tags() = hello.tags();
+  kept.set_instance(hello.instance());
+  return kept;
+}
+
 void begin_stream(WorkerSession& session, const v1::Hello& hello,
                   const std::shared_ptr<WorkerLink>& link) HYADES_REQUIRES(state_lock) {
-  session.hello = hello;
-  session.hello.clear_in_hand();
+  session.hello = without_units(hello);
   session.link = link;
   session.spec_sent.clear();
   session.progress.clear();

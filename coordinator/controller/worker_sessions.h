@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "coordinator/controller/worker_table.h"
+#include "core/base/parallel.h"
+#include "farm/thread_pool.h"
 #include "farm/token_term.h"
 
 namespace hyades::coordinator {
@@ -30,7 +33,12 @@ class WorkerSessions {
  public:
   WorkerSessions(ControllerContext& context, Dispatcher& dispatcher, JobTable& jobs,
                  WorkerTable& workers, const DiskWatch& disk)
-      : context_(context), dispatcher_(dispatcher), jobs_(jobs), workers_(workers), disk_(disk) {}
+      : context_(context),
+        dispatcher_(dispatcher),
+        jobs_(jobs),
+        workers_(workers),
+        disk_(disk),
+        unpackers_(core::hardware_threads() > 2 ? core::hardware_threads() : 2, 10'000) {}
 
   /// A worker's stream begins; `link` gets the Welcome. An older stream of the same worker is
   /// closed, unless it is another process' that still speaks, or another owner's: ALREADY_EXISTS
@@ -39,7 +47,9 @@ class WorkerSessions {
   grpc::Status attach(const v1::Hello& hello, const std::shared_ptr<WorkerLink>& link,
                       WorkerId& worker, const WorkerPass& pass = {}) HYADES_EXCLUDES(state_lock);
   /// What came on the stream; what comes on one that is not the worker's newest is ignored.
-  void receive(WorkerId worker, const WorkerLink* link, const v1::WorkerMessage& message)
+  /// Films are unpacked by threads of their own, in turns of those who have let workers in; what
+  /// comes on the stream meanwhile may be dealt with before them.
+  void receive(WorkerId worker, const WorkerLink* link, v1::WorkerMessage message)
       HYADES_EXCLUDES(state_lock);
   /// A worker's stream has ended; does nothing where it is not the newest.
   void detach(WorkerId worker, const WorkerLink* link) HYADES_EXCLUDES(state_lock);
@@ -62,6 +72,8 @@ class WorkerSessions {
   void send_over(JobId job) HYADES_REQUIRES(state_lock);
 
  private:
+  static constexpr uint64_t kMostPacked = uint64_t{512} << 20U;  ///< bytes
+
   v1::CoordinatorMessage welcome(const v1::Hello& hello, const WorkerPass& pass) const;
   bool has_room(Turn& turn) HYADES_REQUIRES(state_lock);
   grpc::Status may_join(const v1::Hello& hello, const WorkerPass& pass) const
@@ -88,8 +100,16 @@ class WorkerSessions {
       HYADES_REQUIRES(state_lock);
   void on_leaving(WorkerSession& session, const v1::Leaving& leaving, Turn& turn)
       HYADES_REQUIRES(state_lock);
-  void on_result(WorkerId worker, const WorkerLink* link, const v1::UnitResult& result)
+  /// A film that waits to be unpacked, or is.
+  struct Film;
+  void on_result(WorkerId worker, const WorkerLink* link, v1::UnitResult result)
       HYADES_EXCLUDES(state_lock);
+  void unpack(const std::shared_ptr<Film>& film) HYADES_EXCLUDES(state_lock);
+  std::optional<ResultRefusal> not_now(const v1::UnitResult& result) HYADES_REQUIRES(state_lock);
+  std::optional<ResultRefusal> have_unpacked(const std::shared_ptr<Film>& film,
+                                             farm::ThreadPool& pool) HYADES_EXCLUDES(state_lock);
+  void reject(WorkerSession& session, const v1::UnitResult& result, const ResultRefusal& refusal,
+              Turn& turn) HYADES_REQUIRES(state_lock);
   std::optional<ResultRefusal> deliver(WorkerSession& session, const v1::UnitResult& result,
                                        Delivery& delivery, Turn& turn) HYADES_REQUIRES(state_lock);
   void refuse(WorkerSession& session, const v1::UnitResult& result, const ResultRefusal& refusal,
@@ -102,6 +122,14 @@ class WorkerSessions {
   const DiskWatch& disk_;
   TimePoint adopting_until_ HYADES_GUARDED_BY(state_lock);
   TimePoint adopting_at_most_ HYADES_GUARDED_BY(state_lock);
+
+  /// Bytes of films that wait to be unpacked, by who has let their workers in, and of all.
+  std::map<std::string, uint64_t> packed_of_ HYADES_GUARDED_BY(state_lock);
+  uint64_t packed_ HYADES_GUARDED_BY(state_lock) = 0;
+
+  // Last, so that they end first.
+  farm::ThreadPool unpackers_;  ///< of films that take little memory
+  farm::ThreadPool large_unpackers_{1, 1000};
 };
 
 }  // namespace hyades::coordinator

@@ -52,6 +52,7 @@ struct WorkerSession {
   // What Worker (farm.proto) tells of it.
   uint64_t units_done HYADES_GUARDED_BY(state_lock) = 0;
   uint64_t units_failed HYADES_GUARDED_BY(state_lock) = 0;
+  uint32_t bad_films HYADES_GUARDED_BY(state_lock) = 0;  ///< one after the other
   uint64_t samples_done HYADES_GUARDED_BY(state_lock) = 0;
   uint64_t memory HYADES_GUARDED_BY(state_lock) = 0;
   uint64_t cache HYADES_GUARDED_BY(state_lock) = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -31,6 +32,9 @@ bool is_minimum(const Fixed128& value) {
   const auto bits = static_cast<uint32_t>(value.low);
   return value.high == 0 && value.low == bits && (bits & 0x7FFFFFFFU) <= 0x7F800000U;
 }
+
+/// The whole part of what one batch brings to a pixel, at most.
+constexpr auto kMostOfBatch = static_cast<int64_t>(kMaxDeposit) + 1;
 
 float clamp_deposit(float value) { return std::clamp(value, -kMaxDeposit, kMaxDeposit); }
 
@@ -248,6 +252,11 @@ Status Film::check() const {
       if (batches[i] == 0 && planes_[c][i] != nothing) {
         return Error{
             fmt::format("channel {} has a value where no batch is held", layout_.channels[c].name)};
+      }
+      // Or honest films could not be added to it.
+      if (!minima && std::abs(planes_[c][i].high) > kMostOfBatch * int64_t{batches[i]}) {
+        return Error{fmt::format("channel {} has a value beyond what {} batches add up to",
+                                 layout_.channels[c].name, batches[i])};
       }
       if (minima && !is_minimum(planes_[c][i])) {
         return Error{

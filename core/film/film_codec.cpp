@@ -25,6 +25,8 @@ constexpr uint64_t kFreeBytes = uint64_t{64} << 20U;
 constexpr uint64_t kMaxExpansion = 4096;
 constexpr int32_t kMaxCoordinate = 1 << 24;
 constexpr size_t kBoxBytes = 24;
+constexpr uint64_t kBoxMemory =
+    400;  ///< of a box of the coverage, while it is sorted and looked at
 constexpr size_t kHeaderBytes = 28;
 
 /// How a channel is stored.
@@ -136,9 +138,12 @@ Result<PixelRect> read_window(ByteReader& in) {
   return window;
 }
 
-Result<Coverage> read_coverage(ByteReader& in) {
+Result<Coverage> read_coverage(ByteReader& in, const FilmLimits& limits, uint64_t left) {
   const auto count = in.number<uint32_t>();
   if (count > in.left() / kBoxBytes) return Error{"it is truncated"};
+  if (count > limits.max_boxes || count * kBoxMemory > left) {
+    return Error{fmt::format("it has {} boxes", count)};
+  }
   std::vector<CoverageBox> boxes(count);
   for (CoverageBox& box : boxes) {
     for (int32_t* side : {&box.tile.x0, &box.tile.y0, &box.tile.x1, &box.tile.y1}) {
@@ -150,49 +155,82 @@ Result<Coverage> read_coverage(ByteReader& in) {
   return Coverage::from_canonical(boxes);
 }
 
-Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) {
-  ByteReader in(bytes);
+/// What stands before the coverage.
+struct Beginning {
+  FilmLayout layout;
+  PixelRect window;
+  PixelRect region;     ///< of the splats
+  uint32_t splats = 0;  ///< pixels that have some
+
+  /// While the film is read, but for its coverage, ids and the splats of parts.
+  uint64_t memory() const { return memory_to_read(layout, window, splats); }
+};
+
+Result<uint16_t> read_version(ByteReader& in) {
   if (in.number<uint32_t>() != kMagic) return Error{"these bytes are no film"};
   const auto version = in.number<uint16_t>();
   if (version > kVersion) {
     return Error{fmt::format("it has format version {}; this build knows {}", version, kVersion)};
   }
+  return version;
+}
+
+Result<Beginning> read_beginning(ByteReader& in) {
+  const Result<uint16_t> version = read_version(in);
+  if (!version) return version.error();
+  const Result<LayerSet> layers = read_layers(in, *version);
+  if (!layers) return layers.error();
+  Beginning begun;
+  begun.layout = make_film_layout(*layers);
+  const Result<PixelRect> window = read_window(in);
+  if (!window) return window.error();
+  begun.window = begun.region = *window;
+  if (begun.layout.layers.splats) {
+    const Result<PixelRect> whole = read_window(in);
+    if (!whole) return whole.error();
+    begun.region = *whole;
+    begun.splats = in.number<uint32_t>();
+    if (begun.splats > begun.region.area() || begun.region.area() > UINT32_MAX) {
+      return Error{"it has more splats than pixels"};
+    }
+  }
+  return begun;
+}
+
+Status check_whole(std::span<const std::byte> bytes) {
   if (bytes.size() < kHeaderBytes + sizeof(uint32_t)) return Error{"it is truncated"};
   const std::span<const std::byte> body = bytes.first(bytes.size() - sizeof(uint32_t));
   if (crc32c(body) != ByteReader(bytes.subspan(body.size())).number<uint32_t>()) {
     return Error{"its checksum does not match: it is damaged or truncated"};
   }
-  const Result<LayerSet> layers = read_layers(in, version);
-  if (!layers) return layers.error();
-  FilmLayout layout = make_film_layout(*layers);
+  return {};
+}
 
-  const Result<PixelRect> window = read_window(in);
-  if (!window) return window.error();
-  PixelRect region = *window;
-  uint32_t splats = 0;
-  if (layout.layers.splats) {
-    const Result<PixelRect> whole = read_window(in);
-    if (!whole) return whole.error();
-    region = *whole;
-    splats = in.number<uint32_t>();
-    if (splats > region.area() || region.area() > UINT32_MAX) {
-      return Error{"it has more splats than pixels"};
-    }
-  }
-  const uint64_t memory = memory_to_read(layout, *window, splats);
+Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) {
+  ByteReader first(bytes);
+  if (const Result<uint16_t> version = read_version(first); !version) return version.error();
+  if (const Status whole = check_whole(bytes); !whole) return whole.error();
+  ByteReader in(bytes);
+  Result<Beginning> begun = read_beginning(in);
+  if (!begun) return begun.error();
+  const PixelRect window = begun->window;
+  const PixelRect region = begun->region;
+  const uint32_t splats = begun->splats;
+  const uint64_t memory = begun->memory();
   if (memory > limits.max_bytes) {
     return Error{fmt::format("it is {} x {} pixels and would take {} MB; the limit is {} MB",
-                             window->width(), window->height(), memory >> 20U,
+                             window.width(), window.height(), memory >> 20U,
                              limits.max_bytes >> 20U)};
   }
   if (memory > kFreeBytes + kMaxExpansion * bytes.size()) {
-    return Error{fmt::format("it claims {} x {} pixels, which {} bytes cannot hold",
-                             window->width(), window->height(), bytes.size())};
+    return Error{fmt::format("it claims {} x {} pixels, which {} bytes cannot hold", window.width(),
+                             window.height(), bytes.size())};
   }
-  Result<Coverage> coverage = read_coverage(in);
+  uint64_t left = std::min(limits.max_bytes, kFreeBytes + kMaxExpansion * bytes.size()) - memory;
+  Result<Coverage> coverage = read_coverage(in, limits, left);
   if (!coverage) return coverage.error().in("its coverage is damaged");
 
-  Film film(std::move(layout), *window, region);
+  Film film(std::move(begun->layout), window, region);
   film.mutable_coverage() = std::move(*coverage);
   for (size_t c = 0; c < film.layout().channels.size(); ++c) {
     const Status read =
@@ -203,10 +241,10 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
     const Status read = read_splats(in, splats, film.mutable_splats());
     if (!read) return read.error();
   }
-  uint64_t left = std::min(limits.max_bytes, kFreeBytes + kMaxExpansion * bytes.size()) - memory;
   for (PartSplatLayer& part : film.mutable_part_splats()) {
     const auto count = in.number<uint32_t>();
-    if (count > region.area() || splat_memory(count) > left) return Error{"its splats are damaged"};
+    // What parts brought is a part of all.
+    if (count > splats || splat_memory(count) > left) return Error{"its splats are damaged"};
     left -= splat_memory(count);
     if (const Status read = read_splats(in, count, part); !read) return read.error();
   }
@@ -220,6 +258,15 @@ Result<Film> decode(std::span<const std::byte> bytes, const FilmLimits& limits) 
 }
 
 }  // namespace
+
+uint64_t memory_to_decode(std::span<const std::byte> bytes) {
+  ByteReader in(bytes);
+  const Result<Beginning> begun = read_beginning(in);
+  if (!begun) return 0;
+  const auto boxes = in.number<uint32_t>();
+  return begun->memory() + begun->layout.part_count() * splat_memory(begun->splats) +
+         boxes * kBoxMemory;
+}
 
 std::vector<std::byte> encode_film(const Film& film) {
   std::vector<std::byte> out;

@@ -12,7 +12,9 @@ namespace hyades::core {
 
 /// What decode_film accepts, checked before memory is taken.
 struct FilmLimits {
-  uint64_t max_bytes = uint64_t{16} << 30U;  ///< of the film in memory
+  uint64_t max_bytes = uint64_t{16}
+                       << 30U;      ///< of the film in memory, and of what reading it takes
+  uint32_t max_boxes = UINT32_MAX;  ///< of its coverage; that of a unit is one
 };
 
 /// A film as compact bytes for the log and the wire: versioned, checksummed (CRC-32C), byte planes
@@ -25,5 +27,10 @@ std::vector<std::byte> encode_film(const Film& film);
 /// Takes memory for at most 64 MiB + 4096 times the bytes given, and never more than the limits
 /// say.
 Result<Film> decode_film(std::span<const std::byte> bytes, const FilmLimits& limits = {});
+
+/// The most memory [bytes] that decode_film() takes for these, but for ids of objects and
+/// materials, by what stands at their beginning; where that is wrong they are refused before more
+/// is taken. Of bytes that are no film: 0.
+uint64_t memory_to_decode(std::span<const std::byte> bytes);
 
 }  // namespace hyades::core

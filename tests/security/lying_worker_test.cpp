@@ -142,6 +142,96 @@ TEST(LyingWorker, FramesFailWhoseIdsOutgrowTheirRoom) {
       << told.frames(0).reason();
 }
 
+TEST(LyingWorker, AddsNoSumsThatLeaveNoRoomForOthers) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  ScriptedWorker::Script script = world.script(1);
+  script.corrupt = [](core::Film& film) {
+    film.mutable_plane(film.layout().moment2)[0] = core::Fixed128{0, INT64_MAX};
+  };
+  const ScriptedWorker liar(world.address, script);
+  ASSERT_TRUE(eventually([&] { return liar.rejections().size() > 2; }));
+  EXPECT_NE(liar.rejections().front().text().find("beyond what"), std::string::npos)
+      << liar.rejections().front().text();
+  EXPECT_EQ(world.get(job).job().samples_done(), 0U);
+}
+
+// A coverage of pieces takes a hundred times its bytes before anybody looks at it.
+TEST(LyingWorker, FillsNoMemoryByPiecesOfAFilm) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  ScriptedWorker::Script script = world.script(1);
+  script.corrupt = [](core::Film& film) {
+    const core::CoverageBox whole = film.coverage().boxes().front();
+    core::Coverage pieces;
+    for (int32_t y = whole.tile.y0; y < whole.tile.y1; ++y) {
+      for (int32_t x = whole.tile.x0 + y % 2; x < whole.tile.x1; x += 2) {
+        pieces.add({{x, y, x + 1, y + 1}, whole.batches});
+      }
+    }
+    film.mutable_coverage() = pieces;
+  };
+  const ScriptedWorker liar(world.address, script);
+  ASSERT_TRUE(eventually([&] { return liar.rejections().size() > 2; }));
+  EXPECT_NE(liar.rejections().front().text().find("boxes"), std::string::npos)
+      << liar.rejections().front().text();
+  EXPECT_EQ(world.get(job).job().samples_done(), 0U);
+}
+
+TEST(LyingWorker, WhoSendsFilmAfterFilmThatIsNoneIsCutOff) {
+  FarmWorld world;
+  world.start();
+  world.submit(1);
+  ScriptedWorker::Script script = world.script(1);
+  script.corrupt = [](core::Film& film) {
+    film.mutable_plane(film.layout().moment2)[0] = core::Fixed128{0, INT64_MAX};
+  };
+  const ScriptedWorker liar(world.address, script);
+  EXPECT_TRUE(eventually([&] { return liar.rejections().size() >= 20 && liar.streams() > 1; }))
+      << liar.rejections().size();
+}
+
+TEST(LyingWorker, WritesIntoNoLogByFilmsOfUnitsThatItHasNoMore) {
+  FarmWorld world;
+  world.start();
+  const uint64_t job = world.submit(1);
+  const auto lines_of = [&](const std::string& text) {
+    v1::LogsRequest request;
+    request.set_job(job);
+    const auto context = world.context();
+    const auto reader = world.jobs->Logs(context.get(), request);
+    int found = 0;
+    v1::LogLine line;
+    while (reader->Read(&line)) found += line.text() == text ? 1 : 0;
+    (void)reader->Finish();
+    return found;
+  };
+  {
+    std::atomic<bool> begun{false};
+    ScriptedWorker::Script script = world.script(1);
+    script.note = "spam";
+    script.meddle = [&](ScriptedWorker& liar, const v1::LeasedUnit& unit) {
+      if (begun.exchange(true)) return false;
+      v1::WorkerMessage back;
+      *back.mutable_returned()->add_units() = unit;
+      liar.write(back);
+      for (int i = 0; i < 20; ++i) liar.deliver(unit);
+      return false;
+    };
+    const ScriptedWorker liar(world.address, script);
+    ASSERT_TRUE(eventually([&] { return liar.delivered() == 20; }));
+    std::this_thread::sleep_for(500ms);
+    EXPECT_EQ(lines_of("spam"), 0);
+  }
+  ScriptedWorker::Script script = world.script(2);
+  script.note = "a sample was no number";
+  const ScriptedWorker honest(world.address, script);
+  ASSERT_TRUE(world.wait_for(job, v1::JOB_STATE_DONE));
+  EXPECT_GT(lines_of("a sample was no number"), 0);
+}
+
 TEST(LyingWorker, GivesNoUnitsOfOthersBackAndBlamesNoneOfThem) {
   FarmWorld world;
   world.start();

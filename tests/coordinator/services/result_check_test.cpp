@@ -26,33 +26,30 @@ TEST(ResultCheck, WhatNobodyWasLeasedIsNotDecoded) {
   expected.worker = "a-worker-of-this-farm";
   const auto reason = [&](const std::string& proof) {
     result.mutable_unit()->set_proof(proof);
-    const auto checked = check_result(result, expected, proofs);
-    const auto* refusal = std::get_if<ResultRefusal>(&checked);
-    return refusal == nullptr ? v1::Rejected::REASON_UNSPECIFIED : refusal->reason;
+    const auto refusal = check_claim(result, expected, proofs);
+    return refusal ? refusal->reason : v1::Rejected::REASON_UNSPECIFIED;
   };
   EXPECT_EQ(reason(""), v1::Rejected::REASON_UNKNOWN);
   EXPECT_EQ(reason(proofs.make("another-worker-of-it", JobId{7}, unit)),
             v1::Rejected::REASON_UNKNOWN);
   EXPECT_EQ(reason(proofs.make(expected.worker, JobId{8}, unit)), v1::Rejected::REASON_UNKNOWN);
-  EXPECT_EQ(reason(proofs.make(expected.worker, JobId{7}, unit)), v1::Rejected::REASON_DAMAGED)
-      << "it was looked at";
+  EXPECT_EQ(reason(proofs.make(expected.worker, JobId{7}, unit)), v1::Rejected::REASON_UNSPECIFIED);
+  const auto looked_at = check_result(result, expected);
+  EXPECT_EQ(std::get<ResultRefusal>(looked_at).reason, v1::Rejected::REASON_DAMAGED);
 }
 
 /// What is said of a worker's film of `unit`.
 std::string refusal_of(const core::Film& film, const core::Unit& unit) {
-  const LeaseProofs proofs("secret");
   ExpectedFilm expected;
-  expected.worker = "a-worker-of-this-farm";
   expected.layout = film.layout();
   expected.region = unit.tile;
   v1::UnitResult result;
   result.set_job(7);
   *result.mutable_unit() = farm::to_wire(unit);
-  result.mutable_unit()->set_proof(proofs.make(expected.worker, JobId{7}, unit));
   const std::vector<std::byte> bytes = core::encode_film(film);
   result.set_film(bytes.data(), bytes.size());
   result.set_digest(farm::to_wire(*farm::digest_from_hex(film.digest())));
-  const auto checked = check_result(result, expected, proofs);
+  const auto checked = check_result(result, expected);
   const auto* refusal = std::get_if<ResultRefusal>(&checked);
   return refusal == nullptr ? "" : refusal->text;
 }

@@ -45,6 +45,7 @@ class ScriptedWorker {
     uint32_t samples = 0;
     std::chrono::milliseconds unit_time{0};
     uint64_t render_ns = 1'000'000;  ///< that it says a unit took
+    std::string note;                ///< that it says of each film
     uint32_t thread = 0;             ///< ... and which thread had it
     uint64_t cache_bytes = 0;        ///< that heartbeats tell of, with other numbers of the cache
     /// What happens to a unit; true: it is delivered as usual.
@@ -137,6 +138,7 @@ class ScriptedWorker {
     result.set_film(bytes.data(), bytes.size());
     result.set_digest(farm::to_wire(*farm::digest_from_hex(film.digest())));
     result.set_render_ns(script_.render_ns);
+    if (!script_.note.empty()) result.add_notes(script_.note);
     result.set_thread(script_.thread);
     result.set_want(1);
     {
