@@ -22,8 +22,10 @@ using Clock = std::chrono::steady_clock;
 constexpr size_t kMostDetail = 500;
 constexpr size_t kPiece = size_t{64} << 10U;
 constexpr size_t kLongestLine = size_t{16} << 10U;
-constexpr double kBurst = 10;       // refusals of one neighbourhood that are noted at once
-constexpr double kPerSecond = 0.1;  // ... and after that
+constexpr double kBurst = 10;            // refusals of one neighbourhood that are noted at once
+constexpr double kPerSecond = 0.1;       // ... and after that
+constexpr double kActionBurst = 2000;    // actions by one token that are noted at once
+constexpr double kActionsPerSecond = 1;  // ... and after that
 constexpr size_t kMostLimits = 1000;
 /// The limit of all whose neighbourhood has none of its own. To forget those that there are instead
 /// would give everybody new ones, as often as somebody with a thousand addresses likes.
@@ -103,8 +105,31 @@ AuditLog::~AuditLog() {
 
 void AuditLog::note(const Caller& caller, const std::string& action, const std::string& target,
                     const grpc::Status& result, const std::string& detail) {
+  v1::AuditEntry entry = entry_for(caller, action, target, result, detail);
+  // A farm without tokens has one person.
+  const std::string whose = caller.token_id.empty() ? caller.name : caller.token_id;
+  const bool steers_all = caller.role == v1::ROLE_ADMIN || caller.role == v1::ROLE_OPERATOR;
+  const auto now = Clock::now();
   const core::MutexLock lock(mutex_);
-  add(actions_, entry_for(caller, action, target, result, detail));
+  if (!result.ok()) {
+    const RateLimit fresh{{kBurst, kPerSecond, now}, &refusals_};
+    add_or_hold(failures_.try_emplace(whose, fresh).first->second, std::move(entry));
+  } else if (steers_all) {
+    add(actions_, std::move(entry));
+  } else {
+    const RateLimit fresh{{kActionBurst, kActionsPerSecond, now}, &actions_};
+    add_or_hold(actions_of_.try_emplace(whose, fresh).first->second, std::move(entry));
+  }
+}
+
+void AuditLog::add_or_hold(RateLimit& limit, v1::AuditEntry entry) {
+  entry.set_times(limit.held.times() + 1);
+  if (!limit.bucket.take(Clock::now())) {
+    limit.held = std::move(entry);
+    return;
+  }
+  limit.held.Clear();
+  add(*limit.trail, std::move(entry));
 }
 
 void AuditLog::upload(const Caller& caller, const std::string& action, const std::string& sha256,
@@ -119,32 +144,30 @@ void AuditLog::refuse(const Caller& caller, const std::string& action, const grp
   const core::MutexLock lock(mutex_);
   std::string whose = neighbourhood_of(caller.address);
   if (limits_.size() >= kMostLimits && !limits_.contains(whose)) whose = kSharedLimit;
-  const auto [found, fresh] = limits_.try_emplace(whose, RateLimit{{kBurst, kPerSecond, now}, {}});
-  RateLimit& limit = found->second;
-  entry.set_times(limit.held.times() + 1);
-  if (whose == kSharedLimit && entry.times() > 1) {
+  const RateLimit fresh{{kBurst, kPerSecond, now}, &refusals_};
+  RateLimit& limit = limits_.try_emplace(whose, fresh).first->second;
+  if (whose == kSharedLimit && limit.held.times() > 0) {
     entry.set_detail("of several addresses, this the last: " + entry.detail());
   }
-  if (!limit.bucket.take(now)) {
-    limit.held = std::move(entry);
-    return;
-  }
-  limit.held.Clear();
-  add(refusals_, std::move(entry));
+  add_or_hold(limit, std::move(entry));
 }
 
 /// Notes what stands for others and has waited long enough, or all.
 void AuditLog::release_held(bool all) {
+  for (Limits* limits : {&limits_, &failures_, &actions_of_}) release_of(*limits, all);
+}
+
+void AuditLog::release_of(Limits& limits, bool all) {
   const int64_t before = core::wall_ms() - std::chrono::milliseconds(kHeldAtMost).count();
-  for (auto limit = limits_.begin(); limit != limits_.end();) {
+  for (auto limit = limits.begin(); limit != limits.end();) {
     v1::AuditEntry& held = limit->second.held;
     if (held.times() > 0 && (all || held.time_ms() < before)) {
-      add(refusals_, std::move(held));
+      add(*limit->second.trail, std::move(held));
       held.Clear();
     }
     const bool idle =
         held.times() == 0 && Clock::now() - limit->second.bucket.asked() > 10 * kHeldAtMost;
-    limit = idle ? limits_.erase(limit) : std::next(limit);
+    limit = idle ? limits.erase(limit) : std::next(limit);
   }
 }
 

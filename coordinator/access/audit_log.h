@@ -37,8 +37,9 @@ struct AuditOptions {
 /// Who did what: lines of JSON that are only ever added to. Nobody who notes something waits: a
 /// thread writes and syncs, within milliseconds where the disk answers. Thread-safe.
 ///
-/// Actions, refusals and uploads have files and room of their own, so that many refusals, which any
-/// stranger can cause, or many uploads never push out an action that somebody needs to know of.
+/// Actions, refusals (of actions that failed, too) and uploads have files and room of their own, so
+/// that many refusals, which any stranger can cause, or many uploads never push out an action that
+/// somebody needs to know of; nor do many actions by one token.
 class AuditLog {
  public:
   /// An error where the folder cannot be written to.
@@ -48,7 +49,9 @@ class AuditLog {
   AuditLog(const AuditLog&) = delete;
   AuditLog& operator=(const AuditLog&) = delete;
 
-  /// Something was done, or was tried by somebody who may.
+  /// Something was done, or was tried by somebody who may. By one token that may not steer all jobs
+  /// thousands are noted one by one, then one a second, which says how many it stands for; of what
+  /// failed it is as with refuse().
   void note(const Caller& caller, const std::string& action, const std::string& target,
             const grpc::Status& result, const std::string& detail);
   /// Somebody may not. Of one address a few are noted one by one, then some every minute, which say
@@ -83,11 +86,14 @@ class AuditLog {
   Reader read() const;
 
  private:
-  /// Of a neighbourhood: bounds how many of its refusals are noted one by one.
+  struct Trail;
+  /// Bounds how many entries of a neighbourhood or a token are noted one by one.
   struct RateLimit {
     TokenBucket bucket;
-    v1::AuditEntry held;  ///< with `times` of those that were not noted
+    Trail* trail = nullptr;
+    v1::AuditEntry held{};  ///< with `times` of those that were not noted
   };
+  using Limits = std::map<std::string, RateLimit>;
 
   /// Lines of one kind.
   struct Trail {
@@ -102,6 +108,8 @@ class AuditLog {
 
   explicit AuditLog(const AuditOptions& options);
   void add(Trail& trail, v1::AuditEntry entry) HYADES_REQUIRES(mutex_);
+  void add_or_hold(RateLimit& limit, v1::AuditEntry entry) HYADES_REQUIRES(mutex_);
+  void release_of(Limits& limits, bool all) HYADES_REQUIRES(mutex_);
   void release_held(bool all) HYADES_REQUIRES(mutex_);
   bool all_written() const HYADES_REQUIRES(mutex_);
   bool write_some(Trail& trail) HYADES_REQUIRES(mutex_);
@@ -115,8 +123,9 @@ class AuditLog {
   Trail uploads_;
   const std::array<Trail*, 3> trails_ = {&actions_, &refusals_,
                                          &uploads_};  ///< as they are written
-  std::map<std::string, RateLimit> limits_
-      HYADES_GUARDED_BY(mutex_);  ///< by neighbourhood_of() an address
+  Limits limits_ HYADES_GUARDED_BY(mutex_);      ///< of refusals, by neighbourhood_of() an address
+  Limits failures_ HYADES_GUARDED_BY(mutex_);    ///< of actions that failed, by token
+  Limits actions_of_ HYADES_GUARDED_BY(mutex_);  ///< of others, by token
   bool stop_ HYADES_GUARDED_BY(mutex_) = false;
   bool busy_ HYADES_GUARDED_BY(mutex_) = false;  ///< lines are on their way
   core::CondVar wake_;
