@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -11,6 +12,7 @@ namespace hyades::coordinator {
 struct BackupCount {
   uint64_t files = 0;
   uint64_t bytes = 0;
+  std::vector<std::string> left_out{};  ///< files below outputs and assets that no job can have
 };
 
 /// Writes a tar file `to` of what the coordinator of the folder `data` keeps, while it may be

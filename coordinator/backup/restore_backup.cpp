@@ -94,7 +94,8 @@ core::Result<Manifest> extract_all(const std::string& from, const std::string& f
   for (;;) {
     const int next = archive_read_next_header(tar.get(), &entry);
     if (next == ARCHIVE_EOF) break;
-    if (next != ARCHIVE_OK) return torn(from, tar.get());
+    // It warns of names that the locale does not know, which are bytes to us.
+    if (next != ARCHIVE_OK && next != ARCHIVE_WARN) return torn(from, tar.get());
     const char* name = archive_entry_pathname(entry);
     const std::string path = name == nullptr ? "" : name;
     const bool plain =

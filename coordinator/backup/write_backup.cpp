@@ -51,7 +51,9 @@ class Tar {
     if (!file_.valid()) return core::Error{"cannot write " + path + ": " + core::io_reason(errno)};
     archive_ = archive_write_new();
     if (archive_ == nullptr) return core::Error{"no memory"};
+    // Names are the bytes that they are, whatever the locale.
     const bool ready = archive_write_set_format_pax_restricted(archive_) == ARCHIVE_OK &&
+                       archive_write_set_options(archive_, "hdrcharset=BINARY") == ARCHIVE_OK &&
                        archive_write_add_filter_none(archive_) == ARCHIVE_OK &&
                        archive_write_open_fd(archive_, file_.get()) == ARCHIVE_OK;
     return ready ? core::Status() : trouble();
@@ -113,6 +115,7 @@ class Writer {
     BackupCount count;
     for (const auto& [path, file] : manifest_.files) count.bytes += file.size;
     count.files = manifest_.files.size();
+    count.left_out = left_out_;
     return count;
   }
 
@@ -230,8 +233,11 @@ class Writer {
   core::Status add_folder(const std::string& folder) {
     for (const std::string& file : files_below(folder)) {
       const std::string name = fs::path(file).filename().string();
-      if (file.starts_with("assets/partial/") || name.starts_with('.')) continue;
-      if (!is_backup_path(file)) return core::Error{file + ": a name that no backup can hold"};
+      if (file.starts_with("assets/partial/") || name.ends_with(".tmp")) continue;
+      if (!is_backup_path(file)) {  // of nobody's job
+        left_out_.push_back(file);
+        continue;
+      }
       if (auto added = add(data_ + "/" + file, file, true); !added) return added;
     }
     return {};
@@ -262,6 +268,7 @@ class Writer {
   const std::string work_;
   Tar tar_;
   Manifest manifest_;
+  std::vector<std::string> left_out_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <sqlite3.h>
 
@@ -111,7 +112,7 @@ class Backup : public ::testing::Test {
     write(data("films/3/00000001.films"), std::string(300'000, 'f'));
     write(data("films/3/00000002.snapshot.tmp"), "half");
     write(data("outputs/3/a b/ball.0001.exr"), std::string("picture\0of a ball", 17));
-    write(data("outputs/3/.hidden"), "half");
+    write(data("outputs/3/.ball.0001.exr.0123456789abcdef.tmp"), "half");
     write(data("assets/" + std::string(64, 'a')), "mesh");
     write(data("assets/partial/" + std::string(64, 'b')), "half");
     write(data("audit.jsonl"), "{\"deed\":\"job.cancel\"}\n");
@@ -158,13 +159,30 @@ TEST_F(Backup, ComesBackAsItWas) {
         std::string("uploads.3.jsonl")}) {
     EXPECT_EQ(read(fresh("/" + same)), read(data(same))) << same;
   }
-  for (const char* none : {"films/3/log.lock", "films/3/00000002.snapshot.tmp", "outputs/3/.hidden",
-                           "assets/partial", "tmp", "address", "audit.jsonl.tmp"}) {
+  for (const char* none : {"films/3/log.lock", "films/3/00000002.snapshot.tmp",
+                           "outputs/3/.ball.0001.exr.0123456789abcdef.tmp", "assets/partial", "tmp",
+                           "address", "audit.jsonl.tmp"}) {
     EXPECT_FALSE(fs::exists(fresh(std::string("/") + none))) << none;
   }
   for (const auto& entry : fs::directory_iterator(folder_.path())) {
     const std::string name = entry.path().filename().string();
     EXPECT_TRUE(name == "data" || name == "fresh" || name == "backup.tar") << name;
+  }
+}
+
+TEST_F(Backup, NamesMayBeAnyThatAJobMayGive) {
+  write(data("outputs/4/bild_\xc3\xbc.png"), "umlaut");
+  write(data("outputs/4/not-utf8-\xff.png"), "bytes");
+  write(data("outputs/4/.dotted.png"), "dotted");
+  write(data("outputs/4/two\nlines.png"), "of a finisher that somebody has taken over");
+  const auto written = write_backup(folder_.file("data"), tar());
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(written->left_out, std::vector<std::string>{"outputs/4/two\nlines.png"});
+  const auto restored = restore_backup(tar(), fresh());
+  ASSERT_TRUE(restored) << restored.error().message;
+  for (const char* same :
+       {"outputs/4/bild_\xc3\xbc.png", "outputs/4/not-utf8-\xff.png", "outputs/4/.dotted.png"}) {
+    EXPECT_EQ(read(fresh(std::string("/") + same)), read(data(same))) << same;
   }
 }
 
