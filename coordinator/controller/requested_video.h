@@ -21,6 +21,7 @@ struct RequestedVideo {
   enum class State : uint8_t { waiting, making, done, failed };
   uint64_t number = 0;  ///< by which it is told from others; given by VideoMaker
   uint64_t job = 0;     ///< whose frames it shows
+  std::string owner{};  ///< of the job
   core::VideoDesc video;
   core::VideoFrames frames;
   State state = State::waiting;

@@ -18,6 +18,7 @@
 #include "core/base/failpoint.h"
 #include "core/base/text.h"
 #include "core/base/wall_clock.h"
+#include "core/job/made_file.h"
 #include "core/job/output_path.h"
 #include "core/job/video.h"
 #include "farm/wire.h"
@@ -26,7 +27,8 @@
 namespace hyades::coordinator {
 namespace {
 
-constexpr size_t kMostWaiting = 16;
+constexpr size_t kMostWaiting = 64;
+constexpr size_t kMostWaitingOfOne = 8;
 constexpr size_t kMostKept = 200;  ///< that were asked for, with what became of them
 constexpr uint32_t kRowsAtOnce = 1000;
 
@@ -74,6 +76,52 @@ void VideoMaker::stop() {
   stop_ = true;
 }
 
+/// When the owner was last served; of many owners the one that was longest ago is forgotten.
+uint64_t& VideoMaker::served(const std::string& owner) {
+  constexpr size_t kMostRemembered = 1000;
+  if (served_.size() >= kMostRemembered && !served_.contains(owner)) {
+    served_.erase(
+        std::min_element(served_.begin(), served_.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; }));
+  }
+  return served_[owner];
+}
+
+/// Takes the job out whose owner has waited longest; of one owner's the one that came first.
+std::optional<JobId> VideoMaker::next_due() {
+  auto best = due_.end();
+  uint64_t since = 0;
+  for (auto it = due_.begin(); it != due_.end(); ++it) {
+    const ActiveJob* active = jobs_.find(*it);
+    const auto last = served_.find(active == nullptr ? std::string() : active->stored.owner);
+    const uint64_t when = last == served_.end() ? 0 : last->second;
+    if (best != due_.end() && when >= since) continue;
+    best = it;
+    since = when;
+  }
+  if (best == due_.end()) return std::nullopt;
+  const JobId job = *best;
+  due_.erase(best);
+  if (const ActiveJob* active = jobs_.find(job)) served(active->stored.owner) = ++turns_;
+  return job;
+}
+
+/// The video that waits and whose owner has waited longest; null where none waits.
+RequestedVideo* VideoMaker::next_asked() {
+  RequestedVideo* best = nullptr;
+  uint64_t since = 0;
+  for (RequestedVideo& video : asked_) {
+    if (video.state != RequestedVideo::State::waiting) continue;
+    const auto last = served_.find(video.owner);
+    const uint64_t when = last == served_.end() ? 0 : last->second;
+    if (best != nullptr && when >= since) continue;
+    best = &video;
+    since = when;
+  }
+  if (best != nullptr) served(best->owner) = ++turns_;
+  return best;
+}
+
 /// Jobs' own videos come before those that somebody asked for. False: a job's wait, to be tried
 /// again.
 bool VideoMaker::make_next() {
@@ -82,10 +130,7 @@ bool VideoMaker::make_next() {
     const StateLock lock(context_.mutex);
     if (context_.stop) return true;
     in_work_.reset();
-    if (!due_.empty()) {
-      job = due_.front();
-      due_.pop_front();
-    }
+    job = next_due();
   }
   if (job) return make_of_job(*job);
   make_asked();
@@ -106,7 +151,7 @@ bool VideoMaker::make_of_job(JobId job) {
     frames = active->video_frames;
     frames.folder = context_.output_folder(id);
   }
-  const core::Status made = make_all(id, videos, frames);
+  const core::Result<bool> made = make_one(id, videos, frames);
   disk_.measure();
   const StateLock lock(context_.mutex);
   ActiveJob* active = jobs_.find(job);
@@ -118,11 +163,17 @@ bool VideoMaker::make_of_job(JobId job) {
     due_.push_back(job);
     return false;
   }
-  active->making_videos = false;
   active->trouble.clear();
+  if (made && *made) {  // after others' turns
+    due_.push_back(job);
+    queue_.add(0, [this] { return make_next(); });
+    return true;
+  }
+  active->making_videos = false;
   if (made) {
     jobs_.note(*active, v1::LOG_LEVEL_INFO, std::nullopt, {},
-               fmt::format("{} made of {} frames", in_words(videos), frames.numbers.size()));
+               fmt::format("{} made of {}", in_words(videos),
+                           core::counted(frames.numbers.size(), "frame")));
     records_.end(*active, false, {});
   } else {
     const std::string why =
@@ -133,22 +184,22 @@ bool VideoMaker::make_of_job(JobId job) {
   return true;
 }
 
-/// Makes those videos that are not there yet.
-core::Status VideoMaker::make_all(uint64_t id, const std::vector<core::VideoDesc>& videos,
-                                  const core::VideoFrames& frames) {
+/// Makes the first video that is not there yet; whether there are more.
+core::Result<bool> VideoMaker::make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
+                                        const core::VideoFrames& frames) {
+  bool one = false;
   for (const core::VideoDesc& video : videos) {
     const auto there = context_.store->output(id, video.file);
     if (!there) return there.error();
+    if (!*there && std::exchange(one, true)) return true;
     if (!*there) {
-      core::Status made = make(id, "video", {video, frames}, {core::video_folder(video)});
-      if (!made) return made;
+      const core::Status made = make(id, "video", {video, frames}, {core::video_folder(video)});
+      if (!made) return made.error();
     }
     // The pictures are not told any more: what an earlier run left goes too.
-    std::error_code ignored;
-    std::filesystem::remove_all(context_.output_folder(id) + "/" + core::video_folder(video),
-                                ignored);
+    core::remove_made_folder(context_.output_folder(id), core::video_folder(video));
   }
-  return {};
+  return false;
 }
 
 /// Has the video made and stored among the job's outputs, in the place of those that are `gone`
@@ -195,14 +246,17 @@ grpc::Status VideoMaker::ask(uint64_t id, const VideoRequest& request, Requested
   plan->job = id;
   plan->frames.folder = context_.output_folder(id);
   const StateLock lock(context_.mutex);
+  plan->owner = (*stored)->owner;
   size_t waiting = 0;
+  size_t own = 0;
   for (const RequestedVideo& other : asked_) {
     waiting += is_over(other) ? 0 : 1;
+    own += is_over(other) || other.owner != plan->owner ? 0 : 1;
     if (other.job != id || other.video.file != plan->video.file || is_over(other)) continue;
     asked = other;  // somebody was quicker, or asked twice
     return grpc::Status::OK;
   }
-  if (waiting >= kMostWaiting) {
+  if (waiting >= kMostWaiting || own >= kMostWaitingOfOne) {
     return farm::retry_later(grpc::StatusCode::RESOURCE_EXHAUSTED,
                              "more videos wait to be made than may", std::chrono::seconds(30));
   }
@@ -232,10 +286,8 @@ void VideoMaker::make_asked() {
   RequestedVideo video;
   {
     const StateLock lock(context_.mutex);
-    const auto found = std::find_if(asked_.begin(), asked_.end(), [](const RequestedVideo& asked) {
-      return asked.state == RequestedVideo::State::waiting;
-    });
-    if (found == asked_.end()) return;
+    RequestedVideo* found = next_asked();
+    if (found == nullptr) return;
     found->state = RequestedVideo::State::making;
     video = *found;
     stop_ = context_.stop.load();

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,8 @@ class DiskWatch;
 class JobRecords;
 
 /// Makes videos of finished frames, one after the other and beside all else, as that takes minutes:
-/// a job's own before it ends, and those that somebody asks for. Thread-safe.
+/// a job's own before it ends, and those that somebody asks for. Owners of jobs take turns, video
+/// by video. Thread-safe.
 class VideoMaker {
  public:
   VideoMaker(ControllerContext& context, JobTable& jobs, JobRecords& records, DiskWatch& disk,
@@ -52,8 +54,11 @@ class VideoMaker {
  private:
   bool make_next() HYADES_EXCLUDES(state_lock);
   bool make_of_job(JobId job) HYADES_EXCLUDES(state_lock);
-  core::Status make_all(uint64_t id, const std::vector<core::VideoDesc>& videos,
-                        const core::VideoFrames& frames);
+  std::optional<JobId> next_due() HYADES_REQUIRES(state_lock);
+  RequestedVideo* next_asked() HYADES_REQUIRES(state_lock);
+  uint64_t& served(const std::string& owner) HYADES_REQUIRES(state_lock);
+  core::Result<bool> make_one(uint64_t id, const std::vector<core::VideoDesc>& videos,
+                              const core::VideoFrames& frames);
   core::Status make(uint64_t id, const std::string& scratch, const VideoTask& task,
                     const std::vector<std::string>& gone);
   void make_asked() HYADES_EXCLUDES(state_lock);
@@ -70,6 +75,9 @@ class VideoMaker {
   /// The oldest first; those that are over too.
   std::deque<RequestedVideo> asked_ HYADES_GUARDED_BY(state_lock);
   uint64_t next_asked_ HYADES_GUARDED_BY(state_lock) = 1;
+  /// When a video of the owner's was last begun with, for those lately: owners take turns.
+  std::map<std::string, uint64_t> served_ HYADES_GUARDED_BY(state_lock);
+  uint64_t turns_ HYADES_GUARDED_BY(state_lock) = 0;
   std::atomic<bool> stop_{false};  ///< ends the video in work
   farm::RetryQueue queue_{1};
 };

@@ -50,7 +50,11 @@ core::Status run(const std::string& program, std::string word, const std::string
   const std::string said = folder + "/" + kSaid;
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
+  // Nothing of what the coordinator, or who has started it, has open: its log, say.
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&files, STDERR_FILENO, said.c_str(), O_WRONLY | O_CREAT, 0600);
+  posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);
   std::string name = program;
   std::string where = folder;
   char* argv[] = {name.data(), word.data(), where.data(), nullptr};

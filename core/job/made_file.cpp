@@ -8,6 +8,7 @@
 #include <iterator>
 #include <memory>
 #include <new>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,9 +31,8 @@ Error not_opened(int error) {
   return Error{"cannot be opened: " + io_reason(error)};
 }
 
-/// Opens the file as MadeFile::find() finds it.
-Result<Descriptor> open_below(const std::string& folder, const std::string& path,
-                              struct stat& info) {
+/// Opens `path` below `folder` part by part, through no links; the last one with `flags`.
+Result<Descriptor> walk(const std::string& folder, const std::string& path, int flags) {
   if (path.find('\0') != std::string::npos || output_name(path) == OutputName::outside) {
     return Error{"does not lie below the folder"};
   }
@@ -40,12 +40,20 @@ Result<Descriptor> open_below(const std::string& folder, const std::string& path
   if (!at.valid()) return not_opened(errno);
   const std::filesystem::path parts(path);
   for (auto part = parts.begin(); part != parts.end(); ++part) {
-    const int flags = std::next(part) == parts.end() ? kToRead : kToPass;
-    Descriptor below(uninterrupted([&] { return ::openat(at.get(), part->c_str(), flags); }));
+    const int how = std::next(part) == parts.end() ? flags : kToPass;
+    Descriptor below(uninterrupted([&] { return ::openat(at.get(), part->c_str(), how); }));
     if (!below.valid()) return not_opened(errno);
     at = std::move(below);
   }
-  if (::fstat(at.get(), &info) != 0) return not_opened(errno);
+  return at;
+}
+
+/// Opens the file as MadeFile::find() finds it.
+Result<Descriptor> open_below(const std::string& folder, const std::string& path,
+                              struct stat& info) {
+  auto at = walk(folder, path, kToRead);
+  if (!at) return at.error();
+  if (::fstat(at->get(), &info) != 0) return not_opened(errno);
   if (!S_ISREG(info.st_mode)) return Error{"is no regular file"};
   return at;
 }
@@ -80,6 +88,18 @@ Result<Bytes> MadeFile::read_whole(uint64_t most) const {
   const std::span<std::byte> all(bytes.get(), size_);
   if (!read(0, all)) return Error{"cannot be read"};
   return Bytes(bytes, all);
+}
+
+void remove_made_folder(const std::string& folder, const std::string& path) {
+  const std::filesystem::path whole(path);
+  const std::string above = whole.parent_path().string();
+  const auto at = above.empty() ? Result<Descriptor>(open_file(folder, O_PATH | O_DIRECTORY))
+                                : walk(folder, above, kToPass);
+  if (!at || !at->valid()) return;
+  std::error_code ignored;
+  // remove_all() follows no links itself; by its number the folder above is the one that was found.
+  std::filesystem::remove_all(
+      fmt::format("/proc/self/fd/{}/{}", at->get(), whole.filename().string()), ignored);
 }
 
 }  // namespace hyades::core

@@ -39,4 +39,8 @@ class MadeFile {
   ino_t number_ = 0;
 };
 
+/// Removes the folder `path` below `folder`, with all that is in it, if no link leads to it. What
+/// cannot be removed stays.
+void remove_made_folder(const std::string& folder, const std::string& path);
+
 }  // namespace hyades::core
